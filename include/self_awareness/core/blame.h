@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "self_awareness/core/model.h"
+#include "self_awareness/core/scorer.h"
+#include "self_awareness/core/windows.h"
+
+namespace self_awareness::core {
+
+/// Event types with fewer gaps than this in training have no usual delay to be measured by.
+constexpr std::uint64_t kFewestGaps = 30;
+
+/// Who may have made a window abnormal, and why.
+struct Suspect {
+  enum class Reason {
+    kSilent,   ///< did not come although it should have by now
+    kLate,     ///< came after an unusually long silence
+    kUnknown,  ///< was never seen in training
+    kUnusual   ///< came at delays after the others that were rare or absent in training
+  };
+
+  EventId id = 0;
+  Reason reason = Reason::kSilent;
+  double silence = 0;        ///< kSilent, kLate: time without such an event [s]
+  double usual_shortest = 0; ///< kSilent, kLate: 1 % of the gaps in training are shorter [s]
+  double usual_longest = 0;  ///< kSilent, kLate: 1 % of the gaps in training are longer [s]
+  std::size_t events = 0;    ///< kUnknown, kUnusual: such events in the window
+  double score = 0;          ///< kUnusual: their mean score
+  double usual_score = 0;    ///< kUnusual: the score to expect by training
+};
+
+/// The reason in words and numbers: "silent for 2.31 s, usually every 0.070 to 0.090 s".
+std::string describe(const Suspect& suspect);
+
+/// Ranks the event types that an abnormal window may be blamed on (METHOD.md, section 5): first
+/// those with the smallest probability of so long a silence by their own gaps in training, then
+/// unknown events, then those whose score is far below what training lets expect.
+class Blame {
+ public:
+  explicit Blame(std::shared_ptr<const Model> model);
+
+  /// @param last_seen when each event type was last seen [ns], at the window's end
+  /// @param end of the window [ns]
+  /// @return at most five suspects, the first the most likely
+  std::vector<Suspect> suspects(const Window& window,
+                                const std::vector<std::optional<std::int64_t>>& last_seen,
+                                std::int64_t end) const;
+
+  /// Natural logarithm of the probability of a gap of at least this age [ns] between two events
+  /// of the type: the share of such gaps in training, beyond the longest one b with the tail
+  /// exp(-age / b). 0 if the type is too rare to be judged.
+  double logSurvival(EventId id, std::int64_t age) const;
+  /// Whether training saw enough gaps to know what is usual.
+  bool judged(EventId id) const { return usual_.at(id).gaps >= kFewestGaps; }
+
+ private:
+  struct Usual {
+    std::uint64_t gaps = 0;
+    double shortest = 0;  // [s]
+    double longest = 0;   // [s]
+    double maximum = 0;   // [s]
+    double score = 0;     // expected s_j
+  };
+
+  std::shared_ptr<const Model> model_;
+  std::vector<Usual> usual_;  // by id
+};
+
+}  // namespace self_awareness::core

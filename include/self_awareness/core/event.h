@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <tuple>
+
+namespace self_awareness::core {
+
+/// What happened, without when: e = (source, scope, type), section IV-C of the paper.
+struct EventType {
+  std::string source;  ///< the component that produced it (a node's name); empty: not told apart
+  std::string scope;   ///< where others perceive it (a topic)
+  std::string type;    ///< what it is (a datatype, with the value of its type field if it has one)
+};
+
+inline bool operator==(const EventType& a, const EventType& b) {
+  return std::tie(a.source, a.scope, a.type) == std::tie(b.source, b.scope, b.type);
+}
+inline bool operator!=(const EventType& a, const EventType& b) {
+  return !(a == b);
+}
+inline bool operator<(const EventType& a, const EventType& b) {
+  return std::tie(a.source, a.scope, a.type) < std::tie(b.source, b.scope, b.type);
+}
+
+/// "SOURCE SCOPE TYPE", with "-" for an empty source: how people write and read an event type.
+std::string toString(const EventType& type);
+
+/// Dense index of an event type in a Vocabulary, from 0.
+using EventId = std::uint32_t;
+
+/// One occurrence of an event type.
+struct Event {
+  std::int64_t stamp = 0;  ///< [ns]
+  EventId id = 0;
+};
+
+constexpr std::int64_t kNanosecondsPerSecond = 1000000000;
+
+/// Nanoseconds to seconds, for showing and for floating point formulas.
+inline double toSeconds(std::int64_t nanoseconds) {
+  return static_cast<double>(nanoseconds) * 1e-9;
+}
+
+}  // namespace self_awareness::core

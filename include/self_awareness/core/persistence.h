@@ -1,0 +1,37 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+
+namespace self_awareness::core {
+
+/// When abnormal windows are an alarm: k abnormal ones among the last n windows raise it, and it
+/// clears after a hold time without any (METHOD.md, section 4).
+class Persistence {
+ public:
+  struct Parameters {
+    int alarm_windows = 3;                ///< k, 1 to n
+    int alarm_of = 5;                     ///< n
+    std::int64_t hold_time = 2000000000;  ///< [ns], 0 or more
+
+    /// @throw std::invalid_argument if a value is out of range.
+    void validate() const;
+  };
+
+  explicit Persistence(const Parameters& parameters);
+
+  /// Takes in the next window's verdict. @param end of the window [ns]. @return raised()
+  bool add(bool abnormal, std::int64_t end);
+  /// Whether the alarm stands.
+  bool raised() const { return raised_; }
+  /// Forgets all windows and the alarm.
+  void clear();
+
+ private:
+  Parameters parameters_;
+  std::deque<bool> recent_;
+  std::int64_t last_abnormal_ = 0;  // end of the window [ns], while raised
+  bool raised_ = false;
+};
+
+}  // namespace self_awareness::core

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <vector>
+
+namespace self_awareness::core {
+
+/// Receiver operating characteristic of "abnormal if score < cut-off" (section III-D, eq. 5).
+/// Candidate cut-offs are the midpoints between neighbouring distinct scores, and +-infinity.
+class Roc {
+ public:
+  struct Point {
+    double cutoff = 0;
+    double true_positive_rate = 0;   ///< abnormal windows found, 0 to 1
+    double false_positive_rate = 0;  ///< normal windows called abnormal, 0 to 1
+  };
+
+  /// @throw std::invalid_argument if there is no normal score, or a score is not finite. Without
+  /// abnormal scores only the level is defined: auc and true positive rates are NaN.
+  Roc(std::vector<double> normal, std::vector<double> abnormal);
+
+  /// All candidates, from -infinity to +infinity.
+  const std::vector<Point>& points() const { return points_; }
+  /// P(abnormal < normal) + P(tie) / 2 for a pair of windows drawn at random.
+  double auc() const { return auc_; }
+
+  /// The cut-off that maximises Youden's J = TPR - FPR; the smallest of several.
+  /// @throw std::logic_error if there are no abnormal scores.
+  Point youden() const;
+  /// The cut-off closest to (0, 1) in the plot; the smallest of several.
+  /// @throw std::logic_error if there are no abnormal scores.
+  Point closest() const;
+  /// The largest cut-off with at most the given false positive rate (0 to 1). Where only -infinity
+  /// has so few, the lowest normal score: nothing normal lies below it.
+  Point level(double false_positive_rate) const;
+  /// The rates at any cut-off.
+  Point at(double cutoff) const;
+
+ private:
+  std::vector<double> normal_;    // sorted
+  std::vector<double> abnormal_;  // sorted
+  std::vector<Point> points_;
+  double auc_ = 0;
+};
+
+}  // namespace self_awareness::core

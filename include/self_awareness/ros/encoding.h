@@ -1,0 +1,103 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <regex>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "self_awareness/core/event.h"
+#include "self_awareness/ros/message_field.h"
+
+namespace self_awareness::ros1 {
+
+/// How messages become events: the rules of the function f of section IV-C. They are stored in the
+/// model, so that training and running cannot disagree. Patterns are regular expressions that must
+/// match the whole name.
+struct EncodingRules {
+  enum class Source {
+    kCallerId,  ///< the publisher's node name, anonymous numbers removed
+    kNone       ///< left out: replays by rosbag play, bags without callerids
+  };
+
+  Source source = Source::kCallerId;
+  std::vector<std::string> include_topics;   ///< empty: all
+  std::vector<std::string> exclude_topics;
+  std::vector<std::string> include_sources;  ///< empty: all; without effect for Source::kNone
+  std::vector<std::string> exclude_sources;
+  std::map<std::string, std::string> type_fields;  ///< field by datatype
+
+  /// What fits most robots: everything but the monitor's own output, clocks, aggregated logs and
+  /// the tools of people who look on.
+  static EncodingRules defaults();
+};
+
+bool operator==(const EncodingRules& a, const EncodingRules& b);
+
+/// One publisher's connection to a topic, from a connection header, live or in a bag.
+struct Connection {
+  std::string callerid;
+  std::string topic;
+  std::string datatype;
+  std::string definition;
+  bool latching = false;
+};
+
+/// Gives an event type its id: a new one for a new type, where the vocabulary grows.
+using EventIds = std::function<core::EventId(const core::EventType&)>;
+
+/// Turns the messages of one connection into event ids.
+class ConnectionEncoder {
+ public:
+  /// Whether the next message is an event: the first on a latching connection was not published
+  /// now, it came because somebody subscribed. To be asked once for every message.
+  bool accept();
+  /// Whether the message must be read: without that, the id is that of any message here.
+  bool needsContent() const { return field_ != nullptr; }
+  /// Id of a message that need not be read.
+  core::EventId id();
+  /// Id of a message by its serialized content.
+  /// @throw std::out_of_range if the message is shorter than its definition says
+  core::EventId id(const std::uint8_t* data, std::size_t size);
+
+ private:
+  friend class Encoder;
+
+  EventIds ids_;
+  core::EventType type_;
+  std::optional<core::EventId> id_;  // given with the first message, not with the connection
+  bool skip_next_ = false;
+  std::shared_ptr<const MessageField> field_;
+  std::string field_name_;
+  std::unordered_map<std::string, core::EventId> ids_by_value_;
+};
+
+/// Encodes the messages of all connections of one system.
+class Encoder {
+ public:
+  /// @throw std::invalid_argument names the pattern that is no regular expression
+  Encoder(const EncodingRules& rules, EventIds ids);
+
+  /// Whether the rules let any message of the topic be an event.
+  bool includesTopic(const std::string& topic) const;
+  /// What encodes the connection's messages; none if the rules leave them out.
+  /// @throw std::invalid_argument if a type field does not fit the message's definition
+  std::optional<ConnectionEncoder> connect(const Connection& connection) const;
+
+ private:
+  bool includesSource(const std::string& source) const;
+
+  EncodingRules rules_;
+  EventIds ids_;
+  std::vector<std::regex> include_topics_;
+  std::vector<std::regex> exclude_topics_;
+  std::vector<std::regex> include_sources_;
+  std::vector<std::regex> exclude_sources_;
+};
+
+}  // namespace self_awareness::ros1

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "self_awareness/Calibration.h"
+#include "self_awareness/Model.h"
+#include "self_awareness/Recording.h"
+#include "self_awareness/core/delay_statistics.h"
+#include "self_awareness/ros/encoding.h"
+
+namespace self_awareness::ros1 {
+
+/// A model file that cannot be used; the message names the file and the way out.
+class ModelFileError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// All that a model file holds.
+struct TrainedModel {
+  EncodingRules encoding;
+  std::int64_t window = 100000000;  ///< length of a window [ns]
+  core::DelayStatistics statistics{core::Binning{}};
+  std::vector<self_awareness::Recording> recordings;           ///< trained on
+  std::optional<self_awareness::Calibration> calibration;      ///< none: not calibrated
+  ros::Time stamp;                                             ///< when it was trained
+
+  /// s* of eq. 5, if the model was calibrated.
+  std::optional<double> threshold() const;
+};
+
+self_awareness::Model toMessage(const TrainedModel& model);
+/// @throw std::invalid_argument says what in the message contradicts itself
+TrainedModel fromMessage(const self_awareness::Model& message);
+
+/// Writes a temporary file beside `path` and renames it, so that no half-written model is ever seen.
+/// @throw ModelFileError
+void saveModel(const TrainedModel& model, const std::string& path);
+/// @throw ModelFileError if the file is missing, no model, of another version, or damaged
+TrainedModel loadModel(const std::string& path);
+
+}  // namespace self_awareness::ros1

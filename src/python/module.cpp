@@ -1,0 +1,508 @@
+// The Python module: the C++ core and the bag reader for the package's programs, as thin as can be.
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+#include <ros/serialization.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "self_awareness/core/detector.h"
+#include "self_awareness/core/model.h"
+#include "self_awareness/core/roc.h"
+#include "self_awareness/ros/bag_reader.h"
+#include "self_awareness/ros/model_file.h"
+
+namespace py = pybind11;
+using namespace self_awareness;  // NOLINT(google-build-using-namespace): the module is its facade
+
+namespace {
+
+using Stamps = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
+using Ids = py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>;
+
+template <typename T>
+py::array_t<T> toArray(const std::vector<T>& values) {
+  return py::array_t<T>(static_cast<py::ssize_t>(values.size()), values.data());
+}
+
+// The progress bar lives in Python, and Ctrl-C must get through while C++ reads.
+ros1::BagReader::Progress progressTo(const py::object& callback) {
+  return [&callback](std::uint64_t done, std::uint64_t all) {
+    if (PyErr_CheckSignals() != 0) {
+      throw py::error_already_set();
+    }
+    if (!callback.is_none()) {
+      callback(done, all);
+    }
+  };
+}
+
+template <typename Handler>
+void forEachEvent(const Stamps& stamps, const Ids& ids, Handler handler) {
+  if (stamps.ndim() != 1 || ids.ndim() != 1 || stamps.size() != ids.size()) {
+    throw std::invalid_argument("stamps and ids must be two arrays of one dimension and length");
+  }
+  const auto stamp = stamps.unchecked<1>();
+  const auto id = ids.unchecked<1>();
+  for (py::ssize_t i = 0; i < stamps.size(); ++i) {
+    handler(core::Event{stamp(i), id(i)});
+  }
+}
+
+/// The events of a recording, in memory.
+struct RecordedEvents {
+  ros1::BagSummary summary;
+  std::vector<core::EventType> event_types;  // those asked for first, then the new ones
+  std::vector<std::int64_t> stamps;          // [ns]
+  std::vector<std::uint32_t> ids;
+};
+
+RecordedEvents readEvents(const std::string& path, const ros1::EncodingRules& rules,
+                          const std::vector<core::EventType>& known,
+                          const ros1::TimeRange& range, const py::object& progress) {
+  const ros1::BagReader reader(path);
+  core::Vocabulary vocabulary(known);
+  const ros1::Encoder encoder(
+      rules, [&](const core::EventType& type) { return vocabulary.intern(type); });
+  RecordedEvents events;
+  events.summary = reader.summary();
+  reader.read(
+      encoder, range,
+      [&](const core::Event& event) {
+        events.stamps.push_back(event.stamp);
+        events.ids.push_back(event.id);
+      },
+      progressTo(progress));
+  events.event_types = vocabulary.types();
+  return events;
+}
+
+/// Trains on one recording after the other.
+class Training {
+ public:
+  Training(ros1::EncodingRules rules, std::int64_t bin_size, std::int64_t window,
+           std::int64_t horizon_bins)
+      : statistics_(core::Binning{bin_size, horizon_bins}),
+        trainer_(statistics_),
+        rules_(std::move(rules)),
+        window_(window) {
+    core::Windows(window, nullptr);  // throws where the length is none
+  }
+
+  self_awareness::Recording addBag(const std::string& path, const ros1::TimeRange& range,
+                                   const py::object& progress) {
+    const ros1::BagReader reader(path);
+    const ros1::Encoder encoder(
+        rules_, [this](const core::EventType& type) { return statistics_.intern(type); });
+    self_awareness::Recording recording;
+    recording.bag = path.substr(path.find_last_of('/') + 1);
+    recording.fingerprint = reader.summary().fingerprint;
+    trainer_.startRecording();
+    reader.read(
+        encoder, range,
+        [&](const core::Event& event) {
+          trainer_.add(event);
+          recording.start.fromNSec(recording.events == 0 ? event.stamp
+                                                         : recording.start.toNSec());
+          recording.end.fromNSec(event.stamp);
+          ++recording.events;
+        },
+        progressTo(progress));
+    recordings_.push_back(recording);
+    return recording;
+  }
+
+  void addEvents(const std::vector<core::EventType>& types, const Stamps& stamps,
+                 const Ids& ids) {
+    trainer_.startRecording();
+    forEachEvent(stamps, ids, [&](const core::Event& event) {
+      trainer_.add({event.stamp, statistics_.intern(types.at(event.id))});
+    });
+  }
+
+  ros1::TrainedModel model() const {
+    ros1::TrainedModel model;
+    model.encoding = rules_;
+    model.window = window_;
+    model.statistics = statistics_;
+    model.recordings = recordings_;
+    model.stamp.fromSec(std::floor(ros::WallTime::now().toSec()));
+    return model;
+  }
+
+ private:
+  core::DelayStatistics statistics_;
+  core::DelayTrainer trainer_;
+  ros1::EncodingRules rules_;
+  std::int64_t window_;
+  std::vector<self_awareness::Recording> recordings_;
+};
+
+/// A stretch of time in which the alarm stood.
+struct Alarm {
+  std::int64_t start = 0;  // end of the window that raised it [ns]
+  std::int64_t end = 0;    // end of the window that cleared it, or of the recording [ns]
+  bool cleared = false;
+  double lowest_score = std::numeric_limits<double>::quiet_NaN();
+  std::vector<core::Suspect> suspects;  // of the window that raised it
+};
+
+/// The verdicts on all windows of a recording, one entry a window.
+struct Verdicts {
+  std::vector<std::int64_t> start;  // [ns]
+  std::vector<std::uint32_t> events;
+  std::vector<std::uint32_t> unknown;
+  std::vector<double> score;  // NaN: no events
+  std::vector<bool> abnormal;
+  std::vector<bool> settling;
+  std::vector<Alarm> alarms;
+};
+
+void record(const core::Verdict& verdict, std::int64_t window, Verdicts& verdicts) {
+  const std::int64_t end = verdict.window->start + window;
+  verdicts.start.push_back(verdict.window->start);
+  verdicts.events.push_back(static_cast<std::uint32_t>(verdict.window->events.size()));
+  verdicts.unknown.push_back(static_cast<std::uint32_t>(verdict.window->unknown()));
+  verdicts.score.push_back(verdict.score.value_or(std::numeric_limits<double>::quiet_NaN()));
+  verdicts.abnormal.push_back(verdict.abnormal);
+  verdicts.settling.push_back(verdict.settling);
+  if (verdict.changed && verdict.alarm) {
+    Alarm alarm;
+    alarm.start = end;
+    alarm.suspects = verdict.suspects;
+    verdicts.alarms.push_back(alarm);
+  }
+  if (verdict.alarm || verdict.changed) {
+    Alarm& alarm = verdicts.alarms.back();
+    alarm.end = end;
+    alarm.cleared = !verdict.alarm;
+    alarm.lowest_score = std::fmin(alarm.lowest_score, verdict.score.value_or(0));
+  }
+}
+
+Verdicts judge(const std::shared_ptr<core::Model>& model, std::int64_t window,
+               std::optional<double> threshold, const core::Detector::Parameters& parameters,
+               const Stamps& stamps, const Ids& ids) {
+  Verdicts verdicts;
+  core::Detector detector(
+      model, window, threshold, parameters,
+      [&](const core::Verdict& verdict) { record(verdict, window, verdicts); });
+  forEachEvent(stamps, ids, [&](const core::Event& event) { detector.add(event); });
+  detector.finish();
+  return verdicts;
+}
+
+std::vector<double> scoreEvents(const std::shared_ptr<core::Model>& model, const Stamps& stamps,
+                                const Ids& ids) {
+  core::Scorer scorer(model);
+  std::vector<double> scores;
+  forEachEvent(stamps, ids, [&](const core::Event& event) {
+    scores.push_back(scorer.score(event).score);
+  });
+  return scores;
+}
+
+ros1::TimeRange timeRange(std::optional<double> start, std::optional<double> end) {
+  ros1::TimeRange range{start, end};
+  range.validate();
+  return range;
+}
+
+py::array_t<bool> toArray(const std::vector<bool>& values) {
+  py::array_t<bool> array(static_cast<py::ssize_t>(values.size()));
+  std::copy(values.begin(), values.end(), array.mutable_data());
+  return array;
+}
+
+void bindEncoding(py::module& m) {
+  py::class_<core::EventType>(m, "EventType", "What happened: (source, scope, type).")
+      .def(py::init<std::string, std::string, std::string>(), py::arg("source"),
+           py::arg("scope"), py::arg("type"))
+      .def_readonly("source", &core::EventType::source)
+      .def_readonly("scope", &core::EventType::scope)
+      .def_readonly("type", &core::EventType::type)
+      .def("__str__", &core::toString)
+      .def("__repr__",
+           [](const core::EventType& self) { return "<EventType " + core::toString(self) + ">"; })
+      .def("__eq__", [](const core::EventType& a, const core::EventType& b) { return a == b; })
+      .def("__hash__",
+           [](const core::EventType& self) { return py::hash(py::str(core::toString(self))); });
+
+  py::class_<ros1::EncodingRules>(m, "EncodingRules",
+                                  "How messages become events; see config/encoding.yaml.")
+      .def(py::init<>(), "Sources told apart, nothing excluded, no type fields.")
+      .def_static("defaults", &ros1::EncodingRules::defaults)
+      .def_property(
+          "source",
+          [](const ros1::EncodingRules& self) {
+            return self.source == ros1::EncodingRules::Source::kNone ? "none" : "callerid";
+          },
+          [](ros1::EncodingRules& self, const std::string& source) {
+            if (source != "none" && source != "callerid") {
+              throw std::invalid_argument("source must be 'callerid' or 'none', not '" + source +
+                                          "'");
+            }
+            self.source = source == "none" ? ros1::EncodingRules::Source::kNone
+                                           : ros1::EncodingRules::Source::kCallerId;
+          },
+          "'callerid' or 'none'")
+      .def_readwrite("include_topics", &ros1::EncodingRules::include_topics)
+      .def_readwrite("exclude_topics", &ros1::EncodingRules::exclude_topics)
+      .def_readwrite("include_sources", &ros1::EncodingRules::include_sources)
+      .def_readwrite("exclude_sources", &ros1::EncodingRules::exclude_sources)
+      .def_readwrite("type_fields", &ros1::EncodingRules::type_fields)
+      .def("validate", [](const ros1::EncodingRules& self) { ros1::Encoder(self, nullptr); },
+           "ValueError where a pattern is no regular expression.")
+      .def("__eq__",
+           [](const ros1::EncodingRules& a, const ros1::EncodingRules& b) { return a == b; });
+}
+
+void bindBags(py::module& m) {
+  py::register_exception<ros1::BagError>(m, "BagError", PyExc_RuntimeError);
+
+  py::class_<ros1::BagSummary>(m, "BagSummary", "What a bag's index says of it.")
+      .def_readonly("path", &ros1::BagSummary::path)
+      .def_readonly("start", &ros1::BagSummary::start, "stamp of the first message [ns]")
+      .def_readonly("end", &ros1::BagSummary::end, "stamp of the last message [ns]")
+      .def_readonly("messages", &ros1::BagSummary::messages)
+      .def_readonly("fingerprint", &ros1::BagSummary::fingerprint)
+      .def_readonly("has_sources", &ros1::BagSummary::has_sources);
+  m.def(
+      "summarise_bag",
+      [](const std::string& path) { return ros1::BagReader(path).summary(); }, py::arg("path"),
+      "BagSummary of a bag. Raises BagError.");
+
+  py::class_<RecordedEvents>(m, "RecordedEvents", "The events of a recording, in memory.")
+      .def_readonly("summary", &RecordedEvents::summary)
+      .def_readonly("event_types", &RecordedEvents::event_types, "by id")
+      .def_property_readonly("stamps",
+                             [](const RecordedEvents& self) { return toArray(self.stamps); })
+      .def_property_readonly("ids", [](const RecordedEvents& self) { return toArray(self.ids); });
+  m.def(
+      "read_events",
+      [](const std::string& path, const ros1::EncodingRules& encoding,
+         const std::vector<core::EventType>& event_types, std::optional<double> start,
+         std::optional<double> end, const py::object& progress) {
+        return readEvents(path, encoding, event_types, timeRange(start, end), progress);
+      },
+      py::arg("path"), py::arg("encoding"), py::arg("event_types") = std::vector<core::EventType>(),
+      py::arg("start") = py::none(), py::arg("end") = py::none(),
+      py::arg("progress") = py::none(),
+      "RecordedEvents of a bag: stamps (int64 [ns]) and ids (uint32). Ids below len(event_types)\n"
+      "stand for these, the ids behind for types not among them. start, end: seconds from the\n"
+      "recording's first message. progress(done, all) is called now and then. Raises BagError.");
+}
+
+void bindModel(py::module& m) {
+  py::register_exception<ros1::ModelFileError>(m, "ModelFileError", PyExc_RuntimeError);
+
+  py::class_<self_awareness::Recording>(m, "Recording", "msg/Recording.msg")
+      .def(py::init<>())
+      .def_readwrite("bag", &self_awareness::Recording::bag)
+      .def_property(
+          "start", [](const self_awareness::Recording& self) { return self.start.toNSec(); },
+          [](self_awareness::Recording& self, std::uint64_t ns) { self.start.fromNSec(ns); },
+          "[ns]")
+      .def_property(
+          "end", [](const self_awareness::Recording& self) { return self.end.toNSec(); },
+          [](self_awareness::Recording& self, std::uint64_t ns) { self.end.fromNSec(ns); },
+          "[ns]")
+      .def_readwrite("events", &self_awareness::Recording::events)
+      .def_readwrite("fingerprint", &self_awareness::Recording::fingerprint);
+
+  using self_awareness::Calibration;
+  py::class_<Calibration>(m, "Calibration", "msg/Calibration.msg")
+      .def(py::init<>())
+      .def_readwrite("threshold", &Calibration::threshold)
+      .def_readwrite("method", &Calibration::method)
+      .def_readwrite("auc", &Calibration::auc)
+      .def_readwrite("true_positive_rate", &Calibration::true_positive_rate)
+      .def_readwrite("false_positive_rate", &Calibration::false_positive_rate)
+      .def_readwrite("normal_windows", &Calibration::normal_windows)
+      .def_readwrite("faulty_windows", &Calibration::faulty_windows)
+      .def_readwrite("false_alarms_per_hour", &Calibration::false_alarms_per_hour)
+      .def_readwrite("normal", &Calibration::normal)
+      .def_readwrite("faulty", &Calibration::faulty)
+      .def_readwrite("injected", &Calibration::injected)
+      .def_property(
+          "stamp", [](const Calibration& self) { return self.stamp.toNSec(); },
+          [](Calibration& self, std::uint64_t ns) { self.stamp.fromNSec(ns); }, "[ns]");
+
+  using ros1::TrainedModel;
+  py::class_<TrainedModel>(m, "TrainedModel", "All that a model file holds: counts.")
+      .def_static("load", &ros1::loadModel, py::arg("path"), "Raises ModelFileError.")
+      .def("save", &ros1::saveModel, py::arg("path"), "Raises ModelFileError; writes all or nothing.")
+      .def_readonly("encoding", &TrainedModel::encoding)
+      .def_readonly("window", &TrainedModel::window, "length of a window [ns]")
+      .def_readonly("recordings", &TrainedModel::recordings)
+      .def_property_readonly("stamp",
+                             [](const TrainedModel& self) { return self.stamp.toNSec(); }, "[ns]")
+      .def_readwrite("calibration", &TrainedModel::calibration, "None: not calibrated")
+      .def_property_readonly("threshold", &TrainedModel::threshold, "None: not calibrated")
+      .def_property_readonly(
+          "bin_size", [](const TrainedModel& self) { return self.statistics.binning().bin_size; },
+          "[ns]")
+      .def_property_readonly(
+          "horizon_bins",
+          [](const TrainedModel& self) { return self.statistics.binning().horizon_bins; },
+          "0: unbounded")
+      .def_property_readonly(
+          "event_types",
+          [](const TrainedModel& self) { return self.statistics.vocabulary().types(); }, "by id")
+      .def_property_readonly("events",
+                             [](const TrainedModel& self) { return self.statistics.events(); })
+      .def_property_readonly("pairs",
+                             [](const TrainedModel& self) { return self.statistics.pairs(); },
+                             "number of ordered pairs with at least one delay")
+      .def("event_count",
+           [](const TrainedModel& self, core::EventId id) { return self.statistics.eventCount(id); })
+      .def(
+          "histogram",
+          [](const TrainedModel& self, core::EventId from, core::EventId to) {
+            std::map<std::int64_t, std::uint64_t> counts;
+            for (const core::Histogram::Entry& entry : self.statistics.pair(from, to).entries()) {
+              counts[entry.bin] = entry.count;
+            }
+            return counts;
+          },
+          py::arg("from_id"), py::arg("to_id"),
+          "dict of bin: count, of the delay from the last from_id to the current to_id");
+
+  py::class_<Training>(m, "Training", "Counts the delays of one recording after the other.")
+      .def(py::init<ros1::EncodingRules, std::int64_t, std::int64_t, std::int64_t>(),
+           py::arg("encoding"), py::arg("bin_size") = 10000000, py::arg("window") = 100000000,
+           py::arg("horizon_bins") = 0, "bin_size, window: [ns]; horizon_bins 0: unbounded")
+      .def(
+          "add_bag",
+          [](Training& self, const std::string& path, std::optional<double> start,
+             std::optional<double> end, const py::object& progress) {
+            return self.addBag(path, timeRange(start, end), progress);
+          },
+          py::arg("path"), py::arg("start") = py::none(), py::arg("end") = py::none(),
+          py::arg("progress") = py::none(),
+          "Trains on a bag, one recording; returns its Recording. start, end: seconds from its\n"
+          "first message. After a BagError the training is incomplete and must be thrown away.")
+      .def("add_events", &Training::addEvents, py::arg("event_types"), py::arg("stamps"),
+           py::arg("ids"), "Trains on one recording given as arrays.")
+      .def("model", &Training::model, "The TrainedModel of all that was added.");
+}
+
+void bindDetector(py::module& m) {
+  py::class_<core::Suspect>(m, "Suspect", "An event type a window may be blamed on.")
+      .def_readonly("id", &core::Suspect::id)
+      .def_readonly("silence", &core::Suspect::silence, "[s]")
+      .def_readonly("usual_shortest", &core::Suspect::usual_shortest, "[s]")
+      .def_readonly("usual_longest", &core::Suspect::usual_longest, "[s]")
+      .def("describe", &core::describe, "the reason in words and numbers");
+
+  using core::Detector;
+  py::class_<Detector::Parameters>(m, "DetectorParameters")
+      .def(py::init<>())
+      .def_property(
+          "alarm_windows",
+          [](const Detector::Parameters& self) { return self.persistence.alarm_windows; },
+          [](Detector::Parameters& self, int k) { self.persistence.alarm_windows = k; })
+      .def_property("alarm_of",
+                    [](const Detector::Parameters& self) { return self.persistence.alarm_of; },
+                    [](Detector::Parameters& self, int n) { self.persistence.alarm_of = n; })
+      .def_property(
+          "hold_time",
+          [](const Detector::Parameters& self) { return self.persistence.hold_time; },
+          [](Detector::Parameters& self, std::int64_t ns) { self.persistence.hold_time = ns; },
+          "[ns]")
+      .def_readwrite("settle_time", &Detector::Parameters::settle_time, "[ns]")
+      .def_readwrite("silence_is_abnormal", &Detector::Parameters::silence_is_abnormal)
+      .def("validate", &Detector::Parameters::validate);
+
+  py::class_<Alarm>(m, "Alarm", "A stretch of time in which the alarm stood.")
+      .def_readonly("start", &Alarm::start, "[ns]")
+      .def_readonly("end", &Alarm::end, "[ns]")
+      .def_readonly("cleared", &Alarm::cleared, "False: it stood to the end of the recording")
+      .def_readonly("lowest_score", &Alarm::lowest_score)
+      .def_readonly("suspects", &Alarm::suspects, "of the window that raised it, best first");
+
+  py::class_<Verdicts>(m, "Verdicts", "One entry a window of a recording, and the alarms.")
+      .def_property_readonly("start", [](const Verdicts& self) { return toArray(self.start); },
+                             "start of the window, int64 [ns]")
+      .def_property_readonly("events", [](const Verdicts& self) { return toArray(self.events); })
+      .def_property_readonly("unknown", [](const Verdicts& self) { return toArray(self.unknown); })
+      .def_property_readonly("score", [](const Verdicts& self) { return toArray(self.score); },
+                             "NaN for a window without events")
+      .def_property_readonly("abnormal",
+                             [](const Verdicts& self) { return toArray(self.abnormal); },
+                             "eq. 5, or silence; also while settling")
+      .def_property_readonly("settling",
+                             [](const Verdicts& self) { return toArray(self.settling); })
+      .def_readonly("alarms", &Verdicts::alarms);
+
+  py::class_<core::Model, std::shared_ptr<core::Model>>(
+      m, "Model", "Probabilities, entropies and weights, computed from a TrainedModel's counts.")
+      .def(py::init([](const ros1::TrainedModel& trained) {
+             return std::make_shared<core::Model>(trained.statistics);
+           }),
+           py::arg("trained"))
+      .def("probability", &core::Model::probability, py::arg("from_id"), py::arg("to_id"),
+           py::arg("delay"), "P_ij of a delay [ns]")
+      .def_property_readonly(
+          "entropies",
+          [](const core::Model& self) {
+            py::array_t<double> array({self.size(), self.size()});
+            auto values = array.mutable_unchecked<2>();
+            for (core::EventId from = 0; from < self.size(); ++from) {
+              for (core::EventId to = 0; to < self.size(); ++to) {
+                values(from, to) = self.entropies()(from, to);
+              }
+            }
+            return array;
+          },
+          "h_ij [bit], [from, to]")
+      .def("weight", &core::Model::weight, py::arg("from_id"), py::arg("to_id"),
+           "w_ij where all event types are tracked")
+      .def("log_survival",
+           [](const std::shared_ptr<core::Model>& self, core::EventId id, std::int64_t age) {
+             return core::Blame(self).logSurvival(id, age);
+           })
+      .def("score_events", [](const std::shared_ptr<core::Model>& self, const Stamps& stamps,
+                              const Ids& ids) { return toArray(scoreEvents(self, stamps, ids)); },
+           py::arg("stamps"), py::arg("ids"), "s_j of every event, float64")
+      .def("judge", &judge, py::arg("window"), py::arg("threshold"), py::arg("parameters"),
+           py::arg("stamps"), py::arg("ids"),
+           "Verdicts on a recording. window: [ns]; threshold None: not calibrated; stamps: int64\n"
+           "[ns] in order; ids from len(event_types) of the model on are unknown events.");
+  m.attr("FEWEST_GAPS") = core::kFewestGaps;
+}
+
+void bindRoc(py::module& m) {
+  using core::Roc;
+  py::class_<Roc::Point>(m, "RocPoint")
+      .def_readonly("cutoff", &Roc::Point::cutoff)
+      .def_readonly("true_positive_rate", &Roc::Point::true_positive_rate)
+      .def_readonly("false_positive_rate", &Roc::Point::false_positive_rate);
+  py::class_<Roc>(m, "Roc", "Receiver operating characteristic of: abnormal if score < cut-off.")
+      .def(py::init<std::vector<double>, std::vector<double>>(), py::arg("normal"),
+           py::arg("abnormal"))
+      .def_property_readonly("points", &Roc::points)
+      .def_property_readonly("auc", &Roc::auc)
+      .def("youden", &Roc::youden)
+      .def("closest", &Roc::closest)
+      .def("level", &Roc::level, py::arg("false_positive_rate"))
+      .def("at", &Roc::at, py::arg("cutoff"));
+}
+
+}  // namespace
+
+PYBIND11_MODULE(_core, m) {
+  m.doc() = "C++ core of self_awareness: the one implementation of the method.";
+  bindEncoding(m);
+  bindBags(m);
+  bindModel(m);
+  bindRoc(m);
+  bindDetector(m);
+}

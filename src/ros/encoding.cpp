@@ -1,0 +1,121 @@
+#include "self_awareness/ros/encoding.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <tuple>
+#include <utility>
+
+#include "self_awareness/ros/stable_name.h"
+
+namespace self_awareness::ros1 {
+namespace {
+
+std::vector<std::regex> compile(const std::vector<std::string>& patterns) {
+  std::vector<std::regex> compiled;
+  for (const std::string& pattern : patterns) {
+    try {
+      compiled.emplace_back(pattern);
+    } catch (const std::regex_error& error) {
+      throw std::invalid_argument("encoding: '" + pattern +
+                                  "' is not a regular expression: " + error.what());
+    }
+  }
+  return compiled;
+}
+
+bool anyMatches(const std::vector<std::regex>& patterns, const std::string& name) {
+  return std::any_of(patterns.begin(), patterns.end(), [&](const std::regex& pattern) {
+    return std::regex_match(name, pattern);
+  });
+}
+
+}  // namespace
+
+EncodingRules EncodingRules::defaults() {
+  EncodingRules rules;
+  rules.exclude_topics = {"/clock", "/rosout_agg", "/statistics", "/diagnostics_agg",
+                          "/diagnostics_toplevel_state", ".*/self_awareness/(status|alarm)"};
+  rules.exclude_sources = {".*/self_awareness(_manager)?",
+                           "(.*/)?(play|record|recorder|rosbag.*)",
+                           "(.*/)?(rqt|rviz|rostopic|rosnode|rosservice|plotjuggler|foxglove).*"};
+  rules.type_fields = {{"rosgraph_msgs/Log", "level"}, {"visualization_msgs/Marker", "action"}};
+  return rules;
+}
+
+bool operator==(const EncodingRules& a, const EncodingRules& b) {
+  const auto fields = [](const EncodingRules& rules) {
+    return std::tie(rules.source, rules.include_topics, rules.exclude_topics,
+                    rules.include_sources, rules.exclude_sources, rules.type_fields);
+  };
+  return fields(a) == fields(b);
+}
+
+bool ConnectionEncoder::accept() {
+  const bool accepted = !skip_next_;
+  skip_next_ = false;
+  return accepted;
+}
+
+core::EventId ConnectionEncoder::id() {
+  if (!id_) {
+    id_ = ids_(type_);
+  }
+  return *id_;
+}
+
+core::EventId ConnectionEncoder::id(const std::uint8_t* data, std::size_t size) {
+  const std::string value = field_->read(data, size);
+  const auto known = ids_by_value_.find(value);
+  if (known != ids_by_value_.end()) {
+    return known->second;
+  }
+  core::EventType type = type_;
+  type.type += "[" + field_name_ + "=" + value + "]";
+  const core::EventId id = ids_(type);
+  ids_by_value_.emplace(value, id);
+  return id;
+}
+
+Encoder::Encoder(const EncodingRules& rules, EventIds ids)
+    : rules_(rules),
+      ids_(std::move(ids)),
+      include_topics_(compile(rules.include_topics)),
+      exclude_topics_(compile(rules.exclude_topics)),
+      include_sources_(compile(rules.include_sources)),
+      exclude_sources_(compile(rules.exclude_sources)) {}
+
+bool Encoder::includesTopic(const std::string& topic) const {
+  return (include_topics_.empty() || anyMatches(include_topics_, topic)) &&
+         !anyMatches(exclude_topics_, topic);
+}
+
+bool Encoder::includesSource(const std::string& source) const {
+  return (include_sources_.empty() || anyMatches(include_sources_, source)) &&
+         !anyMatches(exclude_sources_, source);
+}
+
+std::optional<ConnectionEncoder> Encoder::connect(const Connection& connection) const {
+  if (!includesTopic(connection.topic)) {
+    return std::nullopt;
+  }
+  ConnectionEncoder encoder;
+  encoder.ids_ = ids_;
+  encoder.type_.scope = connection.topic;
+  encoder.type_.type = connection.datatype;
+  encoder.skip_next_ = connection.latching;
+  if (rules_.source == EncodingRules::Source::kCallerId) {
+    encoder.type_.source = stableName(connection.callerid);
+    if (!includesSource(encoder.type_.source)) {
+      return std::nullopt;
+    }
+  }
+  const auto field = rules_.type_fields.find(connection.datatype);
+  if (field != rules_.type_fields.end()) {
+    encoder.field_ = std::make_shared<const MessageField>(connection.definition,
+                                                          connection.datatype, field->second);
+    encoder.field_name_ = field->second;
+  }
+  return encoder;
+}
+
+}  // namespace self_awareness::ros1

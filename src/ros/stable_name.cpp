@@ -1,0 +1,14 @@
+#include "self_awareness/ros/stable_name.h"
+
+#include <regex>
+
+namespace self_awareness::ros1 {
+
+std::string stableName(const std::string& name) {
+  // 19 digits are nanoseconds, 13 milliseconds, since 1970, of any year from 2001 to 2286: shorter
+  // numbers, such as a camera's serial number, belong to the name.
+  static const std::regex kAnonymous("_([0-9]{19}|[0-9]{1,7}_[0-9]{13,19})$");
+  return std::regex_replace(name, kAnonymous, "");
+}
+
+}  // namespace self_awareness::ros1

@@ -1,0 +1,29 @@
+"""self_awareness: learns how a healthy robot talks to itself.
+
+The method is implemented once, in C++; this package makes it available to Python as
+`self_awareness.Training`, `TrainedModel`, `Model`, `Roc` and so on, and holds the logic of the
+programs (`self_awareness.commands`).
+"""
+
+from self_awareness._core import (  # noqa: F401
+    FEWEST_GAPS,
+    Alarm,
+    BagError,
+    BagSummary,
+    Calibration,
+    DetectorParameters,
+    EncodingRules,
+    EventType,
+    Model,
+    ModelFileError,
+    RecordedEvents,
+    Recording,
+    Roc,
+    RocPoint,
+    Suspect,
+    TrainedModel,
+    Training,
+    Verdicts,
+    read_events,
+    summarise_bag,
+)

@@ -1,0 +1,372 @@
+"""The scenario of the simulated follow-me robot: its data, read from YAML and checked.
+
+The paper evaluates its model on a robot of 15 components that follows a person (section V-A) and on
+four errors induced in it (section V-B). `config/follow_me.yaml` describes both and explains every
+key; this module turns the file into immutable data and rejects what makes no sense. How a component
+behaves is in `follow_me_component`. Times in the data are seconds, as in the file; whatever is drawn
+or computed from them is int nanoseconds.
+"""
+from __future__ import annotations
+
+import math
+import random
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Dict, Mapping, Optional, Tuple, Union
+
+import rospkg
+import yaml
+
+from self_awareness.yaml_section import ScenarioError, Section
+
+SECOND_NS = 1_000_000_000
+
+Value = Union[bool, int, str]
+"""What a message says, as far as the scenario cares: command, action, on or off."""
+
+
+def nanoseconds(seconds: float) -> int:
+    """Return `seconds` as int nanoseconds, rounded to the nearest."""
+    return round(seconds * SECOND_NS)
+
+
+@dataclass(frozen=True)
+class Duration:
+    """A span of time: log-normal around `median` (seconds), constant if `sigma` is 0.
+
+    With probability `rare` it is `factor` times as long.
+    """
+
+    median: float
+    sigma: float = 0.0
+    rare: float = 0.0
+    factor: float = 1.0
+
+    def draw(self, rng: random.Random) -> int:
+        """Draw one value in ns, >= 0."""
+        seconds = self.median
+        if self.sigma > 0.0:
+            seconds *= math.exp(rng.gauss(0.0, self.sigma))
+        if self.rare > 0.0 and rng.random() < self.rare:
+            seconds *= self.factor
+        return nanoseconds(seconds)
+
+
+@dataclass(frozen=True)
+class Output:
+    """One message that a task publishes, after `takes` of processing and `waits` of waiting."""
+
+    topic: str
+    datatype: str
+    takes: Duration
+    waits: Duration
+    latch: bool = False
+    values: Tuple[Value, ...] = ()
+    value_of: Optional[str] = None
+
+
+@dataclass(frozen=True)
+class Need:
+    """A condition on the newest message of `topic`; exactly one of the others is set (seconds)."""
+
+    topic: str
+    within: Optional[float] = None
+    stamps_within: Optional[float] = None
+    one_of: Optional[Tuple[Value, ...]] = None
+
+
+@dataclass(frozen=True)
+class InView:
+    """A person stays in view of the camera, leaves, comes back, and so on."""
+
+    stays: Duration
+    leaves: Duration
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """The life of a person hypothesis, and the values that announce its three actions."""
+
+    confirm: int
+    discard_after: float
+    insert: int
+    update: int
+    delete: int
+
+
+@dataclass(frozen=True)
+class Task:
+    """What starts a piece of work, on which conditions, and what it publishes."""
+
+    publish: Tuple[Output, ...]
+    otherwise: Tuple[Output, ...] = ()
+    upon: Optional[str] = None
+    each: int = 1
+    every: Optional[Duration] = None
+    jitter: float = 0.0
+    needs: Tuple[Need, ...] = ()
+    probability: float = 1.0
+    in_view: Optional[InView] = None
+    hypothesis: Optional[Hypothesis] = None
+
+    def inputs(self) -> Tuple[str, ...]:
+        """Return the topics that this task depends on."""
+        values = [o.value_of for o in self.publish + self.otherwise if o.value_of]
+        return tuple([self.upon] if self.upon else []) + tuple(n.topic for n in self.needs) + tuple(values)
+
+
+@dataclass(frozen=True)
+class ComponentSpec:
+    """One component: a ROS node of that name on one of the hosts."""
+
+    name: str
+    host: str
+    tasks: Tuple[Task, ...]
+    hears: Tuple[str, ...] = ()
+
+    def inputs(self) -> Tuple[str, ...]:
+        """Return the topics that the component subscribes to, each once."""
+        topics = [topic for task in self.tasks for topic in task.inputs()]
+        return tuple(dict.fromkeys(topics + list(self.hears)))
+
+    def outputs(self) -> Dict[str, Output]:
+        """Return what the component publishes: one output for each topic."""
+        return {o.topic: o for task in self.tasks for o in task.publish + task.otherwise}
+
+
+@dataclass(frozen=True)
+class Crash:
+    """CC1, CC2: a component dies."""
+
+    component: str
+
+
+@dataclass(frozen=True)
+class Starvation:
+    """RS: busy workers take the CPU away, more and more over `ramp` seconds."""
+
+    ramp: float
+    slowdown: float
+    workers_per_core: int
+
+    def factor(self, elapsed_ns: int) -> float:
+        """Return by how much processing is stretched `elapsed_ns` after the onset, >= 1."""
+        grown = min(1.0, max(0.0, elapsed_ns / nanoseconds(self.ramp)))
+        return 1.0 + (self.slowdown - 1.0) * grown
+
+
+@dataclass(frozen=True)
+class ClockDrift:
+    """AC: the clock of one host drifts away and wobbles, so that stamps match only at times."""
+
+    host: str
+    drift: float
+    settle: float
+    wobble: float
+    periods: Tuple[float, ...]
+
+    def offset_ns(self, elapsed_ns: int) -> int:
+        """Return what the clock is ahead (ns, signed) `elapsed_ns` after the onset; 0 before."""
+        elapsed = elapsed_ns / SECOND_NS
+        if elapsed <= 0.0:
+            return 0
+        sines = [math.sin(2.0 * math.pi * elapsed / period) for period in self.periods]
+        drift = self.drift * (1.0 - math.exp(-elapsed / self.settle))
+        return nanoseconds(drift + self.wobble * sum(sines) / len(sines))
+
+
+@dataclass(frozen=True)
+class Faults:
+    """The four errors of the paper's section V-B."""
+
+    cc1: Crash
+    cc2: Crash
+    rs: Starvation
+    ac: ClockDrift
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """Everything that the YAML file says; `datatypes` maps each topic to its message type."""
+
+    components: Tuple[ComponentSpec, ...]
+    faults: Faults
+    transport: Duration
+    lateness: Duration
+    cpu_share: float
+    type_fields: Mapping[str, str]
+    datatypes: Mapping[str, str]
+
+    def component(self, name: str) -> ComponentSpec:
+        """Return the component of that name.
+
+        Raises:
+            ScenarioError: there is none; the message lists those that exist.
+        """
+        for spec in self.components:
+            if spec.name == name:
+                return spec
+        names = ', '.join(spec.name for spec in self.components)
+        raise ScenarioError(f'no component {name!r} in the scenario; there are: {names}')
+
+
+def default_path() -> Path:
+    """Return the scenario that comes with the package.
+
+    Raises:
+        ScenarioError: the package is not on ROS_PACKAGE_PATH.
+    """
+    try:
+        package = rospkg.RosPack().get_path('self_awareness')
+    except rospkg.ResourceNotFound as error:
+        raise ScenarioError('package self_awareness not found: source the setup.bash of its '
+                            'workspace, or name the scenario file') from error
+    return Path(package) / 'config' / 'follow_me.yaml'
+
+
+def load(path: Union[str, Path, None] = None) -> Scenario:
+    """Read and check a scenario file, by default the one that comes with the package.
+
+    Raises:
+        ScenarioError: the file cannot be read, is not YAML, or a value in it is missing, unknown,
+            of the wrong kind or out of range; the message names the file and the key.
+    """
+    path = default_path() if path is None else Path(path)
+    try:
+        data = yaml.safe_load(path.read_text(encoding='utf-8'))
+    except (OSError, UnicodeDecodeError) as error:
+        raise ScenarioError(f'{path}: cannot be read: {error}') from error
+    except yaml.YAMLError as error:
+        raise ScenarioError(f'{path}: not YAML: {error}') from error
+    with Section(data, str(path)) as top:
+        components = tuple(_component(section) for section in top.sections('components'))
+        datatypes = _datatypes(top, components)
+        faults = _faults(top.section('faults'), [spec.name for spec in components])
+        with top.section('simulation') as simulation:
+            transport, lateness = _duration(simulation, 'transport'), _duration(simulation, 'lateness')
+        with top.section('live') as live:
+            cpu_share = live.number('cpu_share', low=1e-3, high=1.0)
+        with top.section('encoding') as encoding:
+            type_fields = encoding.texts_by_key('type_fields')
+    return Scenario(components, faults, transport, lateness, cpu_share, type_fields, datatypes)
+
+
+def _duration(section: Section, key: str, default: Optional[Duration] = None,
+              low: float = 0.0) -> Duration:
+    if key not in section and default is not None:
+        return default
+    if section.is_number(key):
+        return Duration(section.number(key, low=low))
+    with section.section(key) as parts:
+        return Duration(parts.number('median', low=max(low, 1e-6)),
+                        parts.number('sigma', low=0.0, high=3.0),
+                        parts.number('rare', low=0.0, high=1.0, default=0.0),
+                        parts.number('factor', low=1.0, default=1.0))
+
+
+def _component(section: Section) -> ComponentSpec:
+    with section:
+        return ComponentSpec(section.text('name', r'[a-z][a-z0-9_]*'), section.text('host', r'[ab]'),
+                             tuple(_task(task) for task in section.sections('tasks')),
+                             section.texts('hears', default=()))
+
+
+def _task(section: Section) -> Task:
+    with section:
+        if 'upon' not in section and 'every' not in section:
+            section.fail('upon', 'missing; a task needs `upon: TOPIC`, `every: SECONDS` or both')
+        hypothesis = None
+        if 'hypothesis' in section:
+            hypothesis = _hypothesis(section.section('hypothesis'))
+        every = _duration(section, 'every', low=1e-3) if 'every' in section else None
+        return Task(
+            publish=tuple(_output(output) for output in section.sections('publish')),
+            otherwise=tuple(_output(output) for output in section.sections('otherwise', default=())),
+            upon=section.text('upon', default=None),
+            each=section.integer('each', low=1, default=1),
+            every=every,
+            jitter=section.number('jitter', low=0.0, high=every.median / 4 if every else 0.0,
+                                  default=0.0),
+            needs=tuple(_need(need) for need in section.sections('needs', default=())),
+            probability=section.number('probability', low=0.0, high=1.0, default=1.0),
+            in_view=_in_view(section.section('in_view')) if 'in_view' in section else None,
+            hypothesis=hypothesis)
+
+
+def _output(section: Section) -> Output:
+    with section:
+        if 'value' in section and 'value_of' in section:
+            section.fail('value', 'cannot be given together with `value_of`')
+        return Output(section.text('topic', r'[a-z][a-z0-9_/]*'),
+                      section.text('type', r'[A-Za-z]\w*/[A-Za-z]\w*'),
+                      _duration(section, 'takes'),
+                      _duration(section, 'waits', default=Duration(0.0)),
+                      section.boolean('latch', default=False),
+                      section.values('value', default=()),
+                      section.text('value_of', default=None))
+
+
+def _need(section: Section) -> Need:
+    kinds = [kind for kind in ('within', 'stamps_within', 'one_of') if kind in section]
+    if len(kinds) != 1:
+        section.fail('within', 'give exactly one of `within`, `stamps_within` and `one_of`')
+    with section:
+        return Need(section.text('topic'),
+                    section.number('within', low=1e-6, default=None),
+                    section.number('stamps_within', low=1e-6, default=None),
+                    section.values('one_of', default=None))
+
+
+def _in_view(section: Section) -> InView:
+    with section:
+        return InView(_duration(section, 'stays', low=1e-3), _duration(section, 'leaves', low=1e-3))
+
+
+def _hypothesis(section: Section) -> Hypothesis:
+    with section:
+        values = [section.integer(action, low=0) for action in ('insert', 'update', 'delete')]
+        if len(set(values)) != 3:
+            section.fail('insert', '`insert`, `update` and `delete` need three different values')
+        return Hypothesis(section.integer('confirm', low=1), section.number('discard_after', low=1e-3),
+                          *values)
+
+
+def _faults(section: Section, names: list) -> Faults:
+    crashes = []
+    with section:
+        for kind in ('cc1', 'cc2'):
+            with section.section(kind) as crash:
+                name = crash.text('crash')
+                if name not in names:
+                    crash.fail('crash', f'no component {name!r}; there are: {", ".join(names)}')
+                crashes.append(Crash(name))
+        with section.section('rs') as rs:
+            starvation = Starvation(rs.number('ramp', low=1e-3), rs.number('slowdown', low=1.0),
+                                    rs.integer('workers_per_core', low=1))
+        with section.section('ac') as ac:
+            drift = ClockDrift(ac.text('host', r'[ab]'), ac.number('drift'),
+                               ac.number('settle', low=1e-3), ac.number('wobble', low=0.0),
+                               ac.numbers('periods', low=1e-3))
+    return Faults(crashes[0], crashes[1], starvation, drift)
+
+
+def _datatypes(top: Section, components: Tuple[ComponentSpec, ...]) -> Dict[str, str]:
+    """Map topics to types; check names, and that somebody publishes what is listened to."""
+    datatypes: Dict[str, str] = {}
+    publishers: Dict[str, str] = {}
+    for spec in components:
+        if [other.name for other in components].count(spec.name) > 1:
+            top.fail('components', f'the name {spec.name!r} is given twice')
+        for output in (o for task in spec.tasks for o in task.publish + task.otherwise):
+            if publishers.setdefault(output.topic, spec.name) != spec.name:
+                top.fail('components', f'topic {output.topic!r} is published by both '
+                                       f'{publishers[output.topic]!r} and {spec.name!r}')
+            if datatypes.setdefault(output.topic, output.datatype) != output.datatype:
+                top.fail('components', f'topic {output.topic!r} has two types: '
+                                       f'{datatypes[output.topic]} and {output.datatype}')
+    for spec in components:
+        for topic in spec.inputs():
+            if topic not in datatypes:
+                top.fail('components', f'{spec.name!r} listens to {topic!r}, which no component '
+                                       'publishes')
+    return datatypes

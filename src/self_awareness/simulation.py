@@ -1,0 +1,266 @@
+"""The follow-me robot in simulated time: its components exchange messages, a recorder listens.
+
+A discrete-event simulation of the scenario of `follow_me`: timers fire late by a little, work takes
+its time, messages travel, and what arrives at the recorder is a recording of normal operation or of
+one of the paper's four errors (section V-B). Nothing waits: 100 s of robot take some seconds to
+write. The same seed gives the same recording.
+"""
+from __future__ import annotations
+
+import heapq
+import os
+import random
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Callable, Dict, Iterator, List, NamedTuple, Optional, Tuple, Union
+
+import genpy
+import rosbag
+
+from self_awareness.follow_me import (SECOND_NS, ClockDrift, Crash, Scenario, Starvation, Value,
+                                      load, nanoseconds)
+from self_awareness.follow_me_component import Component, Message, Publish, Request, Wake
+from self_awareness.follow_me_messages import MessageType
+
+START_S = 1_600_000_000.0
+"""Start of a recording if none is given (s since 1970)."""
+
+FAULT_KINDS = ('cc1', 'cc2', 'rs', 'ac')
+
+# A recording starts on a robot that has been running: every component has had its inputs by then.
+_WARM_UP_NS = 15 * SECOND_NS
+
+
+class Event(NamedTuple):
+    """A message as the recorder sees it: arrival (ns since 1970), node, topic, type and value."""
+
+    stamp_ns: int
+    source: str
+    topic: str
+    datatype: str
+    value: Optional[Value]
+
+
+@dataclass(frozen=True)
+class Fault:
+    """An error to induce.
+
+    Args:
+        kind: `cc1`, `cc2`, `rs` or `ac`.
+        onset_s: seconds after the start of the recording, >= 0; the error then stays.
+
+    Raises:
+        ValueError: another kind, or an onset before the start.
+    """
+
+    kind: str
+    onset_s: float
+
+    def __post_init__(self) -> None:
+        if self.kind not in FAULT_KINDS:
+            raise ValueError(f'fault {self.kind!r}: choose one of {", ".join(FAULT_KINDS)}')
+        if not 0.0 <= self.onset_s < float('inf'):
+            raise ValueError(f'fault {self.kind}: the onset must be at least 0 s, '
+                             f'not {self.onset_s}')
+
+
+def events(duration_s: float, seed: int, fault: Optional[Fault] = None,
+           scenario: Optional[Scenario] = None, start_s: float = START_S) -> Iterator[Event]:
+    """Yield what a recorder would see, in the order of arrival; arguments as for `simulate`."""
+    scenario = load() if scenario is None else scenario
+    for arrival, source, message, _ in _record(scenario, duration_s, seed, fault, start_s):
+        yield Event(arrival, source, '/' + message.topic, scenario.datatypes[message.topic],
+                    message.value)
+
+
+def simulate(path: Union[str, Path], duration_s: float, seed: int, fault: Optional[Fault] = None,
+             scenario: Optional[Scenario] = None, start_s: float = START_S,
+             progress: Callable[[int], Any] = lambda seconds: None) -> None:
+    """Write a recording of the robot to a bag, as `rosbag record` would.
+
+    The bag appears under its name only when it is complete; until then it is `PATH.active`.
+
+    Args:
+        path: the bag; one that exists is replaced.
+        duration_s: length of the recording (s), > 0.
+        seed: any int; decides everything that is random.
+        fault: the error to induce, if any.
+        scenario: the robot, by default the one that comes with the package.
+        start_s: start of the recording (s since 1970), at least 15.
+        progress: called now and then with the number of simulated seconds since the last call.
+
+    Raises:
+        ValueError: an argument out of range.
+        ScenarioError: the default scenario cannot be used, or a message type is unknown.
+        OSError: the file cannot be written.
+    """
+    scenario = load() if scenario is None else scenario
+    recording = _record(scenario, duration_s, seed, fault, start_s)
+    types = {topic: MessageType(datatype) for topic, datatype in scenario.datatypes.items()}
+    headers = _connection_headers(scenario, types)
+    active = Path(f'{path}.active')
+    try:
+        with rosbag.Bag(str(active), 'w') as bag:
+            told = nanoseconds(start_s)
+            for arrival, _, message, sequence in recording:
+                bag.write('/' + message.topic, types[message.topic].to_ros(message, sequence),
+                          genpy.Time(*divmod(arrival, SECOND_NS)),
+                          connection_header=headers[message.topic])
+                if arrival - told >= SECOND_NS:
+                    progress((arrival - told) // SECOND_NS)
+                    told += (arrival - told) // SECOND_NS * SECOND_NS
+        os.replace(str(active), str(path))
+    finally:
+        if active.exists():
+            active.unlink()
+
+
+def _connection_headers(scenario: Scenario, types: Dict[str, MessageType]) -> Dict[str, dict]:
+    headers = {}
+    for spec in scenario.components:
+        for topic, output in spec.outputs().items():
+            message_class = types[topic].message_class
+            headers[topic] = {'topic': '/' + topic,
+                              'type': output.datatype,
+                              'md5sum': message_class._md5sum,
+                              'message_definition': message_class._full_text,
+                              'callerid': '/' + spec.name,
+                              'latching': '1' if output.latch else '0'}
+    return headers
+
+
+_Record = Tuple[int, str, Message, int]
+
+
+def _record(scenario: Scenario, duration_s: float, seed: int, fault: Optional[Fault],
+            start_s: float) -> Iterator[_Record]:
+    """Check the arguments and return the recording: (arrival, source, message, sequence)."""
+    if not 0.0 < duration_s < float('inf'):
+        raise ValueError(f'the duration must be more than 0 s, not {duration_s}')
+    if not _WARM_UP_NS / SECOND_NS <= start_s < 2 ** 32 - duration_s:
+        raise ValueError('the start must be a time in s since 1970, at least '
+                         f'{_WARM_UP_NS // SECOND_NS}, that fits into a bag, not {start_s}')
+    start = nanoseconds(start_s)
+    robot = _Robot(scenario, seed, start - _WARM_UP_NS, _Effects(scenario, fault, start))
+    return _attach_recorder(robot.run(start + nanoseconds(duration_s)), scenario, start)
+
+
+def _attach_recorder(recording: Iterator[_Record], scenario: Scenario,
+                     start: int) -> Iterator[_Record]:
+    """Leave out what came before the start, but for what latched publishers repeat to a newcomer."""
+    latched = {topic for spec in scenario.components
+               for topic, output in spec.outputs().items() if output.latch}
+    repeated: Dict[str, _Record] = {}
+    attached = False
+    for record in recording:
+        arrival, source, message, sequence = record
+        if arrival < start:
+            if message.topic in latched:
+                repeated[message.topic] = record
+            continue
+        if not attached:
+            attached = True
+            for _, source, message, sequence in repeated.values():
+                yield start, source, message, sequence
+        yield record
+
+
+class _Effects:
+    """What a fault does to the components, by time (ns)."""
+
+    def __init__(self, scenario: Scenario, fault: Optional[Fault], start: int) -> None:
+        effect = None if fault is None else getattr(scenario.faults, fault.kind)
+        self._onset = start + nanoseconds(0.0 if fault is None else fault.onset_s)
+        self._crash = effect if isinstance(effect, Crash) else None
+        self._starvation = effect if isinstance(effect, Starvation) else None
+        self._drift = effect if isinstance(effect, ClockDrift) else None
+
+    def crashed(self, name: str, now: int) -> bool:
+        """Return whether the component of that name is dead."""
+        return self._crash is not None and self._crash.component == name and now >= self._onset
+
+    def slowdown(self, now: int) -> float:
+        """Return by how much everything that needs a CPU is stretched, >= 1."""
+        return 1.0 if self._starvation is None else self._starvation.factor(now - self._onset)
+
+    def clock(self, host: str) -> Callable[[int], int]:
+        """Return what the clock of a host shows at a given time."""
+        drift = self._drift
+        if drift is None or drift.host != host:
+            return lambda now: now
+        return lambda now: now + drift.offset_ns(now - self._onset)
+
+
+@dataclass(frozen=True)
+class _Act:
+    """Something that a component does when its time has come."""
+
+    name: str
+    call: Callable[[int], List[Request]]
+
+
+class _Robot:
+    """All components, the messages between them, and the queue of what happens next."""
+
+    def __init__(self, scenario: Scenario, seed: int, begin: int, effects: _Effects) -> None:
+        self._scenario = scenario
+        self._effects = effects
+        # Streams of their own: what one component draws does not change the others.
+        self._rng = random.Random(f'{seed}/transport')
+        self._components: Dict[str, Component] = {}
+        self._subscribers: Dict[str, List[str]] = {topic: [] for topic in scenario.datatypes}
+        self._sequences = dict.fromkeys(scenario.datatypes, 0)
+        self._arrivals: Dict[Tuple[str, str], int] = {}
+        self._queue: List[Tuple[int, int, Union[_Act, _Record]]] = []
+        self._pushed = 0
+        for spec in scenario.components:
+            component = Component(spec, random.Random(f'{seed}/{spec.name}'),
+                                  effects.clock(spec.host))
+            self._components[spec.name] = component
+            for topic in spec.inputs():
+                self._subscribers[topic].append(spec.name)
+            self._push(begin, _Act(spec.name, component.start))
+
+    def run(self, end: int) -> Iterator[_Record]:
+        """Yield what arrives at the recorder before `end` (ns), in order."""
+        while self._queue[0][0] < end:
+            now, _, item = heapq.heappop(self._queue)
+            if not isinstance(item, _Act):
+                yield item
+            elif not self._effects.crashed(item.name, now):
+                for request in item.call(now):
+                    self._schedule(item.name, request, now)
+
+    def _schedule(self, name: str, request: Request, now: int) -> None:
+        component = self._components[name]
+        slowdown = self._effects.slowdown(now)
+        if isinstance(request, Publish):
+            self._transmit(name, request.message, now)
+        elif isinstance(request, Wake):
+            late = round(self._scenario.lateness.draw(self._rng) * slowdown)
+            timer = request.timer
+            self._push(request.at + late, _Act(name, lambda at: component.wake(at, timer)))
+        else:
+            done = now + round(request.takes * slowdown) + request.waits
+            self._push(done, _Act(name, component.work_done))
+
+    def _transmit(self, name: str, message: Message, now: int) -> None:
+        topic = message.topic
+        self._sequences[topic] += 1
+        arrival = self._arrival(topic, '', now)
+        self._push(arrival, (arrival, '/' + name, message, self._sequences[topic]))
+        for subscriber in self._subscribers[topic]:
+            receive = self._components[subscriber].receive
+            self._push(self._arrival(topic, subscriber, now),
+                       _Act(subscriber, lambda at, receive=receive: receive(at, message)))
+
+    def _arrival(self, topic: str, subscriber: str, now: int) -> int:
+        # Messages do not overtake each other on one connection.
+        arrival = max(now + self._scenario.transport.draw(self._rng),
+                      self._arrivals.get((topic, subscriber), 0) + 1)
+        self._arrivals[(topic, subscriber)] = arrival
+        return arrival
+
+    def _push(self, at: int, item: Union[_Act, _Record]) -> None:
+        self._pushed += 1
+        heapq.heappush(self._queue, (at, self._pushed, item))
