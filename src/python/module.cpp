@@ -7,12 +7,14 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "self_awareness/core/clock.h"
 #include "self_awareness/core/detector.h"
 #include "self_awareness/core/model.h"
 #include "self_awareness/core/roc.h"
@@ -84,6 +86,10 @@ RecordedEvents readEvents(const std::string& path, const ros1::EncodingRules& ru
   return events;
 }
 
+// Every pair of event types has a histogram: a field that is no small set of values, such as an
+// identifier, would fill the memory long before it taught anything.
+constexpr std::size_t kMostTypesOfField = 1000;
+
 /// Trains on one recording after the other.
 class Training {
  public:
@@ -100,7 +106,7 @@ class Training {
                                    const py::object& progress) {
     const ros1::BagReader reader(path);
     const ros1::Encoder encoder(
-        rules_, [this](const core::EventType& type) { return statistics_.intern(type); });
+        rules_, [this](const core::EventType& type) { return intern(type); });
     self_awareness::Recording recording;
     recording.bag = path.substr(path.find_last_of('/') + 1);
     recording.fingerprint = reader.summary().fingerprint;
@@ -138,10 +144,27 @@ class Training {
   }
 
  private:
+  core::EventId intern(const core::EventType& type) {
+    const std::size_t before = statistics_.vocabulary().size();
+    const core::EventId id = statistics_.intern(type);
+    const std::size_t datatype_end = type.type.find('[');
+    if (statistics_.vocabulary().size() > before && datatype_end != std::string::npos) {
+      const std::string datatype = type.type.substr(0, datatype_end);
+      if (++types_of_field_[datatype] > kMostTypesOfField) {
+        throw std::invalid_argument(
+            "the type field " + datatype + ": " + rules_.type_fields.at(datatype) +
+            " has more than " + std::to_string(kMostTypesOfField) +
+            " values; name a field that says what a message does, or none for this datatype");
+      }
+    }
+    return id;
+  }
+
   core::DelayStatistics statistics_;
   core::DelayTrainer trainer_;
   ros1::EncodingRules rules_;
   std::int64_t window_;
+  std::map<std::string, std::size_t> types_of_field_;  // by datatype
   std::vector<self_awareness::Recording> recordings_;
 };
 
@@ -189,12 +212,19 @@ void record(const core::Verdict& verdict, std::int64_t window, Verdicts& verdict
 
 Verdicts judge(const std::shared_ptr<core::Model>& model, std::int64_t window,
                std::optional<double> threshold, const core::Detector::Parameters& parameters,
-               const Stamps& stamps, const Ids& ids) {
+               const Stamps& stamps, const Ids& ids, std::optional<std::int64_t> end) {
   Verdicts verdicts;
   core::Detector detector(
       model, window, threshold, parameters,
       [&](const core::Verdict& verdict) { record(verdict, window, verdicts); });
-  forEachEvent(stamps, ids, [&](const core::Event& event) { detector.add(event); });
+  std::optional<std::int64_t> last;
+  forEachEvent(stamps, ids, [&](const core::Event& event) {
+    detector.add(event);
+    last = event.stamp;
+  });
+  if (end && last && !core::isClockStep(*last, *end)) {
+    detector.advance(*end);  // silence up to the end is a part of the recording
+  }
   detector.finish();
   return verdicts;
 }
@@ -373,7 +403,14 @@ void bindModel(py::module& m) {
             return counts;
           },
           py::arg("from_id"), py::arg("to_id"),
-          "dict of bin: count, of the delay from the last from_id to the current to_id");
+          "dict of bin: count, of the delay from the last from_id to the current to_id")
+      .def(
+          "quantile",
+          [](const TrainedModel& self, core::EventId from, core::EventId to, double fraction) {
+            return self.statistics.pair(from, to).quantile(fraction);
+          },
+          py::arg("from_id"), py::arg("to_id"), py::arg("fraction"),
+          "the bin below or in which the fraction of the pair's delays lies; 0 if there is none");
 
   py::class_<Training>(m, "Training", "Counts the delays of one recording after the other.")
       .def(py::init<ros1::EncodingRules, std::int64_t, std::int64_t, std::int64_t>(),
@@ -473,9 +510,10 @@ void bindDetector(py::module& m) {
                               const Ids& ids) { return toArray(scoreEvents(self, stamps, ids)); },
            py::arg("stamps"), py::arg("ids"), "s_j of every event, float64")
       .def("judge", &judge, py::arg("window"), py::arg("threshold"), py::arg("parameters"),
-           py::arg("stamps"), py::arg("ids"),
+           py::arg("stamps"), py::arg("ids"), py::arg("end") = py::none(),
            "Verdicts on a recording. window: [ns]; threshold None: not calibrated; stamps: int64\n"
-           "[ns] in order; ids from len(event_types) of the model on are unknown events.");
+           "[ns] in order; ids from len(event_types) of the model on are unknown events. end [ns]:\n"
+           "the recording goes on in silence until then; None: it ends with the last event.");
   m.attr("FEWEST_GAPS") = core::kFewestGaps;
 }
 

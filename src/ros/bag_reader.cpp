@@ -5,6 +5,11 @@
 
 #include <boost/filesystem/operations.hpp>
 #include <cmath>
+#include <fstream>
+#include <memory>
+#include <queue>
+#include <set>
+#include <tuple>
 #include <unordered_map>
 #include <vector>
 
@@ -36,6 +41,13 @@ std::string reindexHint(const std::string& path) {
   return "; mend it with: rosbag reindex '" + path + "'";
 }
 
+bool startsLikeABag(const std::string& path) {
+  constexpr char kMagic[] = "#ROSBAG V";
+  char start[sizeof kMagic] = {};
+  std::ifstream(path, std::ios::binary).read(start, sizeof start - 1);
+  return std::string(start) == kMagic;
+}
+
 void openBag(rosbag::Bag& bag, const std::string& path) {
   if (!boost::filesystem::exists(path)) {
     throw BagError(path + ": no such file");
@@ -43,16 +55,16 @@ void openBag(rosbag::Bag& bag, const std::string& path) {
   if (!boost::filesystem::is_regular_file(path)) {
     throw BagError(path + ": not a file; name a bag");
   }
+  if (!startsLikeABag(path)) {
+    throw BagError(path + ": not a bag of ROS 1");
+  }
   try {
     bag.open(path, rosbag::bagmode::Read);
   } catch (const rosbag::BagUnindexedException&) {
     throw BagError(path + ": the bag has no index, its recording was not ended properly" +
                    reindexHint(path));
-  } catch (const rosbag::BagFormatException& error) {
-    throw BagError(path + ": not a bag, or a damaged one (" + error.what() + ")" +
-                   reindexHint(path));
   } catch (const rosbag::BagException& error) {
-    throw BagError(path + ": truncated, damaged, or not a bag (" + error.what() + ")" +
+    throw BagError(path + ": the bag is truncated or damaged (" + error.what() + ")" +
                    reindexHint(path));
   }
 }
@@ -62,27 +74,67 @@ std::string headerField(const ros::M_string& header, const std::string& name) {
   return field == header.end() ? "" : field->second;
 }
 
-Connection connectionOf(const rosbag::MessageInstance& message) {
-  const boost::shared_ptr<ros::M_string> header = message.getConnectionHeader();
+Connection connectionOf(const rosbag::ConnectionInfo& info) {
   Connection connection;
-  connection.callerid = headerField(*header, "callerid");
-  connection.topic = message.getTopic();
-  connection.datatype = message.getDataType();
-  connection.definition = message.getMessageDefinition();
-  connection.latching = headerField(*header, "latching") == "1";
+  connection.callerid = headerField(*info.header, "callerid");
+  connection.topic = info.topic;
+  connection.datatype = info.datatype;
+  connection.definition = info.msg_def;
+  connection.latching = headerField(*info.header, "latching") == "1";
   return connection;
 }
 
-core::EventId encode(const rosbag::MessageInstance& message, ConnectionEncoder& encoder,
-                     std::vector<std::uint8_t>& buffer) {
-  if (!encoder.needsContent()) {
-    return encoder.id();
+/// The index of a bag. rosbag's own iteration leaves the order of messages with the same stamp
+/// open; here it is that of the recording, as the method wants it.
+class BagIndex : private rosbag::View {
+ public:
+  explicit BagIndex(const rosbag::Bag& bag) : rosbag::View(bag), bag_(bag) {
+    update();
+    for (const rosbag::MessageRange* range : ranges_) {
+      cursors_.push_back({range->begin, range->end, range->connection_info});
+    }
   }
-  buffer.resize(message.size());
-  ros::serialization::OStream stream(buffer.data(), static_cast<std::uint32_t>(buffer.size()));
-  message.write(stream);
-  return encoder.id(buffer.data(), buffer.size());
-}
+
+  /// Calls visit(connection, entry) for every message.
+  template <typename Visit>
+  void forEach(Visit visit) const {
+    std::priority_queue<Cursor, std::vector<Cursor>, Later> next(Later(), cursors_);
+    while (!next.empty()) {
+      Cursor cursor = next.top();
+      next.pop();
+      visit(*cursor.connection, *cursor.entry);
+      if (++cursor.entry != cursor.end) {
+        next.push(cursor);
+      }
+    }
+  }
+
+  /// Reads a message's content.
+  void read(const rosbag::ConnectionInfo& connection, const rosbag::IndexEntry& entry,
+            std::vector<std::uint8_t>& buffer) {
+    const std::unique_ptr<rosbag::MessageInstance> message(
+        newMessageInstance(&connection, entry, bag_));
+    buffer.resize(message->size());
+    ros::serialization::OStream stream(buffer.data(), static_cast<std::uint32_t>(buffer.size()));
+    message->write(stream);
+  }
+
+ private:
+  struct Cursor {
+    std::multiset<rosbag::IndexEntry>::const_iterator entry;
+    std::multiset<rosbag::IndexEntry>::const_iterator end;
+    const rosbag::ConnectionInfo* connection;
+  };
+  struct Later {
+    bool operator()(const Cursor& a, const Cursor& b) const {
+      return std::tie(a.entry->time, a.entry->chunk_pos, a.entry->offset) >
+             std::tie(b.entry->time, b.entry->chunk_pos, b.entry->offset);
+    }
+  };
+
+  const rosbag::Bag& bag_;
+  std::vector<Cursor> cursors_;
+};
 
 std::int64_t fromSeconds(double seconds) {
   return std::llround(seconds * 1e9);
@@ -112,20 +164,18 @@ BagReader::BagReader(const std::string& path) {
 
 void BagReader::summarise() {
   Fingerprint fingerprint;
-  rosbag::View view(bag_);
-  for (const rosbag::ConnectionInfo* connection : view.getConnections()) {
-    summary_.has_sources |= !headerField(*connection->header, "callerid").empty();
-  }
-  for (const rosbag::MessageInstance& message : view) {
-    const auto stamp = static_cast<std::int64_t>(message.getTime().toNSec());
-    if (summary_.messages == 0) {
-      summary_.start = stamp;
-    }
-    summary_.end = stamp;
-    ++summary_.messages;
-    fingerprint.add(static_cast<std::uint64_t>(stamp));
-    fingerprint.add(message.getTopic());
-  }
+  BagIndex(bag_).forEach(
+      [&](const rosbag::ConnectionInfo& connection, const rosbag::IndexEntry& entry) {
+        const auto stamp = static_cast<std::int64_t>(entry.time.toNSec());
+        if (summary_.messages == 0) {
+          summary_.start = stamp;
+        }
+        summary_.end = stamp;
+        ++summary_.messages;
+        summary_.has_sources |= !headerField(*connection.header, "callerid").empty();
+        fingerprint.add(static_cast<std::uint64_t>(stamp));
+        fingerprint.add(connection.topic);
+      });
   summary_.fingerprint = fingerprint.value();
 }
 
@@ -139,30 +189,37 @@ void BagReader::read(const Encoder& encoder, const TimeRange& range, const Handl
                    std::to_string(core::toSeconds(summary_.end - summary_.start)) + " s)");
   }
 
-  // One connection of the bag is one header object, shared by all its messages.
-  std::unordered_map<const ros::M_string*, std::optional<ConnectionEncoder>> connections;
+  std::unordered_map<const rosbag::ConnectionInfo*, std::optional<ConnectionEncoder>> encoders;
   std::vector<std::uint8_t> buffer;
   std::uint64_t done = 0;
-  try {
-    rosbag::View view(bag_);
-    for (const rosbag::MessageInstance& message : view) {
-      if (progress && done % kMessagesPerProgress == 0) {
-        progress(done, summary_.messages);
-      }
-      ++done;
-      const ros::M_string* key = message.getConnectionHeader().get();
-      auto connection = connections.find(key);
-      if (connection == connections.end()) {
-        connection = connections.emplace(key, encoder.connect(connectionOf(message))).first;
-      }
-      if (!connection->second || !connection->second->accept()) {
-        continue;
-      }
-      const auto stamp = static_cast<std::int64_t>(message.getTime().toNSec());
-      if (from <= stamp && stamp <= to) {
-        handler({stamp, encode(message, *connection->second, buffer)});
-      }
+  BagIndex index(bag_);
+  const auto visit = [&](const rosbag::ConnectionInfo& connection,
+                         const rosbag::IndexEntry& entry) {
+    if (progress && done % kMessagesPerProgress == 0) {
+      progress(done, summary_.messages);
     }
+    ++done;
+    auto found = encoders.find(&connection);
+    if (found == encoders.end()) {
+      found = encoders.emplace(&connection, encoder.connect(connectionOf(connection))).first;
+    }
+    std::optional<ConnectionEncoder>& connection_encoder = found->second;
+    if (!connection_encoder || !connection_encoder->accept()) {
+      return;
+    }
+    const auto stamp = static_cast<std::int64_t>(entry.time.toNSec());
+    if (stamp < from || stamp > to) {
+      return;
+    }
+    if (connection_encoder->needsContent()) {
+      index.read(connection, entry, buffer);
+      handler({stamp, connection_encoder->id(buffer.data(), buffer.size())});
+    } else {
+      handler({stamp, connection_encoder->id()});
+    }
+  };
+  try {
+    index.forEach(visit);
   } catch (const rosbag::BagException& error) {
     throw BagError(summary_.path + ": a message cannot be read (" + error.what() + ")" +
                    reindexHint(summary_.path));

@@ -5,6 +5,7 @@
 #include <rosbag/view.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <boost/filesystem/operations.hpp>
 #include <cmath>
 #include <cstdio>
@@ -72,20 +73,20 @@ void appendHistograms(const core::DelayStatistics& statistics, self_awareness::M
 core::DelayStatistics statisticsOf(const self_awareness::Model& message) {
   core::DelayStatistics statistics(core::Binning{message.bin_size, message.horizon_bins});
   for (const self_awareness::EventType& type : message.event_types) {
+    const std::size_t before = statistics.vocabulary().size();
     const core::EventId id = statistics.intern({type.source, type.scope, type.type});
-    check(id + 1 == statistics.vocabulary().size(), "an event type occurs twice");
+    check(id == before, "an event type occurs twice");
     statistics.countEvent(id, type.count);
   }
   const std::size_t n = message.event_types.size();
   check(message.offsets.size() == n * n + 1 && message.offsets.front() == 0 &&
             message.offsets.back() == message.bins.size() &&
-            message.bins.size() == message.counts.size(),
+            message.bins.size() == message.counts.size() &&
+            std::is_sorted(message.offsets.begin(), message.offsets.end()),
         "its histograms do not fit its event types");
   for (std::size_t histogram = 0; histogram < n * n; ++histogram) {
     const auto from = static_cast<core::EventId>(histogram % n);
     const auto to = static_cast<core::EventId>(histogram / n);
-    check(message.offsets[histogram] <= message.offsets[histogram + 1],
-          "its histograms overlap");
     for (std::size_t i = message.offsets[histogram]; i < message.offsets[histogram + 1]; ++i) {
       check(message.counts[i] > 0 && message.bins[i] >= 0, "a histogram has an impossible bin");
       statistics.pair(from, to).add(message.bins[i], message.counts[i]);

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+namespace self_awareness::ros1 {
+
+/// Notices that ROS time was set: NTP stepped the wall clock, a bag loops, a simulation was reset.
+/// Compares how far ROS time and steady time went between two looks.
+class ClockWatch {
+ public:
+  /// A look at both clocks at one moment [ns].
+  /// @param simulated whether ROS time comes from /clock, which may run at any pace
+  /// @return true if ROS time was set since the last look
+  bool look(std::int64_t ros_now, std::int64_t steady_now, bool simulated);
+
+  /// Whether an event with this stamp [ns] belongs to the time before the clock was set last: it
+  /// waited in a queue meanwhile, and its delays mean nothing.
+  bool isStale(std::int64_t stamp) const;
+
+ private:
+  struct Look {
+    std::int64_t ros_time;
+    std::int64_t steady_time;
+  };
+  std::optional<Look> last_;
+  std::optional<std::int64_t> set_at_;  // ROS time right after the last step [ns]
+};
+
+}  // namespace self_awareness::ros1

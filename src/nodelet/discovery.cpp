@@ -1,0 +1,81 @@
+#include "discovery.h"
+
+#include <ros/console.h>
+#include <ros/this_node.h>
+
+#include <utility>
+
+namespace self_awareness {
+
+Discovery::Discovery(ros1::LiveEvents& live_events, ros1::SubscribePolicy policy, double interval,
+                     std::vector<std::string> services)
+    : live_events_(live_events),
+      policy_(policy),
+      interval_(interval),
+      registration_(std::move(services)),
+      thread_([this] { run(); }) {}
+
+Discovery::~Discovery() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    stopping_ = true;
+  }
+  wake_.notify_all();
+  thread_.join();
+}
+
+void Discovery::setWanted(Wanted wanted) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    wanted_ = std::move(wanted);
+    changed_ = true;
+  }
+  wake_.notify_all();
+}
+
+Discovery::State Discovery::state() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return state_;
+}
+
+void Discovery::run() {
+  std::unique_lock<std::mutex> lock(mutex_);
+  while (!stopping_) {
+    changed_ = false;
+    const Wanted wanted = wanted_;
+    lock.unlock();
+    poll(wanted);
+    lock.lock();
+    wake_.wait_for(lock, interval_, [this] { return stopping_ || changed_; });
+  }
+}
+
+void Discovery::poll(const Wanted& wanted) {
+  State state;
+  const ros1::MasterRegistration::Master master = registration_.check();
+  const std::optional<ros1::Graph> graph = ros1::fetchGraph();
+  state.master_answers = master != ros1::MasterRegistration::Master::kAway && graph;
+  if (state.master_answers) {
+    if (master == ros1::MasterRegistration::Master::kRestarted) {
+      ROS_WARN("the master was restarted: registered all topics and services again");
+      live_events_.renew(*graph);
+    }
+    std::set<std::string> topics;
+    if (wanted.encoder) {
+      topics = ros1::chooseTopics(
+          *graph, policy_, wanted.model_topics,
+          [&](const std::string& topic) { return wanted.encoder->includesTopic(topic); },
+          ros::this_node::getName());
+    }
+    live_events_.setTopics(topics, *graph);
+    state.subscriptions = topics.size();
+  }
+  state.dropped_messages = dropped_.count();
+  const std::lock_guard<std::mutex> lock(mutex_);
+  if (!state.master_answers) {
+    state.subscriptions = state_.subscriptions;
+  }
+  state_ = state;
+}
+
+}  // namespace self_awareness

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "self_awareness/ros/dropped_messages.h"
+#include "self_awareness/ros/encoding.h"
+#include "self_awareness/ros/graph.h"
+#include "self_awareness/ros/live_events.h"
+#include "self_awareness/ros/master_registration.h"
+
+namespace self_awareness {
+
+/// Polls the master in a thread of its own, on steady time, and keeps the subscriptions up to
+/// date. All calls that may block on the network are made here.
+class Discovery {
+ public:
+  /// What the subscriptions are chosen by.
+  struct Wanted {
+    std::set<std::string> model_topics;
+    std::shared_ptr<const ros1::Encoder> encoder;  ///< none: nothing is wanted
+  };
+  /// What the last poll found.
+  struct State {
+    bool master_answers = true;
+    std::size_t subscriptions = 0;
+    std::uint64_t dropped_messages = 0;  ///< since the start
+  };
+
+  /// @param live_events subscribed to what is chosen; must outlive this
+  /// @param interval between polls [s]
+  /// @param services full names of services to register again after a restart of the master
+  Discovery(ros1::LiveEvents& live_events, ros1::SubscribePolicy policy, double interval,
+            std::vector<std::string> services);
+  /// Ends the thread; waits for a call to the master that is under way.
+  ~Discovery();
+  Discovery(const Discovery&) = delete;
+  Discovery& operator=(const Discovery&) = delete;
+
+  /// Polls at once with what is wanted from now on.
+  void setWanted(Wanted wanted);
+  State state() const;
+
+ private:
+  void run();
+  void poll(const Wanted& wanted);
+
+  ros1::LiveEvents& live_events_;
+  const ros1::SubscribePolicy policy_;
+  const std::chrono::duration<double> interval_;
+  ros1::MasterRegistration registration_;  // of the thread
+  ros1::DroppedMessages dropped_;          // of the thread
+
+  mutable std::mutex mutex_;
+  std::condition_variable wake_;
+  Wanted wanted_;          // guarded by mutex_
+  State state_;            // guarded by mutex_
+  bool changed_ = false;   // guarded by mutex_
+  bool stopping_ = false;  // guarded by mutex_
+  std::thread thread_;     // last: it uses all of the above
+};
+
+}  // namespace self_awareness

@@ -1,0 +1,343 @@
+#include "monitor.h"
+
+#include <ros/console.h>
+
+#include <algorithm>
+#include <limits>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+namespace self_awareness {
+namespace {
+
+// Messages that came before a window's end may wait in the queue for this long when it is closed.
+constexpr std::int64_t kGrace = 20000000;  // [ns]
+constexpr int kTicksPerWindow = 4;
+constexpr std::size_t kMostUnknownTypes = 1000;
+
+ros::Time toRosTime(std::int64_t nanoseconds) {
+  ros::Time time;
+  time.fromNSec(static_cast<std::uint64_t>(std::max<std::int64_t>(nanoseconds, 0)));
+  return time;
+}
+
+std::int64_t rosNow() {
+  return static_cast<std::int64_t>(ros::Time::now().toNSec());
+}
+
+std::int64_t steadyNow() {
+  return static_cast<std::int64_t>(ros::SteadyTime::now().toNSec());
+}
+
+}  // namespace
+
+Monitor::Session::Session(ros1::TrainedModel trained_model,
+                          const core::Detector::Parameters& parameters,
+                          core::Detector::Handler handler)
+    : trained(std::move(trained_model)),
+      vocabulary(trained.statistics.vocabulary()),
+      encoder(std::make_shared<ros1::Encoder>(
+          trained.encoding, [this](const core::EventType& type) { return intern(type); })),
+      detector(std::make_shared<core::Model>(trained.statistics), trained.window,
+               trained.threshold(), parameters, std::move(handler)) {}
+
+// A type field with ever new values must not fill the memory of a robot that runs for months.
+core::EventId Monitor::Session::intern(const core::EventType& type) {
+  const std::size_t known = trained.statistics.vocabulary().size();
+  if (!vocabulary.find(type) && vocabulary.size() >= known + kMostUnknownTypes) {
+    return vocabulary.intern({"", "(further topics)", "(further unknown events)"});
+  }
+  return vocabulary.intern(type);
+}
+
+Monitor::Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& private_node_handle,
+                 const std::string& name)
+    : node_handle_(node_handle),
+      private_node_handle_(private_node_handle),
+      parameters_(MonitorParameters::load(private_node_handle)),
+      diagnostics_(node_handle, private_node_handle, name, parameters_.hardware_id,
+                   parameters_.source_diagnostics),
+      last_report_(ros::SteadyTime::now()),
+      spinner_(1, &queue_) {
+  node_handle_.setCallbackQueue(&queue_);
+  private_node_handle_.setCallbackQueue(&queue_);
+  status_publisher_ = private_node_handle_.advertise<self_awareness::SelfAwareness>("status", 100);
+  alarm_publisher_ =
+      private_node_handle_.advertise<self_awareness::SelfAwareness>("alarm", 10, true);
+  services_ = {private_node_handle_.advertiseService("reset", &Monitor::onReset, this),
+               private_node_handle_.advertiseService("clear", &Monitor::onClear, this),
+               private_node_handle_.advertiseService("reload", &Monitor::onReload, this)};
+  std::vector<std::string> service_names;
+  for (const ros::ServiceServer& service : services_) {
+    service_names.push_back(service.getService());
+  }
+  live_events_ = std::make_unique<ros1::LiveEvents>(
+      node_handle_, parameters_.queue_size,
+      [this](const core::Event& event) { onEvent(event); },
+      [this](const std::string& source, const std::string& topic) {
+        onNewPublisher(source, topic);
+      });
+  discovery_ = std::make_unique<Discovery>(*live_events_, parameters_.subscribe,
+                                           parameters_.poll_interval, service_names);
+  try {
+    load();
+  } catch (const ros1::ModelFileError& error) {
+    // Not fatal: the operator sees it in the diagnostics, and ~reload mends it.
+    model_error_ = error.what();
+    ROS_ERROR("%s", error.what());
+  }
+  const std::int64_t window = session_ ? session_->trained.window : 100000000;
+  timer_ = private_node_handle_.createSteadyTimer(
+      ros::WallDuration(core::toSeconds(window) / kTicksPerWindow), &Monitor::onTick, this);
+  spinner_.start();
+}
+
+Monitor::~Monitor() {
+  discovery_.reset();
+  spinner_.stop();
+  live_events_.reset();
+}
+
+void Monitor::load() {
+  if (parameters_.model.empty()) {
+    throw ros1::ModelFileError(private_node_handle_.resolveName("model") +
+                               " is not set; give it the path of a model file");
+  }
+  startSession(ros1::loadModel(parameters_.model));
+}
+
+void Monitor::startSession(ros1::TrainedModel trained) {
+  session_ = std::make_unique<Session>(
+      std::move(trained), parameters_.detector,
+      [this](const core::Verdict& verdict) { onVerdict(verdict); });
+  model_error_.clear();
+  last_ = {};
+  components_.clear();
+  component_of_.clear();
+  Discovery::Wanted wanted;
+  wanted.encoder = session_->encoder;
+  std::set<std::pair<std::string, std::string>> topics_by_source;
+  for (const core::EventType& type : session_->trained.statistics.vocabulary().types()) {
+    wanted.model_topics.insert(type.scope);
+    topics_by_source.emplace(type.source, type.scope);
+    component_of_.push_back(&components_[ros1::componentOf(type.source, type.scope)]);
+  }
+  live_events_->setEncoder(session_->encoder, [topics_by_source](const std::string& topic) {
+    return topics_by_source.count({ros::this_node::getName(), topic}) > 0;
+  });
+  discovery_->setWanted(std::move(wanted));
+  ROS_INFO("model %s: %zu event types of %zu components, %s", parameters_.model.c_str(),
+           component_of_.size(), components_.size(),
+           session_->trained.calibration ? "calibrated" : "not calibrated, it will never alarm");
+}
+
+void Monitor::onEvent(const core::Event& event) {
+  const ros::WallTime begin = ros::WallTime::now();
+  watchClock();
+  if (!clock_watch_.isStale(event.stamp)) {
+    if (event.id < component_of_.size()) {
+      component_of_[event.id]->last = event.stamp;
+      ++component_of_[event.id]->events;
+    }
+    ++events_;
+    if (!session_->detector.add(event)) {
+      restart();
+      session_->detector.add(event);
+    }
+  }
+  processing_ += ros::WallTime::now() - begin;
+}
+
+void Monitor::onNewPublisher(const std::string& source, const std::string& topic) {
+  ROS_DEBUG("new publisher %s on %s", source.c_str(), topic.c_str());
+  session_->detector.settle(rosNow());
+}
+
+void Monitor::onTick(const ros::SteadyTimerEvent& /*tick*/) {
+  const ros::WallTime begin = ros::WallTime::now();
+  watchClock();
+  if (session_) {
+    session_->detector.advance(rosNow() - kGrace);
+  }
+  processing_ += ros::WallTime::now() - begin;
+  if ((ros::SteadyTime::now() - last_report_).toSec() >= diagnostics_.period()) {
+    live_events_->forgetClosedConnections();
+    publishDiagnostics();
+  }
+}
+
+void Monitor::watchClock() {
+  if (clock_watch_.look(rosNow(), steadyNow(), ros::Time::isSimTime()) && session_) {
+    restart();
+  }
+}
+
+void Monitor::restart() {
+  ++clock_steps_;
+  ROS_WARN("ROS time was set: delays and windows start afresh");
+  session_->detector.restart();
+  for (auto& [name, heard] : components_) {
+    heard.last.reset();
+  }
+  standDown("settling: ROS time was set");
+}
+
+void Monitor::onVerdict(const core::Verdict& verdict) {
+  const std::int64_t end = verdict.window->start + session_->trained.window;
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  if (!verdict.suspects.empty() || !verdict.alarm) {
+    suspects_ = toMessages(verdict.suspects);
+  }
+  if (verdict.changed && verdict.alarm) {
+    alarm_since_ = end;
+  }
+  last_.header.stamp = toRosTime(end);
+  last_.level = verdict.alarm ? self_awareness::SelfAwareness::ERROR
+                              : self_awareness::SelfAwareness::OK;
+  last_.message = wording(verdict);
+  last_.window_start = toRosTime(verdict.window->start);
+  last_.window.fromNSec(session_->trained.window);
+  last_.score = verdict.score.value_or(kNone);
+  last_.threshold = verdict.threshold.value_or(kNone);
+  last_.abnormal = verdict.abnormal && !verdict.settling;
+  last_.settling = verdict.settling;
+  last_.events = static_cast<std::uint32_t>(verdict.window->events.size());
+  last_.unknown_events = static_cast<std::uint32_t>(verdict.window->unknown());
+  last_.suspects = suspects_;
+  status_publisher_.publish(last_);
+  if (verdict.changed) {
+    if (verdict.alarm) {
+      ROS_ERROR("%s", last_.message.c_str());
+    } else {
+      ROS_INFO("%s", last_.message.c_str());
+    }
+    alarm_publisher_.publish(last_);
+    publishDiagnostics();
+  }
+}
+
+std::string Monitor::wording(const core::Verdict& verdict) const {
+  if (!verdict.threshold) {
+    return "not calibrated: find a threshold with rosrun self_awareness calibrate";
+  }
+  if (verdict.alarm) {
+    std::string message = "abnormal communication";
+    if (!suspects_.empty()) {
+      message += ", " + ros1::describe(suspects_.front());
+    }
+    if (suspects_.size() > 1) {
+      message += " (and " + std::to_string(suspects_.size() - 1) + " more)";
+    }
+    return message;
+  }
+  return verdict.settling ? "settling" : "normal communication";
+}
+
+std::vector<self_awareness::Suspect> Monitor::toMessages(
+    const std::vector<core::Suspect>& suspects) const {
+  std::vector<self_awareness::Suspect> messages;
+  for (const core::Suspect& suspect : suspects) {
+    const core::EventType& type = session_->vocabulary.at(suspect.id);
+    self_awareness::Suspect message;
+    message.source = type.source;
+    message.scope = type.scope;
+    message.type = type.type;
+    message.reason = core::describe(suspect);
+    message.silence = suspect.silence;
+    message.usual_shortest = suspect.usual_shortest;
+    message.usual_longest = suspect.usual_longest;
+    messages.push_back(message);
+  }
+  return messages;
+}
+
+void Monitor::standDown(const std::string& message) {
+  const bool stood = last_.level != self_awareness::SelfAwareness::OK;
+  suspects_.clear();
+  last_.level = self_awareness::SelfAwareness::OK;
+  last_.message = message;
+  last_.abnormal = false;
+  last_.suspects.clear();
+  last_.header.stamp = ros::Time::now();
+  if (stood) {
+    ROS_INFO("%s", message.c_str());
+    alarm_publisher_.publish(last_);
+  }
+  publishDiagnostics();
+}
+
+void Monitor::publishDiagnostics() {
+  const ros::SteadyTime now = ros::SteadyTime::now();
+  const double elapsed = std::max((now - last_report_).toSec(), 1e-3);
+  const Discovery::State discovered = discovery_->state();
+  ros1::MonitorState state;
+  state.model = parameters_.model;
+  state.model_error = model_error_;
+  state.calibrated = session_ && session_->trained.calibration;
+  state.started = session_ && !last_.message.empty();
+  state.last = last_;
+  state.alarm_for = core::toSeconds(rosNow() - alarm_since_);
+  for (auto& [name, heard] : components_) {
+    ros1::MonitorState::Component& component = state.components[name];
+    if (heard.last) {
+      component.last_heard = core::toSeconds(rosNow() - *heard.last);
+    }
+    component.rate = static_cast<double>(heard.events) / elapsed;
+    heard.events = 0;
+  }
+  state.rate = static_cast<double>(events_) / elapsed;
+  state.processing_share = processing_.toSec() / elapsed;
+  state.subscriptions = discovered.subscriptions;
+  state.connections = live_events_->connections();
+  state.dropped = discovered.dropped_messages;
+  state.newly_dropped = discovered.dropped_messages - reported_drops_;
+  state.clock_steps = clock_steps_;
+  state.master_answers = discovered.master_answers;
+  diagnostics_.publish(state);
+  events_ = 0;
+  processing_ = {};
+  reported_drops_ = discovered.dropped_messages;
+  last_report_ = now;
+}
+
+bool Monitor::onReset(std_srvs::Trigger::Request& /*request*/,
+                      std_srvs::Trigger::Response& response) {
+  response.success = session_ != nullptr;
+  response.message = session_ ? "delays, windows and the alarm start afresh" : model_error_;
+  if (session_) {
+    session_->detector.restart();
+    standDown("settling: reset");
+  }
+  return true;
+}
+
+bool Monitor::onClear(std_srvs::Trigger::Request& /*request*/,
+                      std_srvs::Trigger::Response& response) {
+  const bool stood = last_.level != self_awareness::SelfAwareness::OK;
+  response.success = true;
+  response.message = stood ? "the alarm is cleared" : "there is no alarm";
+  if (stood) {
+    session_->detector.clearAlarm();
+    standDown("cleared by hand");
+  }
+  return true;
+}
+
+bool Monitor::onReload(std_srvs::Trigger::Request& /*request*/,
+                       std_srvs::Trigger::Response& response) {
+  try {
+    load();
+  } catch (const ros1::ModelFileError& error) {
+    response.success = false;
+    response.message = std::string(error.what()) + (session_ ? "; the old model stays" : "");
+    ROS_ERROR("%s", response.message.c_str());
+    return true;
+  }
+  standDown("settling: model loaded");
+  response.success = true;
+  response.message = "loaded " + parameters_.model;
+  return true;
+}
+
+}  // namespace self_awareness

@@ -1,0 +1,117 @@
+#pragma once
+
+#include <ros/callback_queue.h>
+#include <ros/node_handle.h>
+#include <ros/publisher.h>
+#include <ros/service_server.h>
+#include <ros/spinner.h>
+#include <ros/steady_timer.h>
+#include <std_srvs/Trigger.h>
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "discovery.h"
+#include "parameters.h"
+#include "self_awareness/SelfAwareness.h"
+#include "self_awareness/core/detector.h"
+#include "self_awareness/ros/clock_watch.h"
+#include "self_awareness/ros/diagnostics.h"
+#include "self_awareness/ros/live_events.h"
+#include "self_awareness/ros/model_file.h"
+
+namespace self_awareness {
+
+/// Listens to a robot's communication and raises an alarm when it is not what training has seen.
+///
+/// Subscribes: all topics of the model and others by ~subscribe, of any type.
+/// Publishes: ~status (SelfAwareness, one a window), ~alarm (SelfAwareness, latched, on every change
+///   of level), /diagnostics.
+/// Services (std_srvs/Trigger): ~reset (delays, windows and alarm start afresh), ~clear (the alarm
+///   only), ~reload (reads ~model again; keeps the old one where that fails).
+/// Parameters: MonitorParameters.
+///
+/// Threads: messages, windows, services and diagnostics are served by one thread through a queue of
+/// its own; what may block on the network is Discovery's. Nothing else is shared.
+class Monitor {
+ public:
+  /// @param name full name of the node or nodelet, for the diagnostics
+  /// @throw std::invalid_argument if a parameter is out of range
+  Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& private_node_handle,
+          const std::string& name);
+  ~Monitor();
+  Monitor(const Monitor&) = delete;
+  Monitor& operator=(const Monitor&) = delete;
+
+ private:
+  /// What belongs to one loaded model.
+  struct Session {
+    Session(ros1::TrainedModel trained, const core::Detector::Parameters& parameters,
+            core::Detector::Handler handler);
+
+    core::EventId intern(const core::EventType& type);
+
+    ros1::TrainedModel trained;
+    core::Vocabulary vocabulary;  // of the model, followed by unknown event types as they appear
+    std::shared_ptr<const ros1::Encoder> encoder;
+    core::Detector detector;
+  };
+  struct Heard {
+    std::optional<std::int64_t> last;  // [ns]
+    std::uint64_t events = 0;          // since the last report
+  };
+
+  void load();
+  void startSession(ros1::TrainedModel trained);
+
+  void onEvent(const core::Event& event);
+  void onNewPublisher(const std::string& source, const std::string& topic);
+  void onTick(const ros::SteadyTimerEvent& tick);
+  void onVerdict(const core::Verdict& verdict);
+  bool onReset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  bool onClear(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  bool onReload(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+
+  /// Starts afresh where ROS time was set.
+  void watchClock();
+  void restart();
+  /// Publishes a change of level that no window brought about.
+  void standDown(const std::string& message);
+  void publishDiagnostics();
+  std::vector<self_awareness::Suspect> toMessages(const std::vector<core::Suspect>& suspects) const;
+  std::string wording(const core::Verdict& verdict) const;
+
+  ros::CallbackQueue queue_;
+  ros::NodeHandle node_handle_;
+  ros::NodeHandle private_node_handle_;
+  MonitorParameters parameters_;
+  ros::Publisher status_publisher_;
+  ros::Publisher alarm_publisher_;
+  std::vector<ros::ServiceServer> services_;
+  ros::SteadyTimer timer_;
+  ros1::Diagnostics diagnostics_;
+
+  std::string model_error_;
+  std::unique_ptr<Session> session_;  // none: no model
+  ros1::ClockWatch clock_watch_;
+  self_awareness::SelfAwareness last_;               // verdict on the last window
+  std::vector<self_awareness::Suspect> suspects_;    // of the standing alarm
+  std::int64_t alarm_since_ = 0;                     // [ns], while the alarm stands
+  std::map<std::string, Heard> components_;          // of the model
+  std::vector<Heard*> component_of_;                 // by event id of the model
+  std::uint64_t events_ = 0;                         // since the last report
+  std::uint64_t clock_steps_ = 0;
+  std::uint64_t reported_drops_ = 0;
+  ros::SteadyTime last_report_;
+  ros::WallDuration processing_;                     // since the last report
+
+  std::unique_ptr<ros1::LiveEvents> live_events_;
+  std::unique_ptr<Discovery> discovery_;
+  ros::AsyncSpinner spinner_;
+};
+
+}  // namespace self_awareness

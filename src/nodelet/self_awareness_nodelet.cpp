@@ -1,0 +1,23 @@
+#include <nodelet/nodelet.h>
+#include <pluginlib/class_list_macros.hpp>
+
+#include <memory>
+
+#include "monitor.h"
+
+namespace self_awareness {
+
+/// The monitor as a nodelet. A manager of its own is the default: in the robot's manager its
+/// subscriptions would force publishers to serialize what they hand on by pointer otherwise.
+class SelfAwarenessNodelet : public nodelet::Nodelet {
+ private:
+  void onInit() override {
+    monitor_ = std::make_unique<Monitor>(getNodeHandle(), getPrivateNodeHandle(), getName());
+  }
+
+  std::unique_ptr<Monitor> monitor_;
+};
+
+}  // namespace self_awareness
+
+PLUGINLIB_EXPORT_CLASS(self_awareness::SelfAwarenessNodelet, nodelet::Nodelet)

@@ -1,0 +1,78 @@
+#include "self_awareness/ros/graph.h"
+
+#include <ros/master.h>
+#include <ros/this_node.h>
+#include <xmlrpcpp/XmlRpcException.h>
+#include <xmlrpcpp/XmlRpcValue.h>
+
+#include <algorithm>
+
+namespace self_awareness::ros1 {
+namespace {
+
+std::optional<XmlRpc::XmlRpcValue> ask(const std::string& method) {
+  XmlRpc::XmlRpcValue request;
+  request[0] = ros::this_node::getName();
+  XmlRpc::XmlRpcValue response;
+  XmlRpc::XmlRpcValue payload;
+  if (!ros::master::execute(method, request, response, payload, false)) {
+    return std::nullopt;
+  }
+  return payload;
+}
+
+// An entry of the master's state: [topic, [node, ...]].
+void addNodes(XmlRpc::XmlRpcValue& entries, std::set<std::string> Graph::Topic::*nodes,
+              Graph& graph) {
+  for (int i = 0; i < entries.size(); ++i) {
+    std::set<std::string>& names = graph.topics[std::string(entries[i][0])].*nodes;
+    for (int k = 0; k < entries[i][1].size(); ++k) {
+      names.insert(std::string(entries[i][1][k]));
+    }
+  }
+}
+
+}  // namespace
+
+std::optional<Graph> fetchGraph() {
+  std::optional<XmlRpc::XmlRpcValue> state = ask("getSystemState");
+  std::optional<XmlRpc::XmlRpcValue> types = ask("getTopicTypes");
+  if (!state || !types) {
+    return std::nullopt;
+  }
+  try {
+    Graph graph;
+    addNodes((*state)[0], &Graph::Topic::publishers, graph);
+    addNodes((*state)[1], &Graph::Topic::subscribers, graph);
+    for (int i = 0; i < types->size(); ++i) {
+      const auto topic = graph.topics.find(std::string((*types)[i][0]));
+      if (topic != graph.topics.end()) {
+        topic->second.datatype = std::string((*types)[i][1]);
+      }
+    }
+    return graph;
+  } catch (const XmlRpc::XmlRpcException&) {
+    return std::nullopt;  // not what a master answers
+  }
+}
+
+std::set<std::string> chooseTopics(const Graph& graph, SubscribePolicy policy,
+                                   const std::set<std::string>& model_topics,
+                                   const std::function<bool(const std::string&)>& included,
+                                   const std::string& own_name) {
+  std::set<std::string> chosen = model_topics;
+  if (policy == SubscribePolicy::kModel) {
+    return chosen;
+  }
+  for (const auto& [name, topic] : graph.topics) {
+    const bool used = std::any_of(topic.subscribers.begin(), topic.subscribers.end(),
+                                  [&](const std::string& node) { return node != own_name; });
+    if (!topic.publishers.empty() && (policy == SubscribePolicy::kAll || used) &&
+        included(name)) {
+      chosen.insert(name);
+    }
+  }
+  return chosen;
+}
+
+}  // namespace self_awareness::ros1

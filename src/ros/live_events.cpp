@@ -1,0 +1,155 @@
+#include "self_awareness/ros/live_events.h"
+
+#include <ros/console.h>
+#include <ros/serialization.h>
+#include <ros/subscribe_options.h>
+#include <ros/this_node.h>
+
+#include <boost/bind/bind.hpp>
+#include <stdexcept>
+#include <utility>
+
+#include "self_awareness/ros/stable_name.h"
+
+namespace self_awareness::ros1 {
+namespace {
+
+std::string headerField(const ros::M_string& header, const std::string& name) {
+  const auto field = header.find(name);
+  return field == header.end() ? "" : field->second;
+}
+
+}  // namespace
+
+LiveEvents::LiveEvents(const ros::NodeHandle& node_handle, std::uint32_t queue_size,
+                       Handler handler, NewPublisherHandler on_new_publisher)
+    : node_handle_(node_handle),
+      queue_size_(queue_size),
+      handler_(std::move(handler)),
+      on_new_publisher_(std::move(on_new_publisher)) {}
+
+void LiveEvents::setTopics(const std::set<std::string>& topics, const Graph& graph) {
+  for (auto subscription = subscriptions_.begin(); subscription != subscriptions_.end();) {
+    const auto published = graph.topics.find(subscription->first);
+    const std::string datatype =
+        published == graph.topics.end() ? "" : published->second.datatype;
+    std::string& expected = subscription->second.datatype;
+    if (expected.empty() || expected == "*") {
+      expected = datatype;
+    }
+    const bool type_changed = !datatype.empty() && datatype != "*" && datatype != expected;
+    if (type_changed) {
+      ROS_WARN("%s: the type changed from %s to %s; subscribing anew",
+               subscription->first.c_str(), expected.c_str(), datatype.c_str());
+    }
+    if (type_changed || topics.count(subscription->first) == 0) {
+      subscription = subscriptions_.erase(subscription);
+    } else {
+      ++subscription;
+    }
+  }
+  for (const std::string& topic : topics) {
+    if (subscriptions_.count(topic) > 0) {
+      continue;
+    }
+    ros::SubscribeOptions options;
+    options.initByFullCallbackType<const MessageEvent&>(
+        topic, queue_size_, [this, topic](const MessageEvent& message) {
+          onMessage(topic, message);
+        });
+    options.transport_hints = ros::TransportHints().tcpNoDelay();
+    const auto published = graph.topics.find(topic);
+    Subscription& subscription = subscriptions_[topic];
+    subscription.datatype =
+        published == graph.topics.end() ? "" : published->second.datatype;
+    subscription.subscriber = node_handle_.subscribe(options);
+  }
+}
+
+void LiveEvents::renew(const Graph& graph) {
+  for (const auto& [name, topic] : graph.topics) {
+    if (!topic.publishers.empty()) {
+      subscriptions_.erase(name);
+    }
+  }
+}
+
+void LiveEvents::setEncoder(std::shared_ptr<const Encoder> encoder,
+                            std::function<bool(const std::string& topic)> knows_own_topic) {
+  encoder_ = std::move(encoder);
+  knows_own_topic_ = std::move(knows_own_topic);
+  connections_.clear();
+  heard_.clear();
+}
+
+void LiveEvents::forgetClosedConnections() {
+  for (auto connection = connections_.begin(); connection != connections_.end();) {
+    connection = connection->second.header.use_count() == 1 ? connections_.erase(connection)
+                                                            : std::next(connection);
+  }
+}
+
+void LiveEvents::onMessage(const std::string& topic, const MessageEvent& message) {
+  if (!encoder_) {
+    return;
+  }
+  const ros::M_string* key = message.getConnectionHeaderPtr().get();
+  auto connection = connections_.find(key);
+  if (connection == connections_.end()) {
+    connection = connections_.emplace(key, connect(topic, message)).first;
+  }
+  std::optional<ConnectionEncoder>& encoder = connection->second.encoder;
+  if (!encoder || !encoder->accept()) {
+    return;
+  }
+  const auto stamp = static_cast<std::int64_t>(message.getReceiptTime().toNSec());
+  if (!encoder->needsContent()) {
+    handler_({stamp, encoder->id()});
+    return;
+  }
+  const topic_tools::ShapeShifter& content = *message.getConstMessage();
+  buffer_.resize(content.size());
+  ros::serialization::OStream stream(buffer_.data(), content.size());
+  content.write(stream);
+  try {
+    handler_({stamp, encoder->id(buffer_.data(), buffer_.size())});
+  } catch (const std::out_of_range& error) {
+    ROS_ERROR_THROTTLE(10, "%s from %s: %s; the message is left out", topic.c_str(),
+                       message.getPublisherName().c_str(), error.what());
+  }
+}
+
+LiveEvents::LiveConnection LiveEvents::connect(const std::string& topic,
+                                               const MessageEvent& message) {
+  LiveConnection live;
+  live.header = message.getConnectionHeaderPtr();
+  Connection connection;
+  connection.callerid = headerField(*live.header, "callerid");
+  connection.topic = topic;
+  connection.datatype = headerField(*live.header, "type");
+  connection.definition = headerField(*live.header, "message_definition");
+  connection.latching = headerField(*live.header, "latching") == "1";
+  if (isOwnOutput(connection)) {
+    return live;
+  }
+  try {
+    live.encoder = encoder_->connect(connection);
+  } catch (const std::invalid_argument& error) {
+    ROS_ERROR("%s from %s: %s; its messages are left out", topic.c_str(),
+              connection.callerid.c_str(), error.what());
+  }
+  if (live.encoder && heard_.emplace(stableName(connection.callerid), topic).second) {
+    on_new_publisher_(stableName(connection.callerid), topic);
+  }
+  return live;
+}
+
+// In a manager that it shares with nodelets of the robot, the monitor has their callerid: only
+// what the model does not know from that process is its own.
+bool LiveEvents::isOwnOutput(const Connection& connection) const {
+  return connection.callerid == ros::this_node::getName() &&
+         (connection.topic == "/rosout" || connection.topic == "/diagnostics" ||
+          !knows_own_topic_(connection.topic));
+}
+
+}  // namespace self_awareness::ros1

@@ -1,0 +1,231 @@
+#include <gtest/gtest.h>
+#include <ros/message_traits.h>
+#include <ros/serialization.h>
+#include <rosgraph_msgs/Log.h>
+#include <sensor_msgs/JointState.h>
+#include <sensor_msgs/PointCloud2.h>
+#include <visualization_msgs/Marker.h>
+#include <visualization_msgs/MarkerArray.h>
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "self_awareness/core/vocabulary.h"
+#include "self_awareness/ros/encoding.h"
+#include "self_awareness/ros/message_field.h"
+#include "self_awareness/ros/stable_name.h"
+
+namespace self_awareness::ros1 {
+namespace {
+
+template <typename Message>
+std::vector<std::uint8_t> serialize(const Message& message) {
+  std::vector<std::uint8_t> buffer(ros::serialization::serializationLength(message));
+  ros::serialization::OStream stream(buffer.data(), static_cast<std::uint32_t>(buffer.size()));
+  ros::serialization::serialize(stream, message);
+  return buffer;
+}
+
+template <typename Message>
+std::string readField(const Message& message, const std::string& path) {
+  const std::vector<std::uint8_t> buffer = serialize(message);
+  return MessageField(ros::message_traits::definition<Message>(),
+                      ros::message_traits::datatype<Message>(), path)
+      .read(buffer.data(), buffer.size());
+}
+
+template <typename Message>
+std::string errorOf(const std::string& path) {
+  try {
+    MessageField(ros::message_traits::definition<Message>(),
+                 ros::message_traits::datatype<Message>(), path);
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+class EncoderTest : public testing::Test {
+ protected:
+  Encoder makeEncoder(const EncodingRules& rules) {
+    return Encoder(rules, [this](const core::EventType& type) { return vocabulary_.intern(type); });
+  }
+  static Connection scan() {
+    Connection connection;
+    connection.callerid = "/player";
+    connection.topic = "/scan";
+    connection.datatype = "sensor_msgs/LaserScan";
+    return connection;
+  }
+
+  core::Vocabulary vocabulary_;
+};
+
+TEST(StableName, DropsTheNumbersOfAnonymousNodes) {
+  EXPECT_EQ(stableName("/rostopic_10263_1795206536731"), "/rostopic");
+  EXPECT_EQ(stableName("/record_1795206538727453261"), "/record");
+  EXPECT_EQ(stableName("/ns/talker_4242_1430709709567"), "/ns/talker");
+  EXPECT_EQ(stableName("/viewer_host_314_5876409862321874321"), "/viewer_host");
+}
+
+TEST(StableName, KeepsNumbersThatBelongToTheName) {
+  for (const char* name : {"/camera_752112070204", "/laser_2", "/wheel_1_2", "/robot_20211104"}) {
+    EXPECT_EQ(stableName(name), name);
+  }
+}
+
+TEST(MessageField, ReadsBehindStringsArraysAndNestedMessages) {
+  visualization_msgs::Marker marker;
+  marker.header.frame_id = "map";
+  marker.ns = "people";
+  marker.id = -7;
+  marker.action = visualization_msgs::Marker::DELETE;
+  marker.points.resize(3);
+  marker.text = "Ada";
+  marker.mesh_use_embedded_materials = 1;
+  EXPECT_EQ(readField(marker, "action"), "2");
+  EXPECT_EQ(readField(marker, "id"), "-7");
+  EXPECT_EQ(readField(marker, "ns"), "people");
+  EXPECT_EQ(readField(marker, "header.frame_id"), "map");
+  EXPECT_EQ(readField(marker, "text"), "Ada");
+  EXPECT_EQ(readField(marker, "mesh_use_embedded_materials"), "1");
+
+  sensor_msgs::PointCloud2 cloud;
+  cloud.fields.resize(2);  // an array of messages that hold a string
+  cloud.fields[0].name = "x";
+  cloud.fields[1].name = "intensity";
+  cloud.point_step = 4000000000U;
+  cloud.data.resize(17);
+  cloud.is_dense = 1;
+  EXPECT_EQ(readField(cloud, "point_step"), "4000000000");
+  EXPECT_EQ(readField(cloud, "is_dense"), "1");
+
+  rosgraph_msgs::Log log;
+  log.level = rosgraph_msgs::Log::ERROR;
+  log.name = std::string(200, 'n');
+  EXPECT_EQ(readField(log, "level"), "8");
+  EXPECT_EQ(readField(log, "name"), std::string(64, 'n'));
+}
+
+TEST(MessageField, SaysWhatIsWrongWithAField) {
+  using visualization_msgs::Marker;
+  EXPECT_EQ(errorOf<Marker>("verb"), "type field visualization_msgs/Marker: verb: has no field 'verb'");
+  EXPECT_NE(errorOf<Marker>("pose").find("is a message itself"), std::string::npos);
+  EXPECT_NE(errorOf<Marker>("points").find("is an array"), std::string::npos);
+  EXPECT_NE(errorOf<Marker>("scale.x").find("is a float64"), std::string::npos);
+  EXPECT_NE(errorOf<Marker>("pose.speed").find("in its geometry_msgs/Pose"), std::string::npos);
+  EXPECT_NE(errorOf<sensor_msgs::JointState>("name").find("is an array"), std::string::npos);
+}
+
+TEST(MessageField, RefusesAMessageThatIsTooShort) {
+  visualization_msgs::Marker marker;
+  marker.ns = "people";
+  const std::vector<std::uint8_t> buffer = serialize(marker);
+  const MessageField field(ros::message_traits::definition(marker),
+                           ros::message_traits::datatype(marker), "action");
+  for (std::size_t size = 0; size < 34; ++size) {  // action ends after 12 + 4 + 4 + 4 + 6 + 4 + 4
+    EXPECT_THROW(field.read(buffer.data(), size), std::out_of_range) << size;
+  }
+}
+
+TEST_F(EncoderTest, AnEventIsSourceScopeAndType) {
+  Connection connection = scan();
+  connection.callerid = "/player_4242_1430709709567";
+  auto encoder = makeEncoder(EncodingRules()).connect(connection);
+  ASSERT_TRUE(encoder);
+  EXPECT_EQ(vocabulary_.size(), 0U);  // a connection alone is no event
+  EXPECT_FALSE(encoder->needsContent());
+  const core::EventType expected{"/player", "/scan", "sensor_msgs/LaserScan"};
+  EXPECT_EQ(vocabulary_.at(encoder->id()), expected);
+}
+
+TEST_F(EncoderTest, ATypeFieldTellsWhatAMessageDoes) {
+  EncodingRules rules;
+  rules.type_fields = {{"visualization_msgs/Marker", "action"}};
+  visualization_msgs::Marker marker;
+  Connection connection;
+  connection.callerid = "/anchoring";
+  connection.topic = "/people";
+  connection.datatype = ros::message_traits::datatype(marker);
+  connection.definition = ros::message_traits::definition(marker);
+  auto encoder = makeEncoder(rules).connect(connection);
+  ASSERT_TRUE(encoder && encoder->needsContent());
+  const std::vector<std::uint8_t> add = serialize(marker);
+  marker.action = visualization_msgs::Marker::DELETE;
+  const std::vector<std::uint8_t> remove = serialize(marker);
+  const core::EventId added = encoder->id(add.data(), add.size());
+  const core::EventId removed = encoder->id(remove.data(), remove.size());
+  EXPECT_EQ(vocabulary_.at(added).type, "visualization_msgs/Marker[action=0]");
+  EXPECT_EQ(vocabulary_.at(removed).type, "visualization_msgs/Marker[action=2]");
+  EXPECT_EQ(encoder->id(add.data(), add.size()), added);
+}
+
+TEST_F(EncoderTest, SourcesMayBeLeftOut) {
+  EncodingRules rules = EncodingRules::defaults();
+  rules.source = EncodingRules::Source::kNone;
+  Connection connection = scan();
+  connection.callerid = "/play_1795206538727453261";  // excluded, were it looked at
+  auto encoder = makeEncoder(rules).connect(connection);
+  ASSERT_TRUE(encoder);
+  EXPECT_EQ(vocabulary_.at(encoder->id()).source, "");
+  EXPECT_EQ(core::toString(vocabulary_.at(encoder->id())), "- /scan sensor_msgs/LaserScan");
+}
+
+TEST_F(EncoderTest, TheFirstMessageOfALatchingConnectionIsNoEvent) {
+  Connection connection = scan();
+  connection.latching = true;
+  auto encoder = makeEncoder(EncodingRules()).connect(connection);
+  EXPECT_FALSE(encoder->accept());
+  EXPECT_TRUE(encoder->accept());
+  connection.latching = false;
+  EXPECT_TRUE(makeEncoder(EncodingRules()).connect(connection)->accept());
+}
+
+TEST_F(EncoderTest, DefaultsLeaveOutOnlookersAndKeepTheRobot) {
+  const Encoder encoder = makeEncoder(EncodingRules::defaults());
+  Connection connection = scan();
+  for (const char* node : {"/player", "/recorder_arm", "/replay_guard", "/base", "/ns/player"}) {
+    connection.callerid = node;
+    EXPECT_TRUE(encoder.connect(connection)) << node;
+  }
+  for (const char* node :
+       {"/play_1795206538727453261", "/record_1795206538727453261", "/rqt_gui_py_node_17",
+        "/rviz_1430709709567731649", "/rostopic_10263_1795206536731", "/self_awareness",
+        "/robot1/self_awareness_manager", "/ns/rviz"}) {
+    connection.callerid = node;
+    EXPECT_FALSE(encoder.connect(connection)) << node;
+  }
+  for (const char* topic : {"/clock", "/rosout_agg", "/statistics", "/self_awareness/status"}) {
+    EXPECT_FALSE(encoder.includesTopic(topic)) << topic;
+  }
+  for (const char* topic : {"/scan", "/rosout", "/diagnostics", "/alarm_clock"}) {
+    EXPECT_TRUE(encoder.includesTopic(topic)) << topic;
+  }
+}
+
+TEST_F(EncoderTest, PatternsMatchWholeNames) {
+  EncodingRules rules;
+  rules.include_topics = {"/sc.*"};
+  rules.exclude_sources = {"/play"};
+  EXPECT_TRUE(makeEncoder(rules).connect(scan()));
+  rules.include_topics = {"sc"};
+  EXPECT_FALSE(makeEncoder(rules).connect(scan()));
+  rules.include_topics = {};
+  rules.include_sources = {"/slam"};
+  EXPECT_FALSE(makeEncoder(rules).connect(scan()));
+}
+
+TEST_F(EncoderTest, NamesThePatternThatIsNone) {
+  EncodingRules rules;
+  rules.exclude_topics = {"/a(b"};
+  try {
+    makeEncoder(rules);
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("'/a(b'"), std::string::npos) << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace self_awareness::ros1
