@@ -1,0 +1,168 @@
+"""What the live tests share: processes, waiting for conditions, listening to the monitor."""
+
+import os
+import signal
+import subprocess
+import tempfile
+import threading
+import time
+from typing import Callable, Dict, List, Optional, Sequence, TypeVar
+
+import rospy
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+
+import self_awareness
+from self_awareness.msg import SelfAwareness
+
+T = TypeVar('T')
+
+
+def await_condition(what: str, condition: Callable[[], Optional[T]], timeout: float) -> T:
+    """The condition's value as soon as it is true; AssertionError after `timeout` [s]."""
+    deadline = time.monotonic() + timeout
+    while True:
+        value = condition()
+        if value:
+            return value
+        if time.monotonic() > deadline:
+            raise AssertionError('not within {:g} s: {}'.format(timeout, what))
+        time.sleep(0.02)
+
+
+class Process:
+    """A process with its output in a file, ended with the `with` block."""
+
+    def __init__(self, *command: str, env: Optional[Dict[str, str]] = None) -> None:
+        self._output = tempfile.NamedTemporaryFile(mode='r', suffix='.log')
+        self._process = subprocess.Popen(
+            command, env=dict(os.environ, **(env or {})), stdin=subprocess.DEVNULL,
+            stdout=open(self._output.name, 'w'), stderr=subprocess.STDOUT,
+            start_new_session=True)
+
+    def __enter__(self) -> 'Process':
+        return self
+
+    def __exit__(self, *_) -> None:
+        self.stop()
+
+    @property
+    def pid(self) -> int:
+        return self._process.pid
+
+    @property
+    def output(self) -> str:
+        """All that the process has printed so far."""
+        with open(self._output.name, errors='replace') as output:
+            return output.read()
+
+    def running(self) -> bool:
+        return self._process.poll() is None
+
+    def wait(self, timeout: float) -> int:
+        """The exit code; AssertionError after `timeout` [s]."""
+        try:
+            return self._process.wait(timeout)
+        except subprocess.TimeoutExpired:
+            raise AssertionError('does not end:\n' + self.output)
+
+    def send(self, number: int) -> None:
+        """Sends a signal to the process and all that it started."""
+        try:
+            os.killpg(self._process.pid, number)
+        except ProcessLookupError:
+            pass
+
+    def stop(self) -> None:
+        """Interrupts the process, and kills it if that does not help; waits for its end."""
+        self.send(signal.SIGCONT)
+        self.send(signal.SIGINT)
+        try:
+            self._process.wait(15)
+        except subprocess.TimeoutExpired:
+            pass
+        self.send(signal.SIGKILL)
+        self._process.wait()
+
+
+class MonitorListener:
+    """Keeps all that a monitor says; needs rospy.init_node()."""
+
+    def __init__(self, name: str = '/self_awareness') -> None:
+        self._name = name
+        self._lock = threading.Lock()
+        self._statuses = []  # type: List[SelfAwareness]
+        self._alarms = []  # type: List[SelfAwareness]
+        self._diagnostics = []  # type: List[DiagnosticStatus]
+        self._subscribers = [
+            rospy.Subscriber(name + '/status', SelfAwareness, self._keep(self._statuses)),
+            rospy.Subscriber(name + '/alarm', SelfAwareness, self._keep(self._alarms)),
+            rospy.Subscriber('/diagnostics', DiagnosticArray, self._on_diagnostics),
+        ]
+
+    def _keep(self, messages: list) -> Callable:
+        def on_message(message) -> None:
+            with self._lock:
+                messages.append(message)
+        return on_message
+
+    def _on_diagnostics(self, array: DiagnosticArray) -> None:
+        prefix = self._name[1:] + ': '
+        with self._lock:
+            self._diagnostics += [status for status in array.status
+                                  if status.name.startswith(prefix)]
+
+    def close(self) -> None:
+        for subscriber in self._subscribers:
+            subscriber.unregister()
+
+    @property
+    def statuses(self) -> List[SelfAwareness]:
+        with self._lock:
+            return list(self._statuses)
+
+    @property
+    def alarms(self) -> List[SelfAwareness]:
+        with self._lock:
+            return list(self._alarms)
+
+    def diagnostics(self, task: str) -> List[DiagnosticStatus]:
+        """All statuses so far of one task: 'communication', 'monitor' or a component."""
+        with self._lock:
+            return [status for status in self._diagnostics
+                    if status.name == '{}: {}'.format(self._name[1:], task)]
+
+    def value(self, task: str, key: str) -> Optional[str]:
+        """A value of the task's last status; None if there is none yet."""
+        for status in reversed(self.diagnostics(task)):
+            return next((pair.value for pair in status.values if pair.key == key), None)
+        return None
+
+    def await_settled(self, timeout: float = 40) -> SelfAwareness:
+        """Waits until the monitor has settled after what has happened so far."""
+        seen = len(self.statuses)
+        return await_condition(
+            'the monitor settles',
+            lambda: next((s for s in self.statuses[seen:] if not s.settling), None), timeout)
+
+    def await_alarm(self, timeout: float = 20) -> SelfAwareness:
+        """Waits for a change to ERROR that is not among the alarms seen so far."""
+        seen = len(self.alarms)
+        return await_condition(
+            'an alarm', lambda: next((a for a in self.alarms[seen:]
+                                      if a.level == SelfAwareness.ERROR), None), timeout)
+
+
+def make_model(path: str, bags: Sequence[str], threshold: Optional[float],
+               source: str = 'callerid') -> None:
+    """Trains a model on bags and writes it with this threshold, or not calibrated."""
+    encoding = self_awareness.EncodingRules.defaults()
+    encoding.source = source
+    training = self_awareness.Training(encoding)
+    for bag in bags:
+        training.add_bag(bag)
+    model = training.model()
+    if threshold is not None:
+        calibration = self_awareness.Calibration()
+        calibration.threshold = threshold
+        model.calibration = calibration
+    model.save(path)
