@@ -6,6 +6,12 @@
 #include <utility>
 
 namespace self_awareness {
+namespace {
+
+// A master that takes longer than this to answer all that it is asked hangs.
+constexpr std::chrono::seconds kPatience(5);
+
+}  // namespace
 
 Discovery::Discovery(ros1::LiveEvents& live_events, ros1::SubscribePolicy policy, double interval,
                      std::vector<std::string> services)
@@ -35,7 +41,11 @@ void Discovery::setWanted(Wanted wanted) {
 
 Discovery::State Discovery::state() const {
   const std::lock_guard<std::mutex> lock(mutex_);
-  return state_;
+  State state = state_;
+  if (asked_at_ && std::chrono::steady_clock::now() - *asked_at_ > kPatience) {
+    state.master_answers = false;
+  }
+  return state;
 }
 
 void Discovery::run() {
@@ -43,9 +53,11 @@ void Discovery::run() {
   while (!stopping_) {
     changed_ = false;
     const Wanted wanted = wanted_;
+    asked_at_ = std::chrono::steady_clock::now();
     lock.unlock();
     poll(wanted);
     lock.lock();
+    asked_at_.reset();
     wake_.wait_for(lock, interval_, [this] { return stopping_ || changed_; });
   }
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
 #include <thread>
@@ -29,7 +30,7 @@ class Discovery {
   };
   /// What the last poll found.
   struct State {
-    bool master_answers = true;
+    bool master_answers = true;  ///< false also while it lets a call wait for long
     std::size_t subscriptions = 0;
     std::uint64_t dropped_messages = 0;  ///< since the start
   };
@@ -62,6 +63,8 @@ class Discovery {
   std::condition_variable wake_;
   Wanted wanted_;          // guarded by mutex_
   State state_;            // guarded by mutex_
+  // While polling: since when. Guarded by mutex_.
+  std::optional<std::chrono::steady_clock::time_point> asked_at_;
   bool changed_ = false;   // guarded by mutex_
   bool stopping_ = false;  // guarded by mutex_
   std::thread thread_;     // last: it uses all of the above

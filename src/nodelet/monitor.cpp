@@ -156,9 +156,9 @@ void Monitor::onNewPublisher(const std::string& source, const std::string& topic
 
 void Monitor::onTick(const ros::SteadyTimerEvent& /*tick*/) {
   const ros::WallTime begin = ros::WallTime::now();
-  watchClock();
+  const std::int64_t now = watchClock();
   if (session_) {
-    session_->detector.advance(rosNow() - kGrace);
+    session_->detector.advance(now - kGrace);
   }
   processing_ += ros::WallTime::now() - begin;
   if ((ros::SteadyTime::now() - last_report_).toSec() >= diagnostics_.period()) {
@@ -167,10 +167,12 @@ void Monitor::onTick(const ros::SteadyTimerEvent& /*tick*/) {
   }
 }
 
-void Monitor::watchClock() {
-  if (clock_watch_.look(rosNow(), steadyNow(), ros::Time::isSimTime()) && session_) {
+std::int64_t Monitor::watchClock() {
+  const std::int64_t now = rosNow();
+  if (clock_watch_.look(now, steadyNow(), ros::Time::isSimTime()) && session_) {
     restart();
   }
+  return now;
 }
 
 void Monitor::restart() {

@@ -76,8 +76,9 @@ class Monitor {
   bool onClear(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool onReload(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
 
-  /// Starts afresh where ROS time was set.
-  void watchClock();
+  /// Starts afresh where ROS time was set. Returns the ROS time [ns] that it looked at: by another
+  /// look, the clock may have been set again.
+  std::int64_t watchClock();
   void restart();
   /// Publishes a change of level that no window brought about.
   void standDown(const std::string& message);

@@ -1,6 +1,7 @@
 #include <nodelet/nodelet.h>
 #include <pluginlib/class_list_macros.hpp>
 
+#include <exception>
 #include <memory>
 
 #include "monitor.h"
@@ -12,7 +13,12 @@ namespace self_awareness {
 class SelfAwarenessNodelet : public nodelet::Nodelet {
  private:
   void onInit() override {
-    monitor_ = std::make_unique<Monitor>(getNodeHandle(), getPrivateNodeHandle(), getName());
+    try {
+      monitor_ = std::make_unique<Monitor>(getNodeHandle(), getPrivateNodeHandle(), getName());
+    } catch (const std::exception& error) {
+      NODELET_FATAL("%s", error.what());  // the manager says only that it failed
+      throw;
+    }
   }
 
   std::unique_ptr<Monitor> monitor_;

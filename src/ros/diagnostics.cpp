@@ -71,10 +71,9 @@ void Diagnostics::communication(Status& status) const {
   } else if (!state_.started) {
     status.summary(DiagnosticStatus::OK, "waiting for the first message");
   } else {
-    status.summary(last.level, last.message);
-    if (!state_.calibrated) {
-      status.mergeSummary(DiagnosticStatus::WARN, "no alarm can be raised");
-    }
+    // Not an alarm, but an operator who relies on one must know that none can come.
+    const std::uint8_t uncalibrated = DiagnosticStatus::WARN;
+    status.summary(state_.calibrated ? last.level : uncalibrated, last.message);
     status.add("score", number(last.score));
     status.add("threshold", number(last.threshold));
     status.add("events in the window", last.events);

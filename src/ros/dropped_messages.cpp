@@ -19,14 +19,20 @@ std::uint64_t DroppedMessages::count() {
     return total_;
   }
   try {
-    // [code, message, [publications, subscriptions, services]]; a subscription is
-    // [topic, [[connection, bytes, messages, drops, 0], ...]].
-    XmlRpc::XmlRpcValue& subscriptions = response[2][1];
+    // [publications, subscriptions, services], which the slave API wants behind a code and a
+    // message, but roscpp sends bare. A subscription is [topic, [[connection, bytes, messages,
+    // drops, 0], ...]].
+    XmlRpc::XmlRpcValue& statistics = response.size() == 3 && response[0].getType() ==
+                                              XmlRpc::XmlRpcValue::TypeInt
+                                          ? response[2]
+                                          : response;
+    XmlRpc::XmlRpcValue& subscriptions = statistics[1];
     for (int i = 0; i < subscriptions.size(); ++i) {
+      const std::string topic = subscriptions[i][0];
       XmlRpc::XmlRpcValue& connections = subscriptions[i][1];
       for (int k = 0; k < connections.size(); ++k) {
         const std::int64_t drops = static_cast<int>(connections[k][3]);
-        std::int64_t& known = by_connection_[static_cast<int>(connections[k][0])];
+        std::int64_t& known = by_connection_[{topic, static_cast<int>(connections[k][0])}];
         total_ += static_cast<std::uint64_t>(drops > known ? drops - known : 0);
         known = drops;
       }

@@ -38,7 +38,9 @@ EncodingRules EncodingRules::defaults() {
   rules.exclude_sources = {".*/self_awareness(_manager)?",
                            "(.*/)?(play|record|recorder|rosbag.*)",
                            "(.*/)?(rqt|rviz|rostopic|rosnode|rosservice|plotjuggler|foxglove).*"};
-  rules.type_fields = {{"rosgraph_msgs/Log", "level"}, {"visualization_msgs/Marker", "action"}};
+  rules.type_fields = {{"actionlib_msgs/GoalStatus", "status"},
+                       {"rosgraph_msgs/Log", "level"},
+                       {"visualization_msgs/Marker", "action"}};
   return rules;
 }
 

@@ -1,10 +1,10 @@
 """The scenario of the simulated follow-me robot: its data, read from YAML and checked.
 
-The paper evaluates its model on a robot of 15 components that follows a person (section V-A) and on
-four errors induced in it (section V-B). `config/follow_me.yaml` describes both and explains every
-key; this module turns the file into immutable data and rejects what makes no sense. How a component
-behaves is in `follow_me_component`. Times in the data are seconds, as in the file; whatever is drawn
-or computed from them is int nanoseconds.
+The paper evaluates its model on a robot of 15 components that follows a person (section V-A) and
+on four errors induced in it (section V-B). `config/follow_me.yaml` describes both and explains
+every key; this module turns the file into immutable data and rejects what makes no sense. How a
+component behaves is in `follow_me_component`. Times in the data are seconds, as in the file;
+whatever is drawn or computed from them is int nanoseconds.
 """
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import math
 import random
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Dict, Mapping, Optional, Tuple, Union
+from typing import Dict, List, Mapping, Optional, Tuple, Union
 
 import rospkg
 import yaml
@@ -20,6 +20,11 @@ import yaml
 from self_awareness.yaml_section import ScenarioError, Section
 
 SECOND_NS = 1_000_000_000
+
+FAULT_KINDS = ('cc1', 'cc2', 'rs', 'ac')
+
+CLOCK_DRIFT_ONSET = 'clock_drift_onset'
+"""Namespace of the parameters that hold since when a host's clock drifts (s since 1970; 0: no)."""
 
 Value = Union[bool, int, str]
 """What a message says, as far as the scenario cares: command, action, on or off."""
@@ -111,8 +116,9 @@ class Task:
 
     def inputs(self) -> Tuple[str, ...]:
         """Return the topics that this task depends on."""
-        values = [o.value_of for o in self.publish + self.otherwise if o.value_of]
-        return tuple([self.upon] if self.upon else []) + tuple(n.topic for n in self.needs) + tuple(values)
+        topics = [self.upon] + [need.topic for need in self.needs]
+        topics += [output.value_of for output in self.publish + self.otherwise]
+        return tuple(topic for topic in topics if topic is not None)
 
 
 @dataclass(frozen=True)
@@ -243,7 +249,8 @@ def load(path: Union[str, Path, None] = None) -> Scenario:
         datatypes = _datatypes(top, components)
         faults = _faults(top.section('faults'), [spec.name for spec in components])
         with top.section('simulation') as simulation:
-            transport, lateness = _duration(simulation, 'transport'), _duration(simulation, 'lateness')
+            transport = _duration(simulation, 'transport')
+            lateness = _duration(simulation, 'lateness')
         with top.section('live') as live:
             cpu_share = live.number('cpu_share', low=1e-3, high=1.0)
         with top.section('encoding') as encoding:
@@ -266,7 +273,8 @@ def _duration(section: Section, key: str, default: Optional[Duration] = None,
 
 def _component(section: Section) -> ComponentSpec:
     with section:
-        return ComponentSpec(section.text('name', r'[a-z][a-z0-9_]*'), section.text('host', r'[ab]'),
+        return ComponentSpec(section.text('name', r'[a-z][a-z0-9_]*'),
+                             section.text('host', r'[ab]'),
                              tuple(_task(task) for task in section.sections('tasks')),
                              section.texts('hears', default=()))
 
@@ -281,7 +289,8 @@ def _task(section: Section) -> Task:
         every = _duration(section, 'every', low=1e-3) if 'every' in section else None
         return Task(
             publish=tuple(_output(output) for output in section.sections('publish')),
-            otherwise=tuple(_output(output) for output in section.sections('otherwise', default=())),
+            otherwise=tuple(_output(output)
+                            for output in section.sections('otherwise', default=())),
             upon=section.text('upon', default=None),
             each=section.integer('each', low=1, default=1),
             every=every,
@@ -319,7 +328,8 @@ def _need(section: Section) -> Need:
 
 def _in_view(section: Section) -> InView:
     with section:
-        return InView(_duration(section, 'stays', low=1e-3), _duration(section, 'leaves', low=1e-3))
+        return InView(_duration(section, 'stays', low=1e-3),
+                      _duration(section, 'leaves', low=1e-3))
 
 
 def _hypothesis(section: Section) -> Hypothesis:
@@ -327,11 +337,11 @@ def _hypothesis(section: Section) -> Hypothesis:
         values = [section.integer(action, low=0) for action in ('insert', 'update', 'delete')]
         if len(set(values)) != 3:
             section.fail('insert', '`insert`, `update` and `delete` need three different values')
-        return Hypothesis(section.integer('confirm', low=1), section.number('discard_after', low=1e-3),
-                          *values)
+        return Hypothesis(section.integer('confirm', low=1),
+                          section.number('discard_after', low=1e-3), *values)
 
 
-def _faults(section: Section, names: list) -> Faults:
+def _faults(section: Section, names: List[str]) -> Faults:
     crashes = []
     with section:
         for kind in ('cc1', 'cc2'):

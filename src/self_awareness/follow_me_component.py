@@ -17,7 +17,7 @@ from self_awareness.follow_me import (ComponentSpec, Hypothesis, InView, Need, O
 
 @dataclass(frozen=True)
 class Message:
-    """What is exchanged: `stamp` is the header stamp (ns, by the clock of the host it came from)."""
+    """What is exchanged; `stamp` is the header stamp (ns, by the clock of the host it is from)."""
 
     topic: str
     stamp: int
@@ -74,7 +74,7 @@ class Component:
         self._rng = rng
         self._clock = clock
         self._steps: Deque[_Step] = deque()
-        # The newest waiting message of each task; tasks keep the order in which they were asked for.
+        # The newest waiting message of each task, in the order in which the tasks were asked for.
         self._waiting: Dict[int, Optional[Message]] = {}
         self._received: Dict[str, Message] = {}
         self._received_at: Dict[str, int] = {}
@@ -205,7 +205,7 @@ class _Track:
         self._seen_at = 0
 
     def action(self, now: int, seen: bool) -> Optional[int]:
-        """Return the value of what happens to the hypothesis at the time `now`, None if nothing."""
+        """Return the value of what happens to the hypothesis at the time `now`, if anything."""
         spec = self._spec
         exists = self._tracks >= spec.confirm
         if self._tracks and now - self._seen_at > nanoseconds(spec.discard_after):

@@ -34,8 +34,8 @@ class MessageType:
         message_class = roslib.message.get_message_class(datatype)
         if message_class is None:
             package = datatype.split('/')[0]
-            raise ScenarioError(f'message type {datatype} not found: install the Python messages of '
-                                f'{package} (ros-noetic-{package.replace("_", "-")} or '
+            raise ScenarioError(f'message type {datatype} not found: install the Python messages '
+                                f'of {package} (ros-noetic-{package.replace("_", "-")} or '
                                 f'python3-{package.replace("_", "-")}), or correct the scenario')
         self.message_class: Any = message_class
         self._value_field = _VALUE_FIELDS.get(datatype)

@@ -1,14 +1,13 @@
 """The follow-me robot in simulated time: its components exchange messages, a recorder listens.
 
-A discrete-event simulation of the scenario of `follow_me`: timers fire late by a little, work takes
-its time, messages travel, and what arrives at the recorder is a recording of normal operation or of
-one of the paper's four errors (section V-B). Nothing waits: 100 s of robot take some seconds to
-write. The same seed gives the same recording.
+A discrete-event simulation of the scenario of `follow_me`: timers fire late by a little, work
+takes its time, messages travel, and what arrives at the recorder is a recording of normal
+operation or of one of the paper's four errors (section V-B). Nothing waits: 100 s of robot take
+some seconds to write. The same seed gives the same recording.
 """
 from __future__ import annotations
 
 import heapq
-import os
 import random
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,15 +16,14 @@ from typing import Any, Callable, Dict, Iterator, List, NamedTuple, Optional, Tu
 import genpy
 import rosbag
 
-from self_awareness.follow_me import (SECOND_NS, ClockDrift, Crash, Scenario, Starvation, Value,
-                                      load, nanoseconds)
+from self_awareness.follow_me import (FAULT_KINDS, SECOND_NS, ClockDrift, Crash, Scenario,
+                                      Starvation, Value, load, nanoseconds)
 from self_awareness.follow_me_component import Component, Message, Publish, Request, Wake
 from self_awareness.follow_me_messages import MessageType
+from self_awareness.output_files import replacing
 
 START_S = 1_600_000_000.0
 """Start of a recording if none is given (s since 1970)."""
-
-FAULT_KINDS = ('cc1', 'cc2', 'rs', 'ac')
 
 # A recording starts on a robot that has been running: every component has had its inputs by then.
 _WARM_UP_NS = 15 * SECOND_NS
@@ -66,11 +64,11 @@ class Fault:
 
 def events(duration_s: float, seed: int, fault: Optional[Fault] = None,
            scenario: Optional[Scenario] = None, start_s: float = START_S) -> Iterator[Event]:
-    """Yield what a recorder would see, in the order of arrival; arguments as for `simulate`."""
+    """Return what a recorder would see, in the order of arrival; arguments as for `simulate`."""
     scenario = load() if scenario is None else scenario
-    for arrival, source, message, _ in _record(scenario, duration_s, seed, fault, start_s):
-        yield Event(arrival, source, '/' + message.topic, scenario.datatypes[message.topic],
-                    message.value)
+    return (Event(arrival, source, '/' + message.topic, scenario.datatypes[message.topic],
+                  message.value)
+            for arrival, source, message, _ in _record(scenario, duration_s, seed, fault, start_s))
 
 
 def simulate(path: Union[str, Path], duration_s: float, seed: int, fault: Optional[Fault] = None,
@@ -78,7 +76,7 @@ def simulate(path: Union[str, Path], duration_s: float, seed: int, fault: Option
              progress: Callable[[int], Any] = lambda seconds: None) -> None:
     """Write a recording of the robot to a bag, as `rosbag record` would.
 
-    The bag appears under its name only when it is complete; until then it is `PATH.active`.
+    The bag appears under its name only when it is complete.
 
     Args:
         path: the bag; one that exists is replaced.
@@ -98,21 +96,17 @@ def simulate(path: Union[str, Path], duration_s: float, seed: int, fault: Option
     recording = _record(scenario, duration_s, seed, fault, start_s)
     types = {topic: MessageType(datatype) for topic, datatype in scenario.datatypes.items()}
     headers = _connection_headers(scenario, types)
-    active = Path(f'{path}.active')
-    try:
-        with rosbag.Bag(str(active), 'w') as bag:
-            told = nanoseconds(start_s)
-            for arrival, _, message, sequence in recording:
-                bag.write('/' + message.topic, types[message.topic].to_ros(message, sequence),
-                          genpy.Time(*divmod(arrival, SECOND_NS)),
-                          connection_header=headers[message.topic])
-                if arrival - told >= SECOND_NS:
-                    progress((arrival - told) // SECOND_NS)
-                    told += (arrival - told) // SECOND_NS * SECOND_NS
-        os.replace(str(active), str(path))
-    finally:
-        if active.exists():
-            active.unlink()
+    told = 0
+    with replacing(str(path)) as temporary, rosbag.Bag(temporary, 'w') as bag:
+        for arrival, _, message, sequence in recording:
+            bag.write('/' + message.topic, types[message.topic].to_ros(message, sequence),
+                      genpy.Time(*divmod(arrival, SECOND_NS)),
+                      connection_header=headers[message.topic])
+            elapsed = (arrival - nanoseconds(start_s)) // SECOND_NS
+            if elapsed > told:
+                progress(elapsed - told)
+                told = elapsed
+    progress(int(duration_s) - told)
 
 
 def _connection_headers(scenario: Scenario, types: Dict[str, MessageType]) -> Dict[str, dict]:
@@ -147,7 +141,7 @@ def _record(scenario: Scenario, duration_s: float, seed: int, fault: Optional[Fa
 
 def _attach_recorder(recording: Iterator[_Record], scenario: Scenario,
                      start: int) -> Iterator[_Record]:
-    """Leave out what came before the start, but for what latched publishers repeat to a newcomer."""
+    """Leave out what came before the start, except what latched publishers repeat then."""
     latched = {topic for spec in scenario.components
                for topic, output in spec.outputs().items() if output.latch}
     repeated: Dict[str, _Record] = {}
@@ -223,7 +217,7 @@ class _Robot:
 
     def run(self, end: int) -> Iterator[_Record]:
         """Yield what arrives at the recorder before `end` (ns), in order."""
-        while self._queue[0][0] < end:
+        while self._queue and self._queue[0][0] < end:
             now, _, item = heapq.heappop(self._queue)
             if not isinstance(item, _Act):
                 yield item

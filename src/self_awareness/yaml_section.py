@@ -108,7 +108,8 @@ class Section:
         found = self._list(key) if isinstance(self._data[key], list) else [self._data[key]]
         for value in found:
             if not isinstance(value, (bool, int, str)):
-                self.fail(key, f'expected true, false, an integer or a text, found {_shown(value)}')
+                self.fail(key, 'expected true, false, an integer or a text, '
+                               f'found {_shown(value)}')
         return tuple(found)
 
     def texts_by_key(self, key: str) -> Dict[str, str]:

@@ -1,20 +1,26 @@
 """What the live tests share: processes, waiting for conditions, listening to the monitor."""
 
 import os
+import random
 import signal
 import subprocess
 import tempfile
 import threading
 import time
-from typing import Callable, Dict, List, Optional, Sequence, TypeVar
+from typing import Callable, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple, TypeVar
 
+import rosbag
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from std_msgs.msg import String
 
 import self_awareness
 from self_awareness.msg import SelfAwareness
 
 T = TypeVar('T')
+
+START_S = 1600000000.0
+"""Of the recordings that operation() makes up, since 1970."""
 
 
 def await_condition(what: str, condition: Callable[[], Optional[T]], timeout: float) -> T:
@@ -26,16 +32,19 @@ def await_condition(what: str, condition: Callable[[], Optional[T]], timeout: fl
             return value
         if time.monotonic() > deadline:
             raise AssertionError('not within {:g} s: {}'.format(timeout, what))
+        if rospy.is_shutdown():
+            raise AssertionError('interrupted while waiting: {}'.format(what))
         time.sleep(0.02)
 
 
 class Process:
-    """A process with its output in a file, ended with the `with` block."""
+    """A process with its output in a file, ended with the `with` block, or if the test dies."""
 
     def __init__(self, *command: str, env: Optional[Dict[str, str]] = None) -> None:
         self._output = tempfile.NamedTemporaryFile(mode='r', suffix='.log')
         self._process = subprocess.Popen(
-            command, env=dict(os.environ, **(env or {})), stdin=subprocess.DEVNULL,
+            ('setpriv', '--pdeathsig', 'TERM') + command,
+            env=dict(os.environ, **(env or {})), stdin=subprocess.DEVNULL,
             stdout=open(self._output.name, 'w'), stderr=subprocess.STDOUT,
             start_new_session=True)
 
@@ -93,6 +102,7 @@ class MonitorListener:
         self._statuses = []  # type: List[SelfAwareness]
         self._alarms = []  # type: List[SelfAwareness]
         self._diagnostics = []  # type: List[DiagnosticStatus]
+        self._heartbeats = []  # type: List[float]
         self._subscribers = [
             rospy.Subscriber(name + '/status', SelfAwareness, self._keep(self._statuses)),
             rospy.Subscriber(name + '/alarm', SelfAwareness, self._keep(self._alarms)),
@@ -110,8 +120,13 @@ class MonitorListener:
         with self._lock:
             self._diagnostics += [status for status in array.status
                                   if status.name.startswith(prefix)]
+            if any(status.name == prefix + 'monitor' for status in array.status):
+                self._heartbeats.append(time.monotonic())
 
-    def close(self) -> None:
+    def __enter__(self) -> 'MonitorListener':
+        return self
+
+    def __exit__(self, *_) -> None:
         for subscriber in self._subscribers:
             subscriber.unregister()
 
@@ -124,6 +139,12 @@ class MonitorListener:
     def alarms(self) -> List[SelfAwareness]:
         with self._lock:
             return list(self._alarms)
+
+    @property
+    def heartbeats(self) -> List[float]:
+        """When the monitor's diagnostics came [s of time.monotonic()]."""
+        with self._lock:
+            return list(self._heartbeats)
 
     def diagnostics(self, task: str) -> List[DiagnosticStatus]:
         """All statuses so far of one task: 'communication', 'monitor' or a component."""
@@ -150,6 +171,34 @@ class MonitorListener:
         return await_condition(
             'an alarm', lambda: next((a for a in self.alarms[seen:]
                                       if a.level == SelfAwareness.ERROR), None), timeout)
+
+
+def operation(components: Iterable[Tuple[str, str, float]], length: float,
+              seed: int) -> Iterator[Tuple[float, str, str]]:
+    """A recording of normal operation, from START_S on, as write_bag() takes it.
+
+    Periods vary by 30 %: by more than those of a live system, or of a replay under sim time.
+
+    Args:
+        components: source, topic and mean period [s] of each
+        length: [s]
+    """
+    rng = random.Random(seed)
+    for source, topic, period in components:
+        time_s = rng.uniform(0, period)
+        while time_s < length:
+            yield START_S + time_s, source, topic
+            time_s += period * rng.uniform(0.7, 1.3)
+
+
+def write_bag(path: str, messages: Iterable[Tuple[float, str, str]]) -> str:
+    """Writes std_msgs/String messages, given as (stamp [s], source, topic); returns the path."""
+    with rosbag.Bag(path, 'w') as bag:
+        for stamp, source, topic in sorted(messages):
+            header = {'topic': topic, 'type': String._type, 'md5sum': String._md5sum,
+                      'message_definition': String._full_text, 'callerid': source}
+            bag.write(topic, String(), rospy.Time.from_sec(stamp), connection_header=header)
+    return path
 
 
 def make_model(path: str, bags: Sequence[str], threshold: Optional[float],

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <map>
+#include <string>
+#include <utility>
 
 namespace self_awareness::ros1 {
 
@@ -14,7 +16,7 @@ class DroppedMessages {
   std::uint64_t count();
 
  private:
-  std::map<int, std::int64_t> by_connection_;
+  std::map<std::pair<std::string, int>, std::int64_t> by_connection_;  // (topic, id)
   std::uint64_t total_ = 0;
 };
 

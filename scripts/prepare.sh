@@ -1,0 +1,93 @@
+# Sourced by demo.sh and test.sh: installs what is missing, builds in a workspace of its own, and
+# sets up the environment. Can be run again without harm.
+#
+# SELF_AWARENESS_WORKSPACE  the catkin workspace; by default a folder of its own for every checkout
+#                           under ~/.cache/self_awareness
+
+set -euo pipefail
+
+checkout=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
+workspace=${SELF_AWARENESS_WORKSPACE:-${XDG_CACHE_HOME:-$HOME/.cache}/self_awareness/$(
+  echo "$checkout" | cksum | cut -d ' ' -f 1)}
+
+# ROS 1 lives in the system's Python; another one may come first on the path.
+export PATH=/usr/bin:/bin:$PATH
+
+packages_debian=(
+  bash-completion ca-certificates g++ make cmake python3-dev python3-setuptools
+  catkin ros-base-dev ros-message-generation
+  libnodeletlib-dev libnodelet-dev libnodeletlib-tools
+  libdiagnostic-updater-dev libdiagnostic-aggregator-dev libdiagnostic-aggregator-tools
+  librosbag-dev librosbag-storage-dev libtopic-tools-dev topic-tools librostest-dev
+  python3-rosbag python3-rospy python3-rostest python3-roslaunch python3-rosnode python3-rostopic
+  python3-rosmsg python3-rosservice python3-rosgraph rosbash rosdiagnostic
+  python3-actionlib-msgs python3-diagnostic-msgs python3-geometry-msgs python3-nav-msgs python3-sensor-msgs
+  python3-std-srvs python3-visualization-msgs
+  libvisualization-msgs-dev libsensor-msgs-dev libstd-srvs-dev
+  pybind11-dev libeigen3-dev libboost-filesystem-dev
+  python3-numpy python3-matplotlib python3-tqdm python3-yaml
+)
+packages_debian_test=(
+  catkin-lint clang-format libgtest-dev libgmock-dev nlohmann-json3-dev procps python3-pytest
+)
+packages_noetic=(
+  g++ make cmake python3-dev python3-setuptools
+  ros-noetic-ros-base ros-noetic-nodelet ros-noetic-pluginlib ros-noetic-diagnostic-updater
+  ros-noetic-diagnostic-aggregator ros-noetic-diagnostic-msgs ros-noetic-topic-tools
+  ros-noetic-rosbag ros-noetic-rosbag-storage ros-noetic-std-srvs ros-noetic-rosbash
+  ros-noetic-actionlib-msgs ros-noetic-visualization-msgs ros-noetic-sensor-msgs ros-noetic-nav-msgs
+  ros-noetic-geometry-msgs
+  pybind11-dev libeigen3-dev libboost-filesystem-dev
+  python3-numpy python3-matplotlib python3-tqdm python3-yaml
+)
+packages_noetic_test=(
+  ros-noetic-rostest ros-noetic-roslaunch libgtest-dev libgmock-dev nlohmann-json3-dev procps
+  python3-pytest python3-catkin-lint clang-format
+)
+
+say() { printf '\n== %s\n' "$*"; }
+
+as_root() {
+  if [ "$(id -u)" -eq 0 ]; then "$@"; else sudo "$@"; fi
+}
+
+installed() {
+  [ "$(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]
+}
+
+# install_packages [--test]
+install_packages() {
+  local wanted missing=() package
+  if [ -d /opt/ros/noetic ]; then
+    wanted=("${packages_noetic[@]}")
+    [ "${1:-}" != --test ] || wanted+=("${packages_noetic_test[@]}")
+  else
+    wanted=("${packages_debian[@]}")
+    [ "${1:-}" != --test ] || wanted+=("${packages_debian_test[@]}")
+  fi
+  for package in "${wanted[@]}"; do
+    installed "$package" || missing+=("$package")
+  done
+  [ ${#missing[@]} -eq 0 ] && return
+  say "Installing ${#missing[@]} packages"
+  as_root apt-get update -qq
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
+    "${missing[@]}" > /dev/null
+}
+
+source_ros() {  # ROS's setup files use variables that are not set
+  set +u
+  # shellcheck disable=SC1090
+  source "$1"
+  set -u
+}
+
+# build [TARGET...]
+build() {
+  say "Building in $workspace"
+  mkdir -p "$workspace/src"
+  ln -sfn "$checkout" "$workspace/src/self_awareness"
+  [ ! -d /opt/ros/noetic ] || source_ros /opt/ros/noetic/setup.bash
+  catkin_make --directory "$workspace" -DPYTHON_EXECUTABLE=/usr/bin/python3 "$@"
+  source_ros "$workspace/devel/setup.bash"
+}

@@ -1,0 +1,224 @@
+"""`rosrun self_awareness calibrate`: finds a model's threshold by ROC, on unseen recordings."""
+from __future__ import annotations
+
+import argparse
+import csv
+import dataclasses
+import time
+from statistics import median
+from typing import List, NamedTuple, Optional, Sequence, Tuple
+
+from self_awareness import (Calibration, DetectorParameters, Model, Roc, RocPoint, TrainedModel,
+                            calibration, confidence, recordings)
+from self_awareness.calibration import (ABNORMAL, LEFT_OUT, NORMAL, Cutoff, FalseAlarms,
+                                        FaultResult, JudgedRun, Run)
+from self_awareness.commands import cli
+from self_awareness.fault_injection import FORMS, Fault, check_source
+from self_awareness.output_files import check_outputs, replacing
+from self_awareness.plots import save_roc
+from self_awareness.recordings import BagPart, RecordingEvents
+from self_awareness.stamps import SECOND_NS
+
+_COLUMNS = ('bag', 'fault', 'window_start_ns', 'events', 'unknown', 'score', 'label')
+_LABELS = {NORMAL: 'normal', ABNORMAL: 'abnormal', LEFT_OUT: ''}
+
+_EPILOG = f"""\
+BAG@START-END stands for a part of a recording, in s from its first message.
+FAULT is one of {FORMS}.
+It befalls a copy of every normal recording in its middle, and its source alone: what depends on it
+goes on, other than in reality.
+examples:
+  calibrate --model robot.model --normal wednesday.bag --inject crash:/laser -o robot.model
+  calibrate --model robot.model --normal wednesday.bag --faulty dead_laser.bag@42 -o robot.model
+  calibrate --model robot.model --normal wednesday.bag --cutoff fpr=0.001 -o robot.model
+"""
+
+
+class _Measured(NamedTuple):
+    """What the runs say of the chosen threshold."""
+
+    point: RocPoint
+    roc: Roc
+    normal: List[JudgedRun]
+    faulty: List[JudgedRun]
+    faults: List[FaultResult]
+    false_alarms: FalseAlarms
+
+
+def main(argv: Optional[Sequence[str]] = None) -> int:
+    """Run the program; return its exit code (see cli.run)."""
+    return cli.run(_parser(), _calibrate, argv)
+
+
+def _calibrate(arguments: argparse.Namespace) -> None:
+    bags = [part.path for part in arguments.normal + arguments.faulty]
+    check_outputs([arguments.roc, arguments.csv], bags + [arguments.model, arguments.output])
+    check_outputs([arguments.output], bags)
+    if arguments.roc is not None and not (arguments.faulty or arguments.inject):
+        raise ValueError('--roc: there is no ROC without faults: name recordings of some '
+                         '(--faulty) or let some be made (--inject)')
+    parameters = cli.detector_parameters(arguments)
+    trained = TrainedModel.load(arguments.model)
+    for fault in arguments.inject:
+        check_source(fault, trained.event_types)
+
+    normal = [recordings.read(trained, part) for part in arguments.normal]
+    faulty = [dataclasses.replace(recordings.read(trained, BagPart(part.path)), part=part)
+              for part in arguments.faulty]
+    calibration.check_unseen(trained, normal + faulty)
+    _check_known(trained, normal)
+    normal_runs = [calibration.normal_run(recording) for recording in normal]
+    faulty_runs = ([calibration.recorded_fault(recording, trained.window) for recording in faulty]
+                   + [calibration.injected_fault(recording, fault, trained.window)
+                      for fault in dict.fromkeys(arguments.inject) for recording in normal])
+
+    measured = _measure(trained, parameters, arguments.cutoff, normal_runs, faulty_runs)
+    trained.calibration = _calibration(arguments, measured)
+    _print(arguments.cutoff, measured)
+    if measured.faulty and measured.roc.auc < 0.5:
+        cli.warn('calibrate', f'AUC {measured.roc.auc:.3f}: the faults score higher than normal '
+                 'operation; this threshold does not tell them')
+    if arguments.csv is not None:
+        _save_csv(arguments.csv, measured.normal + measured.faulty)
+    if arguments.roc is not None:
+        save_roc(arguments.roc, f'ROC of windows of {trained.window / SECOND_NS:g} s',
+                 [(result.fault, result.roc) for result in measured.faults], measured.point)
+    trained.save(arguments.output)
+    print(f'written: {arguments.output}')
+
+
+def _check_known(trained: TrainedModel, normal: Sequence[RecordingEvents]) -> None:
+    for recording in normal:
+        if (recording.ids >= len(trained.event_types)).all():
+            raise ValueError(f'{recording.part}: the model knows none of its event types: it was '
+                             'trained with another encoding or on another robot')
+
+
+def _measure(trained: TrainedModel, parameters: DetectorParameters, cutoff: Cutoff,
+             normal_runs: Sequence[Run], faulty_runs: Sequence[Run]) -> _Measured:
+    model = Model(trained)
+    runs = [*normal_runs, *faulty_runs]
+    scored = calibration.judge(trained, model, None, parameters, runs)
+    normal_scores = calibration.labelled(scored[:len(normal_runs)], NORMAL)
+    if len(normal_scores) == 0:
+        raise ValueError(f'--normal: no window is left after the first {_settle(parameters)} s '
+                         '(--settle-time) of the recordings; name longer ones')
+    for run in scored[len(normal_runs):]:
+        if not (run.labels == ABNORMAL).any():
+            raise ValueError(f'{run.run.source.part}: no window of the fault is left after the '
+                             f'first {_settle(parameters)} s (--settle-time) of the recording; '
+                             'name a longer one')
+    roc = Roc(normal_scores, calibration.labelled(scored[len(normal_runs):], ABNORMAL))
+    point = cutoff.choose(roc)
+    judged = calibration.judge(trained, model, point.cutoff, parameters, runs)
+    normal, faulty = judged[:len(normal_runs)], judged[len(normal_runs):]
+    return _Measured(point, roc, normal, faulty,
+                     calibration.fault_results(normal_scores, faulty, point.cutoff),
+                     calibration.false_alarms(normal, trained.window))
+
+
+def _settle(parameters: DetectorParameters) -> str:
+    return f'{parameters.settle_time / SECOND_NS:g}'
+
+
+def _calibration(arguments: argparse.Namespace, measured: _Measured) -> Calibration:
+    result = Calibration()
+    result.threshold = measured.point.cutoff
+    result.method = str(arguments.cutoff)
+    result.auc = measured.roc.auc
+    result.true_positive_rate = measured.point.true_positive_rate
+    result.false_positive_rate = measured.point.false_positive_rate
+    result.normal_windows = len(calibration.labelled(measured.normal, NORMAL))
+    result.faulty_windows = len(calibration.labelled(measured.faulty, ABNORMAL))
+    result.false_alarms_per_hour = measured.false_alarms.per_hour
+    result.normal = [judged.run.source.recording for judged in measured.normal]
+    result.faulty = [judged.run.source.recording for judged in measured.faulty
+                     if judged.run.fault == calibration.RECORDED]
+    result.injected = [str(fault) for fault in dict.fromkeys(arguments.inject)]
+    result.stamp = int(time.time()) * SECOND_NS
+    return result
+
+
+def _print(cutoff: Cutoff, measured: _Measured) -> None:
+    windows = len(calibration.labelled(measured.normal, NORMAL))
+    rate = measured.point.false_positive_rate
+    false = round(rate * windows)
+    for result in measured.faults:
+        print(f'{result.fault}: {result.windows} abnormal windows')
+        print(f'  AUC {result.roc.auc:.4f}{_interval(result.auc_interval, ".4f")}')
+        print(f'  TPR {result.true_positive_rate:.2%}'
+              f'{_interval(result.true_positive_interval, ".2%")}')
+        print(f'  alarm {_alarms(result)}')
+    print(f'normal operation: {windows} windows (recordings: {len(measured.normal)})')
+    print(f'  FPR {rate:.2%}{_interval(confidence.wilson(false, windows), ".2%")}, '
+          f'{false} windows')
+    if cutoff.method == 'fpr' and cutoff.rate * windows < 1.0:
+        print(f'  a false positive rate of {cutoff.rate:g} is less than one of these windows: the '
+              'threshold is the lowest score seen')
+    _print_false_alarms(measured.false_alarms)
+    print('  the intervals take windows for independent and the threshold for given: the truth '
+          'may lie further off')
+    print(f'threshold s* {measured.point.cutoff!r} ({cutoff})')
+
+
+def _print_false_alarms(alarms: FalseAlarms) -> None:
+    low, high = alarms.interval
+    print(f'  false alarms after persistence: {alarms.count} in {alarms.hours:.3f} h, '
+          f'{alarms.per_hour:.3g} an hour (95 %: {low:.3g} to {high:.3g})')
+    needed = confidence.poisson_rate(0, 1.0)[1]
+    if alarms.hours < needed:
+        print(f'  too little to say whether there is less than one an hour: that takes '
+              f'{needed:.1f} h of normal operation without one')
+
+
+def _interval(interval: Tuple[float, float], form: str) -> str:
+    return f' (95 %: {interval[0]:{form}} to {interval[1]:{form}})'
+
+
+def _alarms(result: FaultResult) -> str:
+    text = f'after the onset in {len(result.latencies)} of {result.recordings} recordings'
+    if result.latencies:
+        text += f', median {median(result.latencies):.2f} s, longest {max(result.latencies):.2f} s'
+    if result.stood_before:
+        text += f'; in {result.stood_before} it stood before, a false alarm'
+    return text
+
+
+def _save_csv(path: str, runs: Sequence[JudgedRun]) -> None:
+    with replacing(path) as temporary:
+        with open(temporary, 'w', encoding='utf-8', newline='') as file:
+            writer = csv.writer(file, lineterminator='\n')
+            writer.writerow(_COLUMNS)
+            for judged in runs:
+                columns = (judged.verdicts.start, judged.verdicts.events, judged.verdicts.unknown,
+                           judged.scores, judged.labels)
+                for start, events, unknown, score, label in zip(
+                        *(column.tolist() for column in columns)):
+                    writer.writerow((judged.run.source.part, judged.run.fault, start, events,
+                                     unknown, repr(score), _LABELS[label]))
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog='calibrate', description=__doc__.split(': ', 1)[1], epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('--model', required=True, help='file written by train or calibrate')
+    parser.add_argument('--normal', type=BagPart.parse, nargs='+', action='extend',
+                        required=True, default=[], metavar='BAG',
+                        help='recording of normal operation that was not trained on')
+    parser.add_argument('--faulty', type=BagPart.parse, nargs='+', action='extend', default=[],
+                        metavar='BAG', help='recording with a fault, from its beginning to its '
+                        'end or, as BAG@START or BAG@START-END, in this part')
+    parser.add_argument('--inject', type=cli.checked(Fault.parse), nargs='+', action='extend',
+                        default=[], metavar='FAULT',
+                        help='fault to make out of the normal recordings, see below')
+    parser.add_argument('-o', '--output', required=True, metavar='MODEL',
+                        help='file to write; may be the same model')
+    parser.add_argument('--cutoff', type=cli.checked(Cutoff.parse), default='youden',
+                        metavar='HOW', help='youden: most found less most false; closest: closest '
+                        'to all found and none false; fpr=RATE: this share of normal windows '
+                        'false (default: youden)')
+    parser.add_argument('--roc', type=cli.png_file, metavar='FILE.png', help='draw the ROC')
+    parser.add_argument('--csv', metavar='FILE', help='write score and label of every window')
+    cli.add_detector_arguments(parser)
+    return parser

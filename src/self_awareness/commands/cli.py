@@ -1,0 +1,133 @@
+"""What the command lines have in common: arguments, and how an error is told and exited with."""
+from __future__ import annotations
+
+import argparse
+import math
+import os
+import re
+import sys
+from typing import Callable, Optional, Sequence, TypeVar
+
+from self_awareness import BagError, DetectorParameters, ModelFileError
+from self_awareness.stamps import SECOND_NS
+
+_Value = TypeVar('_Value')
+
+_LONGEST_S = 86400.0
+_MOST_WINDOWS = 100_000
+
+
+def run(parser: argparse.ArgumentParser, work: Callable[[argparse.Namespace], None],
+        argv: Optional[Sequence[str]]) -> int:
+    """Parse the arguments, do the work, and turn what goes wrong into one line.
+
+    Returns:
+        0 on success, 1 after an error, 2 after wrong usage, 130 after Ctrl-C.
+    """
+    try:
+        work(parser.parse_args(argv))
+        sys.stdout.flush()
+    except SystemExit as stop:  # of argparse: after --help, or after wrong usage
+        return int(stop.code or 0)
+    except KeyboardInterrupt:
+        return 130
+    except BrokenPipeError:  # whoever read the output has seen enough, as `head` does
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+    except (BagError, ModelFileError, ValueError) as error:
+        return _fail(parser.prog, str(error))
+    except OSError as error:
+        file = f'{error.filename}: ' if error.filename else ''
+        return _fail(parser.prog, f'{file}{error.strerror or error}')
+    return 0
+
+
+def warn(program: str, text: str) -> None:
+    """Say something on standard error that does not stop the program."""
+    print(f'{program}: warning: {text}', file=sys.stderr)
+
+
+def seconds(text: str, low: float = 0.0) -> int:
+    """Argument type: a time in seconds, from `low` to a day, as nanoseconds."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not low <= value <= _LONGEST_S:  # false for NaN as well
+        raise argparse.ArgumentTypeError(f'expected seconds from {low:g} to {_LONGEST_S:g}, '
+                                         f'not {text!r}')
+    return round(value * SECOND_NS)
+
+
+def duration(text: str) -> int:
+    """Argument type: a time in seconds, from a nanosecond to a day, as nanoseconds."""
+    return seconds(text, 1e-9)
+
+
+def offset(text: str) -> float:
+    """Argument type: seconds from the beginning of a recording, 0 or more."""
+    # A recording may be longer than a day, and the clock of one may have begun at 0.
+    if not re.fullmatch(r'\d+(\.\d*)?|\.\d+', text):
+        raise argparse.ArgumentTypeError('expected seconds from the recording\'s first message, '
+                                         f'not {text!r}')
+    return float(text)
+
+
+def checked(parse: Callable[[str], _Value]) -> Callable[[str], _Value]:
+    """Return an argument type whose ValueErrors reach the user with their text."""
+    def convert(text: str) -> _Value:
+        try:
+            return parse(text)
+        except ValueError as error:
+            raise argparse.ArgumentTypeError(str(error)) from error
+    return convert
+
+
+def png_file(text: str) -> str:
+    """Argument type: the name of a picture."""
+    if not text.lower().endswith('.png'):
+        raise argparse.ArgumentTypeError(f'expected a name that ends in .png, not {text!r}')
+    return text
+
+
+def add_detector_arguments(parser: argparse.ArgumentParser) -> None:
+    """Add the options that say when abnormal windows are an alarm."""
+    default = DetectorParameters()
+    group = parser.add_argument_group('from windows to an alarm')
+    group.add_argument('--settle-time', type=seconds, default=default.settle_time, metavar='S',
+                       help='no alarm in the first seconds of a recording '
+                            f'(default: {default.settle_time / SECOND_NS:g})')
+    group.add_argument('--alarm-windows', type=_windows, default=default.alarm_windows,
+                       metavar='K', help='abnormal windows that raise the alarm '
+                       f'(default: {default.alarm_windows})')
+    group.add_argument('--alarm-of', type=_windows, default=default.alarm_of, metavar='N',
+                       help=f'among the last N windows (default: {default.alarm_of})')
+    group.add_argument('--hold-time', type=seconds, default=default.hold_time, metavar='S',
+                       help='seconds without an abnormal window after which it clears '
+                            f'(default: {default.hold_time / SECOND_NS:g})')
+
+
+def detector_parameters(arguments: argparse.Namespace) -> DetectorParameters:
+    """Return the parameters of the options that add_detector_arguments() added.
+
+    Raises:
+        ValueError: more windows are wanted for an alarm than are looked at.
+    """
+    parameters = DetectorParameters()
+    parameters.settle_time = arguments.settle_time
+    parameters.alarm_windows = arguments.alarm_windows
+    parameters.alarm_of = arguments.alarm_of
+    parameters.hold_time = arguments.hold_time
+    parameters.validate()
+    return parameters
+
+
+def _windows(text: str) -> int:
+    if not text.isdecimal() or not 1 <= int(text) <= _MOST_WINDOWS:
+        raise argparse.ArgumentTypeError(f'expected a number of windows, not {text!r}')
+    return int(text)
+
+
+def _fail(program: str, text: str) -> int:
+    print(f'{program}: error: {" ".join(text.split())}', file=sys.stderr)
+    return 1

@@ -1,0 +1,143 @@
+"""`rosrun self_awareness info`: shows what is in a model."""
+from __future__ import annotations
+
+import argparse
+import json
+import shutil
+from typing import Any, Dict, List, Optional, Sequence
+
+from self_awareness import FEWEST_GAPS, EventType, Model, TrainedModel, histogram_text
+from self_awareness.commands import cli
+from self_awareness.model_summary import summarise
+from self_awareness.stamps import utc
+
+_DRAWN = 0.99  # share of the delays that have rows of their own
+
+
+def main(argv: Optional[Sequence[str]] = None) -> int:
+    """Run the program; return its exit code (see cli.run)."""
+    return cli.run(_parser(), _info, argv)
+
+
+def _info(arguments: argparse.Namespace) -> None:
+    model = TrainedModel.load(arguments.model)
+    if arguments.pair is not None:
+        _print_pair(model, *(_find(model.event_types, text) for text in arguments.pair))
+    elif arguments.json:
+        print(json.dumps(summarise(model), indent=2, allow_nan=False))
+    else:
+        _print(summarise(model))
+
+
+def _print(summary: Dict[str, Any]) -> None:
+    horizon = summary['horizon']
+    print(f'trained      {utc(summary["trained_ns"])} UTC')
+    print(f'recordings   {len(summary["recordings"])}, {summary["duration"]:.1f} s')
+    _print_recordings(summary['recordings'])
+    print(f'window       {summary["window"]:g} s')
+    print(f'bin size     {summary["bin_size"]:g} s, '
+          + ('no horizon' if horizon is None else f'horizon {horizon:g} s'))
+    print('encoding')
+    for key, value in summary['encoding'].items():
+        if isinstance(value, dict):
+            value = [f'{datatype}: {field}' for datatype, field in value.items()]
+        print(f'  {key:<16}{", ".join(value) if isinstance(value, list) else value}'.rstrip())
+    sources = summary['sources']
+    print(f'sources      {len(sources) if sources else "not told apart"}')
+    for source in sources:
+        print(f'  {source}')
+    print(f'events       {summary["events"]}')
+    print(f'event types  {len(summary["event_types"])}{_rates(summary)}')
+    print('     count  rate [Hz]  usual delay [s]')
+    for kind in summary['event_types']:
+        print(f'  {_event_type(kind)}')
+    print(f'pairs        {summary["pairs"]} of {len(summary["event_types"]) ** 2} with delays')
+    _print_calibration(summary['calibration'])
+
+
+def _rates(summary: Dict[str, Any]) -> str:
+    if summary['lowest_rate'] is None:
+        return ''
+    return f', {summary["lowest_rate"]:.3g} to {summary["highest_rate"]:.3g} Hz'
+
+
+def _event_type(kind: Dict[str, Any]) -> str:
+    rate = '-' if kind['rate'] is None else f'{kind["rate"]:.3g}'
+    usual = f'{kind["usual_shortest"]:.3f} - {kind["usual_longest"]:.3f}' if kind['gaps'] else '-'
+    rare = '' if kind['judged'] else f'  (too rare to judge: fewer than {FEWEST_GAPS} gaps)'
+    return (f'{kind["count"]:8d} {rate:>10}  {usual:<16} '
+            f'{kind["source"] or "-"} {kind["scope"]} {kind["type"]}{rare}')
+
+
+def _print_calibration(calibration: Optional[Dict[str, Any]]) -> None:
+    if calibration is None:
+        print('threshold    not calibrated (rosrun self_awareness calibrate)')
+        return
+    print(f'threshold    {calibration["threshold"]!r} ({calibration["method"]}), calibrated '
+          f'{utc(calibration["calibrated_ns"])} UTC')
+    print(f'  AUC {_or_none(calibration["auc"])}, TPR '
+          f'{_or_none(calibration["true_positive_rate"])} of {calibration["faulty_windows"]} '
+          f'abnormal windows, FPR {_or_none(calibration["false_positive_rate"])} of '
+          f'{calibration["normal_windows"]} normal windows')
+    print(f'  false alarms {_or_none(calibration["false_alarms_per_hour"])} an hour, after '
+          'persistence')
+    print('  normal recordings')
+    _print_recordings(calibration['normal'])
+    if calibration['faulty']:
+        print('  faulty recordings')
+        _print_recordings(calibration['faulty'])
+    if calibration['injected']:
+        print(f'  injected {", ".join(calibration["injected"])}')
+
+
+def _print_recordings(recordings: Sequence[Dict[str, Any]]) -> None:
+    for recording in recordings:
+        print(f'    {recording["bag"]}: {recording["duration"]:.1f} s, '
+              f'{recording["events"]} events, from {utc(recording["start_ns"])} UTC')
+
+
+def _or_none(value: Optional[float]) -> str:
+    return 'none' if value is None else f'{value:.4g}'
+
+
+def _print_pair(model: TrainedModel, first: int, second: int) -> None:
+    counts = model.histogram(first, second)
+    print(f'delay from the last  {model.event_types[first]}')
+    print(f'to the current       {model.event_types[second]}')
+    computed = Model(model)
+    print(f'count {sum(counts.values())}, entropy {computed.entropies[first, second]:.4g} bit, '
+          f'weight {computed.weight(first, second):.4g}')
+    if not counts:
+        print('no delay was seen in training')
+        return
+    width = max(10, shutil.get_terminal_size().columns - 40)
+    for line in histogram_text.draw(counts, model.bin_size, model.horizon_bins,
+                                    model.quantile(first, second, _DRAWN), width):
+        print(line)
+
+
+def _find(event_types: Sequence[EventType], text: str) -> int:
+    """Return the index of the event type that the text is, or is a part of.
+
+    Raises:
+        ValueError: there is none, or more than one; lists the candidates.
+    """
+    names = [str(kind) for kind in event_types]
+    if text in names:
+        return names.index(text)
+    found: List[str] = [name for name in names if text in name]
+    if len(found) == 1:
+        return names.index(found[0])
+    problem = 'is a part of several event types' if found else 'is no event type of the model'
+    raise ValueError(f"--pair: '{text}' {problem}; name one of: {'; '.join(found or names)}")
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog='info', description=__doc__.split(': ', 1)[1])
+    parser.add_argument('model', metavar='MODEL', help='file written by train or calibrate')
+    how = parser.add_mutually_exclusive_group()
+    how.add_argument('--json', action='store_true', help='all but the histograms, for programs')
+    how.add_argument('--pair', nargs=2, metavar=('A', 'B'),
+                     help="draw the delays from the last A to the current B; event types are "
+                          "written 'SOURCE SCOPE TYPE', and a part that only one has is enough")
+    return parser

@@ -1,0 +1,108 @@
+"""`rosrun self_awareness simulate`: writes recordings of the simulated follow-me robot to bags."""
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import List, Optional, Tuple
+
+from tqdm import tqdm
+
+from self_awareness import follow_me
+from self_awareness.follow_me import FAULT_KINDS
+from self_awareness.simulation import Fault, simulate
+
+_EPILOG = """\
+examples:
+  simulate -o normal.bag                     one recording of 100 s
+  simulate -o bags --runs 4                  bags/normal_1.bag to bags/normal_4.bag
+  simulate -o bags --fault cc1@30 --seed 7   bags/cc1_7.bag, the laser's driver dies after 30 s
+"""
+
+
+def main(argv: Optional[List[str]] = None) -> int:
+    """Run the program; return 0 on success, 1 if a bag could not be written, 130 after Ctrl-C.
+
+    Args:
+        argv: the arguments without the program's name, by default those of the process.
+    """
+    parser = _parser()
+    arguments = parser.parse_args(argv)
+    try:
+        scenario = follow_me.load(arguments.scenario)
+        fault = _fault(arguments.fault, arguments.duration)
+        bags = _bags(arguments.output, arguments.runs, arguments.seed, fault)
+        seconds = int(arguments.duration) * arguments.runs
+        with tqdm(total=seconds, unit='s', leave=False, disable=None) as bar:
+            for seed, bag in bags:
+                bar.set_description(bag.name)
+                bag.parent.mkdir(parents=True, exist_ok=True)
+                simulate(bag, arguments.duration, seed, fault, scenario, progress=bar.update)
+                tqdm.write(str(bag))
+    except (ValueError, OSError) as error:
+        print(f'simulate: error: {error}', file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        return 130
+    return 0
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog='simulate', description=__doc__.split(': ', 1)[1], epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('-o', '--output', type=Path, required=True, metavar='DIR_OR_BAG',
+                        help='a name that ends in .bag, or a folder')
+    parser.add_argument('--duration', type=float, default=100.0, metavar='S',
+                        help='length of a recording in s (default: 100)')
+    parser.add_argument('--runs', type=int, default=1, metavar='N',
+                        help='number of recordings, each with the next seed (default: 1)')
+    parser.add_argument('--seed', type=int, default=1, help='of the first recording (default: 1)')
+    parser.add_argument('--fault', metavar='KIND[@S]',
+                        help=f'error to induce, {", ".join(FAULT_KINDS)}, and its onset in s '
+                             '(default: in the middle)')
+    parser.add_argument('--scenario', type=Path, metavar='FILE',
+                        help='the robot (default: config/follow_me.yaml of the package)')
+    return parser
+
+
+def _fault(text: Optional[str], duration_s: float) -> Optional[Fault]:
+    """Read KIND or KIND@SECONDS.
+
+    Raises:
+        ValueError: an unknown kind, or an onset that is no number or not within the recording.
+    """
+    if text is None:
+        return None
+    kind, at, onset = text.partition('@')
+    try:
+        fault = Fault(kind, float(onset) if at else duration_s / 2.0)
+    except ValueError as error:
+        raise ValueError(f'--fault {text}: {error}') from error
+    if fault.onset_s >= duration_s:
+        raise ValueError(f'--fault {text}: the onset lies beyond the {duration_s:g} s '
+                         'of the recording')
+    return fault
+
+
+def _bags(output: Path, runs: int, seed: int, fault: Optional[Fault]) -> List[Tuple[int, Path]]:
+    """Return the seeds with their bags.
+
+    Raises:
+        ValueError: no runs, or several runs for one bag.
+        FileExistsError: a bag is there already; none is overwritten.
+    """
+    if runs < 1:
+        raise ValueError(f'--runs must be at least 1, not {runs}')
+    if output.suffix == '.bag':
+        if runs > 1:
+            raise ValueError(f'--output {output}: {runs} runs need a folder')
+        bags = [(seed, output)]
+    else:
+        label = 'normal' if fault is None else fault.kind
+        bags = [(seed + i, output / f'{label}_{seed + i}.bag') for i in range(runs)]
+    for _, bag in bags:
+        if bag.exists():
+            raise FileExistsError(f'{bag} exists already: remove it, or choose another --output '
+                                  'or --seed')
+    return bags

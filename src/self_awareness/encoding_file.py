@@ -1,0 +1,50 @@
+"""Reads an encoding file: how messages become events (config/encoding.yaml is an example)."""
+from __future__ import annotations
+
+from typing import Any
+
+import yaml
+
+from self_awareness import EncodingRules
+from self_awareness.yaml_section import Section
+
+_LISTS = ('include_topics', 'exclude_topics', 'include_sources', 'exclude_sources')
+
+
+def load(path: str) -> EncodingRules:
+    """Return the rules of an encoding file; keys left out keep EncodingRules.defaults().
+
+    Raises:
+        OSError: the file cannot be read.
+        ValueError: it is no YAML, has an unknown key, a value of the wrong kind, or a pattern that
+            is no regular expression; the message names the file and the key.
+    """
+    with open(path, encoding='utf-8') as file:
+        try:
+            data = yaml.safe_load(file)
+        except (yaml.YAMLError, UnicodeDecodeError) as error:
+            raise ValueError(f'{path}: not YAML: {error}') from error
+    rules = EncodingRules.defaults()
+    # A file of comments alone is None, and leaves every key out.
+    with Section({} if data is None else data, path) as section:
+        if 'source' in section:
+            rules.source = section.text('source', 'callerid|none')
+        for key in _LISTS:
+            if key in section:
+                setattr(rules, key, _patterns(section, key, data[key]))
+        if 'type_fields' in section:
+            rules.type_fields = section.texts_by_key('type_fields')
+    return rules
+
+
+def _patterns(section: Section, key: str, value: Any) -> Any:
+    if not isinstance(value, list) or not all(isinstance(pattern, str) for pattern in value):
+        section.fail(key, f'expected a list of regular expressions, found {value!r}')
+    for pattern in value:
+        probe = EncodingRules()
+        probe.include_topics = [pattern]
+        try:
+            probe.validate()
+        except ValueError as error:
+            section.fail(key, str(error))
+    return value

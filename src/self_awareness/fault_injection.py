@@ -1,0 +1,127 @@
+"""Makes faulty recordings out of normal ones, so that nobody has to break a robot to calibrate.
+
+A recording is two arrays, stamps (int64 [ns], in order) and ids of event types; what is returned
+is of the same kind and ends when the recording does. Nothing here is random.
+"""
+from __future__ import annotations
+
+import math
+import re
+from dataclasses import dataclass
+from typing import Optional, Sequence, Tuple
+
+import numpy as np
+
+from self_awareness import EventType
+from self_awareness.stamps import SECOND_NS
+
+STARVATION_DOUBLING_S = 20.0
+"""After this time of the undisturbed recording, starved components take twice as long [s]."""
+
+FORMS = 'crash:SOURCE, slow:SOURCE:FACTOR, starve, clock:SOURCE:SECONDS'
+_FORM = re.compile(r'(?P<crash>crash):(?P<crash_source>[^:]+)'
+                   r'|(?P<starve>starve)'
+                   r'|(?P<other>slow|clock):(?P<source>[^:]+):(?P<amount>[^:]+)')
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A fault to inject.
+
+    Args:
+        kind: crash: the source falls silent. slow: its delays stretch by a factor. starve: the
+            delays of all sources stretch, growing from 1 to twice as long after
+            STARVATION_DOUBLING_S. clock: its events come by some seconds later (negative: earlier)
+            in relation to all others; what is pushed over the end comes back at the onset, so that
+            order and delays are wrong and nothing else: no silence, and the usual rate.
+        source: whom it befalls; None for starve, which befalls all.
+        amount: the factor of slow, > 1; the seconds of clock, not 0; else 0.
+    """
+
+    kind: str
+    source: Optional[str] = None
+    amount: float = 0.0
+
+    @classmethod
+    def parse(cls, text: str) -> Fault:
+        """Read one of FORMS.
+
+        Raises:
+            ValueError: another form, or a factor or time out of range.
+        """
+        match = _FORM.fullmatch(text)
+        if match is None:
+            raise ValueError(f'{text}: not a fault; expected one of: {FORMS}')
+        if match['crash']:
+            return cls('crash', match['crash_source'])
+        if match['starve']:
+            return cls('starve')
+        try:
+            amount = float(match['amount'])
+        except ValueError:
+            amount = math.nan
+        if match['other'] == 'slow' and not 1.0 < amount < math.inf:
+            raise ValueError(f'{text}: the factor must be a number above 1')
+        if match['other'] == 'clock' and not 0.0 < abs(amount) < math.inf:
+            raise ValueError(f'{text}: the seconds must be a number other than 0')
+        return cls(match['other'], match['source'], amount)
+
+    def __str__(self) -> str:
+        if self.source is None:
+            return self.kind
+        return f'{self.kind}:{self.source}' + (f':{self.amount:g}' if self.amount else '')
+
+
+def check_source(fault: Fault, event_types: Sequence[EventType]) -> None:
+    """Check that a fault befalls a source there is.
+
+    Raises:
+        ValueError: there is none of that name; the message lists those there are.
+    """
+    sources = sorted({event_type.source for event_type in event_types})
+    if fault.source is None or fault.source in sources:
+        return
+    if sources == ['']:
+        raise ValueError(f'{fault}: the model does not tell sources apart (source: none); only '
+                         'starve can be injected')
+    raise ValueError(f'{fault}: no such source in the model; it has: {", ".join(sources)}')
+
+
+def inject(fault: Fault, event_types: Sequence[EventType], stamps: np.ndarray, ids: np.ndarray,
+           onset: int, end: int) -> Tuple[np.ndarray, np.ndarray]:
+    """Return stamps and ids of a recording that the fault befalls at `onset`, up to `end` [ns].
+
+    Raises:
+        ValueError: the fault changes nothing, because its source does nothing after the onset or
+            because its clock is shifted by more than is left of the recording.
+    """
+    if fault.source is None:
+        befallen = stamps >= onset
+    else:
+        of_source = [i for i, kind in enumerate(event_types) if kind.source == fault.source]
+        befallen = (stamps >= onset) & np.isin(ids, of_source)
+    if not befallen.any():
+        raise ValueError(f'{fault}: {fault.source or "the recording"} has no event after the '
+                         'onset in the middle of the recording; nothing would change')
+    if fault.kind == 'crash':
+        return stamps[~befallen], ids[~befallen]
+    moved = stamps.copy()
+    moved[befallen] = onset + _moved(fault, stamps[befallen] - onset, end - onset)
+    order = np.argsort(moved, kind='stable')
+    order = order[moved[order] <= end]
+    return moved[order], ids[order]
+
+
+def _moved(fault: Fault, since_onset: np.ndarray, left: int) -> np.ndarray:
+    """Return when, after the onset [ns], the events come; `left`: rest of the recording [ns]."""
+    if fault.kind == 'slow':
+        return (since_onset * fault.amount).astype(np.int64)
+    if fault.kind == 'starve':
+        # The integral of the stretch 1 + t / doubling time.
+        t = since_onset / SECOND_NS
+        return ((t + t * t / (2.0 * STARVATION_DOUBLING_S)) * SECOND_NS).astype(np.int64)
+    shift = round(fault.amount * SECOND_NS)
+    if abs(shift) >= left:
+        raise ValueError(f'{fault}: only {left / SECOND_NS:.1f} s of the recording are left '
+                         'after the onset in its middle; shift by less')
+    return (since_onset + shift) % (left + 1)

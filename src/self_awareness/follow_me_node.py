@@ -1,0 +1,147 @@
+"""One component of the simulated robot as a ROS node.
+
+Drives a `follow_me_component.Component` in real time: `takes` of its work is partly spent
+computing, so that a busy CPU slows the node down as it would a real one, `waits` is slept.
+
+Publishes and subscribes to the component's topics (relative names). Reads the parameter
+`clock_drift_onset/HOST`, relative to the node's namespace: since when (s since 1970) the clock of
+its host drifts away, 0 for a clock that is right. Only the hosts whose clock can drift have one.
+"""
+from __future__ import annotations
+
+import argparse
+import heapq
+import queue
+import random
+import time
+from typing import Any, Callable, List, Optional, Tuple
+
+import rospy
+
+from self_awareness.follow_me import (CLOCK_DRIFT_ONSET, SECOND_NS, ComponentSpec, Scenario, load,
+                                      nanoseconds)
+from self_awareness.follow_me_component import Component, Message, Publish, Request, Wake, Work
+from self_awareness.follow_me_messages import MessageType
+from self_awareness.yaml_section import ScenarioError
+
+# How long a shutdown may go unnoticed while nothing else happens.
+_PATIENCE_S = 0.5
+_QUEUE_SIZE = 10
+
+
+class ComponentNode:
+    """Runs one component until ROS shuts down; `rospy.init_node` has been called.
+
+    Args:
+        scenario: the robot.
+        spec: the component of it to run.
+        seed: decides what is random in its behaviour.
+    """
+
+    def __init__(self, scenario: Scenario, spec: ComponentSpec, seed: int) -> None:
+        # One clock for everything: its steps must not disturb the timers.
+        self._epoch = time.time_ns() - time.monotonic_ns()
+        self._cpu_share = scenario.cpu_share
+        self._clock = _HostClock(scenario, spec.host)
+        self._component = Component(spec, random.Random(f'{seed}/{spec.name}'), self._clock)
+        self._inbox: queue.Queue[Message] = queue.Queue()
+        self._due: List[Tuple[int, int, Callable[[int], List[Request]]]] = []
+        self._pushed = 0
+        self._types = {topic: MessageType(scenario.datatypes[topic])
+                       for topic in {*spec.inputs(), *spec.outputs()}}
+        self._publishers = {
+            topic: rospy.Publisher(topic, self._types[topic].message_class, latch=output.latch,
+                                   queue_size=_QUEUE_SIZE, tcp_nodelay=True)
+            for topic, output in spec.outputs().items()}
+        self._subscribers = [
+            rospy.Subscriber(topic, self._types[topic].message_class, self._received, topic,
+                             queue_size=_QUEUE_SIZE, tcp_nodelay=True)
+            for topic in spec.inputs()]
+
+    def spin(self) -> None:
+        """Run until ROS shuts down."""
+        self._handle(self._component.start(self._now()))
+        while not rospy.is_shutdown():
+            wait_s = _PATIENCE_S
+            if self._due:
+                wait_s = min(wait_s, (self._due[0][0] - self._now()) / SECOND_NS)
+            if wait_s <= 0.0:
+                _, _, act = heapq.heappop(self._due)
+                self._handle(act(self._now()))
+                continue
+            try:
+                message = self._inbox.get(timeout=wait_s)
+            except queue.Empty:
+                continue
+            self._handle(self._component.receive(self._now(), message))
+
+    def _handle(self, requests: List[Request]) -> None:
+        for request in requests:
+            if isinstance(request, Publish):
+                self._publish(request.message)
+            elif isinstance(request, Wake):
+                timer = request.timer
+                self._push(request.at, lambda now, timer=timer: self._component.wake(now, timer))
+            else:
+                self._push(self._begin(request), self._component.work_done)
+
+    def _begin(self, work: Work) -> int:
+        """Compute for the share of the work that needs the CPU; return when the work is done."""
+        done = self._now() + work.takes + work.waits
+        enough = time.thread_time_ns() + round(work.takes * self._cpu_share)
+        while time.thread_time_ns() < enough:
+            pass
+        return done
+
+    def _publish(self, message: Message) -> None:
+        try:
+            self._publishers[message.topic].publish(self._types[message.topic].to_ros(message))
+        except rospy.ROSException:
+            # The publishers close first when ROS shuts down.
+            if not rospy.is_shutdown():
+                raise
+
+    def _received(self, ros_message: Any, topic: str) -> None:
+        self._inbox.put(self._types[topic].from_ros(topic, ros_message, self._clock(self._now())))
+
+    def _push(self, at: int, act: Callable[[int], List[Request]]) -> None:
+        self._pushed += 1
+        heapq.heappush(self._due, (at, self._pushed, act))
+
+    def _now(self) -> int:
+        return self._epoch + time.monotonic_ns()
+
+
+class _HostClock:
+    """What the clock of a host shows (ns) at a given time (ns)."""
+
+    def __init__(self, scenario: Scenario, host: str) -> None:
+        self._drift = scenario.faults.ac if scenario.faults.ac.host == host else None
+        self._parameter = f'{CLOCK_DRIFT_ONSET}/{host}'
+        # A parameter that is not set cannot be cached: every look at it would ask the master.
+        if self._drift is not None and not rospy.has_param(self._parameter):
+            rospy.set_param(self._parameter, 0.0)
+
+    def __call__(self, now: int) -> int:
+        if self._drift is None:
+            return now
+        onset_s = rospy.get_param_cached(self._parameter, 0.0)
+        return now + (self._drift.offset_ns(now - nanoseconds(onset_s)) if onset_s > 0.0 else 0)
+
+
+def main(argv: Optional[List[str]] = None) -> int:
+    """Run a component under its own name; return 0 on success, 2 if it cannot run."""
+    parser = argparse.ArgumentParser(
+        prog='component', description='Runs one component of the simulated follow-me robot.')
+    parser.add_argument('name', help='name of the component in the scenario')
+    parser.add_argument('--scenario', help='scenario file (default: config/follow_me.yaml)')
+    parser.add_argument('--seed', type=int, default=0, help='of what is random (default: 0)')
+    arguments = parser.parse_args(rospy.myargv(argv)[1:])
+    try:
+        scenario = load(arguments.scenario or None)
+        spec = scenario.component(arguments.name)
+        rospy.init_node(spec.name)
+        ComponentNode(scenario, spec, arguments.seed).spin()
+    except ScenarioError as error:
+        parser.exit(2, f'component: {error}\n')
+    return 0

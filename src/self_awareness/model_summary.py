@@ -1,0 +1,105 @@
+"""What is in a model, as plain values: for reading, and for JSON."""
+from __future__ import annotations
+
+import math
+from typing import Any, Dict, List, Optional
+
+from self_awareness import FEWEST_GAPS, Calibration, Recording, TrainedModel
+from self_awareness.stamps import SECOND_NS
+
+_USUAL = (0.01, 0.99)  # quantiles; as core/blame.h words a suspect's usual delay
+
+
+def summarise(model: TrainedModel) -> Dict[str, Any]:
+    """Return all of a model but its histograms.
+
+    Times are in seconds and rates in Hz, unless a key says otherwise. What is not there, or not a
+    number, is None.
+    """
+    rules = model.encoding
+    duration = sum(_duration(recording) for recording in model.recordings)
+    types = [_event_type(model, index, duration) for index in range(len(model.event_types))]
+    rates = [entry['rate'] for entry in types if entry['rate'] is not None]
+    return {
+        'trained_ns': model.stamp,
+        'window': model.window / SECOND_NS,
+        'bin_size': model.bin_size / SECOND_NS,
+        'horizon': (model.horizon_bins * model.bin_size / SECOND_NS if model.horizon_bins
+                    else None),
+        'encoding': {
+            'source': rules.source,
+            'include_topics': list(rules.include_topics),
+            'exclude_topics': list(rules.exclude_topics),
+            'include_sources': list(rules.include_sources),
+            'exclude_sources': list(rules.exclude_sources),
+            'type_fields': dict(rules.type_fields),
+        },
+        'recordings': [_recording(recording) for recording in model.recordings],
+        'duration': duration,
+        'events': model.events,
+        'lowest_rate': min(rates, default=None),
+        'highest_rate': max(rates, default=None),
+        'sources': sorted({kind.source for kind in model.event_types} - {''}),
+        'event_types': types,
+        'pairs': model.pairs,
+        'calibration': None if model.calibration is None else _calibration(model.calibration),
+    }
+
+
+def _event_type(model: TrainedModel, index: int, duration: float) -> Dict[str, Any]:
+    kind = model.event_types[index]
+    count = model.event_count(index)
+    gaps = sum(model.histogram(index, index).values())
+    first, last = (model.quantile(index, index, share) for share in _USUAL)
+    return {
+        'source': kind.source,
+        'scope': kind.scope,
+        'type': kind.type,
+        'count': count,
+        'rate': count / duration if duration > 0 else None,
+        'gaps': gaps,
+        'judged': gaps >= FEWEST_GAPS,
+        'usual_shortest': first * model.bin_size / SECOND_NS if gaps else None,
+        'usual_longest': (last + 1) * model.bin_size / SECOND_NS if gaps else None,
+    }
+
+
+def _recording(recording: Recording) -> Dict[str, Any]:
+    return {
+        'bag': recording.bag,
+        'start_ns': recording.start,
+        'end_ns': recording.end,
+        'duration': _duration(recording),
+        'events': recording.events,
+        # As text: readers of JSON that know floats only would round it.
+        'fingerprint': f'{recording.fingerprint:016x}',
+    }
+
+
+def _calibration(calibration: Calibration) -> Dict[str, Any]:
+    return {
+        'calibrated_ns': calibration.stamp,
+        'threshold': calibration.threshold,
+        'method': calibration.method,
+        'auc': _number(calibration.auc),
+        'true_positive_rate': _number(calibration.true_positive_rate),
+        'false_positive_rate': _number(calibration.false_positive_rate),
+        'normal_windows': calibration.normal_windows,
+        'faulty_windows': calibration.faulty_windows,
+        'false_alarms_per_hour': _number(calibration.false_alarms_per_hour),
+        'normal': _recordings(calibration.normal),
+        'faulty': _recordings(calibration.faulty),
+        'injected': list(calibration.injected),
+    }
+
+
+def _recordings(recordings: List[Recording]) -> List[Dict[str, Any]]:
+    return [_recording(recording) for recording in recordings]
+
+
+def _duration(recording: Recording) -> float:
+    return (recording.end - recording.start) / SECOND_NS
+
+
+def _number(value: float) -> Optional[float]:
+    return value if math.isfinite(value) else None

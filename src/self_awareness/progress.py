@@ -1,0 +1,24 @@
+"""Progress bars of long work, on standard error; silent where that is no terminal."""
+from __future__ import annotations
+
+from contextlib import contextmanager
+from typing import Callable, Iterable, Iterator, Sequence, TypeVar
+
+from tqdm import tqdm
+
+_Item = TypeVar('_Item')
+
+
+@contextmanager
+def messages(description: str) -> Iterator[Callable[[int, int], None]]:
+    """Show how far a bag is read; hands out the callback progress(done, all) of the readers."""
+    with tqdm(desc=description, unit='msg', leave=False, disable=None) as bar:
+        def update(done: int, total: int) -> None:
+            bar.total = total
+            bar.update(done - bar.n)
+        yield update
+
+
+def each(items: Sequence[_Item], description: str) -> Iterable[_Item]:
+    """Return the items one by one and show how many are done."""
+    return tqdm(items, desc=description, leave=False, disable=None)

@@ -1,0 +1,115 @@
+"""Recordings as they are named on the command line, and the events a model sees in them."""
+from __future__ import annotations
+
+import os
+import re
+from dataclasses import dataclass
+from typing import List, Optional, Tuple
+
+import numpy as np
+
+from self_awareness import (EventType, RecordedEvents, Recording, TrainedModel, progress,
+                            read_events)
+from self_awareness.stamps import SECOND_NS
+
+_PART = re.compile(r'(?P<path>.+)@(?P<start>\d+(\.\d+)?)(-(?P<end>\d+(\.\d+)?))?')
+
+
+@dataclass(frozen=True)
+class BagPart:
+    """A bag, or a part of it in seconds from its first message."""
+
+    path: str
+    start: Optional[float] = None
+    end: Optional[float] = None
+
+    @classmethod
+    def parse(cls, text: str) -> BagPart:
+        """Read BAG, BAG@START or BAG@START-END; a file whose very name is the text comes first."""
+        match = None if os.path.exists(text) else _PART.fullmatch(text)
+        if match is None:
+            return cls(text)
+        end = match['end']
+        return cls(match['path'], float(match['start']), None if end is None else float(end))
+
+    def __str__(self) -> str:
+        if self.start is None:
+            return self.path
+        return f'{self.path}@{self.start:g}' + ('' if self.end is None else f'-{self.end:g}')
+
+    def limits(self, first: int, last: int) -> Tuple[int, int]:
+        """Return start and end [ns] within a recording from `first` to `last` [ns]."""
+        start = first + round((self.start or 0.0) * SECOND_NS)
+        end = last if self.end is None else first + round(self.end * SECOND_NS)
+        return start, min(end, last)
+
+
+@dataclass(frozen=True)
+class RecordingEvents:
+    """The events of a recording as a model encodes them; ids behind the model's are unknown.
+
+    Args:
+        part: what was asked for.
+        event_types: by id, those of the model first.
+        stamps: int64 [ns], in order.
+        ids: uint32, one for each stamp.
+        origin: stamp of the bag's first message [ns], where its time in seconds begins.
+        end: stamp of the last message that was asked for, event or not [ns].
+        fingerprint: of the whole bag.
+    """
+
+    part: BagPart
+    event_types: List[EventType]
+    stamps: np.ndarray
+    ids: np.ndarray
+    origin: int
+    end: int
+    fingerprint: int
+
+    @property
+    def recording(self) -> Recording:
+        """What a model file says of the part."""
+        start, end = self.part.limits(self.origin, self.end)
+        recording = Recording()
+        recording.bag = os.path.basename(self.part.path)
+        recording.start = start
+        recording.end = end
+        recording.events = int(((self.stamps >= start) & (self.stamps <= end)).sum())
+        recording.fingerprint = self.fingerprint
+        return recording
+
+
+def read(model: TrainedModel, part: BagPart) -> RecordingEvents:
+    """Return the events of a bag, or of a part of it, by the encoding of a model.
+
+    Raises:
+        BagError: the bag cannot be read.
+        ValueError: the time range is none, the bag does not name the senders that the model tells
+            apart, or no message of it is an event.
+    """
+    with progress.messages(os.path.basename(part.path)) as update:
+        try:
+            events = read_events(part.path, model.encoding, model.event_types, part.start,
+                                 part.end, update)
+        except ValueError as error:
+            raise ValueError(f'{part}: {error}') from error
+    _check(model, part, events)
+    _, end = part.limits(events.summary.start, events.summary.end)
+    return RecordingEvents(part, events.event_types, events.stamps, events.ids,
+                           events.summary.start, end, events.summary.fingerprint)
+
+
+def overlap(a: Recording, b: Recording) -> bool:
+    """Return whether two recordings are, even in part, the same under whatever name."""
+    return a.fingerprint == b.fingerprint and a.start <= b.end and b.start <= a.end
+
+
+def _check(model: TrainedModel, part: BagPart, events: RecordedEvents) -> None:
+    if model.encoding.source == 'callerid' and not events.summary.has_sources:
+        raise ValueError(f'{part}: the model was trained with another encoding: it tells sources '
+                         'apart, and no connection of this bag names its sender; train a model '
+                         'with "source: none" (train --encoding)')
+    if len(events.stamps) == 0:
+        raise ValueError(f'{part}: no message is an event by the encoding of the model (info '
+                         'shows it); a recording of "rosbag play" needs a model with '
+                         '"source: none"')

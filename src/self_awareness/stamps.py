@@ -1,0 +1,14 @@
+"""Stamps are integers of nanoseconds since 1970; this is how they are shown."""
+from __future__ import annotations
+
+from datetime import datetime, timezone
+
+SECOND_NS = 1_000_000_000
+
+
+def utc(stamp: int) -> str:
+    """Return a stamp [ns] as date and time with milliseconds, in UTC."""
+    # Whole seconds and milliseconds apart: a float of seconds since 1970 rounds.
+    seconds, rest = divmod(stamp, SECOND_NS)
+    time = datetime.fromtimestamp(seconds, timezone.utc)
+    return f'{time:%Y-%m-%d %H:%M:%S}.{rest // 1_000_000:03d}'

@@ -1,0 +1,37 @@
+#!/usr/bin/python3
+"""Adds up the JUnit files below a folder: prints `N passed, N failed, N skipped`, and what failed.
+
+Exit code 0 only if something passed and nothing failed. A file that cannot be read is a failure:
+its tests did not end.
+"""
+
+import pathlib
+import sys
+import xml.etree.ElementTree
+
+
+def main(folder: str) -> int:
+    passed, failed, skipped = 0, [], []
+    for path in sorted(pathlib.Path(folder).rglob('*.xml')):
+        try:
+            root = xml.etree.ElementTree.parse(str(path)).getroot()
+        except xml.etree.ElementTree.ParseError as error:
+            failed.append('{}: {}'.format(path, error))
+            continue
+        for case in root.iter('testcase'):
+            name = '{} {}'.format(case.get('classname', path.stem), case.get('name'))
+            if case.find('failure') is not None or case.find('error') is not None:
+                failed.append(name)
+            elif case.find('skipped') is not None or case.get('status') == 'notrun':
+                skipped.append(name)
+            else:
+                passed += 1
+    for title, names in (('skipped', skipped), ('FAILED', failed)):
+        for name in names:
+            print('{}: {}'.format(title, name))
+    print('{} passed, {} failed, {} skipped'.format(passed, len(failed), len(skipped)))
+    return 0 if passed and not failed else 1
+
+
+if __name__ == '__main__':
+    sys.exit(main(sys.argv[1]))

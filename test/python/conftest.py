@@ -1,0 +1,83 @@
+"""Fixtures of the Python tests: real recordings, and small bags made to measure."""
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Callable, Iterable, Optional, Tuple
+
+import pytest
+import rosbag
+import rospy
+from std_msgs.msg import Header, String
+
+Message = Tuple[float, str, str]
+"""Stamp [s], source, topic."""
+
+
+@pytest.fixture(scope='session')
+def shared() -> Path:
+    """The folder of vectors and real recordings that nobody here made."""
+    folder = Path(os.environ.get('SELF_AWARENESS_SHARED',
+                                 str(Path(__file__).resolve().parents[3] / 'shared')))
+    if not folder.is_dir():
+        pytest.skip(f'no folder {folder}; set SELF_AWARENESS_SHARED to where it is')
+    return folder
+
+
+def write_bag(path: Path, messages: Iterable[Message], sources: bool = True,
+              compression: str = rosbag.Compression.NONE, text: Optional[str] = None) -> str:
+    """Write std_msgs/String messages, or std_msgs/Header ones with `text` in frame_id.
+
+    Returns:
+        the path, as the programs take it.
+    """
+    kind = String if text is None else Header
+    with rosbag.Bag(str(path), 'w', compression=compression) as bag:
+        for index, (stamp, source, topic) in enumerate(messages):
+            header = {'topic': topic, 'type': kind._type, 'md5sum': kind._md5sum,
+                      'message_definition': kind._full_text}
+            if sources:
+                header['callerid'] = source
+            message = (String('x') if text is None
+                       else Header(frame_id=text.format(index)))
+            bag.write(topic, message, rospy.Time.from_sec(stamp), connection_header=header)
+    return str(path)
+
+
+def robot(start: float, length: float = 30.0) -> Iterable[Message]:
+    """A robot of three components: a laser, what follows it after 31 ms, and a slow one beside.
+
+    The periods are no multiples of each other, and the follower's delay varies by 6 ms.
+    """
+    messages = []
+    for i in range(int(length / 0.05)):
+        messages.append((start + 0.05 * i, '/laser', '/scan'))
+        messages.append((start + 0.05 * i + 0.031 + 0.002 * (i * 7 % 4), '/slam', '/map'))
+    for i in range(int(length / 0.37)):
+        messages.append((start + 0.011 + 0.37 * i, '/battery', '/charge'))
+    return sorted(messages)
+
+
+@pytest.fixture
+def make_bag(tmp_path: Path) -> Callable[..., str]:
+    """Return a function (name, messages, **options of write_bag) that writes a bag."""
+    def make(name: str, messages: Iterable[Message], **options: object) -> str:
+        return write_bag(tmp_path / name, messages, **options)
+    return make
+
+
+@pytest.fixture(scope='session')
+def robot_bags(tmp_path_factory: pytest.TempPathFactory) -> Tuple[str, str]:
+    """Two recordings of the robot in normal operation."""
+    folder = tmp_path_factory.mktemp('robot')
+    return (write_bag(folder / 'first.bag', robot(1000.0)),
+            write_bag(folder / 'second.bag', robot(2000.033)))
+
+
+@pytest.fixture(scope='session')
+def model_file(robot_bags: Tuple[str, str], tmp_path_factory: pytest.TempPathFactory) -> str:
+    """A model trained on the first recording of the robot."""
+    from self_awareness.commands import train
+    path = str(tmp_path_factory.mktemp('model') / 'robot.model')
+    assert train.main([robot_bags[0], '-o', path]) == 0
+    return path

@@ -1,0 +1,64 @@
+"""Encoding files, and the example among the configurations."""
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import yaml
+
+from self_awareness import EncodingRules, encoding_file
+
+EXAMPLE = Path(__file__).resolve().parents[2] / 'config' / 'encoding.yaml'
+
+
+def test_the_example_is_what_train_does_without_a_file() -> None:
+    assert encoding_file.load(str(EXAMPLE)) == EncodingRules.defaults()
+
+
+def test_the_example_shows_every_key() -> None:
+    keys = set(yaml.safe_load(EXAMPLE.read_text()))
+    assert keys == {'source', 'include_topics', 'exclude_topics', 'include_sources',
+                    'exclude_sources', 'type_fields'}
+
+
+@pytest.mark.parametrize('text', ['', '# nothing but a comment\n', '{}'])
+def test_keys_left_out_keep_their_default(tmp_path: Path, text: str) -> None:
+    file = tmp_path / 'e.yaml'
+    file.write_text(text)
+    assert encoding_file.load(str(file)) == EncodingRules.defaults()
+
+
+def test_keys_are_read(tmp_path: Path) -> None:
+    file = tmp_path / 'e.yaml'
+    file.write_text('source: none\ninclude_topics: ["/a.*"]\nexclude_topics: []\n'
+                    'include_sources: [/b]\nexclude_sources: []\ntype_fields: {a/B: c.d}\n')
+    rules = encoding_file.load(str(file))
+    assert rules.source == 'none'
+    assert (rules.include_topics, rules.exclude_topics) == (['/a.*'], [])
+    assert (rules.include_sources, rules.exclude_sources) == (['/b'], [])
+    assert rules.type_fields == {'a/B': 'c.d'}
+
+
+@pytest.mark.parametrize('text, key', [
+    ('sources: none', 'sources'),
+    ('source: topic', 'source'),
+    ('source: 1', 'source'),
+    ('include_topics: /a', 'include_topics'),
+    ('exclude_sources: [1]', 'exclude_sources'),
+    ('exclude_topics: ["(/a"]', 'exclude_topics'),
+    ('type_fields: [level]', 'type_fields'),
+    ('type_fields: {a/B: 1}', 'type_fields'),
+])
+def test_an_error_names_the_file_and_the_key(tmp_path: Path, text: str, key: str) -> None:
+    file = tmp_path / 'e.yaml'
+    file.write_text(text)
+    with pytest.raises(ValueError, match=f'e.yaml: {key}: '):
+        encoding_file.load(str(file))
+
+
+@pytest.mark.parametrize('text', ['[a', '- a\n', 'text', '"\\x"', 'a: !!python/name:os.system'])
+def test_what_is_no_mapping_is_refused(tmp_path: Path, text: str) -> None:
+    file = tmp_path / 'e.yaml'
+    file.write_text(text)
+    with pytest.raises(ValueError, match='e.yaml: '):
+        encoding_file.load(str(file))

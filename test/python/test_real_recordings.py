@@ -1,0 +1,124 @@
+"""The programs on recordings of real robots; what is abnormal in them is told in shared/data."""
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import List, NamedTuple
+
+import pytest
+
+from self_awareness import EncodingRules, TrainedModel, read_events, summarise_bag
+from self_awareness.commands import calibrate, score, train
+
+
+class Alarm(NamedTuple):
+    """As printed: seconds from the recording's first message, and the suspects."""
+
+    start: float
+    end: float
+    suspects: List[str]
+
+
+def alarms_of(out: str) -> List[Alarm]:
+    alarms: List[Alarm] = []
+    for line in out.splitlines():
+        interval = re.match(r'  ([\d.]+) - ([\d.]+) s', line)
+        suspect = re.match(r'    \d\. (\S+) ', line)
+        if interval:
+            alarms.append(Alarm(float(interval[1]), float(interval[2]), []))
+        elif suspect and alarms:
+            alarms[-1].suspects.append(suspect[1])
+    return alarms
+
+
+@pytest.fixture(scope='module')
+def wheeled_robot(shared: Path) -> Path:
+    return shared / 'data' / 'wheeled_robot'
+
+
+def test_the_outage_of_the_wheeled_robot_is_found(wheeled_robot: Path, tmp_path: Path,
+                                                  capsys) -> None:
+    """Learn the first half of the normal recording, find the threshold by the second half.
+
+    Nothing of the recording with the outage is used for either.
+    """
+    normal, model = str(wheeled_robot / 'feb13_normal.bag'), str(tmp_path / 'm')
+    # Until 24 s the robot starts up.
+    assert train.main([normal, '--start', '24', '--end', '65', '-o', model]) == 0
+    assert calibrate.main(['--model', model, '--normal', f'{normal}@65', '--cutoff', 'fpr=0.01',
+                           '-o', model]) == 0
+    capsys.readouterr()
+    assert score.main([str(wheeled_robot / 'feb13_outage.bag'), '--model', model]) == 0
+    alarms = alarms_of(capsys.readouterr().out)
+    outage = next(alarm for alarm in alarms if alarm.end > 28.0)
+    assert 28.0 < outage.start < 29.0
+    assert 36.0 < outage.end < 39.0
+    assert set(outage.suspects[:3]) == {'/motors_imu', '/urg_node', '/go_forward'}
+    # The start-up is not normal either; between it and the outage the alarm clears.
+    assert all(alarm.end < 24.0 for alarm in alarms if alarm.start < 24.0)
+
+
+def test_the_laser_that_is_gone_is_named(wheeled_robot: Path, tmp_path: Path, capsys) -> None:
+    """All nodes fall silent at 66 s, and the laser, /urg_node, for good at 67.9 s."""
+    normal, model = str(wheeled_robot / 'jan17_normal.bag'), str(tmp_path / 'm')
+    # Its stalls, at 12 to 15 s and at 51.5 to 54.5 s, are left out.
+    assert train.main([normal, '--start', '15', '--end', '51', '-o', model]) == 0
+    arguments = ['--model', model, '--normal', f'{normal}@55', '-o', model, '--cutoff']
+    assert calibrate.main([*arguments, 'fpr=0.01']) == 1  # too many windows are silent
+    assert calibrate.main([*arguments, 'fpr=0.02']) == 0
+    capsys.readouterr()
+    assert score.main([str(wheeled_robot / 'jan17_outage.bag'), '--model', model]) == 0
+    alarms = alarms_of(capsys.readouterr().out)
+    outage = next(alarm for alarm in alarms if alarm.end > 67.0)
+    assert outage.start < 68.0 and outage.end > 100.0
+    assert alarms[-1].suspects[0] == '/urg_node' and alarms[-1].end > 120.0
+
+
+def test_a_robot_without_callerids_is_learned_without_sources(shared: Path, tmp_path: Path,
+                                                              capsys) -> None:
+    """The chunks of these recordings are compressed, too (bz2)."""
+    folder, model = shared / 'data' / 'guardian', str(tmp_path / 'm')
+    assert not summarise_bag(str(folder / 'facing_door.bag')).has_sources
+    assert train.main([str(folder / 'facing_door.bag'), '-o', model]) == 0
+    assert 'source: none' in capsys.readouterr().out
+    trained = TrainedModel.load(model)
+    assert len(trained.event_types) == 17 and trained.events == 71213
+    windows = str(folder / 'facing_windows.bag')
+    assert calibrate.main(['--model', model, '--normal', windows, '--inject', 'crash:/base', '-o',
+                           model]) == 1
+    assert 'only starve' in capsys.readouterr().err
+    assert calibrate.main(['--model', model, '--normal', windows, '--inject', 'starve', '-o',
+                           model]) == 0
+    assert score.main([windows, '--model', model, '--csv', str(tmp_path / 'w.csv')]) == 0
+    assert len((tmp_path / 'w.csv').read_text().splitlines()) > 400
+
+
+def test_a_model_with_sources_refuses_a_robot_without(shared: Path, wheeled_robot: Path,
+                                                      tmp_path: Path, capsys) -> None:
+    model = str(tmp_path / 'm')
+    assert train.main([str(wheeled_robot / 'jan17_normal.bag'), '-o', model]) == 0
+    guardian = str(shared / 'data' / 'guardian' / 'facing_windows.bag')
+    assert score.main([guardian, '--model', model]) == 1
+    assert 'another encoding' in capsys.readouterr().err
+
+
+def test_a_sparse_robot_names_the_types_too_rare_to_judge(shared: Path, tmp_path: Path,
+                                                          capsys) -> None:
+    bags = sorted(str(path) for path in (shared / 'data' / 'social_robot').glob('*.bag'))
+    assert len(bags) == 3
+    assert train.main([*bags, '-o', str(tmp_path / 'm')]) == 0
+    listed = re.findall(r'^  (/\S+ /\S+ \S+): \d+ gaps?$', capsys.readouterr().out, re.MULTILINE)
+    assert len(listed) == 9
+
+
+def test_every_recording_can_be_trained_on_and_scored(shared: Path, tmp_path: Path,
+                                                      capsys) -> None:
+    bags = sorted((shared / 'data').glob('*/*.bag'))
+    assert len(bags) >= 14
+    for bag in bags:
+        model = str(tmp_path / bag.stem)
+        assert train.main([str(bag), '-o', model]) == 0
+        assert score.main([str(bag), '--model', model]) == 0
+        rules = TrainedModel.load(model).encoding
+        assert TrainedModel.load(model).events == len(read_events(str(bag), rules).stamps)
+        assert (rules == EncodingRules.defaults()) == summarise_bag(str(bag)).has_sources

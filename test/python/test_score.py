@@ -1,0 +1,147 @@
+"""`score`: abnormal intervals, suspects, and the table of windows."""
+from __future__ import annotations
+
+import csv
+import math
+import re
+from typing import Callable, Dict, List, Tuple
+
+import numpy as np
+import pytest
+from conftest import robot
+
+from self_awareness import DetectorParameters, Model, TrainedModel, read_events
+from self_awareness.commands import calibrate, score
+
+Bags = Tuple[str, str]
+
+
+@pytest.fixture(scope='module')
+def calibrated(model_file: str, robot_bags: Bags, tmp_path_factory) -> str:
+    path = str(tmp_path_factory.mktemp('calibrated') / 'm')
+    assert calibrate.main(['--model', model_file, '--normal', robot_bags[1], '--inject',
+                           'crash:/laser', 'crash:/slam', '-o', path]) == 0
+    return path
+
+
+@pytest.fixture
+def dead_laser(make_bag: Callable[..., str]) -> str:
+    """Its laser falls silent from 12 s to 20 s."""
+    return make_bag('dead.bag', [m for m in robot(3000.0)
+                                 if not (3012.0 <= m[0] < 3020.0 and m[1] == '/laser')])
+
+
+def rows_of(path) -> List[Dict[str, str]]:
+    with open(path, newline='') as file:
+        return list(csv.DictReader(file))
+
+
+def test_the_alarm_and_its_suspect_are_printed(calibrated: str, dead_laser: str, capsys) -> None:
+    assert score.main([dead_laser, '--model', calibrated]) == 0
+    out = capsys.readouterr().out
+    interval = re.search(r'^  ([\d.]+) - ([\d.]+) s, (.+) - (.+) UTC: lowest score (\S+), '
+                         r'threshold (\S+)$', out, re.MULTILINE)
+    start, end = float(interval[1]), float(interval[2])
+    assert 12.0 < start < 13.5 and 19.5 < end < 23.0
+    assert interval[3].startswith('1970-01-01 00:50:1')  # 3012 s after the epoch
+    assert float(interval[5]) < float(interval[6])
+    assert re.search(r'^    1\. /laser /scan std_msgs/String: silent for ', out, re.MULTILINE)
+
+
+def test_normal_operation_is_no_alarm(calibrated: str, make_bag: Callable[..., str],
+                                      capsys) -> None:
+    assert score.main([make_bag('normal.bag', robot(7000.0)), '--model', calibrated]) == 0
+    assert ', alarms: 0' in capsys.readouterr().out
+
+
+def test_the_table_has_every_window_with_all_digits(calibrated: str, dead_laser: str,
+                                                    robot_bags: Bags, tmp_path, capsys) -> None:
+    table = tmp_path / 'w.csv'
+    assert score.main([dead_laser, robot_bags[1], '--model', calibrated, '--csv', str(table)]) == 0
+    assert table.read_text().splitlines()[0] \
+        == 'bag,window_start_ns,events,unknown,score,threshold,abnormal'
+    rows = rows_of(table)
+    trained = TrainedModel.load(calibrated)
+    expected = []
+    for bag in (dead_laser, robot_bags[1]):
+        events = read_events(bag, trained.encoding, trained.event_types)
+        verdicts = Model(trained).judge(trained.window, trained.threshold, DetectorParameters(),
+                                        events.stamps, events.ids)
+        expected += [(bag, *window) for window in zip(
+            verdicts.start.tolist(), verdicts.events.tolist(), verdicts.unknown.tolist(),
+            verdicts.score.tolist(), verdicts.abnormal.tolist())]
+    found = [(row['bag'], int(row['window_start_ns']), int(row['events']), int(row['unknown']),
+              float(row['score']), row['abnormal'] == '1') for row in rows]
+    assert found == expected
+    assert {row['threshold'] for row in rows} == {repr(trained.threshold)}
+    # Eq. 5 literally, while the detector settles as well.
+    assert all((float(row['score']) < trained.threshold) == (row['abnormal'] == '1')
+               for row in rows)
+    assert rows[0]['abnormal'] == '1'
+
+
+def test_silence_is_abnormal_and_has_no_score(calibrated: str, make_bag: Callable[..., str],
+                                              tmp_path, capsys) -> None:
+    silent = make_bag('silent.bag', [m for m in robot(3000.0) if not 3012.0 <= m[0] < 3015.0])
+    table = tmp_path / 'w.csv'
+    assert score.main([silent, '--model', calibrated, '--csv', str(table)]) == 0
+    quiet = [row for row in rows_of(table) if row['events'] == '0']
+    assert len(quiet) >= 29
+    assert {(row['score'], row['abnormal']) for row in quiet} == {('', '1')}
+
+
+def test_silence_up_to_the_end_of_the_recording_is_seen(calibrated: str,
+                                                        make_bag: Callable[..., str],
+                                                        capsys) -> None:
+    # All components are dead; only the clock, which is no event, goes on.
+    bag = make_bag('end.bag', [*robot(3000.0, 10.0), (3015.0, '/clock_server', '/clock')])
+    assert score.main([bag, '--model', calibrated]) == 0
+    assert '- 15.1 s (to the end of the recording)' in capsys.readouterr().out
+
+
+def test_unknown_events_are_counted_and_named(calibrated: str, make_bag: Callable[..., str],
+                                              tmp_path, capsys) -> None:
+    bag = make_bag('new.bag', sorted([*robot(3000.0), (3010.0, '/new', '/a'),
+                                      (3011.0, '/new', '/a'), (3012.0, '/new', '/b')]))
+    table = tmp_path / 'w.csv'
+    assert score.main([bag, '--model', calibrated, '--csv', str(table)]) == 0
+    out = capsys.readouterr().out
+    assert '    /new /a std_msgs/String: 2\n    /new /b std_msgs/String: 1\n' in out
+    assert sum(int(row['unknown']) for row in rows_of(table)) == 3
+
+
+def test_a_model_without_a_threshold_scores_and_says_so(model_file: str, dead_laser: str, tmp_path,
+                                                        capsys) -> None:
+    table, plot = tmp_path / 'w.csv', tmp_path / 'p.png'
+    assert score.main([dead_laser, '--model', model_file, '--csv', str(table), '--plot',
+                       str(plot)]) == 0
+    out = capsys.readouterr().out
+    assert 'not calibrated' in out and 'alarm' not in out
+    assert {(row['threshold'], row['abnormal']) for row in rows_of(table)} == {('', '0')}
+    assert all(math.isfinite(float(row['score'])) for row in rows_of(table))
+
+
+def test_the_options_of_the_alarm_are_heard(calibrated: str, dead_laser: str, capsys) -> None:
+    def alarms(*options: str) -> List[Tuple[float, float]]:
+        assert score.main([dead_laser, '--model', calibrated, *options]) == 0
+        return [(float(a), float(b)) for a, b in
+                re.findall(r'^  ([\d.]+) - ([\d.]+) s', capsys.readouterr().out, re.MULTILINE)]
+
+    usual = alarms()
+    assert len(usual) == 1
+    assert alarms('--settle-time', '25') == []
+    late = alarms('--alarm-windows', '30', '--alarm-of', '30')
+    assert not late or late[0][0] > usual[0][0] + 1.0
+    assert alarms('--hold-time', '6')[0][1] == pytest.approx(usual[0][1] + 4.0, abs=0.11)
+
+
+def test_the_plot_is_a_picture_that_shows_the_alarm(calibrated: str, dead_laser: str, tmp_path,
+                                                    capsys) -> None:
+    from matplotlib.image import imread
+    plot = tmp_path / 'p.png'
+    assert score.main([dead_laser, '--model', calibrated, '--plot', str(plot)]) == 0
+    pixels = imread(str(plot))[:, :, :3]
+    shade = (np.abs(pixels - (0.965, 0.811, 0.814)).max(axis=2) < 0.02).sum(axis=0)
+    # The alarm lasts for a third of the time, nearly from top to bottom.
+    assert 0.15 < (shade > pixels.shape[0] / 2).mean() < 0.45
+    assert [path.name for path in tmp_path.iterdir() if 'part' in path.name] == []

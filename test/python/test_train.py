@@ -1,0 +1,86 @@
+"""`train`: what it learns, says and writes."""
+from __future__ import annotations
+
+from typing import Callable, List, Tuple
+
+import pytest
+from conftest import robot
+
+from self_awareness import TrainedModel
+from self_awareness.commands import train
+
+Bags = Tuple[str, str]
+
+
+def said(capsys: pytest.CaptureFixture, arguments: List[str]) -> List[str]:
+    assert train.main(arguments) == 0
+    return [' '.join(line.split()) for line in capsys.readouterr().out.splitlines()]
+
+
+def test_it_says_what_it_learned(robot_bags: Bags, tmp_path, capsys) -> None:
+    output = str(tmp_path / 'm')
+    lines = said(capsys, [*robot_bags, '-o', output])
+    assert f'{robot_bags[0]}: 30.0 s, 1281 events' in lines
+    for line in ('recordings 2', 'duration 60.0 s', 'events 2562', 'event types 3', 'sources 3',
+                 'pairs 9 of 9 with delays'):
+        assert line in lines
+    model = TrainedModel.load(output)
+    assert [recording.bag for recording in model.recordings] == ['first.bag', 'second.bag']
+    assert model.bin_size == 10_000_000 and model.window == 100_000_000
+    assert model.horizon_bins == 0 and model.threshold is None
+    assert model.encoding.source == 'callerid'
+
+
+def test_types_too_rare_to_judge_are_listed(make_bag: Callable[..., str], tmp_path,
+                                            capsys) -> None:
+    bag = make_bag('rare.bag', sorted([*robot(10.0), (15.0, '/door', '/open'),
+                                       (20.0, '/door', '/open')]))
+    lines = said(capsys, [bag, '-o', str(tmp_path / 'm')])
+    assert 'too rare to judge (fewer than 30 gaps between two of a kind) 1' in lines
+    assert '/door /open std_msgs/String: 1 gap' in lines
+
+
+def test_the_options_reach_the_model(robot_bags: Bags, tmp_path, capsys) -> None:
+    encoding = tmp_path / 'encoding.yaml'
+    encoding.write_text('source: none\nexclude_topics: [/charge]\n')
+    output = str(tmp_path / 'm')
+    lines = said(capsys, [robot_bags[0], '-o', output, '--bin', '0.005', '--window', '0.25',
+                          '--horizon', '10', '--start', '10', '--end', '20', '--encoding',
+                          str(encoding)])
+    assert 'sources not told apart' in lines
+    model = TrainedModel.load(output)
+    assert (model.bin_size, model.window, model.horizon_bins) == (5_000_000, 250_000_000, 2000)
+    assert [str(kind) for kind in model.event_types] == ['- /scan std_msgs/String',
+                                                         '- /map std_msgs/String']
+    start, end = model.recordings[0].start / 1e9, model.recordings[0].end / 1e9
+    assert 1010.0 <= start < 1010.05 and 1019.95 < end <= 1020.0
+
+
+def test_bags_without_senders_are_trained_without_sources(make_bag: Callable[..., str], tmp_path,
+                                                          capsys) -> None:
+    bag = make_bag('nameless.bag', robot(10.0), sources=False)
+    output = str(tmp_path / 'm')
+    lines = said(capsys, [bag, '-o', output])
+    assert any('source: none' in line for line in lines)
+    assert TrainedModel.load(output).encoding.source == 'none'
+
+
+def test_compressed_bags_train_the_same(robot_bags: Bags, make_bag: Callable[..., str],
+                                        tmp_path, capsys) -> None:
+    import rosbag
+    models = []
+    for compression in (rosbag.Compression.NONE, rosbag.Compression.BZ2, rosbag.Compression.LZ4):
+        bag = make_bag(f'{compression}.bag', robot(1000.0), compression=compression)
+        said(capsys, [bag, '-o', str(tmp_path / compression)])
+        models.append(TrainedModel.load(str(tmp_path / compression)))
+    histograms = [[model.histogram(i, j) for i in range(3) for j in range(3)] for model in models]
+    assert histograms[0] == histograms[1] == histograms[2]
+    assert len({model.recordings[0].fingerprint for model in models}) == 1
+
+
+def test_a_model_may_be_trained_again(robot_bags: Bags, tmp_path, capsys) -> None:
+    output = str(tmp_path / 'm')
+    said(capsys, [robot_bags[0], '-o', output])
+    said(capsys, [robot_bags[1], '-o', output])
+    assert TrainedModel.load(output).recordings[0].bag == 'second.bag'
+    assert [path.name for path in tmp_path.iterdir()] == ['m']

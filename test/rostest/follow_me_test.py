@@ -1,0 +1,159 @@
+#!/usr/bin/python3
+"""The simulated robot as real nodes: processes, rates, and errors induced while it runs."""
+from __future__ import annotations
+
+import argparse
+import multiprocessing
+import os
+import sys
+import threading
+import time
+import unittest
+from collections import deque
+from typing import Callable, Deque, Dict, Tuple
+from xmlrpc.client import ServerProxy
+
+import rosgraph
+import rospy
+import rostest
+from sensor_msgs.msg import CompressedImage
+
+from self_awareness import follow_me
+from self_awareness.commands import induce
+
+_RATE_HZ = 163.0
+_WINDOW_S = 5.0
+_POLL_S = 0.05
+# The topic whose header stamps are looked at: its host's clock can drift.
+_STAMPED = 'camera/image'
+# Generous: 15 processes start on a machine that may be busy with other things.
+_DEADLINE_S = 90.0
+
+
+def pid_of(node: str) -> int:
+    """Ask a node for its process id, as `induce` does."""
+    uri = rosgraph.Master(rospy.get_name()).lookupNode(node)
+    return ServerProxy(uri).getPid(rospy.get_name())[2]
+
+
+def wait_for(condition: Callable[[], bool], what: str) -> None:
+    """Wait until the condition holds; fail with `what` if that takes too long."""
+    deadline = time.monotonic() + _DEADLINE_S
+    while not condition():
+        if time.monotonic() > deadline:
+            raise AssertionError(f'still not after {_DEADLINE_S:g} s: {what}')
+        time.sleep(_POLL_S)
+
+
+class Listener:
+    """Remembers when messages came: all of the last seconds, and the last one of each topic."""
+
+    def __init__(self, prefix: str, scenario: follow_me.Scenario) -> None:
+        self._lock = threading.Lock()
+        self._recent: Deque[float] = deque()  # Guarded by _lock.
+        self._last: Dict[str, float] = {}  # Guarded by _lock.
+        self._age = 0.0  # Guarded by _lock.
+        self._begin = time.monotonic()
+        self._subscribers = [rospy.Subscriber(prefix + topic, rospy.AnyMsg, self._heard, topic)
+                             for topic in scenario.datatypes]
+
+    def rate(self) -> float:
+        """Return the rate of all messages in the last seconds (Hz); 0 in the first ones."""
+        now = time.monotonic()
+        with self._lock:
+            while self._recent and self._recent[0] < now - _WINDOW_S:
+                self._recent.popleft()
+            return len(self._recent) / _WINDOW_S if now - self._begin > _WINDOW_S else 0.0
+
+    def silent_for(self, topic: str, seconds: float) -> bool:
+        """Return whether nothing came on a topic for so long."""
+        with self._lock:
+            return time.monotonic() - self._last.get(topic, self._begin) > seconds
+
+    def heard(self, topic: str) -> bool:
+        """Return whether anything ever came on a topic."""
+        with self._lock:
+            return topic in self._last
+
+    def age(self) -> float:
+        """Return what the newest stamp on _STAMPED was behind the time when it came (s)."""
+        with self._lock:
+            return self._age
+
+    def _heard(self, message: rospy.AnyMsg, topic: str) -> None:
+        now = time.monotonic()
+        with self._lock:
+            if topic == _STAMPED:
+                image = CompressedImage().deserialize(message._buff)
+                self._age = (rospy.Time.now() - image.header.stamp).to_sec()
+            self._recent.append(now)
+            self._last[topic] = now
+
+
+class FollowMeTest(unittest.TestCase):
+    """The tests run in the order of their names: the last one breaks the robot."""
+
+    namespace = ''
+    scenario: follow_me.Scenario
+    listener: Listener
+
+    @classmethod
+    def setUpClass(cls) -> None:
+        cls.scenario = follow_me.load()
+        cls.listener = Listener(f'/{cls.namespace}/', cls.scenario)
+
+    def _node(self, name: str) -> str:
+        return f'/{self.namespace}/{name}'
+
+    def _registered(self) -> Tuple[str, ...]:
+        publishers = rosgraph.Master(rospy.get_name()).getSystemState()[0]
+        return tuple({node for _, nodes in publishers for node in nodes
+                      if node.startswith(f'/{self.namespace}/')})
+
+    def test_1_every_component_is_a_process_of_its_own(self) -> None:
+        nodes = {self._node(spec.name) for spec in self.scenario.components}
+        wait_for(lambda: set(self._registered()) == nodes, 'all 15 components publish')
+        self.assertEqual(len(nodes), 15)
+        self.assertEqual(len({pid_of(node) for node in nodes}), 15)
+
+    def test_2_rate_is_that_of_the_paper(self) -> None:
+        wait_for(lambda: abs(self.listener.rate() - _RATE_HZ) < 0.1 * _RATE_HZ,
+                 f'about {_RATE_HZ:g} messages a second')
+        for topic in ('odom', 'scan', 'pose', 'cmd_vel', 'tracks', 'person_hypotheses', 'battery',
+                      'speech/command', 'map_metadata'):
+            wait_for(lambda topic=topic: self.listener.heard(topic), f'a message on {topic}')
+
+    def test_3_clock_drifts_and_is_set_right(self) -> None:
+        with induce.drifting(self.scenario.faults.ac, self.namespace):
+            wait_for(lambda: self.listener.age() < -0.1, 'stamps ahead of the time')
+        wait_for(lambda: 0.0 < self.listener.age() < 0.1, 'stamps that are right again')
+
+    def test_4_busy_workers_end(self) -> None:
+        starvation = follow_me.Starvation(ramp=0.2, slowdown=2.0, workers_per_core=1)
+        with induce.starved(starvation):
+            self.assertEqual(len(multiprocessing.active_children()), len(os.sched_getaffinity(0)))
+        self.assertEqual(multiprocessing.active_children(), [])
+
+    def test_5_unknown_robot_is_an_error(self) -> None:
+        self.assertEqual(induce.main(['cc1', '--namespace', 'nobody']), 1)
+        self.assertEqual(induce.main(['ac', '--namespace', 'nobody']), 1)
+
+    def test_6_killed_player_silences_slam(self) -> None:
+        wait_for(lambda: self.listener.heard('pose'), 'a message on pose')
+        player, slam = (pid_of(self._node(name)) for name in ('player', 'slam'))
+        self.assertEqual(induce.main(['cc1', '--namespace', self.namespace]), 0)
+        for topic in ('scan', 'pose', 'cmd_vel'):
+            wait_for(lambda topic=topic: self.listener.silent_for(topic, 2.0), f'{topic} silent')
+        wait_for(lambda: not os.path.exists(f'/proc/{player}'), 'player dead')
+        # The others live on.
+        self.assertEqual(pid_of(self._node('slam')), slam)
+        wait_for(lambda: not self.listener.silent_for('odom', 1.0), 'a message on odom')
+        self.assertEqual(induce.main(['cc1', '--namespace', self.namespace]), 1)
+
+
+if __name__ == '__main__':
+    rospy.init_node('follow_me_test')
+    parser = argparse.ArgumentParser()
+    parser.add_argument('--namespace', required=True)
+    FollowMeTest.namespace = parser.parse_known_args(rospy.myargv()[1:])[0].namespace
+    rostest.rosrun('self_awareness', 'follow_me', FollowMeTest, sys.argv)

@@ -1,0 +1,300 @@
+#!/usr/bin/python3
+"""The monitor at its edges: what it listens to, what it ignores, and what it says of bad input."""
+
+import os
+import shutil
+import tempfile
+import threading
+import unittest
+from typing import Dict, List
+
+import rosgraph
+import rospy
+import rostest
+from diagnostic_msgs.msg import DiagnosticStatus
+from std_msgs.msg import Float64, String
+from std_srvs.srv import Trigger, TriggerResponse
+from visualization_msgs.msg import Marker
+
+import self_awareness
+from live_system import MonitorListener, Process, await_condition
+from self_awareness.msg import SelfAwareness
+
+OURS = '/live_rules'
+
+
+class Talker:
+    """Publishes on a topic from this process at about 20 Hz, until the `with` block ends."""
+
+    def __init__(self, topic: str, message_class=String, **options) -> None:
+        self.publisher = rospy.Publisher(topic, message_class, queue_size=10, **options)
+        self._message = message_class()
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._run, daemon=True)
+
+    def _run(self) -> None:
+        while not self._stop.wait(0.05):
+            self.publisher.publish(self._message)
+
+    def __enter__(self) -> 'Talker':
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_) -> None:
+        self._stop.set()
+        self._thread.join()
+        self.publisher.unregister()
+
+
+def subscribers(topic: str) -> List[str]:
+    return dict(rosgraph.Master(OURS).getSystemState()[1]).get(topic, [])
+
+
+class LiveRulesTest(unittest.TestCase):
+
+    def setUp(self) -> None:
+        self.folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.folder)
+
+    def path(self, name: str) -> str:
+        return os.path.join(self.folder, name)
+
+    def model(self, threshold=0.01, topics=('/a',), type_fields=None, name='model') -> str:
+        """A model of this process as it publishes on topics, std_msgs/String at 20 Hz.
+
+        The bins are wide: on a busy machine, delays up to half a second are normal, too.
+        """
+        encoding = self_awareness.EncodingRules.defaults()
+        encoding.type_fields = type_fields or {}
+        # What rospy has to say of nodes that come and go is not what is tested.
+        encoding.exclude_topics += ['/rosout']
+        training = self_awareness.Training(encoding, bin_size=500 * 10**6)
+        types = [self_awareness.EventType(OURS, topic, 'std_msgs/String') for topic in topics]
+        stamps, ids = [], []
+        for tick in range(1000):
+            for event, _ in enumerate(types):
+                stamps.append(10**12 + tick * 50 * 10**6 + event * 10**6)
+                ids.append(event)
+        training.add_events(types, stamps, ids)
+        model = training.model()
+        if threshold is not None:
+            calibration = self_awareness.Calibration()
+            calibration.threshold = threshold
+            model.calibration = calibration
+        model.save(self.path(name))
+        return self.path(name)
+
+    def monitor(self, model: str, name: str = 'self_awareness', **parameters) -> Process:
+        """A monitor in a process of its own; settles within half a second."""
+        settings = dict({'settle_time': 0.5, 'poll_interval': 0.1}, **parameters)
+        return Process('rosrun', 'self_awareness', 'self_awareness_node', '__name:=' + name,
+                       '_model:=' + model,
+                       *['_{}:={}'.format(key, value) for key, value in settings.items()])
+
+    def tearDown(self) -> None:
+        if rospy.has_param('/self_awareness'):
+            rospy.delete_param('/self_awareness')
+
+    def call(self, service: str) -> TriggerResponse:
+        rospy.wait_for_service(service, 20)
+        return rospy.ServiceProxy(service, Trigger)()
+
+    # What it listens to
+
+    def test_a_lazy_publisher_is_woken_only_where_asked_to(self) -> None:
+        with Talker('/a'), Talker('/lazy') as lazy:
+            for policy, woken in (('used', False), ('model', False), ('all', True)):
+                with self.monitor(self.model(), subscribe=policy), MonitorListener() as listener:
+                    listener.await_settled()
+                    # Two more polls of the master, and it would have been.
+                    seen = len(listener.diagnostics('monitor'))
+                    await_condition('two heartbeats', lambda: len(
+                        listener.diagnostics('monitor')) > seen + 1, 20)
+                    self.assertEqual(lazy.publisher.get_num_connections() > 0, woken, policy)
+                await_condition('the monitor is gone',
+                                lambda: '/self_awareness' not in subscribers('/a'), 20)
+
+    def test_a_used_topic_is_heard_and_left_again(self) -> None:
+        with Talker('/a'), Talker('/used'), \
+                self.monitor(self.model()), MonitorListener() as listener:
+            listener.await_settled()
+            other = rospy.Subscriber('/used', String)
+            await_condition('unknown events', lambda: any(
+                s.unknown_events for s in listener.statuses), 20)
+            other.unregister()
+            await_condition('the monitor leaves', lambda: (
+                '/self_awareness' not in subscribers('/used')), 20)
+
+    def test_the_first_message_of_a_latching_connection_is_no_event(self) -> None:
+        latching = rospy.Publisher('/latched', String, latch=True, queue_size=1)
+        latching.publish('published long ago')
+        with Talker('/a'), self.monitor(self.model(), subscribe='all'), \
+                MonitorListener() as listener:
+            listener.await_settled()
+            await_condition('both are heard', lambda: (
+                listener.value('monitor', 'publishers heard') == '2'), 20)
+            latching.publish('published now')
+            await_condition('the second message is an event', lambda: any(
+                s.unknown_events for s in listener.statuses), 20)
+            seen = len(listener.statuses)
+            await_condition('another second', lambda: len(listener.statuses) > seen + 10, 20)
+            self.assertEqual(sum(s.unknown_events for s in listener.statuses), 1)
+        latching.unregister()
+
+    def test_a_topic_whose_type_changes_is_an_unknown_event(self) -> None:
+        with self.monitor(self.model(threshold=0.3)), MonitorListener() as listener:
+            with Talker('/a'):
+                listener.await_settled()
+                self.assertEqual(sum(s.unknown_events for s in listener.statuses), 0)
+            with Talker('/a', Float64):
+                await_condition('unknown events', lambda: any(
+                    s.unknown_events for s in listener.statuses), 20)
+                suspect = await_condition('it is a suspect', lambda: next(
+                    (x for s in listener.statuses for x in s.suspects
+                     if x.type == 'std_msgs/Float64'), None), 20)
+                self.assertIn('never seen in training', suspect.reason)
+
+    def test_the_type_field_is_read_from_live_messages(self) -> None:
+        types = {'visualization_msgs/Marker': 'action'}
+        with Talker('/a'), Talker('/marker', Marker), \
+                self.monitor(self.model(threshold=0.9, type_fields=types), subscribe='all'), \
+                MonitorListener() as listener:
+            listener.await_settled()
+            await_condition('the action is in the type', lambda: any(
+                x.type == 'visualization_msgs/Marker[action=0]'
+                for s in listener.statuses for x in s.suspects), 20)
+
+    def test_anonymous_names_are_one_source(self) -> None:
+        """Two starts of an anonymous node are the same source of the model."""
+        training = self_awareness.Training(self_awareness.EncodingRules.defaults())
+        event = self_awareness.EventType('/talker', '/scan', 'std_msgs/String')
+        training.add_events([event], [10**12 + i * 10**8 for i in range(500)], [0] * 500)
+        training.model().save(self.path('anonymous'))
+        with self.monitor(self.path('anonymous')), MonitorListener() as listener:
+            for number in ('1795206538727453261', '4242_1795206538727'):
+                heard = len(listener.diagnostics('/talker'))
+                with Process('rosrun', 'self_awareness', 'talker.py',
+                             '__name:=talker_' + number, '_output:=/scan', '_rate:=10'):
+                    await_condition(number + ' is heard', lambda: any(
+                        status.message == 'heard' and float(status.values[-1].value) > 5
+                        for status in listener.diagnostics('/talker')[heard:]), 30)
+            self.assertEqual(sum(s.unknown_events for s in listener.statuses), 0)
+
+    def test_monitors_in_one_manager_are_not_part_of_the_robot(self) -> None:
+        """Nodelets in one manager share its name; a monitor there does not hear itself."""
+        model = self.model(threshold=0.99)  # so that unknown events are named
+        with Talker('/a'), Process('rosrun', 'nodelet', 'nodelet', 'manager',
+                                   '__name:=robot_manager'):
+            loads = [Process('rosrun', 'nodelet', 'nodelet', 'load',
+                             'self_awareness/SelfAwareness', 'robot_manager', '__name:=' + name,
+                             '_model:=' + model, '_settle_time:=0.5', '_subscribe:=all')
+                     for name in ('watch_1', 'watch_2')]
+            with loads[0], loads[1], MonitorListener('/watch_1') as first, \
+                    MonitorListener('/watch_2') as second:
+                for listener in (first, second):
+                    listener.await_settled()
+                # What else happens there is heard: the nodelets' bonds.
+                await_condition('the bonds are heard', lambda: all(
+                    any(x.scope == '/robot_manager/bond' for s in monitor.statuses
+                        for x in s.suspects) for monitor in (first, second)), 20)
+                topics = {x.scope for s in first.statuses + second.statuses for x in s.suspects}
+                self.assertFalse({t for t in topics if 'watch' in t or 'diagnostics' in t}, topics)
+
+    # What it says of itself
+
+    def test_reset_and_clear(self) -> None:
+        with self.monitor(self.model(), hold_time=600), MonitorListener() as listener:
+            self.assertFalse(listener.diagnostics('communication')
+                             and listener.alarms, 'nothing was heard yet')
+            with Talker('/a'):
+                listener.await_settled()
+                self.assertEqual(self.call('/self_awareness/clear').message, 'there is no alarm')
+            listener.await_alarm()  # silence
+            with Talker('/a'):
+                await_condition('normal windows while the alarm is held', lambda: (
+                    listener.statuses[-1].level == SelfAwareness.ERROR
+                    and not listener.statuses[-1].abnormal), 20)
+                self.assertTrue(self.call('/self_awareness/clear').success)
+                await_condition('the alarm is cleared', lambda: (
+                    listener.alarms[-1].level == SelfAwareness.OK), 20)
+                self.assertTrue(self.call('/self_awareness/reset').success)
+                await_condition('settling', lambda: listener.statuses[-1].settling, 20)
+            self.assertEqual([a.level for a in listener.alarms],
+                             [SelfAwareness.ERROR, SelfAwareness.OK])
+
+    def test_the_alarm_is_latched(self) -> None:
+        with self.monitor(self.model(), hold_time=600):
+            with Talker('/a'), MonitorListener() as listener:
+                listener.await_settled()
+            with MonitorListener() as listener:
+                listener.await_alarm()
+            with MonitorListener() as late:
+                await_condition('the alarm that was', lambda: late.alarms, 20)
+
+    def test_not_calibrated_is_said_and_never_alarms(self) -> None:
+        with self.monitor(self.model(threshold=None)), MonitorListener() as listener:
+            with Talker('/a'):
+                listener.await_settled()
+            await_condition('silence', lambda: listener.statuses[-1].events == 0, 20)
+            seen = len(listener.statuses)
+            await_condition('20 windows of silence',
+                            lambda: len(listener.statuses) > seen + 20, 20)
+            self.assertEqual({s.level for s in listener.statuses}, {SelfAwareness.OK})
+            self.assertEqual(listener.alarms, [])
+            self.assertIn('not calibrated', listener.statuses[-1].message)
+            status = listener.diagnostics('communication')[-1]
+            self.assertEqual(status.level, DiagnosticStatus.WARN)
+            self.assertIn('not calibrated', status.message)
+
+    def test_a_model_that_is_missing_is_said_and_can_be_loaded_later(self) -> None:
+        with self.monitor(self.path('later')), MonitorListener() as listener, Talker('/a'):
+            status = await_condition('the error in the diagnostics', lambda: next(
+                iter(listener.diagnostics('communication')), None), 20)
+            self.assertEqual(status.level, DiagnosticStatus.ERROR)
+            self.assertIn(self.path('later') + ': no such file', status.message)
+            response = self.call('/self_awareness/reload')
+            self.assertFalse(response.success)
+            self.assertIn('no such file', response.message)
+            self.model(name='later')
+            self.assertTrue(self.call('/self_awareness/reload').success)
+            self.assertEqual(listener.await_settled().level, SelfAwareness.OK)
+            # A file that cannot be used does not take the model that is in use away.
+            with open(self.path('later'), 'w') as file:
+                file.write('no model')
+            response = self.call('/self_awareness/reload')
+            self.assertFalse(response.success)
+            self.assertIn('the old model stays', response.message)
+            seen = len(listener.statuses)
+            await_condition('it goes on', lambda: len(listener.statuses) > seen + 5, 20)
+
+    def test_bad_parameters_are_named(self) -> None:
+        bad = {'settle_time': ('-1', '.nan', 'soon'), 'hold_time': ('-0.1', '.inf'),
+               'alarm_windows': ('0', '6'), 'alarm_of': ('-3',), 'subscribe': ('everything',),
+               'silence': ('golden',), 'poll_interval': ('0',), 'queue_size': ('0',),
+               'detector': ('oracle',)}  # type: Dict[str, tuple]
+        model = self.model()
+        for name, values in bad.items():
+            for value in values:
+                with self.monitor(model, **{name: value}) as monitor:
+                    self.assertEqual(monitor.wait(20), 1, '{}={}'.format(name, value))
+                    self.assertIn(name, monitor.output, value)
+                rospy.delete_param('/self_awareness')
+
+    def test_a_bad_parameter_of_a_nodelet_is_named(self) -> None:
+        with Process('rosrun', 'nodelet', 'nodelet', 'standalone', 'self_awareness/SelfAwareness',
+                     '__name:=self_awareness', '_settle_time:=-1') as manager:
+            await_condition('the parameter is named', lambda: (
+                'settle_time is -1' in manager.output), 20)
+
+    def test_an_unknown_parameter_is_a_warning(self) -> None:
+        with self.monitor(self.model(), treshold=1) as monitor:
+            await_condition('the warning', lambda: (
+                '/self_awareness/treshold is not a parameter' in monitor.output), 20)
+            self.assertTrue(monitor.running())
+            monitor.stop()  # what it logs of the others comes when the buffer is emptied
+            self.assertIn('/self_awareness/alarm_of: 5', monitor.output)
+
+
+if __name__ == '__main__':
+    rospy.init_node(OURS[1:])  # as rostest calls it, too
+    rostest.rosrun('self_awareness', 'live_rules', LiveRulesTest)

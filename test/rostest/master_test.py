@@ -1,0 +1,222 @@
+#!/usr/bin/python3
+"""A master that comes late, hangs, dies and is restarted, and a dead node that it still knows."""
+
+import json
+import os
+import shutil
+import signal
+import socket
+import sys
+import tempfile
+import time
+import unittest
+from typing import Any, Dict, List
+
+import rosgraph
+import rostest
+from diagnostic_msgs.msg import DiagnosticStatus
+
+from live_system import Process, await_condition, make_model, operation, write_bag
+from self_awareness.msg import SelfAwareness
+
+COMPONENTS = (('/talker', '/from/talker', 0.05), ('/beside', '/from/beside', 0.5))
+"""Source, topic and mean period [s]."""
+THRESHOLD = 0.02
+"""A tenth of what normal operation scores; a window without messages scores 0."""
+LONGEST_HEARTBEAT_S = 2.5
+
+
+def script(name: str) -> str:
+    return os.path.join(os.path.dirname(os.path.abspath(__file__)), name)
+
+
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(('localhost', 0))
+        return probe.getsockname()[1]
+
+
+class Listener(Process):
+    """listener.py, a client of the monitor that only needs the master to come to life."""
+
+    def messages(self, topic: str, since: float = 0, **fields: Any) -> List[Dict[str, Any]]:
+        """The messages of a topic since then [s of time.monotonic()] that have these fields."""
+        lines = self.output.split('\n')[:-1]  # the last one is empty, or not complete yet
+        messages = [json.loads(line) for line in lines if line.startswith('{')]
+        return [message for message in messages
+                if message['topic'] == topic and message['at'] > since
+                and all(message[name] == value for name, value in fields.items())]
+
+    def await_message(self, topic: str, since: float = 0, number: int = 1, timeout: float = 30,
+                      **fields: Any) -> Dict[str, Any]:
+        """Waits for so many of these messages; returns the last."""
+        return await_condition(
+            '{} of {} with {}'.format(number, topic, fields),
+            lambda: (self.messages(topic, since, **fields)[number - 1:] or [None])[-1], timeout)
+
+    def longest_heartbeat(self) -> float:
+        """The longest time between two statuses of the monitor itself [s]."""
+        beats = [message['at'] for message in self.messages('diagnostics', task='monitor')]
+        return max(later - earlier for earlier, later in zip(beats, beats[1:]))
+
+
+class MasterTest(unittest.TestCase):
+
+    @classmethod
+    def setUpClass(cls) -> None:
+        cls.folder = tempfile.mkdtemp()
+        cls.addClassCleanup(shutil.rmtree, cls.folder)
+        cls.model = os.path.join(cls.folder, 'model')
+        bag = os.path.join(cls.folder, 'training.bag')
+        make_model(cls.model, [write_bag(bag, operation(COMPONENTS, 120, seed=1))], THRESHOLD)
+
+    def setUp(self) -> None:
+        self.port = free_port()
+        self.uri = 'http://localhost:{}'.format(self.port)
+        self.environment = {'ROS_MASTER_URI': self.uri, 'ROS_HOSTNAME': 'localhost'}
+
+    def start(self, *command: str) -> Process:
+        """Starts a process that is killed when the test ends: with no master, none ends well."""
+        return self.keep(Process(*command, env=self.environment))
+
+    def keep(self, process: Process) -> Process:
+        self.addCleanup(process.stop)
+        self.addCleanup(process.send, signal.SIGKILL)
+        return process
+
+    def start_master(self) -> Process:
+        # Not roscore: that runs the master as a child in a process group of its own.
+        master = self.start('rosmaster', '--core', '-p', str(self.port))
+        await_condition('the master answers', self.master().is_online, 30)
+        return master
+
+    def start_monitor(self) -> Process:
+        # A busy machine may hold messages back for some windows, so an alarm needs a second.
+        return self.start('rosrun', 'self_awareness', 'self_awareness_node',
+                          '_model:=' + self.model, '_poll_interval:=0.2', '_settle_time:=1.0',
+                          '_alarm_windows:=10', '_alarm_of:=15', '_hold_time:=1.0')
+
+    def start_component(self, name: str) -> Process:
+        topic, period = next((topic, period) for source, topic, period in COMPONENTS
+                             if source == name)
+        return self.start(sys.executable, script('talker.py'), '__name:=' + name[1:],
+                          '_output:=' + topic, '_rate:={}'.format(1 / period))
+
+    def start_listener(self) -> Listener:
+        return self.keep(Listener(sys.executable, script('listener.py'), env=self.environment))
+
+    def master(self) -> rosgraph.Master:
+        return rosgraph.Master('/master_test', master_uri=self.uri)
+
+    def registered(self, kind: int, name: str) -> List[str]:
+        """Nodes that publish (0), subscribe to (1) or serve (2) this name, as the master knows."""
+        return dict(self.master().getSystemState()[kind]).get(name, [])
+
+    def await_normal(self, listener: Listener) -> None:
+        """Waits until normal operation has been going on for a while; there was no alarm."""
+        listener.await_message('status', settling=False, abnormal=False, number=20)
+        self.assertEqual(listener.messages('alarm'), [])
+
+    def await_alarm(self, listener: Listener, since: float, source: str) -> None:
+        alarm = listener.await_message('alarm', since, level=SelfAwareness.ERROR)
+        self.assertEqual(alarm['suspects'][0], source)
+        listener.await_message('diagnostics', since, task=source, level=DiagnosticStatus.ERROR)
+
+    def test_master_comes_late(self) -> None:
+        monitor = self.start_monitor()
+        await_condition('the monitor misses the master',
+                        lambda: 'Failed to contact master' in monitor.output, 30)
+        self.start_master()
+        listener = self.start_listener()
+        listener.await_message('diagnostics', task='monitor', level=DiagnosticStatus.OK, number=3)
+        self.start_component('/talker')
+        self.start_component('/beside')
+        self.await_normal(listener)
+        self.assertTrue(monitor.running())
+
+    def test_dead_node_stays_registered(self) -> None:
+        self.start_master()
+        self.start_monitor()
+        listener = self.start_listener()
+        self.start_component('/beside')
+        talker = self.start_component('/talker')
+        self.await_normal(listener)
+
+        killed = time.monotonic()
+        talker.send(signal.SIGKILL)
+        self.await_alarm(listener, killed, '/talker')
+        self.assertEqual(self.registered(0, '/from/talker'), ['/talker'])
+        self.assertEqual(listener.messages('diagnostics', task='/beside',
+                                           level=DiagnosticStatus.ERROR), [])
+
+    def test_master_hangs_and_dies(self) -> None:
+        master = self.start_master()
+        self.start_monitor()
+        listener = self.start_listener()
+        self.start_component('/beside')
+        talker = self.start_component('/talker')
+        self.await_normal(listener)
+
+        hung = time.monotonic()
+        master.send(signal.SIGSTOP)
+        warning = listener.await_message('diagnostics', hung, task='monitor',
+                                         level=DiagnosticStatus.WARN)
+        self.assertEqual(warning['message'], 'the master does not answer')
+        self.assertEqual(listener.messages('alarm'), [])
+        killed = time.monotonic()
+        talker.send(signal.SIGKILL)
+        self.await_alarm(listener, killed, '/talker')
+        listener.await_message('diagnostics', killed, task='monitor', number=2)
+
+        woken = time.monotonic()
+        master.send(signal.SIGCONT)
+        self.start_component('/talker')
+        listener.await_message('alarm', woken, level=SelfAwareness.OK)
+        listener.await_message('diagnostics', woken, task='monitor', message='listening')
+
+        dead = time.monotonic()
+        master.send(signal.SIGKILL)
+        warning = listener.await_message('diagnostics', dead, task='monitor',
+                                         level=DiagnosticStatus.WARN)
+        self.assertEqual(warning['message'], 'the master does not answer')
+        listener.await_message('status', warning['at'], abnormal=False, number=20)
+        self.assertEqual(listener.messages('alarm', dead), [])
+        self.assertLess(listener.longest_heartbeat(), LONGEST_HEARTBEAT_S)
+
+    def test_master_is_restarted(self) -> None:
+        master = self.start_master()
+        monitor = self.start_monitor()
+        listener = self.start_listener()
+        listener.await_message('diagnostics', task='monitor', number=2)
+        for process in (master, listener):
+            process.send(signal.SIGKILL)
+            process.wait(10)
+
+        # One talker registers before the monitor notices that the master is another one.
+        monitor.send(signal.SIGSTOP)
+        self.start_master()
+        self.start_component('/talker')
+        await_condition('the talker registers', lambda: self.registered(0, '/from/talker'), 30)
+        monitor.send(signal.SIGCONT)
+
+        for topic in ('/self_awareness/status', '/self_awareness/alarm', '/diagnostics'):
+            await_condition('the monitor publishes ' + topic, lambda: (
+                '/self_awareness' in self.registered(0, topic)), 20)
+        for service in ('reset', 'clear', 'reload', 'get_loggers'):
+            await_condition('the monitor serves ' + service, lambda: (
+                self.registered(2, '/self_awareness/' + service)), 20)
+        with Process('rosservice', 'call', '/self_awareness/reset',
+                     env=self.environment) as client:
+            self.assertEqual(client.wait(30), 0, client.output)
+            self.assertIn('success: True', client.output)
+
+        # The other one registers afterwards. Both are heard, and so is the monitor itself.
+        self.start_component('/beside')
+        listener = self.start_listener()
+        for task in ('/talker', '/beside'):
+            listener.await_message('diagnostics', task=task, message='heard')
+        listener.await_message('diagnostics', task='monitor', message='listening')
+
+
+if __name__ == '__main__':
+    rostest.rosrun('self_awareness', 'master', MasterTest)

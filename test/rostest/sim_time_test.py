@@ -1,0 +1,239 @@
+#!/usr/bin/python3
+"""Replays and simulated time: /clock is absent, stands still, jumps, loops; bags lose sources."""
+
+import os
+import random
+import shutil
+import tempfile
+import threading
+import time
+import unittest
+from typing import List, Tuple
+
+import rosgraph
+import rospy
+import rostest
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from rosgraph_msgs.msg import Clock
+from std_msgs.msg import String
+
+from live_system import (START_S, MonitorListener, Process, await_condition, make_model, operation,
+                         write_bag)
+from self_awareness.msg import SelfAwareness
+
+COMPONENTS = (('/laser', '/scan', 0.05), ('/battery', '/charge', 0.5))
+"""Source, topic and mean period [s]."""
+THRESHOLD = 0.02
+"""A tenth of what normal operation scores; a window without messages scores 0."""
+HEARTBEAT_S = 1.0
+LONGEST_HEARTBEAT_S = 2.5
+CLOCK_WAS_SET = 'ROS time was set'
+
+
+def recording(seed: int, length: float) -> List[Tuple[float, str, str]]:
+    return list(operation(COMPONENTS, length, seed))
+
+
+class SimulatedRobot:
+    """Publishes /clock and the components' messages; the clock is set and stopped at will."""
+
+    def __init__(self) -> None:
+        self._clock = rospy.Publisher('/clock', Clock, queue_size=100)
+        self._publishers = {topic: rospy.Publisher(topic, String, queue_size=100)
+                            for _, topic, _ in COMPONENTS}
+        self._lock = threading.Lock()
+        self._ahead = START_S - time.monotonic()
+        self._standing = False
+        self._ended = threading.Event()
+        self._thread = threading.Thread(target=self._run)
+
+    def __enter__(self) -> 'SimulatedRobot':
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_) -> None:
+        self._ended.set()
+        self._thread.join()
+        for publisher in [self._clock] + list(self._publishers.values()):
+            publisher.unregister()
+
+    def set_clock_by(self, seconds: float) -> None:
+        with self._lock:
+            self._ahead += seconds
+
+    def stop_clock(self) -> None:
+        """No /clock and no messages any more."""
+        with self._lock:
+            self._standing = True
+
+    def _run(self) -> None:
+        rng = random.Random(0)
+        due = {topic: time.monotonic() for topic in self._publishers}
+        while not self._ended.wait(0.01):
+            with self._lock:
+                now, ahead, standing = time.monotonic(), self._ahead, self._standing
+            if standing:
+                continue
+            self._clock.publish(Clock(rospy.Time.from_sec(now + ahead)))
+            for _, topic, period in COMPONENTS:
+                if due[topic] <= now:
+                    self._publishers[topic].publish(String())
+                    due[topic] += period * rng.uniform(0.7, 1.3)
+
+
+class SimTimeTest(unittest.TestCase):
+
+    @classmethod
+    def setUpClass(cls) -> None:
+        cls.folder = tempfile.mkdtemp()
+        cls.addClassCleanup(shutil.rmtree, cls.folder)
+        cls.model = cls.path('model')
+        make_model(cls.model, [write_bag(cls.path('training.bag'), recording(1, 120))], THRESHOLD,
+                   source='none')
+
+    @classmethod
+    def path(cls, name: str) -> str:
+        return os.path.join(cls.folder, name)
+
+    def start_monitor(self) -> Process:
+        # A busy machine may hold messages back for some windows, so an alarm needs a second.
+        return Process('rosrun', 'self_awareness', 'self_awareness_node', '_model:=' + self.model,
+                       '_subscribe:=model', '_settle_time:=1.0', '_alarm_windows:=10',
+                       '_alarm_of:=15')
+
+    def await_listening(self, listener: MonitorListener) -> None:
+        await_condition('the monitor subscribes', lambda: (
+            listener.value('monitor', 'subscriptions') == str(len(COMPONENTS))), 40)
+
+    def await_heartbeats(self, listener: MonitorListener, number: int) -> None:
+        """Waits for heartbeats, which come at their rate of steady time."""
+        began = time.monotonic()
+        beats = await_condition('{} heartbeats'.format(number), lambda: (
+            len([t for t in listener.heartbeats if t > began]) >= number
+            and listener.heartbeats), number * LONGEST_HEARTBEAT_S)
+        self.assertLess(beats[-1] - began, number * HEARTBEAT_S + LONGEST_HEARTBEAT_S)
+        self.check_heartbeats(listener)
+
+    def check_heartbeats(self, listener: MonitorListener) -> None:
+        """None was left out since the first, and all are levels of a healthy monitor."""
+        beats = listener.heartbeats
+        gaps = [later - earlier for earlier, later in zip(beats, beats[1:])]
+        self.assertLess(max(gaps), LONGEST_HEARTBEAT_S, gaps)
+        for task in ('communication', 'monitor'):
+            self.assertEqual({status.level for status in listener.diagnostics(task)},
+                             {DiagnosticStatus.OK}, task)
+
+    def check_no_alarm(self, listener: MonitorListener) -> None:
+        self.assertEqual([alarm.message for alarm in listener.alarms], [])
+        self.assertEqual({status.level for status in listener.statuses}, {SelfAwareness.OK})
+
+    def check_normal(self, statuses: List[SelfAwareness]) -> None:
+        """These windows look like normal operation."""
+        settled = [status for status in statuses if not status.settling]
+        self.assertGreater(len(settled), 10)
+        self.assertEqual({status.unknown_events for status in settled}, {0})
+        scores = sorted(status.score for status in settled if status.events > 0)
+        self.assertGreater(scores[len(scores) // 2], 3 * THRESHOLD)
+        normal = [status for status in settled if not status.abnormal]
+        self.assertGreater(len(normal), 0.8 * len(settled), [s.score for s in settled])
+
+    def test_heartbeat_before_the_first_clock(self) -> None:
+        with MonitorListener() as listener, self.start_monitor():
+            self.await_listening(listener)
+            array = rospy.wait_for_message('/diagnostics', DiagnosticArray, 10)
+            self.assertEqual(array.header.stamp, rospy.Time(0), 'there is a /clock')
+            self.await_heartbeats(listener, 5)
+            self.assertEqual(listener.diagnostics('communication')[-1].message,
+                             'waiting for the first message')
+            self.assertEqual(listener.statuses, [])
+
+    def test_replay_without_sources(self) -> None:
+        bag = write_bag(self.path('normal.bag'), recording(2, 10))
+        with MonitorListener() as listener, self.start_monitor():
+            self.await_listening(listener)
+            with Process('rosbag', 'play', '--clock', bag) as player:
+                publishers = await_condition('the player publishes', lambda: dict(
+                    rosgraph.Master('/sim_time_test').getSystemState()[0]).get('/scan'), 20)
+                self.assertRegex(publishers[0], r'^/play_\d+$')
+                self.assertEqual(player.wait(40), 0, player.output)
+            self.assertGreater(sum(status.events for status in listener.statuses), 100)
+            self.check_normal(listener.statuses)
+            # The clock stands still from now on: windows wait, the heartbeat does not.
+            self.await_heartbeats(listener, 4)
+            self.check_no_alarm(listener)
+
+    def test_replay_in_a_loop(self) -> None:
+        bag = write_bag(self.path('loop.bag'), recording(3, 6))
+        with MonitorListener() as listener, self.start_monitor() as monitor:
+            self.await_listening(listener)
+            with Process('rosbag', 'play', '--clock', '--loop', bag):
+                await_condition('the bag is played for the third time',
+                                lambda: len(self.passes(listener.statuses)) == 3, 60)
+                listener.await_settled()
+                await_condition('2 s of the third time',
+                                lambda: len(self.passes(listener.statuses)[2]) > 20, 20)
+                self.check_heartbeats(listener)
+            for windows in self.passes(listener.statuses):
+                self.assertTrue(windows[0].settling, windows[0])
+            self.check_normal(listener.statuses)
+            self.assertGreaterEqual(monitor.output.count(CLOCK_WAS_SET), 2, monitor.output)
+            self.check_no_alarm(listener)
+
+    def passes(self, statuses: List[SelfAwareness]) -> List[List[SelfAwareness]]:
+        """The statuses, cut where the windows went back in time."""
+        passes = []  # type: List[List[SelfAwareness]]
+        for status in statuses:
+            if not passes or status.window_start < passes[-1][-1].window_start:
+                passes.append([])
+            passes[-1].append(status)
+        return passes
+
+    def test_clock_is_set_and_stops(self) -> None:
+        with MonitorListener() as listener, self.start_monitor() as monitor, \
+                SimulatedRobot() as robot:
+            self.assertEqual(listener.await_settled().level, SelfAwareness.OK)
+            for jump_s in (-500.0, 300.0):
+                before = listener.statuses[-1]
+                seen = len(listener.statuses)
+                lines = monitor.output.count(CLOCK_WAS_SET)
+                steps = int(listener.value('monitor', 'times the clock was set'))
+                robot.set_clock_by(jump_s)
+                after = await_condition('windows after a jump of {:g} s'.format(jump_s), lambda: [
+                    status for status in listener.statuses[seen:]
+                    if abs((status.window_start - before.window_start).to_sec()) > 200], 20)
+                self.assertTrue(after[0].settling, 'after a jump of {:g} s'.format(jump_s))
+                listener.await_settled()
+                await_condition('2 s after it',
+                                lambda: len(listener.statuses) > seen + 40, 20)
+                self.check_normal(listener.statuses[seen:])
+                self.assertEqual(monitor.output.count(CLOCK_WAS_SET), lines + 1)
+                self.assertEqual(int(listener.value('monitor', 'times the clock was set')),
+                                 steps + 1)
+                self.check_heartbeats(listener)
+            robot.stop_clock()
+            self.await_heartbeats(listener, 4)
+            self.check_no_alarm(listener)
+
+    def test_fault_in_a_replay(self) -> None:
+        fault = START_S + 6
+        bag = write_bag(self.path('faulty.bag'), [
+            (stamp, source, topic) for stamp, source, topic in recording(4, 20)
+            if topic != '/scan' or stamp < fault])
+        with MonitorListener() as listener, self.start_monitor():
+            self.await_listening(listener)
+            with Process('rosbag', 'play', '--clock', bag):
+                self.assertEqual(listener.await_settled().level, SelfAwareness.OK)
+                alarm = listener.await_alarm(30)
+                self.assertGreater(alarm.header.stamp.to_sec(), fault)
+                self.assertEqual((alarm.suspects[0].source, alarm.suspects[0].scope),
+                                 ('', '/scan'))
+                await_condition('ERROR of the topic', lambda: any(
+                    status.level == DiagnosticStatus.ERROR
+                    for status in listener.diagnostics('/scan')), 5)
+            self.assertEqual({status.level for status in listener.diagnostics('/charge')},
+                             {DiagnosticStatus.OK})
+
+
+if __name__ == '__main__':
+    rospy.init_node('sim_time_test')
+    rostest.rosrun('self_awareness', 'sim_time', SimTimeTest)
