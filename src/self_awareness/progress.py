@@ -1,6 +1,7 @@
 """Progress bars of long work, on standard error; silent where that is no terminal."""
 from __future__ import annotations
 
+import time
 from contextlib import contextmanager
 from typing import Callable, Iterable, Iterator, Sequence, TypeVar
 
@@ -22,3 +23,14 @@ def messages(description: str) -> Iterator[Callable[[int, int], None]]:
 def each(items: Sequence[_Item], description: str) -> Iterable[_Item]:
     """Return the items one by one and show how many are done."""
     return tqdm(items, desc=description, leave=False, disable=None)
+
+
+def waiting(seconds: float, description: str) -> Iterator[float]:
+    """Let time pass and show how much; hands out the seconds passed, ten times a second."""
+    begin = time.monotonic()
+    with tqdm(desc=description, total=seconds, unit='s', leave=False, disable=None,
+              bar_format='{desc} {bar} {n:.0f}/{total:.0f} s') as bar:
+        while bar.n < seconds:
+            time.sleep(0.1)
+            bar.update(min(time.monotonic() - begin, seconds) - bar.n)
+            yield bar.n

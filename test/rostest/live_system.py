@@ -1,5 +1,6 @@
 """What the live tests share: processes, waiting for conditions, listening to the monitor."""
 
+import functools
 import os
 import random
 import signal
@@ -7,6 +8,7 @@ import subprocess
 import tempfile
 import threading
 import time
+import unittest
 from typing import Callable, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple, TypeVar
 
 import rosbag
@@ -35,6 +37,27 @@ def await_condition(what: str, condition: Callable[[], Optional[T]], timeout: fl
         if rospy.is_shutdown():
             raise AssertionError('interrupted while waiting: {}'.format(what))
         time.sleep(0.02)
+
+
+def again_if_clock_was_set(test: Callable) -> Callable:
+    """Decorates a test: if it fails while the machine's clock is set, it has a second try.
+
+    Whoever sets it (NTP, the host of a virtual machine) makes the monitor start afresh.
+    """
+    @functools.wraps(test)
+    def run(self: unittest.TestCase) -> None:
+        ahead = time.time() - time.monotonic()
+        try:
+            return test(self)
+        except AssertionError:
+            set_by = time.time() - time.monotonic() - ahead
+            if abs(set_by) < 0.4:
+                raise
+            print('the clock was set by {:.1f} s meanwhile; once more'.format(set_by))
+        self.doCleanups()
+        self.setUp()
+        test(self)
+    return run
 
 
 class Process:

@@ -17,8 +17,8 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rosgraph_msgs.msg import Clock
 from std_msgs.msg import String
 
-from live_system import (START_S, MonitorListener, Process, await_condition, make_model, operation,
-                         write_bag)
+from live_system import (START_S, MonitorListener, Process, again_if_clock_was_set,
+                         await_condition, make_model, operation, write_bag)
 from self_awareness.msg import SelfAwareness
 
 COMPONENTS = (('/laser', '/scan', 0.05), ('/battery', '/charge', 0.5))
@@ -120,8 +120,9 @@ class SimTimeTest(unittest.TestCase):
         gaps = [later - earlier for earlier, later in zip(beats, beats[1:])]
         self.assertLess(max(gaps), LONGEST_HEARTBEAT_S, gaps)
         for task in ('communication', 'monitor'):
-            self.assertEqual({status.level for status in listener.diagnostics(task)},
-                             {DiagnosticStatus.OK}, task)
+            self.assertEqual([(status.level, status.message)
+                              for status in listener.diagnostics(task)
+                              if status.level != DiagnosticStatus.OK], [], task)
 
     def check_no_alarm(self, listener: MonitorListener) -> None:
         self.assertEqual([alarm.message for alarm in listener.alarms], [])
@@ -137,6 +138,7 @@ class SimTimeTest(unittest.TestCase):
         normal = [status for status in settled if not status.abnormal]
         self.assertGreater(len(normal), 0.8 * len(settled), [s.score for s in settled])
 
+    @again_if_clock_was_set
     def test_heartbeat_before_the_first_clock(self) -> None:
         with MonitorListener() as listener, self.start_monitor():
             self.await_listening(listener)
@@ -147,8 +149,9 @@ class SimTimeTest(unittest.TestCase):
                              'waiting for the first message')
             self.assertEqual(listener.statuses, [])
 
+    @again_if_clock_was_set
     def test_replay_without_sources(self) -> None:
-        bag = write_bag(self.path('normal.bag'), recording(2, 10))
+        bag = write_bag(self.path('normal.bag'), recording(2, 7))
         with MonitorListener() as listener, self.start_monitor():
             self.await_listening(listener)
             with Process('rosbag', 'play', '--clock', bag) as player:
@@ -162,8 +165,9 @@ class SimTimeTest(unittest.TestCase):
             self.await_heartbeats(listener, 4)
             self.check_no_alarm(listener)
 
+    @again_if_clock_was_set
     def test_replay_in_a_loop(self) -> None:
-        bag = write_bag(self.path('loop.bag'), recording(3, 6))
+        bag = write_bag(self.path('loop.bag'), recording(3, 4))
         with MonitorListener() as listener, self.start_monitor() as monitor:
             self.await_listening(listener)
             with Process('rosbag', 'play', '--clock', '--loop', bag):
@@ -188,6 +192,7 @@ class SimTimeTest(unittest.TestCase):
             passes[-1].append(status)
         return passes
 
+    @again_if_clock_was_set
     def test_clock_is_set_and_stops(self) -> None:
         with MonitorListener() as listener, self.start_monitor() as monitor, \
                 SimulatedRobot() as robot:
@@ -214,6 +219,7 @@ class SimTimeTest(unittest.TestCase):
             self.await_heartbeats(listener, 4)
             self.check_no_alarm(listener)
 
+    @again_if_clock_was_set
     def test_fault_in_a_replay(self) -> None:
         fault = START_S + 6
         bag = write_bag(self.path('faulty.bag'), [

@@ -1,0 +1,102 @@
+#!/usr/bin/env bash
+# The whole way on a simulated robot of 15 nodes: build, record normal runs, train, calibrate, run
+# the monitor with a diagnostic_aggregator, kill the laser driver, print the alarm.
+#
+# usage: scripts/demo.sh [FOLDER]     where bags, model and plots go; out/ in the checkout by default
+#
+# Exit code 0 only if the alarm came, and none before the fault.
+
+source "$(dirname "${BASH_SOURCE[0]}")/prepare.sh"
+
+out=$(mkdir -p "${1:-$checkout/out}" && cd "${1:-$checkout/out}" && pwd)
+run_seconds=60
+
+install_packages
+build > "$out/build.log" 2>&1 || { tail -n 40 "$out/build.log" >&2; exit 1; }
+
+# A master of the demo's own, on a free port of the loopback interface.
+port=$(/usr/bin/python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0))
+print(s.getsockname()[1])')
+export ROS_MASTER_URI=http://127.0.0.1:$port ROS_IP=127.0.0.1 ROS_LOG_DIR=$out/log
+unset ROS_HOSTNAME
+
+started=()
+start() {  # LOG COMMAND...
+  local log=$1
+  shift
+  setsid "$@" > "$out/$log" 2>&1 < /dev/null &
+  started+=($!)
+}
+stop_all() {
+  local pid
+  for pid in ${started[@]+"${started[@]}"}; do kill -INT -- "-$pid" 2> /dev/null || true; done
+  for pid in ${started[@]+"${started[@]}"}; do
+    for _ in $(seq 100); do
+      kill -0 -- "-$pid" 2> /dev/null || break
+      sleep 0.1
+    done
+    kill -KILL -- "-$pid" 2> /dev/null || true
+  done
+}
+trap stop_all EXIT
+
+await() {  # SECONDS DESCRIPTION COMMAND...
+  local seconds=$1 description=$2 deadline=$((SECONDS + $1))
+  shift 2
+  until "$@" > /dev/null 2>&1; do
+    if [ $SECONDS -ge $deadline ]; then
+      echo "demo: error: not within $seconds s: $description" >&2
+      exit 1
+    fi
+    sleep 0.2
+  done
+}
+heard() { timeout 5 rostopic echo -n 1 "$1"; }
+
+record() {  # NAME SECONDS
+  rm -f "$out/$1.bag" "$out/$1.bag.active"
+  rosbag record --all --exclude '/rosout_agg|/self_awareness/.*|/diagnostics.*' --quiet \
+    --output-name "$out/$1.bag" --duration "$2" __name:=record > "$out/$1.log" 2>&1 &
+  local recorder=$!
+  /usr/bin/python3 -c "
+from self_awareness.progress import waiting
+for _ in waiting($2, '$1'): pass"
+  wait $recorder
+}
+
+rm -f "$out"/*.bag "$out"/*.active "$out"/*.model "$out"/*.png "$out"/*.csv
+
+say "Starting the simulated robot (launch/follow_me.launch)"
+start roscore.log roscore -p "$port"
+await 30 "the master answers" rosnode list
+start robot.log roslaunch --wait self_awareness follow_me.launch
+for topic in odom scan pose tracks faces joint_states battery task/state; do
+  await 90 "the robot publishes /$topic" heard "/$topic"
+done
+
+say "Recording three normal runs of $run_seconds s"
+for run in normal_1 normal_2 normal_3; do record $run $run_seconds; done
+
+say "Training on two of them, calibrating on the third"
+rosrun self_awareness train "$out/normal_1.bag" "$out/normal_2.bag" -o "$out/trained.model"
+rosrun self_awareness calibrate --model "$out/trained.model" --normal "$out/normal_3.bag" \
+  --cutoff fpr=0.001 --inject crash:/player slow:/motors:2 starve \
+  --roc "$out/roc.png" -o "$out/calibrated.model"
+
+say "Starting the monitor and a diagnostic_aggregator"
+start monitor.log roslaunch --wait self_awareness monitor.launch model:="$out/calibrated.model"
+start diagnostics.log roslaunch --wait self_awareness diagnostics.launch
+rosbag record --all --exclude '/rosout_agg|/self_awareness/.*|/diagnostics.*' --quiet \
+  --output-name "$out/fault.bag" __name:=record > "$out/fault.log" 2>&1 &
+recorder=$!
+verdict=0
+rosrun self_awareness demo_fault || verdict=$?
+kill -INT $recorder
+wait $recorder || true
+
+say "The same from the bag that was recorded meanwhile"
+rosrun self_awareness score "$out/fault.bag" --model "$out/calibrated.model" \
+  --csv "$out/score.csv" --plot "$out/score.png"
+
+say "Plots: $out/roc.png, $out/score.png"
+exit $verdict
