@@ -106,8 +106,7 @@ double Blame::logSurvival(EventId id, std::int64_t age) const {
   const double tail = toSeconds(age) / usual.maximum;
   const double all = std::log(static_cast<double>(usual.gaps) + 1);
   // Where no gap was longer, exp(-tail) would underflow long before its logarithm.
-  return longer == 0 ? -tail - all
-                     : std::log(static_cast<double>(longer) + std::exp(-tail)) - all;
+  return longer == 0 ? -tail - all : std::log(static_cast<double>(longer) + std::exp(-tail)) - all;
 }
 
 std::vector<Suspect> Blame::suspects(const Window& window,

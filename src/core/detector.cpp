@@ -17,8 +17,7 @@ void Detector::Parameters::validate() const {
 }
 
 Detector::Detector(std::shared_ptr<const Model> model, std::int64_t window,
-                   std::optional<double> threshold, const Parameters& parameters,
-                   Handler handler)
+                   std::optional<double> threshold, const Parameters& parameters, Handler handler)
     : threshold_(threshold),
       parameters_(parameters),
       handler_(std::move(handler)),

@@ -80,8 +80,8 @@ bool operator==(const Histogram& a, const Histogram& b) {
   const auto same = [](const Histogram::Entry& x, const Histogram::Entry& y) {
     return x.bin == y.bin && x.count == y.count;
   };
-  return std::equal(a.entries().begin(), a.entries().end(), b.entries().begin(),
-                    b.entries().end(), same);
+  return std::equal(a.entries().begin(), a.entries().end(), b.entries().begin(), b.entries().end(),
+                    same);
 }
 
 }  // namespace self_awareness::core

@@ -81,9 +81,9 @@ Roc::Point Roc::youden() const {
     return std::round(point.true_positive_rate * abnormal) * normal -
            std::round(point.false_positive_rate * normal) * abnormal;
   };
-  return *std::max_element(
-      points_.begin(), points_.end(),
-      [&](const Point& a, const Point& b) { return youdens_j(a) < youdens_j(b); });
+  return *std::max_element(points_.begin(), points_.end(), [&](const Point& a, const Point& b) {
+    return youdens_j(a) < youdens_j(b);
+  });
 }
 
 Roc::Point Roc::closest() const {

@@ -61,8 +61,8 @@ class Discovery {
 
   mutable std::mutex mutex_;
   std::condition_variable wake_;
-  Wanted wanted_;          // guarded by mutex_
-  State state_;            // guarded by mutex_
+  Wanted wanted_;  // guarded by mutex_
+  State state_;    // guarded by mutex_
   // While polling: since when. Guarded by mutex_.
   std::optional<std::chrono::steady_clock::time_point> asked_at_;
   bool changed_ = false;   // guarded by mutex_

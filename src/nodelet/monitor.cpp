@@ -73,8 +73,7 @@ Monitor::Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& priv
     service_names.push_back(service.getService());
   }
   live_events_ = std::make_unique<ros1::LiveEvents>(
-      node_handle_, parameters_.queue_size,
-      [this](const core::Event& event) { onEvent(event); },
+      node_handle_, parameters_.queue_size, [this](const core::Event& event) { onEvent(event); },
       [this](const std::string& source, const std::string& topic) {
         onNewPublisher(source, topic);
       });
@@ -108,9 +107,9 @@ void Monitor::load() {
 }
 
 void Monitor::startSession(ros1::TrainedModel trained) {
-  session_ = std::make_unique<Session>(
-      std::move(trained), parameters_.detector,
-      [this](const core::Verdict& verdict) { onVerdict(verdict); });
+  session_ =
+      std::make_unique<Session>(std::move(trained), parameters_.detector,
+                                [this](const core::Verdict& verdict) { onVerdict(verdict); });
   model_error_.clear();
   last_ = {};
   components_.clear();
@@ -169,7 +168,8 @@ void Monitor::onTick(const ros::SteadyTimerEvent& /*tick*/) {
 
 std::int64_t Monitor::watchClock() {
   const std::int64_t now = rosNow();
-  if (clock_watch_.look(now, steadyNow(), ros::Time::isSimTime()) && session_) {
+  const bool set = clock_watch_.look(now, steadyNow(), ros::Time::isSimTime());
+  if (set && session_ && session_->detector.started()) {  // else there is nothing to start afresh
     restart();
   }
   return now;
@@ -195,8 +195,8 @@ void Monitor::onVerdict(const core::Verdict& verdict) {
     alarm_since_ = end;
   }
   last_.header.stamp = toRosTime(end);
-  last_.level = verdict.alarm ? self_awareness::SelfAwareness::ERROR
-                              : self_awareness::SelfAwareness::OK;
+  last_.level =
+      verdict.alarm ? self_awareness::SelfAwareness::ERROR : self_awareness::SelfAwareness::OK;
   last_.message = wording(verdict);
   last_.window_start = toRosTime(verdict.window->start);
   last_.window.fromNSec(session_->trained.window);

@@ -29,14 +29,15 @@ namespace self_awareness {
 /// Listens to a robot's communication and raises an alarm when it is not what training has seen.
 ///
 /// Subscribes: all topics of the model and others by ~subscribe, of any type.
-/// Publishes: ~status (SelfAwareness, one a window), ~alarm (SelfAwareness, latched, on every change
+/// Publishes: ~status (SelfAwareness, one a window), ~alarm (SelfAwareness, latched, on every
+/// change
 ///   of level), /diagnostics.
 /// Services (std_srvs/Trigger): ~reset (delays, windows and alarm start afresh), ~clear (the alarm
 ///   only), ~reload (reads ~model again; keeps the old one where that fails).
 /// Parameters: MonitorParameters.
 ///
-/// Threads: messages, windows, services and diagnostics are served by one thread through a queue of
-/// its own; what may block on the network is Discovery's. Nothing else is shared.
+/// Threads: messages, windows, services and diagnostics are served by one thread through a queue
+/// of its own; what may block on the network is Discovery's. Nothing else is shared.
 class Monitor {
  public:
   /// @param name full name of the node or nodelet, for the diagnostics
@@ -83,7 +84,8 @@ class Monitor {
   /// Publishes a change of level that no window brought about.
   void standDown(const std::string& message);
   void publishDiagnostics();
-  std::vector<self_awareness::Suspect> toMessages(const std::vector<core::Suspect>& suspects) const;
+  std::vector<self_awareness::Suspect> toMessages(
+      const std::vector<core::Suspect>& suspects) const;
   std::string wording(const core::Verdict& verdict) const;
 
   ros::CallbackQueue queue_;
@@ -99,16 +101,16 @@ class Monitor {
   std::string model_error_;
   std::unique_ptr<Session> session_;  // none: no model
   ros1::ClockWatch clock_watch_;
-  self_awareness::SelfAwareness last_;               // verdict on the last window
-  std::vector<self_awareness::Suspect> suspects_;    // of the standing alarm
-  std::int64_t alarm_since_ = 0;                     // [ns], while the alarm stands
-  std::map<std::string, Heard> components_;          // of the model
-  std::vector<Heard*> component_of_;                 // by event id of the model
-  std::uint64_t events_ = 0;                         // since the last report
+  self_awareness::SelfAwareness last_;             // verdict on the last window
+  std::vector<self_awareness::Suspect> suspects_;  // of the standing alarm
+  std::int64_t alarm_since_ = 0;                   // [ns], while the alarm stands
+  std::map<std::string, Heard> components_;        // of the model
+  std::vector<Heard*> component_of_;               // by event id of the model
+  std::uint64_t events_ = 0;                       // since the last report
   std::uint64_t clock_steps_ = 0;
   std::uint64_t reported_drops_ = 0;
   ros::SteadyTime last_report_;
-  ros::WallDuration processing_;                     // since the last report
+  ros::WallDuration processing_;  // since the last report
 
   std::unique_ptr<ros1::LiveEvents> live_events_;
   std::unique_ptr<Discovery> discovery_;

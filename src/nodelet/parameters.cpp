@@ -86,8 +86,8 @@ class ParameterReader {
  private:
   [[noreturn]] void fail(const std::string& name, const std::string& value,
                          const std::string& must_be) const {
-    throw std::invalid_argument(node_handle_.resolveName(name) + " is " + value +
-                                ", it must be " + must_be);
+    throw std::invalid_argument(node_handle_.resolveName(name) + " is " + value + ", it must be " +
+                                must_be);
   }
 
   ros::NodeHandle node_handle_;

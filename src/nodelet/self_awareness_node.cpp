@@ -1,17 +1,43 @@
 #include <ros/ros.h>
 
+#include <csignal>
 #include <exception>
 
 #include "monitor.h"
 
-int main(int argc, char** argv) {
-  ros::init(argc, argv, "self_awareness");
-  const ros::NodeHandle node_handle;
+namespace {
+
+volatile std::sig_atomic_t monitoring = 0;
+volatile std::sig_atomic_t stopping = 0;
+
+// roscpp's own handler would take the connections away while the monitor's threads use them: the
+// monitor must end first. Only while the master is waited for there is none.
+void onSignal(int /*signal*/) {
+  stopping = 1;
+  if (monitoring == 0) {
+    ros::requestShutdown();
+  }
+}
+
+void run() {
+  const ros::NodeHandle node_handle;  // waits for the master
   const ros::NodeHandle private_node_handle("~");
+  monitoring = 1;
+  const self_awareness::Monitor monitor(node_handle, private_node_handle,
+                                        ros::this_node::getName());
+  while (ros::ok() && stopping == 0) {
+    ros::WallDuration(0.1).sleep();
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "self_awareness", ros::init_options::NoSigintHandler);
+  std::signal(SIGINT, onSignal);
+  std::signal(SIGTERM, onSignal);
   try {
-    const self_awareness::Monitor monitor(node_handle, private_node_handle,
-                                          ros::this_node::getName());
-    ros::waitForShutdown();
+    run();
   } catch (const std::exception& error) {
     ROS_FATAL("%s", error.what());
     return 1;

@@ -1,8 +1,8 @@
 #include <nodelet/nodelet.h>
-#include <pluginlib/class_list_macros.hpp>
 
 #include <exception>
 #include <memory>
+#include <pluginlib/class_list_macros.hpp>
 
 #include "monitor.h"
 

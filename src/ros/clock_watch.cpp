@@ -27,8 +27,8 @@ bool wasSet(std::int64_t ros_advance, std::int64_t steady_advance, bool simulate
 }  // namespace
 
 bool ClockWatch::look(std::int64_t ros_now, std::int64_t steady_now, bool simulated) {
-  const bool set = last_ && wasSet(ros_now - last_->ros_time, steady_now - last_->steady_time,
-                                   simulated);
+  const bool set =
+      last_ && wasSet(ros_now - last_->ros_time, steady_now - last_->steady_time, simulated);
   last_ = Look{ros_now, steady_now};
   if (set) {
     set_at_ = ros_now;
@@ -37,8 +37,8 @@ bool ClockWatch::look(std::int64_t ros_now, std::int64_t steady_now, bool simula
 }
 
 bool ClockWatch::isStale(std::int64_t stamp) const {
-  return set_at_ && (stamp < *set_at_ - core::kLatestEvent ||
-                     stamp > last_->ros_time + core::kLatestEvent);
+  return set_at_ &&
+         (stamp < *set_at_ - core::kLatestEvent || stamp > last_->ros_time + core::kLatestEvent);
 }
 
 }  // namespace self_awareness::ros1

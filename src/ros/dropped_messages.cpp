@@ -22,10 +22,9 @@ std::uint64_t DroppedMessages::count() {
     // [publications, subscriptions, services], which the slave API wants behind a code and a
     // message, but roscpp sends bare. A subscription is [topic, [[connection, bytes, messages,
     // drops, 0], ...]].
-    XmlRpc::XmlRpcValue& statistics = response.size() == 3 && response[0].getType() ==
-                                              XmlRpc::XmlRpcValue::TypeInt
-                                          ? response[2]
-                                          : response;
+    XmlRpc::XmlRpcValue& statistics =
+        response.size() == 3 && response[0].getType() == XmlRpc::XmlRpcValue::TypeInt ? response[2]
+                                                                                      : response;
     XmlRpc::XmlRpcValue& subscriptions = statistics[1];
     for (int i = 0; i < subscriptions.size(); ++i) {
       const std::string topic = subscriptions[i][0];

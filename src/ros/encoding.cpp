@@ -24,19 +24,21 @@ std::vector<std::regex> compile(const std::vector<std::string>& patterns) {
 }
 
 bool anyMatches(const std::vector<std::regex>& patterns, const std::string& name) {
-  return std::any_of(patterns.begin(), patterns.end(), [&](const std::regex& pattern) {
-    return std::regex_match(name, pattern);
-  });
+  return std::any_of(patterns.begin(), patterns.end(),
+                     [&](const std::regex& pattern) { return std::regex_match(name, pattern); });
 }
 
 }  // namespace
 
 EncodingRules EncodingRules::defaults() {
   EncodingRules rules;
-  rules.exclude_topics = {"/clock", "/rosout_agg", "/statistics", "/diagnostics_agg",
-                          "/diagnostics_toplevel_state", ".*/self_awareness/(status|alarm)"};
-  rules.exclude_sources = {".*/self_awareness(_manager)?",
-                           "(.*/)?(play|record|recorder|rosbag.*)",
+  rules.exclude_topics = {"/clock",
+                          "/rosout_agg",
+                          "/statistics",
+                          "/diagnostics_agg",
+                          "/diagnostics_toplevel_state",
+                          ".*/self_awareness/(status|alarm)"};
+  rules.exclude_sources = {".*/self_awareness(_manager)?", "(.*/)?(play|record|recorder|rosbag.*)",
                            "(.*/)?(rqt|rviz|rostopic|rosnode|rosservice|plotjuggler|foxglove).*"};
   rules.type_fields = {{"actionlib_msgs/GoalStatus", "status"},
                        {"rosgraph_msgs/Log", "level"},

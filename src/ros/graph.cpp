@@ -67,8 +67,7 @@ std::set<std::string> chooseTopics(const Graph& graph, SubscribePolicy policy,
   for (const auto& [name, topic] : graph.topics) {
     const bool used = std::any_of(topic.subscribers.begin(), topic.subscribers.end(),
                                   [&](const std::string& node) { return node != own_name; });
-    if (!topic.publishers.empty() && (policy == SubscribePolicy::kAll || used) &&
-        included(name)) {
+    if (!topic.publishers.empty() && (policy == SubscribePolicy::kAll || used) && included(name)) {
       chosen.insert(name);
     }
   }

@@ -31,16 +31,15 @@ LiveEvents::LiveEvents(const ros::NodeHandle& node_handle, std::uint32_t queue_s
 void LiveEvents::setTopics(const std::set<std::string>& topics, const Graph& graph) {
   for (auto subscription = subscriptions_.begin(); subscription != subscriptions_.end();) {
     const auto published = graph.topics.find(subscription->first);
-    const std::string datatype =
-        published == graph.topics.end() ? "" : published->second.datatype;
+    const std::string datatype = published == graph.topics.end() ? "" : published->second.datatype;
     std::string& expected = subscription->second.datatype;
     if (expected.empty() || expected == "*") {
       expected = datatype;
     }
     const bool type_changed = !datatype.empty() && datatype != "*" && datatype != expected;
     if (type_changed) {
-      ROS_WARN("%s: the type changed from %s to %s; subscribing anew",
-               subscription->first.c_str(), expected.c_str(), datatype.c_str());
+      ROS_WARN("%s: the type changed from %s to %s; subscribing anew", subscription->first.c_str(),
+               expected.c_str(), datatype.c_str());
     }
     if (type_changed || topics.count(subscription->first) == 0) {
       subscription = subscriptions_.erase(subscription);
@@ -54,14 +53,12 @@ void LiveEvents::setTopics(const std::set<std::string>& topics, const Graph& gra
     }
     ros::SubscribeOptions options;
     options.initByFullCallbackType<const MessageEvent&>(
-        topic, queue_size_, [this, topic](const MessageEvent& message) {
-          onMessage(topic, message);
-        });
+        topic, queue_size_,
+        [this, topic](const MessageEvent& message) { onMessage(topic, message); });
     options.transport_hints = ros::TransportHints().tcpNoDelay();
     const auto published = graph.topics.find(topic);
     Subscription& subscription = subscriptions_[topic];
-    subscription.datatype =
-        published == graph.topics.end() ? "" : published->second.datatype;
+    subscription.datatype = published == graph.topics.end() ? "" : published->second.datatype;
     subscription.subscriber = node_handle_.subscribe(options);
   }
 }

@@ -13,9 +13,9 @@ constexpr std::size_t kLongestValue = 64;
 
 const std::map<std::string, std::size_t>& builtInSizes() {
   static const std::map<std::string, std::size_t> kSizes = {
-      {"bool", 1},   {"byte", 1},   {"char", 1},   {"int8", 1},    {"uint8", 1},  {"int16", 2},
-      {"uint16", 2}, {"int32", 4},  {"uint32", 4}, {"int64", 8},   {"uint64", 8}, {"float32", 4},
-      {"float64", 8}, {"time", 8},  {"duration", 8}};
+      {"bool", 1},   {"byte", 1},    {"char", 1},    {"int8", 1},   {"uint8", 1},
+      {"int16", 2},  {"uint16", 2},  {"int32", 4},   {"uint32", 4}, {"int64", 8},
+      {"uint64", 8}, {"float32", 4}, {"float64", 8}, {"time", 8},   {"duration", 8}};
   return kSizes;
 }
 

@@ -98,8 +98,9 @@ core::DelayStatistics statisticsOf(const self_awareness::Model& message) {
 
 self_awareness::Model::ConstPtr readMessage(const std::string& path) {
   if (!boost::filesystem::is_regular_file(path)) {
-    throw ModelFileError(path + ": no such file; train a model first "
-                                "(rosrun self_awareness train)");
+    throw ModelFileError(path +
+                         ": no such file; train a model first "
+                         "(rosrun self_awareness train)");
   }
   try {
     rosbag::Bag bag(path, rosbag::bagmode::Read);
@@ -121,8 +122,9 @@ self_awareness::Model::ConstPtr readMessage(const std::string& path) {
   } catch (const ros::serialization::StreamOverrunException& error) {
     throw ModelFileError(path + ": a damaged model file (" + error.what() + ")");
   }
-  throw ModelFileError(path + ": a bag, but it holds no model; train one from it "
-                              "(rosrun self_awareness train)");
+  throw ModelFileError(path +
+                       ": a bag, but it holds no model; train one from it "
+                       "(rosrun self_awareness train)");
 }
 
 }  // namespace

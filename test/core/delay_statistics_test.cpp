@@ -1,3 +1,5 @@
+#include "self_awareness/core/delay_statistics.h"
+
 #include <gtest/gtest.h>
 
 #include <random>
@@ -5,7 +7,6 @@
 #include <vector>
 
 #include "self_awareness/core/clock.h"
-#include "self_awareness/core/delay_statistics.h"
 
 namespace self_awareness::core {
 namespace {

@@ -1,3 +1,5 @@
+#include "self_awareness/core/detector.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,7 +9,6 @@
 #include <vector>
 
 #include "self_awareness/core/clock.h"
-#include "self_awareness/core/detector.h"
 
 namespace self_awareness::core {
 namespace {
@@ -166,8 +167,7 @@ TEST_F(DetectorTest, AStepOfTheClockStartsAfreshWithoutAnAlarm) {
     seen_.clear();
     Detector detector = makeDetector(0.5);
     feed(detector, clockwork(1000 * kSecond, 1010 * kSecond, true));
-    const std::vector<Event> after =
-        clockwork(1010 * kSecond + step, 1020 * kSecond + step, true);
+    const std::vector<Event> after = clockwork(1010 * kSecond + step, 1020 * kSecond + step, true);
     EXPECT_FALSE(detector.add(after.front()));
     feed(detector, {after.begin() + 1, after.end()});
     detector.finish();
@@ -266,8 +266,8 @@ TEST(Blame, ATypeWithFewGapsHasNoOpinion) {
   EXPECT_EQ(blame.logSurvival(rare, 3600 * kSecond), 0);
   // One virtual gap of the tail on 30 of 1 s: 1.01 s is the upper edge of the longest one's bin.
   EXPECT_NEAR(blame.logSurvival(common, 2 * kSecond), -2 / 1.01 - std::log(31), 1e-12);
-  EXPECT_NEAR(blame.logSurvival(common, kSecond), std::log(30 + std::exp(-1 / 1.01)) - std::log(31),
-              1e-12);
+  EXPECT_NEAR(blame.logSurvival(common, kSecond),
+              std::log(30 + std::exp(-1 / 1.01)) - std::log(31), 1e-12);
 }
 
 }  // namespace

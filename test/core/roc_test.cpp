@@ -1,10 +1,10 @@
+#include "self_awareness/core/roc.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <stdexcept>
-
-#include "self_awareness/core/roc.h"
 
 namespace self_awareness::core {
 namespace {

@@ -1,11 +1,11 @@
 // Needs a master: asks roscpp what it dropped.
 
+#include "self_awareness/ros/dropped_messages.h"
+
 #include <gtest/gtest.h>
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
 #include <std_msgs/String.h>
-
-#include "self_awareness/ros/dropped_messages.h"
 
 namespace self_awareness::ros1 {
 namespace {

@@ -1,3 +1,5 @@
+#include "self_awareness/ros/encoding.h"
+
 #include <gtest/gtest.h>
 #include <ros/message_traits.h>
 #include <ros/serialization.h>
@@ -12,7 +14,6 @@
 #include <vector>
 
 #include "self_awareness/core/vocabulary.h"
-#include "self_awareness/ros/encoding.h"
 #include "self_awareness/ros/message_field.h"
 #include "self_awareness/ros/stable_name.h"
 
@@ -49,7 +50,8 @@ std::string errorOf(const std::string& path) {
 class EncoderTest : public testing::Test {
  protected:
   Encoder makeEncoder(const EncodingRules& rules) {
-    return Encoder(rules, [this](const core::EventType& type) { return vocabulary_.intern(type); });
+    return Encoder(rules,
+                   [this](const core::EventType& type) { return vocabulary_.intern(type); });
   }
   static Connection scan() {
     Connection connection;
@@ -110,7 +112,8 @@ TEST(MessageField, ReadsBehindStringsArraysAndNestedMessages) {
 
 TEST(MessageField, SaysWhatIsWrongWithAField) {
   using visualization_msgs::Marker;
-  EXPECT_EQ(errorOf<Marker>("verb"), "type field visualization_msgs/Marker: verb: has no field 'verb'");
+  EXPECT_EQ(errorOf<Marker>("verb"),
+            "type field visualization_msgs/Marker: verb: has no field 'verb'");
   EXPECT_NE(errorOf<Marker>("pose").find("is a message itself"), std::string::npos);
   EXPECT_NE(errorOf<Marker>("points").find("is an array"), std::string::npos);
   EXPECT_NE(errorOf<Marker>("scale.x").find("is a float64"), std::string::npos);

@@ -26,12 +26,12 @@ struct Suspect {
 
   EventId id = 0;
   Reason reason = Reason::kSilent;
-  double silence = 0;        ///< kSilent, kLate: time without such an event [s]
-  double usual_shortest = 0; ///< kSilent, kLate: 1 % of the gaps in training are shorter [s]
-  double usual_longest = 0;  ///< kSilent, kLate: 1 % of the gaps in training are longer [s]
-  std::size_t events = 0;    ///< kUnknown, kUnusual: such events in the window
-  double score = 0;          ///< kUnusual: their mean score
-  double usual_score = 0;    ///< kUnusual: the score to expect by training
+  double silence = 0;         ///< kSilent, kLate: time without such an event [s]
+  double usual_shortest = 0;  ///< kSilent, kLate: 1 % of the gaps in training are shorter [s]
+  double usual_longest = 0;   ///< kSilent, kLate: 1 % of the gaps in training are longer [s]
+  std::size_t events = 0;     ///< kUnknown, kUnusual: such events in the window
+  double score = 0;           ///< kUnusual: their mean score
+  double usual_score = 0;     ///< kUnusual: the score to expect by training
 };
 
 /// The reason in words and numbers: "silent for 2.31 s, usually every 0.070 to 0.090 s".

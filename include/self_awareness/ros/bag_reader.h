@@ -38,8 +38,8 @@ struct BagSummary {
   bool has_sources = false;       ///< at least one connection names its publisher
 };
 
-/// Reads a bag as a stream of events. Time, topic, type and callerid come from the index; a message
-/// itself is read only if the encoding needs its content.
+/// Reads a bag as a stream of events. Time, topic, type and callerid come from the index; a
+/// message itself is read only if the encoding needs its content.
 class BagReader {
  public:
   using Handler = std::function<void(const core::Event&)>;

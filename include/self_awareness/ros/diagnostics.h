@@ -31,13 +31,13 @@ struct MonitorState {
   std::string model;        ///< path
   std::string model_error;  ///< why there is none; empty: it is loaded
   bool calibrated = false;
-  bool started = false;               ///< an event has come
-  self_awareness::SelfAwareness last; ///< the verdict on the last window, if started
-  double alarm_for = 0;               ///< how long the alarm stands [s]
+  bool started = false;                         ///< an event has come
+  self_awareness::SelfAwareness last;           ///< the verdict on the last window, if started
+  double alarm_for = 0;                         ///< how long the alarm stands [s]
   std::map<std::string, Component> components;  ///< by componentOf()
 
-  double rate = 0;                  ///< events a second, since the last report
-  double processing_share = 0;      ///< share of one core spent on events and windows, 0 to 1
+  double rate = 0;              ///< events a second, since the last report
+  double processing_share = 0;  ///< share of one core spent on events and windows, 0 to 1
   std::size_t subscriptions = 0;
   std::size_t connections = 0;
   std::uint64_t dropped = 0;        ///< messages, since the start
@@ -46,8 +46,8 @@ struct MonitorState {
   bool master_answers = true;
 };
 
-/// Publishes on /diagnostics (REP-107: OK, WARN, ERROR; never STALE): one status for the whole, one
-/// for every component, one for the monitor itself.
+/// Publishes on /diagnostics (REP-107: OK, WARN, ERROR; never STALE): one status for the whole,
+/// one for every component, one for the monitor itself.
 class Diagnostics {
  public:
   /// @param name of the monitor, which the statuses' names begin with

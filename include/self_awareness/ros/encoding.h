@@ -26,7 +26,7 @@ struct EncodingRules {
   };
 
   Source source = Source::kCallerId;
-  std::vector<std::string> include_topics;   ///< empty: all
+  std::vector<std::string> include_topics;  ///< empty: all
   std::vector<std::string> exclude_topics;
   std::vector<std::string> include_sources;  ///< empty: all; without effect for Source::kNone
   std::vector<std::string> exclude_sources;

@@ -24,8 +24,8 @@ namespace self_awareness::ros1 {
 /// Subscribes to topics of any type and turns every message into an event, stamped with the time
 /// of its receipt.
 ///
-/// Threads: setTopics() and renew() belong to one thread, everything else to the one that serves the node
-/// handle's callback queue; the two share nothing but roscpp's queue.
+/// Threads: setTopics() and renew() belong to one thread, everything else to the one that serves
+/// the node handle's callback queue; the two share nothing but roscpp's queue.
 class LiveEvents {
  public:
   using Handler = std::function<void(const core::Event&)>;

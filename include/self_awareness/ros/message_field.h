@@ -30,9 +30,9 @@ class MessageField {
   struct Step {
     enum class Kind { kSkipBytes, kSkipString, kSkipArray, kRead };
     Kind kind = Kind::kSkipBytes;
-    std::size_t bytes = 0;         // kSkipBytes
-    std::vector<Step> element;     // kSkipArray: steps across one element
-    std::string type;              // kRead: built-in type
+    std::size_t bytes = 0;      // kSkipBytes
+    std::vector<Step> element;  // kSkipArray: steps across one element
+    std::string type;           // kRead: built-in type
   };
   class Cursor;
 

@@ -25,9 +25,9 @@ struct TrainedModel {
   EncodingRules encoding;
   std::int64_t window = 100000000;  ///< length of a window [ns]
   core::DelayStatistics statistics{core::Binning{}};
-  std::vector<self_awareness::Recording> recordings;           ///< trained on
-  std::optional<self_awareness::Calibration> calibration;      ///< none: not calibrated
-  ros::Time stamp;                                             ///< when it was trained
+  std::vector<self_awareness::Recording> recordings;       ///< trained on
+  std::optional<self_awareness::Calibration> calibration;  ///< none: not calibrated
+  ros::Time stamp;                                         ///< when it was trained
 
   /// s* of eq. 5, if the model was calibrated.
   std::optional<double> threshold() const;
@@ -37,7 +37,8 @@ self_awareness::Model toMessage(const TrainedModel& model);
 /// @throw std::invalid_argument says what in the message contradicts itself
 TrainedModel fromMessage(const self_awareness::Model& message);
 
-/// Writes a temporary file beside `path` and renames it, so that no half-written model is ever seen.
+/// Writes a temporary file beside `path` and renames it, so that no half-written model is ever
+/// seen.
 /// @throw ModelFileError
 void saveModel(const TrainedModel& model, const std::string& path);
 /// @throw ModelFileError if the file is missing, no model, of another version, or damaged

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <stdexcept>
+#include <vector>
+
+#include "self_awareness/core/event.h"
+
+/// What the parts of the Python module share.
+namespace self_awareness::python {
+
+namespace py = pybind11;
+
+using Stamps = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
+using Ids = py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>;
+
+template <typename T>
+py::array_t<T> toArray(const std::vector<T>& values) {
+  return py::array_t<T>(static_cast<py::ssize_t>(values.size()), values.data());
+}
+
+inline py::array_t<bool> toArray(const std::vector<bool>& values) {
+  py::array_t<bool> array(static_cast<py::ssize_t>(values.size()));
+  std::copy(values.begin(), values.end(), array.mutable_data());
+  return array;
+}
+
+/// Calls the handler with every event of two arrays, stamps [ns] and ids.
+/// @throw std::invalid_argument if they do not fit together
+template <typename Handler>
+void forEachEvent(const Stamps& stamps, const Ids& ids, Handler handler) {
+  if (stamps.ndim() != 1 || ids.ndim() != 1 || stamps.size() != ids.size()) {
+    throw std::invalid_argument("stamps and ids must be two arrays of one dimension and length");
+  }
+  const auto stamp = stamps.unchecked<1>();
+  const auto id = ids.unchecked<1>();
+  for (py::ssize_t i = 0; i < stamps.size(); ++i) {
+    handler(core::Event{stamp(i), id(i)});
+  }
+}
+
+/// Encoding, bags, model files and training (files_bindings.cpp).
+void bindFiles(py::module& module);
+/// Model, scores, verdicts and ROC (detector_bindings.cpp).
+void bindDetector(py::module& module);
+
+}  // namespace self_awareness::python

@@ -1,0 +1,203 @@
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "bindings.h"
+#include "self_awareness/core/clock.h"
+#include "self_awareness/core/detector.h"
+#include "self_awareness/core/model.h"
+#include "self_awareness/core/roc.h"
+#include "self_awareness/ros/model_file.h"
+
+namespace self_awareness::python {
+namespace {
+
+/// A stretch of time in which the alarm stood.
+struct Alarm {
+  std::int64_t start = 0;  // end of the window that raised it [ns]
+  std::int64_t end = 0;    // end of the window that cleared it, or of the recording [ns]
+  bool cleared = false;
+  double lowest_score = std::numeric_limits<double>::quiet_NaN();
+  std::vector<core::Suspect> suspects;  // of the window that raised it
+};
+
+/// The verdicts on all windows of a recording, one entry a window.
+struct Verdicts {
+  std::vector<std::int64_t> start;  // [ns]
+  std::vector<std::uint32_t> events;
+  std::vector<std::uint32_t> unknown;
+  std::vector<double> score;  // NaN: no events
+  std::vector<bool> abnormal;
+  std::vector<bool> settling;
+  std::vector<Alarm> alarms;
+};
+
+void record(const core::Verdict& verdict, std::int64_t window, Verdicts& verdicts) {
+  const std::int64_t end = verdict.window->start + window;
+  verdicts.start.push_back(verdict.window->start);
+  verdicts.events.push_back(static_cast<std::uint32_t>(verdict.window->events.size()));
+  verdicts.unknown.push_back(static_cast<std::uint32_t>(verdict.window->unknown()));
+  verdicts.score.push_back(verdict.score.value_or(std::numeric_limits<double>::quiet_NaN()));
+  verdicts.abnormal.push_back(verdict.abnormal);
+  verdicts.settling.push_back(verdict.settling);
+  if (verdict.changed && verdict.alarm) {
+    Alarm alarm;
+    alarm.start = end;
+    alarm.suspects = verdict.suspects;
+    verdicts.alarms.push_back(alarm);
+  }
+  if (verdict.alarm || verdict.changed) {
+    Alarm& alarm = verdicts.alarms.back();
+    alarm.end = end;
+    alarm.cleared = !verdict.alarm;
+    alarm.lowest_score = std::fmin(alarm.lowest_score, verdict.score.value_or(0));
+  }
+}
+
+Verdicts judge(const std::shared_ptr<core::Model>& model, std::int64_t window,
+               std::optional<double> threshold, const core::Detector::Parameters& parameters,
+               const Stamps& stamps, const Ids& ids, std::optional<std::int64_t> end) {
+  Verdicts verdicts;
+  core::Detector detector(model, window, threshold, parameters, [&](const core::Verdict& verdict) {
+    record(verdict, window, verdicts);
+  });
+  std::optional<std::int64_t> last;
+  forEachEvent(stamps, ids, [&](const core::Event& event) {
+    detector.add(event);
+    last = event.stamp;
+  });
+  if (end && last && !core::isClockStep(*last, *end)) {
+    detector.advance(*end);  // silence up to the end is a part of the recording
+  }
+  detector.finish();
+  return verdicts;
+}
+
+std::vector<double> scoreEvents(const std::shared_ptr<core::Model>& model, const Stamps& stamps,
+                                const Ids& ids) {
+  core::Scorer scorer(model);
+  std::vector<double> scores;
+  forEachEvent(stamps, ids,
+               [&](const core::Event& event) { scores.push_back(scorer.score(event).score); });
+  return scores;
+}
+
+void bindVerdicts(py::module& m) {
+  py::class_<core::Suspect>(m, "Suspect", "An event type a window may be blamed on.")
+      .def_readonly("id", &core::Suspect::id)
+      .def_readonly("silence", &core::Suspect::silence, "[s]")
+      .def_readonly("usual_shortest", &core::Suspect::usual_shortest, "[s]")
+      .def_readonly("usual_longest", &core::Suspect::usual_longest, "[s]")
+      .def("describe", &core::describe, "the reason in words and numbers");
+
+  using core::Detector;
+  py::class_<Detector::Parameters>(m, "DetectorParameters")
+      .def(py::init<>())
+      .def_property(
+          "alarm_windows",
+          [](const Detector::Parameters& self) { return self.persistence.alarm_windows; },
+          [](Detector::Parameters& self, int k) { self.persistence.alarm_windows = k; })
+      .def_property(
+          "alarm_of", [](const Detector::Parameters& self) { return self.persistence.alarm_of; },
+          [](Detector::Parameters& self, int n) { self.persistence.alarm_of = n; })
+      .def_property(
+          "hold_time", [](const Detector::Parameters& self) { return self.persistence.hold_time; },
+          [](Detector::Parameters& self, std::int64_t ns) { self.persistence.hold_time = ns; },
+          "[ns]")
+      .def_readwrite("settle_time", &Detector::Parameters::settle_time, "[ns]")
+      .def_readwrite("silence_is_abnormal", &Detector::Parameters::silence_is_abnormal)
+      .def("validate", &Detector::Parameters::validate);
+
+  py::class_<Alarm>(m, "Alarm", "A stretch of time in which the alarm stood.")
+      .def_readonly("start", &Alarm::start, "[ns]")
+      .def_readonly("end", &Alarm::end, "[ns]")
+      .def_readonly("cleared", &Alarm::cleared, "False: it stood to the end of the recording")
+      .def_readonly("lowest_score", &Alarm::lowest_score)
+      .def_readonly("suspects", &Alarm::suspects, "of the window that raised it, best first");
+
+  py::class_<Verdicts>(m, "Verdicts", "One entry a window of a recording, and the alarms.")
+      .def_property_readonly(
+          "start", [](const Verdicts& self) { return toArray(self.start); },
+          "start of the window, int64 [ns]")
+      .def_property_readonly("events", [](const Verdicts& self) { return toArray(self.events); })
+      .def_property_readonly("unknown", [](const Verdicts& self) { return toArray(self.unknown); })
+      .def_property_readonly(
+          "score", [](const Verdicts& self) { return toArray(self.score); },
+          "NaN for a window without events")
+      .def_property_readonly(
+          "abnormal", [](const Verdicts& self) { return toArray(self.abnormal); },
+          "eq. 5, or silence; also while settling")
+      .def_property_readonly("settling",
+                             [](const Verdicts& self) { return toArray(self.settling); })
+      .def_readonly("alarms", &Verdicts::alarms);
+
+  py::class_<core::Model, std::shared_ptr<core::Model>>(
+      m, "Model", "Probabilities, entropies and weights, computed from a TrainedModel's counts.")
+      .def(py::init([](const ros1::TrainedModel& trained) {
+             return std::make_shared<core::Model>(trained.statistics);
+           }),
+           py::arg("trained"))
+      .def("probability", &core::Model::probability, py::arg("from_id"), py::arg("to_id"),
+           py::arg("delay"), "P_ij of a delay [ns]")
+      .def_property_readonly(
+          "entropies",
+          [](const core::Model& self) {
+            py::array_t<double> array({self.size(), self.size()});
+            auto values = array.mutable_unchecked<2>();
+            for (core::EventId from = 0; from < self.size(); ++from) {
+              for (core::EventId to = 0; to < self.size(); ++to) {
+                values(from, to) = self.entropies()(from, to);
+              }
+            }
+            return array;
+          },
+          "h_ij [bit], [from, to]")
+      .def("weight", &core::Model::weight, py::arg("from_id"), py::arg("to_id"),
+           "w_ij where all event types are tracked")
+      .def("log_survival", [](const std::shared_ptr<core::Model>& self, core::EventId id,
+                              std::int64_t age) { return core::Blame(self).logSurvival(id, age); })
+      .def(
+          "score_events",
+          [](const std::shared_ptr<core::Model>& self, const Stamps& stamps, const Ids& ids) {
+            return toArray(scoreEvents(self, stamps, ids));
+          },
+          py::arg("stamps"), py::arg("ids"), "s_j of every event, float64")
+      .def("judge", &judge, py::arg("window"), py::arg("threshold"), py::arg("parameters"),
+           py::arg("stamps"), py::arg("ids"), py::arg("end") = py::none(),
+           "Verdicts on a recording. window: [ns]; threshold None: not calibrated; stamps: int64\n"
+           "[ns] in order; ids from len(event_types) of the model on are unknown events. end "
+           "[ns]:\n"
+           "the recording goes on in silence until then; None: it ends with the last event.");
+  m.attr("FEWEST_GAPS") = core::kFewestGaps;
+}
+
+void bindRoc(py::module& m) {
+  using core::Roc;
+  py::class_<Roc::Point>(m, "RocPoint")
+      .def_readonly("cutoff", &Roc::Point::cutoff)
+      .def_readonly("true_positive_rate", &Roc::Point::true_positive_rate)
+      .def_readonly("false_positive_rate", &Roc::Point::false_positive_rate);
+  py::class_<Roc>(m, "Roc", "Receiver operating characteristic of: abnormal if score < cut-off.")
+      .def(py::init<std::vector<double>, std::vector<double>>(), py::arg("normal"),
+           py::arg("abnormal"))
+      .def_property_readonly("points", &Roc::points)
+      .def_property_readonly("auc", &Roc::auc)
+      .def("youden", &Roc::youden)
+      .def("closest", &Roc::closest)
+      .def("level", &Roc::level, py::arg("false_positive_rate"))
+      .def("at", &Roc::at, py::arg("cutoff"));
+}
+
+}  // namespace
+
+void bindDetector(py::module& m) {
+  bindVerdicts(m);
+  bindRoc(m);
+}
+
+}  // namespace self_awareness::python

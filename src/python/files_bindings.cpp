@@ -1,0 +1,334 @@
+#include <pybind11/stl.h>
+#include <ros/serialization.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bindings.h"
+#include "self_awareness/core/windows.h"
+#include "self_awareness/ros/bag_reader.h"
+#include "self_awareness/ros/model_file.h"
+
+namespace self_awareness::python {
+namespace {
+
+// The progress bar lives in Python, and Ctrl-C must get through while C++ reads.
+ros1::BagReader::Progress progressTo(const py::object& callback) {
+  return [&callback](std::uint64_t done, std::uint64_t all) {
+    if (PyErr_CheckSignals() != 0) {
+      throw py::error_already_set();
+    }
+    if (!callback.is_none()) {
+      callback(done, all);
+    }
+  };
+}
+
+/// The events of a recording, in memory.
+struct RecordedEvents {
+  ros1::BagSummary summary;
+  std::vector<core::EventType> event_types;  // those asked for first, then the new ones
+  std::vector<std::int64_t> stamps;          // [ns]
+  std::vector<std::uint32_t> ids;
+};
+
+RecordedEvents readEvents(const std::string& path, const ros1::EncodingRules& rules,
+                          const std::vector<core::EventType>& known, const ros1::TimeRange& range,
+                          const py::object& progress) {
+  const ros1::BagReader reader(path);
+  core::Vocabulary vocabulary(known);
+  const ros1::Encoder encoder(
+      rules, [&](const core::EventType& type) { return vocabulary.intern(type); });
+  RecordedEvents events;
+  events.summary = reader.summary();
+  reader.read(
+      encoder, range,
+      [&](const core::Event& event) {
+        events.stamps.push_back(event.stamp);
+        events.ids.push_back(event.id);
+      },
+      progressTo(progress));
+  events.event_types = vocabulary.types();
+  return events;
+}
+
+// Every pair of event types has a histogram: a field that is no small set of values, such as an
+// identifier, would fill the memory long before it taught anything.
+constexpr std::size_t kMostTypesOfField = 1000;
+
+/// Trains on one recording after the other.
+class Training {
+ public:
+  Training(ros1::EncodingRules rules, std::int64_t bin_size, std::int64_t window,
+           std::int64_t horizon_bins)
+      : statistics_(core::Binning{bin_size, horizon_bins}),
+        trainer_(statistics_),
+        rules_(std::move(rules)),
+        window_(window) {
+    core::Windows(window, nullptr);  // throws where the length is none
+  }
+
+  self_awareness::Recording addBag(const std::string& path, const ros1::TimeRange& range,
+                                   const py::object& progress) {
+    const ros1::BagReader reader(path);
+    const ros1::Encoder encoder(rules_,
+                                [this](const core::EventType& type) { return intern(type); });
+    self_awareness::Recording recording;
+    recording.bag = path.substr(path.find_last_of('/') + 1);
+    recording.fingerprint = reader.summary().fingerprint;
+    trainer_.startRecording();
+    reader.read(
+        encoder, range,
+        [&](const core::Event& event) {
+          trainer_.add(event);
+          recording.start.fromNSec(recording.events == 0 ? event.stamp : recording.start.toNSec());
+          recording.end.fromNSec(event.stamp);
+          ++recording.events;
+        },
+        progressTo(progress));
+    recordings_.push_back(recording);
+    return recording;
+  }
+
+  void addEvents(const std::vector<core::EventType>& types, const Stamps& stamps, const Ids& ids) {
+    trainer_.startRecording();
+    forEachEvent(stamps, ids, [&](const core::Event& event) {
+      trainer_.add({event.stamp, statistics_.intern(types.at(event.id))});
+    });
+  }
+
+  ros1::TrainedModel model() const {
+    ros1::TrainedModel model;
+    model.encoding = rules_;
+    model.window = window_;
+    model.statistics = statistics_;
+    model.recordings = recordings_;
+    model.stamp.fromSec(std::floor(ros::WallTime::now().toSec()));
+    return model;
+  }
+
+ private:
+  core::EventId intern(const core::EventType& type) {
+    const std::size_t before = statistics_.vocabulary().size();
+    const core::EventId id = statistics_.intern(type);
+    const std::size_t datatype_end = type.type.find('[');
+    if (statistics_.vocabulary().size() > before && datatype_end != std::string::npos) {
+      const std::string datatype = type.type.substr(0, datatype_end);
+      if (++types_of_field_[datatype] > kMostTypesOfField) {
+        throw std::invalid_argument(
+            "the type field " + datatype + ": " + rules_.type_fields.at(datatype) +
+            " has more than " + std::to_string(kMostTypesOfField) +
+            " values; name a field that says what a message does, or none for this datatype");
+      }
+    }
+    return id;
+  }
+
+  core::DelayStatistics statistics_;
+  core::DelayTrainer trainer_;
+  ros1::EncodingRules rules_;
+  std::int64_t window_;
+  std::map<std::string, std::size_t> types_of_field_;  // by datatype
+  std::vector<self_awareness::Recording> recordings_;
+};
+
+ros1::TimeRange timeRange(std::optional<double> start, std::optional<double> end) {
+  ros1::TimeRange range{start, end};
+  range.validate();
+  return range;
+}
+
+void bindEncoding(py::module& m) {
+  py::class_<core::EventType>(m, "EventType", "What happened: (source, scope, type).")
+      .def(py::init<std::string, std::string, std::string>(), py::arg("source"), py::arg("scope"),
+           py::arg("type"))
+      .def_readonly("source", &core::EventType::source)
+      .def_readonly("scope", &core::EventType::scope)
+      .def_readonly("type", &core::EventType::type)
+      .def("__str__", &core::toString)
+      .def("__repr__",
+           [](const core::EventType& self) { return "<EventType " + core::toString(self) + ">"; })
+      .def("__eq__", [](const core::EventType& a, const core::EventType& b) { return a == b; })
+      .def("__hash__",
+           [](const core::EventType& self) { return py::hash(py::str(core::toString(self))); });
+
+  py::class_<ros1::EncodingRules>(m, "EncodingRules",
+                                  "How messages become events; see config/encoding.yaml.")
+      .def(py::init<>(), "Sources told apart, nothing excluded, no type fields.")
+      .def_static("defaults", &ros1::EncodingRules::defaults)
+      .def_property(
+          "source",
+          [](const ros1::EncodingRules& self) {
+            return self.source == ros1::EncodingRules::Source::kNone ? "none" : "callerid";
+          },
+          [](ros1::EncodingRules& self, const std::string& source) {
+            if (source != "none" && source != "callerid") {
+              throw std::invalid_argument("source must be 'callerid' or 'none', not '" + source +
+                                          "'");
+            }
+            self.source = source == "none" ? ros1::EncodingRules::Source::kNone
+                                           : ros1::EncodingRules::Source::kCallerId;
+          },
+          "'callerid' or 'none'")
+      .def_readwrite("include_topics", &ros1::EncodingRules::include_topics)
+      .def_readwrite("exclude_topics", &ros1::EncodingRules::exclude_topics)
+      .def_readwrite("include_sources", &ros1::EncodingRules::include_sources)
+      .def_readwrite("exclude_sources", &ros1::EncodingRules::exclude_sources)
+      .def_readwrite("type_fields", &ros1::EncodingRules::type_fields)
+      .def(
+          "validate", [](const ros1::EncodingRules& self) { ros1::Encoder(self, nullptr); },
+          "ValueError where a pattern is no regular expression.")
+      .def("__eq__",
+           [](const ros1::EncodingRules& a, const ros1::EncodingRules& b) { return a == b; });
+}
+
+void bindBags(py::module& m) {
+  py::register_exception<ros1::BagError>(m, "BagError", PyExc_RuntimeError);
+
+  py::class_<ros1::BagSummary>(m, "BagSummary", "What a bag's index says of it.")
+      .def_readonly("path", &ros1::BagSummary::path)
+      .def_readonly("start", &ros1::BagSummary::start, "stamp of the first message [ns]")
+      .def_readonly("end", &ros1::BagSummary::end, "stamp of the last message [ns]")
+      .def_readonly("messages", &ros1::BagSummary::messages)
+      .def_readonly("fingerprint", &ros1::BagSummary::fingerprint)
+      .def_readonly("has_sources", &ros1::BagSummary::has_sources);
+  m.def(
+      "summarise_bag", [](const std::string& path) { return ros1::BagReader(path).summary(); },
+      py::arg("path"), "BagSummary of a bag. Raises BagError.");
+
+  py::class_<RecordedEvents>(m, "RecordedEvents", "The events of a recording, in memory.")
+      .def_readonly("summary", &RecordedEvents::summary)
+      .def_readonly("event_types", &RecordedEvents::event_types, "by id")
+      .def_property_readonly("stamps",
+                             [](const RecordedEvents& self) { return toArray(self.stamps); })
+      .def_property_readonly("ids", [](const RecordedEvents& self) { return toArray(self.ids); });
+  m.def(
+      "read_events",
+      [](const std::string& path, const ros1::EncodingRules& encoding,
+         const std::vector<core::EventType>& event_types, std::optional<double> start,
+         std::optional<double> end, const py::object& progress) {
+        return readEvents(path, encoding, event_types, timeRange(start, end), progress);
+      },
+      py::arg("path"), py::arg("encoding"),
+      py::arg("event_types") = std::vector<core::EventType>(), py::arg("start") = py::none(),
+      py::arg("end") = py::none(), py::arg("progress") = py::none(),
+      "RecordedEvents of a bag: stamps (int64 [ns]) and ids (uint32). Ids below len(event_types)\n"
+      "stand for these, the ids behind for types not among them. start, end: seconds from the\n"
+      "recording's first message. progress(done, all) is called now and then. Raises BagError.");
+}
+
+void bindModel(py::module& m) {
+  py::register_exception<ros1::ModelFileError>(m, "ModelFileError", PyExc_RuntimeError);
+
+  py::class_<self_awareness::Recording>(m, "Recording", "msg/Recording.msg")
+      .def(py::init<>())
+      .def_readwrite("bag", &self_awareness::Recording::bag)
+      .def_property(
+          "start", [](const self_awareness::Recording& self) { return self.start.toNSec(); },
+          [](self_awareness::Recording& self, std::uint64_t ns) { self.start.fromNSec(ns); },
+          "[ns]")
+      .def_property(
+          "end", [](const self_awareness::Recording& self) { return self.end.toNSec(); },
+          [](self_awareness::Recording& self, std::uint64_t ns) { self.end.fromNSec(ns); }, "[ns]")
+      .def_readwrite("events", &self_awareness::Recording::events)
+      .def_readwrite("fingerprint", &self_awareness::Recording::fingerprint);
+
+  using self_awareness::Calibration;
+  py::class_<Calibration>(m, "Calibration", "msg/Calibration.msg")
+      .def(py::init<>())
+      .def_readwrite("threshold", &Calibration::threshold)
+      .def_readwrite("method", &Calibration::method)
+      .def_readwrite("auc", &Calibration::auc)
+      .def_readwrite("true_positive_rate", &Calibration::true_positive_rate)
+      .def_readwrite("false_positive_rate", &Calibration::false_positive_rate)
+      .def_readwrite("normal_windows", &Calibration::normal_windows)
+      .def_readwrite("faulty_windows", &Calibration::faulty_windows)
+      .def_readwrite("false_alarms_per_hour", &Calibration::false_alarms_per_hour)
+      .def_readwrite("normal", &Calibration::normal)
+      .def_readwrite("faulty", &Calibration::faulty)
+      .def_readwrite("injected", &Calibration::injected)
+      .def_property(
+          "stamp", [](const Calibration& self) { return self.stamp.toNSec(); },
+          [](Calibration& self, std::uint64_t ns) { self.stamp.fromNSec(ns); }, "[ns]");
+
+  using ros1::TrainedModel;
+  py::class_<TrainedModel>(m, "TrainedModel", "All that a model file holds: counts.")
+      .def_static("load", &ros1::loadModel, py::arg("path"), "Raises ModelFileError.")
+      .def("save", &ros1::saveModel, py::arg("path"),
+           "Raises ModelFileError; writes all or nothing.")
+      .def_readonly("encoding", &TrainedModel::encoding)
+      .def_readonly("window", &TrainedModel::window, "length of a window [ns]")
+      .def_readonly("recordings", &TrainedModel::recordings)
+      .def_property_readonly(
+          "stamp", [](const TrainedModel& self) { return self.stamp.toNSec(); }, "[ns]")
+      .def_readwrite("calibration", &TrainedModel::calibration, "None: not calibrated")
+      .def_property_readonly("threshold", &TrainedModel::threshold, "None: not calibrated")
+      .def_property_readonly(
+          "bin_size", [](const TrainedModel& self) { return self.statistics.binning().bin_size; },
+          "[ns]")
+      .def_property_readonly(
+          "horizon_bins",
+          [](const TrainedModel& self) { return self.statistics.binning().horizon_bins; },
+          "0: unbounded")
+      .def_property_readonly(
+          "event_types",
+          [](const TrainedModel& self) { return self.statistics.vocabulary().types(); }, "by id")
+      .def_property_readonly("events",
+                             [](const TrainedModel& self) { return self.statistics.events(); })
+      .def_property_readonly(
+          "pairs", [](const TrainedModel& self) { return self.statistics.pairs(); },
+          "number of ordered pairs with at least one delay")
+      .def("event_count", [](const TrainedModel& self,
+                             core::EventId id) { return self.statistics.eventCount(id); })
+      .def(
+          "histogram",
+          [](const TrainedModel& self, core::EventId from, core::EventId to) {
+            std::map<std::int64_t, std::uint64_t> counts;
+            for (const core::Histogram::Entry& entry : self.statistics.pair(from, to).entries()) {
+              counts[entry.bin] = entry.count;
+            }
+            return counts;
+          },
+          py::arg("from_id"), py::arg("to_id"),
+          "dict of bin: count, of the delay from the last from_id to the current to_id")
+      .def(
+          "quantile",
+          [](const TrainedModel& self, core::EventId from, core::EventId to, double fraction) {
+            return self.statistics.pair(from, to).quantile(fraction);
+          },
+          py::arg("from_id"), py::arg("to_id"), py::arg("fraction"),
+          "the bin below or in which the fraction of the pair's delays lies; 0 if there is none");
+
+  py::class_<Training>(m, "Training", "Counts the delays of one recording after the other.")
+      .def(py::init<ros1::EncodingRules, std::int64_t, std::int64_t, std::int64_t>(),
+           py::arg("encoding"), py::arg("bin_size") = 10000000, py::arg("window") = 100000000,
+           py::arg("horizon_bins") = 0, "bin_size, window: [ns]; horizon_bins 0: unbounded")
+      .def(
+          "add_bag",
+          [](Training& self, const std::string& path, std::optional<double> start,
+             std::optional<double> end, const py::object& progress) {
+            return self.addBag(path, timeRange(start, end), progress);
+          },
+          py::arg("path"), py::arg("start") = py::none(), py::arg("end") = py::none(),
+          py::arg("progress") = py::none(),
+          "Trains on a bag, one recording; returns its Recording. start, end: seconds from its\n"
+          "first message. After a BagError the training is incomplete and must be thrown away.")
+      .def("add_events", &Training::addEvents, py::arg("event_types"), py::arg("stamps"),
+           py::arg("ids"), "Trains on one recording given as arrays.")
+      .def("model", &Training::model, "The TrainedModel of all that was added.");
+}
+
+}  // namespace
+
+void bindFiles(py::module& m) {
+  bindEncoding(m);
+  bindBags(m);
+  bindModel(m);
+}
+
+}  // namespace self_awareness::python
