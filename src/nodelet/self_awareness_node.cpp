@@ -20,10 +20,8 @@ void onSignal(int /*signal*/) {
 }
 
 void run() {
-  const ros::NodeHandle node_handle;  // waits for the master
-  const ros::NodeHandle private_node_handle("~");
   monitoring = 1;
-  const self_awareness::Monitor monitor(node_handle, private_node_handle,
+  const self_awareness::Monitor monitor(ros::NodeHandle(), ros::NodeHandle("~"),
                                         ros::this_node::getName());
   while (ros::ok() && stopping == 0) {
     ros::WallDuration(0.1).sleep();
@@ -36,6 +34,7 @@ int main(int argc, char** argv) {
   ros::init(argc, argv, "self_awareness", ros::init_options::NoSigintHandler);
   std::signal(SIGINT, onSignal);
   std::signal(SIGTERM, onSignal);
+  const ros::NodeHandle node_handle;  // waits for the master, and outlives the monitor
   try {
     run();
   } catch (const std::exception& error) {

@@ -105,15 +105,25 @@ class Process:
             pass
 
     def stop(self) -> None:
-        """Interrupts the process, and kills it if that does not help; waits for its end."""
+        """Interrupts the process and all that it started, and kills what is left after 15 s.
+
+        What it started may end after it: `rosbag record` leaves the bag to a child.
+        """
         self.send(signal.SIGCONT)
         self.send(signal.SIGINT)
-        try:
-            self._process.wait(15)
-        except subprocess.TimeoutExpired:
-            pass
+        deadline = time.monotonic() + 15
+        while self._group_runs() and time.monotonic() < deadline:
+            time.sleep(0.02)
         self.send(signal.SIGKILL)
         self._process.wait()
+
+    def _group_runs(self) -> bool:
+        self._process.poll()  # reaps the leader, which would count otherwise
+        try:
+            os.killpg(self._process.pid, 0)
+        except ProcessLookupError:
+            return False
+        return True
 
 
 class MonitorListener:
