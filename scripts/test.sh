@@ -7,12 +7,14 @@ install_packages --test
 build
 build tests
 
+export ROS_IP=127.0.0.1  # whatever this machine's name resolves to
+unset ROS_HOSTNAME ROS_MASTER_URI ROS_NAMESPACE
+
 say "Testing"
 results=$workspace/build/test_results
 rm -rf "$results"
 # Live tests share the processor with nobody: one after the other.
 catkin_make --directory "$workspace" run_tests -j1 || true  # the results below tell
 
-# shellcheck disable=SC2016
 catkin_test_results --verbose "$results" || true
 exec /usr/bin/python3 "$checkout/test/count_results.py" "$results"

@@ -70,7 +70,7 @@ class Training {
         trainer_(statistics_),
         rules_(std::move(rules)),
         window_(window) {
-    core::Windows(window, nullptr);  // throws where the length is none
+    const core::Windows checked(window, nullptr);  // throws where the length is none
   }
 
   self_awareness::Recording addBag(const std::string& path, const ros1::TimeRange& range,
@@ -180,9 +180,8 @@ void bindEncoding(py::module& m) {
       .def_readwrite("include_sources", &ros1::EncodingRules::include_sources)
       .def_readwrite("exclude_sources", &ros1::EncodingRules::exclude_sources)
       .def_readwrite("type_fields", &ros1::EncodingRules::type_fields)
-      .def(
-          "validate", [](const ros1::EncodingRules& self) { ros1::Encoder(self, nullptr); },
-          "ValueError where a pattern is no regular expression.")
+      .def("validate", &ros1::EncodingRules::validate,
+           "ValueError where a pattern is no regular expression.")
       .def("__eq__",
            [](const ros1::EncodingRules& a, const ros1::EncodingRules& b) { return a == b; });
 }

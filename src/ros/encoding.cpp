@@ -46,6 +46,13 @@ EncodingRules EncodingRules::defaults() {
   return rules;
 }
 
+void EncodingRules::validate() const {
+  for (const auto* patterns :
+       {&include_topics, &exclude_topics, &include_sources, &exclude_sources}) {
+    compile(*patterns);
+  }
+}
+
 bool operator==(const EncodingRules& a, const EncodingRules& b) {
   const auto fields = [](const EncodingRules& rules) {
     return std::tie(rules.source, rules.include_topics, rules.exclude_topics,

@@ -52,7 +52,7 @@ EncodingRules fromMessage(const self_awareness::Encoding& message) {
   for (const self_awareness::TypeField& type_field : message.type_fields) {
     rules.type_fields[type_field.datatype] = type_field.field;
   }
-  Encoder(rules, nullptr);  // throws where a pattern is none
+  rules.validate();
   return rules;
 }
 

@@ -35,6 +35,8 @@ struct EncodingRules {
   /// What fits most robots: everything but the monitor's own output, clocks, aggregated logs and
   /// the tools of people who look on.
   static EncodingRules defaults();
+  /// @throw std::invalid_argument names the pattern that is no regular expression
+  void validate() const;
 };
 
 bool operator==(const EncodingRules& a, const EncodingRules& b);
