@@ -14,7 +14,7 @@ workspace=${SELF_AWARENESS_WORKSPACE:-${XDG_CACHE_HOME:-$HOME/.cache}/self_aware
 export PATH=/usr/bin:/bin:$PATH
 
 packages_debian=(
-  bash-completion ca-certificates g++ make cmake python3-dev python3-setuptools
+  ca-certificates g++ make cmake python3-dev python3-setuptools
   catkin ros-base-dev ros-message-generation
   libnodeletlib-dev libnodelet-dev libnodeletlib-tools
   libdiagnostic-updater-dev libdiagnostic-aggregator-dev libdiagnostic-aggregator-tools
@@ -26,8 +26,6 @@ packages_debian=(
   libvisualization-msgs-dev libsensor-msgs-dev libstd-srvs-dev
   pybind11-dev libeigen3-dev libboost-filesystem-dev
   python3-numpy python3-matplotlib python3-tqdm python3-yaml
-)
-packages_debian_test=(
   catkin-lint clang-format libgtest-dev libgmock-dev nlohmann-json3-dev procps python3-pytest
 )
 packages_noetic=(
@@ -39,8 +37,6 @@ packages_noetic=(
   ros-noetic-geometry-msgs
   pybind11-dev libeigen3-dev libboost-filesystem-dev
   python3-numpy python3-matplotlib python3-tqdm python3-yaml
-)
-packages_noetic_test=(
   ros-noetic-rostest ros-noetic-roslaunch libgtest-dev libgmock-dev nlohmann-json3-dev procps
   python3-pytest python3-catkin-lint clang-format
 )
@@ -55,20 +51,13 @@ installed() {
   [ "$(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]
 }
 
-# install_packages [--test]
 install_packages() {
-  local wanted missing=() package
-  if [ -d /opt/ros/noetic ]; then
-    wanted=("${packages_noetic[@]}")
-    [ "${1:-}" != --test ] || wanted+=("${packages_noetic_test[@]}")
-  else
-    wanted=("${packages_debian[@]}")
-    [ "${1:-}" != --test ] || wanted+=("${packages_debian_test[@]}")
-  fi
+  local wanted=("${packages_debian[@]}") missing=() package
+  [ ! -d /opt/ros/noetic ] || wanted=("${packages_noetic[@]}")
   for package in "${wanted[@]}"; do
     installed "$package" || missing+=("$package")
   done
-  [ ${#missing[@]} -eq 0 ] && return
+  [ ${#missing[@]} -gt 0 ] || return 0
   say "Installing ${#missing[@]} packages"
   as_root apt-get update -qq
   as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
@@ -88,6 +77,17 @@ build() {
   mkdir -p "$workspace/src"
   ln -sfn "$checkout" "$workspace/src/self_awareness"
   [ ! -d /opt/ros/noetic ] || source_ros /opt/ros/noetic/setup.bash
-  catkin_make --directory "$workspace" -DPYTHON_EXECUTABLE=/usr/bin/python3 "$@"
+  # "|| return": inside of a condition, set -e is without effect.
+  catkin_make --directory "$workspace" -DPYTHON_EXECUTABLE=/usr/bin/python3 "$@" || return
   source_ros "$workspace/devel/setup.bash"
+  find_plugins_of_debian_11
+}
+
+# Debian 11's pluginlib does not look where Debian 11 puts plugins' libraries, those of
+# diagnostic_aggregator among them; it takes a prefix that has them in lib/.
+find_plugins_of_debian_11() {
+  [ "$(. /etc/os-release && echo "$ID-${VERSION_ID:-}")" = debian-11 ] || return 0
+  mkdir -p "$workspace/debian-11"
+  ln -sfn "/usr/lib/$(gcc -dumpmachine)" "$workspace/debian-11/lib"
+  export CMAKE_PREFIX_PATH=$CMAKE_PREFIX_PATH:$workspace/debian-11
 }

@@ -3,7 +3,7 @@
 
 source "$(dirname "${BASH_SOURCE[0]}")/prepare.sh"
 
-install_packages --test
+install_packages
 build
 build tests
 
