@@ -28,9 +28,11 @@ def each(items: Sequence[_Item], description: str) -> Iterable[_Item]:
 def waiting(seconds: float, description: str) -> Iterator[float]:
     """Let time pass and show how much; hands out the seconds passed, ten times a second."""
     begin = time.monotonic()
+    passed = 0.0  # a bar that is not shown does not count
     with tqdm(desc=description, total=seconds, unit='s', leave=False, disable=None,
               bar_format='{desc} {bar} {n:.0f}/{total:.0f} s') as bar:
-        while bar.n < seconds:
+        while passed < seconds:
             time.sleep(0.1)
-            bar.update(min(time.monotonic() - begin, seconds) - bar.n)
-            yield bar.n
+            bar.update(min(time.monotonic() - begin, seconds) - passed)
+            passed = min(time.monotonic() - begin, seconds)
+            yield passed
