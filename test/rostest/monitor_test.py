@@ -14,7 +14,7 @@ import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
-from live_system import MonitorListener, Process, await_condition
+from live_system import MonitorListener, Process, again_if_clock_was_set, await_condition
 from self_awareness.msg import SelfAwareness
 
 RECORDING_S = 25
@@ -68,6 +68,7 @@ class MonitorTest(unittest.TestCase):
                        'model:=' + self.path('model'),
                        'standalone:=' + ('true' if standalone else 'false'))
 
+    @again_if_clock_was_set
     def test_from_recordings_to_an_alarm(self) -> None:
         self.await_components()
         trained_on = self.record('train.bag', RECORDING_S)
