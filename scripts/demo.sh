@@ -74,12 +74,13 @@ for topic in odom scan pose tracks faces joint_states battery task/state; do
   await 90 "the robot publishes /$topic" heard "/$topic"
 done
 
-say "Recording three normal runs of $run_seconds s"
-for run in normal_1 normal_2 normal_3; do record $run $run_seconds; done
+say "Recording four normal runs of $run_seconds s"
+for run in normal_1 normal_2 normal_3 normal_4; do record $run $run_seconds; done
 
-say "Training on two of them, calibrating on the third"
+say "Training on two of them, calibrating on the others"
 rosrun self_awareness train "$out/normal_1.bag" "$out/normal_2.bag" -o "$out/trained.model"
-rosrun self_awareness calibrate --model "$out/trained.model" --normal "$out/normal_3.bag" \
+rosrun self_awareness calibrate --model "$out/trained.model" \
+  --normal "$out/normal_3.bag" "$out/normal_4.bag" \
   --cutoff fpr=0.001 --inject crash:/player slow:/motors:2 starve \
   --roc "$out/roc.png" -o "$out/calibrated.model"
 
