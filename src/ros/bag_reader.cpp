@@ -3,6 +3,7 @@
 #include <rosbag/exceptions.h>
 #include <rosbag/view.h>
 
+#include <algorithm>
 #include <boost/filesystem/operations.hpp>
 #include <cmath>
 #include <fstream>
@@ -69,21 +70,6 @@ void openBag(rosbag::Bag& bag, const std::string& path) {
   }
 }
 
-std::string headerField(const ros::M_string& header, const std::string& name) {
-  const auto field = header.find(name);
-  return field == header.end() ? "" : field->second;
-}
-
-Connection connectionOf(const rosbag::ConnectionInfo& info) {
-  Connection connection;
-  connection.callerid = headerField(*info.header, "callerid");
-  connection.topic = info.topic;
-  connection.datatype = info.datatype;
-  connection.definition = info.msg_def;
-  connection.latching = headerField(*info.header, "latching") == "1";
-  return connection;
-}
-
 /// The index of a bag. rosbag's own iteration leaves the order of messages with the same stamp
 /// open; here it is that of the recording, as the method wants it.
 class BagIndex : private rosbag::View {
@@ -94,6 +80,8 @@ class BagIndex : private rosbag::View {
       cursors_.push_back({range->begin, range->end, range->connection_info});
     }
   }
+
+  using rosbag::View::getConnections;
 
   /// Calls visit(connection, entry) for every message.
   template <typename Visit>
@@ -164,19 +152,23 @@ BagReader::BagReader(const std::string& path) {
 
 void BagReader::summarise() {
   Fingerprint fingerprint;
-  BagIndex(bag_).forEach(
-      [&](const rosbag::ConnectionInfo& connection, const rosbag::IndexEntry& entry) {
-        const auto stamp = static_cast<std::int64_t>(entry.time.toNSec());
-        if (summary_.messages == 0) {
-          summary_.start = stamp;
-        }
-        summary_.end = stamp;
-        ++summary_.messages;
-        summary_.has_sources |= !headerField(*connection.header, "callerid").empty();
-        fingerprint.add(static_cast<std::uint64_t>(stamp));
-        fingerprint.add(connection.topic);
-      });
+  BagIndex index(bag_);
+  index.forEach([&](const rosbag::ConnectionInfo& connection, const rosbag::IndexEntry& entry) {
+    const auto stamp = static_cast<std::int64_t>(entry.time.toNSec());
+    if (summary_.messages == 0) {
+      summary_.start = stamp;
+    }
+    summary_.end = stamp;
+    ++summary_.messages;
+    fingerprint.add(static_cast<std::uint64_t>(stamp));
+    fingerprint.add(connection.topic);
+  });
   summary_.fingerprint = fingerprint.value();
+  const std::vector<const rosbag::ConnectionInfo*> connections = index.getConnections();
+  summary_.has_sources = std::any_of(
+      connections.begin(), connections.end(), [](const rosbag::ConnectionInfo* connection) {
+        return !connectionFrom(*connection->header, connection->topic).callerid.empty();
+      });
 }
 
 void BagReader::read(const Encoder& encoder, const TimeRange& range, const Handler& handler,
@@ -201,7 +193,10 @@ void BagReader::read(const Encoder& encoder, const TimeRange& range, const Handl
     ++done;
     auto found = encoders.find(&connection);
     if (found == encoders.end()) {
-      found = encoders.emplace(&connection, encoder.connect(connectionOf(connection))).first;
+      found = encoders
+                  .emplace(&connection,
+                           encoder.connect(connectionFrom(*connection.header, connection.topic)))
+                  .first;
     }
     std::optional<ConnectionEncoder>& connection_encoder = found->second;
     if (!connection_encoder || !connection_encoder->accept()) {

@@ -28,6 +28,11 @@ bool anyMatches(const std::vector<std::regex>& patterns, const std::string& name
                      [&](const std::regex& pattern) { return std::regex_match(name, pattern); });
 }
 
+std::string headerField(const ros::M_string& header, const std::string& name) {
+  const auto field = header.find(name);
+  return field == header.end() ? "" : field->second;
+}
+
 }  // namespace
 
 EncodingRules EncodingRules::defaults() {
@@ -59,6 +64,16 @@ bool operator==(const EncodingRules& a, const EncodingRules& b) {
                     rules.include_sources, rules.exclude_sources, rules.type_fields);
   };
   return fields(a) == fields(b);
+}
+
+Connection connectionFrom(const ros::M_string& header, const std::string& topic) {
+  Connection connection;
+  connection.callerid = headerField(header, "callerid");
+  connection.topic = topic;
+  connection.datatype = headerField(header, "type");
+  connection.definition = headerField(header, "message_definition");
+  connection.latching = headerField(header, "latching") == "1";
+  return connection;
 }
 
 bool ConnectionEncoder::accept() {

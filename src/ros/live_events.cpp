@@ -12,14 +12,6 @@
 #include "self_awareness/ros/stable_name.h"
 
 namespace self_awareness::ros1 {
-namespace {
-
-std::string headerField(const ros::M_string& header, const std::string& name) {
-  const auto field = header.find(name);
-  return field == header.end() ? "" : field->second;
-}
-
-}  // namespace
 
 LiveEvents::LiveEvents(const ros::NodeHandle& node_handle, std::uint32_t queue_size,
                        Handler handler, NewPublisherHandler on_new_publisher)
@@ -120,12 +112,7 @@ LiveEvents::LiveConnection LiveEvents::connect(const std::string& topic,
                                                const MessageEvent& message) {
   LiveConnection live;
   live.header = message.getConnectionHeaderPtr();
-  Connection connection;
-  connection.callerid = headerField(*live.header, "callerid");
-  connection.topic = topic;
-  connection.datatype = headerField(*live.header, "type");
-  connection.definition = headerField(*live.header, "message_definition");
-  connection.latching = headerField(*live.header, "latching") == "1";
+  const Connection connection = connectionFrom(*live.header, topic);
   if (isOwnOutput(connection)) {
     return live;
   }

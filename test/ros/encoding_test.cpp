@@ -64,6 +64,27 @@ class EncoderTest : public testing::Test {
   core::Vocabulary vocabulary_;
 };
 
+TEST(Connection, IsFilledFromItsHeader) {
+  const Connection connection = connectionFrom({{"callerid", "/slam"},
+                                                {"type", "nav_msgs/OccupancyGrid"},
+                                                {"message_definition", "int8[] data"},
+                                                {"latching", "1"},
+                                                {"topic", "/as_the_publisher_calls_it"}},
+                                               "/map");
+  EXPECT_EQ(connection.callerid, "/slam");
+  EXPECT_EQ(connection.topic, "/map");
+  EXPECT_EQ(connection.datatype, "nav_msgs/OccupancyGrid");
+  EXPECT_EQ(connection.definition, "int8[] data");
+  EXPECT_TRUE(connection.latching);
+}
+
+TEST(Connection, ToleratesAHeaderThatLacksFields) {
+  const Connection connection = connectionFrom({{"latching", "0"}}, "/map");
+  EXPECT_EQ(connection.callerid, "");
+  EXPECT_EQ(connection.datatype, "");
+  EXPECT_FALSE(connection.latching);
+}
+
 TEST(StableName, DropsTheNumbersOfAnonymousNodes) {
   EXPECT_EQ(stableName("/rostopic_10263_1795206536731"), "/rostopic");
   EXPECT_EQ(stableName("/record_1795206538727453261"), "/record");

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <ros/datatypes.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -49,6 +51,9 @@ struct Connection {
   std::string definition;
   bool latching = false;
 };
+
+/// What a connection header says; fields that it lacks are empty.
+Connection connectionFrom(const ros::M_string& header, const std::string& topic);
 
 /// Gives an event type its id: a new one for a new type, where the vocabulary grows.
 using EventIds = std::function<core::EventId(const core::EventType&)>;
