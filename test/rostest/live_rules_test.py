@@ -1,106 +1,25 @@
 #!/usr/bin/python3
 """The monitor at its edges: what it listens to, what it ignores, and what it says of bad input."""
 
-import os
-import shutil
-import tempfile
-import threading
-import unittest
-from typing import Dict, List
+from typing import Dict
 
-import rosgraph
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
 from std_msgs.msg import Float64, String
-from std_srvs.srv import Trigger, TriggerResponse
 from visualization_msgs.msg import Marker
 
 import self_awareness
-from live_system import MonitorListener, Process, await_condition
+from live_system import MonitorListener, Process, again_if_clock_was_set, await_condition
+from monitor_case import MonitorCase, Talker, forget_parameters, subscribers
 from self_awareness.msg import SelfAwareness
 
-OURS = '/live_rules'
 
-
-class Talker:
-    """Publishes on a topic from this process at about 20 Hz, until the `with` block ends."""
-
-    def __init__(self, topic: str, message_class=String, **options) -> None:
-        self.publisher = rospy.Publisher(topic, message_class, queue_size=10, **options)
-        self._message = message_class()
-        self._stop = threading.Event()
-        self._thread = threading.Thread(target=self._run, daemon=True)
-
-    def _run(self) -> None:
-        while not self._stop.wait(0.05):
-            self.publisher.publish(self._message)
-
-    def __enter__(self) -> 'Talker':
-        self._thread.start()
-        return self
-
-    def __exit__(self, *_) -> None:
-        self._stop.set()
-        self._thread.join()
-        self.publisher.unregister()
-
-
-def subscribers(topic: str) -> List[str]:
-    return dict(rosgraph.Master(OURS).getSystemState()[1]).get(topic, [])
-
-
-class LiveRulesTest(unittest.TestCase):
-
-    def setUp(self) -> None:
-        self.folder = tempfile.mkdtemp()
-        self.addCleanup(shutil.rmtree, self.folder)
-
-    def path(self, name: str) -> str:
-        return os.path.join(self.folder, name)
-
-    def model(self, threshold=0.01, topics=('/a',), type_fields=None, name='model') -> str:
-        """A model of this process as it publishes on topics, std_msgs/String at 20 Hz.
-
-        The bins are wide: on a busy machine, delays up to half a second are normal, too.
-        """
-        encoding = self_awareness.EncodingRules.defaults()
-        encoding.type_fields = type_fields or {}
-        # What rospy has to say of nodes that come and go is not what is tested.
-        encoding.exclude_topics += ['/rosout']
-        training = self_awareness.Training(encoding, bin_size=500 * 10**6)
-        types = [self_awareness.EventType(OURS, topic, 'std_msgs/String') for topic in topics]
-        stamps, ids = [], []
-        for tick in range(1000):
-            for event, _ in enumerate(types):
-                stamps.append(10**12 + tick * 50 * 10**6 + event * 10**6)
-                ids.append(event)
-        training.add_events(types, stamps, ids)
-        model = training.model()
-        if threshold is not None:
-            calibration = self_awareness.Calibration()
-            calibration.threshold = threshold
-            model.calibration = calibration
-        model.save(self.path(name))
-        return self.path(name)
-
-    def monitor(self, model: str, name: str = 'self_awareness', **parameters) -> Process:
-        """A monitor in a process of its own; settles within half a second."""
-        settings = dict({'settle_time': 0.5, 'poll_interval': 0.1}, **parameters)
-        return Process('rosrun', 'self_awareness', 'self_awareness_node', '__name:=' + name,
-                       '_model:=' + model,
-                       *['_{}:={}'.format(key, value) for key, value in settings.items()])
-
-    def tearDown(self) -> None:
-        if rospy.has_param('/self_awareness'):
-            rospy.delete_param('/self_awareness')
-
-    def call(self, service: str) -> TriggerResponse:
-        rospy.wait_for_service(service, 20)
-        return rospy.ServiceProxy(service, Trigger)()
+class LiveRulesTest(MonitorCase):
 
     # What it listens to
 
+    @again_if_clock_was_set
     def test_a_lazy_publisher_is_woken_only_where_asked_to(self) -> None:
         with Talker('/a'), Talker('/lazy') as lazy:
             for policy, woken in (('used', False), ('model', False), ('all', True)):
@@ -114,6 +33,7 @@ class LiveRulesTest(unittest.TestCase):
                 await_condition('the monitor is gone',
                                 lambda: '/self_awareness' not in subscribers('/a'), 20)
 
+    @again_if_clock_was_set
     def test_a_used_topic_is_heard_and_left_again(self) -> None:
         with Talker('/a'), Talker('/used'), \
                 self.monitor(self.model()), MonitorListener() as listener:
@@ -125,8 +45,10 @@ class LiveRulesTest(unittest.TestCase):
             await_condition('the monitor leaves', lambda: (
                 '/self_awareness' not in subscribers('/used')), 20)
 
+    @again_if_clock_was_set
     def test_the_first_message_of_a_latching_connection_is_no_event(self) -> None:
         latching = rospy.Publisher('/latched', String, latch=True, queue_size=1)
+        self.addCleanup(latching.unregister)
         latching.publish('published long ago')
         with Talker('/a'), self.monitor(self.model(), subscribe='all'), \
                 MonitorListener() as listener:
@@ -139,8 +61,8 @@ class LiveRulesTest(unittest.TestCase):
             seen = len(listener.statuses)
             await_condition('another second', lambda: len(listener.statuses) > seen + 10, 20)
             self.assertEqual(sum(s.unknown_events for s in listener.statuses), 1)
-        latching.unregister()
 
+    @again_if_clock_was_set
     def test_a_topic_whose_type_changes_is_an_unknown_event(self) -> None:
         with self.monitor(self.model(threshold=0.3)), MonitorListener() as listener:
             with Talker('/a'):
@@ -154,6 +76,7 @@ class LiveRulesTest(unittest.TestCase):
                      if x.type == 'std_msgs/Float64'), None), 20)
                 self.assertIn('never seen in training', suspect.reason)
 
+    @again_if_clock_was_set
     def test_the_type_field_is_read_from_live_messages(self) -> None:
         types = {'visualization_msgs/Marker': 'action'}
         with Talker('/a'), Talker('/marker', Marker), \
@@ -164,6 +87,7 @@ class LiveRulesTest(unittest.TestCase):
                 x.type == 'visualization_msgs/Marker[action=0]'
                 for s in listener.statuses for x in s.suspects), 20)
 
+    @again_if_clock_was_set
     def test_anonymous_names_are_one_source(self) -> None:
         """Two starts of an anonymous node are the same source of the model."""
         training = self_awareness.Training(self_awareness.EncodingRules.defaults())
@@ -180,6 +104,7 @@ class LiveRulesTest(unittest.TestCase):
                         for status in listener.diagnostics('/talker')[heard:]), 30)
             self.assertEqual(sum(s.unknown_events for s in listener.statuses), 0)
 
+    @again_if_clock_was_set
     def test_monitors_in_one_manager_are_not_part_of_the_robot(self) -> None:
         """Nodelets in one manager share its name; a monitor there does not hear itself."""
         model = self.model(threshold=0.99)  # so that unknown events are named
@@ -202,6 +127,7 @@ class LiveRulesTest(unittest.TestCase):
 
     # What it says of itself
 
+    @again_if_clock_was_set
     def test_reset_and_clear(self) -> None:
         with self.monitor(self.model(), hold_time=600), MonitorListener() as listener:
             self.assertFalse(listener.diagnostics('communication')
@@ -222,6 +148,7 @@ class LiveRulesTest(unittest.TestCase):
             self.assertEqual([a.level for a in listener.alarms],
                              [SelfAwareness.ERROR, SelfAwareness.OK])
 
+    @again_if_clock_was_set
     def test_the_alarm_is_latched(self) -> None:
         with self.monitor(self.model(), hold_time=600):
             with Talker('/a'), MonitorListener() as listener:
@@ -231,6 +158,7 @@ class LiveRulesTest(unittest.TestCase):
             with MonitorListener() as late:
                 await_condition('the alarm that was', lambda: late.alarms, 20)
 
+    @again_if_clock_was_set
     def test_not_calibrated_is_said_and_never_alarms(self) -> None:
         with self.monitor(self.model(threshold=None)), MonitorListener() as listener:
             with Talker('/a'):
@@ -246,6 +174,7 @@ class LiveRulesTest(unittest.TestCase):
             self.assertEqual(status.level, DiagnosticStatus.WARN)
             self.assertIn('not calibrated', status.message)
 
+    @again_if_clock_was_set
     def test_a_model_that_is_missing_is_said_and_can_be_loaded_later(self) -> None:
         with self.monitor(self.path('later')), MonitorListener() as listener, Talker('/a'):
             status = await_condition('the error in the diagnostics', lambda: next(
@@ -278,7 +207,7 @@ class LiveRulesTest(unittest.TestCase):
                 with self.monitor(model, **{name: value}) as monitor:
                     self.assertEqual(monitor.wait(20), 1, '{}={}'.format(name, value))
                     self.assertIn(name, monitor.output, value)
-                rospy.delete_param('/self_awareness')
+                forget_parameters()
 
     def test_a_bad_parameter_of_a_nodelet_is_named(self) -> None:
         with Process('rosrun', 'nodelet', 'nodelet', 'standalone', 'self_awareness/SelfAwareness',
@@ -296,5 +225,5 @@ class LiveRulesTest(unittest.TestCase):
 
 
 if __name__ == '__main__':
-    rospy.init_node(OURS[1:])  # as rostest calls it, too
+    rospy.init_node('live_rules')  # as rostest calls it, too
     rostest.rosrun('self_awareness', 'live_rules', LiveRulesTest)

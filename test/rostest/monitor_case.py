@@ -1,0 +1,100 @@
+"""What the tests of a single monitor share: somebody who publishes, a model of it, the monitor."""
+
+import os
+import shutil
+import tempfile
+import threading
+import unittest
+from typing import Dict, List, Optional, Sequence
+
+import rosgraph
+import rospy
+from std_msgs.msg import String
+from std_srvs.srv import Trigger, TriggerResponse
+
+import self_awareness
+from live_system import Process
+
+
+class Talker:
+    """Publishes on a topic from this process at about 20 Hz, until the `with` block ends."""
+
+    def __init__(self, topic: str, message_class=String, **options) -> None:
+        self.publisher = rospy.Publisher(topic, message_class, queue_size=10, **options)
+        self._message = message_class()
+        self._stop = threading.Event()
+        self._thread = threading.Thread(target=self._run, daemon=True)
+
+    def _run(self) -> None:
+        while not self._stop.wait(0.05):
+            self.publisher.publish(self._message)
+
+    def __enter__(self) -> 'Talker':
+        self._thread.start()
+        return self
+
+    def __exit__(self, *_) -> None:
+        self._stop.set()
+        self._thread.join()
+        self.publisher.unregister()
+
+
+def subscribers(topic: str) -> List[str]:
+    return dict(rosgraph.Master(rospy.get_name()).getSystemState()[1]).get(topic, [])
+
+
+def forget_parameters() -> None:
+    """Takes the monitor's parameters from the master: the next one must not find them."""
+    if rospy.has_param('/self_awareness'):
+        rospy.delete_param('/self_awareness')
+
+
+class MonitorCase(unittest.TestCase):
+    """Needs rospy.init_node()."""
+
+    def setUp(self) -> None:
+        self.folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.folder)
+        self.addCleanup(forget_parameters)
+
+    def path(self, name: str) -> str:
+        return os.path.join(self.folder, name)
+
+    def model(self, threshold: Optional[float] = 0.01, topics: Sequence[str] = ('/a',),
+              type_fields: Optional[Dict[str, str]] = None, name: str = 'model',
+              window: int = 10**8) -> str:
+        """A model of this process as it publishes on topics, std_msgs/String at 20 Hz.
+
+        The bins are wide: on a busy machine, delays up to half a second are normal, too.
+        """
+        encoding = self_awareness.EncodingRules.defaults()
+        encoding.type_fields = type_fields or {}
+        # What rospy has to say of nodes that come and go is not what is tested.
+        encoding.exclude_topics += ['/rosout']
+        training = self_awareness.Training(encoding, bin_size=500 * 10**6, window=window)
+        types = [self_awareness.EventType(rospy.get_name(), topic, 'std_msgs/String')
+                 for topic in topics]
+        stamps, ids = [], []
+        for tick in range(1000):
+            for event, _ in enumerate(types):
+                stamps.append(10**12 + tick * 50 * 10**6 + event * 10**6)
+                ids.append(event)
+        training.add_events(types, stamps, ids)
+        model = training.model()
+        if threshold is not None:
+            calibration = self_awareness.Calibration()
+            calibration.threshold = threshold
+            model.calibration = calibration
+        model.save(self.path(name))
+        return self.path(name)
+
+    def monitor(self, model: str, name: str = 'self_awareness', **parameters) -> Process:
+        """A monitor in a process of its own; settles within half a second."""
+        settings = dict({'settle_time': 0.5, 'poll_interval': 0.1}, **parameters)
+        return Process('rosrun', 'self_awareness', 'self_awareness_node', '__name:=' + name,
+                       '_model:=' + model,
+                       *['_{}:={}'.format(key, value) for key, value in settings.items()])
+
+    def call(self, service: str) -> TriggerResponse:
+        rospy.wait_for_service(service, 20)
+        return rospy.ServiceProxy(service, Trigger)()
