@@ -5,6 +5,8 @@
 
 #include <utility>
 
+#include "self_awareness/ros/stable_name.h"
+
 namespace self_awareness {
 namespace {
 
@@ -34,7 +36,25 @@ void Discovery::setWanted(Wanted wanted) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     wanted_ = std::move(wanted);
-    changed_ = true;
+    restart_ = true;
+    hurry_ = true;
+  }
+  wake_.notify_all();
+}
+
+void Discovery::restart() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    restart_ = true;
+    hurry_ = true;
+  }
+  wake_.notify_all();
+}
+
+void Discovery::hurry() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    hurry_ = true;
   }
   wake_.notify_all();
 }
@@ -48,24 +68,34 @@ Discovery::State Discovery::state() const {
   return state;
 }
 
+std::vector<ros1::Publisher> Discovery::takeNewPublishers() {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return std::exchange(new_publishers_, {});
+}
+
 void Discovery::run() {
   std::unique_lock<std::mutex> lock(mutex_);
   while (!stopping_) {
-    changed_ = false;
+    hurry_ = false;
+    const bool restart = std::exchange(restart_, false);
     const Wanted wanted = wanted_;
     asked_at_ = std::chrono::steady_clock::now();
     lock.unlock();
-    poll(wanted);
+    poll(wanted, restart);
     lock.lock();
     asked_at_.reset();
-    wake_.wait_for(lock, interval_, [this] { return stopping_ || changed_; });
+    wake_.wait_for(lock, interval_, [this] { return stopping_ || hurry_; });
   }
 }
 
-void Discovery::poll(const Wanted& wanted) {
+void Discovery::poll(const Wanted& wanted, bool restart) {
+  if (restart) {
+    publishers_.restart();
+  }
   State state;
+  std::vector<ros1::Publisher> new_publishers;
   const ros1::MasterRegistration::Master master = registration_.check();
-  const std::optional<ros1::Graph> graph = ros1::fetchGraph();
+  std::optional<ros1::Graph> graph = ros1::fetchGraph();
   state.master_answers = master != ros1::MasterRegistration::Master::kAway && graph;
   if (state.master_answers) {
     if (master == ros1::MasterRegistration::Master::kRestarted) {
@@ -81,13 +111,23 @@ void Discovery::poll(const Wanted& wanted) {
     }
     live_events_.setTopics(topics, *graph);
     state.subscriptions = topics.size();
+    if (wanted.encoder) {
+      new_publishers =
+          publishers_.look(*graph, topics, [&](const std::string& node, const std::string& topic) {
+            return wanted.encoder->includesSource(ros1::stableName(node)) &&
+                   !wanted.own_output.covers(node, topic);
+          });
+    }
+    state.graph = std::make_shared<const ros1::Graph>(std::move(*graph));
   }
   state.dropped_messages = dropped_.count();
   const std::lock_guard<std::mutex> lock(mutex_);
   if (!state.master_answers) {
     state.subscriptions = state_.subscriptions;
+    state.graph = state_.graph;
   }
   state_ = state;
+  new_publishers_.insert(new_publishers_.end(), new_publishers.begin(), new_publishers.end());
 }
 
 }  // namespace self_awareness

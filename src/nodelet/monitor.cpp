@@ -1,6 +1,7 @@
 #include "monitor.h"
 
 #include <ros/console.h>
+#include <ros/this_node.h>
 
 #include <algorithm>
 #include <limits>
@@ -74,9 +75,9 @@ Monitor::Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& priv
   }
   live_events_ = std::make_unique<ros1::LiveEvents>(
       node_handle_, parameters_.queue_size, [this](const core::Event& event) { onEvent(event); },
-      [this](const std::string& source, const std::string& topic) {
-        onNewPublisher(source, topic);
-      });
+      // It may be a publisher that the master has not told of: settling cannot wait for the next
+      // poll.
+      [this] { discovery_->hurry(); });
   discovery_ = std::make_unique<Discovery>(*live_events_, parameters_.subscribe,
                                            parameters_.poll_interval, service_names);
   try {
@@ -93,8 +94,8 @@ Monitor::Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& priv
 }
 
 Monitor::~Monitor() {
+  spinner_.stop();  // first: what it serves uses the others
   discovery_.reset();
-  spinner_.stop();
   live_events_.reset();
 }
 
@@ -116,15 +117,16 @@ void Monitor::startSession(ros1::TrainedModel trained) {
   component_of_.clear();
   Discovery::Wanted wanted;
   wanted.encoder = session_->encoder;
-  std::set<std::pair<std::string, std::string>> topics_by_source;
+  std::set<std::string> own_topics;
   for (const core::EventType& type : session_->trained.statistics.vocabulary().types()) {
     wanted.model_topics.insert(type.scope);
-    topics_by_source.emplace(type.source, type.scope);
+    if (type.source == ros::this_node::getName()) {
+      own_topics.insert(type.scope);
+    }
     component_of_.push_back(&components_[ros1::componentOf(type.source, type.scope)]);
   }
-  live_events_->setEncoder(session_->encoder, [topics_by_source](const std::string& topic) {
-    return topics_by_source.count({ros::this_node::getName(), topic}) > 0;
-  });
+  wanted.own_output = ros1::OwnOutput(ros::this_node::getName(), std::move(own_topics));
+  live_events_->setEncoder(session_->encoder, wanted.own_output);
   discovery_->setWanted(std::move(wanted));
   ROS_INFO("model %s: %zu event types of %zu components, %s", parameters_.model.c_str(),
            component_of_.size(), components_.size(),
@@ -148,15 +150,15 @@ void Monitor::onEvent(const core::Event& event) {
   processing_ += ros::WallTime::now() - begin;
 }
 
-void Monitor::onNewPublisher(const std::string& source, const std::string& topic) {
-  ROS_DEBUG("new publisher %s on %s", source.c_str(), topic.c_str());
-  session_->detector.settle(rosNow());
-}
-
 void Monitor::onTick(const ros::SteadyTimerEvent& /*tick*/) {
   const ros::WallTime begin = ros::WallTime::now();
   const std::int64_t now = watchClock();
   if (session_) {
+    for (const ros1::Publisher& publisher : discovery_->takeNewPublishers()) {
+      ROS_INFO("settling: %s began to publish %s", publisher.source.c_str(),
+               publisher.topic.c_str());
+      session_->detector.settle(now);
+    }
     session_->detector.advance(now - kGrace);
   }
   processing_ += ros::WallTime::now() - begin;
@@ -309,6 +311,7 @@ bool Monitor::onReset(std_srvs::Trigger::Request& /*request*/,
   response.message = session_ ? "delays, windows and the alarm start afresh" : model_error_;
   if (session_) {
     session_->detector.restart();
+    discovery_->restart();
     standDown("settling: reset");
   }
   return true;

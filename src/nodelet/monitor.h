@@ -70,7 +70,6 @@ class Monitor {
   void startSession(ros1::TrainedModel trained);
 
   void onEvent(const core::Event& event);
-  void onNewPublisher(const std::string& source, const std::string& topic);
   void onTick(const ros::SteadyTimerEvent& tick);
   void onVerdict(const core::Verdict& verdict);
   bool onReset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);

@@ -116,12 +116,16 @@ bool Encoder::includesTopic(const std::string& topic) const {
 }
 
 bool Encoder::includesSource(const std::string& source) const {
+  if (rules_.source == EncodingRules::Source::kNone) {
+    return true;
+  }
   return (include_sources_.empty() || anyMatches(include_sources_, source)) &&
          !anyMatches(exclude_sources_, source);
 }
 
 std::optional<ConnectionEncoder> Encoder::connect(const Connection& connection) const {
-  if (!includesTopic(connection.topic)) {
+  const std::string source = stableName(connection.callerid);
+  if (!includesTopic(connection.topic) || !includesSource(source)) {
     return std::nullopt;
   }
   ConnectionEncoder encoder;
@@ -130,10 +134,7 @@ std::optional<ConnectionEncoder> Encoder::connect(const Connection& connection) 
   encoder.type_.type = connection.datatype;
   encoder.skip_next_ = connection.latching;
   if (rules_.source == EncodingRules::Source::kCallerId) {
-    encoder.type_.source = stableName(connection.callerid);
-    if (!includesSource(encoder.type_.source)) {
-      return std::nullopt;
-    }
+    encoder.type_.source = source;
   }
   const auto field = rules_.type_fields.find(connection.datatype);
   if (field != rules_.type_fields.end()) {

@@ -3,22 +3,19 @@
 #include <ros/console.h>
 #include <ros/serialization.h>
 #include <ros/subscribe_options.h>
-#include <ros/this_node.h>
 
 #include <boost/bind/bind.hpp>
 #include <stdexcept>
 #include <utility>
 
-#include "self_awareness/ros/stable_name.h"
-
 namespace self_awareness::ros1 {
 
 LiveEvents::LiveEvents(const ros::NodeHandle& node_handle, std::uint32_t queue_size,
-                       Handler handler, NewPublisherHandler on_new_publisher)
+                       Handler handler, ConnectionHandler on_connection)
     : node_handle_(node_handle),
       queue_size_(queue_size),
       handler_(std::move(handler)),
-      on_new_publisher_(std::move(on_new_publisher)) {}
+      on_connection_(std::move(on_connection)) {}
 
 void LiveEvents::setTopics(const std::set<std::string>& topics, const Graph& graph) {
   for (auto subscription = subscriptions_.begin(); subscription != subscriptions_.end();) {
@@ -63,12 +60,15 @@ void LiveEvents::renew(const Graph& graph) {
   }
 }
 
-void LiveEvents::setEncoder(std::shared_ptr<const Encoder> encoder,
-                            std::function<bool(const std::string& topic)> knows_own_topic) {
+void LiveEvents::setEncoder(std::shared_ptr<const Encoder> encoder, OwnOutput own_output) {
   encoder_ = std::move(encoder);
-  knows_own_topic_ = std::move(knows_own_topic);
-  connections_.clear();
-  heard_.clear();
+  own_output_ = std::move(own_output);
+  for (auto& [key, live] : connections_) {
+    live.encoder = connect(connectionFrom(*live.header, live.topic));
+    if (live.encoder) {
+      live.encoder->accept();  // the first message came before
+    }
+  }
 }
 
 void LiveEvents::forgetClosedConnections() {
@@ -85,7 +85,12 @@ void LiveEvents::onMessage(const std::string& topic, const MessageEvent& message
   const ros::M_string* key = message.getConnectionHeaderPtr().get();
   auto connection = connections_.find(key);
   if (connection == connections_.end()) {
-    connection = connections_.emplace(key, connect(topic, message)).first;
+    const boost::shared_ptr<ros::M_string> header = message.getConnectionHeaderPtr();
+    connection =
+        connections_.insert({key, {header, topic, connect(connectionFrom(*header, topic))}}).first;
+    if (connection->second.encoder) {
+      on_connection_();
+    }
   }
   std::optional<ConnectionEncoder>& encoder = connection->second.encoder;
   if (!encoder || !encoder->accept()) {
@@ -108,32 +113,17 @@ void LiveEvents::onMessage(const std::string& topic, const MessageEvent& message
   }
 }
 
-LiveEvents::LiveConnection LiveEvents::connect(const std::string& topic,
-                                               const MessageEvent& message) {
-  LiveConnection live;
-  live.header = message.getConnectionHeaderPtr();
-  const Connection connection = connectionFrom(*live.header, topic);
-  if (isOwnOutput(connection)) {
-    return live;
+std::optional<ConnectionEncoder> LiveEvents::connect(const Connection& connection) const {
+  if (own_output_.covers(connection.callerid, connection.topic)) {
+    return std::nullopt;
   }
   try {
-    live.encoder = encoder_->connect(connection);
+    return encoder_->connect(connection);
   } catch (const std::invalid_argument& error) {
-    ROS_ERROR("%s from %s: %s; its messages are left out", topic.c_str(),
+    ROS_ERROR("%s from %s: %s; its messages are left out", connection.topic.c_str(),
               connection.callerid.c_str(), error.what());
+    return std::nullopt;
   }
-  if (live.encoder && heard_.emplace(stableName(connection.callerid), topic).second) {
-    on_new_publisher_(stableName(connection.callerid), topic);
-  }
-  return live;
-}
-
-// In a manager that it shares with nodelets of the robot, the monitor has their callerid: only
-// what the model does not know from that process is its own.
-bool LiveEvents::isOwnOutput(const Connection& connection) const {
-  return connection.callerid == ros::this_node::getName() &&
-         (connection.topic == "/rosout" || connection.topic == "/diagnostics" ||
-          !knows_own_topic_(connection.topic));
 }
 
 }  // namespace self_awareness::ros1

@@ -194,6 +194,8 @@ TEST_F(EncoderTest, SourcesMayBeLeftOut) {
   ASSERT_TRUE(encoder);
   EXPECT_EQ(vocabulary_.at(encoder->id()).source, "");
   EXPECT_EQ(core::toString(vocabulary_.at(encoder->id())), "- /scan sensor_msgs/LaserScan");
+  EXPECT_TRUE(makeEncoder(rules).includesSource("/play"));
+  EXPECT_FALSE(makeEncoder(EncodingRules::defaults()).includesSource("/play"));
 }
 
 TEST_F(EncoderTest, TheFirstMessageOfALatchingConnectionIsNoEvent) {

@@ -92,13 +92,14 @@ class Encoder {
 
   /// Whether the rules let any message of the topic be an event.
   bool includesTopic(const std::string& topic) const;
+  /// Whether the rules let any message of the source be an event.
+  /// @param source the publisher's stable name
+  bool includesSource(const std::string& source) const;
   /// What encodes the connection's messages; none if the rules leave them out.
   /// @throw std::invalid_argument if a type field does not fit the message's definition
   std::optional<ConnectionEncoder> connect(const Connection& connection) const;
 
  private:
-  bool includesSource(const std::string& source) const;
-
   EncodingRules rules_;
   EventIds ids_;
   std::vector<std::regex> include_topics_;

@@ -18,6 +18,7 @@
 #include "self_awareness/core/event.h"
 #include "self_awareness/ros/encoding.h"
 #include "self_awareness/ros/graph.h"
+#include "self_awareness/ros/own_output.h"
 
 namespace self_awareness::ros1 {
 
@@ -29,14 +30,14 @@ namespace self_awareness::ros1 {
 class LiveEvents {
  public:
   using Handler = std::function<void(const core::Event&)>;
-  /// Called with the source and topic of a publisher that was not heard before.
-  using NewPublisherHandler =
-      std::function<void(const std::string& source, const std::string& topic)>;
+  /// Called with the first message of a connection, before any event, unless the rules leave it
+  /// out.
+  using ConnectionHandler = std::function<void()>;
 
   /// @param node_handle whose callback queue the messages go through
   /// @param queue_size messages a topic may have waiting; more are dropped, the oldest first
   LiveEvents(const ros::NodeHandle& node_handle, std::uint32_t queue_size, Handler handler,
-             NewPublisherHandler on_new_publisher);
+             ConnectionHandler on_connection);
 
   /// Subscribes to these topics and to no others. A topic whose type changed is subscribed to
   /// anew: roscpp holds on to the first type that it met.
@@ -46,10 +47,10 @@ class LiveEvents {
   /// of the master, roscpp hears of those that came meanwhile in no other way.
   void renew(const Graph& graph);
 
-  /// Encodes from now on with this encoder; all connections count as new ones.
-  /// @param knows_own_topic whether the model knows events of this process on a topic
-  void setEncoder(std::shared_ptr<const Encoder> encoder,
-                  std::function<bool(const std::string& topic)> knows_own_topic);
+  /// Encodes from now on with this encoder. Connections that were heard are no new ones: the next
+  /// message on a latching one is an event.
+  /// @param own_output left out
+  void setEncoder(std::shared_ptr<const Encoder> encoder, OwnOutput own_output);
   /// Forgets connections that are closed.
   void forgetClosedConnections();
 
@@ -63,24 +64,23 @@ class LiveEvents {
     std::string datatype;
   };
   struct LiveConnection {
-    boost::shared_ptr<ros::M_string> header;   // keeps the key below alive
+    boost::shared_ptr<ros::M_string> header;  // keeps the key below alive
+    std::string topic;
     std::optional<ConnectionEncoder> encoder;  // none: left out by the rules
   };
 
   void onMessage(const std::string& topic, const MessageEvent& message);
-  LiveConnection connect(const std::string& topic, const MessageEvent& message);
-  bool isOwnOutput(const Connection& connection) const;
+  std::optional<ConnectionEncoder> connect(const Connection& connection) const;
 
   ros::NodeHandle node_handle_;
   std::uint32_t queue_size_;
   Handler handler_;
-  NewPublisherHandler on_new_publisher_;
+  ConnectionHandler on_connection_;
   std::map<std::string, Subscription> subscriptions_;  // of setTopics()'s thread
   std::shared_ptr<const Encoder> encoder_;
-  std::function<bool(const std::string&)> knows_own_topic_;
+  OwnOutput own_output_;
   // All messages of a connection share one header object.
   std::unordered_map<const ros::M_string*, LiveConnection> connections_;
-  std::set<std::pair<std::string, std::string>> heard_;  // (source, topic)
   std::vector<std::uint8_t> buffer_;
 };
 
