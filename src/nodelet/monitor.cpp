@@ -15,12 +15,17 @@ namespace {
 // Messages that came before a window's end may wait in the queue for this long when it is closed.
 constexpr std::int64_t kGrace = 20000000;  // [ns]
 constexpr int kTicksPerWindow = 4;
+constexpr std::int64_t kWindowWithoutModel = 100000000;  // [ns]
 constexpr std::size_t kMostUnknownTypes = 1000;
 
 ros::Time toRosTime(std::int64_t nanoseconds) {
   ros::Time time;
   time.fromNSec(static_cast<std::uint64_t>(std::max<std::int64_t>(nanoseconds, 0)));
   return time;
+}
+
+ros::WallDuration tickFor(std::int64_t window) {
+  return ros::WallDuration(core::toSeconds(window) / kTicksPerWindow);
 }
 
 std::int64_t rosNow() {
@@ -78,6 +83,8 @@ Monitor::Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& priv
       // It may be a publisher that the master has not told of: settling cannot wait for the next
       // poll.
       [this] { discovery_->hurry(); });
+  timer_ =
+      private_node_handle_.createSteadyTimer(tickFor(kWindowWithoutModel), &Monitor::onTick, this);
   discovery_ = std::make_unique<Discovery>(*live_events_, parameters_.subscribe,
                                            parameters_.poll_interval, service_names);
   try {
@@ -87,9 +94,6 @@ Monitor::Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& priv
     model_error_ = error.what();
     ROS_ERROR("%s", error.what());
   }
-  const std::int64_t window = session_ ? session_->trained.window : 100000000;
-  timer_ = private_node_handle_.createSteadyTimer(
-      ros::WallDuration(core::toSeconds(window) / kTicksPerWindow), &Monitor::onTick, this);
   spinner_.start();
 }
 
@@ -112,7 +116,12 @@ void Monitor::startSession(ros1::TrainedModel trained) {
       std::make_unique<Session>(std::move(trained), parameters_.detector,
                                 [this](const core::Verdict& verdict) { onVerdict(verdict); });
   model_error_.clear();
+  // Whatever was said of a window was the old model's; an alarm stands until standDown() says that
+  // it does not.
+  const auto level = last_.level;
   last_ = {};
+  last_.level = level;
+  timer_.setPeriod(tickFor(session_->trained.window));
   components_.clear();
   component_of_.clear();
   Discovery::Wanted wanted;
