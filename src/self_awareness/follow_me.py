@@ -17,7 +17,8 @@ from typing import Dict, List, Mapping, Optional, Tuple, Union
 import rospkg
 import yaml
 
-from self_awareness.yaml_section import ScenarioError, Section
+from self_awareness.yaml_section import Section
+from self_awareness.yaml_section import SectionError as ScenarioError
 
 SECOND_NS = 1_000_000_000
 

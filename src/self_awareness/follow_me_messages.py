@@ -10,9 +10,8 @@ from typing import Any, Callable, Dict, Optional
 import genpy
 import roslib.message
 
-from self_awareness.follow_me import SECOND_NS, Value
+from self_awareness.follow_me import SECOND_NS, ScenarioError, Value
 from self_awareness.follow_me_component import Message
-from self_awareness.yaml_section import ScenarioError
 
 _VALUE_FIELDS = {'actionlib_msgs/GoalStatus': 'status',
                  'std_msgs/Bool': 'data',

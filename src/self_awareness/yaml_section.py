@@ -7,16 +7,16 @@ from typing import Any, Dict, List, NoReturn, Tuple, Union
 _REQUIRED = object()
 
 
-class ScenarioError(ValueError):
-    """A scenario file cannot be used; the message names the file, the key and the way out."""
+class SectionError(ValueError):
+    """A YAML file cannot be used; the message names the file, the key and the way out."""
 
 
 class Section:
     """A mapping in a YAML file.
 
     Each getter checks its value, returns `default` where the key is absent, and raises
-    ScenarioError where it is absent without a default, of another kind or out of range. Used as a
-    context manager, it raises ScenarioError at the end for keys that no getter has asked for.
+    SectionError where it is absent without a default, of another kind or out of range. Used as a
+    context manager, it raises SectionError at the end for keys that no getter has asked for.
 
     Args:
         data: what the YAML parser made of the section.
@@ -29,8 +29,8 @@ class Section:
         self._where = where
         self._known: Dict[str, None] = {}
         if not isinstance(data, dict):
-            raise ScenarioError(f'{path}: {where or "the file"}: expected keys with values, '
-                                f'found {_shown(data)}')
+            raise SectionError(f'{path}: {where or "the file"}: expected keys with values, '
+                               f'found {_shown(data)}')
         self._data = data
 
     def __contains__(self, key: str) -> bool:
@@ -48,8 +48,8 @@ class Section:
                 self.fail(str(key), f'unknown key; allowed are: {", ".join(sorted(self._known))}')
 
     def fail(self, key: str, problem: str) -> NoReturn:
-        """Raise ScenarioError about one key of this section."""
-        raise ScenarioError(f'{self._path}: {self._name(key)}: {problem}')
+        """Raise SectionError about one key of this section."""
+        raise SectionError(f'{self._path}: {self._name(key)}: {problem}')
 
     def is_number(self, key: str) -> bool:
         """Return whether the key is there and holds a number."""

@@ -10,9 +10,9 @@ import pytest
 import yaml
 
 from self_awareness import follow_me
-from self_awareness.follow_me import ComponentSpec, Duration, Hypothesis, Need, Output, Task
+from self_awareness.follow_me import (ComponentSpec, Duration, Hypothesis, Need, Output,
+                                      ScenarioError, Task)
 from self_awareness.follow_me_component import Component, Message, Publish, Wake, Work
-from self_awareness.yaml_section import ScenarioError
 
 SCENARIO = Path(__file__).resolve().parents[2] / 'config' / 'follow_me.yaml'
 MS = 1_000_000
