@@ -10,8 +10,10 @@ from typing import Any, Callable, Dict, Optional
 import genpy
 import roslib.message
 
-from self_awareness.follow_me import SECOND_NS, ScenarioError, Value
+from self_awareness.follow_me import Value
 from self_awareness.follow_me_component import Message
+from self_awareness.stamps import SECOND_NS
+from self_awareness.yaml_section import SectionError
 
 _VALUE_FIELDS = {'actionlib_msgs/GoalStatus': 'status',
                  'std_msgs/Bool': 'data',
@@ -26,14 +28,14 @@ class MessageType:
     """Makes ROS messages of one type, and reads them.
 
     Raises:
-        ScenarioError: the type is unknown here.
+        SectionError: the type is unknown here.
     """
 
     def __init__(self, datatype: str) -> None:
         message_class = roslib.message.get_message_class(datatype)
         if message_class is None:
             package = datatype.split('/')[0]
-            raise ScenarioError(f'message type {datatype} not found: install the Python messages '
+            raise SectionError(f'message type {datatype} not found: install the Python messages '
                                 f'of {package} (ros-noetic-{package.replace("_", "-")} or '
                                 f'python3-{package.replace("_", "-")}), or correct the scenario')
         self.message_class: Any = message_class

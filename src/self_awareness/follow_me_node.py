@@ -18,10 +18,12 @@ from typing import Any, Callable, List, Optional, Tuple
 
 import rospy
 
-from self_awareness.follow_me import (CLOCK_DRIFT_ONSET, SECOND_NS, ComponentSpec, Scenario,
-                                      ScenarioError, load, nanoseconds)
+from self_awareness.follow_me import ComponentSpec, Scenario, load
 from self_awareness.follow_me_component import Component, Message, Publish, Request, Wake, Work
+from self_awareness.follow_me_faults import CLOCK_DRIFT_ONSET
 from self_awareness.follow_me_messages import MessageType
+from self_awareness.stamps import SECOND_NS, nanoseconds
+from self_awareness.yaml_section import SectionError
 
 # How long a shutdown may go unnoticed while nothing else happens.
 _PATIENCE_S = 0.5
@@ -141,6 +143,6 @@ def main(argv: Optional[List[str]] = None) -> int:
         spec = scenario.component(arguments.name)
         rospy.init_node(spec.name)
         ComponentNode(scenario, spec, arguments.seed).spin()
-    except ScenarioError as error:
+    except SectionError as error:
         parser.exit(2, f'component: {error}\n')
     return 0

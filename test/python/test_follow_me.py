@@ -9,10 +9,10 @@ from typing import Any, Callable, List
 import pytest
 import yaml
 
-from self_awareness import follow_me
-from self_awareness.follow_me import (ComponentSpec, Duration, Hypothesis, Need, Output,
-                                      ScenarioError, Task)
+from self_awareness import follow_me, follow_me_faults
+from self_awareness.follow_me import ComponentSpec, Duration, Hypothesis, Need, Output, Task
 from self_awareness.follow_me_component import Component, Message, Publish, Wake, Work
+from self_awareness.yaml_section import SectionError
 
 SCENARIO = Path(__file__).resolve().parents[2] / 'config' / 'follow_me.yaml'
 MS = 1_000_000
@@ -49,7 +49,7 @@ def test_actions_can_be_told_apart_by_the_named_field(scenario: follow_me.Scenar
 
 
 def test_unknown_component_lists_those_that_exist(scenario: follow_me.Scenario) -> None:
-    with pytest.raises(ScenarioError, match=r"'plaer'.*motors, player"):
+    with pytest.raises(SectionError, match=r"'plaer'.*motors, player"):
         scenario.component('plaer')
 
 
@@ -103,7 +103,7 @@ def test_error_names_file_and_key(tmp_path: Path, data: Any, where: List[Any],
     change(section)
     path = tmp_path / 'robot.yaml'
     path.write_text(yaml.safe_dump(changed), encoding='utf-8')
-    with pytest.raises(ScenarioError, match=rf'robot\.yaml: .*{message}'):
+    with pytest.raises(SectionError, match=rf'robot\.yaml: .*{message}'):
         follow_me.load(path)
 
 
@@ -115,12 +115,12 @@ def test_error_names_file_and_key(tmp_path: Path, data: Any, where: List[Any],
 def test_no_mapping(tmp_path: Path, text: str, message: str) -> None:
     path = tmp_path / 'robot.yaml'
     path.write_text(text, encoding='utf-8')
-    with pytest.raises(ScenarioError, match=rf'robot\.yaml: {message}'):
+    with pytest.raises(SectionError, match=rf'robot\.yaml: {message}'):
         follow_me.load(path)
 
 
 def test_no_file(tmp_path: Path) -> None:
-    with pytest.raises(ScenarioError, match=r'missing\.yaml: cannot be read'):
+    with pytest.raises(SectionError, match=r'missing\.yaml: cannot be read'):
         follow_me.load(tmp_path / 'missing.yaml')
 
 
@@ -148,6 +148,7 @@ def test_stamps_pass_through_and_timers_read_the_clock_of_the_host() -> None:
     component = _component(Task((_output('relayed'),), upon='in'),
                            Task((_output('own'),), every=Duration(0.1)),
                            clock=lambda now: now - 3 * S)
+    component.start(0)
     assert component.receive(10 * S, Message('in', 7 * S)) == [Work(10 * MS, 0)]
     assert component.work_done(10 * S + MS) == [Publish(Message('relayed', 7 * S))]
     component.wake(11 * S, 1)
@@ -197,6 +198,7 @@ def test_hypothesis_is_inserted_updated_and_deleted() -> None:
     life = Hypothesis(confirm=3, discard_after=1.0, insert=0, update=1, delete=9)
     component = _component(Task((_output('out', 0.0),), upon='in', every=Duration(0.25),
                                 hypothesis=life))
+    component.start(0)
 
     def told(requests: List[Any], now: int) -> Any:
         if not any(isinstance(request, Work) for request in requests):
@@ -215,7 +217,7 @@ def test_hypothesis_is_inserted_updated_and_deleted() -> None:
 
 
 def test_clock_is_right_before_the_onset_and_drifts_smoothly_after() -> None:
-    drift = follow_me.ClockDrift('b', -0.05, 10.0, 0.3, (7.0, 11.0))
+    drift = follow_me_faults.ClockDrift('b', -0.05, 10.0, 0.3, (7.0, 11.0))
     offsets = [drift.offset_ns(t * 10 * MS) for t in range(-100, 5000)]
     assert set(offsets[:101]) == {0}
     assert max(abs(b - a) for a, b in zip(offsets, offsets[1:])) < 5 * MS
@@ -223,5 +225,5 @@ def test_clock_is_right_before_the_onset_and_drifts_smoothly_after() -> None:
 
 
 def test_starvation_grows_over_the_ramp_and_stays() -> None:
-    starvation = follow_me.Starvation(ramp=20.0, slowdown=8.0, workers_per_core=1)
+    starvation = follow_me_faults.Starvation(ramp=20.0, slowdown=8.0, workers_per_core=1)
     assert [starvation.factor(t * S) for t in (-5, 0, 10, 20, 50)] == [1.0, 1.0, 4.5, 8.0, 8.0]
