@@ -37,7 +37,7 @@ void Discovery::setWanted(Wanted wanted) {
     const std::lock_guard<std::mutex> lock(mutex_);
     wanted_ = std::move(wanted);
     restart_ = true;
-    hurry_ = true;
+    poll_now_ = true;
   }
   wake_.notify_all();
 }
@@ -46,15 +46,15 @@ void Discovery::restart() {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     restart_ = true;
-    hurry_ = true;
+    poll_now_ = true;
   }
   wake_.notify_all();
 }
 
-void Discovery::hurry() {
+void Discovery::pollNow() {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    hurry_ = true;
+    poll_now_ = true;
   }
   wake_.notify_all();
 }
@@ -76,7 +76,7 @@ std::vector<ros1::Publisher> Discovery::takeNewPublishers() {
 void Discovery::run() {
   std::unique_lock<std::mutex> lock(mutex_);
   while (!stopping_) {
-    hurry_ = false;
+    poll_now_ = false;
     const bool restart = std::exchange(restart_, false);
     const Wanted wanted = wanted_;
     asked_at_ = std::chrono::steady_clock::now();
@@ -84,7 +84,7 @@ void Discovery::run() {
     poll(wanted, restart);
     lock.lock();
     asked_at_.reset();
-    wake_.wait_for(lock, interval_, [this] { return stopping_ || hurry_; });
+    wake_.wait_for(lock, interval_, [this] { return stopping_ || poll_now_; });
   }
 }
 

@@ -56,7 +56,7 @@ class Discovery {
   /// Polls at once. Publishers that the next poll finds are there from the start.
   void restart();
   /// Polls at once, not only when the interval is over.
-  void hurry();
+  void pollNow();
   State state() const;
   /// Publishers of what is subscribed to that registered after the start and were not taken yet.
   std::vector<ros1::Publisher> takeNewPublishers();
@@ -79,7 +79,7 @@ class Discovery {
   std::vector<ros1::Publisher> new_publishers_;  // guarded by mutex_
   // While polling: since when. Guarded by mutex_.
   std::optional<std::chrono::steady_clock::time_point> asked_at_;
-  bool hurry_ = false;     // guarded by mutex_
+  bool poll_now_ = false;  // guarded by mutex_
   bool restart_ = false;   // guarded by mutex_
   bool stopping_ = false;  // guarded by mutex_
   std::thread thread_;     // last: it uses all of the above

@@ -82,7 +82,7 @@ Monitor::Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& priv
       node_handle_, parameters_.queue_size, [this](const core::Event& event) { onEvent(event); },
       // It may be a publisher that the master has not told of: settling cannot wait for the next
       // poll.
-      [this] { discovery_->hurry(); });
+      [this] { discovery_->pollNow(); });
   timer_ =
       private_node_handle_.createSteadyTimer(tickFor(kWindowWithoutModel), &Monitor::onTick, this);
   discovery_ = std::make_unique<Discovery>(*live_events_, parameters_.subscribe,

@@ -82,12 +82,11 @@ void LiveEvents::onMessage(const std::string& topic, const MessageEvent& message
   if (!encoder_) {
     return;
   }
-  const ros::M_string* key = message.getConnectionHeaderPtr().get();
-  auto connection = connections_.find(key);
+  const boost::shared_ptr<ros::M_string>& header = message.getConnectionHeaderPtr();
+  auto connection = connections_.find(header.get());
   if (connection == connections_.end()) {
-    const boost::shared_ptr<ros::M_string> header = message.getConnectionHeaderPtr();
-    connection =
-        connections_.insert({key, {header, topic, connect(connectionFrom(*header, topic))}}).first;
+    LiveConnection live{header, topic, connect(connectionFrom(*header, topic))};
+    connection = connections_.emplace(header.get(), std::move(live)).first;
     if (connection->second.encoder) {
       on_connection_();
     }

@@ -18,8 +18,8 @@ std::vector<Publisher> NewPublishers::look(
       const Publisher publisher{stableName(node), name};
       if (!started_) {
         known_.insert(publisher);
-      } else if (topics.count(name) > 0 && included(node, name) &&
-                 known_.insert(publisher).second) {
+      } else if (topics.count(name) > 0 && known_.count(publisher) == 0 && included(node, name)) {
+        known_.insert(publisher);
         found.push_back(publisher);
       }
     }

@@ -72,7 +72,7 @@ TEST_F(DiscoveryTest, TellsOfAPublisherThatRegistersLaterOnce) {
   EXPECT_TRUE(discovery->takeNewPublishers().empty());
 
   const auto knows_b = [&] {
-    discovery->hurry();
+    discovery->pollNow();
     return knows(*discovery, "/b");
   };
   ros::Publisher second = publish("/b");

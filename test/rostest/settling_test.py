@@ -37,6 +37,7 @@ class SettlingTest(MonitorCase):
             rare.publish()
             await_condition('it is heard', lambda: (
                 listener.value('monitor', 'publishers heard') == '2'), 20)
+            self.await_statuses(listener, 5)
             self.assertEqual({s.settling for s in listener.statuses[seen:]}, {False})
 
     @again_if_clock_was_set
