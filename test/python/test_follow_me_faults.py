@@ -1,4 +1,4 @@
-"""The faults of the simulated robot beyond the paper's: names, culprits, what they do; no master."""
+"""The simulated robot's faults beyond the paper's: names, culprits, effects; no ROS master."""
 from __future__ import annotations
 
 import copy
@@ -250,7 +250,7 @@ def test_other_components_are_left_alone(scenario: Scenario) -> None:
 
 
 @pytest.mark.parametrize('where, value, message', [
-    (['lat', 'components'], ['plaer'], r"lat\.components: no component 'plaer'; there are: motors"),
+    (['lat', 'components'], ['plaer'], r"lat\.components: no component 'plaer'; there are"),
     (['lat', 'delay'], 0, r'lat\.delay: expected a finite number of at least'),
     (['extra', 'name'], 'slam', r"extra\.name: 'slam' is a component"),
     (['extra', 'tasks', 0, 'publish', 0, 'topic'], 'joy', "no component publishes 'joy'"),
