@@ -31,7 +31,7 @@ def save_figure2(path: str, traces: Sequence[Trace]) -> None:
 
     columns = max(1, len(traces))
     figure = Figure(figsize=(4.2 * columns, 6.4), dpi=_DPI, constrained_layout=True)
-    axes = figure.subplots(2, columns, squeeze=False)
+    axes = figure.subplots(2, columns, squeeze=False, sharey=True)
     for column, trace in enumerate(traces):
         near = np.abs(trace.times) <= _AROUND_S
         _draw_trace(axes[0, column], trace, trace.times[near], trace.scores[near])
@@ -73,8 +73,9 @@ def save_overview(path: str, rows: Dict[str, List[Row]],
             right.plot(_LATENCIES_S, [100.0 * summary.found(crashes, limit)
                                       for limit in _LATENCIES_S], color=colour, label=name)
     left.set(title='cc1, thresholds from lax to strict', xlabel='median latency [s]', xscale='log',
-             ylabel='false alarms an hour')
+             ylabel='false alarms an hour', xlim=(_LATENCIES_S[0], _LATENCIES_S[-1]))
     left.set_yscale('symlog', linthresh=1.0)
+    left.set_ylim(bottom=-0.1)
     right.set(title='every regular component crashed in turn', xlabel='time from the crash [s]',
               xscale='log', ylabel='found [%]', ylim=(-2.0, 102.0))
     for axes in (left, right):

@@ -33,7 +33,8 @@ clear it, and none is raised in the first 5 s, by the same code for all.
 Figures are means over the seeds. A latency is that of the first alarm raised after the onset; where
 an alarm was not raised, it took for ever (–). An alarm that stood at the onset is a false one. Intervals
 are of 95 %. A source is guilty if the fault is its own; blame is counted where an alarm was raised,
-and is – for systems that name nobody.
+and is – for systems that name nobody. A system with many false alarms finds faults by chance: read
+the latencies beside the false alarms.
 
 All numbers: [{name}.csv]({name}.csv), a row for each system, seed and record.
 
