@@ -3,36 +3,27 @@
 The paper evaluates its model on a robot of 15 components that follows a person (section V-A) and
 on four errors induced in it (section V-B). `config/follow_me.yaml` describes both and explains
 every key; this module turns the file into immutable data and rejects what makes no sense. How a
-component behaves is in `follow_me_component`. Times in the data are seconds, as in the file;
+component behaves is in `follow_me_component`, what else can befall it in `follow_me_faults`. Times in the data are seconds, as in the file;
 whatever is drawn or computed from them is int nanoseconds.
 """
 from __future__ import annotations
 
 import math
 import random
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Dict, List, Mapping, Optional, Tuple, Union
 
 import rospkg
 import yaml
 
+from self_awareness.follow_me_faults import (ClockDrift, Crash, Disorder, Faults, Intruder,
+                                             Latency, Novelty, Starvation)
+from self_awareness.stamps import nanoseconds
 from self_awareness.yaml_section import ScenarioError, Section
-
-SECOND_NS = 1_000_000_000
-
-FAULT_KINDS = ('cc1', 'cc2', 'rs', 'ac')
-
-CLOCK_DRIFT_ONSET = 'clock_drift_onset'
-"""Namespace of the parameters that hold since when a host's clock drifts (s since 1970; 0: no)."""
 
 Value = Union[bool, int, str]
 """What a message says, as far as the scenario cares: command, action, on or off."""
-
-
-def nanoseconds(seconds: float) -> int:
-    """Return `seconds` as int nanoseconds, rounded to the nearest."""
-    return round(seconds * SECOND_NS)
 
 
 @dataclass(frozen=True)
@@ -56,10 +47,17 @@ class Duration:
             seconds *= self.factor
         return nanoseconds(seconds)
 
+    def times(self, factor: float) -> Duration:
+        """Return a duration that is `factor` times as long."""
+        return replace(self, median=self.median * factor)
+
 
 @dataclass(frozen=True)
 class Output:
-    """One message that a task publishes, after `takes` of processing and `waits` of waiting."""
+    """One message that a task publishes, after `takes` of processing and `waits` of waiting.
+
+    Normally there is one; `copies` more than one follow each other at once.
+    """
 
     topic: str
     datatype: str
@@ -68,6 +66,7 @@ class Output:
     latch: bool = False
     values: Tuple[Value, ...] = ()
     value_of: Optional[str] = None
+    copies: int = 1
 
 
 @dataclass(frozen=True)
@@ -123,12 +122,16 @@ class Task:
 
 @dataclass(frozen=True)
 class ComponentSpec:
-    """One component: a ROS node of that name on one of the hosts."""
+    """One component: a ROS node of that name on one of the hosts.
+
+    What it publishes leaves it `delay` seconds late, which is 0 unless there is a fault.
+    """
 
     name: str
     host: str
     tasks: Tuple[Task, ...]
     hears: Tuple[str, ...] = ()
+    delay: float = 0.0
 
     def inputs(self) -> Tuple[str, ...]:
         """Return the topics that the component subscribes to, each once."""
@@ -138,57 +141,6 @@ class ComponentSpec:
     def outputs(self) -> Dict[str, Output]:
         """Return what the component publishes: one output for each topic."""
         return {o.topic: o for task in self.tasks for o in task.publish + task.otherwise}
-
-
-@dataclass(frozen=True)
-class Crash:
-    """CC1, CC2: a component dies."""
-
-    component: str
-
-
-@dataclass(frozen=True)
-class Starvation:
-    """RS: busy workers take the CPU away, more and more over `ramp` seconds."""
-
-    ramp: float
-    slowdown: float
-    workers_per_core: int
-
-    def factor(self, elapsed_ns: int) -> float:
-        """Return by how much processing is stretched `elapsed_ns` after the onset, >= 1."""
-        grown = min(1.0, max(0.0, elapsed_ns / nanoseconds(self.ramp)))
-        return 1.0 + (self.slowdown - 1.0) * grown
-
-
-@dataclass(frozen=True)
-class ClockDrift:
-    """AC: the clock of one host drifts away and wobbles, so that stamps match only at times."""
-
-    host: str
-    drift: float
-    settle: float
-    wobble: float
-    periods: Tuple[float, ...]
-
-    def offset_ns(self, elapsed_ns: int) -> int:
-        """Return what the clock is ahead (ns, signed) `elapsed_ns` after the onset; 0 before."""
-        elapsed = elapsed_ns / SECOND_NS
-        if elapsed <= 0.0:
-            return 0
-        sines = [math.sin(2.0 * math.pi * elapsed / period) for period in self.periods]
-        drift = self.drift * (1.0 - math.exp(-elapsed / self.settle))
-        return nanoseconds(drift + self.wobble * sum(sines) / len(sines))
-
-
-@dataclass(frozen=True)
-class Faults:
-    """The four errors of the paper's section V-B."""
-
-    cc1: Crash
-    cc2: Crash
-    rs: Starvation
-    ac: ClockDrift
 
 
 @dataclass(frozen=True)
@@ -247,7 +199,7 @@ def load(path: Union[str, Path, None] = None) -> Scenario:
     with Section(data, str(path)) as top:
         components = tuple(_component(section) for section in top.sections('components'))
         datatypes = _datatypes(top, components)
-        faults = _faults(top.section('faults'), [spec.name for spec in components])
+        faults = _faults(top.section('faults'), components, datatypes)
         with top.section('simulation') as simulation:
             transport = _duration(simulation, 'transport')
             lateness = _duration(simulation, 'lateness')
@@ -341,15 +293,12 @@ def _hypothesis(section: Section) -> Hypothesis:
                           section.number('discard_after', low=1e-3), *values)
 
 
-def _faults(section: Section, names: List[str]) -> Faults:
-    crashes = []
+def _faults(section: Section, components: Tuple[ComponentSpec, ...],
+            datatypes: Mapping[str, str]) -> Faults:
     with section:
-        for kind in ('cc1', 'cc2'):
-            with section.section(kind) as crash:
-                name = crash.text('crash')
-                if name not in names:
-                    crash.fail('crash', f'no component {name!r}; there are: {", ".join(names)}')
-                crashes.append(Crash(name))
+        with section.section('cc1') as cc1, section.section('cc2') as cc2:
+            crashes = [Crash(_known(crash, 'crash', crash.text('crash'), components).name)
+                       for crash in (cc1, cc2)]
         with section.section('rs') as rs:
             starvation = Starvation(rs.number('ramp', low=1e-3), rs.number('slowdown', low=1.0),
                                     rs.integer('workers_per_core', low=1))
@@ -357,7 +306,47 @@ def _faults(section: Section, names: List[str]) -> Faults:
             drift = ClockDrift(ac.text('host', r'[ab]'), ac.number('drift'),
                                ac.number('settle', low=1e-3), ac.number('wobble', low=0.0),
                                ac.numbers('periods', low=1e-3))
-    return Faults(crashes[0], crashes[1], starvation, drift)
+        with section.section('lat') as lat:
+            late = tuple(_known(lat, 'components', name, components).name
+                         for name in lat.texts('components'))
+            latency = Latency(late, lat.number('delay', low=1e-3))
+        extra = section.section('extra')
+        intruder = _component(extra)
+        if intruder.name in [spec.name for spec in components]:
+            extra.fail('name', f'{intruder.name!r} is a component; a foreign node has another')
+        _check_topics(extra, intruder, datatypes)
+        with section.section('order') as order:
+            disordered = _known(order, 'component', order.text('component'), components)
+            if all(len(task.publish) < 2 for task in disordered.tasks):
+                order.fail('component', f'{disordered.name!r} never publishes two messages in a '
+                                        'row; choose a component that does')
+        with section.section('unknown') as unknown:
+            changed = _known(unknown, 'component', unknown.text('component'), components)
+            task = _task(unknown.section('task'))
+            _check_topics(unknown, replace(changed, tasks=(task,)), datatypes)
+            for topic in [o.topic for o in task.publish if o.topic not in changed.outputs()]:
+                unknown.fail('task', f'{changed.name!r} does not publish {topic!r} otherwise')
+    return Faults(crashes[0], crashes[1], starvation, drift, latency, Intruder(intruder),
+                  Disorder((disordered.name,)), Novelty((changed.name,), task))
+
+
+def _known(section: Section, key: str, name: str,
+           components: Tuple[ComponentSpec, ...]) -> ComponentSpec:
+    for spec in components:
+        if spec.name == name:
+            return spec
+    names = ', '.join(spec.name for spec in components)
+    section.fail(key, f'no component {name!r}; there are: {names}')
+
+
+def _check_topics(section: Section, spec: ComponentSpec, datatypes: Mapping[str, str]) -> None:
+    """Check that what a fault adds stays within the topics and types of the components."""
+    for topic in spec.inputs():
+        if topic not in datatypes:
+            section.fail('upon', f'no component publishes {topic!r}')
+    for topic, output in spec.outputs().items():
+        if datatypes.get(topic) != output.datatype:
+            section.fail('publish', f'no component publishes {topic!r} as {output.datatype}')
 
 
 def _datatypes(top: Section, components: Tuple[ComponentSpec, ...]) -> Dict[str, str]:

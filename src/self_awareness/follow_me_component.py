@@ -7,12 +7,12 @@ discrete-event simulation drive the same code; they differ only in how time pass
 from __future__ import annotations
 
 import random
-from collections import deque
+from collections import defaultdict, deque
 from dataclasses import dataclass
 from typing import Callable, Deque, Dict, List, Optional, Union
 
-from self_awareness.follow_me import (ComponentSpec, Hypothesis, InView, Need, Output, Value,
-                                      nanoseconds)
+from self_awareness.follow_me import ComponentSpec, Hypothesis, InView, Need, Output, Value
+from self_awareness.stamps import nanoseconds
 
 
 @dataclass(frozen=True)
@@ -26,9 +26,10 @@ class Message:
 
 @dataclass(frozen=True)
 class Publish:
-    """Request: publish the message now."""
+    """Request: publish the message `delay` ns from now."""
 
     message: Message
+    delay: int = 0
 
 
 @dataclass(frozen=True)
@@ -66,20 +67,24 @@ class Component:
         spec: what the component does.
         rng: the only source of randomness; the same seed and inputs give the same behaviour.
         clock: what the clock of the component's host shows (ns) at a given time (ns).
+        spec_at: what the component does instead of `spec` at a given time (ns), where a fault
+            changes that; tasks keep their index, and new ones follow.
     """
 
     def __init__(self, spec: ComponentSpec, rng: random.Random,
-                 clock: Callable[[int], int] = lambda now: now) -> None:
+                 clock: Callable[[int], int] = lambda now: now,
+                 spec_at: Optional[Callable[[int], ComponentSpec]] = None) -> None:
         self._spec = spec
         self._rng = rng
         self._clock = clock
+        self._spec_at = spec_at
         self._steps: Deque[_Step] = deque()
         # The newest waiting message of each task, in the order in which the tasks were asked for.
         self._waiting: Dict[int, Optional[Message]] = {}
         self._received: Dict[str, Message] = {}
         self._received_at: Dict[str, int] = {}
-        self._counts = [0] * len(spec.tasks)
-        self._ticks = [0] * len(spec.tasks)
+        self._counts: Dict[int, int] = defaultdict(int)
+        self._ticks: Dict[int, int] = {}
         self._views = {i: _View(task.in_view, rng) for i, task in enumerate(spec.tasks)
                        if task.in_view}
         self._tracks = {i: _Track(task.hypothesis) for i, task in enumerate(spec.tasks)
@@ -89,13 +94,17 @@ class Component:
         """Begin at the time `now`; every timer gets a phase of its own."""
         requests: List[Request] = []
         for index, task in enumerate(self._spec.tasks):
-            if task.every is not None:
+            if task.every is not None and index not in self._ticks:
                 self._ticks[index] = now + round(self._rng.random() * task.every.draw(self._rng))
                 requests.append(Wake(self._ticks[index], index))
         return requests
 
     def wake(self, now: int, timer: int) -> List[Request]:
         """Handle a timer that fires, possibly late; ticks that were missed are left out."""
+        requests = self._adapt(now)
+        if timer >= len(self._spec.tasks):
+            del self._ticks[timer]
+            return requests
         task = self._spec.tasks[timer]
         # Once at least: jitter may let a tick come before its time.
         tick = self._ticks[timer] + task.every.draw(self._rng)
@@ -103,13 +112,14 @@ class Component:
             tick += task.every.draw(self._rng)
         self._ticks[timer] = tick
         noise = nanoseconds(self._rng.gauss(0.0, task.jitter)) if task.jitter else 0
-        return [Wake(max(now + 1, tick + noise), timer)] + self._ask(timer, None, now)
+        requests.append(Wake(max(now + 1, tick + noise), timer))
+        return requests + self._ask(timer, None, now)
 
     def receive(self, now: int, message: Message) -> List[Request]:
         """Handle a message that arrives."""
         self._received[message.topic] = message
         self._received_at[message.topic] = now
-        requests: List[Request] = []
+        requests = self._adapt(now)
         for index, task in enumerate(self._spec.tasks):
             if task.upon == message.topic:
                 self._counts[index] += 1
@@ -119,10 +129,23 @@ class Component:
 
     def work_done(self, now: int) -> List[Request]:
         """Handle the end of the work that was asked for last."""
+        requests = self._adapt(now)
         step = self._steps.popleft()
-        requests: List[Request] = [Publish(Message(step.output.topic, step.stamp,
-                                                   self._value(step)))]
+        message = Message(step.output.topic, step.stamp, self._value(step))
+        requests += [Publish(message, nanoseconds(self._spec.delay))] * step.output.copies
         return requests + (self._work() if self._steps else self._next(now))
+
+    def _adapt(self, now: int) -> List[Request]:
+        """Go over to what is to be done at the time `now`; start the timers of what is new."""
+        if self._spec_at is None:
+            return []
+        spec = self._spec_at(now)
+        if spec is self._spec:
+            return []
+        self._spec = spec
+        self._waiting = {index: message for index, message in self._waiting.items()
+                         if index < len(spec.tasks)}
+        return self.start(now)
 
     def _ask(self, index: int, message: Optional[Message], now: int) -> List[Request]:
         # A timer must not replace a message that still waits: it would be lost.

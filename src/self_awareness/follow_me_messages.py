@@ -10,8 +10,9 @@ from typing import Any, Callable, Dict, Optional
 import genpy
 import roslib.message
 
-from self_awareness.follow_me import SECOND_NS, Value
+from self_awareness.follow_me import Value
 from self_awareness.follow_me_component import Message
+from self_awareness.stamps import SECOND_NS
 from self_awareness.yaml_section import ScenarioError
 
 _VALUE_FIELDS = {'actionlib_msgs/GoalStatus': 'status',

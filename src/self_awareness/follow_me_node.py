@@ -18,10 +18,11 @@ from typing import Any, Callable, List, Optional, Tuple
 
 import rospy
 
-from self_awareness.follow_me import (CLOCK_DRIFT_ONSET, SECOND_NS, ComponentSpec, Scenario, load,
-                                      nanoseconds)
+from self_awareness.follow_me import ComponentSpec, Scenario, load
 from self_awareness.follow_me_component import Component, Message, Publish, Request, Wake, Work
+from self_awareness.follow_me_faults import CLOCK_DRIFT_ONSET
 from self_awareness.follow_me_messages import MessageType
+from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness.yaml_section import ScenarioError
 
 # How long a shutdown may go unnoticed while nothing else happens.

@@ -2,25 +2,29 @@
 
 A discrete-event simulation of the scenario of `follow_me`: timers fire late by a little, work
 takes its time, messages travel, and what arrives at the recorder is a recording of normal
-operation or of one of the paper's four errors (section V-B). Nothing waits: 100 s of robot take
+operation or of a fault (`follow_me_faults`). Nothing waits: 100 s of robot take
 some seconds to write. The same seed gives the same recording.
 """
 from __future__ import annotations
 
+import functools
 import heapq
 import random
+from collections import defaultdict
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Callable, Dict, Iterator, List, NamedTuple, Optional, Tuple, Union
+from typing import Any, Callable, Dict, FrozenSet, Iterator, List, NamedTuple, Optional, Tuple, Union
 
 import genpy
 import rosbag
 
-from self_awareness.follow_me import (FAULT_KINDS, SECOND_NS, ClockDrift, Crash, Scenario,
-                                      Starvation, Value, load, nanoseconds)
+from self_awareness.follow_me import ComponentSpec, Scenario, Value, load
 from self_awareness.follow_me_component import Component, Message, Publish, Request, Wake
+from self_awareness.follow_me_faults import (Change, ClockDrift, Crash, Intruder, Silence,
+                                             Starvation, check_form, effect_of)
 from self_awareness.follow_me_messages import MessageType
 from self_awareness.output_files import replacing
+from self_awareness.stamps import SECOND_NS, nanoseconds
 
 START_S = 1_600_000_000.0
 """Start of a recording if none is given (s since 1970)."""
@@ -41,25 +45,38 @@ class Event(NamedTuple):
 
 @dataclass(frozen=True)
 class Fault:
-    """An error to induce.
+    """A fault to induce.
 
     Args:
-        kind: `cc1`, `cc2`, `rs` or `ac`.
-        onset_s: seconds after the start of the recording, >= 0; the error then stays.
+        kind: its name as in `follow_me_faults`: `cc1`, `crash:slam` and so on.
+        onset_s: seconds after the start of the recording, >= 0; the fault then stays.
 
     Raises:
-        ValueError: another kind, or an onset before the start.
+        ValueError: a name of another form, or an onset before the start.
     """
 
     kind: str
     onset_s: float
 
     def __post_init__(self) -> None:
-        if self.kind not in FAULT_KINDS:
-            raise ValueError(f'fault {self.kind!r}: choose one of {", ".join(FAULT_KINDS)}')
+        check_form(self.kind)
         if not 0.0 <= self.onset_s < float('inf'):
             raise ValueError(f'fault {self.kind}: the onset must be at least 0 s, '
                              f'not {self.onset_s}')
+
+    @property
+    def culprits(self) -> Tuple[str, ...]:
+        """Names of the nodes that are to blame, `/player`, in the robot that comes with the package.
+
+        Empty where it is no single component's fault: rs, ac, silence. For another robot, ask
+        `follow_me_faults.effect_of(scenario, kind).culprits`.
+        """
+        return effect_of(_packaged_robot(), self.kind).culprits
+
+
+@functools.lru_cache(maxsize=1)
+def _packaged_robot() -> Scenario:
+    return load()
 
 
 def events(duration_s: float, seed: int, fault: Optional[Fault] = None,
@@ -95,13 +112,12 @@ def simulate(path: Union[str, Path], duration_s: float, seed: int, fault: Option
     scenario = load() if scenario is None else scenario
     recording = _record(scenario, duration_s, seed, fault, start_s)
     types = {topic: MessageType(datatype) for topic, datatype in scenario.datatypes.items()}
-    headers = _connection_headers(scenario, types)
     told = 0
     with replacing(str(path)) as temporary, rosbag.Bag(temporary, 'w') as bag:
-        for arrival, _, message, sequence in recording:
-            bag.write('/' + message.topic, types[message.topic].to_ros(message, sequence),
-                      genpy.Time(*divmod(arrival, SECOND_NS)),
-                      connection_header=headers[message.topic])
+        writer = _Writer(bag, scenario, types)
+        for arrival, source, message, sequence in recording:
+            writer.write(source, message.topic, types[message.topic].to_ros(message, sequence),
+                         genpy.Time(*divmod(arrival, SECOND_NS)))
             elapsed = (arrival - nanoseconds(start_s)) // SECOND_NS
             if elapsed > told:
                 progress(elapsed - told)
@@ -109,18 +125,38 @@ def simulate(path: Union[str, Path], duration_s: float, seed: int, fault: Option
     progress(int(duration_s) - told)
 
 
-def _connection_headers(scenario: Scenario, types: Dict[str, MessageType]) -> Dict[str, dict]:
-    headers = {}
-    for spec in scenario.components:
-        for topic, output in spec.outputs().items():
-            message_class = types[topic].message_class
-            headers[topic] = {'topic': '/' + topic,
-                              'type': output.datatype,
-                              'md5sum': message_class._md5sum,
-                              'message_definition': message_class._full_text,
-                              'callerid': '/' + spec.name,
-                              'latching': '1' if output.latch else '0'}
-    return headers
+class _Writer:
+    """Writes to a bag with a connection for each publisher, as `rosbag record` does."""
+
+    def __init__(self, bag: rosbag.Bag, scenario: Scenario, types: Dict[str, MessageType]) -> None:
+        self._bag = bag
+        self._types = types
+        self._latched = {topic for spec in scenario.components
+                         for topic, output in spec.outputs().items() if output.latch}
+        self._connections: Dict[Tuple[str, str], Any] = {}
+
+    def write(self, source: str, topic: str, message: Any, stamp: genpy.Time) -> None:
+        """Write a message that the node `source` published on a topic of the scenario."""
+        name = '/' + topic
+        # rosbag itself has one connection for each topic, however many nodes publish there.
+        connections = self._bag._topic_connections
+        known = self._connections.get((source, name))
+        if known is not None:
+            connections[name] = known
+            self._bag.write(name, message, stamp)
+            return
+        connections.pop(name, None)
+        self._bag.write(name, message, stamp, connection_header=self._header(source, topic))
+        self._connections[source, name] = connections[name]
+
+    def _header(self, source: str, topic: str) -> Dict[str, str]:
+        message_class = self._types[topic].message_class
+        return {'topic': '/' + topic,
+                'type': message_class._type,
+                'md5sum': message_class._md5sum,
+                'message_definition': message_class._full_text,
+                'callerid': source,
+                'latching': '1' if topic in self._latched else '0'}
 
 
 _Record = Tuple[int, str, Message, int]
@@ -163,26 +199,39 @@ class _Effects:
     """What a fault does to the components, by time (ns)."""
 
     def __init__(self, scenario: Scenario, fault: Optional[Fault], start: int) -> None:
-        effect = None if fault is None else getattr(scenario.faults, fault.kind)
-        self._onset = start + nanoseconds(0.0 if fault is None else fault.onset_s)
-        self._crash = effect if isinstance(effect, Crash) else None
+        effect = None if fault is None else effect_of(scenario, fault.kind)
+        self.onset = start + nanoseconds(0.0 if fault is None else fault.onset_s)
+        self.intruder = effect.spec if isinstance(effect, Intruder) else None
+        self._dead: FrozenSet[str] = frozenset()
+        if isinstance(effect, Crash):
+            self._dead = frozenset([effect.component])
+        elif isinstance(effect, Silence):
+            self._dead = frozenset(spec.name for spec in scenario.components)
         self._starvation = effect if isinstance(effect, Starvation) else None
         self._drift = effect if isinstance(effect, ClockDrift) else None
+        self._change = effect if isinstance(effect, Change) else None
 
     def crashed(self, name: str, now: int) -> bool:
         """Return whether the component of that name is dead."""
-        return self._crash is not None and self._crash.component == name and now >= self._onset
+        return name in self._dead and now >= self.onset
 
     def slowdown(self, now: int) -> float:
         """Return by how much everything that needs a CPU is stretched, >= 1."""
-        return 1.0 if self._starvation is None else self._starvation.factor(now - self._onset)
+        return 1.0 if self._starvation is None else self._starvation.factor(now - self.onset)
 
     def clock(self, host: str) -> Callable[[int], int]:
         """Return what the clock of a host shows at a given time."""
         drift = self._drift
         if drift is None or drift.host != host:
             return lambda now: now
-        return lambda now: now + drift.offset_ns(now - self._onset)
+        return lambda now: now + drift.offset_ns(now - self.onset)
+
+    def spec_at(self, spec: ComponentSpec) -> Optional[Callable[[int], ComponentSpec]]:
+        """Return what a component does at a given time; None if that never changes."""
+        changed = spec if self._change is None else self._change.changed(spec)
+        if changed is spec:
+            return None
+        return lambda now: changed if now >= self.onset else spec
 
 
 @dataclass(frozen=True)
@@ -203,17 +252,14 @@ class _Robot:
         self._rng = random.Random(f'{seed}/transport')
         self._components: Dict[str, Component] = {}
         self._subscribers: Dict[str, List[str]] = {topic: [] for topic in scenario.datatypes}
-        self._sequences = dict.fromkeys(scenario.datatypes, 0)
-        self._arrivals: Dict[Tuple[str, str], int] = {}
+        self._sequences: Dict[Tuple[str, str], int] = defaultdict(int)
+        self._arrivals: Dict[Tuple[str, str, str], int] = {}
         self._queue: List[Tuple[int, int, Union[_Act, _Record]]] = []
         self._pushed = 0
         for spec in scenario.components:
-            component = Component(spec, random.Random(f'{seed}/{spec.name}'),
-                                  effects.clock(spec.host))
-            self._components[spec.name] = component
-            for topic in spec.inputs():
-                self._subscribers[topic].append(spec.name)
-            self._push(begin, _Act(spec.name, component.start))
+            self._add(spec, seed, begin)
+        if effects.intruder is not None:
+            self._add(effects.intruder, seed, effects.onset)
 
     def run(self, end: int) -> Iterator[_Record]:
         """Yield what arrives at the recorder before `end` (ns), in order."""
@@ -225,11 +271,19 @@ class _Robot:
                 for request in item.call(now):
                     self._schedule(item.name, request, now)
 
+    def _add(self, spec: ComponentSpec, seed: int, begin: int) -> None:
+        component = Component(spec, random.Random(f'{seed}/{spec.name}'),
+                              self._effects.clock(spec.host), self._effects.spec_at(spec))
+        self._components[spec.name] = component
+        for topic in spec.inputs():
+            self._subscribers[topic].append(spec.name)
+        self._push(begin, _Act(spec.name, component.start))
+
     def _schedule(self, name: str, request: Request, now: int) -> None:
         component = self._components[name]
         slowdown = self._effects.slowdown(now)
         if isinstance(request, Publish):
-            self._transmit(name, request.message, now)
+            self._transmit(name, request.message, now + request.delay)
         elif isinstance(request, Wake):
             late = round(self._scenario.lateness.draw(self._rng) * slowdown)
             timer = request.timer
@@ -240,19 +294,20 @@ class _Robot:
 
     def _transmit(self, name: str, message: Message, now: int) -> None:
         topic = message.topic
-        self._sequences[topic] += 1
-        arrival = self._arrival(topic, '', now)
-        self._push(arrival, (arrival, '/' + name, message, self._sequences[topic]))
+        self._sequences[name, topic] += 1
+        arrival = self._arrival(name, topic, '', now)
+        self._push(arrival, (arrival, '/' + name, message, self._sequences[name, topic]))
         for subscriber in self._subscribers[topic]:
             receive = self._components[subscriber].receive
-            self._push(self._arrival(topic, subscriber, now),
+            self._push(self._arrival(name, topic, subscriber, now),
                        _Act(subscriber, lambda at, receive=receive: receive(at, message)))
 
-    def _arrival(self, topic: str, subscriber: str, now: int) -> int:
+    def _arrival(self, publisher: str, topic: str, subscriber: str, now: int) -> int:
         # Messages do not overtake each other on one connection.
+        connection = (publisher, topic, subscriber)
         arrival = max(now + self._scenario.transport.draw(self._rng),
-                      self._arrivals.get((topic, subscriber), 0) + 1)
-        self._arrivals[(topic, subscriber)] = arrival
+                      self._arrivals.get(connection, 0) + 1)
+        self._arrivals[connection] = arrival
         return arrival
 
     def _push(self, at: int, item: Union[_Act, _Record]) -> None:

@@ -1,9 +1,14 @@
-"""Stamps are integers of nanoseconds since 1970; this is how they are shown."""
+"""Stamps are integers of nanoseconds since 1970; this is how they are made, and shown."""
 from __future__ import annotations
 
 from datetime import datetime, timezone
 
 SECOND_NS = 1_000_000_000
+
+
+def nanoseconds(seconds: float) -> int:
+    """Return `seconds` as int nanoseconds, rounded to the nearest."""
+    return round(seconds * SECOND_NS)
 
 
 def utc(stamp: int) -> str:

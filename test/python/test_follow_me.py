@@ -9,7 +9,7 @@ from typing import Any, Callable, List
 import pytest
 import yaml
 
-from self_awareness import follow_me
+from self_awareness import follow_me, follow_me_faults
 from self_awareness.follow_me import ComponentSpec, Duration, Hypothesis, Need, Output, Task
 from self_awareness.follow_me_component import Component, Message, Publish, Wake, Work
 from self_awareness.yaml_section import ScenarioError
@@ -148,6 +148,7 @@ def test_stamps_pass_through_and_timers_read_the_clock_of_the_host() -> None:
     component = _component(Task((_output('relayed'),), upon='in'),
                            Task((_output('own'),), every=Duration(0.1)),
                            clock=lambda now: now - 3 * S)
+    component.start(0)
     assert component.receive(10 * S, Message('in', 7 * S)) == [Work(10 * MS, 0)]
     assert component.work_done(10 * S + MS) == [Publish(Message('relayed', 7 * S))]
     component.wake(11 * S, 1)
@@ -197,6 +198,7 @@ def test_hypothesis_is_inserted_updated_and_deleted() -> None:
     life = Hypothesis(confirm=3, discard_after=1.0, insert=0, update=1, delete=9)
     component = _component(Task((_output('out', 0.0),), upon='in', every=Duration(0.25),
                                 hypothesis=life))
+    component.start(0)
 
     def told(requests: List[Any], now: int) -> Any:
         if not any(isinstance(request, Work) for request in requests):
@@ -215,7 +217,7 @@ def test_hypothesis_is_inserted_updated_and_deleted() -> None:
 
 
 def test_clock_is_right_before_the_onset_and_drifts_smoothly_after() -> None:
-    drift = follow_me.ClockDrift('b', -0.05, 10.0, 0.3, (7.0, 11.0))
+    drift = follow_me_faults.ClockDrift('b', -0.05, 10.0, 0.3, (7.0, 11.0))
     offsets = [drift.offset_ns(t * 10 * MS) for t in range(-100, 5000)]
     assert set(offsets[:101]) == {0}
     assert max(abs(b - a) for a, b in zip(offsets, offsets[1:])) < 5 * MS
@@ -223,5 +225,5 @@ def test_clock_is_right_before_the_onset_and_drifts_smoothly_after() -> None:
 
 
 def test_starvation_grows_over_the_ramp_and_stays() -> None:
-    starvation = follow_me.Starvation(ramp=20.0, slowdown=8.0, workers_per_core=1)
+    starvation = follow_me_faults.Starvation(ramp=20.0, slowdown=8.0, workers_per_core=1)
     assert [starvation.factor(t * S) for t in (-5, 0, 10, 20, 50)] == [1.0, 1.0, 4.5, 8.0, 8.0]

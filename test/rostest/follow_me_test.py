@@ -18,7 +18,7 @@ import rospy
 import rostest
 from sensor_msgs.msg import CompressedImage
 
-from self_awareness import follow_me
+from self_awareness import follow_me, follow_me_faults
 from self_awareness.commands import induce
 
 _RATE_HZ = 163.0
@@ -129,7 +129,7 @@ class FollowMeTest(unittest.TestCase):
         wait_for(lambda: 0.0 < self.listener.age() < 0.1, 'stamps that are right again')
 
     def test_4_busy_workers_end(self) -> None:
-        starvation = follow_me.Starvation(ramp=0.2, slowdown=2.0, workers_per_core=1)
+        starvation = follow_me_faults.Starvation(ramp=0.2, slowdown=2.0, workers_per_core=1)
         with induce.starved(starvation):
             self.assertEqual(len(multiprocessing.active_children()), len(os.sched_getaffinity(0)))
         self.assertEqual(multiprocessing.active_children(), [])

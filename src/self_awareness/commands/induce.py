@@ -21,7 +21,7 @@ import rosgraph
 import rosgraph.network
 
 from self_awareness import follow_me
-from self_awareness.follow_me import CLOCK_DRIFT_ONSET, FAULT_KINDS
+from self_awareness.follow_me_faults import CLOCK_DRIFT_ONSET, ClockDrift, Crash, Starvation
 
 _CALLER_ID = '/induce'
 
@@ -45,12 +45,12 @@ def main(argv: Optional[List[str]] = None) -> int:
     try:
         scenario = follow_me.load(arguments.scenario)
         effect = getattr(scenario.faults, arguments.kind)
-        if isinstance(effect, follow_me.Crash):
+        if isinstance(effect, Crash):
             if arguments.duration is not None:
                 parser.error('--duration: a crash does not end')
             pid = crash(effect, arguments.namespace)
             print(f'{time.time():.3f} {effect.component} killed (pid {pid})', flush=True)
-        elif isinstance(effect, follow_me.Starvation):
+        elif isinstance(effect, Starvation):
             with starved(effect):
                 _last('CPU starvation', arguments.duration)
         else:
@@ -62,7 +62,7 @@ def main(argv: Optional[List[str]] = None) -> int:
     return 0
 
 
-def crash(effect: follow_me.Crash, namespace: str = '') -> int:
+def crash(effect: Crash, namespace: str = '') -> int:
     """Kill the node of a component with SIGKILL and return its process id.
 
     Raises:
@@ -93,7 +93,7 @@ def crash(effect: follow_me.Crash, namespace: str = '') -> int:
 
 
 @contextlib.contextmanager
-def drifting(effect: follow_me.ClockDrift, namespace: str = '') -> Iterator[None]:
+def drifting(effect: ClockDrift, namespace: str = '') -> Iterator[None]:
     """Let the clock of a host drift away for the time of a with statement.
 
     Raises:
@@ -116,7 +116,7 @@ def drifting(effect: follow_me.ClockDrift, namespace: str = '') -> Iterator[None
 
 
 @contextlib.contextmanager
-def starved(effect: follow_me.Starvation) -> Iterator[None]:
+def starved(effect: Starvation) -> Iterator[None]:
     """Let a growing number of busy workers take the CPU for the time of a with statement."""
     number = effect.workers_per_core * len(os.sched_getaffinity(0))
     workers = [multiprocessing.Process(target=_work, args=(effect.ramp * i / number, os.getpid()),
@@ -185,7 +185,7 @@ def _timeout(seconds: float) -> Iterator[None]:
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog='induce', description=__doc__.split(': ', 1)[1])
-    parser.add_argument('kind', choices=FAULT_KINDS,
+    parser.add_argument('kind', choices=('cc1', 'cc2', 'rs', 'ac'),
                         help='cc1: the laser driver is killed; cc2: slam is killed; rs: busy '
                              'workers starve the CPU; ac: the clock of one host drifts away')
     parser.add_argument('--duration', type=float, metavar='S',

@@ -8,15 +8,18 @@ from typing import List, Optional, Tuple
 
 from tqdm import tqdm
 
-from self_awareness import follow_me
-from self_awareness.follow_me import FAULT_KINDS
+from self_awareness import follow_me, follow_me_faults
 from self_awareness.simulation import Fault, simulate
 
-_EPILOG = """\
+_EPILOG = f"""\
+faults:
+{follow_me_faults.described()}
+
 examples:
   simulate -o normal.bag                     one recording of 100 s
   simulate -o bags --runs 4                  bags/normal_1.bag to bags/normal_4.bag
   simulate -o bags --fault cc1@30 --seed 7   bags/cc1_7.bag, the laser's driver dies after 30 s
+  simulate -o bags --fault half:camera       bags/half_camera_1.bag
 """
 
 
@@ -59,8 +62,8 @@ def _parser() -> argparse.ArgumentParser:
                         help='number of recordings, each with the next seed (default: 1)')
     parser.add_argument('--seed', type=int, default=1, help='of the first recording (default: 1)')
     parser.add_argument('--fault', metavar='KIND[@S]',
-                        help=f'error to induce, {", ".join(FAULT_KINDS)}, and its onset in s '
-                             '(default: in the middle)')
+                        help='fault to induce, one of those below, and its onset in s (default: in '
+                             'the middle)')
     parser.add_argument('--scenario', type=Path, metavar='FILE',
                         help='the robot (default: config/follow_me.yaml of the package)')
     return parser
@@ -99,7 +102,7 @@ def _bags(output: Path, runs: int, seed: int, fault: Optional[Fault]) -> List[Tu
             raise ValueError(f'--output {output}: {runs} runs need a folder')
         bags = [(seed, output)]
     else:
-        label = 'normal' if fault is None else fault.kind
+        label = 'normal' if fault is None else fault.kind.replace(':', '_')
         bags = [(seed + i, output / f'{label}_{seed + i}.bag') for i in range(runs)]
     for _, bag in bags:
         if bag.exists():
