@@ -11,6 +11,7 @@ import pytest
 
 from self_awareness.commands import evaluate
 from self_awareness.evaluation import catalogue, report
+from self_awareness.evaluation.experiment import Results
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -70,7 +71,7 @@ def test_a_failure_leaves_the_old_page(written: Path, tmp_path: Path,
     monkeypatch.setattr(report, 'page', fail)
     monkeypatch.setattr(report, '_save_csv', lambda *_: None)
     with pytest.raises(OSError, match='no space left'):
-        report.write(tmp_path, None, None, '')
+        report.write(tmp_path, None, Results(), '')
     assert page.read_text(encoding='utf-8') == 'old'
     assert [path.name for path in tmp_path.iterdir()] == ['simulated.md']
     assert not list(written.glob('.part*'))

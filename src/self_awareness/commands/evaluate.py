@@ -12,7 +12,7 @@ from self_awareness import follow_me
 from self_awareness.commands import cli
 from self_awareness.evaluation import catalogue, experiment, report, simulated_records
 from self_awareness.evaluation.experiment import Plan
-from self_awareness.simulation import Fault
+from self_awareness.follow_me_faults import effect_of
 
 _EPILOG = """\
 scikit-learn and hmmlearn, which three of the peers need, are no part of the package:
@@ -36,7 +36,7 @@ def _simulated(arguments: argparse.Namespace, command: str) -> None:
     scenario = follow_me.load()
     faults = tuple(arguments.faults or simulated_records.default_faults(scenario))
     for kind in faults:
-        Fault(kind, 0.0)
+        effect_of(scenario, kind)
     plan = Plan(systems, faults,
                 tuple(range(arguments.seed, arguments.seed + arguments.seeds)),
                 arguments.calibration, arguments.training_share)

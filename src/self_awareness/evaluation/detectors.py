@@ -32,20 +32,22 @@ class Paper:
 
     def calibrate(self, recordings: Sequence[Recording]) -> None:
         """Choose s* by the common rule."""
-        verdicts = [self._verdicts(recording) for recording in recordings]
+        verdicts = [self._verdicts(recording.encoded(self._types)) for recording in recordings]
         self._threshold = common_threshold(
             [np.nan_to_num(verdict.score[~verdict.settling]) for verdict in verdicts])
 
     def judge(self, recording: Recording) -> Judged:
         """Judge a recording."""
-        verdicts = self._verdicts(recording)
+        encoded = recording.encoded(self._types)
+        verdicts = self._verdicts(encoded)
         alarms = [Alarm(alarm.start, alarm.end, alarm.cleared,
-                        distinct([self._types[suspect.id].source for suspect in alarm.suspects]))
+                        distinct([encoded.event_types[suspect.id].source
+                                  for suspect in alarm.suspects]))
                   for alarm in verdicts.alarms]
         return Judged(verdicts.start, verdicts.abnormal, np.nan_to_num(verdicts.score),
                       verdicts.settling, alarms, self._threshold)
 
-    def _verdicts(self, recording: Recording) -> Verdicts:
+    def _verdicts(self, encoded: Recording) -> Verdicts:
         # The window in which the recording ends is the last one, hence - 1.
-        return self._model.judge(WINDOW, self._threshold, DetectorParameters(), recording.stamps,
-                                 recording.encoded(self._types), recording.end - 1)
+        return self._model.judge(WINDOW, self._threshold, DetectorParameters(), encoded.stamps,
+                                 encoded.ids, encoded.end - 1)

@@ -28,12 +28,15 @@ class Recording:
     ids: np.ndarray
     end: int
 
-    def encoded(self, vocabulary: Sequence[EventType]) -> np.ndarray:
-        """Return the events as ids of a vocabulary, uint32; its length stands for all others."""
-        known = {event_type: index for index, event_type in enumerate(vocabulary)}
-        translation = np.array([known.get(event_type, len(vocabulary))
+    def encoded(self, vocabulary: Sequence[EventType]) -> Recording:
+        """Return the same recording with the types of a vocabulary first, as the bag reader does.
+
+        The ids behind stand for the types that are not in the vocabulary.
+        """
+        ids = {event_type: index for index, event_type in enumerate(vocabulary)}
+        translation = np.array([ids.setdefault(event_type, len(ids))
                                 for event_type in self.event_types], dtype=np.uint32)
-        return translation[self.ids]
+        return Recording(list(ids), self.stamps, translation[self.ids], self.end)
 
     def starts(self) -> np.ndarray:
         """Return the starts of the windows [ns], from the one with the first event on."""
@@ -61,8 +64,13 @@ def vocabulary(recordings: Sequence[Recording]) -> List[EventType]:
     return list(types)
 
 
+def known_ids(recording: Recording, types: Sequence[EventType]) -> np.ndarray:
+    """Return the ids of the events among types, int64; len(types) stands for all others."""
+    return np.minimum(recording.encoded(types).ids, len(types)).astype(np.int64)
+
+
 def counts(recording: Recording, types: Sequence[EventType]) -> np.ndarray:
     """Return the events of every window by type, [window, id]; the last column: all others."""
     table = np.zeros((len(recording.starts()), len(types) + 1))
-    np.add.at(table, (recording.window_of_events(), recording.encoded(types)), 1.0)
+    np.add.at(table, (recording.window_of_events(), known_ids(recording, types)), 1.0)
     return table

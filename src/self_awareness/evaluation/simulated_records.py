@@ -15,6 +15,7 @@ import numpy as np
 from self_awareness import EventType
 from self_awareness.evaluation.recording import Recording
 from self_awareness.follow_me import Scenario
+from self_awareness.follow_me_faults import effect_of
 from self_awareness.simulation import START_S, Event, Fault, events
 from self_awareness.stamps import SECOND_NS
 
@@ -72,7 +73,7 @@ def fault_record(scenario: Scenario, seed: int, kind: str) -> FaultRecord:
     fault = Fault(kind, _ONSET_S + spread)
     recording = _recorded(scenario, _derived_seed(seed, kind), RECORD_S, fault)
     onset = round((START_S + fault.onset_s) * SECOND_NS)
-    return FaultRecord(kind, recording, onset, fault.culprits)
+    return FaultRecord(kind, recording, onset, effect_of(scenario, kind).culprits)
 
 
 def encode(recorded: List[Event], scenario: Scenario, end: int) -> Recording:

@@ -1,4 +1,8 @@
-"""scikit-learn's Isolation Forest on the counts of a window's events."""
+"""scikit-learn's Isolation Forest on the counts of a window's events.
+
+Its trees split between values that were trained on: a count that never varied, as that of a topic
+with a multiple of 10 Hz and little jitter, is not looked at, and silence there is not seen.
+"""
 from __future__ import annotations
 
 from typing import Optional, Sequence

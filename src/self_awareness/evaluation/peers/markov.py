@@ -12,7 +12,7 @@ from typing import List, Optional, Sequence, Tuple
 import numpy as np
 
 from self_awareness import EventType
-from self_awareness.evaluation.recording import Recording, vocabulary
+from self_awareness.evaluation.recording import Recording, known_ids, vocabulary
 
 _SHORTEST_NS = 100_000  # delays up to it share the first bin
 _BINS_AN_OCTAVE = 2
@@ -57,7 +57,7 @@ class MarkovScorer:
 
     def _steps(self, recording: Recording) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return the types before, the current types, and the bins of the delays between."""
-        ids = recording.encoded(self._types).astype(np.int64)
+        ids = known_ids(recording, self._types)
         delays = np.maximum(np.diff(recording.stamps), _SHORTEST_NS)
         bins = (np.log2(delays / _SHORTEST_NS) * _BINS_AN_OCTAVE).astype(np.int64)
         return ids[:-1], ids[1:], np.minimum(bins, _BINS - 1)
