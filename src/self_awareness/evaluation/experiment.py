@@ -10,7 +10,7 @@ import numpy as np
 from tqdm import tqdm
 
 from self_awareness.evaluation import catalogue, simulated_records, tradeoff
-from self_awareness.evaluation.measures import Row, fault_row, normal_row
+from self_awareness.evaluation.measures import NORMAL, Row, fault_row, normal_row
 from self_awareness.evaluation.recording import Recording
 from self_awareness.evaluation.simulated_records import FaultRecord
 from self_awareness.evaluation.systems import Judged
@@ -101,14 +101,11 @@ def run_seed(plan: Plan, scenario: Scenario, seed: int) -> Results:
 
 
 def _records(plan: Plan, scenario: Scenario, seed: int) -> _Records:
-    training = [simulated_records.normal_record(scenario, seed, f'training {index}',
-                                                simulated_records.RECORD_S)
-                for index in range(1, simulated_records.TRAINING_RECORDS + 1)]
+    normal = partial(simulated_records.normal_record, scenario, seed)
     return _Records(
-        training,
-        simulated_records.normal_record(scenario, seed, 'calibration', plan.calibration_s),
-        simulated_records.normal_record(scenario, seed, 'normal',
-                                        simulated_records.NORMAL_TEST_S),
+        [normal(name, simulated_records.RECORD_S) for name in simulated_records.TRAINING_NAMES],
+        normal(simulated_records.CALIBRATION_NAME, plan.calibration_s),
+        normal(NORMAL, simulated_records.NORMAL_TEST_S),
         [simulated_records.fault_record(scenario, seed, kind) for kind in plan.faults])
 
 

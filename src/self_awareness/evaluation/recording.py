@@ -1,4 +1,4 @@
-"""Recordings of the evaluation: events in memory, cut into the windows that every system judges."""
+"""Recordings of the evaluation: events in memory, cut into the windows that all systems judge."""
 from __future__ import annotations
 
 from dataclasses import dataclass

@@ -19,22 +19,25 @@ _INTRODUCTION = """\
 
 Written by `{command}`; do not edit.
 
-Seeds {seeds}. For each seed, records of the simulated follow-me robot: {training} of {record_s:g} s to
-learn from, one of {calibration_s:g} s to choose the threshold by, one of {normal_s:g} s of normal
-operation to count false alarms on, and one of {record_s:g} s for each fault, with its onset between 50
-and 52 s. Each record has a seed of its own, the first four bytes of the SHA-256 of `SEED/RECORD`.
+Seeds {seeds}.
+
+For each seed, records of the simulated follow-me robot: {training} of {record_s:g} s to learn from,
+one of {calibration_s:g} s to choose the threshold by, one of {normal_s:g} s of normal operation to
+count false alarms on, and one of {record_s:g} s for each fault, which begins between 50 and 52 s.
+Each record has a seed of its own, the first four bytes of the SHA-256 of `SEED/RECORD`; the records
+are called {names} and as the faults.
 All systems learn from, and judge, the same records.
 
-Each system gives every window of 100 ms a score. The threshold is that of its own scores which a
-share of {rate:g} of the calibration's windows falls below; only `frequency` has limits of its own, as
-diagnostic_updater's FrequencyStatus. Three abnormal windows of five raise the alarm, 2 s without one
-clear it, and none is raised in the first 5 s, by the same code for all.
+Each system gives every window of 100 ms a score. The threshold is the one that a share of {rate:g}
+of the calibration's windows falls below; only `frequency` has limits of its own, those of
+diagnostic_updater's FrequencyStatus. Three abnormal windows of five raise the alarm, 2 s without
+one clear it, and none is raised in the first 5 s, by the same code for all.
 
-Figures are means over the seeds. A latency is that of the first alarm raised after the onset; where
-an alarm was not raised, it took for ever (–). An alarm that stood at the onset is a false one. Intervals
-are of 95 %. A source is guilty if the fault is its own; blame is counted where an alarm was raised,
-and is – for systems that name nobody. A system with many false alarms finds faults by chance: read
-the latencies beside the false alarms.
+Figures are means over the seeds, intervals of 95 %. A latency is that of the first alarm raised
+after the onset; where none was raised, it took for ever (–). An alarm that stood at the onset is a
+false one. Blame is counted where an alarm was raised and a source is guilty, and is – for systems
+that name nobody. A system with many false alarms finds faults by chance: read the latencies beside
+the false alarms.
 
 All numbers: [{name}.csv]({name}.csv), a row for each system, seed and record.
 
@@ -72,7 +75,8 @@ def page(plan: Plan, results: Results, command: str) -> str:
     lines = [_INTRODUCTION.format(
         command=command, name=NAME, rate=FALSE_POSITIVE_RATE,
         seeds=', '.join(str(seed) for seed in plan.seeds),
-        training=simulated_records.TRAINING_RECORDS, record_s=simulated_records.RECORD_S,
+        names=', '.join(f'`{name}`' for name in simulated_records.NORMAL_NAMES),
+        training=len(simulated_records.TRAINING_NAMES), record_s=simulated_records.RECORD_S,
         calibration_s=plan.calibration_s, normal_s=simulated_records.NORMAL_TEST_S),
         '## Targets', '', *tables.targets(rows), '']
     if results.trade_offs:

@@ -13,6 +13,7 @@ from typing import Dict, List, Optional, Set, Tuple
 import numpy as np
 
 from self_awareness import EventType
+from self_awareness.evaluation.measures import NORMAL
 from self_awareness.evaluation.recording import Recording
 from self_awareness.follow_me import Scenario
 from self_awareness.follow_me_faults import effect_of
@@ -25,7 +26,10 @@ RECORD_S = 100.0
 NORMAL_TEST_S = 600.0
 """Length of the record of normal operation that false alarms are counted on [s]."""
 
-TRAINING_RECORDS = 2
+TRAINING_NAMES = ('training 1', 'training 2')
+CALIBRATION_NAME = 'calibration'
+NORMAL_NAMES = (*TRAINING_NAMES, CALIBRATION_NAME, NORMAL)
+"""What the records of normal operation are called; those of faults are called as the faults."""
 
 _ONSET_S = 50.0
 _ONSET_SPREAD_S = 2.0  # the onset must have no fixed phase to the windows and the robot's timers

@@ -91,7 +91,8 @@ def _auc(rows: Sequence[Row]) -> str:
 
 
 _FAULT_TABLES = (
-    _FaultTable('Records in which the alarm was raised', lambda rows: percent(summary.found(rows))),
+    _FaultTable('Records in which the alarm was raised',
+                lambda rows: percent(summary.found(rows))),
     _FaultTable('Latency: median / 95 %', _latencies),
     _FaultTable('Windows missed after the onset: no alarm stands, and the bare verdict is normal '
                 '(FNR)', lambda rows: percent(summary.missed(rows))),
