@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from evaluation_robot import BATTERY, LASER, START, robot
 
-from self_awareness import (DetectorParameters, EncodingRules, EventType, Model, Training,
-                            follow_me, follow_me_faults, read_events)
+from self_awareness import (DetectorParameters, EncodingRules, EventType, Model, Persistence,
+                            Training, follow_me, follow_me_faults, read_events)
 from self_awareness.evaluation import measures, simulated_records, summary, tradeoff
 from self_awareness.evaluation.detectors import Paper
 from self_awareness.evaluation.recording import WINDOW, Recording, counts, known_ids
-from self_awareness.evaluation.systems import Alarm, Judged, persistent
+from self_awareness.evaluation.systems import Alarm, Judged, persistent, settling
 from self_awareness.simulation import START_S, events, simulate
 from self_awareness.stamps import SECOND_NS
 
@@ -39,6 +39,8 @@ def test_windows_and_counts_are_those_of_the_detector() -> None:
                                     recording.encoded(trained.event_types).ids, recording.end - 1)
     assert np.array_equal(recording.starts(), verdicts.start)
     assert len(verdicts.start) == 200
+    assert np.array_equal(settling(recording), verdicts.settling)
+    assert settling(recording).sum() == 51  # the first event comes after the window begins
     table = counts(recording, [BATTERY])  # all but the battery: in the last column
     assert np.array_equal(table.sum(axis=1), verdicts.events)
     assert table[:, 0].sum() == (recording.ids == 1).sum()
@@ -80,6 +82,14 @@ def test_alarms_of_peers_are_those_that_the_detector_raises() -> None:
     alarms = persistent(result.start, result.abnormal & ~result.settling)
     assert ([(a.start, a.end, a.cleared) for a in alarms]
             == [(a.start, a.end, a.cleared) for a in result.alarms])
+
+
+def test_persistence_forgets_when_cleared() -> None:
+    persistence = Persistence(DetectorParameters())
+    assert [persistence.add(True, at(window)) for window in range(3)] == [False, False, True]
+    persistence.clear()
+    assert not persistence.add(False, at(3))
+    assert [persistence.add(True, at(window)) for window in (4, 5, 6)] == [False, False, True]
 
 
 def test_events_of_the_simulation_are_encoded_as_from_its_bag(tmp_path: Path) -> None:
