@@ -15,8 +15,8 @@ from self_awareness.stamps import SECOND_NS, nanoseconds
 if TYPE_CHECKING:
     from self_awareness.follow_me import ComponentSpec, Scenario, Task
 
-CLOCK_DRIFT_ONSET = 'clock_drift_onset'
-"""Namespace of the parameters that hold since when a host's clock drifts (s since 1970; 0: no)."""
+INDUCED_FAULT = 'induced_fault'
+"""Parameter of the running robot: KIND@ONSET (s since 1970) of the fault it has, empty if none."""
 
 
 class Effect:

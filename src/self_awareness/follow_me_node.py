@@ -4,8 +4,8 @@ Drives a `follow_me_component.Component` in real time: `takes` of its work is pa
 computing, so that a busy CPU slows the node down as it would a real one, `waits` is slept.
 
 Publishes and subscribes to the component's topics (relative names). Reads the parameter
-`clock_drift_onset/HOST`, relative to the node's namespace: since when (s since 1970) the clock of
-its host drifts away, 0 for a clock that is right. Only the hosts whose clock can drift have one.
+`induced_fault`, relative to the node's namespace: `KIND@ONSET` of the fault that the robot has (s
+since 1970), empty if it has none. Only faults that a component has to know of work by it.
 """
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ import heapq
 import queue
 import random
 import time
-from typing import Any, Callable, List, Optional, Tuple
+from typing import Any, Callable, List, NamedTuple, Optional, Tuple
 
 import rospy
 
 from self_awareness.follow_me import ComponentSpec, Scenario, load
 from self_awareness.follow_me_component import Component, Message, Publish, Request, Wake, Work
-from self_awareness.follow_me_faults import CLOCK_DRIFT_ONSET
+from self_awareness.follow_me_faults import INDUCED_FAULT, Change, ClockDrift, effect_of
 from self_awareness.follow_me_messages import MessageType
 from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness.yaml_section import ScenarioError
@@ -28,6 +28,8 @@ from self_awareness.yaml_section import ScenarioError
 # How long a shutdown may go unnoticed while nothing else happens.
 _PATIENCE_S = 0.5
 _QUEUE_SIZE = 10
+# A look at a cached parameter costs little, but not nothing.
+_LOOK_EVERY_NS = 50_000_000
 
 
 class ComponentNode:
@@ -43,8 +45,9 @@ class ComponentNode:
         # One clock for everything: its steps must not disturb the timers.
         self._epoch = time.time_ns() - time.monotonic_ns()
         self._cpu_share = scenario.cpu_share
-        self._clock = _HostClock(scenario, spec.host)
-        self._component = Component(spec, random.Random(f'{seed}/{spec.name}'), self._clock)
+        self._fault = _InducedFault(scenario, spec)
+        self._component = Component(spec, random.Random(f'{seed}/{spec.name}'), self._fault.clock,
+                                    self._fault.spec_at)
         self._inbox: queue.Queue[Message] = queue.Queue()
         self._due: List[Tuple[int, int, Callable[[int], List[Request]]]] = []
         self._pushed = 0
@@ -79,7 +82,7 @@ class ComponentNode:
     def _handle(self, requests: List[Request]) -> None:
         for request in requests:
             if isinstance(request, Publish):
-                self._publish(request.message)
+                self._publish(request)
             elif isinstance(request, Wake):
                 timer = request.timer
                 self._push(request.at, lambda now, timer=timer: self._component.wake(now, timer))
@@ -94,16 +97,25 @@ class ComponentNode:
             pass
         return done
 
-    def _publish(self, message: Message) -> None:
+    def _publish(self, request: Publish) -> None:
+        if request.delay > 0:
+            self._push(self._now() + request.delay,
+                       lambda _, message=request.message: self._send(message))
+        else:
+            self._send(request.message)
+
+    def _send(self, message: Message) -> List[Request]:
         try:
             self._publishers[message.topic].publish(self._types[message.topic].to_ros(message))
         except rospy.ROSException:
             # The publishers close first when ROS shuts down.
             if not rospy.is_shutdown():
                 raise
+        return []
 
     def _received(self, ros_message: Any, topic: str) -> None:
-        self._inbox.put(self._types[topic].from_ros(topic, ros_message, self._clock(self._now())))
+        self._inbox.put(self._types[topic].from_ros(topic, ros_message,
+                                                self._fault.clock(self._now())))
 
     def _push(self, at: int, act: Callable[[int], List[Request]]) -> None:
         self._pushed += 1
@@ -113,34 +125,78 @@ class ComponentNode:
         return self._epoch + time.monotonic_ns()
 
 
-class _HostClock:
-    """What the clock of a host shows (ns) at a given time (ns)."""
+class _Disturbance(NamedTuple):
+    """What an induced fault means to one component, and the parameter that says so."""
 
-    def __init__(self, scenario: Scenario, host: str) -> None:
-        self._drift = scenario.faults.ac if scenario.faults.ac.host == host else None
-        self._parameter = f'{CLOCK_DRIFT_ONSET}/{host}'
+    parameter: str
+    spec: ComponentSpec
+    drift: Optional[ClockDrift] = None
+    onset: int = 0
+
+
+class _InducedFault:
+    """The fault that the parameter INDUCED_FAULT tells of, as far as it concerns one component."""
+
+    def __init__(self, scenario: Scenario, spec: ComponentSpec) -> None:
+        self._scenario = scenario
+        self._spec = spec
+        # Several threads ask: always replaced as a whole.
+        self._disturbance = _Disturbance('', spec)
+        self._look_at = 0
         # A parameter that is not set cannot be cached: every look at it would ask the master.
-        if self._drift is not None and not rospy.has_param(self._parameter):
-            rospy.set_param(self._parameter, 0.0)
+        if not rospy.has_param(INDUCED_FAULT):
+            rospy.set_param(INDUCED_FAULT, '')
 
-    def __call__(self, now: int) -> int:
-        if self._drift is None:
+    def clock(self, now: int) -> int:
+        """Return what the clock of the component's host shows (ns) at a given time (ns)."""
+        disturbance = self._newest(now)
+        if disturbance.drift is None:
             return now
-        onset_s = rospy.get_param_cached(self._parameter, 0.0)
-        return now + (self._drift.offset_ns(now - nanoseconds(onset_s)) if onset_s > 0.0 else 0)
+        return now + disturbance.drift.offset_ns(now - disturbance.onset)
+
+    def spec_at(self, now: int) -> ComponentSpec:
+        """Return what the component does at a given time (ns)."""
+        return self._newest(now).spec
+
+    def _newest(self, now: int) -> _Disturbance:
+        if now >= self._look_at:
+            self._look_at = now + _LOOK_EVERY_NS
+            parameter = rospy.get_param_cached(INDUCED_FAULT, '')
+            if parameter != self._disturbance.parameter:
+                self._disturbance = self._read(parameter)
+        return self._disturbance
+
+    def _read(self, parameter: str) -> _Disturbance:
+        normal = _Disturbance(parameter, self._spec)
+        if not parameter:
+            return normal
+        try:
+            kind, _, onset = parameter.partition('@')
+            effect = effect_of(self._scenario, kind)
+            disturbance = normal._replace(onset=nanoseconds(float(onset)))
+        except ValueError as error:
+            rospy.logerr(f'parameter {rospy.resolve_name(INDUCED_FAULT)}: {parameter!r} is not '
+                         f'KIND@ONSET: {error}; ignored')
+            return normal
+        if isinstance(effect, Change):
+            return disturbance._replace(spec=effect.changed(self._spec))
+        if isinstance(effect, ClockDrift) and effect.host == self._spec.host:
+            return disturbance._replace(drift=effect)
+        return normal
 
 
 def main(argv: Optional[List[str]] = None) -> int:
     """Run a component under its own name; return 0 on success, 2 if it cannot run."""
     parser = argparse.ArgumentParser(
         prog='component', description='Runs one component of the simulated follow-me robot.')
-    parser.add_argument('name', help='name of the component in the scenario')
+    parser.add_argument('name', help='name of the component, or of the intruder, in the scenario')
     parser.add_argument('--scenario', help='scenario file (default: config/follow_me.yaml)')
     parser.add_argument('--seed', type=int, default=0, help='of what is random (default: 0)')
     arguments = parser.parse_args(rospy.myargv(argv)[1:])
     try:
         scenario = load(arguments.scenario or None)
-        spec = scenario.component(arguments.name)
+        intruder = scenario.faults.extra.spec
+        spec = intruder if arguments.name == intruder.name else scenario.component(arguments.name)
         rospy.init_node(spec.name)
         ComponentNode(scenario, spec, arguments.seed).spin()
     except ScenarioError as error:

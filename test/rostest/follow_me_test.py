@@ -10,13 +10,15 @@ import threading
 import time
 import unittest
 from collections import deque
-from typing import Callable, Deque, Dict, Tuple
+from statistics import median
+from typing import Callable, Deque, Dict, Optional, Set, Tuple
 from xmlrpc.client import ServerProxy
 
 import rosgraph
 import rospy
 import rostest
-from sensor_msgs.msg import CompressedImage
+from actionlib_msgs.msg import GoalStatus
+from std_msgs.msg import Header
 
 from self_awareness import follow_me, follow_me_faults
 from self_awareness.commands import induce
@@ -24,8 +26,9 @@ from self_awareness.commands import induce
 _RATE_HZ = 163.0
 _WINDOW_S = 5.0
 _POLL_S = 0.05
-# The topic whose header stamps are looked at: its host's clock can drift.
-_STAMPED = 'camera/image'
+# Topics whose header stamps are looked at: a host's clock can drift, and what passes the stamp of
+# its input on tells how long it took.
+_STAMPED = ('camera/image', 'legs')
 # Generous: 15 processes start on a machine that may be busy with other things.
 _DEADLINE_S = 90.0
 
@@ -50,20 +53,22 @@ class Listener:
 
     def __init__(self, prefix: str, scenario: follow_me.Scenario) -> None:
         self._lock = threading.Lock()
-        self._recent: Deque[float] = deque()  # Guarded by _lock.
+        self._recent: Deque[Tuple[float, str]] = deque()  # Guarded by _lock.
         self._last: Dict[str, float] = {}  # Guarded by _lock.
-        self._age = 0.0  # Guarded by _lock.
+        self._ages = {topic: deque([0.0], maxlen=11) for topic in _STAMPED}  # Guarded by _lock.
+        self._statuses: Set[int] = set()  # Guarded by _lock.
         self._begin = time.monotonic()
         self._subscribers = [rospy.Subscriber(prefix + topic, rospy.AnyMsg, self._heard, topic)
                              for topic in scenario.datatypes]
 
-    def rate(self) -> float:
-        """Return the rate of all messages in the last seconds (Hz); 0 in the first ones."""
+    def rate(self, topic: Optional[str] = None) -> float:
+        """Return the rate of all messages, or of a topic, lately (Hz); 0 in the first seconds."""
         now = time.monotonic()
         with self._lock:
-            while self._recent and self._recent[0] < now - _WINDOW_S:
+            while self._recent and self._recent[0][0] < now - _WINDOW_S:
                 self._recent.popleft()
-            return len(self._recent) / _WINDOW_S if now - self._begin > _WINDOW_S else 0.0
+            count = sum(topic in (None, other) for _, other in self._recent)
+            return count / _WINDOW_S if now - self._begin > _WINDOW_S else 0.0
 
     def silent_for(self, topic: str, seconds: float) -> bool:
         """Return whether nothing came on a topic for so long."""
@@ -75,23 +80,31 @@ class Listener:
         with self._lock:
             return topic in self._last
 
-    def age(self) -> float:
-        """Return what the newest stamp on _STAMPED was behind the time when it came (s)."""
+    def age(self, topic: str) -> float:
+        """Return what stamps on a topic of _STAMPED are behind their arrival (s): the median."""
         with self._lock:
-            return self._age
+            return median(self._ages[topic])
+
+    def told(self, status: int) -> bool:
+        """Return whether a person hypothesis ever had that status."""
+        with self._lock:
+            return status in self._statuses
 
     def _heard(self, message: rospy.AnyMsg, topic: str) -> None:
         now = time.monotonic()
         with self._lock:
-            if topic == _STAMPED:
-                image = CompressedImage().deserialize(message._buff)
-                self._age = (rospy.Time.now() - image.header.stamp).to_sec()
-            self._recent.append(now)
+            if topic in _STAMPED:
+                # Every message with a header begins with it.
+                stamp = Header().deserialize(message._buff).stamp
+                self._ages[topic].append((rospy.Time.now() - stamp).to_sec())
+            if topic == 'person_hypotheses':
+                self._statuses.add(GoalStatus().deserialize(message._buff).status)
+            self._recent.append((now, topic))
             self._last[topic] = now
 
 
 class FollowMeTest(unittest.TestCase):
-    """The tests run in the order of their names: the last one breaks the robot."""
+    """The tests run in the order of their names: the last ones break the robot."""
 
     namespace = ''
     scenario: follow_me.Scenario
@@ -124,9 +137,36 @@ class FollowMeTest(unittest.TestCase):
             wait_for(lambda topic=topic: self.listener.heard(topic), f'a message on {topic}')
 
     def test_3_clock_drifts_and_is_set_right(self) -> None:
-        with induce.drifting(self.scenario.faults.ac, self.namespace):
-            wait_for(lambda: self.listener.age() < -0.1, 'stamps ahead of the time')
-        wait_for(lambda: 0.0 < self.listener.age() < 0.1, 'stamps that are right again')
+        with induce.disturbed('ac', self.namespace):
+            wait_for(lambda: self.listener.age('camera/image') < -0.1, 'stamps ahead of the time')
+        wait_for(lambda: 0.0 < self.listener.age('camera/image') < 0.1,
+                 'stamps that are right again')
+
+    def test_3_latency_grows_at_an_unchanged_rate(self) -> None:
+        wait_for(lambda: 0.0 < self.listener.age('legs') < 0.04, 'legs soon after the scan')
+        with induce.disturbed('lat', self.namespace):
+            wait_for(lambda: 0.06 < self.listener.age('legs') < 0.1, 'legs 60 ms later')
+            since = time.monotonic()
+            wait_for(lambda: time.monotonic() - since > _WINDOW_S
+                     and abs(self.listener.rate('legs') - 10.0) < 0.5, '10 Hz nevertheless')
+            self.assertGreater(self.listener.age('legs'), 0.06)
+        wait_for(lambda: self.listener.age('legs') < 0.04, 'legs soon after the scan again')
+
+    def test_3_rate_doubles(self) -> None:
+        with induce.disturbed('double:power_monitor', self.namespace):
+            wait_for(lambda: self.listener.rate('battery') >= 0.8, 'battery at 1 Hz')
+
+    def test_3_unknown_message_appears(self) -> None:
+        self.assertFalse(self.listener.told(GoalStatus.REJECTED))
+        with induce.disturbed('unknown', self.namespace):
+            wait_for(lambda: self.listener.told(GoalStatus.REJECTED), 'a status never seen before')
+
+    def test_3_intruder_comes_and_goes(self) -> None:
+        intruder = self.scenario.faults.extra
+        with induce.intruding(intruder, self.namespace):
+            wait_for(lambda: abs(self.listener.rate('cmd_vel') - 15.0) < 1.0, 'two who publish')
+        wait_for(lambda: self._node(intruder.spec.name) not in self._registered(), 'one leaves')
+        wait_for(lambda: abs(self.listener.rate('cmd_vel') - 5.0) < 0.5, 'one who publishes')
 
     def test_4_busy_workers_end(self) -> None:
         starvation = follow_me_faults.Starvation(ramp=0.2, slowdown=2.0, workers_per_core=1)
@@ -136,7 +176,12 @@ class FollowMeTest(unittest.TestCase):
 
     def test_5_unknown_robot_is_an_error(self) -> None:
         self.assertEqual(induce.main(['cc1', '--namespace', 'nobody']), 1)
-        self.assertEqual(induce.main(['ac', '--namespace', 'nobody']), 1)
+        for kind in ('ac', 'extra', 'silence'):
+            self.assertEqual(induce.main([kind, '--namespace', 'nobody']), 1)
+
+    def test_5_unknown_fault_is_an_error(self) -> None:
+        for kind in ('cc9', 'crash', 'crash:plaer', 'silence:player'):
+            self.assertEqual(induce.main([kind, '--namespace', self.namespace]), 1)
 
     def test_6_killed_player_silences_slam(self) -> None:
         wait_for(lambda: self.listener.heard('pose'), 'a message on pose')
@@ -149,6 +194,13 @@ class FollowMeTest(unittest.TestCase):
         self.assertEqual(pid_of(self._node('slam')), slam)
         wait_for(lambda: not self.listener.silent_for('odom', 1.0), 'a message on odom')
         self.assertEqual(induce.main(['cc1', '--namespace', self.namespace]), 1)
+
+    def test_7_silence_kills_who_is_left(self) -> None:
+        pids = [pid_of(self._node(spec.name)) for spec in self.scenario.components
+                if spec.name != 'player']
+        self.assertEqual(induce.main(['silence', '--namespace', self.namespace]), 0)
+        wait_for(lambda: not any(os.path.exists(f'/proc/{pid}') for pid in pids), 'all dead')
+        self.assertEqual(induce.main(['silence', '--namespace', self.namespace]), 1)
 
 
 if __name__ == '__main__':

@@ -1,4 +1,4 @@
-"""`rosrun self_awareness induce`: induces one of the paper's errors in the follow-me robot."""
+"""`rosrun self_awareness induce`: induces a fault in the running follow-me robot."""
 from __future__ import annotations
 
 import argparse
@@ -8,11 +8,12 @@ import multiprocessing
 import os
 import signal
 import socket
+import subprocess
 import sys
 import time
 from http.client import HTTPException
 from pathlib import Path
-from typing import Iterator, List, Optional
+from typing import ContextManager, Dict, Iterator, List, Optional
 from urllib.parse import urlparse
 from xmlrpc.client import Fault as XmlRpcFault
 from xmlrpc.client import ServerProxy
@@ -21,17 +22,22 @@ import rosgraph
 import rosgraph.network
 
 from self_awareness import follow_me
-from self_awareness.follow_me_faults import CLOCK_DRIFT_ONSET, ClockDrift, Crash, Starvation
+from self_awareness.follow_me_faults import (INDUCED_FAULT, Crash, Effect, Intruder, Silence,
+                                             Starvation, described, effect_of)
 
 _CALLER_ID = '/induce'
 
 
 class InduceError(RuntimeError):
-    """An error cannot be induced; the message says why and what to do."""
+    """A fault cannot be induced; the message says why and what to do."""
+
+
+class _DeadError(InduceError):
+    """A node is dead already."""
 
 
 def main(argv: Optional[List[str]] = None) -> int:
-    """Run the program; return 0 when the error was induced (and ended), 1 if it could not be.
+    """Run the program; return 0 when the fault was induced (and ended), 1 if it could not be.
 
     Args:
         argv: the arguments without the program's name, by default those of the process.
@@ -44,22 +50,32 @@ def main(argv: Optional[List[str]] = None) -> int:
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
         scenario = follow_me.load(arguments.scenario)
-        effect = getattr(scenario.faults, arguments.kind)
-        if isinstance(effect, Crash):
+        effect = effect_of(scenario, arguments.kind)
+        if isinstance(effect, (Crash, Silence)):
             if arguments.duration is not None:
-                parser.error('--duration: a crash does not end')
-            pid = crash(effect, arguments.namespace)
-            print(f'{time.time():.3f} {effect.component} killed (pid {pid})', flush=True)
-        elif isinstance(effect, Starvation):
-            with starved(effect):
-                _last('CPU starvation', arguments.duration)
+                parser.error('--duration: the dead do not come back')
+            if isinstance(effect, Crash):
+                pids = {effect.component: crash(effect, arguments.namespace)}
+            else:
+                pids = silence(scenario, arguments.namespace)
+            for name, pid in pids.items():
+                print(f'{time.time():.3f} {name} killed (pid {pid})', flush=True)
         else:
-            with drifting(effect, arguments.namespace):
-                _last(f'clock drift of host {effect.host}', arguments.duration)
-    except (InduceError, follow_me.ScenarioError) as error:
+            with _lasting(effect, arguments):
+                _last(f'fault {arguments.kind}', arguments.duration)
+    except (InduceError, ValueError) as error:
         print(f'induce: error: {error}', file=sys.stderr)
         return 1
     return 0
+
+
+def _lasting(effect: Effect, arguments: argparse.Namespace) -> ContextManager[None]:
+    """Return what makes a fault last as long as a with statement."""
+    if isinstance(effect, Starvation):
+        return starved(effect)
+    if isinstance(effect, Intruder):
+        return intruding(effect, arguments.namespace, arguments.scenario)
+    return disturbed(arguments.kind, arguments.namespace)
 
 
 def crash(effect: Crash, namespace: str = '') -> int:
@@ -69,6 +85,37 @@ def crash(effect: Crash, namespace: str = '') -> int:
         InduceError: the node is unknown to the master, does not answer, or runs elsewhere.
     """
     node = _resolved(namespace, effect.component)
+    pid = _pid(node)
+    _kill(node, pid)
+    return pid
+
+
+def silence(scenario: follow_me.Scenario, namespace: str = '') -> Dict[str, int]:
+    """Kill the nodes of all components and return the process ids of those that were alive.
+
+    Raises:
+        InduceError: a node is unknown to the master or runs elsewhere, or all are dead already.
+    """
+    pids: Dict[str, int] = {}
+    # At once: first all are found, which takes its time, and then they are killed.
+    for spec in scenario.components:
+        with contextlib.suppress(_DeadError):
+            pids[spec.name] = _pid(_resolved(namespace, spec.name))
+    if not pids:
+        raise InduceError('all components are dead already')
+    for name, pid in pids.items():
+        _kill(_resolved(namespace, name), pid)
+    return pids
+
+
+def _kill(node: str, pid: int) -> None:
+    try:
+        os.kill(pid, signal.SIGKILL)
+    except OSError as error:
+        raise InduceError(f'{node}: process {pid} cannot be killed: {error.strerror}') from error
+
+
+def _pid(node: str) -> int:
     try:
         uri = rosgraph.Master(_CALLER_ID).lookupNode(node)
     except rosgraph.MasterError as error:
@@ -77,42 +124,60 @@ def crash(effect: Crash, namespace: str = '') -> int:
     except (OSError, rosgraph.MasterException) as error:
         raise _no_master() from error
     if not rosgraph.network.is_local_address(urlparse(uri).hostname):
-        raise InduceError(f'{node} runs on another machine ({uri}): induce the crash there')
+        raise InduceError(f'{node} runs on another machine ({uri}): induce the fault there')
     try:
         with _timeout(5.0):
             code, text, pid = ServerProxy(uri).getPid(_CALLER_ID)
     except (OSError, HTTPException, XmlRpcFault) as error:
-        raise InduceError(f'{node} does not answer at {uri}: it is dead already') from error
+        raise _DeadError(f'{node} does not answer at {uri}: it is dead already') from error
     if code != 1 or pid <= 1:
         raise InduceError(f'{node} does not tell its process id: {text}')
-    try:
-        os.kill(pid, signal.SIGKILL)
-    except OSError as error:
-        raise InduceError(f'{node}: process {pid} cannot be killed: {error.strerror}') from error
     return pid
 
 
 @contextlib.contextmanager
-def drifting(effect: ClockDrift, namespace: str = '') -> Iterator[None]:
-    """Let the clock of a host drift away for the time of a with statement.
+def disturbed(kind: str, namespace: str = '') -> Iterator[None]:
+    """Tell the components to misbehave for the time of a with statement.
+
+    Args:
+        kind: name of a fault that components know of: a clock that drifts, latency, and so on.
+        namespace: of the robot.
 
     Raises:
-        InduceError: no robot with such a host is running.
+        InduceError: no robot is running there.
     """
-    parameter = _resolved(namespace, CLOCK_DRIFT_ONSET, effect.host)
+    parameter = _resolved(namespace, INDUCED_FAULT)
     master = rosgraph.Master(_CALLER_ID)
+    _check_running(master, parameter)
     try:
-        known = master.hasParam(parameter)
-    except (OSError, rosgraph.MasterException) as error:
-        raise _no_master() from error
-    if not known:
-        raise InduceError(f'parameter {parameter} is not set: is the robot running, and is '
-                          '--namespace right?')
-    try:
-        _set_parameter(master, parameter, time.time())
+        _set_parameter(master, parameter, f'{kind}@{time.time():.6f}')
         yield
     finally:
-        _set_parameter(master, parameter, 0.0)
+        _set_parameter(master, parameter, '')
+
+
+@contextlib.contextmanager
+def intruding(effect: Intruder, namespace: str = '', scenario: Optional[Path] = None
+              ) -> Iterator[None]:
+    """Let a foreign node publish for the time of a with statement.
+
+    Raises:
+        InduceError: no robot is running there, or the node ended by itself.
+    """
+    _check_running(rosgraph.Master(_CALLER_ID), _resolved(namespace, INDUCED_FAULT))
+    command = ['rosrun', 'self_awareness', 'component', effect.spec.name]
+    command += [] if scenario is None else ['--scenario', str(scenario)]
+    try:
+        process = subprocess.Popen(command + [f'__ns:={_resolved(namespace) or "/"}'])
+    except OSError as error:
+        raise InduceError(f'rosrun cannot be started: {error.strerror}') from error
+    try:
+        yield
+        if process.poll():
+            raise InduceError(f'the node {effect.spec.name} ended by itself, see above')
+    finally:
+        process.terminate()
+        process.wait()
 
 
 @contextlib.contextmanager
@@ -157,7 +222,18 @@ def _last(what: str, duration_s: Optional[float]) -> None:
     print(f'{time.time():.3f} {what} ends', flush=True)
 
 
-def _set_parameter(master: rosgraph.Master, parameter: str, value: float) -> None:
+def _check_running(master: rosgraph.Master, parameter: str) -> None:
+    """Check that a robot has set its parameter."""
+    try:
+        known = master.hasParam(parameter)
+    except (OSError, rosgraph.MasterException) as error:
+        raise _no_master() from error
+    if not known:
+        raise InduceError(f'parameter {parameter} is not set: is the robot running, and is '
+                          '--namespace right?')
+
+
+def _set_parameter(master: rosgraph.Master, parameter: str, value: str) -> None:
     try:
         master.setParam(parameter, value)
     except (OSError, rosgraph.MasterException) as error:
@@ -184,12 +260,13 @@ def _timeout(seconds: float) -> Iterator[None]:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog='induce', description=__doc__.split(': ', 1)[1])
-    parser.add_argument('kind', choices=('cc1', 'cc2', 'rs', 'ac'),
-                        help='cc1: the laser driver is killed; cc2: slam is killed; rs: busy '
-                             'workers starve the CPU; ac: the clock of one host drifts away')
+    parser = argparse.ArgumentParser(
+        prog='induce', description=__doc__.split(': ', 1)[1], epilog=f'faults:\n{described()}',
+        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('kind', metavar='KIND', help='one of the faults below')
     parser.add_argument('--duration', type=float, metavar='S',
-                        help='how long rs or ac last in s (default: until Ctrl-C)')
+                        help='how long it lasts in s, unless somebody dies (default: until '
+                             'Ctrl-C)')
     parser.add_argument('--namespace', default='', metavar='NS',
                         help='namespace of the robot (default: none)')
     parser.add_argument('--scenario', type=Path, metavar='FILE',
