@@ -185,11 +185,13 @@ def test_trade_off_goes_from_lax_to_strict() -> None:
     calibration = robot(60.0, 3)
     system.calibrate([calibration])
     onset = START + 30 * SECOND_NS
+    fault = tradeoff.JudgedFault(system.judge(robot(60.0, 5, silent=((10.0, 12.0), (30.0, 60.0)))),
+                                 onset)
     points = tradeoff.trade_offs('paper', 1, system.judge(calibration),
-                                 system.judge(robot(60.0, 4)),
-                                 system.judge(robot(60.0, 5, silent=((30.0, 60.0),))), onset)
+                                 system.judge(robot(60.0, 4)), {'cc1': fault})
     assert [point.step for point in points] == list(range(len(points)))
     latencies = [math.inf if point.latency_s is None else point.latency_s for point in points]
     assert latencies == sorted(latencies)
     assert latencies[0] < latencies[8] < 1.0
-    assert points[8].false_alarms == 0
+    assert points[8].false_alarms == 1  # before the onset
+    assert points[8].hours == pytest.approx((55.0 + 25.0) / 3600.0, rel=0.01)

@@ -13,8 +13,7 @@ from self_awareness.evaluation import catalogue, simulated_records, tradeoff
 from self_awareness.evaluation.measures import NORMAL, Row, fault_row, normal_row
 from self_awareness.evaluation.recording import Recording
 from self_awareness.evaluation.simulated_records import FaultRecord
-from self_awareness.evaluation.systems import Judged
-from self_awareness.evaluation.tradeoff import TradeOff
+from self_awareness.evaluation.tradeoff import JudgedFault, TradeOff
 from self_awareness.follow_me import Scenario
 from self_awareness.stamps import SECOND_NS
 
@@ -116,22 +115,21 @@ def _evaluate(name: str, share: float, seed: int, records: _Records, results: Re
     system.calibrate([records.calibration])
     normal = system.judge(records.normal)
     results.rows.append(normal_row(name, share, seed, normal))
-    judged: Dict[str, Judged] = {}
+    faults: Dict[str, JudgedFault] = {}
     for record in records.faults:
-        judged[record.kind] = system.judge(record.recording)
-        results.rows.append(fault_row(name, share, seed, record.kind, judged[record.kind],
-                                      record.onset, record.culprits, normal))
+        judged = system.judge(record.recording)
+        faults[record.kind] = JudgedFault(judged, record.onset)
+        results.rows.append(fault_row(name, share, seed, record.kind, judged, record.onset,
+                                      record.culprits, normal))
     if share < 1.0:
         return
-    onsets = {record.kind: record.onset for record in records.faults}
-    if tradeoff.FAULT in judged:
+    if tradeoff.FAULT in faults:
         results.trade_offs += tradeoff.trade_offs(
-            name, seed, system.judge(records.calibration), normal, judged[tradeoff.FAULT],
-            onsets[tradeoff.FAULT])
+            name, seed, system.judge(records.calibration), normal, faults)
     if name == PAPER_SYSTEM:
-        results.traces += [_trace(kind, judged[kind], onsets[kind])
-                           for kind in PAPER_FAULTS if kind in judged]
+        results.traces += [_trace(kind, faults[kind]) for kind in PAPER_FAULTS if kind in faults]
 
 
-def _trace(kind: str, judged: Judged, onset: int) -> Trace:
-    return Trace(kind, (judged.start - onset) / SECOND_NS, judged.score, judged.threshold)
+def _trace(kind: str, fault: JudgedFault) -> Trace:
+    judged = fault.judged
+    return Trace(kind, (judged.start - fault.onset) / SECOND_NS, judged.score, judged.threshold)

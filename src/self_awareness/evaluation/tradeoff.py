@@ -6,7 +6,7 @@ the two is equal. The thresholds are chosen on the calibration's scores, as the 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import List, Optional
+from typing import List, Mapping, Optional
 
 import numpy as np
 
@@ -24,6 +24,14 @@ _MARGINS = (0.1, 0.25, 0.5, 1.0, 2.0)  # below the lowest score, of its distance
 
 
 @dataclass(frozen=True)
+class JudgedFault:
+    """A judged record with a fault, and the fault's onset [ns]."""
+
+    judged: Judged
+    onset: int
+
+
+@dataclass(frozen=True)
 class TradeOff:
     """One system with one threshold on one seed.
 
@@ -31,8 +39,8 @@ class TradeOff:
         system: its name.
         seed: of the evaluation.
         step: which threshold, from lax to strict.
-        false_alarms: on the normal record.
-        hours: of the normal record.
+        false_alarms: in normal operation: the normal record, and those of faults before the onset.
+        hours: of normal operation.
         latency_s: of the alarm for FAULT; None: none was raised.
     """
 
@@ -44,20 +52,35 @@ class TradeOff:
     latency_s: Optional[float]
 
 
-def trade_offs(system: str, seed: int, calibration: Judged, normal: Judged, fault: Judged,
-               onset: int) -> List[TradeOff]:
-    """Judge two records again by one threshold after the other; onset: of the fault [ns]."""
-    hours = float((~normal.settling).sum()) * WINDOW / SECOND_NS / 3600.0
+def trade_offs(system: str, seed: int, calibration: Judged, normal: Judged,
+               faults: Mapping[str, JudgedFault]) -> List[TradeOff]:
+    """Judge records again by one threshold after the other.
+
+    Args:
+        system: its name.
+        seed: of the evaluation.
+        calibration: the record that the thresholds are chosen by.
+        normal: the record of normal operation.
+        faults: by kind, FAULT among them.
+    """
+    fault = faults[FAULT]
+    parts = [(normal, ~normal.settling)]
+    parts += [(other.judged, ~other.judged.settling & (other.judged.start + WINDOW <= other.onset))
+              for other in faults.values()]
+    hours = sum(int(counted.sum()) for _, counted in parts) * WINDOW / SECOND_NS / 3600.0
     result = []
     for step, threshold in enumerate(_thresholds(calibration.score[~calibration.settling])):
-        alarm = first_alarm(_alarms(fault, threshold), onset)
-        result.append(TradeOff(system, seed, step, len(_alarms(normal, threshold)), hours,
-                               None if alarm is None else (alarm.start - onset) / SECOND_NS))
+        alarm = first_alarm(_alarms(fault.judged, threshold, ~fault.judged.settling), fault.onset)
+        result.append(TradeOff(
+            system, seed, step,
+            sum(len(_alarms(judged, threshold, counted)) for judged, counted in parts), hours,
+            None if alarm is None else (alarm.start - fault.onset) / SECOND_NS))
     return result
 
 
-def _alarms(judged: Judged, threshold: float) -> List[Alarm]:
-    return persistent(judged.start, (judged.score < threshold) & ~judged.settling)
+def _alarms(judged: Judged, threshold: float, counted: np.ndarray) -> List[Alarm]:
+    """Return the alarms of the windows that count."""
+    return persistent(judged.start, (judged.score < threshold) & counted)
 
 
 def _thresholds(scores: np.ndarray) -> List[float]:

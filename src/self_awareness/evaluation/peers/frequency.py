@@ -1,9 +1,9 @@
 """Frequency monitors, as diagnostic_updater's FrequencyStatus does it.
 
 The messages of every periodic topic are counted over the last 5 s; the score of a window is the
-largest relative deviation beyond the limits, negated: 0 and more within them, -0.1 where a topic
-has 10 % less than its minimum, or 10 % more than its maximum. It is computed at the end of every
-window; diagnostic_updater looks once a second.
+largest relative deviation beyond the limits, negated: 0 within them, -0.1 where a topic has 10 %
+less than its minimum, or 10 % more than its maximum. It is computed at the end of every window;
+diagnostic_updater looks once a second.
 """
 from __future__ import annotations
 
@@ -77,12 +77,12 @@ class _FrequencyMonitor:
         raise NotImplementedError
 
     def _deviations(self, recording: Recording) -> np.ndarray:
-        """Return by how much topics are beyond their limits, [topic, window]."""
+        """Return by how much topics are beyond their limits, [topic, window], 0 within them."""
         ends = recording.starts() + WINDOW
         rows = []
         for topic, (fewest, most) in self._limits.items():
             count = messages_in_span(_stamps(recording, topic), ends)
-            rows.append(np.maximum((fewest - count) / fewest, (count - most) / most))
+            rows.append(np.maximum((fewest - count) / fewest, (count - most) / most).clip(0.0))
         return np.array(rows).reshape(len(rows), len(ends))
 
 
