@@ -3,8 +3,8 @@
 The paper evaluates its model on a robot of 15 components that follows a person (section V-A) and
 on four errors induced in it (section V-B). `config/follow_me.yaml` describes both and explains
 every key; this module turns the file into immutable data and rejects what makes no sense. How a
-component behaves is in `follow_me_component`, what else can befall it in `follow_me_faults`. Times in the data are seconds, as in the file;
-whatever is drawn or computed from them is int nanoseconds.
+component behaves is in `follow_me_component`, what can befall it in `follow_me_faults`. Times in
+the data are seconds, as in the file; whatever is drawn or computed from them is int nanoseconds.
 """
 from __future__ import annotations
 

@@ -13,7 +13,8 @@ import random
 from collections import defaultdict
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Callable, Dict, FrozenSet, Iterator, List, NamedTuple, Optional, Tuple, Union
+from typing import (Any, Callable, Dict, FrozenSet, Iterator, List, NamedTuple, Optional, Tuple,
+                    Union)
 
 import genpy
 import rosbag
@@ -66,7 +67,7 @@ class Fault:
 
     @property
     def culprits(self) -> Tuple[str, ...]:
-        """Names of the nodes that are to blame, `/player`, in the robot that comes with the package.
+        """Names of the nodes to blame, like `/player`, in the robot that comes with the package.
 
         Empty where it is no single component's fault: rs, ac, silence. For another robot, ask
         `follow_me_faults.effect_of(scenario, kind).culprits`.

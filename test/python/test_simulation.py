@@ -1,4 +1,4 @@
-"""Recordings of the simulated robot: the paper's rates, the four errors, bags; no ROS master."""
+"""Recordings of the simulated robot: the paper's rates and errors, bags; no ROS master."""
 from __future__ import annotations
 
 import os

@@ -62,8 +62,8 @@ def _parser() -> argparse.ArgumentParser:
                         help='number of recordings, each with the next seed (default: 1)')
     parser.add_argument('--seed', type=int, default=1, help='of the first recording (default: 1)')
     parser.add_argument('--fault', metavar='KIND[@S]',
-                        help='fault to induce, one of those below, and its onset in s (default: in '
-                             'the middle)')
+                        help='fault to induce, one of those below, and its onset in s '
+                             '(default: in the middle)')
     parser.add_argument('--scenario', type=Path, metavar='FILE',
                         help='the robot (default: config/follow_me.yaml of the package)')
     return parser
