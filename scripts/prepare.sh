@@ -52,9 +52,15 @@ installed() {
 }
 
 install_packages() {
-  local wanted=("${packages_debian[@]}") missing=() package
+  local wanted=("${packages_debian[@]}")
   [ ! -d /opt/ros/noetic ] || wanted=("${packages_noetic[@]}")
-  for package in "${wanted[@]}"; do
+  install_apt "${wanted[@]}"
+}
+
+# install_apt PACKAGE...
+install_apt() {
+  local missing=() package
+  for package in "$@"; do
     installed "$package" || missing+=("$package")
   done
   [ ${#missing[@]} -gt 0 ] || return 0

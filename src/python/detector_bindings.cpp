@@ -11,6 +11,7 @@
 #include "self_awareness/core/clock.h"
 #include "self_awareness/core/detector.h"
 #include "self_awareness/core/model.h"
+#include "self_awareness/core/persistence.h"
 #include "self_awareness/core/roc.h"
 #include "self_awareness/ros/model_file.h"
 
@@ -112,6 +113,17 @@ void bindVerdicts(py::module& m) {
       .def_readwrite("settle_time", &Detector::Parameters::settle_time, "[ns]")
       .def_readwrite("silence_is_abnormal", &Detector::Parameters::silence_is_abnormal)
       .def("validate", &Detector::Parameters::validate);
+
+  py::class_<core::Persistence>(m, "Persistence",
+                                "When abnormal windows are an alarm: the detector's own rule.")
+      .def(py::init([](const Detector::Parameters& parameters) {
+             return core::Persistence(parameters.persistence);
+           }),
+           py::arg("parameters"))
+      .def(
+          "add", &core::Persistence::add, py::arg("abnormal"), py::arg("end"),
+          "Takes in the next window's verdict, end: of the window [ns]; whether the alarm stands.")
+      .def("clear", &core::Persistence::clear, "Forgets all windows and the alarm.");
 
   py::class_<Alarm>(m, "Alarm", "A stretch of time in which the alarm stood.")
       .def_readonly("start", &Alarm::start, "[ns]")

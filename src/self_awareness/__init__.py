@@ -16,6 +16,7 @@ from self_awareness._core import (  # noqa: F401
     EventType,
     Model,
     ModelFileError,
+    Persistence,
     RecordedEvents,
     Recording,
     Roc,

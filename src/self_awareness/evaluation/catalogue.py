@@ -1,0 +1,69 @@
+"""The systems that can be evaluated, by name, and the libraries that some of them need."""
+from __future__ import annotations
+
+from importlib import util
+from typing import Callable, Dict, Sequence
+
+from self_awareness.evaluation.detectors import Paper
+from self_awareness.evaluation.peers.frequency import (TOLERANCE, FrequencyMonitor,
+                                                       LearnedFrequencyMonitor)
+from self_awareness.evaluation.peers.markov import MarkovScorer
+from self_awareness.evaluation.systems import Scorer, ScoringSystem, System
+
+
+def _isolation_forest() -> Scorer:
+    from self_awareness.evaluation.peers.isolation_forest import IsolationForestScorer
+    return IsolationForestScorer()
+
+
+def _one_class_svm() -> Scorer:
+    from self_awareness.evaluation.peers.one_class_svm import OneClassSvmScorer
+    return OneClassSvmScorer()
+
+
+def _hmm() -> Scorer:
+    from self_awareness.evaluation.peers.hmm import HmmScorer
+    return HmmScorer()
+
+
+_DETECTORS: Dict[str, Callable[[], System]] = {'paper': Paper}
+
+_PEERS: Dict[str, Callable[[], Scorer]] = {
+    'frequency': FrequencyMonitor,
+    'frequency_learned': LearnedFrequencyMonitor,
+    'isolation_forest': _isolation_forest,
+    'one_class_svm': _one_class_svm,
+    'hmm': _hmm,
+    'markov': MarkovScorer,
+}
+
+# Peers that are judged by limits of their own.
+_THRESHOLDS = {'frequency': -TOLERANCE}
+
+# Imported when the peer is made: nothing else of the package needs them.
+_LIBRARIES = {'isolation_forest': 'sklearn', 'one_class_svm': 'sklearn', 'hmm': 'hmmlearn'}
+
+NAMES = (*_DETECTORS, *_PEERS)
+"""Of all systems, the package's own detectors first."""
+
+
+def make(name: str) -> System:
+    """Return a new system by its name, one of NAMES."""
+    if name in _DETECTORS:
+        return _DETECTORS[name]()
+    return ScoringSystem(name, _PEERS[name](), _THRESHOLDS.get(name))
+
+
+def check_libraries(names: Sequence[str]) -> None:
+    """Check that the libraries of systems are installed.
+
+    Raises:
+        ValueError: names what is missing, and the ways out.
+    """
+    missing = [name for name in names
+               if name in _LIBRARIES and util.find_spec(_LIBRARIES[name]) is None]
+    if missing:
+        libraries = ' and '.join(dict.fromkeys(_LIBRARIES[name] for name in missing))
+        raise ValueError(f'the Python library {libraries} is not installed: let '
+                         'scripts/evaluation_env.sh install it and run this program, or leave '
+                         f'the peers out (--without {" ".join(missing)})')

@@ -1,0 +1,1 @@
+"""What others would use to watch a robot's communication: a module for each scorer of windows."""
