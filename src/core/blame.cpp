@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <utility>
 
 namespace self_awareness::core {
 namespace {
 
-constexpr std::size_t kMostSuspects = 5;
 // A silence that one gap in a hundred reaches is worth naming once the window is abnormal.
 const double kRareSilence = std::log(0.01);
 // Events that score less than this share of what training lets expect are worth naming.
@@ -51,30 +49,6 @@ std::map<EventId, SeenInWindow> eventsByType(const Window& window) {
 }
 
 }  // namespace
-
-std::string describe(const Suspect& suspect) {
-  char text[160];
-  switch (suspect.reason) {
-    case Suspect::Reason::kSilent:
-      std::snprintf(text, sizeof text, "silent for %.2f s, usually every %.3f to %.3f s",
-                    suspect.silence, suspect.usual_shortest, suspect.usual_longest);
-      break;
-    case Suspect::Reason::kLate:
-      std::snprintf(text, sizeof text, "came after %.2f s, usually every %.3f to %.3f s",
-                    suspect.silence, suspect.usual_shortest, suspect.usual_longest);
-      break;
-    case Suspect::Reason::kUnknown:
-      std::snprintf(text, sizeof text, "never seen in training, %zu in this window",
-                    suspect.events);
-      break;
-    case Suspect::Reason::kUnusual:
-      std::snprintf(text, sizeof text,
-                    "at unusual delays after the others: score %.3g, usually about %.3g",
-                    suspect.score, suspect.usual_score);
-      break;
-  }
-  return text;
-}
 
 Blame::Blame(std::shared_ptr<const Model> model) : model_(std::move(model)) {
   const double bin_size = toSeconds(model_->binning().bin_size);

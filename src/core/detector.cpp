@@ -1,7 +1,5 @@
 #include "self_awareness/core/detector.h"
 
-#include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -16,19 +14,14 @@ void Detector::Parameters::validate() const {
   }
 }
 
-Detector::Detector(std::shared_ptr<const Model> model, std::int64_t window,
-                   std::optional<double> threshold, const Parameters& parameters, Handler handler)
-    : threshold_(threshold),
+Detector::Detector(std::unique_ptr<Judge> judge, std::int64_t window, const Parameters& parameters,
+                   Handler handler)
+    : judge_(std::move(judge)),
       parameters_(parameters),
       handler_(std::move(handler)),
-      scorer_(model),
-      windows_(window, [this](const Window& closed) { judge(closed); }),
-      persistence_(parameters.persistence),
-      blame_(std::move(model)) {
+      windows_(window, [this](const Window& closed) { this->judge(closed); }),
+      persistence_(parameters.persistence) {
   parameters_.validate();
-  if (threshold_ && !std::isfinite(*threshold_)) {
-    throw std::invalid_argument("the threshold must be a finite number");
-  }
 }
 
 bool Detector::add(const Event& event) {
@@ -41,7 +34,7 @@ bool Detector::add(const Event& event) {
   }
   last_stamp_ = event.stamp;
   windows_.advance(event.stamp);  // the windows before it are judged without it
-  windows_.add(scorer_.score(event));
+  windows_.add(judge_->add(event));
   return !clock_step;
 }
 
@@ -54,9 +47,9 @@ void Detector::finish() {
 }
 
 void Detector::restart() {
-  scorer_.restart();
+  judge_->restart();
   windows_.restart();
-  persistence_.clear();
+  clearAlarm();
   last_stamp_.reset();
 }
 
@@ -64,24 +57,44 @@ void Detector::settle(std::int64_t now) {
   settled_at_ = now + parameters_.settle_time;
 }
 
+void Detector::clearAlarm() {
+  persistence_.clear();
+  suspicion_ = false;
+}
+
 void Detector::judge(const Window& window) {
   const std::int64_t end = window.start + windows_.length();
+  Judgement judgement = judge_->judge(window, end);
+  const bool unknown = window.unknown() > 0;
+  if (unknown && parameters_.unknown != UnknownEvents::kIgnore) {
+    judgement.evidence += (judgement.evidence.empty() ? "" : ", ") + std::string("unknown events");
+    judgement.suspicious = true;
+  }
+  if (unknown && parameters_.unknown == UnknownEvents::kError && judgement.threshold) {
+    judgement.abnormal = true;
+    judgement.certain = true;
+  }
+
   Verdict verdict;
   verdict.window = &window;
-  verdict.score = window.score();
-  verdict.threshold = threshold_;
-  if (threshold_) {
-    verdict.abnormal = verdict.score ? *verdict.score < *threshold_
-                                     : parameters_.silence_is_abnormal && 0 < *threshold_;
-  }
+  verdict.score = judgement.score;
+  verdict.threshold = judgement.threshold;
+  verdict.abnormal = judgement.abnormal;
   verdict.settling = window.start < settled_at_;
+  verdict.evidence = judgement.evidence;
   const bool counts = verdict.abnormal && !verdict.settling;
-  const bool before = persistence_.raised();
-  verdict.alarm = persistence_.add(counts, end);
-  verdict.changed = verdict.alarm != before;
-  if (counts) {
-    verdict.suspects = blame_.suspects(window, scorer_.lastSeen(), end);
+  const bool stood = persistence_.raised();
+  const bool was_suspicion = suspicion_;
+  verdict.alarm = persistence_.add(counts, end, counts && judgement.certain);
+  if (judgement.threshold && !verdict.settling && (counts || judgement.suspicious)) {
+    suspicion_ = true;
+    suspicious_at_ = end;
+    verdict.suspects = judge_->suspects(window, end);
+  } else if (end - suspicious_at_ >= parameters_.persistence.hold_time) {
+    suspicion_ = false;
   }
+  verdict.suspicion = suspicion_ && !verdict.alarm;
+  verdict.changed = verdict.alarm != stood || verdict.suspicion != (was_suspicion && !stood);
   handler_(verdict);
 }
 

@@ -21,7 +21,7 @@ Persistence::Persistence(const Parameters& parameters) : parameters_(parameters)
   parameters_.validate();
 }
 
-bool Persistence::add(bool abnormal, std::int64_t end) {
+bool Persistence::add(bool abnormal, std::int64_t end, bool certain) {
   recent_.push_back(abnormal);
   if (recent_.size() > static_cast<std::size_t>(parameters_.alarm_of)) {
     recent_.pop_front();
@@ -29,7 +29,7 @@ bool Persistence::add(bool abnormal, std::int64_t end) {
   if (abnormal) {
     last_abnormal_ = end;
   }
-  if (std::count(recent_.begin(), recent_.end(), true) >= parameters_.alarm_windows) {
+  if (certain || std::count(recent_.begin(), recent_.end(), true) >= parameters_.alarm_windows) {
     raised_ = true;
   } else if (raised_ && end - last_abnormal_ >= parameters_.hold_time) {
     raised_ = false;

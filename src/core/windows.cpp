@@ -6,14 +6,11 @@
 #include <utility>
 
 namespace self_awareness::core {
-namespace {
 
 std::int64_t floorToGrid(std::int64_t stamp, std::int64_t length) {
   const std::int64_t remainder = stamp % length;
   return stamp - (remainder < 0 ? remainder + length : remainder);
 }
-
-}  // namespace
 
 std::optional<double> Window::score() const {
   if (events.empty()) {

@@ -9,6 +9,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "self_awareness/core/evidence_judge.h"
+#include "self_awareness/core/paper_judge.h"
+
 namespace self_awareness {
 namespace {
 
@@ -38,15 +41,29 @@ std::int64_t steadyNow() {
 
 }  // namespace
 
-Monitor::Session::Session(ros1::TrainedModel trained_model,
-                          const core::Detector::Parameters& parameters,
+Monitor::Session::Session(ros1::TrainedModel trained_model, const MonitorParameters& parameters,
                           core::Detector::Handler handler)
     : trained(std::move(trained_model)),
+      calibrated(parameters.method == MonitorParameters::Method::kPaper
+                     ? trained.calibration.has_value()
+                     : trained.evidence_calibration.has_value()),
+      graph(std::make_shared<core::SourceGraph>(trained.graph)),
       vocabulary(trained.statistics.vocabulary()),
       encoder(std::make_shared<ros1::Encoder>(
           trained.encoding, [this](const core::EventType& type) { return intern(type); })),
-      detector(std::make_shared<core::Model>(trained.statistics), trained.window,
-               trained.threshold(), parameters, std::move(handler)) {}
+      detector(makeJudge(parameters), trained.window, parameters.detector, std::move(handler)) {}
+
+std::unique_ptr<core::Judge> Monitor::Session::makeJudge(
+    const MonitorParameters& parameters) const {
+  if (parameters.method == MonitorParameters::Method::kPaper) {
+    return std::make_unique<core::PaperJudge>(std::make_shared<core::Model>(trained.statistics),
+                                              trained.threshold(),
+                                              parameters.detector.silence_is_abnormal);
+  }
+  return std::make_unique<core::EvidenceJudge>(
+      std::make_shared<core::EvidenceModel>(trained.evidence[0], trained.evidence[1]),
+      trained.limits(), trained.window, graph);
+}
 
 // A type field with ever new values must not fill the memory of a robot that runs for months.
 core::EventId Monitor::Session::intern(const core::EventType& type) {
@@ -111,16 +128,24 @@ void Monitor::load() {
   startSession(ros1::loadModel(parameters_.model));
 }
 
+std::unique_ptr<Monitor::Session> Monitor::makeSession(ros1::TrainedModel trained) {
+  try {
+    return std::make_unique<Session>(std::move(trained), parameters_,
+                                     [this](const core::Verdict& verdict) { onVerdict(verdict); });
+  } catch (const std::invalid_argument& error) {
+    throw ros1::ModelFileError(parameters_.model + ": " + error.what());
+  }
+}
+
 void Monitor::startSession(ros1::TrainedModel trained) {
-  session_ =
-      std::make_unique<Session>(std::move(trained), parameters_.detector,
-                                [this](const core::Verdict& verdict) { onVerdict(verdict); });
+  session_ = makeSession(std::move(trained));
   model_error_.clear();
   // Whatever was said of a window was the old model's; an alarm stands until standDown() says that
   // it does not.
   const auto level = last_.level;
   last_ = {};
   last_.level = level;
+  graph_.reset();
   timer_.setPeriod(tickFor(session_->trained.window));
   components_.clear();
   component_of_.clear();
@@ -139,7 +164,7 @@ void Monitor::startSession(ros1::TrainedModel trained) {
   discovery_->setWanted(std::move(wanted));
   ROS_INFO("model %s: %zu event types of %zu components, %s", parameters_.model.c_str(),
            component_of_.size(), components_.size(),
-           session_->trained.calibration ? "calibrated" : "not calibrated, it will never alarm");
+           session_->calibrated ? "calibrated" : "not calibrated, it will never alarm");
 }
 
 void Monitor::onEvent(const core::Event& event) {
@@ -199,15 +224,17 @@ void Monitor::restart() {
 void Monitor::onVerdict(const core::Verdict& verdict) {
   const std::int64_t end = verdict.window->start + session_->trained.window;
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  if (!verdict.suspects.empty() || !verdict.alarm) {
+  if (!verdict.suspects.empty() || !(verdict.alarm || verdict.suspicion)) {
     suspects_ = toMessages(verdict.suspects);
   }
-  if (verdict.changed && verdict.alarm) {
-    alarm_since_ = end;
+  if (verdict.changed) {
+    level_since_ = end;
   }
   last_.header.stamp = toRosTime(end);
-  last_.level =
-      verdict.alarm ? self_awareness::SelfAwareness::ERROR : self_awareness::SelfAwareness::OK;
+  last_.level = levelOf(verdict);
+  if (!verdict.evidence.empty() || last_.level == self_awareness::SelfAwareness::OK) {
+    last_.evidence = verdict.evidence;
+  }
   last_.message = wording(verdict);
   last_.window_start = toRosTime(verdict.window->start);
   last_.window.fromNSec(session_->trained.window);
@@ -222,6 +249,8 @@ void Monitor::onVerdict(const core::Verdict& verdict) {
   if (verdict.changed) {
     if (verdict.alarm) {
       ROS_ERROR("%s", last_.message.c_str());
+    } else if (verdict.suspicion) {
+      ROS_WARN("%s", last_.message.c_str());
     } else {
       ROS_INFO("%s", last_.message.c_str());
     }
@@ -230,12 +259,21 @@ void Monitor::onVerdict(const core::Verdict& verdict) {
   }
 }
 
+std::uint8_t Monitor::levelOf(const core::Verdict& verdict) {
+  if (verdict.alarm) {
+    return self_awareness::SelfAwareness::ERROR;
+  }
+  return verdict.suspicion ? self_awareness::SelfAwareness::WARN
+                           : self_awareness::SelfAwareness::OK;
+}
+
 std::string Monitor::wording(const core::Verdict& verdict) const {
   if (!verdict.threshold) {
     return "not calibrated: find a threshold with rosrun self_awareness calibrate";
   }
-  if (verdict.alarm) {
-    std::string message = "abnormal communication";
+  if (verdict.alarm || verdict.suspicion) {
+    std::string message = verdict.alarm ? "abnormal communication" : "suspicion of a fault";
+    message += " (" + last_.evidence + ")";
     if (!suspects_.empty()) {
       message += ", " + ros1::describe(suspects_.front());
     }
@@ -272,6 +310,7 @@ void Monitor::standDown(const std::string& message) {
   last_.message = message;
   last_.abnormal = false;
   last_.suspects.clear();
+  last_.evidence.clear();
   last_.header.stamp = ros::Time::now();
   if (stood) {
     ROS_INFO("%s", message.c_str());
@@ -280,17 +319,27 @@ void Monitor::standDown(const std::string& message) {
   publishDiagnostics();
 }
 
+// Whoever was killed, or has gone since, is still upstream of its victims: edges are added only.
+void Monitor::refreshGraph(const std::shared_ptr<const ros1::Graph>& graph) {
+  if (!session_ || !graph || graph == graph_) {
+    return;
+  }
+  graph_ = graph;
+  ros1::addEdges(*graph, ros::this_node::getName(), *session_->graph);
+}
+
 void Monitor::publishDiagnostics() {
   const ros::SteadyTime now = ros::SteadyTime::now();
   const double elapsed = std::max((now - last_report_).toSec(), 1e-3);
   const Discovery::State discovered = discovery_->state();
+  refreshGraph(discovered.graph);
   ros1::MonitorState state;
   state.model = parameters_.model;
   state.model_error = model_error_;
-  state.calibrated = session_ && session_->trained.calibration;
+  state.calibrated = session_ && session_->calibrated;
   state.started = session_ && !last_.message.empty();
   state.last = last_;
-  state.alarm_for = core::toSeconds(rosNow() - alarm_since_);
+  state.level_for = core::toSeconds(rosNow() - level_since_);
   for (auto& [name, heard] : components_) {
     ros1::MonitorState::Component& component = state.components[name];
     if (heard.last) {

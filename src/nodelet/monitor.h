@@ -51,12 +51,16 @@ class Monitor {
  private:
   /// What belongs to one loaded model.
   struct Session {
-    Session(ros1::TrainedModel trained, const core::Detector::Parameters& parameters,
+    /// @throw std::invalid_argument if the calibration does not fit the model
+    Session(ros1::TrainedModel trained, const MonitorParameters& parameters,
             core::Detector::Handler handler);
 
     core::EventId intern(const core::EventType& type);
+    std::unique_ptr<core::Judge> makeJudge(const MonitorParameters& parameters) const;
 
     ros1::TrainedModel trained;
+    bool calibrated;
+    std::shared_ptr<core::SourceGraph> graph;  // of training, and what the master adds
     core::Vocabulary vocabulary;  // of the model, followed by unknown event types as they appear
     std::shared_ptr<const ros1::Encoder> encoder;
     core::Detector detector;
@@ -67,6 +71,8 @@ class Monitor {
   };
 
   void load();
+  /// @throw ros1::ModelFileError if the model's calibration does not fit it
+  std::unique_ptr<Session> makeSession(ros1::TrainedModel trained);
   void startSession(ros1::TrainedModel trained);
 
   void onEvent(const core::Event& event);
@@ -83,8 +89,10 @@ class Monitor {
   /// Publishes a change of level that no window brought about.
   void standDown(const std::string& message);
   void publishDiagnostics();
+  void refreshGraph(const std::shared_ptr<const ros1::Graph>& graph);
   std::vector<self_awareness::Suspect> toMessages(
       const std::vector<core::Suspect>& suspects) const;
+  static std::uint8_t levelOf(const core::Verdict& verdict);
   std::string wording(const core::Verdict& verdict) const;
 
   ros::CallbackQueue queue_;
@@ -102,7 +110,8 @@ class Monitor {
   ros1::ClockWatch clock_watch_;
   self_awareness::SelfAwareness last_;             // verdict on the last window
   std::vector<self_awareness::Suspect> suspects_;  // of the standing alarm
-  std::int64_t alarm_since_ = 0;                   // [ns], while the alarm stands
+  std::int64_t level_since_ = 0;                   // when the level last changed [ns]
+  std::shared_ptr<const ros1::Graph> graph_;       // the newest that was taken over
   std::map<std::string, Heard> components_;        // of the model
   std::vector<Heard*> component_of_;               // by event id of the model
   std::uint64_t events_ = 0;                       // since the last report

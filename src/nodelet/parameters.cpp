@@ -108,7 +108,8 @@ MonitorParameters MonitorParameters::load(const ros::NodeHandle& private_node_ha
   ParameterReader reader(private_node_handle);
 
   parameters.model = reader.read("model", defaults.model);
-  reader.choice<bool>("detector", "paper", {{"paper", true}});
+  parameters.method = reader.choice<Method>(
+      "detector", "evidence", {{"evidence", Method::kEvidence}, {"paper", Method::kPaper}});
   parameters.subscribe = reader.choice<SubscribePolicy>("subscribe", "used",
                                                         {{"used", SubscribePolicy::kUsed},
                                                          {"all", SubscribePolicy::kAll},
@@ -119,6 +120,10 @@ MonitorParameters MonitorParameters::load(const ros::NodeHandle& private_node_ha
       nanoseconds(reader.seconds("settle_time", inSeconds(defaults.detector.settle_time), 0));
   detector.silence_is_abnormal =
       reader.choice<bool>("silence", "abnormal", {{"abnormal", true}, {"ignored", false}});
+  detector.unknown = reader.choice<core::UnknownEvents>("unknown", "warn",
+                                                        {{"ignore", core::UnknownEvents::kIgnore},
+                                                         {"warn", core::UnknownEvents::kWarn},
+                                                         {"error", core::UnknownEvents::kError}});
   persistence.alarm_windows = reader.wholeNumber("alarm_windows", persistence.alarm_windows, 1);
   persistence.alarm_of = reader.wholeNumber("alarm_of", persistence.alarm_of, 1);
   persistence.hold_time =

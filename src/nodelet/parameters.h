@@ -12,9 +12,12 @@ namespace self_awareness {
 
 /// All parameters of the monitor; config/self_awareness.yaml explains each to its user.
 struct MonitorParameters {
+  enum class Method { kEvidence, kPaper };
+
   std::string model;                    ///< ~model: path of the model file
+  Method method = Method::kEvidence;    ///< ~detector
   core::Detector::Parameters detector;  ///< ~settle_time, ~alarm_windows, ~alarm_of,
-                                        ///< ~hold_time, ~silence
+                                        ///< ~hold_time, ~silence, ~unknown
   ros1::SubscribePolicy subscribe = ros1::SubscribePolicy::kUsed;  ///< ~subscribe
   double poll_interval = 1.0;        ///< ~poll_interval: of the master [s], > 0
   std::uint32_t queue_size = 1000;   ///< ~queue_size: messages a topic may have waiting

@@ -45,6 +45,8 @@ void forEachEvent(const Stamps& stamps, const Ids& ids, Handler handler) {
 
 /// Encoding, bags, model files and training (files_bindings.cpp).
 void bindFiles(py::module& module);
+/// Evidence and its limits (evidence_bindings.cpp).
+void bindEvidence(py::module& module);
 /// Model, scores, verdicts and ROC (detector_bindings.cpp).
 void bindDetector(py::module& module);
 

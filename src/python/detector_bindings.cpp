@@ -5,12 +5,16 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "bindings.h"
+#include "self_awareness/core/blame.h"
 #include "self_awareness/core/clock.h"
 #include "self_awareness/core/detector.h"
+#include "self_awareness/core/evidence_judge.h"
 #include "self_awareness/core/model.h"
+#include "self_awareness/core/paper_judge.h"
 #include "self_awareness/core/persistence.h"
 #include "self_awareness/core/roc.h"
 #include "self_awareness/ros/model_file.h"
@@ -23,6 +27,7 @@ struct Alarm {
   std::int64_t start = 0;  // end of the window that raised it [ns]
   std::int64_t end = 0;    // end of the window that cleared it, or of the recording [ns]
   bool cleared = false;
+  std::string evidence;  // of the window that raised it
   double lowest_score = std::numeric_limits<double>::quiet_NaN();
   std::vector<core::Suspect> suspects;  // of the window that raised it
 };
@@ -35,6 +40,7 @@ struct Verdicts {
   std::vector<double> score;  // NaN: no events
   std::vector<bool> abnormal;
   std::vector<bool> settling;
+  std::vector<bool> suspicion;
   std::vector<Alarm> alarms;
 };
 
@@ -46,13 +52,16 @@ void record(const core::Verdict& verdict, std::int64_t window, Verdicts& verdict
   verdicts.score.push_back(verdict.score.value_or(std::numeric_limits<double>::quiet_NaN()));
   verdicts.abnormal.push_back(verdict.abnormal);
   verdicts.settling.push_back(verdict.settling);
-  if (verdict.changed && verdict.alarm) {
+  verdicts.suspicion.push_back(verdict.suspicion);
+  const bool stood = !verdicts.alarms.empty() && !verdicts.alarms.back().cleared;
+  if (verdict.alarm && !stood) {
     Alarm alarm;
     alarm.start = end;
+    alarm.evidence = verdict.evidence;
     alarm.suspects = verdict.suspects;
     verdicts.alarms.push_back(alarm);
   }
-  if (verdict.alarm || verdict.changed) {
+  if (verdict.alarm || stood) {
     Alarm& alarm = verdicts.alarms.back();
     alarm.end = end;
     alarm.cleared = !verdict.alarm;
@@ -60,11 +69,11 @@ void record(const core::Verdict& verdict, std::int64_t window, Verdicts& verdict
   }
 }
 
-Verdicts judge(const std::shared_ptr<core::Model>& model, std::int64_t window,
-               std::optional<double> threshold, const core::Detector::Parameters& parameters,
-               const Stamps& stamps, const Ids& ids, std::optional<std::int64_t> end) {
+Verdicts judge(std::unique_ptr<core::Judge> judge, std::int64_t window,
+               const core::Detector::Parameters& parameters, const Stamps& stamps, const Ids& ids,
+               std::optional<std::int64_t> end) {
   Verdicts verdicts;
-  core::Detector detector(model, window, threshold, parameters, [&](const core::Verdict& verdict) {
+  core::Detector detector(std::move(judge), window, parameters, [&](const core::Verdict& verdict) {
     record(verdict, window, verdicts);
   });
   std::optional<std::int64_t> last;
@@ -77,6 +86,25 @@ Verdicts judge(const std::shared_ptr<core::Model>& model, std::int64_t window,
   }
   detector.finish();
   return verdicts;
+}
+
+Verdicts judgeByPaper(const std::shared_ptr<core::Model>& model, std::int64_t window,
+                      std::optional<double> threshold,
+                      const core::Detector::Parameters& parameters, const Stamps& stamps,
+                      const Ids& ids, std::optional<std::int64_t> end) {
+  return judge(
+      std::make_unique<core::PaperJudge>(model, threshold, parameters.silence_is_abnormal), window,
+      parameters, stamps, ids, end);
+}
+
+Verdicts judgeByEvidence(const ros1::TrainedModel& trained,
+                         const std::shared_ptr<core::EvidenceModel>& model,
+                         const core::Detector::Parameters& parameters, const Stamps& stamps,
+                         const Ids& ids, std::optional<std::int64_t> end) {
+  return judge(
+      std::make_unique<core::EvidenceJudge>(model, trained.limits(), trained.window,
+                                            std::make_shared<core::SourceGraph>(trained.graph)),
+      trained.window, parameters, stamps, ids, end);
 }
 
 std::vector<double> scoreEvents(const std::shared_ptr<core::Model>& model, const Stamps& stamps,
@@ -96,6 +124,11 @@ void bindVerdicts(py::module& m) {
       .def_readonly("usual_longest", &core::Suspect::usual_longest, "[s]")
       .def("describe", &core::describe, "the reason in words and numbers");
 
+  py::enum_<core::UnknownEvents>(m, "UnknownEvents", "What is thought of unknown events.")
+      .value("IGNORE", core::UnknownEvents::kIgnore)
+      .value("WARN", core::UnknownEvents::kWarn)
+      .value("ERROR", core::UnknownEvents::kError);
+
   using core::Detector;
   py::class_<Detector::Parameters>(m, "DetectorParameters")
       .def(py::init<>())
@@ -112,6 +145,7 @@ void bindVerdicts(py::module& m) {
           "[ns]")
       .def_readwrite("settle_time", &Detector::Parameters::settle_time, "[ns]")
       .def_readwrite("silence_is_abnormal", &Detector::Parameters::silence_is_abnormal)
+      .def_readwrite("unknown", &Detector::Parameters::unknown)
       .def("validate", &Detector::Parameters::validate);
 
   py::class_<core::Persistence>(m, "Persistence",
@@ -122,6 +156,7 @@ void bindVerdicts(py::module& m) {
            py::arg("parameters"))
       .def(
           "add", &core::Persistence::add, py::arg("abnormal"), py::arg("end"),
+          py::arg("certain") = false,
           "Takes in the next window's verdict, end: of the window [ns]; whether the alarm stands.")
       .def("clear", &core::Persistence::clear, "Forgets all windows and the alarm.");
 
@@ -130,6 +165,7 @@ void bindVerdicts(py::module& m) {
       .def_readonly("end", &Alarm::end, "[ns]")
       .def_readonly("cleared", &Alarm::cleared, "False: it stood to the end of the recording")
       .def_readonly("lowest_score", &Alarm::lowest_score)
+      .def_readonly("evidence", &Alarm::evidence, "what raised it, in words")
       .def_readonly("suspects", &Alarm::suspects, "of the window that raised it, best first");
 
   py::class_<Verdicts>(m, "Verdicts", "One entry a window of a recording, and the alarms.")
@@ -146,6 +182,9 @@ void bindVerdicts(py::module& m) {
           "eq. 5, or silence; also while settling")
       .def_property_readonly("settling",
                              [](const Verdicts& self) { return toArray(self.settling); })
+      .def_property_readonly(
+          "suspicion", [](const Verdicts& self) { return toArray(self.suspicion); },
+          "WARN: no alarm, but something was abnormal of late")
       .def_readonly("alarms", &Verdicts::alarms);
 
   py::class_<core::Model, std::shared_ptr<core::Model>>(
@@ -179,12 +218,16 @@ void bindVerdicts(py::module& m) {
             return toArray(scoreEvents(self, stamps, ids));
           },
           py::arg("stamps"), py::arg("ids"), "s_j of every event, float64")
-      .def("judge", &judge, py::arg("window"), py::arg("threshold"), py::arg("parameters"),
+      .def("judge", &judgeByPaper, py::arg("window"), py::arg("threshold"), py::arg("parameters"),
            py::arg("stamps"), py::arg("ids"), py::arg("end") = py::none(),
            "Verdicts on a recording. window: [ns]; threshold None: not calibrated; stamps: int64\n"
            "[ns] in order; ids from len(event_types) of the model on are unknown events. end "
            "[ns]:\n"
            "the recording goes on in silence until then; None: it ends with the last event.");
+  m.def("judge_by_evidence", &judgeByEvidence, py::arg("trained"), py::arg("model"),
+        py::arg("parameters"), py::arg("stamps"), py::arg("ids"), py::arg("end") = py::none(),
+        "Verdicts on a recording by the EvidenceModel of a TrainedModel; as Model.judge.");
+  m.attr("EVIDENCE_THRESHOLD") = core::EvidenceJudge::kThreshold;
   m.attr("FEWEST_GAPS") = core::kFewestGaps;
 }
 

@@ -2,17 +2,19 @@
 #include <ros/serialization.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "bindings.h"
-#include "self_awareness/core/windows.h"
 #include "self_awareness/ros/bag_reader.h"
 #include "self_awareness/ros/model_file.h"
+#include "self_awareness/ros/stable_name.h"
 
 namespace self_awareness::python {
 namespace {
@@ -68,24 +70,25 @@ class Training {
            std::int64_t horizon_bins)
       : statistics_(core::Binning{bin_size, horizon_bins}),
         trainer_(statistics_),
+        evidence_trainers_{core::EvidenceTrainer(evidence_[0], window),
+                           core::EvidenceTrainer(evidence_[1], window)},
         rules_(std::move(rules)),
-        window_(window) {
-    const core::Windows checked(window, nullptr);  // throws where the length is none
-  }
+        window_(window) {}
 
   self_awareness::Recording addBag(const std::string& path, const ros1::TimeRange& range,
-                                   const py::object& progress) {
+                                   bool alone, const py::object& progress) {
     const ros1::BagReader reader(path);
     const ros1::Encoder encoder(rules_,
                                 [this](const core::EventType& type) { return intern(type); });
     self_awareness::Recording recording;
     recording.bag = path.substr(path.find_last_of('/') + 1);
     recording.fingerprint = reader.summary().fingerprint;
-    trainer_.startRecording();
+    const auto [from, to] = reader.limits(range);
+    startRecording(alone ? std::optional<std::int64_t>(from + (to - from) / 2) : std::nullopt);
     reader.read(
         encoder, range,
         [&](const core::Event& event) {
-          trainer_.add(event);
+          add(event);
           recording.start.fromNSec(recording.events == 0 ? event.stamp : recording.start.toNSec());
           recording.end.fromNSec(event.stamp);
           ++recording.events;
@@ -95,10 +98,19 @@ class Training {
     return recording;
   }
 
-  void addEvents(const std::vector<core::EventType>& types, const Stamps& stamps, const Ids& ids) {
-    trainer_.startRecording();
+  void addEvents(const std::vector<core::EventType>& types, const Stamps& stamps, const Ids& ids,
+                 bool alone) {
+    startRecording(alone && stamps.size() > 0
+                       ? std::optional<std::int64_t>(
+                             stamps.at(0) + (stamps.at(stamps.size() - 1) - stamps.at(0)) / 2)
+                       : std::nullopt);
+    std::vector<std::optional<core::EventId>> here(types.size());
     forEachEvent(stamps, ids, [&](const core::Event& event) {
-      trainer_.add({event.stamp, statistics_.intern(types.at(event.id))});
+      std::optional<core::EventId>& id = here.at(event.id);
+      if (!id) {
+        id = intern(types[event.id]);
+      }
+      add({event.stamp, *id});
     });
   }
 
@@ -107,15 +119,38 @@ class Training {
     model.encoding = rules_;
     model.window = window_;
     model.statistics = statistics_;
+    model.evidence = evidence_;
     model.recordings = recordings_;
     model.stamp.fromSec(std::floor(ros::WallTime::now().toSec()));
     return model;
   }
 
  private:
+  // Recordings belong to the two halves in turn. One that is alone is cut in the middle: what
+  // holds for one half of it only is at least not taken for information.
+  void startRecording(std::optional<std::int64_t> middle) {
+    trainer_.startRecording();
+    half_ = middle ? 0 : recording_++ % evidence_.size();
+    middle_ = middle;
+    evidence_trainers_.at(half_).startRecording();
+  }
+
+  void add(const core::Event& event) {
+    trainer_.add(event);
+    if (middle_ && event.stamp >= *middle_) {
+      middle_.reset();
+      half_ = 1;
+      evidence_trainers_.at(half_).startRecording();
+    }
+    evidence_trainers_.at(half_).add(event);
+  }
+
   core::EventId intern(const core::EventType& type) {
     const std::size_t before = statistics_.vocabulary().size();
     const core::EventId id = statistics_.intern(type);
+    for (core::EvidenceStatistics& half : evidence_) {
+      half.intern(type);  // the same id
+    }
     const std::size_t datatype_end = type.type.find('[');
     if (statistics_.vocabulary().size() > before && datatype_end != std::string::npos) {
       const std::string datatype = type.type.substr(0, datatype_end);
@@ -131,6 +166,11 @@ class Training {
 
   core::DelayStatistics statistics_;
   core::DelayTrainer trainer_;
+  std::array<core::EvidenceStatistics, 2> evidence_;
+  std::array<core::EvidenceTrainer, 2> evidence_trainers_;
+  std::size_t recording_ = 0;
+  std::size_t half_ = 0;                // that is trained
+  std::optional<std::int64_t> middle_;  // of a recording that is alone [ns], while before it
   ros1::EncodingRules rules_;
   std::int64_t window_;
   std::map<std::string, std::size_t> types_of_field_;  // by datatype
@@ -144,6 +184,8 @@ ros1::TimeRange timeRange(std::optional<double> start, std::optional<double> end
 }
 
 void bindEncoding(py::module& m) {
+  m.def("stable_name", &ros1::stableName, py::arg("name"),
+        "A node's name without the number that makes it anonymous.");
   py::class_<core::EventType>(m, "EventType", "What happened: (source, scope, type).")
       .def(py::init<std::string, std::string, std::string>(), py::arg("source"), py::arg("scope"),
            py::arg("type"))
@@ -255,6 +297,20 @@ void bindModel(py::module& m) {
           "stamp", [](const Calibration& self) { return self.stamp.toNSec(); },
           [](Calibration& self, std::uint64_t ns) { self.stamp.fromNSec(ns); }, "[ns]");
 
+  using self_awareness::EvidenceCalibration;
+  py::class_<EvidenceCalibration>(m, "EvidenceCalibration", "msg/EvidenceCalibration.msg")
+      .def(py::init<>())
+      .def_readwrite("method", &EvidenceCalibration::method)
+      .def_readwrite("limits", &EvidenceCalibration::limits)
+      .def_readwrite("linker_limit", &EvidenceCalibration::linker_limit)
+      .def_readwrite("budget", &EvidenceCalibration::budget)
+      .def_readwrite("false_alarms_per_hour", &EvidenceCalibration::false_alarms_per_hour)
+      .def_readwrite("windows", &EvidenceCalibration::windows)
+      .def_readwrite("recordings", &EvidenceCalibration::recordings)
+      .def_property(
+          "stamp", [](const EvidenceCalibration& self) { return self.stamp.toNSec(); },
+          [](EvidenceCalibration& self, std::uint64_t ns) { self.stamp.fromNSec(ns); }, "[ns]");
+
   using ros1::TrainedModel;
   py::class_<TrainedModel>(m, "TrainedModel", "All that a model file holds: counts.")
       .def_static("load", &ros1::loadModel, py::arg("path"), "Raises ModelFileError.")
@@ -265,7 +321,21 @@ void bindModel(py::module& m) {
       .def_readonly("recordings", &TrainedModel::recordings)
       .def_property_readonly(
           "stamp", [](const TrainedModel& self) { return self.stamp.toNSec(); }, "[ns]")
-      .def_readwrite("calibration", &TrainedModel::calibration, "None: not calibrated")
+      .def_readwrite("calibration", &TrainedModel::calibration,
+                     "of the paper's detector; None: not calibrated")
+      .def_readwrite("evidence_calibration", &TrainedModel::evidence_calibration,
+                     "of the evidence detector; None: not calibrated")
+      .def_property(
+          "graph", [](const TrainedModel& self) { return self.graph.edges(); },
+          [](TrainedModel& self, const std::map<std::string, std::set<std::string>>& edges) {
+            self.graph = {};
+            for (const auto& [from, followers] : edges) {
+              for (const std::string& to : followers) {
+                self.graph.connect(from, to);
+              }
+            }
+          },
+          "dict of source: set of sources that its messages reach; empty: not known")
       .def_property_readonly("threshold", &TrainedModel::threshold, "None: not calibrated")
       .def_property_readonly(
           "bin_size", [](const TrainedModel& self) { return self.statistics.binning().bin_size; },
@@ -310,15 +380,16 @@ void bindModel(py::module& m) {
       .def(
           "add_bag",
           [](Training& self, const std::string& path, std::optional<double> start,
-             std::optional<double> end, const py::object& progress) {
-            return self.addBag(path, timeRange(start, end), progress);
+             std::optional<double> end, bool alone, const py::object& progress) {
+            return self.addBag(path, timeRange(start, end), alone, progress);
           },
           py::arg("path"), py::arg("start") = py::none(), py::arg("end") = py::none(),
-          py::arg("progress") = py::none(),
+          py::arg("alone") = false, py::arg("progress") = py::none(),
           "Trains on a bag, one recording; returns its Recording. start, end: seconds from its\n"
-          "first message. After a BagError the training is incomplete and must be thrown away.")
+          "first message. alone: there is no other recording. After a BagError the training is "
+          "incomplete and must be thrown away.")
       .def("add_events", &Training::addEvents, py::arg("event_types"), py::arg("stamps"),
-           py::arg("ids"), "Trains on one recording given as arrays.")
+           py::arg("ids"), py::arg("alone") = false, "Trains on one recording given as arrays.")
       .def("model", &Training::model, "The TrainedModel of all that was added.");
 }
 

@@ -171,11 +171,18 @@ void BagReader::summarise() {
       });
 }
 
+std::pair<std::int64_t, std::int64_t> BagReader::limits(const TimeRange& range) const {
+  range.validate();
+  return {
+      summary_.start + fromSeconds(range.start.value_or(0)),
+      range.end ? std::min(summary_.start + fromSeconds(*range.end), summary_.end) : summary_.end};
+}
+
 void BagReader::read(const Encoder& encoder, const TimeRange& range, const Handler& handler,
                      const Progress& progress) const {
-  range.validate();
-  const std::int64_t from = summary_.start + fromSeconds(range.start.value_or(0));
-  const std::int64_t to = range.end ? summary_.start + fromSeconds(*range.end) : summary_.end;
+  const auto limits_of_range = limits(range);  // no structured binding: a lambda captures them
+  const std::int64_t from = limits_of_range.first;
+  const std::int64_t to = limits_of_range.second;
   if (from > summary_.end) {
     throw BagError(summary_.path + ": the time range begins after the recording's end (" +
                    std::to_string(core::toSeconds(summary_.end - summary_.start)) + " s)");

@@ -79,7 +79,8 @@ void Diagnostics::communication(Status& status) const {
     status.add("events in the window", last.events);
     status.add("unknown events in the window", last.unknown_events);
     if (last.level != DiagnosticStatus::OK) {
-      status.add("alarm for [s]", number(state_.alarm_for));
+      status.add("evidence", last.evidence);
+      status.add("for [s]", number(state_.level_for));
     }
     for (std::size_t i = 0; i < last.suspects.size(); ++i) {
       status.add("suspect " + std::to_string(i + 1), describe(last.suspects[i]));
@@ -95,7 +96,9 @@ void Diagnostics::component(const std::string& name, Status& status) const {
   for (std::size_t i = 0; i < suspects.size() && state_.last.level != DiagnosticStatus::OK; ++i) {
     if (componentOf(suspects[i].source, suspects[i].scope) == name) {
       // The most likely one is to blame; the others may well be its victims.
-      status.summary(i == 0 ? DiagnosticStatus::ERROR : DiagnosticStatus::WARN,
+      status.summary(i == 0 && state_.last.level == DiagnosticStatus::ERROR
+                         ? DiagnosticStatus::ERROR
+                         : DiagnosticStatus::WARN,
                      suspects[i].scope + ": " + suspects[i].reason);
       break;
     }

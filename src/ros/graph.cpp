@@ -7,6 +7,8 @@
 
 #include <algorithm>
 
+#include "self_awareness/ros/stable_name.h"
+
 namespace self_awareness::ros1 {
 namespace {
 
@@ -53,6 +55,18 @@ std::optional<Graph> fetchGraph() {
     return graph;
   } catch (const XmlRpc::XmlRpcException&) {
     return std::nullopt;  // not what a master answers
+  }
+}
+
+void addEdges(const Graph& graph, const std::string& own_name, core::SourceGraph& edges) {
+  for (const auto& [name, topic] : graph.topics) {
+    for (const std::string& publisher : topic.publishers) {
+      for (const std::string& subscriber : topic.subscribers) {
+        if (publisher != own_name && subscriber != own_name) {
+          edges.connect(stableName(publisher), stableName(subscriber));
+        }
+      }
+    }
   }
 }
 

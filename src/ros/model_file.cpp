@@ -10,6 +10,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "self_awareness/ros/evidence_message.h"
+
 namespace self_awareness::ros1 {
 namespace {
 
@@ -133,6 +135,10 @@ std::optional<double> TrainedModel::threshold() const {
   return calibration ? std::optional<double>(calibration->threshold) : std::nullopt;
 }
 
+std::optional<core::EvidenceLimits> TrainedModel::limits() const {
+  return evidence_calibration ? std::optional(limitsOf(*evidence_calibration)) : std::nullopt;
+}
+
 self_awareness::Model toMessage(const TrainedModel& model) {
   self_awareness::Model message;
   message.stamp = model.stamp;
@@ -150,9 +156,23 @@ self_awareness::Model toMessage(const TrainedModel& model) {
     message.event_types.push_back(event_type);
   }
   appendHistograms(model.statistics, message);
+  for (const core::EvidenceStatistics& half : model.evidence) {
+    message.evidence.push_back(toMessage(half, model.statistics.vocabulary()));
+  }
+  for (const auto& [from, followers] : model.graph.edges()) {
+    for (const std::string& to : followers) {
+      self_awareness::GraphEdge edge;
+      edge.from_source = from;
+      edge.to_source = to;
+      message.graph.push_back(edge);
+    }
+  }
   message.recordings = model.recordings;
   if (model.calibration) {
     message.calibration.push_back(*model.calibration);
+  }
+  if (model.evidence_calibration) {
+    message.evidence_calibration.push_back(*model.evidence_calibration);
   }
   return message;
 }
@@ -164,11 +184,23 @@ TrainedModel fromMessage(const self_awareness::Model& message) {
   model.window = message.window.toNSec();
   check(model.window > 0, "its windows have no length");
   model.statistics = statisticsOf(message);
+  check(message.evidence.size() == model.evidence.size(), "its evidence has not two halves");
+  std::transform(message.evidence.begin(), message.evidence.end(), model.evidence.begin(),
+                 [&](const self_awareness::Evidence& half) {
+                   return fromMessage(half, model.statistics.vocabulary());
+                 });
+  for (const self_awareness::GraphEdge& edge : message.graph) {
+    model.graph.connect(edge.from_source, edge.to_source);
+  }
   model.recordings = message.recordings;
   check(message.calibration.size() <= 1, "it has more than one calibration");
   if (!message.calibration.empty()) {
     model.calibration = message.calibration.front();
     check(std::isfinite(model.calibration->threshold), "its threshold is not a finite number");
+  }
+  check(message.evidence_calibration.size() <= 1, "it has more than one calibration");
+  if (!message.evidence_calibration.empty()) {
+    model.evidence_calibration = message.evidence_calibration.front();
   }
   return model;
 }

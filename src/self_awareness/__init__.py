@@ -6,6 +6,7 @@ programs (`self_awareness.commands`).
 """
 
 from self_awareness._core import (  # noqa: F401
+    EVIDENCE_THRESHOLD,
     FEWEST_GAPS,
     Alarm,
     BagError,
@@ -14,6 +15,9 @@ from self_awareness._core import (  # noqa: F401
     DetectorParameters,
     EncodingRules,
     EventType,
+    EvidenceCalibration,
+    EvidenceModel,
+    LimitFinder,
     Model,
     ModelFileError,
     Persistence,
@@ -24,7 +28,10 @@ from self_awareness._core import (  # noqa: F401
     Suspect,
     TrainedModel,
     Training,
+    UnknownEvents,
     Verdicts,
+    judge_by_evidence,
     read_events,
+    stable_name,
     summarise_bag,
 )

@@ -9,12 +9,12 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass
-from typing import Dict, List, Optional, Sequence
+from typing import Callable, Dict, List, Optional, Sequence
 
 import numpy as np
 
-from self_awareness import (DetectorParameters, Model, Roc, RocPoint, TrainedModel, Verdicts,
-                            confidence, fault_injection, progress)
+from self_awareness import (DetectorParameters, EvidenceModel, Model, Roc, RocPoint, TrainedModel,
+                            Verdicts, confidence, fault_injection, judge_by_evidence, progress)
 from self_awareness.confidence import Interval
 from self_awareness.fault_injection import Fault
 from self_awareness.recordings import RecordingEvents, overlap
@@ -202,15 +202,34 @@ def injected_fault(recording: RecordingEvents, fault: Fault, window: int) -> Run
     return Run(recording, str(fault), stamps, ids, onset, recording.end + window)
 
 
-def judge(trained: TrainedModel, model: Model, threshold: Optional[float],
-          parameters: DetectorParameters, runs: Sequence[Run]) -> List[JudgedRun]:
-    """Let the detector judge runs; threshold None: scores only, no alarms."""
+Judge = Callable[[np.ndarray, np.ndarray, int], Verdicts]
+"""Judges stamps and ids of a recording, and the silence up to its end [ns]."""
+
+
+def paper_judge(trained: TrainedModel, model: Model, threshold: Optional[float],
+                parameters: DetectorParameters) -> Judge:
+    """Return what judges by the paper's score; threshold None: scores only, no alarms."""
+    return lambda stamps, ids, end: model.judge(trained.window, threshold, parameters, stamps, ids,
+                                                end)
+
+
+def evidence_judge(trained: TrainedModel, parameters: DetectorParameters) -> Judge:
+    """Return what judges by evidence and the model's limits.
+
+    Raises:
+        ValueError: the limits are not those of the model.
+    """
+    model = EvidenceModel(trained)
+    return lambda stamps, ids, end: judge_by_evidence(trained, model, parameters, stamps, ids, end)
+
+
+def judge(judge_recording: Judge, window: int, runs: Sequence[Run]) -> List[JudgedRun]:
+    """Let a detector judge runs in windows of a length [ns]."""
     judged = []
     for run in progress.each(runs, 'scoring'):
-        verdicts = model.judge(trained.window, threshold, parameters, run.stamps, run.ids,
-                               run.source.end)
+        verdicts = judge_recording(run.stamps, run.ids, run.source.end)
         judged.append(JudgedRun(run, verdicts, np.nan_to_num(verdicts.score),
-                                _labels(run, verdicts, trained.window)))
+                                _labels(run, verdicts, window)))
     return judged
 
 

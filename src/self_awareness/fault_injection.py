@@ -7,8 +7,8 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
-from typing import Optional, Sequence, Tuple
+from dataclasses import dataclass, replace
+from typing import List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -17,6 +17,9 @@ from self_awareness.stamps import SECOND_NS
 
 STARVATION_DOUBLING_S = 20.0
 """After this time of the undisturbed recording, starved components take twice as long [s]."""
+
+EACH = '*'
+"""Stands for each source in turn."""
 
 FORMS = 'crash:SOURCE, slow:SOURCE:FACTOR, starve, clock:SOURCE:SECONDS'
 _FORM = re.compile(r'(?P<crash>crash):(?P<crash_source>[^:]+)'
@@ -70,6 +73,14 @@ class Fault:
         if self.source is None:
             return self.kind
         return f'{self.kind}:{self.source}' + (f':{self.amount:g}' if self.amount else '')
+
+
+def of_each_source(fault: Fault, event_types: Sequence[EventType]) -> List[Fault]:
+    """Return the fault, or where its source is EACH the same of every source in turn."""
+    if fault.source != EACH:
+        return [fault]
+    return [replace(fault, source=source)
+            for source in sorted({event_type.source for event_type in event_types} - {''})]
 
 
 def check_source(fault: Fault, event_types: Sequence[EventType]) -> None:

@@ -8,7 +8,9 @@
 #include <string>
 #include <vector>
 
+#include "self_awareness/core/blame.h"
 #include "self_awareness/core/clock.h"
+#include "self_awareness/core/paper_judge.h"
 
 namespace self_awareness::core {
 namespace {
@@ -62,11 +64,12 @@ class DetectorTest : public testing::Test {
  protected:
   Detector makeDetector(std::optional<double> threshold,
                         const Detector::Parameters& parameters = {}) {
-    return Detector(model_, 100 * kMillisecond, threshold, parameters,
-                    [this](const Verdict& verdict) {
-                      seen_.push_back({verdict.window->start, verdict.abnormal, verdict.settling,
-                                       verdict.alarm, verdict.changed, verdict.suspects});
-                    });
+    return Detector(
+        std::make_unique<PaperJudge>(model_, threshold, parameters.silence_is_abnormal),
+        100 * kMillisecond, parameters, [this](const Verdict& verdict) {
+          seen_.push_back({verdict.window->start, verdict.abnormal, verdict.settling,
+                           verdict.alarm, verdict.changed, verdict.suspects});
+        });
   }
   static void feed(Detector& detector, const std::vector<Event>& events) {
     for (const Event& event : events) {

@@ -13,6 +13,7 @@
 #include "self_awareness/core/delay_statistics.h"
 #include "self_awareness/core/detector.h"
 #include "self_awareness/core/model.h"
+#include "self_awareness/core/paper_judge.h"
 #include "self_awareness/core/roc.h"
 #include "self_awareness/core/scorer.h"
 
@@ -145,8 +146,8 @@ TEST_F(Vectors, WindowsAndVerdicts) {
     const std::int64_t length = test_case["window_ms"].get<std::int64_t>() * kMillisecond;
     std::vector<std::int64_t> abnormal;
     std::size_t i = 0;
-    Detector detector(model, length, value(test_case["threshold"]), Detector::Parameters(),
-                      [&](const Verdict& verdict) {
+    Detector detector(std::make_unique<PaperJudge>(model, value(test_case["threshold"]), true),
+                      length, Detector::Parameters(), [&](const Verdict& verdict) {
                         ASSERT_LT(i, test_case["windows"].size());
                         const json& expected = test_case["windows"][i++];
                         const std::int64_t k = verdict.window->start / length;

@@ -3,39 +3,14 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "self_awareness/core/model.h"
 #include "self_awareness/core/scorer.h"
+#include "self_awareness/core/suspect.h"
 #include "self_awareness/core/windows.h"
 
 namespace self_awareness::core {
-
-/// Event types with fewer gaps than this in training have no usual delay to be measured by.
-constexpr std::uint64_t kFewestGaps = 30;
-
-/// Who may have made a window abnormal, and why.
-struct Suspect {
-  enum class Reason {
-    kSilent,   ///< did not come although it should have by now
-    kLate,     ///< came after an unusually long silence
-    kUnknown,  ///< was never seen in training
-    kUnusual   ///< came at delays after the others that were rare or absent in training
-  };
-
-  EventId id = 0;
-  Reason reason = Reason::kSilent;
-  double silence = 0;         ///< kSilent, kLate: time without such an event [s]
-  double usual_shortest = 0;  ///< kSilent, kLate: 1 % of the gaps in training are shorter [s]
-  double usual_longest = 0;   ///< kSilent, kLate: 1 % of the gaps in training are longer [s]
-  std::size_t events = 0;     ///< kUnknown, kUnusual: such events in the window
-  double score = 0;           ///< kUnusual: their mean score
-  double usual_score = 0;     ///< kUnusual: the score to expect by training
-};
-
-/// The reason in words and numbers: "silent for 2.31 s, usually every 0.070 to 0.090 s".
-std::string describe(const Suspect& suspect);
 
 /// Ranks the event types that an abnormal window may be blamed on (METHOD.md, section 5): first
 /// those with the smallest probability of so long a silence by their own gaps in training, then

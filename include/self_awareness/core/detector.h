@@ -4,11 +4,11 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
-#include "self_awareness/core/blame.h"
+#include "self_awareness/core/judge.h"
 #include "self_awareness/core/persistence.h"
-#include "self_awareness/core/scorer.h"
 #include "self_awareness/core/windows.h"
 
 namespace self_awareness::core {
@@ -16,23 +16,29 @@ namespace self_awareness::core {
 /// What is said of one window.
 struct Verdict {
   const Window* window = nullptr;   ///< valid during the handler's call
-  std::optional<double> score;      ///< eq. 2; none for a window without events
+  std::optional<double> score;      ///< low is abnormal; none: nothing is said of the window
   std::optional<double> threshold;  ///< s*; none: not calibrated
-  bool abnormal = false;            ///< eq. 5, or silence
+  bool abnormal = false;            ///< eq. 5, or silence, or unknown events that are an error
   bool settling = false;            ///< too early to alarm; the window is not held against anyone
   bool alarm = false;               ///< the alarm stands
-  bool changed = false;             ///< the alarm was raised or cleared by this window
+  bool suspicion = false;           ///< no alarm, but something was abnormal of late
+  bool changed = false;             ///< the alarm or the suspicion began or ended with this window
+  std::string evidence;             ///< of an abnormal or suspicious window, in words
   std::vector<Suspect> suspects;    ///< of an abnormal window that is not settling, best first
 };
 
-/// The way of an event to an alarm, the same live and from a bag: score, window, threshold,
-/// persistence, blame.
+/// What is thought of events never seen in training: somebody may have plugged in a joystick.
+enum class UnknownEvents { kIgnore, kWarn, kError };
+
+/// The way of an event to an alarm, the same live and from a bag: window, judgement, persistence,
+/// blame.
 class Detector {
  public:
   struct Parameters {
     Persistence::Parameters persistence;
     std::int64_t settle_time = 5000000000;  ///< without alarms after the first event [ns]
-    bool silence_is_abnormal = true;        ///< a window without events scores 0, else nothing
+    bool silence_is_abnormal = true;  ///< paper: a window without events scores 0, else nothing
+    UnknownEvents unknown = UnknownEvents::kWarn;  ///< a suspicion, or an alarm at once
 
     /// @throw std::invalid_argument if a value is out of range.
     void validate() const;
@@ -40,10 +46,9 @@ class Detector {
   using Handler = std::function<void(const Verdict&)>;
 
   /// @param window length [ns]
-  /// @param threshold s*; none: windows are scored and never abnormal
   /// @param handler called with the verdict of every window in turn; must not call back
-  Detector(std::shared_ptr<const Model> model, std::int64_t window,
-           std::optional<double> threshold, const Parameters& parameters, Handler handler);
+  Detector(std::unique_ptr<Judge> judge, std::int64_t window, const Parameters& parameters,
+           Handler handler);
 
   /// The next event. Where the clock was set since the last one, all starts afresh.
   /// @return false if it was: what was open is lost, and the recording starts here.
@@ -58,23 +63,21 @@ class Detector {
   /// Lets settle_time pass without raising an alarm, from `now` [ns] on; one that stands, stands.
   void settle(std::int64_t now);
   /// Forgets the alarm and the windows that led to it; the delays go on.
-  void clearAlarm() { persistence_.clear(); }
+  void clearAlarm();
 
-  const Scorer& scorer() const { return scorer_; }
-  const Blame& blame() const { return blame_; }
   /// Whether an event has come since the start.
   bool started() const { return last_stamp_.has_value(); }
 
  private:
   void judge(const Window& window);
 
-  std::optional<double> threshold_;
+  std::unique_ptr<Judge> judge_;
   Parameters parameters_;
   Handler handler_;
-  Scorer scorer_;
   Windows windows_;
   Persistence persistence_;
-  Blame blame_;
+  bool suspicion_ = false;          // stands
+  std::int64_t suspicious_at_ = 0;  // end of the last window that was [ns], while it stands
   std::optional<std::int64_t> last_stamp_;  // of an event [ns]
   std::int64_t settled_at_ = 0;             // [ns], valid once started
 };

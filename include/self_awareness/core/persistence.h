@@ -20,8 +20,9 @@ class Persistence {
 
   explicit Persistence(const Parameters& parameters);
 
-  /// Takes in the next window's verdict. @param end of the window [ns]. @return raised()
-  bool add(bool abnormal, std::int64_t end);
+  /// Takes in the next window's verdict. @param end of the window [ns]. @param certain raises the
+  /// alarm at once. @return raised()
+  bool add(bool abnormal, std::int64_t end, bool certain = false);
   /// Whether the alarm stands.
   bool raised() const { return raised_; }
   /// Forgets all windows and the alarm.

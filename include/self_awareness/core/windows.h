@@ -9,6 +9,10 @@
 
 namespace self_awareness::core {
 
+/// Start of the window [ns] that a stamp [ns] lies in, on the absolute grid of window lengths
+/// [ns].
+std::int64_t floorToGrid(std::int64_t stamp, std::int64_t length);
+
 /// One window of eq. 2.
 struct Window {
   std::int64_t start = 0;  ///< [ns], on the absolute grid of window lengths

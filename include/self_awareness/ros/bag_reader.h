@@ -50,6 +50,9 @@ class BagReader {
   explicit BagReader(const std::string& path);
 
   const BagSummary& summary() const { return summary_; }
+  /// First and last stamp [ns] of a range.
+  /// @throw std::invalid_argument if it is none
+  std::pair<std::int64_t, std::int64_t> limits(const TimeRange& range) const;
   /// Calls the handler with every event of the range, in the order of the recording.
   /// @throw BagError if the range holds no time of the recording or a message cannot be read
   /// @throw std::invalid_argument if a type field does not fit a message's definition

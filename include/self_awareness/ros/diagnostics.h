@@ -33,7 +33,7 @@ struct MonitorState {
   bool calibrated = false;
   bool started = false;                         ///< an event has come
   self_awareness::SelfAwareness last;           ///< the verdict on the last window, if started
-  double alarm_for = 0;                         ///< how long the alarm stands [s]
+  double level_for = 0;                         ///< how long it has had its level [s]
   std::map<std::string, Component> components;  ///< by componentOf()
 
   double rate = 0;              ///< events a second, since the last report

@@ -6,6 +6,8 @@
 #include <set>
 #include <string>
 
+#include "self_awareness/core/source_graph.h"
+
 namespace self_awareness::ros1 {
 
 /// Who publishes and subscribes what, as the master knows it. A dead node stays in it: being
@@ -21,6 +23,10 @@ struct Graph {
 
 /// Asks the master. Blocks for as long as it takes to answer; none if it does not.
 std::optional<Graph> fetchGraph();
+
+/// Adds an edge from every publisher of a topic to every subscriber, by their stable names.
+/// @param own_name of a node that listens to everything, and is left out
+void addEdges(const Graph& graph, const std::string& own_name, core::SourceGraph& edges);
 
 /// Which topics to listen to besides those of the model.
 enum class SubscribePolicy {

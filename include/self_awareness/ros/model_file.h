@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <stdexcept>
@@ -7,9 +8,12 @@
 #include <vector>
 
 #include "self_awareness/Calibration.h"
+#include "self_awareness/EvidenceCalibration.h"
 #include "self_awareness/Model.h"
 #include "self_awareness/Recording.h"
 #include "self_awareness/core/delay_statistics.h"
+#include "self_awareness/core/evidence_model.h"
+#include "self_awareness/core/source_graph.h"
 #include "self_awareness/ros/encoding.h"
 
 namespace self_awareness::ros1 {
@@ -25,12 +29,18 @@ struct TrainedModel {
   EncodingRules encoding;
   std::int64_t window = 100000000;  ///< length of a window [ns]
   core::DelayStatistics statistics{core::Binning{}};
-  std::vector<self_awareness::Recording> recordings;       ///< trained on
-  std::optional<self_awareness::Calibration> calibration;  ///< none: not calibrated
-  ros::Time stamp;                                         ///< when it was trained
+  /// Of the two halves of the training, for the evidence detector.
+  std::array<core::EvidenceStatistics, 2> evidence;
+  core::SourceGraph graph;                            ///< who listens to whom; empty: not known
+  std::vector<self_awareness::Recording> recordings;  ///< trained on
+  std::optional<self_awareness::Calibration> calibration;  ///< of the paper's detector
+  std::optional<self_awareness::EvidenceCalibration> evidence_calibration;
+  ros::Time stamp;  ///< when it was trained
 
   /// s* of eq. 5, if the model was calibrated.
   std::optional<double> threshold() const;
+  /// Limits of the evidence, if it was calibrated.
+  std::optional<core::EvidenceLimits> limits() const;
 };
 
 self_awareness::Model toMessage(const TrainedModel& model);

@@ -1,19 +1,23 @@
-"""`rosrun self_awareness calibrate`: finds a model's threshold by ROC, on unseen recordings."""
+"""`rosrun self_awareness calibrate`: finds from where on a model calls windows abnormal."""
 from __future__ import annotations
 
 import argparse
 import csv
 import dataclasses
+import math
 import time
 from statistics import median
 from typing import List, NamedTuple, Optional, Sequence, Tuple
 
-from self_awareness import (Calibration, DetectorParameters, Model, Roc, RocPoint, TrainedModel,
-                            calibration, confidence, recordings)
+import numpy as np
+
+from self_awareness import (EVIDENCE_THRESHOLD, Calibration, DetectorParameters, Model, Roc,
+                            RocPoint, TrainedModel, calibration, confidence, evidence_limits,
+                            evidence_report, recordings)
 from self_awareness.calibration import (ABNORMAL, LEFT_OUT, NORMAL, Cutoff, FalseAlarms,
                                         FaultResult, JudgedRun, Run)
 from self_awareness.commands import cli
-from self_awareness.fault_injection import FORMS, Fault, check_source
+from self_awareness.fault_injection import FORMS, Fault, check_source, of_each_source
 from self_awareness.output_files import check_outputs, replacing
 from self_awareness.plots import save_roc
 from self_awareness.recordings import BagPart, RecordingEvents
@@ -25,12 +29,14 @@ _LABELS = {NORMAL: 'normal', ABNORMAL: 'abnormal', LEFT_OUT: ''}
 _EPILOG = f"""\
 BAG@START-END stands for a part of a recording, in s from its first message.
 FAULT is one of {FORMS}.
-It befalls a copy of every normal recording in its middle, and its source alone: what depends on it
-goes on, other than in reality.
+SOURCE may be *: each source in turn. The fault befalls a copy of every normal recording in its
+middle, and its source alone: what depends on it goes on, other than in reality.
 examples:
-  calibrate --model robot.model --normal wednesday.bag --inject crash:/laser -o robot.model
+  calibrate --model robot.model --normal wednesday.bag -o robot.model
+  calibrate --model robot.model --normal wednesday.bag --inject 'crash:*' starve -o robot.model
   calibrate --model robot.model --normal wednesday.bag --faulty dead_laser.bag@42 -o robot.model
-  calibrate --model robot.model --normal wednesday.bag --cutoff fpr=0.001 -o robot.model
+  calibrate --model robot.model --normal wednesday.bag --detector paper --cutoff fpr=0.001 \
+            -o robot.model
 """
 
 
@@ -59,6 +65,9 @@ def _calibrate(arguments: argparse.Namespace) -> None:
                          '(--faulty) or let some be made (--inject)')
     parameters = cli.detector_parameters(arguments)
     trained = TrainedModel.load(arguments.model)
+    _check_options(arguments)
+    arguments.inject = [each for fault in arguments.inject
+                        for each in of_each_source(fault, trained.event_types)]
     for fault in arguments.inject:
         check_source(fault, trained.event_types)
 
@@ -72,9 +81,15 @@ def _calibrate(arguments: argparse.Namespace) -> None:
                    + [calibration.injected_fault(recording, fault, trained.window)
                       for fault in dict.fromkeys(arguments.inject) for recording in normal])
 
-    measured = _measure(trained, parameters, arguments.cutoff, normal_runs, faulty_runs)
-    trained.calibration = _calibration(arguments, measured)
-    _print(arguments.cutoff, measured)
+    if arguments.detector == 'evidence':
+        measured = _find_limits(arguments, trained, parameters, normal_runs, faulty_runs)
+        evidence_report.print_limits(trained, arguments.model)
+        evidence_report.print_measured(measured.normal, measured.false_alarms)
+        evidence_report.print_faults(measured.faulty)
+    else:
+        measured = _find_threshold(trained, parameters, arguments.cutoff, normal_runs, faulty_runs)
+        trained.calibration = _calibration(arguments, measured)
+        _print(arguments.cutoff, measured)
     if measured.faulty and measured.roc.auc < 0.5:
         cli.warn('calibrate', f'AUC {measured.roc.auc:.3f}: the faults score higher than normal '
                  'operation; this threshold does not tell them')
@@ -87,6 +102,19 @@ def _calibrate(arguments: argparse.Namespace) -> None:
     print(f'written: {arguments.output}')
 
 
+def _check_options(arguments: argparse.Namespace) -> None:
+    if arguments.detector == 'evidence' and arguments.cutoff is not None:
+        raise ValueError('--cutoff is for --detector paper; the limits of the evidence follow '
+                         'from the false alarms that are allowed (--budget)')
+    if arguments.detector == 'paper' and arguments.budget is not None:
+        raise ValueError("--budget is for --detector evidence; the threshold of the paper's score "
+                         'is chosen by --cutoff')
+    if arguments.cutoff is None:
+        arguments.cutoff = Cutoff('youden')
+    if arguments.budget is None:
+        arguments.budget = evidence_limits.BUDGET
+
+
 def _check_known(trained: TrainedModel, normal: Sequence[RecordingEvents]) -> None:
     for recording in normal:
         if (recording.ids >= len(trained.event_types)).all():
@@ -94,27 +122,60 @@ def _check_known(trained: TrainedModel, normal: Sequence[RecordingEvents]) -> No
                              'trained with another encoding or on another robot')
 
 
-def _measure(trained: TrainedModel, parameters: DetectorParameters, cutoff: Cutoff,
-             normal_runs: Sequence[Run], faulty_runs: Sequence[Run]) -> _Measured:
+def _find_limits(arguments: argparse.Namespace, trained: TrainedModel,
+                 parameters: DetectorParameters, normal_runs: Sequence[Run],
+                 faulty_runs: Sequence[Run]) -> _Measured:
+    found = evidence_limits.held_out(trained, [run.source for run in normal_runs],
+                                     parameters.settle_time, arguments.budget)
+    trained.evidence_calibration = found
+    judged = calibration.judge(calibration.evidence_judge(trained, parameters), trained.window,
+                               [*normal_runs, *faulty_runs])
+    normal, faulty = judged[:len(normal_runs)], judged[len(normal_runs):]
+    normal_scores = _normal_scores(normal, faulty, parameters)
+    roc = Roc(normal_scores, calibration.labelled(faulty, ABNORMAL))
+    measured = _Measured(roc.at(EVIDENCE_THRESHOLD), roc, normal, faulty,
+                         calibration.fault_results(normal_scores, faulty, EVIDENCE_THRESHOLD),
+                         calibration.false_alarms(normal, trained.window))
+    found.false_alarms_per_hour = measured.false_alarms.per_hour
+    trained.evidence_calibration = found
+    return measured
+
+
+def _find_threshold(trained: TrainedModel, parameters: DetectorParameters, cutoff: Cutoff,
+                    normal_runs: Sequence[Run], faulty_runs: Sequence[Run]) -> _Measured:
     model = Model(trained)
     runs = [*normal_runs, *faulty_runs]
-    scored = calibration.judge(trained, model, None, parameters, runs)
-    normal_scores = calibration.labelled(scored[:len(normal_runs)], NORMAL)
-    if len(normal_scores) == 0:
-        raise ValueError(f'--normal: no window is left after the first {_settle(parameters)} s '
-                         '(--settle-time) of the recordings; name longer ones')
-    for run in scored[len(normal_runs):]:
-        if not (run.labels == ABNORMAL).any():
-            raise ValueError(f'{run.run.source.part}: no window of the fault is left after the '
-                             f'first {_settle(parameters)} s (--settle-time) of the recording; '
-                             'name a longer one')
+    scored = calibration.judge(calibration.paper_judge(trained, model, None, parameters),
+                               trained.window, runs)
+    normal_scores = _normal_scores(scored[:len(normal_runs)], scored[len(normal_runs):],
+                                   parameters)
     roc = Roc(normal_scores, calibration.labelled(scored[len(normal_runs):], ABNORMAL))
     point = cutoff.choose(roc)
-    judged = calibration.judge(trained, model, point.cutoff, parameters, runs)
+    judged = calibration.judge(calibration.paper_judge(trained, model, point.cutoff, parameters),
+                               trained.window, runs)
     normal, faulty = judged[:len(normal_runs)], judged[len(normal_runs):]
     return _Measured(point, roc, normal, faulty,
                      calibration.fault_results(normal_scores, faulty, point.cutoff),
                      calibration.false_alarms(normal, trained.window))
+
+
+def _normal_scores(normal: Sequence[JudgedRun], faulty: Sequence[JudgedRun],
+                   parameters: DetectorParameters) -> np.ndarray:
+    """Return the scores of normal windows.
+
+    Raises:
+        ValueError: there is none, or none of a fault.
+    """
+    normal_scores = calibration.labelled(normal, NORMAL)
+    if len(normal_scores) == 0:
+        raise ValueError(f'--normal: no window is left after the first {_settle(parameters)} s '
+                         '(--settle-time) of the recordings; name longer ones')
+    for run in faulty:
+        if not (run.labels == ABNORMAL).any():
+            raise ValueError(f'{run.run.source.part}: no window of the fault is left after the '
+                             f'first {_settle(parameters)} s (--settle-time) of the recording; '
+                             'name a longer one')
+    return normal_scores
 
 
 def _settle(parameters: DetectorParameters) -> str:
@@ -198,6 +259,17 @@ def _save_csv(path: str, runs: Sequence[JudgedRun]) -> None:
                                      unknown, repr(score), _LABELS[label]))
 
 
+def _budget(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not 0.0 < value < math.inf:
+        raise argparse.ArgumentTypeError('expected false alarms an hour, more than 0, not '
+                                         f'{text!r}')
+    return value
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog='calibrate', description=__doc__.split(': ', 1)[1], epilog=_EPILOG,
@@ -214,9 +286,12 @@ def _parser() -> argparse.ArgumentParser:
                         help='fault to make out of the normal recordings, see below')
     parser.add_argument('-o', '--output', required=True, metavar='MODEL',
                         help='file to write; may be the same model')
-    parser.add_argument('--cutoff', type=cli.checked(Cutoff.parse), default='youden',
-                        metavar='HOW', help='youden: most found less most false; closest: closest '
-                        'to all found and none false; fpr=RATE: this share of normal windows '
+    cli.add_detector_argument(parser)
+    parser.add_argument('--budget', type=_budget, metavar='N', help='evidence: false alarms an '
+                        f'hour that the limits allow (default: {evidence_limits.BUDGET:g})')
+    parser.add_argument('--cutoff', type=cli.checked(Cutoff.parse),
+                        metavar='HOW', help='paper: youden: most found less most false; closest: '
+                        'closest to all found and none false; fpr=RATE: this share of normal windows '
                         'false (default: youden)')
     parser.add_argument('--roc', type=cli.png_file, metavar='FILE.png', help='draw the ROC')
     parser.add_argument('--csv', metavar='FILE', help='write score and label of every window')

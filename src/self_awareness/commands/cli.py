@@ -8,12 +8,14 @@ import re
 import sys
 from typing import Callable, Optional, Sequence, TypeVar
 
-from self_awareness import BagError, DetectorParameters, ModelFileError
+from self_awareness import BagError, DetectorParameters, ModelFileError, UnknownEvents
 from self_awareness.stamps import SECOND_NS
 
 _Value = TypeVar('_Value')
 
 _LONGEST_S = 86400.0
+_UNKNOWN = {'ignore': UnknownEvents.IGNORE, 'warn': UnknownEvents.WARN,
+            'error': UnknownEvents.ERROR}
 _MOST_WINDOWS = 100_000
 
 
@@ -90,6 +92,13 @@ def png_file(text: str) -> str:
     return text
 
 
+def add_detector_argument(parser: argparse.ArgumentParser) -> None:
+    """Add the option that says what judges the windows."""
+    parser.add_argument('--detector', choices=['evidence', 'paper'], default='evidence',
+                        help='evidence: several pieces of evidence, each with its limit; paper: '
+                             'the score of Golombek et al. (default: evidence)')
+
+
 def add_detector_arguments(parser: argparse.ArgumentParser) -> None:
     """Add the options that say when abnormal windows are an alarm."""
     default = DetectorParameters()
@@ -102,6 +111,9 @@ def add_detector_arguments(parser: argparse.ArgumentParser) -> None:
                        f'(default: {default.alarm_windows})')
     group.add_argument('--alarm-of', type=_windows, default=default.alarm_of, metavar='N',
                        help=f'among the last N windows (default: {default.alarm_of})')
+    group.add_argument('--unknown', choices=sorted(_UNKNOWN), default='warn',
+                       help='events never seen in training: nothing, a suspicion, or an alarm at '
+                            'once (default: warn)')
     group.add_argument('--hold-time', type=seconds, default=default.hold_time, metavar='S',
                        help='seconds without an abnormal window after which it clears '
                             f'(default: {default.hold_time / SECOND_NS:g})')
@@ -118,6 +130,7 @@ def detector_parameters(arguments: argparse.Namespace) -> DetectorParameters:
     parameters.alarm_windows = arguments.alarm_windows
     parameters.alarm_of = arguments.alarm_of
     parameters.hold_time = arguments.hold_time
+    parameters.unknown = _UNKNOWN[arguments.unknown]
     parameters.validate()
     return parameters
 

@@ -3,11 +3,13 @@ from __future__ import annotations
 
 import argparse
 import csv
+import math
 from typing import List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from self_awareness import Model, TrainedModel, Verdicts, recordings
+from self_awareness import (EVIDENCE_THRESHOLD, Model, TrainedModel, Verdicts, calibration,
+                            recordings)
 from self_awareness.commands import cli
 from self_awareness.output_files import check_outputs, replacing
 from self_awareness.plots import ScorePlot, save_scores
@@ -18,7 +20,8 @@ _COLUMNS = ('bag', 'window_start_ns', 'events', 'unknown', 'score', 'threshold',
 
 _EPILOG = """\
 The CSV has one row a window: score and threshold are empty where there is none, abnormal is 1
-where the score, or 0 for a window without events, lies below the threshold, also while settling.
+where the score lies below the threshold, also while settling. With the paper's detector a window
+without events has no score and counts as 0.
 """
 
 
@@ -31,30 +34,35 @@ def _score(arguments: argparse.Namespace) -> None:
     check_outputs([arguments.csv, arguments.plot], arguments.bags + [arguments.model])
     parameters = cli.detector_parameters(arguments)
     trained = TrainedModel.load(arguments.model)
-    model = Model(trained)
-    if trained.threshold is None:
+    if arguments.detector == 'paper':
+        judge = calibration.paper_judge(trained, Model(trained), trained.threshold, parameters)
+        threshold = trained.threshold
+    else:
+        judge = calibration.evidence_judge(trained, parameters)
+        threshold = None if trained.evidence_calibration is None else EVIDENCE_THRESHOLD
+    if threshold is None:
         print(f'{arguments.model}: not calibrated: windows are scored, none is called abnormal '
               '(rosrun self_awareness calibrate)')
     judged: List[Tuple[RecordingEvents, Verdicts]] = []
     for path in arguments.bags:
         recording = recordings.read(trained, BagPart(path))
-        verdicts = model.judge(trained.window, trained.threshold, parameters, recording.stamps,
-                               recording.ids, recording.end)
+        verdicts = judge(recording.stamps, recording.ids, recording.end)
         judged.append((recording, verdicts))
-        _print(recording, verdicts, trained)
+        _print(recording, verdicts, len(trained.event_types), threshold)
     if arguments.csv is not None:
-        _save_csv(arguments.csv, judged, trained.threshold)
+        _save_csv(arguments.csv, judged, threshold)
     if arguments.plot is not None:
-        save_scores(arguments.plot, [_plot(recording, verdicts, trained)
+        save_scores(arguments.plot, [_plot(recording, verdicts, trained.window, threshold)
                                      for recording, verdicts in judged])
 
 
-def _print(recording: RecordingEvents, verdicts: Verdicts, trained: TrainedModel) -> None:
+def _print(recording: RecordingEvents, verdicts: Verdicts, known: int,
+           threshold: Optional[float]) -> None:
     origin = recording.origin
     windows = len(verdicts.start)
     line = (f'{recording.part}: {(recording.end - origin) / SECOND_NS:.1f} s, '
             f'{len(recording.stamps)} events, {windows} windows')
-    if trained.threshold is not None:
+    if threshold is not None:
         abnormal = int((verdicts.abnormal & ~verdicts.settling).sum())
         line += (f', {abnormal} abnormal ({abnormal / windows:.1%}; settling left out), '
                  f'alarms: {len(verdicts.alarms)}')
@@ -64,12 +72,13 @@ def _print(recording: RecordingEvents, verdicts: Verdicts, trained: TrainedModel
         print(f'  {(alarm.start - origin) / SECOND_NS:.1f} - '
               f'{(alarm.end - origin) / SECOND_NS:.1f} s{end}, '
               f'{utc(alarm.start)} - {utc(alarm.end)} UTC: '
-              f'lowest score {alarm.lowest_score:.4g}, threshold {trained.threshold:.4g}')
+              f'lowest score {alarm.lowest_score:.4g}, threshold {threshold:.4g}, '
+              f'{alarm.evidence}')
         if not alarm.suspects:
             print('    no suspect stands out')
         for rank, suspect in enumerate(alarm.suspects, 1):
             print(f'    {rank}. {recording.event_types[suspect.id]}: {suspect.describe()}')
-    _print_unknown(recording, len(trained.event_types))
+    _print_unknown(recording, known)
 
 
 def _print_unknown(recording: RecordingEvents, known: int) -> None:
@@ -94,20 +103,22 @@ def _save_csv(path: str, judged: Sequence[Tuple[RecordingEvents, Verdicts]],
                 for start, events, unknown, score, abnormal in zip(
                         *(column.tolist() for column in columns)):
                     writer.writerow((recording.part, start, events, unknown,
-                                     '' if events == 0 else repr(score), limit, int(abnormal)))
+                                     '' if math.isnan(score) else repr(score), limit,
+                                     int(abnormal)))
 
 
-def _plot(recording: RecordingEvents, verdicts: Verdicts, trained: TrainedModel) -> ScorePlot:
+def _plot(recording: RecordingEvents, verdicts: Verdicts, window: int,
+          threshold: Optional[float]) -> ScorePlot:
     def seconds(stamps: np.ndarray) -> np.ndarray:
         return (stamps - recording.origin) / SECOND_NS
 
     edges = np.flatnonzero(np.diff(np.concatenate(([0], verdicts.settling.astype(np.int8), [0]))))
-    starts = seconds(np.append(verdicts.start, verdicts.start[-1] + trained.window))
+    starts = seconds(np.append(verdicts.start, verdicts.start[-1] + window))
     return ScorePlot(
-        title=f'{recording.part}: score of windows of {trained.window / SECOND_NS:g} s',
+        title=f'{recording.part}: score of windows of {window / SECOND_NS:g} s',
         times=starts[:-1],
         scores=verdicts.score,
-        threshold=trained.threshold,
+        threshold=threshold,
         settling=[(float(starts[a]), float(starts[b])) for a, b in edges.reshape(-1, 2)],
         alarms=[(float(seconds(alarm.start)), float(seconds(alarm.end)))
                 for alarm in verdicts.alarms])
@@ -118,8 +129,7 @@ def _parser() -> argparse.ArgumentParser:
         prog='score', description=__doc__.split(': ', 1)[1], epilog=_EPILOG)
     parser.add_argument('bags', nargs='+', metavar='BAG', help='a recording')
     parser.add_argument('--model', required=True, help='file written by train or calibrate')
-    parser.add_argument('--detector', choices=['paper'], default='paper',
-                        help='how windows are scored (default: paper)')
+    cli.add_detector_argument(parser)
     parser.add_argument('--csv', metavar='FILE', help='write the score of every window')
     parser.add_argument('--plot', type=cli.png_file, metavar='FILE.png',
                         help='draw the scores over time')

@@ -3,12 +3,16 @@ from __future__ import annotations
 
 import argparse
 import os
-from typing import Dict, List, Optional, Sequence, Tuple
+from typing import Dict, Iterator, List, Optional, Sequence, Tuple
 
-from self_awareness import (FEWEST_GAPS, BagSummary, EncodingRules, ModelFileError, Recording,
-                            TrainedModel, Training, encoding_file, progress, summarise_bag)
+import numpy as np
+
+from self_awareness import (FEWEST_GAPS, BagSummary, DetectorParameters, EncodingRules,
+                            ModelFileError, Recording, TrainedModel, Training, encoding_file,
+                            evidence_limits, live_graph, progress, recordings, summarise_bag)
 from self_awareness.commands import cli
 from self_awareness.output_files import check_outputs
+from self_awareness.recordings import BagPart
 from self_awareness.stamps import SECOND_NS
 
 
@@ -33,22 +37,45 @@ def _train(arguments: argparse.Namespace) -> None:
     _check_distinct(summaries)
     rules = _rules(arguments.encoding, summaries)
     training = Training(rules, arguments.bin, arguments.window, horizon_bins)
+    alone = len(arguments.bags) == 1
     for path in arguments.bags:
-        recording = _add(training, path, arguments.start, arguments.end)
+        recording = _add(training, path, arguments.start, arguments.end, alone)
         seconds = (recording.end - recording.start) / SECOND_NS
         print(f'{path}: {seconds:.1f} s, {recording.events} events')
     model = training.model()
+    if arguments.graph:
+        model.graph = live_graph.fetch()
+    limits = _cross_fit(model, arguments)
     model.save(arguments.output)
     _print_summary(model)
-    print(f'written: {arguments.output}; it needs a threshold next '
-          '(rosrun self_awareness calibrate)')
+    print(limits)
+    print(f'written: {arguments.output}; next, find limits on recordings that it was not trained '
+          'on (rosrun self_awareness calibrate)')
 
 
-def _add(training: Training, path: str, start: Optional[float],
-         end: Optional[float]) -> Recording:
+def _cross_fit(model: TrainedModel, arguments: argparse.Namespace) -> str:
+    """Give the model preliminary limits where there is enough to find them; say how."""
+    parts = [BagPart(path, arguments.start, arguments.end) for path in arguments.bags]
+
+    def read() -> Iterator[Tuple[np.ndarray, np.ndarray]]:
+        for part in parts:
+            recording = recordings.read(model, part)
+            yield recording.stamps, recording.ids
+
+    try:
+        model.evidence_calibration = evidence_limits.cross_fit(
+            model, read, DetectorParameters().settle_time, evidence_limits.BUDGET)
+    except ValueError as error:
+        return f'limits       none: {error}'
+    return ('limits       preliminary, by what one half of the training says of the other '
+            f'({model.evidence_calibration.windows} windows)')
+
+
+def _add(training: Training, path: str, start: Optional[float], end: Optional[float],
+         alone: bool) -> Recording:
     with progress.messages(os.path.basename(path)) as update:
         try:
-            recording = training.add_bag(path, start, end, update)
+            recording = training.add_bag(path, start, end, alone, update)
         except ValueError as error:
             raise ValueError(f'{path}: {error}') from error
     if recording.events == 0:
@@ -140,6 +167,9 @@ def _parser() -> argparse.ArgumentParser:
                         help='length of the windows that are scored, in s (default: 0.1)')
     parser.add_argument('--horizon', type=cli.seconds, default=0, metavar='S',
                         help='delays of this many s or more share one bin (default: no horizon)')
+    parser.add_argument('--graph', action='store_true',
+                        help='ask the master of the running robot who subscribes to what, and '
+                             'keep it: the root of a fault is told from its victims by it')
     parser.add_argument('--encoding', metavar='FILE',
                         help='how messages become events (example: config/encoding.yaml)')
     parser.add_argument('--start', type=cli.offset, metavar='S',

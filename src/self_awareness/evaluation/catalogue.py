@@ -4,7 +4,7 @@ from __future__ import annotations
 from importlib import util
 from typing import Callable, Dict, Sequence
 
-from self_awareness.evaluation.detectors import Paper
+from self_awareness.evaluation.detectors import Evidence, Paper
 from self_awareness.evaluation.peers.frequency import (TOLERANCE, FrequencyMonitor,
                                                        LearnedFrequencyMonitor)
 from self_awareness.evaluation.peers.markov import MarkovScorer
@@ -26,7 +26,11 @@ def _hmm() -> Scorer:
     return HmmScorer()
 
 
-_DETECTORS: Dict[str, Callable[[], System]] = {'paper': Paper}
+_DETECTORS: Dict[str, Callable[[], System]] = {
+    'evidence': lambda: Evidence(knows_graph=True),
+    'evidence_no_graph': lambda: Evidence(knows_graph=False),
+    'paper': Paper,
+}
 
 _PEERS: Dict[str, Callable[[], Scorer]] = {
     'frequency': FrequencyMonitor,

@@ -1,12 +1,14 @@
 """The package's own detectors as systems to evaluate: a class for each."""
 from __future__ import annotations
 
-from typing import List, Optional, Sequence
+from typing import Dict, List, Optional, Sequence, Set
 
 import numpy as np
 
-from self_awareness import (DetectorParameters, EncodingRules, EventType, Model, Training,
-                            Verdicts)
+from self_awareness import (EVIDENCE_THRESHOLD, DetectorParameters, EncodingRules,
+                            EvidenceCalibration, EvidenceModel, EventType, LimitFinder, Model,
+                            TrainedModel, Training, Verdicts, evidence_limits, follow_me,
+                            judge_by_evidence)
 from self_awareness.evaluation.recording import WINDOW, Recording
 from self_awareness.evaluation.systems import Alarm, Judged, common_threshold, distinct
 
@@ -23,10 +25,7 @@ class Paper:
 
     def train(self, recordings: Sequence[Recording]) -> None:
         """Count the delays."""
-        training = Training(EncodingRules(), window=WINDOW)
-        for recording in recordings:
-            training.add_events(recording.event_types, recording.stamps, recording.ids)
-        trained = training.model()
+        trained = _trained(recordings)
         self._types = trained.event_types
         self._model = Model(trained)
 
@@ -40,14 +39,81 @@ class Paper:
         """Judge a recording."""
         encoded = recording.encoded(self._types)
         verdicts = self._verdicts(encoded)
-        alarms = [Alarm(alarm.start, alarm.end, alarm.cleared,
-                        distinct([encoded.event_types[suspect.id].source
-                                  for suspect in alarm.suspects]))
-                  for alarm in verdicts.alarms]
-        return Judged(verdicts.start, verdicts.abnormal, np.nan_to_num(verdicts.score),
-                      verdicts.settling, alarms, self._threshold)
+        return _judged(encoded, verdicts, self._threshold)
 
     def _verdicts(self, encoded: Recording) -> Verdicts:
         # The window in which the recording ends is the last one, hence - 1.
         return self._model.judge(WINDOW, self._threshold, DetectorParameters(), encoded.stamps,
                                  encoded.ids, encoded.end - 1)
+
+
+class Evidence:
+    """The evidence detector (`detector: evidence`), its limits for the budget that is the default.
+
+    Args:
+        knows_graph: whether the model holds who listens to whom, as after a training beside the
+            running robot; without, it was trained on bags alone.
+    """
+
+    def __init__(self, knows_graph: bool) -> None:
+        self.name = 'evidence' if knows_graph else 'evidence_no_graph'
+        self._graph = _scenario_graph() if knows_graph else {}
+        self._trained: Optional[TrainedModel] = None
+        self._model: Optional[EvidenceModel] = None
+
+    def train(self, recordings: Sequence[Recording]) -> None:
+        """Count what there is to count."""
+        self._trained = _trained(recordings)
+        self._trained.graph = self._graph
+        self._model = EvidenceModel(self._trained)
+
+    def calibrate(self, recordings: Sequence[Recording]) -> None:
+        """Find the limits."""
+        encoded = [recording.encoded(self._trained.event_types) for recording in recordings]
+        finder = LimitFinder(self._trained, DetectorParameters().settle_time,
+                             evidence_limits.BUDGET)
+        for recording in encoded:
+            finder.add_events(recording.stamps, recording.ids)
+        finder.start_second_pass()
+        for recording in encoded:
+            finder.add_events(recording.stamps, recording.ids)
+        limits = finder.limits()
+        calibration = EvidenceCalibration()
+        calibration.limits = limits.tracks
+        calibration.linker_limit = limits.linker
+        self._trained.evidence_calibration = calibration
+
+    def judge(self, recording: Recording) -> Judged:
+        """Judge a recording."""
+        encoded = recording.encoded(self._trained.event_types)
+        # The window in which the recording ends is the last one, hence - 1.
+        verdicts = judge_by_evidence(self._trained, self._model, DetectorParameters(),
+                                     encoded.stamps, encoded.ids, encoded.end - 1)
+        return _judged(encoded, verdicts, EVIDENCE_THRESHOLD)
+
+
+def _trained(recordings: Sequence[Recording]) -> TrainedModel:
+    training = Training(EncodingRules(), window=WINDOW)
+    for recording in recordings:
+        training.add_events(recording.event_types, recording.stamps, recording.ids)
+    return training.model()
+
+
+def _judged(encoded: Recording, verdicts: Verdicts, threshold: float) -> Judged:
+    alarms = [Alarm(alarm.start, alarm.end, alarm.cleared,
+                    distinct([encoded.event_types[suspect.id].source
+                              for suspect in alarm.suspects]))
+              for alarm in verdicts.alarms]
+    return Judged(verdicts.start, verdicts.abnormal, np.nan_to_num(verdicts.score),
+                  verdicts.settling, alarms, threshold)
+
+
+def _scenario_graph() -> Dict[str, Set[str]]:
+    """Return who listens to whom in the robot that comes with the package."""
+    scenario = follow_me.load()
+    graph: Dict[str, Set[str]] = {}
+    for publisher in scenario.components:
+        for listener in scenario.components:
+            if set(publisher.outputs()) & set(listener.inputs()):
+                graph.setdefault(f'/{publisher.name}', set()).add(f'/{listener.name}')
+    return graph

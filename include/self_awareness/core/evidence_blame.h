@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "self_awareness/core/evidence_scorer.h"
+#include "self_awareness/core/source_graph.h"
+#include "self_awareness/core/suspect.h"
+#include "self_awareness/core/windows.h"
+
+namespace self_awareness::core {
+
+/// Names the event types that abnormal evidence may be blamed on. Who is silent comes first: the
+/// source upstream of the others, then by how improbable so long a silence is. Where nobody is,
+/// the source that is involved in most of what is unusual.
+class EvidenceBlame {
+ public:
+  /// @param graph may be empty: then the silences alone decide
+  EvidenceBlame(std::shared_ptr<const EvidenceModel> model,
+                std::shared_ptr<const SourceGraph> graph);
+
+  /// @param shares of its limit that every track of the model has reached
+  /// @param window judged, and its end [ns]
+  /// @return at most kMostSuspects, the first the most likely, each event type once
+  std::vector<Suspect> suspects(const std::vector<double>& shares, const EvidenceScorer& scorer,
+                                const Window& window, std::int64_t end) const;
+
+ private:
+  struct Candidate {
+    Suspect suspect;
+    double rank = 0;  // the smaller, the more likely
+  };
+
+  static bool likelier(const Candidate& a, const Candidate& b) { return a.rank < b.rank; }
+  std::vector<Candidate> rootFirst(std::vector<Candidate> candidates) const;
+  std::vector<Candidate> silent(const std::vector<double>& shares, const EvidenceScorer& scorer,
+                                std::int64_t end) const;
+  std::vector<Candidate> unusual(const std::vector<double>& shares,
+                                 const EvidenceScorer& scorer) const;
+  Suspect silence(EventId id, std::int64_t age) const;
+  Suspect unusualTrack(std::size_t track, const EvidenceScorer& scorer) const;
+  const std::string& component(EventId id) const;
+
+  std::shared_ptr<const EvidenceModel> model_;
+  std::shared_ptr<const SourceGraph> graph_;
+};
+
+}  // namespace self_awareness::core

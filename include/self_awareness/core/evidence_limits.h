@@ -1,0 +1,94 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "self_awareness/core/evidence_scorer.h"
+#include "self_awareness/core/windows.h"
+
+namespace self_awareness::core {
+
+/// The limit that the largest value of a block exceeds with a small probability: a Gumbel
+/// distribution is fitted to the maxima of blocks by L-moments (Hosking 1990), and extrapolated.
+/// @param maxima at least two
+/// @param probability 0 to 1
+double gumbelLimit(std::vector<double> maxima, double probability);
+
+/// The age [ns] that gaps between two events of a type reach less often than a rate: the excess of
+/// the longest gaps over the shortest of them is taken for exponential, and extrapolated.
+/// @param longest_gaps [ns], the longest first, at least two
+/// @param duration in which they were the longest [ns]
+/// @param rate per nanosecond
+double overdueAge(const std::vector<std::int64_t>& longest_gaps, std::int64_t duration,
+                  double rate);
+
+/// Finds the limits of a model's evidence on normal operation that was not trained on, so that
+/// together they are exceeded less often than a number of times an hour. First the limits of the
+/// tracks, then, in a second pass over the same recordings, that of the linker.
+class LimitFinder {
+ public:
+  struct Parameters {
+    std::int64_t window = 100000000;        ///< length of a window [ns]
+    std::int64_t settle_time = 5000000000;  ///< left out at a recording's start [ns]
+    double false_alarms_per_hour = 0.5;     ///< all together, > 0
+
+    /// @throw std::invalid_argument if a value is out of range.
+    void validate() const;
+  };
+
+  LimitFinder(std::shared_ptr<const EvidenceModel> model, const Parameters& parameters);
+
+  /// The next events belong to another recording, which is judged by a model: that of the
+  /// constructor, or one learned from the other half of the training, with the same tracks.
+  void startRecording(std::shared_ptr<const EvidenceModel> model);
+  void add(const Event& event);
+  /// The recording ends.
+  void finish();
+  /// Ends the first pass: the limits of the tracks are found, and recordings come once more.
+  /// @throw std::invalid_argument if there was too little data: less than kFewestBlocks blocks
+  void startSecondPass();
+  /// @throw std::logic_error before the second pass
+  EvidenceLimits limits() const;
+
+  /// Windows that were looked at, of one pass.
+  std::uint64_t windows() const { return windows_seen_; }
+
+  /// The maxima are those of blocks of this length [ns]: longer than evidence remembers.
+  static constexpr std::int64_t kBlock = 10 * kNanosecondsPerSecond;
+  static constexpr std::size_t kFewestBlocks = 5;
+
+ private:
+  void judge(std::int64_t end);
+  void closeBlock();
+  void closeChunk();
+  double limit(std::size_t track) const;
+
+  std::shared_ptr<const EvidenceModel> model_;
+  Parameters parameters_;
+  std::shared_ptr<const EvidenceModel> judging_;
+  std::optional<EvidenceScorer> scorer_;
+  Windows windows_;
+  std::optional<std::int64_t> first_stamp_;             // of the recording [ns]
+  std::optional<std::int64_t> last_stamp_;              // [ns]
+  std::vector<std::optional<std::int64_t>> last_seen_;  // by id
+  std::uint64_t windows_seen_ = 0;
+
+  std::vector<double> block_;  // largest evidence, by track
+  std::size_t block_windows_ = 0;
+  std::vector<std::vector<double>> maxima_;     // of blocks, by track
+  std::vector<EvidenceStatistics::Type> gaps_;  // longest gaps, by id
+  std::int64_t duration_ = 0;                   // [ns]
+  // Delays of a chunk of a recording, to see whether what a pair says holds all the time.
+  EvidenceStatistics chunk_;
+  std::optional<EvidenceTrainer> chunk_trainer_;
+  std::vector<bool> misleading_;  // by track
+
+  bool second_pass_ = false;
+  EvidenceLimits limits_;
+  double linker_block_ = 0;
+  std::vector<double> linker_maxima_;
+};
+
+}  // namespace self_awareness::core

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include "self_awareness/core/event.h"
+
+namespace self_awareness::core {
+
+/// Event types with fewer gaps than this in training are not judged: they have no usual delay to
+/// be measured by.
+constexpr std::uint64_t kFewestGaps = 30;
+/// No more suspects than this are named.
+constexpr std::size_t kMostSuspects = 5;
+
+/// Who may have made a window abnormal, and why.
+struct Suspect {
+  enum class Reason {
+    kSilent,   ///< did not come although it should have by now
+    kLate,     ///< came after an unusually long silence
+    kUnknown,  ///< was never seen in training
+    kUnusual,  ///< came at delays after the others that were rare or absent in training
+    kRate,     ///< comes more or less often than it should
+    kDelay,    ///< comes sooner or later after another event type than it should
+    kAnswer    ///< is left out after another event type more often than it should
+  };
+
+  EventId id = 0;
+  Reason reason = Reason::kSilent;
+  double silence = 0;         ///< kSilent, kLate: time without such an event [s]
+  double usual_shortest = 0;  ///< kSilent, kLate: 1 % of the gaps in training are shorter [s];
+                              ///< kDelay: 5 % of the delays; kRate: usual number less 2 spreads
+  double usual_longest = 0;   ///< kSilent, kLate: 1 % of the gaps in training are longer [s];
+                              ///< kDelay: 5 % of the delays; kRate: usual number and 2 spreads
+  std::size_t events = 0;     ///< kUnknown, kUnusual: such events in the window; kRate: in the
+                              ///< last 2 s
+  double score = 0;           ///< kUnusual: their mean score
+  double usual_score = 0;     ///< kUnusual: the score to expect by training
+  std::string other;          ///< kDelay, kAnswer: the other event type
+  double delay = 0;           ///< kDelay: the last one [s]
+};
+
+/// The reason in words and numbers: "silent for 2.31 s, usually every 0.070 to 0.090 s".
+std::string describe(const Suspect& suspect);
+
+}  // namespace self_awareness::core

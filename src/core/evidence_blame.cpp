@@ -1,0 +1,188 @@
+#include "self_awareness/core/evidence_blame.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+namespace self_awareness::core {
+namespace {
+
+// A silence that one gap in a hundred reaches is worth naming once a window is abnormal.
+const double kRareSilence = std::log(0.01);
+// Evidence below this share of its limit says nothing of who is involved.
+constexpr double kLeastShare = 0.3;
+constexpr double kMostShare = 2;
+// When the first piece of evidence passes its limit, that of its root may still be on the way.
+constexpr double kNearLimit = 0.75;
+// Of an unusual delay between two event types, the later one is a little more to blame.
+constexpr double kShareOfEarlier = 0.9;
+
+}  // namespace
+
+EvidenceBlame::EvidenceBlame(std::shared_ptr<const EvidenceModel> model,
+                             std::shared_ptr<const SourceGraph> graph)
+    : model_(std::move(model)), graph_(std::move(graph)) {}
+
+std::vector<Suspect> EvidenceBlame::suspects(const std::vector<double>& shares,
+                                             const EvidenceScorer& scorer, const Window& window,
+                                             std::int64_t end) const {
+  std::vector<Candidate> candidates = silent(shares, scorer, end);
+  const std::vector<Candidate> others = unusual(shares, scorer);
+  candidates.insert(candidates.end(), others.begin(), others.end());
+
+  std::vector<Suspect> suspects;
+  std::set<EventId> named;
+  const auto name = [&](const Suspect& suspect) {
+    if (suspects.size() < kMostSuspects && named.insert(suspect.id).second) {
+      suspects.push_back(suspect);
+    }
+  };
+  for (const Candidate& candidate : candidates) {
+    name(candidate.suspect);
+  }
+  for (const ScoredEvent& scored : window.events) {
+    if (scored.unknown) {
+      Suspect suspect;
+      suspect.id = scored.event.id;
+      suspect.reason = Suspect::Reason::kUnknown;
+      suspect.events = static_cast<std::size_t>(std::count_if(
+          window.events.begin(), window.events.end(),
+          [&](const ScoredEvent& other) { return other.event.id == scored.event.id; }));
+      name(suspect);
+    }
+  }
+  return suspects;
+}
+
+std::vector<EvidenceBlame::Candidate> EvidenceBlame::silent(const std::vector<double>& shares,
+                                                            const EvidenceScorer& scorer,
+                                                            std::int64_t end) const {
+  std::set<EventId> missing;
+  for (std::size_t track = 0; track < shares.size(); ++track) {
+    const Channel channel = model_->tracks()[track].channel;
+    if (shares[track] > kNearLimit &&
+        (channel == Channel::kOverdue || channel == Channel::kAnswer)) {
+      missing.insert(model_->tracks()[track].to);
+    }
+  }
+  std::vector<Candidate> candidates;
+  for (const EventId id : missing) {
+    const std::int64_t age = end - scorer.lastSeen(id).value_or(end);
+    const double survival = model_->logSurvival(id, age);
+    if (survival < kRareSilence) {
+      candidates.push_back({silence(id, age), survival});
+    }
+  }
+  return rootFirst(std::move(candidates));
+}
+
+// Upstream before downstream is no total order: whoever has fewest others upstream is next.
+std::vector<EvidenceBlame::Candidate> EvidenceBlame::rootFirst(
+    std::vector<Candidate> candidates) const {
+  std::stable_sort(candidates.begin(), candidates.end(), likelier);
+  std::vector<Candidate> ordered;
+  while (!candidates.empty()) {
+    const auto upstream = [&](const Candidate& one) {
+      return std::count_if(candidates.begin(), candidates.end(), [&](const Candidate& other) {
+        return graph_->isUpstream(component(other.suspect.id), component(one.suspect.id));
+      });
+    };
+    const auto root = std::min_element(
+        candidates.begin(), candidates.end(),
+        [&](const Candidate& a, const Candidate& b) { return upstream(a) < upstream(b); });
+    ordered.push_back(*root);
+    candidates.erase(root);
+  }
+  return ordered;
+}
+
+std::vector<EvidenceBlame::Candidate> EvidenceBlame::unusual(const std::vector<double>& shares,
+                                                             const EvidenceScorer& scorer) const {
+  struct Involved {
+    double sum = 0;
+    std::size_t track = 0;  // the one that says most
+    double largest = 0;
+    bool own = false;  // something is wrong with it, whatever the others do
+  };
+  std::map<std::string, Involved> components;
+  for (std::size_t track = 0; track < shares.size(); ++track) {
+    const auto& [channel, to, from] = model_->tracks()[track];
+    if (shares[track] < kLeastShare || channel == Channel::kSlowDelay) {
+      continue;
+    }
+    const double share = std::min(shares[track], kMostShare);
+    Involved& later = components[component(to)];
+    later.sum += share;
+    later.own |= shares[track] > kNearLimit && channel != Channel::kOverdue &&
+                 (channel != Channel::kDelay || from == to);
+    if (share > later.largest) {
+      later.largest = share;
+      later.track = track;
+    }
+    if (channel == Channel::kDelay && component(from) != component(to)) {
+      components[component(from)].sum += kShareOfEarlier * share;
+    }
+  }
+  std::vector<Candidate> roots;
+  std::vector<Candidate> others;
+  for (const auto& [name, involved] : components) {
+    if (involved.largest > 0) {
+      (involved.own ? roots : others)
+          .push_back({unusualTrack(involved.track, scorer), -involved.sum});
+    }
+  }
+  roots = rootFirst(std::move(roots));
+  std::stable_sort(others.begin(), others.end(), likelier);
+  roots.insert(roots.end(), others.begin(), others.end());
+  return roots;
+}
+
+Suspect EvidenceBlame::silence(EventId id, std::int64_t age) const {
+  Suspect suspect;
+  suspect.id = id;
+  suspect.reason = Suspect::Reason::kSilent;
+  suspect.silence = toSeconds(age);
+  suspect.usual_shortest = model_->usualDelay(id, id, 0.01);
+  suspect.usual_longest = model_->usualDelay(id, id, 0.99);
+  return suspect;
+}
+
+Suspect EvidenceBlame::unusualTrack(std::size_t track, const EvidenceScorer& scorer) const {
+  const auto& [channel, to, from] = model_->tracks()[track];
+  Suspect suspect;
+  suspect.id = to;
+  switch (channel) {
+    case Channel::kOverdue:
+      return silence(to, scorer.windowEnd() - scorer.lastSeen(to).value_or(scorer.windowEnd()));
+    case Channel::kFewer:
+    case Channel::kMore:
+      suspect.reason = Suspect::Reason::kRate;
+      suspect.events = scorer.recentCount(to);
+      suspect.usual_shortest = std::max(model_->usualCount(to, -2), 0.0);
+      suspect.usual_longest = model_->usualCount(to, 2);
+      break;
+    case Channel::kDelay:
+    case Channel::kSlowDelay:
+      suspect.reason = Suspect::Reason::kDelay;
+      suspect.other = toString(model_->vocabulary().at(from));
+      suspect.delay = toSeconds(scorer.lastDelay(track));
+      suspect.usual_shortest = model_->usualDelay(from, to, 0.05);
+      suspect.usual_longest = model_->usualDelay(from, to, 0.95);
+      break;
+    case Channel::kAnswer:
+      suspect.reason = Suspect::Reason::kAnswer;
+      suspect.other = toString(model_->vocabulary().at(from));
+      break;
+  }
+  return suspect;
+}
+
+// Where the encoding leaves sources out, a topic stands for who publishes on it.
+const std::string& EvidenceBlame::component(EventId id) const {
+  const EventType& type = model_->vocabulary().at(id);
+  return type.source.empty() ? type.scope : type.source;
+}
+
+}  // namespace self_awareness::core

@@ -1,0 +1,247 @@
+#include "self_awareness/core/evidence_limits.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+#include "self_awareness/core/clock.h"
+
+namespace self_awareness::core {
+namespace {
+
+constexpr double kEulerMascheroni = 0.57721566490153286;
+constexpr double kHour = 3600e9;  // [ns]
+constexpr double kKinds = 4;      // of evidence: overdue, rate, pairs, answers
+
+// What was seen once in normal operation is normal, and so is a little more (METHOD.md, section
+// 4).
+constexpr double kMargin = 1.25;
+constexpr double kGapMargin = 1.1;
+// It depends on what the robot is at, and that changes from hour to hour.
+constexpr double kLinkerMargin = 1.5;
+constexpr std::size_t kTailGaps = 20;
+
+constexpr std::int64_t kChunk = 100 * kNanosecondsPerSecond;
+// Independent timers keep one phase for a while. What a pair says then is gone when they drift.
+constexpr double kLeastGainLeft = 0.7;
+
+// Evidence that gets nowhere near its limit in this time [ns] of a component's death is no use.
+constexpr double kLongestWait = 10e9;
+constexpr double kMostDelayLimit = 100;
+
+}  // namespace
+
+double gumbelLimit(std::vector<double> maxima, double probability) {
+  std::sort(maxima.begin(), maxima.end());
+  const auto n = static_cast<double>(maxima.size());
+  double mean = 0;
+  double weighted = 0;
+  for (std::size_t i = 0; i < maxima.size(); ++i) {
+    mean += maxima[i] / n;
+    weighted += static_cast<double>(i) / (n - 1) * maxima[i] / n;
+  }
+  const double scale = (2 * weighted - mean) / std::log(2.0);
+  const double location = mean - kEulerMascheroni * scale;
+  return location - scale * std::log(-std::log1p(-probability));
+}
+
+double overdueAge(const std::vector<std::int64_t>& longest_gaps, std::int64_t duration,
+                  double rate) {
+  const std::size_t number = std::min(longest_gaps.size(), kTailGaps);
+  const auto shortest = static_cast<double>(longest_gaps[number - 1]);
+  const double mean = std::accumulate(longest_gaps.begin(),
+                                      longest_gaps.begin() + static_cast<long>(number), 0.0) /
+                      static_cast<double>(number);
+  const double expected = static_cast<double>(number) / (static_cast<double>(duration) * rate);
+  return std::max(shortest + (mean - shortest) * std::max(std::log(expected), 0.0),
+                  kGapMargin * static_cast<double>(longest_gaps.front()));
+}
+
+void LimitFinder::Parameters::validate() const {
+  if (window <= 0 || settle_time < 0) {
+    throw std::invalid_argument("window must be more than 0 ns, settle_time 0 or more");
+  }
+  if (!(false_alarms_per_hour > 0) || !std::isfinite(false_alarms_per_hour)) {
+    throw std::invalid_argument("the budget of false alarms an hour must be more than 0");
+  }
+}
+
+LimitFinder::LimitFinder(std::shared_ptr<const EvidenceModel> model, const Parameters& parameters)
+    : model_(std::move(model)),
+      parameters_(parameters),
+      windows_(parameters.window,
+               [this](const Window& window) { judge(window.start + parameters_.window); }),
+      block_(model_->tracks().size(), 0),
+      maxima_(model_->tracks().size()),
+      gaps_(model_->size()),
+      misleading_(model_->tracks().size(), false) {
+  parameters_.validate();
+}
+
+void LimitFinder::startRecording(std::shared_ptr<const EvidenceModel> model) {
+  finish();
+  judging_ = std::move(model);
+  scorer_.emplace(judging_, parameters_.window);
+}
+
+void LimitFinder::add(const Event& event) {
+  if (last_stamp_ && isClockStep(*last_stamp_, event.stamp)) {
+    startRecording(judging_);
+  }
+  if (!last_stamp_) {
+    first_stamp_ = event.stamp;
+    last_seen_.assign(model_->size(), std::nullopt);
+  }
+  windows_.advance(event.stamp);
+  const std::optional<std::int64_t> gap = scorer_->add(event);
+  windows_.add({event, 0, !model_->knows(event.id), gap});
+  last_stamp_ = event.stamp;
+  if (second_pass_ || !model_->knows(event.id)) {
+    return;
+  }
+  if (gap) {
+    gaps_[event.id].addGap(*gap);
+  }
+  if (!chunk_trainer_) {
+    chunk_ = {};
+    for (const EventType& type : model_->vocabulary().types()) {
+      chunk_.intern(type);
+    }
+    chunk_trainer_.emplace(chunk_, parameters_.window);
+  }
+  chunk_trainer_->add(event);
+  if (chunk_.duration() >= kChunk) {
+    closeChunk();
+  }
+}
+
+void LimitFinder::finish() {
+  if (!last_stamp_) {
+    return;
+  }
+  windows_.finish();
+  closeBlock();
+  if (!second_pass_) {
+    closeChunk();
+    duration_ += *last_stamp_ - *first_stamp_;
+  }
+  last_stamp_.reset();
+}
+
+void LimitFinder::judge(std::int64_t end) {
+  const std::vector<double>& evidence = scorer_->closeWindow(end);
+  if (end - parameters_.window < *first_stamp_ + parameters_.settle_time) {
+    return;
+  }
+  ++block_windows_;
+  if (second_pass_) {
+    linker_block_ = std::max(linker_block_, sumUp(evidence, *judging_, limits_).linker);
+  } else {
+    ++windows_seen_;
+    std::transform(evidence.begin(), evidence.end(), block_.begin(), block_.begin(),
+                   [](double a, double b) { return std::max(a, b); });
+  }
+  if (static_cast<std::int64_t>(block_windows_) * parameters_.window >= kBlock) {
+    closeBlock();
+  }
+}
+
+void LimitFinder::closeBlock() {
+  // Half a block at the end of a recording would have smaller maxima.
+  if (static_cast<std::int64_t>(block_windows_) * parameters_.window >= kBlock) {
+    if (second_pass_) {
+      linker_maxima_.push_back(linker_block_);
+    } else {
+      for (std::size_t track = 0; track < block_.size(); ++track) {
+        maxima_[track].push_back(block_[track]);
+      }
+    }
+  }
+  block_windows_ = 0;
+  linker_block_ = 0;
+  std::fill(block_.begin(), block_.end(), 0);
+}
+
+void LimitFinder::closeChunk() {
+  if (!chunk_trainer_) {
+    return;
+  }
+  const InformationGain usual(model_->statistics(), model_->statistics());
+  const InformationGain now(model_->statistics(), chunk_);
+  for (std::size_t track = 0; track < misleading_.size(); ++track) {
+    const auto& [channel, to, from] = model_->tracks()[track];
+    if ((channel == Channel::kDelay || channel == Channel::kSlowDelay) &&
+        chunk_.pair(from, to).total() >= InformationGain::kFewestDelays &&
+        now(from, to) < kLeastGainLeft * usual(from, to)) {
+      misleading_[track] = true;
+    }
+  }
+  chunk_trainer_.reset();
+}
+
+void LimitFinder::startSecondPass() {
+  finish();
+  if (maxima_.empty() || maxima_.front().size() < kFewestBlocks) {
+    throw std::invalid_argument("too little normal operation to find limits: at least " +
+                                std::to_string(kFewestBlocks * kBlock / kNanosecondsPerSecond) +
+                                " s are needed in pieces of " +
+                                std::to_string(kBlock / kNanosecondsPerSecond) +
+                                " s, after the first seconds of every recording");
+  }
+  for (std::size_t track = 0; track < maxima_.size(); ++track) {
+    limits_.tracks.push_back(limit(track));
+  }
+  second_pass_ = true;
+}
+
+double LimitFinder::limit(std::size_t track) const {
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  const auto& [channel, to, from] = model_->tracks()[track];
+  // Each kind of evidence has its share of the budget, each track of the kind its share of that.
+  const std::vector<Track>& tracks = model_->tracks();
+  const auto of_kind = std::count_if(tracks.begin(), tracks.end(), [&](const Track& other) {
+    return channelName(other.channel) == channelName(tracks[track].channel);
+  });
+  const double per_hour =
+      parameters_.false_alarms_per_hour / kKinds / static_cast<double>(of_kind);
+  const EvidenceStatistics::Type& trained = model_->statistics().type(to);
+  if (channel == Channel::kOverdue) {
+    EvidenceStatistics::Type gaps = trained;
+    for (const std::int64_t gap : gaps_[to].longest_gaps) {
+      gaps.addGap(gap);
+    }
+    const double age = overdueAge(gaps.longest_gaps, model_->statistics().duration() + duration_,
+                                  per_hour / kHour);
+    return model_->overdue(to, std::llround(age));
+  }
+  const std::vector<double>& maxima = maxima_[track];
+  const double found = std::max({model_->leastLimit(track),
+                                 kMargin * *std::max_element(maxima.begin(), maxima.end()),
+                                 gumbelLimit(maxima, std::min(per_hour * kBlock / kHour, 0.5))});
+  if (channel == Channel::kDelay || channel == Channel::kSlowDelay) {
+    return misleading_[track] || found > kMostDelayLimit ? kNone : found;
+  }
+  if (channel == Channel::kAnswer) {
+    const EvidenceStatistics::Type& asking = model_->statistics().type(from);
+    const double gap = static_cast<double>(asking.gap_sum) / static_cast<double>(asking.gaps);
+    return found / model_->missed(track) * gap > kLongestWait ? kNone : found;
+  }
+  return found;
+}
+
+EvidenceLimits LimitFinder::limits() const {
+  if (linker_maxima_.size() < 2) {
+    throw std::logic_error("limits are known after the second pass");
+  }
+  EvidenceLimits limits = limits_;
+  const double largest = *std::max_element(linker_maxima_.begin(), linker_maxima_.end());
+  limits.linker =
+      std::max({1.0, kLinkerMargin * largest,
+                gumbelLimit(linker_maxima_, parameters_.false_alarms_per_hour * kBlock / kHour)});
+  return limits;
+}
+
+}  // namespace self_awareness::core

@@ -1,0 +1,242 @@
+#include "self_awareness/core/evidence_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "self_awareness/core/suspect.h"
+
+namespace self_awareness::core {
+namespace {
+
+// A single event proves little, however improbable; and delays of one bin vary by nothing.
+constexpr double kMostSurprise = 6;
+constexpr double kLeastDeviation = 0.5;  // [nat]
+
+// Share of the answers that come which a fault is supposed to take away.
+constexpr double kLost = 0.5;
+constexpr double kLeastMissRate = 0.1;
+constexpr double kMostMissRate = 0.95;
+
+// Below these, training data by the hour would be needed to tell chance from fault. One event that
+// comes late makes two unusual delays, one too long and one too short: they must not do.
+constexpr double kLeastRateLimit = 3;
+constexpr double kLeastDelayLimit = 2 * kMostSurprise + 1;
+constexpr double kLeastMisses = 4;
+constexpr double kLeastAnswerLimit = 5;  // [nat]
+
+/// Mean and standard deviation of -log P of a pair's delays, learned from one half of the training
+/// and measured on the other, both ways.
+class HeldOutSurprise {
+ public:
+  void add(const std::vector<std::uint32_t>& learned, const std::vector<std::uint32_t>& measured) {
+    if (learned.empty() || measured.empty()) {
+      return;
+    }
+    const std::vector<double> logs = logProbabilities({learned.begin(), learned.end()});
+    for (std::size_t bin = 0; bin < log_bins::kBins; ++bin) {
+      count_ += measured[bin];
+      sum_ -= measured[bin] * logs[bin];
+      squares_ += measured[bin] * logs[bin] * logs[bin];
+    }
+  }
+  double mean() const { return count_ > 0 ? sum_ / count_ : 0; }
+  double deviation() const {
+    const double variance = count_ > 0 ? squares_ / count_ - mean() * mean() : 0;
+    return std::max(std::sqrt(std::max(variance, 0.0)), kLeastDeviation);
+  }
+
+ private:
+  double count_ = 0;
+  double sum_ = 0;
+  double squares_ = 0;
+};
+
+EvidenceStatistics sum(const EvidenceStatistics& first, const EvidenceStatistics& second) {
+  EvidenceStatistics both = first;
+  both.merge(second);
+  return both;
+}
+
+// The counts of one half, with ids for the event types of the other, too.
+EvidenceStatistics withTypes(const EvidenceStatistics& both, const EvidenceStatistics& half) {
+  EvidenceStatistics counts;
+  for (const EventType& type : both.vocabulary().types()) {
+    counts.intern(type);
+  }
+  counts.merge(half);
+  return counts;
+}
+
+}  // namespace
+
+EvidenceModel::EvidenceModel(const EvidenceStatistics& first, const EvidenceStatistics& second,
+                             Learned learned)
+    : statistics_(sum(first, second)), tracks_(chooseTracks(first, second, statistics_)) {
+  if (size() == 0) {
+    throw std::invalid_argument("a model needs at least one event");
+  }
+  learned_ = learned == Learned::kBoth
+                 ? statistics_
+                 : withTypes(statistics_, learned == Learned::kFirst ? first : second);
+  learnGaps();
+  learnRates();
+  learnDelays(withTypes(statistics_, first), withTypes(statistics_, second));
+  learnAnswers();
+}
+
+void EvidenceModel::learnGaps() {
+  gaps_.resize(size());
+  for (EventId id = 0; id < size(); ++id) {
+    const EvidenceStatistics::Type& type = learned_.type(id);
+    if (type.gaps == 0) {
+      continue;
+    }
+    Gaps& gaps = gaps_[id];
+    gaps.longest = static_cast<double>(std::max<std::int64_t>(type.longest_gaps.front(), 1));
+    const std::vector<std::uint32_t>& counts = learned_.pair(id, id).delays;
+    for (std::size_t bin = 0; bin < counts.size(); ++bin) {
+      if (counts[bin] > 0) {
+        const double middle = std::min(log_bins::middle(bin), gaps.longest);
+        gaps.bins.emplace_back(middle, counts[bin]);
+        gaps.sum += middle * counts[bin];
+      }
+    }
+  }
+}
+
+void EvidenceModel::learnRates() {
+  const auto windows = static_cast<double>(std::max<std::uint64_t>(learned_.rateWindows(), 1));
+  for (EventId id = 0; id < size(); ++id) {
+    const EvidenceStatistics::Type& type = learned_.type(id);
+    Rate rate;
+    rate.mean = static_cast<double>(type.rate_sum) / windows;
+    const double variance =
+        static_cast<double>(type.rate_squares) / windows - rate.mean * rate.mean;
+    rate.spread = std::sqrt(std::max(variance, 0.0) + std::min(1.0, rate.mean / 4) + 0.25);
+    rates_.push_back(rate);
+  }
+}
+
+void EvidenceModel::learnDelays(const EvidenceStatistics& first,
+                                const EvidenceStatistics& second) {
+  surprises_.resize(tracks_.size());
+  for (std::size_t track = 0; track < tracks_.size(); ++track) {
+    const auto& [channel, to, from] = tracks_[track];
+    if (channel != Channel::kDelay && channel != Channel::kSlowDelay) {
+      continue;
+    }
+    HeldOutSurprise usual;
+    usual.add(first.pair(from, to).delays, second.pair(from, to).delays);
+    usual.add(second.pair(from, to).delays, first.pair(from, to).delays);
+    const std::vector<std::uint32_t>& counts = learned_.pair(from, to).delays;
+    std::vector<std::uint64_t> learned(counts.begin(), counts.end());
+    learned.resize(log_bins::kBins, 0);
+    const std::vector<double> logs = logProbabilities(learned);
+    for (std::size_t bin = 0; bin < log_bins::kBins; ++bin) {
+      surprises_[track][bin] =
+          std::min((-logs[bin] - usual.mean()) / usual.deviation(), kMostSurprise);
+    }
+  }
+}
+
+void EvidenceModel::learnAnswers() {
+  steps_.resize(tracks_.size());
+  for (std::size_t track = 0; track < tracks_.size(); ++track) {
+    const auto& [channel, to, from] = tracks_[track];
+    if (channel == Channel::kAnswer) {
+      const double usual =
+          std::clamp(core::missRate(learned_, from, to), kLeastMissRate, kMostMissRate);
+      const double faulty = usual + (1 - usual) * kLost;
+      steps_[track] = {std::log((1 - faulty) / (1 - usual)), std::log(faulty / usual), usual};
+    }
+  }
+}
+
+double EvidenceModel::overdue(EventId id, std::int64_t age) const {
+  const Gaps& gaps = gaps_.at(id);
+  if (gaps.bins.empty()) {
+    return 0;
+  }
+  const auto a = static_cast<double>(std::max<std::int64_t>(age, 0));
+  double left = 0;
+  for (auto bin = gaps.bins.rbegin(); bin != gaps.bins.rend() && bin->first > a; ++bin) {
+    left += bin->second * (bin->first - a);
+  }
+  const double all = std::log(gaps.sum + gaps.longest);
+  // Where no gap was longer, exp(-a / b) would underflow long before its logarithm.
+  return left > 0 ? all - std::log(left + gaps.longest * std::exp(-a / gaps.longest))
+                  : all - std::log(gaps.longest) + a / gaps.longest;
+}
+
+double EvidenceModel::logSurvival(EventId id, std::int64_t age) const {
+  const EvidenceStatistics::Type& type = learned_.type(id);
+  if (type.gaps < kFewestGaps) {
+    return 0;
+  }
+  // The longest gaps are known exactly, the others by their bins.
+  const std::vector<std::int64_t>& longest = type.longest_gaps;
+  auto longer =
+      static_cast<double>(std::partition_point(longest.begin(), longest.end(),
+                                               [&](std::int64_t gap) { return gap > age; }) -
+                          longest.begin());
+  if (longer == static_cast<double>(longest.size())) {
+    longer = 0;
+    const std::vector<std::uint32_t>& delays = learned_.pair(id, id).delays;
+    for (std::size_t bin = log_bins::bin(age); bin < delays.size(); ++bin) {
+      longer += delays[bin];
+    }
+  }
+  const double tail =
+      static_cast<double>(age) / static_cast<double>(std::max<std::int64_t>(longest.front(), 1));
+  const double all = std::log(static_cast<double>(type.gaps) + 1);
+  // Where no gap was longer, exp(-tail) would underflow long before its logarithm.
+  return longer > 0 ? std::log(longer + std::exp(-tail)) - all : -tail - all;
+}
+
+std::int64_t EvidenceModel::longestGap(EventId id) const {
+  const std::vector<std::int64_t>& longest = statistics_.type(id).longest_gaps;
+  return longest.empty() ? 0 : longest.front();
+}
+
+double EvidenceModel::usualDelay(EventId from, EventId to, double share) const {
+  const EvidenceStatistics::Pair& pair = learned_.pair(from, to);
+  const double wanted = share * static_cast<double>(pair.total());
+  double below = 0;
+  for (std::size_t bin = 0; bin < pair.delays.size(); ++bin) {
+    below += pair.delays[bin];
+    if (below >= wanted) {
+      return log_bins::middle(bin) * 1e-9;
+    }
+  }
+  return 0;
+}
+
+double EvidenceModel::rate(EventId id, std::uint32_t count) const {
+  return (count - rates_.at(id).mean) / rates_[id].spread;
+}
+
+double EvidenceModel::surprise(std::size_t track, std::int64_t delay) const {
+  return surprises_[track][log_bins::bin(delay)];
+}
+
+double EvidenceModel::leastLimit(std::size_t track) const {
+  switch (tracks_.at(track).channel) {
+    case Channel::kOverdue:
+      return 0;
+    case Channel::kFewer:
+    case Channel::kMore:
+      return kLeastRateLimit;
+    case Channel::kDelay:
+    case Channel::kSlowDelay:
+      return kLeastDelayLimit;
+    case Channel::kAnswer:
+      return std::max(kLeastMisses * steps_[track].missed, kLeastAnswerLimit);
+  }
+  return 0;
+}
+
+}  // namespace self_awareness::core
