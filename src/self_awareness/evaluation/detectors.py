@@ -105,7 +105,7 @@ def _judged(encoded: Recording, verdicts: Verdicts, threshold: float) -> Judged:
                               for suspect in alarm.suspects]))
               for alarm in verdicts.alarms]
     return Judged(verdicts.start, verdicts.abnormal, np.nan_to_num(verdicts.score),
-                  verdicts.settling, alarms, threshold)
+                  verdicts.settling, alarms, threshold, verdicts.suspicion)
 
 
 def _scenario_graph() -> Dict[str, Set[str]]:

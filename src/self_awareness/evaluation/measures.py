@@ -27,6 +27,7 @@ class Row:
         normal_windows: those in normal operation: all, or those that end before the onset.
         false_windows: of these, those that are abnormal by the bare verdict.
         false_alarms: alarms raised in normal operation.
+        false_suspicions: times that a suspicion or an alarm began in normal operation.
         windows: those that begin after the onset; this and all that follows: with a fault only.
         missed_raw: of these, those that are not abnormal by the bare verdict.
         missed: of these, those without standing alarm as well.
@@ -35,6 +36,8 @@ class Row:
         auc: windows after the onset against those of the normal record of the same seed.
         stood_before: whether an alarm stood at the onset, a false one.
         latency_s: from the onset to the first alarm raised after it; None: none was.
+        noticed_s: from the onset to the first suspicion or alarm; None: none was, or there was one
+            at the onset.
         top1, top3: whether a guilty source is the first, or among the first three, at the moment
             of that alarm; None: no such alarm, nobody guilty, or the system blames nobody.
     """
@@ -46,6 +49,7 @@ class Row:
     normal_windows: int
     false_windows: int
     false_alarms: int
+    false_suspicions: int
     windows: Optional[int] = None
     missed_raw: Optional[int] = None
     missed: Optional[int] = None
@@ -54,6 +58,7 @@ class Row:
     auc: Optional[float] = None
     stood_before: Optional[bool] = None
     latency_s: Optional[float] = None
+    noticed_s: Optional[float] = None
     top1: Optional[bool] = None
     top3: Optional[bool] = None
 
@@ -62,7 +67,8 @@ def normal_row(system: str, training_share: float, seed: int, judged: Judged) ->
     """Measure a record of normal operation."""
     counted = ~judged.settling
     return Row(system, training_share, seed, NORMAL, int(counted.sum()),
-               int((judged.abnormal & counted).sum()), len(judged.alarms))
+               int((judged.abnormal & counted).sum()), len(judged.alarms),
+               _beginnings(judged.noticed))
 
 
 def fault_row(system: str, training_share: float, seed: int, kind: str, judged: Judged,
@@ -88,6 +94,7 @@ def fault_row(system: str, training_share: float, seed: int, kind: str, judged: 
         normal_windows=int(before.sum()),
         false_windows=int((judged.abnormal & before).sum()),
         false_alarms=sum(alarm.start <= onset for alarm in judged.alarms),
+        false_suspicions=_beginnings(judged.noticed & (judged.start + WINDOW <= onset)),
         windows=int(after.sum()),
         missed_raw=int((after & ~judged.abnormal).sum()),
         missed=int((after & ~judged.abnormal & ~standing).sum()),
@@ -97,8 +104,22 @@ def fault_row(system: str, training_share: float, seed: int, kind: str, judged: 
         stood_before=any(alarm.start <= onset < alarm.end or
                          (alarm.start <= onset and not alarm.cleared) for alarm in judged.alarms),
         latency_s=None if alarm is None else (alarm.start - onset) / SECOND_NS,
+        noticed_s=_noticed_s(judged, onset),
         top1=None if suspects is None else bool(set(suspects[:1]) & set(culprits)),
         top3=None if suspects is None else bool(set(suspects[:3]) & set(culprits)))
+
+
+def _beginnings(noticed: np.ndarray) -> int:
+    return int((np.diff(noticed.astype(np.int8), prepend=0) == 1).sum())
+
+
+def _noticed_s(judged: Judged, onset: int) -> Optional[float]:
+    ends = judged.start + WINDOW
+    noticed = judged.noticed
+    if not noticed.any() or noticed[ends <= onset][-1:].any():
+        return None
+    first = ends[noticed & (ends > onset)][:1]
+    return (int(first[0]) - onset) / SECOND_NS if len(first) else None
 
 
 def first_alarm(alarms: List[Alarm], onset: int) -> Optional[Alarm]:

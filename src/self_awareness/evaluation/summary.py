@@ -29,6 +29,18 @@ def false_alarms(rows: Sequence[Row]) -> FalseAlarms:
     return FalseAlarms(count, hours, count / hours, confidence.poisson_rate(count, hours))
 
 
+def false_suspicions(rows: Sequence[Row]) -> FalseAlarms:
+    """Return the times that a suspicion or an alarm began, as the false alarms."""
+    count = sum(row.false_suspicions for row in rows)
+    hours = sum(row.normal_windows for row in rows) * WINDOW / SECOND_NS / _HOUR_S
+    return FalseAlarms(count, hours, count / hours, confidence.poisson_rate(count, hours))
+
+
+def noticed(rows: Sequence[Row], within_s: float) -> float:
+    """Return the share of the records with a suspicion or an alarm in this time [s]."""
+    return _mean([row.noticed_s is not None and row.noticed_s <= within_s for row in rows])
+
+
 def false_positive_rate(rows: Sequence[Row]) -> float:
     """Return the mean share of the windows of normal operation that are abnormal."""
     return _mean([row.false_windows / row.normal_windows for row in rows])

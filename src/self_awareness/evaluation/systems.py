@@ -42,6 +42,7 @@ class Judged:
         settling: whether it is too early for an alarm.
         alarms: after persistence.
         threshold: a score below it is abnormal.
+        suspicion: whether there is a suspicion, which is no alarm; None: the system knows none.
     """
 
     start: np.ndarray
@@ -50,6 +51,12 @@ class Judged:
     settling: np.ndarray
     alarms: List[Alarm]
     threshold: float
+    suspicion: Optional[np.ndarray] = None
+
+    @property
+    def noticed(self) -> np.ndarray:
+        """Whether there is a suspicion or an alarm when the window is over."""
+        return self.standing if self.suspicion is None else self.standing | self.suspicion
 
     @property
     def standing(self) -> np.ndarray:

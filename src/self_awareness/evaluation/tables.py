@@ -43,6 +43,10 @@ def _false_alarms(rows: Sequence[Row]) -> str:
     return f'{alarms.per_hour:.2f} ({low:.2f} to {high:.2f})'
 
 
+def _false_suspicions(rows: Sequence[Row]) -> str:
+    return f'{summary.false_suspicions(rows).per_hour:.2f}'
+
+
 def _median(rows: Sequence[Row]) -> float:
     return summary.latency(rows, 0.5)
 
@@ -56,6 +60,7 @@ _TARGETS = (
             lambda rows: percent(summary.false_positive_rate(summary.normal(rows)))),
     _Target('false alarms an hour', '< 1', lambda rows: _false_alarms(summary.normal(rows))),
     _Target('the same, with the time before the faults', '< 1', _false_alarms),
+    _Target('suspicions (WARN) or alarms an hour, in all of it', '', _false_suspicions),
     *(_Target(f'windows missed after the alarm, {kind}', target,
               _of(kind, summary.missed_after_alarm, percent))
       for kind, target in (('cc1', '0 %'), ('cc2', '0 %'), ('rs', '<= 1 %'))),
@@ -93,6 +98,8 @@ def _auc(rows: Sequence[Row]) -> str:
 _FAULT_TABLES = (
     _FaultTable('Records in which the alarm was raised',
                 lambda rows: percent(summary.found(rows))),
+    _FaultTable('Records with a suspicion (WARN) or the alarm within 5 s',
+                lambda rows: percent(summary.noticed(rows, 5.0))),
     _FaultTable('Latency: median / 95 %', _latencies),
     _FaultTable('Windows missed after the onset: no alarm stands, and the bare verdict is normal '
                 '(FNR)', lambda rows: percent(summary.missed(rows))),
