@@ -78,10 +78,10 @@ say "Recording four normal runs of $run_seconds s"
 for run in normal_1 normal_2 normal_3 normal_4; do record $run $run_seconds; done
 
 say "Training on two of them, calibrating on the others"
-rosrun self_awareness train "$out/normal_1.bag" "$out/normal_2.bag" -o "$out/trained.model"
+rosrun self_awareness train "$out/normal_1.bag" "$out/normal_2.bag" --graph -o "$out/trained.model"
 rosrun self_awareness calibrate --model "$out/trained.model" \
   --normal "$out/normal_3.bag" "$out/normal_4.bag" \
-  --cutoff fpr=0.001 --inject crash:/player slow:/motors:2 starve \
+  --inject 'crash:*' slow:/motors:2 starve \
   --roc "$out/roc.png" -o "$out/calibrated.model"
 
 say "Starting the monitor and a diagnostic_aggregator"

@@ -112,7 +112,8 @@ class LiveRulesTest(MonitorCase):
                                    '__name:=robot_manager'):
             loads = [Process('rosrun', 'nodelet', 'nodelet', 'load',
                              'self_awareness/SelfAwareness', 'robot_manager', '__name:=' + name,
-                             '_model:=' + model, '_settle_time:=0.5', '_subscribe:=all')
+                             '_model:=' + model, '_detector:=paper', '_settle_time:=0.5',
+                             '_subscribe:=all')
                      for name in ('watch_1', 'watch_2')]
             with loads[0], loads[1], MonitorListener('/watch_1') as first, \
                     MonitorListener('/watch_2') as second:
@@ -146,7 +147,7 @@ class LiveRulesTest(MonitorCase):
                 self.assertTrue(self.call('/self_awareness/reset').success)
                 await_condition('settling', lambda: listener.statuses[-1].settling, 20)
             self.assertEqual([a.level for a in listener.alarms],
-                             [SelfAwareness.ERROR, SelfAwareness.OK])
+                             [SelfAwareness.WARN, SelfAwareness.ERROR, SelfAwareness.OK])
 
     @again_if_clock_was_set
     def test_the_alarm_is_latched(self) -> None:
@@ -200,7 +201,7 @@ class LiveRulesTest(MonitorCase):
         bad = {'settle_time': ('-1', '.nan', 'soon'), 'hold_time': ('-0.1', '.inf'),
                'alarm_windows': ('0', '6'), 'alarm_of': ('-3',), 'subscribe': ('everything',),
                'silence': ('golden',), 'poll_interval': ('0',), 'queue_size': ('0',),
-               'detector': ('oracle',)}  # type: Dict[str, tuple]
+               'detector': ('oracle',), 'unknown': ('panic',)}  # type: Dict[str, tuple]
         model = self.model()
         for name, values in bad.items():
             for value in values:

@@ -99,7 +99,8 @@ class MasterTest(unittest.TestCase):
     def start_monitor(self) -> Process:
         # A busy machine may hold messages back for some windows, so an alarm needs a second.
         return self.start('rosrun', 'self_awareness', 'self_awareness_node',
-                          '_model:=' + self.model, '_poll_interval:=0.2', '_settle_time:=1.0',
+                          '_model:=' + self.model, '_detector:=paper',
+                          '_unknown:=ignore', '_poll_interval:=0.2', '_settle_time:=1.0',
                           '_alarm_windows:=10', '_alarm_of:=15', '_hold_time:=1.0')
 
     def start_component(self, name: str) -> Process:

@@ -89,8 +89,9 @@ class MonitorCase(unittest.TestCase):
         return self.path(name)
 
     def monitor(self, model: str, name: str = 'self_awareness', **parameters) -> Process:
-        """A monitor in a process of its own; settles within half a second."""
-        settings = dict({'settle_time': 0.5, 'poll_interval': 0.1}, **parameters)
+        """A monitor in a process of its own, by the paper's score; settles within half a second."""
+        settings = dict({'detector': 'paper', 'unknown': 'ignore', 'settle_time': 0.5,
+                         'poll_interval': 0.1}, **parameters)
         return Process('rosrun', 'self_awareness', 'self_awareness_node', '__name:=' + name,
                        '_model:=' + model,
                        *['_{}:={}'.format(key, value) for key, value in settings.items()])
