@@ -124,7 +124,9 @@ void Discovery::poll(const Wanted& wanted, bool restart) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (!state.master_answers) {
     state.subscriptions = state_.subscriptions;
-    state.graph = state_.graph;
+  }
+  if (!state.graph || (state_.graph && *state.graph == *state_.graph)) {
+    state.graph = state_.graph;  // whoever looks at it need not look again
   }
   state_ = state;
   new_publishers_.insert(new_publishers_.end(), new_publishers.begin(), new_publishers.end());

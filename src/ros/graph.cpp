@@ -36,6 +36,15 @@ void addNodes(XmlRpc::XmlRpcValue& entries, std::set<std::string> Graph::Topic::
 
 }  // namespace
 
+bool operator==(const Graph& a, const Graph& b) {
+  const auto same = [](const auto& x, const auto& y) {
+    return x.first == y.first && x.second.datatype == y.second.datatype &&
+           x.second.publishers == y.second.publishers &&
+           x.second.subscribers == y.second.subscribers;
+  };
+  return std::equal(a.topics.begin(), a.topics.end(), b.topics.begin(), b.topics.end(), same);
+}
+
 std::optional<Graph> fetchGraph() {
   std::optional<XmlRpc::XmlRpcValue> state = ask("getSystemState");
   std::optional<XmlRpc::XmlRpcValue> types = ask("getTopicTypes");

@@ -21,6 +21,8 @@ struct Graph {
   std::map<std::string, Topic> topics;
 };
 
+bool operator==(const Graph& a, const Graph& b);
+
 /// Asks the master. Blocks for as long as it takes to answer; none if it does not.
 std::optional<Graph> fetchGraph();
 
