@@ -160,8 +160,8 @@ Suspect EvidenceBlame::unusualTrack(std::size_t track, const EvidenceScorer& sco
     case Channel::kMore:
       suspect.reason = Suspect::Reason::kRate;
       suspect.events = scorer.recentCount(to);
-      suspect.usual_shortest = std::max(model_->usualCount(to, -2), 0.0);
-      suspect.usual_longest = model_->usualCount(to, 2);
+      suspect.usual_fewest = std::max(model_->usualCount(to, -2), 0.0);
+      suspect.usual_most = model_->usualCount(to, 2);
       break;
     case Channel::kDelay:
     case Channel::kSlowDelay:

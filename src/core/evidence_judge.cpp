@@ -28,6 +28,9 @@ EvidenceJudge::EvidenceJudge(std::shared_ptr<const EvidenceModel> model,
                   !std::isfinite(limits_->linker) || limits_->linker <= 0)) {
     throw std::invalid_argument("the limits are not those of the model: calibrate it again");
   }
+  if (limits_) {
+    scorer_.capAt(*limits_);
+  }
 }
 
 ScoredEvent EvidenceJudge::add(const Event& event) {

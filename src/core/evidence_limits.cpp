@@ -85,6 +85,9 @@ void LimitFinder::startRecording(std::shared_ptr<const EvidenceModel> model) {
   finish();
   judging_ = std::move(model);
   scorer_.emplace(judging_, parameters_.window);
+  if (second_pass_) {
+    scorer_->capAt(limits_);  // as the detector does
+  }
 }
 
 void LimitFinder::add(const Event& event) {

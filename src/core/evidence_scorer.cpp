@@ -18,8 +18,8 @@ constexpr std::uint32_t kArmingEvents = 30;
 constexpr double kUsualSurprise = 0.3;  // standard deviations above the mean of training
 constexpr double kUsualMisses = 0.15;   // share of the gaps above that of training
 constexpr std::int64_t kGoneGaps = 5;   // times the longest gap in training
-// Evidence beyond this would only make an alarm stand long after its cause.
-constexpr double kMostEvidence = 200;
+constexpr double kMostEvidence = 200;   // while limits are not known
+constexpr double kMostOfLimit = 1.5;    // in units of the limit
 
 }  // namespace
 
@@ -39,7 +39,8 @@ EvidenceScorer::EvidenceScorer(std::shared_ptr<const EvidenceModel> model, std::
     : model_(std::move(model)),
       delay_tracks_(model_->size()),
       answer_tracks_(model_->size()),
-      counts_(model_->size(), rateWindows(window)) {
+      counts_(model_->size(), rateWindows(window)),
+      caps_(model_->tracks().size(), kMostEvidence) {
   const std::vector<Track>& tracks = model_->tracks();
   for (std::size_t track = 0; track < tracks.size(); ++track) {
     if (tracks[track].channel == Channel::kDelay || tracks[track].channel == Channel::kSlowDelay) {
@@ -76,7 +77,7 @@ std::optional<std::int64_t> EvidenceScorer::add(const Event& event) {
       const double drift = tracks[track].channel == Channel::kDelay ? kDrift : kSlowDrift;
       last_delays_[track] = event.stamp - from->stamp;
       const double step = model_->surprise(track, last_delays_[track]) - drift;
-      sums_[track] = std::clamp(sums_[track] + step, 0.0, kMostEvidence);
+      sums_[track] = std::clamp(sums_[track] + step, 0.0, caps_[track]);
       arming_[track].add(step + drift, kUsualSurprise);
     }
   }
@@ -86,7 +87,7 @@ std::optional<std::int64_t> EvidenceScorer::add(const Event& event) {
       const bool missed = to->number <= last->number;
       const double step = missed ? model_->missed(track) : model_->answered(track);
       arming_[track].add((missed ? 1 : 0) - model_->missRate(track), kUsualMisses);
-      sums_[track] = std::clamp(sums_[track] + step, 0.0, kMostEvidence);
+      sums_[track] = std::clamp(sums_[track] + step, 0.0, caps_[track]);
     }
   }
   std::optional<std::int64_t> gap;
@@ -98,6 +99,14 @@ std::optional<std::int64_t> EvidenceScorer::add(const Event& event) {
   }
   last = Seen{event.stamp, ++number_};
   return gap;
+}
+
+void EvidenceScorer::capAt(const EvidenceLimits& limits) {
+  for (std::size_t track = 0; track < caps_.size(); ++track) {
+    if (limits.tracks[track] > 0) {  // never so where it is NaN
+      caps_[track] = kMostOfLimit * limits.tracks[track];
+    }
+  }
 }
 
 void EvidenceScorer::disarm(EventId id) {
@@ -145,7 +154,6 @@ EvidenceSum sumUp(const std::vector<double>& evidence, const EvidenceModel& mode
     const Channel channel = model.tracks()[track].channel;
     if (channel != Channel::kSlowDelay && share > sum.largest) {  // never so where it is NaN
       sum.largest = share;
-      sum.track = track;
     }
     if ((channel == Channel::kSlowDelay || channel == Channel::kAnswer) && share > 0) {
       double& of_type = linked[model.tracks()[track].to];

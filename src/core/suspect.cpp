@@ -26,7 +26,7 @@ std::string describe(const Suspect& suspect) {
       return text;
     case Suspect::Reason::kRate:
       std::snprintf(text, sizeof text, "%zu in the last 2 s, usually %.0f to %.0f", suspect.events,
-                    suspect.usual_shortest, suspect.usual_longest);
+                    suspect.usual_fewest, suspect.usual_most);
       return text;
     case Suspect::Reason::kDelay:
       std::snprintf(text, sizeof text, ": of late %.3f s, usually %.3f to %.3f s", suspect.delay,

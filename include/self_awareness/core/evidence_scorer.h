@@ -19,6 +19,9 @@ class EvidenceScorer {
   /// @param window length [ns] of the windows that rates are counted in
   EvidenceScorer(std::shared_ptr<const EvidenceModel> model, std::int64_t window);
 
+  /// Lets no sum grow far beyond its limit: an alarm must not outlast its cause for long.
+  void capAt(const EvidenceLimits& limits);
+
   /// @param event ids the model does not know are left out
   /// @return delay since the last event of the same type [ns], if there was one
   std::optional<std::int64_t> add(const Event& event);
@@ -66,6 +69,7 @@ class EvidenceScorer {
   std::uint64_t number_ = 0;
   RecentCounts counts_;
   std::vector<double> sums_;               // of delay and answer tracks, by track
+  std::vector<double> caps_;               // of the sums, by track
   std::vector<Arming> arming_;             // of delay and answer tracks, by track
   std::vector<double> evidence_;           // by track
   std::vector<std::int64_t> last_delays_;  // [ns] by track
@@ -74,9 +78,8 @@ class EvidenceScorer {
 
 /// What a window's evidence comes to.
 struct EvidenceSum {
-  double largest = 0;     ///< of the tracks, in units of their limits
-  std::size_t track = 0;  ///< the one
-  double linker = 0;      ///< evidence of all event types together, not in units of its limit
+  double largest = 0;  ///< of the tracks, in units of their limits
+  double linker = 0;   ///< evidence of all event types together, not in units of its limit
 };
 
 /// The largest evidence, and the linker's: the sum over the event types of the largest share of

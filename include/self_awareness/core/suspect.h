@@ -30,11 +30,13 @@ struct Suspect {
   Reason reason = Reason::kSilent;
   double silence = 0;         ///< kSilent, kLate: time without such an event [s]
   double usual_shortest = 0;  ///< kSilent, kLate: 1 % of the gaps in training are shorter [s];
-                              ///< kDelay: 5 % of the delays; kRate: usual number less 2 spreads
+                              ///< kDelay: 5 % of the delays
   double usual_longest = 0;   ///< kSilent, kLate: 1 % of the gaps in training are longer [s];
-                              ///< kDelay: 5 % of the delays; kRate: usual number and 2 spreads
+                              ///< kDelay: 5 % of the delays
   std::size_t events = 0;     ///< kUnknown, kUnusual: such events in the window; kRate: in the
-                              ///< last 2 s
+                              ///< last kRateSpan
+  double usual_fewest = 0;    ///< kRate: the mean of training less two spreads
+  double usual_most = 0;      ///< kRate: the mean of training and two spreads
   double score = 0;           ///< kUnusual: their mean score
   double usual_score = 0;     ///< kUnusual: the score to expect by training
   std::string other;          ///< kDelay, kAnswer: the other event type
