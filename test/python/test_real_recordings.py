@@ -10,6 +10,8 @@ import pytest
 from self_awareness import EncodingRules, TrainedModel, read_events, summarise_bag
 from self_awareness.commands import calibrate, score, train
 
+PAPER = ('--detector', 'paper')
+
 
 class Alarm(NamedTuple):
     """As printed: seconds from the recording's first message, and the suspects."""
@@ -45,10 +47,10 @@ def test_the_outage_of_the_wheeled_robot_is_found(wheeled_robot: Path, tmp_path:
     normal, model = str(wheeled_robot / 'feb13_normal.bag'), str(tmp_path / 'm')
     # Until 24 s the robot starts up.
     assert train.main([normal, '--start', '24', '--end', '65', '-o', model]) == 0
-    assert calibrate.main(['--model', model, '--normal', f'{normal}@65', '--cutoff', 'fpr=0.01',
-                           '-o', model]) == 0
+    assert calibrate.main(['--model', model, '--normal', f'{normal}@65', *PAPER, '--cutoff',
+                           'fpr=0.01', '-o', model]) == 0
     capsys.readouterr()
-    assert score.main([str(wheeled_robot / 'feb13_outage.bag'), '--model', model]) == 0
+    assert score.main([str(wheeled_robot / 'feb13_outage.bag'), '--model', model, *PAPER]) == 0
     alarms = alarms_of(capsys.readouterr().out)
     outage = next(alarm for alarm in alarms if alarm.end > 28.0)
     assert 28.0 < outage.start < 29.0
@@ -63,11 +65,11 @@ def test_the_laser_that_is_gone_is_named(wheeled_robot: Path, tmp_path: Path, ca
     normal, model = str(wheeled_robot / 'jan17_normal.bag'), str(tmp_path / 'm')
     # Its stalls, at 12 to 15 s and at 51.5 to 54.5 s, are left out.
     assert train.main([normal, '--start', '15', '--end', '51', '-o', model]) == 0
-    arguments = ['--model', model, '--normal', f'{normal}@55', '-o', model, '--cutoff']
+    arguments = ['--model', model, '--normal', f'{normal}@55', '-o', model, *PAPER, '--cutoff']
     assert calibrate.main([*arguments, 'fpr=0.01']) == 1  # too many windows are silent
     assert calibrate.main([*arguments, 'fpr=0.02']) == 0
     capsys.readouterr()
-    assert score.main([str(wheeled_robot / 'jan17_outage.bag'), '--model', model]) == 0
+    assert score.main([str(wheeled_robot / 'jan17_outage.bag'), '--model', model, *PAPER]) == 0
     alarms = alarms_of(capsys.readouterr().out)
     outage = next(alarm for alarm in alarms if alarm.end > 67.0)
     assert outage.start < 68.0 and outage.end > 100.0
@@ -84,11 +86,10 @@ def test_a_robot_without_callerids_is_learned_without_sources(shared: Path, tmp_
     trained = TrainedModel.load(model)
     assert len(trained.event_types) == 17 and trained.events == 71213
     windows = str(folder / 'facing_windows.bag')
-    assert calibrate.main(['--model', model, '--normal', windows, '--inject', 'crash:/base', '-o',
-                           model]) == 1
+    arguments = ['--model', model, '--normal', windows, *PAPER, '-o', model, '--inject']
+    assert calibrate.main([*arguments, 'crash:/base']) == 1
     assert 'only starve' in capsys.readouterr().err
-    assert calibrate.main(['--model', model, '--normal', windows, '--inject', 'starve', '-o',
-                           model]) == 0
+    assert calibrate.main([*arguments, 'starve']) == 0
     assert score.main([windows, '--model', model, '--csv', str(tmp_path / 'w.csv')]) == 0
     assert len((tmp_path / 'w.csv').read_text().splitlines()) > 400
 

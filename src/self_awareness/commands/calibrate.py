@@ -125,8 +125,11 @@ def _check_known(trained: TrainedModel, normal: Sequence[RecordingEvents]) -> No
 def _find_limits(arguments: argparse.Namespace, trained: TrainedModel,
                  parameters: DetectorParameters, normal_runs: Sequence[Run],
                  faulty_runs: Sequence[Run]) -> _Measured:
-    found = evidence_limits.held_out(trained, [run.source for run in normal_runs],
-                                     parameters.settle_time, arguments.budget)
+    try:
+        found = evidence_limits.held_out(trained, [run.source for run in normal_runs],
+                                         parameters.settle_time, arguments.budget)
+    except ValueError as error:
+        raise ValueError(f'--normal: {error}; name longer recordings, or more of them') from error
     trained.evidence_calibration = found
     judged = calibration.judge(calibration.evidence_judge(trained, parameters), trained.window,
                                [*normal_runs, *faulty_runs])
