@@ -76,6 +76,52 @@ def test_the_laser_that_is_gone_is_named(wheeled_robot: Path, tmp_path: Path, ca
     assert alarms[-1].suspects[0] == '/urg_node' and alarms[-1].end > 120.0
 
 
+def test_evidence_finds_the_outage_and_the_rest_is_quiet(wheeled_robot: Path, tmp_path: Path,
+                                                         capsys) -> None:
+    """With the preliminary limits of the training: its recordings are too short for others."""
+    model = str(tmp_path / 'm')
+    assert train.main([str(wheeled_robot / 'feb13_normal.bag'), '--start', '24', '-o', model]) == 0
+    assert 'preliminary' in capsys.readouterr().out
+    assert score.main([str(wheeled_robot / 'feb13_outage.bag'), '--model', model]) == 0
+    alarms = alarms_of(capsys.readouterr().out)
+    # It is raised a little early, by what the start-up left behind, and stays until 52.6 s: a
+    # weakness that docs/evaluation/recordings.md tells of.
+    assert any(alarm.start < 29.0 and alarm.end > 36.0 for alarm in alarms)
+    assert all(alarm.end < 55.0 for alarm in alarms)
+
+
+def test_evidence_finds_that_the_laser_is_gone(wheeled_robot: Path, tmp_path: Path,
+                                               capsys) -> None:
+    """From 42 s on all nodes stall now and then; until then, all is quiet."""
+    model = str(tmp_path / 'm')
+    assert train.main([str(wheeled_robot / 'jan17_normal.bag'), '--start', '15', '-o', model]) == 0
+    capsys.readouterr()
+    assert score.main([str(wheeled_robot / 'jan17_outage.bag'), '--model', model]) == 0
+    alarms = alarms_of(capsys.readouterr().out)
+    assert all(alarm.start > 42.0 for alarm in alarms)
+    assert alarms[-1].start < 70.0 and alarms[-1].end > 120.0
+
+
+_TOO_SLOW = ('event types of minutes between two events get limits that another session exceeds: '
+             'overdue and rate')
+
+
+@pytest.mark.parametrize('session', [
+    pytest.param('101', marks=pytest.mark.xfail(reason=_TOO_SLOW)), '102',
+    pytest.param('103', marks=pytest.mark.xfail(reason=_TOO_SLOW))])
+def test_evidence_leaves_a_sparse_robot_alone(shared: Path, tmp_path: Path, session: str,
+                                              capsys) -> None:
+    """Learned from two sessions, the third is normal, too."""
+    bags = sorted(str(path) for path in (shared / 'data' / 'social_robot').glob('*.bag'))
+    judged, = [bag for bag in bags if session in bag]
+    model = str(tmp_path / 'm')
+    assert train.main([*[bag for bag in bags if bag != judged], '-o', model]) == 0
+    capsys.readouterr()
+    assert score.main([judged, '--model', model]) == 0
+    out = capsys.readouterr().out
+    assert 'not calibrated' not in out and ', alarms: 0' in out
+
+
 def test_a_robot_without_callerids_is_learned_without_sources(shared: Path, tmp_path: Path,
                                                               capsys) -> None:
     """The chunks of these recordings are compressed, too (bz2)."""
