@@ -20,15 +20,16 @@ def rows_of(alarms: List[Span], tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr(real_recordings, 'CASES', (
         Case('faulty', normal, normal, 'a.bag', (50.0, 60.0), ((10.0, 50.0), (70.0, 1e9))),
         Case('healthy', normal, normal, 'a.bag', None, ((0.0, 1e9),))))
-    monkeypatch.setattr(real_recordings, 'SYSTEMS', {'oracle': lambda *_: Judged(alarms, 100.0)})
+    monkeypatch.setattr(real_recordings, 'SYSTEMS',
+                        {'oracle': lambda *_: Judged(alarms, 100.0, 3)})
     return real_recordings.evaluate(tmp_path)
 
 
 def test_an_alarm_in_the_outage_finds_it(tmp_path: Path, monkeypatch) -> None:
     faulty, healthy = rows_of([(5.0, 12.0), (50.5, 72.0)], tmp_path, monkeypatch)
     # Start-up and the time after the outage are nobody's, but there the alarm may not stay.
-    assert faulty == Row('faulty', 'oracle', True, False, 0.5, 0, pytest.approx(4.0), 70.0)
-    assert healthy == Row('healthy', 'oracle', None, False, None, 2, pytest.approx(28.5), 100.0)
+    assert faulty == Row('faulty', 'oracle', 3, True, False, 0.5, 0, pytest.approx(4.0), 70.0)
+    assert healthy == Row('healthy', 'oracle', 3, None, False, None, 2, pytest.approx(28.5), 100.0)
 
 
 def test_an_alarm_that_stood_before_is_false(tmp_path: Path, monkeypatch) -> None:
@@ -62,4 +63,7 @@ def test_every_case_and_system_has_a_row(shared: Path, tmp_path: Path, monkeypat
     assert page.count('\n| wheeled_robot') == 6 and page.count('\n| social_robot') == 9
     assert str(shared) not in page and 'evaluate recordings --data data' in page
     found = {row['recording']: row['outage_found'] for row in rows if row['system'] == 'evidence'}
+    watched = {(row['recording'], row['system']): int(row['watched']) for row in rows}
+    assert watched['wheeled_robot, 13 February', 'evidence'] == 5
+    assert watched['wheeled_robot, 13 February', 'frequency_learned'] == 0
     assert [found[case.name] for case in real_recordings.CASES] == ['True', 'True', '', '', '']

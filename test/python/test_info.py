@@ -84,7 +84,7 @@ def test_json_holds_preliminary_limits_and_the_graph(long_bags, tmp_path, capsys
     calibration = summary['evidence']['calibration']
     assert calibration['method'] == 'cross-fit' and calibration['false_alarms_per_hour'] is None
     assert info.main([output]) == 0
-    assert '1 sources with listeners, 2 connections' in capsys.readouterr().out
+    assert 'sources that somebody listens to: 1, connections: 2' in capsys.readouterr().out
 
 
 def test_types_that_are_not_judged_are_named(make_bag, tmp_path, capsys) -> None:

@@ -294,8 +294,8 @@ def _parser() -> argparse.ArgumentParser:
                         f'hour that the limits allow (default: {evidence_limits.BUDGET:g})')
     parser.add_argument('--cutoff', type=cli.checked(Cutoff.parse),
                         metavar='HOW', help='paper: youden: most found less most false; closest: '
-                        'closest to all found and none false; fpr=RATE: this share of normal windows '
-                        'false (default: youden)')
+                        'closest to all found and none false; fpr=RATE: this share of normal '
+                        'windows false (default: youden)')
     parser.add_argument('--roc', type=cli.png_file, metavar='FILE.png', help='draw the ROC')
     parser.add_argument('--csv', metavar='FILE', help='write score and label of every window')
     cli.add_detector_arguments(parser)

@@ -76,7 +76,7 @@ def _graph(graph: Dict[str, List[str]]) -> str:
     if not graph:
         return 'none: roots are told from victims by the training alone (train --graph)'
     listeners = sum(len(each) for each in graph.values())
-    return f'{len(graph)} sources with listeners, {listeners} connections'
+    return f'sources that somebody listens to: {len(graph)}, connections: {listeners}'
 
 
 def _print_evidence(evidence: Dict[str, Any]) -> None:

@@ -5,14 +5,15 @@ by cross-fit, and the others choose their thresholds on the part that they did n
 """
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Callable, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from self_awareness import (DetectorParameters, EncodingRules, Model, Roc, TrainedModel, Training,
-                            calibration, evidence_limits, recordings)
+from self_awareness import (DetectorParameters, EncodingRules, EvidenceModel, Model, Roc,
+                            TrainedModel, Training, calibration, evidence_limits, recordings)
 from self_awareness.evaluation.peers.frequency import LearnedFrequencyMonitor
 from self_awareness.evaluation.recording import Recording
 from self_awareness.evaluation.systems import ScoringSystem, settling
@@ -24,6 +25,9 @@ RATE = 0.01
 
 More than in simulated time: in a recording of 30 s, a share of 0.001 is less than one window.
 """
+
+MOST_SILENT = 0.1
+"""The paper's detector cannot judge a robot of which more normal windows are silent than this."""
 
 Span = Tuple[float, float]
 """Start and end, in seconds from the recording's first message."""
@@ -60,6 +64,7 @@ class Row:
     Args:
         recording: name of the case.
         system: its name.
+        watched: event types, or topics, that it watches at all.
         outage_found: whether an alarm stood in the outage; None: there was none.
         stood_before: whether it stood at the onset already.
         latency_s: from the onset to the first alarm raised in the outage; None: none was.
@@ -70,6 +75,7 @@ class Row:
 
     recording: str
     system: str
+    watched: int
     outage_found: Optional[bool]
     stood_before: bool
     latency_s: Optional[float]
@@ -120,10 +126,11 @@ def evaluate(data: Path) -> List[Row]:
 
 @dataclass(frozen=True)
 class Judged:
-    """Alarms of a system, and the length of the recording [s]."""
+    """Alarms of a system, the length of the recording [s], and how much was watched (Row)."""
 
     alarms: Sequence[Span]
     length: float
+    watched: int
 
 
 def _evidence(case: Case, data: Path) -> Judged:
@@ -133,7 +140,11 @@ def _evidence(case: Case, data: Path) -> Judged:
     trained.evidence_calibration = evidence_limits.cross_fit(
         trained, lambda: (recordings.read(trained, part) for part in parts),
         parameters.settle_time, evidence_limits.BUDGET)
-    return _judge(trained, calibration.evidence_judge(trained, parameters), data / case.judged)
+    watched = {track.to_id for track, limit in zip(EvidenceModel(trained).tracks,
+                                                   trained.evidence_calibration.limits)
+               if not math.isnan(limit)}
+    return _judge(trained, calibration.evidence_judge(trained, parameters), data / case.judged,
+                  len(watched))
 
 
 def _paper(case: Case, data: Path) -> Judged:
@@ -144,7 +155,7 @@ def _paper(case: Case, data: Path) -> Judged:
                                                                       normal.end)
     threshold = _paper_threshold(np.nan_to_num(scores.score[~scores.settling]))
     return _judge(trained, calibration.paper_judge(trained, model, threshold, parameters),
-                  data / case.judged)
+                  data / case.judged, len(trained.event_types) if threshold > 0.0 else 0)
 
 
 def _frequency_learned(case: Case, data: Path) -> Judged:
@@ -156,7 +167,7 @@ def _frequency_learned(case: Case, data: Path) -> Judged:
     recording = recordings.read(trained, BagPart(str(data / case.judged)))
     judged = ScoringSystem('frequency_learned', scorer, threshold).judge(_events(recording))
     return Judged([_span(recording, alarm.start, alarm.end) for alarm in judged.alarms],
-                   _span(recording, recording.origin, recording.end)[1])
+                   _span(recording, recording.origin, recording.end)[1], len(scorer.limits))
 
 
 SYSTEMS: Dict[str, Callable[[Case, Path], Judged]] = {
@@ -179,19 +190,22 @@ def _trained(parts: Sequence[BagPart]) -> TrainedModel:
 
 
 def _paper_threshold(scores: np.ndarray) -> float:
-    """Return the threshold at RATE, or at as much more as it takes for silence to be below it."""
+    """Return the threshold at RATE, or at twice that and so on where more windows are silent.
+
+    It is 0, which no score is below, where more are silent than MOST_SILENT.
+    """
     rate, threshold = RATE, 0.0
-    while threshold <= 0.0 and rate < 1.0:
+    while threshold <= 0.0 and rate <= MOST_SILENT:
         threshold = Roc(scores, []).level(rate).cutoff
         rate *= 2.0
     return threshold
 
 
-def _judge(trained: TrainedModel, judge: calibration.Judge, path: Path) -> Judged:
+def _judge(trained: TrainedModel, judge: calibration.Judge, path: Path, watched: int) -> Judged:
     recording = recordings.read(trained, BagPart(str(path)))
     verdicts = judge(recording.stamps, recording.ids, recording.end)
     return Judged([_span(recording, alarm.start, alarm.end) for alarm in verdicts.alarms],
-                   _span(recording, recording.origin, recording.end)[1])
+                   _span(recording, recording.origin, recording.end)[1], watched)
 
 
 def _events(recording: RecordingEvents) -> Recording:
@@ -214,7 +228,7 @@ def _row(case: Case, name: str, judged: Judged) -> Row:
         before = any(start <= onset < end for start, end in judged.alarms)
         latency = next((start - onset for start, _ in judged.alarms if onset < start < relief),
                        None)
-    return Row(case.name, name, found, before, latency, len(false),
+    return Row(case.name, name, judged.watched, found, before, latency, len(false),
                sum(_overlap(alarm, span) for alarm in judged.alarms for span in normal),
                sum(end - start for start, end in normal))
 
