@@ -6,7 +6,8 @@ from dataclasses import astuple, fields
 from pathlib import Path
 from typing import List, Sequence
 
-from self_awareness.evaluation.real_recordings import CASES, END, MOST_SILENT, RATE, Case, Row, Span
+from self_awareness.evaluation.real_recordings import (CASES, END, MOST_SILENT, RATE, Case, Row,
+                                                       Span)
 from self_awareness.evaluation.tables import seconds, table
 from self_awareness.output_files import replacing
 
@@ -20,8 +21,8 @@ Written by `{command}`; do not edit.
 Recordings that others made and published; what is abnormal in them was judged by eye from the
 timing, not by those who made them. Every system learns from normal recordings of the same robot
 (`BAG@START-END`: a part, in seconds from the first message); what is neither outage nor normal,
-such as the start-up, is not counted. On 17 January all nodes stall from 42 s on, for up to 1.8 s at
-a time, before they fall silent: that is not counted either.
+such as the start-up, is not counted. On 17 January all nodes stall from 42 s on, for up to 1.8 s
+at a time, before they fall silent: that is not counted either.
 
 {cases}
 
@@ -67,8 +68,8 @@ def page(rows: Sequence[Row], command: str) -> str:
     head = ['recording', 'system', 'watched', 'outage', 'latency', 'false alarms',
             'alarm stood in normal operation']
     return '\n'.join([
-        _INTRODUCTION.format(command=command, name=NAME, rate=RATE, silent=MOST_SILENT, cases='\n'.join(
-            _told(case) for case in CASES)),
+        _INTRODUCTION.format(command=command, name=NAME, rate=RATE, silent=MOST_SILENT,
+                             cases='\n'.join(_told(case) for case in CASES)),
         *table(head, [_cells(row) for row in rows]), ''])
 
 
