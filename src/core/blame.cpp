@@ -59,8 +59,8 @@ Blame::Blame(std::shared_ptr<const Model> model) : model_(std::move(model)) {
     usual.gaps = gaps.total();
     usual.score = expectedScore(*model_, id);
     if (!gaps.empty()) {
-      usual.shortest = static_cast<double>(gaps.quantile(0.01)) * bin_size;
-      usual.longest = static_cast<double>(gaps.quantile(0.99) + 1) * bin_size;
+      usual.shortest = static_cast<double>(gaps.quantile(kUsualFrom)) * bin_size;
+      usual.longest = static_cast<double>(gaps.quantile(kUsualTo) + 1) * bin_size;
       usual.maximum = static_cast<double>(gaps.entries().back().bin + 1) * bin_size;
     }
   }

@@ -144,8 +144,8 @@ Suspect EvidenceBlame::silence(EventId id, std::int64_t age) const {
   suspect.id = id;
   suspect.reason = Suspect::Reason::kSilent;
   suspect.silence = toSeconds(age);
-  suspect.usual_shortest = model_->usualDelay(id, id, 0.01);
-  suspect.usual_longest = model_->usualDelay(id, id, 0.99);
+  suspect.usual_shortest = model_->usualDelay(id, id, kUsualFrom);
+  suspect.usual_longest = model_->usualDelay(id, id, kUsualTo);
   return suspect;
 }
 

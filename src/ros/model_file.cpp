@@ -129,6 +129,13 @@ self_awareness::Model::ConstPtr readMessage(const std::string& path) {
                        "(rosrun self_awareness train)");
 }
 
+bool limitsFit(const TrainedModel& model) {
+  const core::EvidenceLimits limits = limitsOf(*model.evidence_calibration);
+  const core::EvidenceModel evidence(model.evidence[0], model.evidence[1]);
+  return limits.tracks.size() == evidence.tracks().size() && std::isfinite(limits.linker) &&
+         limits.linker > 0;
+}
+
 }  // namespace
 
 std::optional<double> TrainedModel::threshold() const {
@@ -201,6 +208,7 @@ TrainedModel fromMessage(const self_awareness::Model& message) {
   check(message.evidence_calibration.size() <= 1, "it has more than one calibration");
   if (!message.evidence_calibration.empty()) {
     model.evidence_calibration = message.evidence_calibration.front();
+    check(limitsFit(model), "its limits are not those of its evidence; calibrate it again");
   }
   return model;
 }

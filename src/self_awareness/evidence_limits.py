@@ -11,7 +11,7 @@ from typing import Callable, Iterable, Optional, Tuple
 
 import numpy as np
 
-from self_awareness import EvidenceCalibration, LimitFinder, Recording, TrainedModel
+from self_awareness import EvidenceCalibration, LimitFinder, TrainedModel
 from self_awareness.recordings import RecordingEvents
 from self_awareness.stamps import SECOND_NS
 
@@ -43,13 +43,13 @@ def held_out(trained: TrainedModel, recordings: Iterable[RecordingEvents], settl
     return calibration
 
 
-def cross_fit(trained: TrainedModel, read: Callable[[], Iterable[Tuple[np.ndarray, np.ndarray]]],
+def cross_fit(trained: TrainedModel, read: Callable[[], Iterable[RecordingEvents]],
               settle_time: int, budget: float) -> EvidenceCalibration:
     """Return limits by the recordings of training, each judged by the half it does not belong to.
 
     Args:
         trained: the model.
-        read: reads stamps and ids of the recordings in the order of the training.
+        read: reads the recordings in the order of the training.
         settle_time: left out at the start of every recording [ns].
         budget: false alarms an hour that the limits allow.
 
@@ -59,13 +59,13 @@ def cross_fit(trained: TrainedModel, read: Callable[[], Iterable[Tuple[np.ndarra
     alone = len(trained.recordings) == 1
 
     def parts() -> Iterable[Part]:
-        for index, (stamps, ids) in enumerate(read()):
+        for index, recording in enumerate(read()):
             if alone:
-                second = stamps >= _middle(trained.recordings[0])
-                yield stamps[~second], ids[~second], 0
-                yield stamps[second], ids[second], 1
+                second = recording.stamps >= _middle(recording)
+                yield recording.stamps[~second], recording.ids[~second], 0
+                yield recording.stamps[second], recording.ids[second], 1
             else:
-                yield stamps, ids, index % 2
+                yield recording.stamps, recording.ids, index % 2
 
     calibration = _find(trained, settle_time, budget, parts)
     calibration.method = 'cross-fit'
@@ -73,8 +73,10 @@ def cross_fit(trained: TrainedModel, read: Callable[[], Iterable[Tuple[np.ndarra
     return calibration
 
 
-def _middle(recording: Recording) -> int:
-    return recording.start + (recording.end - recording.start) // 2
+def _middle(recording: RecordingEvents) -> int:
+    """Return where the training cuts a recording that is alone [ns]."""
+    start, end = recording.part.limits(recording.origin, recording.end)
+    return start + (end - start) // 2
 
 
 def _find(trained: TrainedModel, settle_time: int, budget: float,

@@ -1,34 +1,34 @@
 """Tells what `calibrate` found for the evidence detector."""
 from __future__ import annotations
 
-import math
-from collections import Counter
 from statistics import median
 from typing import Dict, List, Optional, Sequence, Tuple
 
-from self_awareness import FEWEST_GAPS, EvidenceModel, TrainedModel, confidence
+from self_awareness import FEWEST_GAPS, TrainedModel, confidence
 from self_awareness.calibration import RECORDED, FalseAlarms, JudgedRun
+from self_awareness.model_summary import summarise_evidence
 from self_awareness.stamps import SECOND_NS
 
 _COLUMNS = ('fault', 'source', 'found', 'median [s]', 'guilty first', 'among three')
 
 
+def counts(tracks: Dict[str, int]) -> str:
+    """Return numbers of tracks by channel as people read them."""
+    return ', '.join(f'{channel} {count}' for channel, count in tracks.items() if count) or 'none'
+
+
 def print_limits(trained: TrainedModel, path: str) -> None:
     """Print what is watched, and what is not."""
-    tracks = EvidenceModel(trained).tracks
-    limits = trained.evidence_calibration.limits
-    judged = Counter(track.channel for track, limit in zip(tracks, limits)
-                     if not math.isnan(limit))
-    dropped = Counter(track.channel for track, limit in zip(tracks, limits) if math.isnan(limit))
-    watched = ', '.join(f'{channel} {count}' for channel, count in judged.items())
-    print(f'{path}: watched: {watched}')
-    if dropped:
-        print('  left out, since they say nothing or too little: '
-              + ', '.join(f'{channel} {count}' for channel, count in dropped.items()))
-    seen = {track.to_id for track in tracks if track.channel == 'overdue'}
-    rare = [str(kind) for i, kind in enumerate(trained.event_types) if i not in seen]
-    if rare:
-        print(f'  not judged, fewer than {FEWEST_GAPS} gaps in training: {"; ".join(rare)}')
+    evidence = summarise_evidence(trained)
+    judged = evidence['calibration']['judged_tracks']
+    dropped = {channel: count - judged.get(channel, 0)
+               for channel, count in evidence['tracks'].items()}
+    print(f'{path}: watched: {counts(judged)}')
+    if any(dropped.values()):
+        print(f'  left out, since they say nothing or too little: {counts(dropped)}')
+    if evidence['not_judged']:
+        print(f'  not judged, fewer than {FEWEST_GAPS} gaps in training: '
+              f'{"; ".join(evidence["not_judged"])}')
 
 
 def print_measured(normal: Sequence[JudgedRun], alarms: FalseAlarms) -> None:

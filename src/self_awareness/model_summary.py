@@ -2,16 +2,16 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from typing import Any, Dict, List, Optional
 
-from self_awareness import FEWEST_GAPS, Calibration, Recording, TrainedModel
+from self_awareness import (FEWEST_GAPS, USUAL_SHARES, Calibration, EvidenceCalibration,
+                            EvidenceModel, Recording, TrainedModel)
 from self_awareness.stamps import SECOND_NS
-
-_USUAL = (0.01, 0.99)  # quantiles; as core/blame.h words a suspect's usual delay
 
 
 def summarise(model: TrainedModel) -> Dict[str, Any]:
-    """Return all of a model but its histograms.
+    """Return all of a model but its counts.
 
     Times are in seconds and rates in Hz, unless a key says otherwise. What is not there, or not a
     number, is None.
@@ -42,15 +42,38 @@ def summarise(model: TrainedModel) -> Dict[str, Any]:
         'sources': sorted({kind.source for kind in model.event_types} - {''}),
         'event_types': types,
         'pairs': model.pairs,
+        'graph': {source: sorted(listeners) for source, listeners in sorted(model.graph.items())},
+        'evidence': summarise_evidence(model),
         'calibration': None if model.calibration is None else _calibration(model.calibration),
     }
+
+
+def summarise_evidence(model: TrainedModel) -> Dict[str, Any]:
+    """Return what the evidence detector watches, as the key `evidence` of summarise().
+
+    Tracks are counted by channel: overdue, rate, pairs and answers.
+    """
+    tracks = EvidenceModel(model).tracks
+    watched = {track.to_id for track in tracks if track.channel == 'overdue'}
+    summary: Dict[str, Any] = {
+        'tracks': dict(Counter(track.channel for track in tracks)),
+        'not_judged': [str(kind) for index, kind in enumerate(model.event_types)
+                       if index not in watched],
+        'calibration': None,
+    }
+    if model.evidence_calibration is not None:
+        judged = [track for track, limit in zip(tracks, model.evidence_calibration.limits)
+                  if not math.isnan(limit)]
+        summary['calibration'] = _evidence_calibration(model.evidence_calibration)
+        summary['calibration']['judged_tracks'] = dict(Counter(each.channel for each in judged))
+    return summary
 
 
 def _event_type(model: TrainedModel, index: int, duration: float) -> Dict[str, Any]:
     kind = model.event_types[index]
     count = model.event_count(index)
     gaps = sum(model.histogram(index, index).values())
-    first, last = (model.quantile(index, index, share) for share in _USUAL)
+    first, last = (model.quantile(index, index, share) for share in USUAL_SHARES)
     return {
         'source': kind.source,
         'scope': kind.scope,
@@ -90,6 +113,18 @@ def _calibration(calibration: Calibration) -> Dict[str, Any]:
         'normal': _recordings(calibration.normal),
         'faulty': _recordings(calibration.faulty),
         'injected': list(calibration.injected),
+    }
+
+
+def _evidence_calibration(calibration: EvidenceCalibration) -> Dict[str, Any]:
+    return {
+        'calibrated_ns': calibration.stamp,
+        'method': calibration.method,
+        'budget': calibration.budget,
+        'linker_limit': calibration.linker_limit,
+        'windows': calibration.windows,
+        'false_alarms_per_hour': _number(calibration.false_alarms_per_hour),
+        'normal': _recordings(calibration.recordings),
     }
 
 

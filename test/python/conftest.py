@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import os
+import random
 from pathlib import Path
 from typing import Callable, Iterable, Optional, Tuple
 
@@ -53,9 +54,16 @@ def robot(start: float, length: float = 30.0) -> Iterable[Message]:
     for i in range(int(length / 0.05)):
         messages.append((start + 0.05 * i, '/laser', '/scan'))
         messages.append((start + 0.05 * i + 0.031 + 0.002 * (i * 7 % 4), '/slam', '/map'))
-    for i in range(int(length / 0.37)):
+    for i in range(int((length - 0.011) / 0.37) + 1):
         messages.append((start + 0.011 + 0.37 * i, '/battery', '/charge'))
     return sorted(messages)
+
+
+def jittery_robot(start: float, length: float, seed: int) -> Iterable[Message]:
+    """The same robot, of which every message comes 2 ms late on the average, and some later."""
+    rng = random.Random(seed)
+    return sorted((stamp + rng.expovariate(500.0), source, topic)
+                  for stamp, source, topic in robot(start, length))
 
 
 @pytest.fixture
@@ -80,4 +88,22 @@ def model_file(robot_bags: Tuple[str, str], tmp_path_factory: pytest.TempPathFac
     from self_awareness.commands import train
     path = str(tmp_path_factory.mktemp('model') / 'robot.model')
     assert train.main([robot_bags[0], '-o', path]) == 0
+    return path
+
+
+@pytest.fixture(scope='session')
+def long_bags(tmp_path_factory: pytest.TempPathFactory) -> Tuple[str, str]:
+    """Two recordings of the robot that last long enough to find limits of the evidence."""
+    folder = tmp_path_factory.mktemp('long')
+    return (write_bag(folder / 'monday.bag', jittery_robot(10000.0, 120.0, 1)),
+            write_bag(folder / 'tuesday.bag', jittery_robot(20000.0, 120.0, 2)))
+
+
+@pytest.fixture(scope='session')
+def evidence_model(long_bags: Tuple[str, str], tmp_path_factory: pytest.TempPathFactory) -> str:
+    """A model trained on the first of them, with limits found on the second."""
+    from self_awareness.commands import calibrate, train
+    path = str(tmp_path_factory.mktemp('evidence') / 'robot.model')
+    assert train.main([long_bags[0], '-o', path]) == 0
+    assert calibrate.main(['--model', path, '--normal', long_bags[1], '-o', path]) == 0
     return path

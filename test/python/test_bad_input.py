@@ -104,9 +104,10 @@ def test_a_model_with_another_encoding_is_told(make_bag, model_file: str, robot_
     assert nameless in error and 'another encoding' in error and 'source: none' in error
     other_robot = make_bag('other.bag', [(t, '/x', '/y') for t, _, _ in robot(10.0)])
     for bag in (nameless, other_robot):
-        error = error_of('calibrate', ['--model', model_file, '--normal', bag, '--cutoff',
-                                       'fpr=0.1', '-o', str(tmp_path / 'm')], capsys)
-        assert bag in error and 'another encoding' in error
+        for options in ([], ['--detector', 'paper', '--cutoff', 'fpr=0.1']):
+            error = error_of('calibrate', ['--model', model_file, '--normal', bag, *options, '-o',
+                                           str(tmp_path / 'm')], capsys)
+            assert bag in error and 'another encoding' in error
 
 
 def test_a_type_field_with_endless_values_is_refused(make_bag, tmp_path: Path, capsys) -> None:
@@ -135,8 +136,8 @@ def test_a_bad_model_is_named(contents: str, model_file: str, robot_bags, tmp_pa
         path.write_bytes(Path(model_file).read_bytes()[:-100])
     for program, arguments in (
             ('info', [str(path)]), ('score', [robot_bags[1], '--model', str(path)]),
-            ('calibrate', ['--model', str(path), '--normal', robot_bags[1], '--cutoff', 'fpr=0.1',
-                           '-o', str(tmp_path / 'm')])):
+            ('calibrate', ['--model', str(path), '--normal', robot_bags[1], '-o',
+                           str(tmp_path / 'm')])):
         assert str(path) in error_of(program, arguments, capsys)
     assert not (tmp_path / 'm').exists()
 
@@ -147,10 +148,10 @@ def test_no_input_and_no_recording_is_overwritten(robot_bags, model_file: str, t
     for program, arguments in (
             ('train', [robot_bags[0], '-o', robot_bags[0]]),
             ('train', [robot_bags[0], '-o', robot_bags[1]]),  # the order was mixed up
-            ('calibrate', ['--model', model_file, '--normal', robot_bags[1], '--cutoff', 'fpr=0.1',
-                           '-o', robot_bags[1]]),
-            ('calibrate', ['--model', model_file, '--normal', robot_bags[1], '--cutoff', 'fpr=0.1',
-                           '-o', str(tmp_path / 'm'), '--csv', str(tmp_path / 'm')]),
+            ('calibrate', ['--model', model_file, '--normal', robot_bags[1], '-o',
+                           robot_bags[1]]),
+            ('calibrate', ['--model', model_file, '--normal', robot_bags[1], '-o',
+                           str(tmp_path / 'm'), '--csv', str(tmp_path / 'm')]),
             ('score', [robot_bags[1], '--model', model_file, '--csv', robot_bags[1]]),
             ('score', [robot_bags[1], '--model', model_file, '--csv', model_file])):
         error_of(program, arguments, capsys)
@@ -195,7 +196,10 @@ def test_bins_and_windows_have_a_length(robot_bags, tmp_path: Path, option: str,
     ('train', '--start', '-1'), ('train', '--end', 'nan'), ('train', '--horizon', '-5'),
     ('score', '--settle-time', 'nan'), ('score', '--hold-time', '-1'),
     ('score', '--alarm-windows', '0'), ('score', '--alarm-of', '99999999999999999999'),
-    ('score', '--plot', 'p.pdf'), ('score', '--detector', 'evidence'),
+    ('score', '--plot', 'p.pdf'), ('score', '--detector', 'scores'),
+    ('calibrate', '--budget', '0'), ('calibrate', '--budget', '-1'),
+    ('calibrate', '--budget', 'nan'), ('calibrate', '--budget', 'few'),
+    ('score', '--unknown', 'never'),
     ('calibrate', '--cutoff', 'fpr=nan'), ('calibrate', '--inject', 'slow:/laser:nan'),
     ('calibrate', '--settle-time', '-0.1'), ('info', '--pair', 'one')])
 def test_values_out_of_range_are_wrong_usage(program: str, option: str, value: str,

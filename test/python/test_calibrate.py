@@ -1,4 +1,4 @@
-"""`calibrate`: the threshold, what is said of it, and what is not written."""
+"""`calibrate --detector paper`: the threshold, what is said of it, and what is not written."""
 from __future__ import annotations
 
 import csv
@@ -23,9 +23,10 @@ Bags = Tuple[str, str]
 def run(model_file: str, robot_bags: Bags, tmp_path,
         capsys) -> Callable[..., Tuple[int, str, str]]:
     """Return a function that calibrates on the second recording: exit code, output, errors."""
+    options = ['--model', model_file, '--normal', robot_bags[1], '--detector', 'paper']
+
     def calibrated(*arguments: str) -> Tuple[int, str, str]:
-        code = calibrate.main(['--model', model_file, '--normal', robot_bags[1], '-o',
-                               str(tmp_path / 'm'), *arguments])
+        code = calibrate.main([*options, '-o', str(tmp_path / 'm'), *arguments])
         captured = capsys.readouterr()
         return code, captured.out, captured.err
     return calibrated
@@ -108,8 +109,8 @@ def test_the_input_is_left_alone_unless_it_is_the_output(run, model_file: str, r
     assert open(model_file, 'rb').read() == before
     path = str(tmp_path / 'm')
     threshold = TrainedModel.load(path).threshold
-    assert calibrate.main(['--model', path, '--normal', robot_bags[1], '--cutoff', 'fpr=0.5', '-o',
-                           path]) == 0
+    assert calibrate.main(['--model', path, '--normal', robot_bags[1], '--detector', 'paper',
+                           '--cutoff', 'fpr=0.5', '-o', path]) == 0
     assert TrainedModel.load(path).threshold != threshold
 
 
@@ -151,7 +152,8 @@ def test_recordings_that_were_trained_on_are_refused(run, robot_bags: Bags, mode
 def test_the_part_that_was_not_trained_on_is_welcome(robot_bags: Bags, tmp_path, capsys) -> None:
     model = str(tmp_path / 'm')
     assert train.main([robot_bags[0], '--end', '15', '-o', model]) == 0
-    arguments = ['--model', model, '--inject', 'starve', '-o', model, '--normal']
+    arguments = ['--model', model, '--detector', 'paper', '--inject', 'starve', '-o', model,
+                 '--normal']
     assert calibrate.main([*arguments, f'{robot_bags[0]}@14']) == 1
     assert calibrate.main([*arguments, f'{robot_bags[0]}@15.1']) == 0
     recording = TrainedModel.load(model).calibration.normal[0]
@@ -185,7 +187,7 @@ def test_faults_that_score_higher_get_a_warning(run, make_bag: Callable[..., str
     crashed = make_bag('crashed.bag', [m for m in robot(5000.0) if m[1] != '/laser'])
     normal = make_bag('normal.bag', robot(6000.0))
     assert calibrate.main(['--model', model_file, '--normal', crashed, '--faulty', normal, '-o',
-                           str(tmp_path / 'm'), '--cutoff', 'fpr=0.1']) == 0
+                           str(tmp_path / 'm'), '--detector', 'paper', '--cutoff', 'fpr=0.1']) == 0
     captured = capsys.readouterr()
     assert captured.err.startswith('calibrate: warning: AUC 0.')
 

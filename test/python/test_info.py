@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import json
+import math
 import os
 import subprocess
 import sys
@@ -9,9 +10,10 @@ from pathlib import Path
 from typing import Any, Dict
 
 import pytest
+from conftest import robot
 
-from self_awareness import TrainedModel
-from self_awareness.commands import calibrate, info
+from self_awareness import EvidenceModel, TrainedModel
+from self_awareness.commands import calibrate, info, train
 from self_awareness.histogram_text import draw
 
 LASER, SLAM = '/laser /scan std_msgs/String', '/slam /map std_msgs/String'
@@ -26,8 +28,9 @@ def test_json_holds_all_but_the_histograms(model_file: str, capsys) -> None:
     summary = as_json(capsys, model_file)
     assert summary['window'] == 0.1 and summary['bin_size'] == 0.01
     assert summary['horizon'] is None and summary['calibration'] is None
+    assert summary['graph'] == {} and summary['evidence']['calibration'] is None
     assert summary['sources'] == ['/battery', '/laser', '/slam']
-    assert summary['events'] == 1281 and summary['pairs'] == 9
+    assert summary['events'] == 1282 and summary['pairs'] == 9
     assert summary['encoding']['type_fields']['rosgraph_msgs/Log'] == 'level'
     assert [recording['bag'] for recording in summary['recordings']] == ['first.bag']
     laser = next(kind for kind in summary['event_types'] if kind['scope'] == '/scan')
@@ -40,8 +43,8 @@ def test_json_holds_all_but_the_histograms(model_file: str, capsys) -> None:
 
 def test_json_holds_the_calibration(model_file: str, robot_bags, tmp_path, capsys) -> None:
     output = str(tmp_path / 'm')
-    assert calibrate.main(['--model', model_file, '--normal', robot_bags[1], '--cutoff',
-                           'fpr=0.01', '-o', output]) == 0
+    assert calibrate.main(['--model', model_file, '--normal', robot_bags[1], '--detector', 'paper',
+                           '--cutoff', 'fpr=0.01', '-o', output]) == 0
     capsys.readouterr()
     found = as_json(capsys, output)['calibration']
     stored = TrainedModel.load(output).calibration
@@ -50,10 +53,64 @@ def test_json_holds_the_calibration(model_file: str, robot_bags, tmp_path, capsy
     assert found['normal'][0]['fingerprint'] == f'{stored.normal[0].fingerprint:016x}'
 
 
+def test_json_holds_the_evidence(evidence_model: str, capsys) -> None:
+    found = as_json(capsys, evidence_model)['evidence']
+    model = TrainedModel.load(evidence_model)
+    stored = model.evidence_calibration
+    assert set(found['tracks']) <= {'overdue', 'rate', 'pairs', 'answers'}
+    assert found['tracks']['overdue'] == 3 and found['tracks']['rate'] == 6
+    assert sum(found['tracks'].values()) == len(EvidenceModel(model).tracks)
+    assert found['not_judged'] == []
+    calibration = found['calibration']
+    assert (calibration['method'], calibration['budget']) == ('held-out', 0.5)
+    assert calibration['windows'] == stored.windows
+    assert calibration['linker_limit'] == stored.linker_limit
+    assert calibration['calibrated_ns'] == stored.stamp
+    assert calibration['false_alarms_per_hour'] == 0.0
+    assert [recording['bag'] for recording in calibration['normal']] == ['tuesday.bag']
+    judged = sum(not math.isnan(limit) for limit in stored.limits)
+    assert sum(calibration['judged_tracks'].values()) == judged
+
+
+def test_json_holds_preliminary_limits_and_the_graph(long_bags, tmp_path, capsys,
+                                                     monkeypatch) -> None:
+    monkeypatch.setattr('rosgraph.Master.getSystemState', lambda _: [
+        [['/scan', ['/laser']]], [['/scan', ['/slam', '/map_saver']]], []])
+    output = str(tmp_path / 'm')
+    assert train.main([long_bags[0], '--graph', '-o', output]) == 0
+    capsys.readouterr()
+    summary = as_json(capsys, output)
+    assert summary['graph'] == {'/laser': ['/map_saver', '/slam']}
+    calibration = summary['evidence']['calibration']
+    assert calibration['method'] == 'cross-fit' and calibration['false_alarms_per_hour'] is None
+    assert info.main([output]) == 0
+    assert 'sources that somebody listens to: 1, connections: 2' in capsys.readouterr().out
+
+
+def test_types_that_are_not_judged_are_named(make_bag, tmp_path, capsys) -> None:
+    output = str(tmp_path / 'm')
+    bag = make_bag('rare.bag', sorted([*robot(10.0), (15.0, '/door', '/open')]))
+    assert train.main([bag, '-o', output]) == 0
+    capsys.readouterr()
+    evidence = as_json(capsys, output)['evidence']
+    assert evidence['not_judged'] == ['/door /open std_msgs/String']
+    assert evidence['calibration'] is None
+    assert info.main([output]) == 0
+    assert '  not judged: /door /open std_msgs/String\n' in capsys.readouterr().out
+
+
+def test_people_read_the_evidence(evidence_model: str, capsys) -> None:
+    assert info.main([evidence_model]) == 0
+    text = capsys.readouterr().out
+    for part in ('evidence     tracks: overdue 3, rate 6', 'limits       held-out, for 0.5 false',
+                 'graph        none', 'tuesday.bag', 'linker '):
+        assert part in text
+
+
 def test_people_read_the_same(model_file: str, capsys) -> None:
     assert info.main([model_file]) == 0
     text = capsys.readouterr().out
-    for part in ('not calibrated', 'first.bag', '1281', LASER, SLAM, '/rosout_agg', 'no horizon'):
+    for part in ('not calibrated', 'first.bag', '1282', LASER, SLAM, '/rosout_agg', 'no horizon'):
         assert part in text
 
 

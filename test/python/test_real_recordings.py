@@ -10,6 +10,8 @@ import pytest
 from self_awareness import EncodingRules, TrainedModel, read_events, summarise_bag
 from self_awareness.commands import calibrate, score, train
 
+PAPER = ('--detector', 'paper')
+
 
 class Alarm(NamedTuple):
     """As printed: seconds from the recording's first message, and the suspects."""
@@ -45,10 +47,10 @@ def test_the_outage_of_the_wheeled_robot_is_found(wheeled_robot: Path, tmp_path:
     normal, model = str(wheeled_robot / 'feb13_normal.bag'), str(tmp_path / 'm')
     # Until 24 s the robot starts up.
     assert train.main([normal, '--start', '24', '--end', '65', '-o', model]) == 0
-    assert calibrate.main(['--model', model, '--normal', f'{normal}@65', '--cutoff', 'fpr=0.01',
-                           '-o', model]) == 0
+    assert calibrate.main(['--model', model, '--normal', f'{normal}@65', *PAPER, '--cutoff',
+                           'fpr=0.01', '-o', model]) == 0
     capsys.readouterr()
-    assert score.main([str(wheeled_robot / 'feb13_outage.bag'), '--model', model]) == 0
+    assert score.main([str(wheeled_robot / 'feb13_outage.bag'), '--model', model, *PAPER]) == 0
     alarms = alarms_of(capsys.readouterr().out)
     outage = next(alarm for alarm in alarms if alarm.end > 28.0)
     assert 28.0 < outage.start < 29.0
@@ -63,15 +65,61 @@ def test_the_laser_that_is_gone_is_named(wheeled_robot: Path, tmp_path: Path, ca
     normal, model = str(wheeled_robot / 'jan17_normal.bag'), str(tmp_path / 'm')
     # Its stalls, at 12 to 15 s and at 51.5 to 54.5 s, are left out.
     assert train.main([normal, '--start', '15', '--end', '51', '-o', model]) == 0
-    arguments = ['--model', model, '--normal', f'{normal}@55', '-o', model, '--cutoff']
+    arguments = ['--model', model, '--normal', f'{normal}@55', '-o', model, *PAPER, '--cutoff']
     assert calibrate.main([*arguments, 'fpr=0.01']) == 1  # too many windows are silent
     assert calibrate.main([*arguments, 'fpr=0.02']) == 0
     capsys.readouterr()
-    assert score.main([str(wheeled_robot / 'jan17_outage.bag'), '--model', model]) == 0
+    assert score.main([str(wheeled_robot / 'jan17_outage.bag'), '--model', model, *PAPER]) == 0
     alarms = alarms_of(capsys.readouterr().out)
     outage = next(alarm for alarm in alarms if alarm.end > 67.0)
     assert outage.start < 68.0 and outage.end > 100.0
     assert alarms[-1].suspects[0] == '/urg_node' and alarms[-1].end > 120.0
+
+
+def test_evidence_finds_the_outage_and_the_rest_is_quiet(wheeled_robot: Path, tmp_path: Path,
+                                                         capsys) -> None:
+    """With the preliminary limits of the training: its recordings are too short for others."""
+    model = str(tmp_path / 'm')
+    assert train.main([str(wheeled_robot / 'feb13_normal.bag'), '--start', '24', '-o', model]) == 0
+    assert 'preliminary' in capsys.readouterr().out
+    assert score.main([str(wheeled_robot / 'feb13_outage.bag'), '--model', model]) == 0
+    alarms = alarms_of(capsys.readouterr().out)
+    # It is raised a little early, by what the start-up left behind, and stays until 52.6 s: a
+    # weakness that docs/evaluation/recordings.md tells of.
+    assert any(alarm.start < 29.0 and alarm.end > 36.0 for alarm in alarms)
+    assert all(alarm.end < 55.0 for alarm in alarms)
+
+
+def test_evidence_finds_that_the_laser_is_gone(wheeled_robot: Path, tmp_path: Path,
+                                               capsys) -> None:
+    """From 42 s on all nodes stall now and then; until then, all is quiet."""
+    model = str(tmp_path / 'm')
+    assert train.main([str(wheeled_robot / 'jan17_normal.bag'), '--start', '15', '-o', model]) == 0
+    capsys.readouterr()
+    assert score.main([str(wheeled_robot / 'jan17_outage.bag'), '--model', model]) == 0
+    alarms = alarms_of(capsys.readouterr().out)
+    assert all(alarm.start > 42.0 for alarm in alarms)
+    assert alarms[-1].start < 70.0 and alarms[-1].end > 120.0
+
+
+_TOO_SLOW = ('event types of minutes between two events get limits that another session exceeds: '
+             'overdue and rate')
+
+
+@pytest.mark.parametrize('session', [
+    pytest.param('101', marks=pytest.mark.xfail(reason=_TOO_SLOW)), '102',
+    pytest.param('103', marks=pytest.mark.xfail(reason=_TOO_SLOW))])
+def test_evidence_leaves_a_sparse_robot_alone(shared: Path, tmp_path: Path, session: str,
+                                              capsys) -> None:
+    """Learned from two sessions, the third is normal, too."""
+    bags = sorted(str(path) for path in (shared / 'data' / 'social_robot').glob('*.bag'))
+    judged, = [bag for bag in bags if session in bag]
+    model = str(tmp_path / 'm')
+    assert train.main([*[bag for bag in bags if bag != judged], '-o', model]) == 0
+    capsys.readouterr()
+    assert score.main([judged, '--model', model]) == 0
+    out = capsys.readouterr().out
+    assert 'not calibrated' not in out and ', alarms: 0' in out
 
 
 def test_a_robot_without_callerids_is_learned_without_sources(shared: Path, tmp_path: Path,
@@ -84,11 +132,10 @@ def test_a_robot_without_callerids_is_learned_without_sources(shared: Path, tmp_
     trained = TrainedModel.load(model)
     assert len(trained.event_types) == 17 and trained.events == 71213
     windows = str(folder / 'facing_windows.bag')
-    assert calibrate.main(['--model', model, '--normal', windows, '--inject', 'crash:/base', '-o',
-                           model]) == 1
+    arguments = ['--model', model, '--normal', windows, *PAPER, '-o', model, '--inject']
+    assert calibrate.main([*arguments, 'crash:/base']) == 1
     assert 'only starve' in capsys.readouterr().err
-    assert calibrate.main(['--model', model, '--normal', windows, '--inject', 'starve', '-o',
-                           model]) == 0
+    assert calibrate.main([*arguments, 'starve']) == 0
     assert score.main([windows, '--model', model, '--csv', str(tmp_path / 'w.csv')]) == 0
     assert len((tmp_path / 'w.csv').read_text().splitlines()) > 400
 

@@ -1,4 +1,4 @@
-"""`score`: abnormal intervals, suspects, and the table of windows."""
+"""`score --detector paper`: abnormal intervals, suspects, and the table of windows."""
 from __future__ import annotations
 
 import csv
@@ -15,11 +15,13 @@ from self_awareness.commands import calibrate, score
 
 Bags = Tuple[str, str]
 
+PAPER = ('--detector', 'paper')
+
 
 @pytest.fixture(scope='module')
 def calibrated(model_file: str, robot_bags: Bags, tmp_path_factory) -> str:
     path = str(tmp_path_factory.mktemp('calibrated') / 'm')
-    assert calibrate.main(['--model', model_file, '--normal', robot_bags[1], '--inject',
+    assert calibrate.main(['--model', model_file, '--normal', robot_bags[1], *PAPER, '--inject',
                            'crash:/laser', 'crash:/slam', '-o', path]) == 0
     return path
 
@@ -37,10 +39,10 @@ def rows_of(path) -> List[Dict[str, str]]:
 
 
 def test_the_alarm_and_its_suspect_are_printed(calibrated: str, dead_laser: str, capsys) -> None:
-    assert score.main([dead_laser, '--model', calibrated]) == 0
+    assert score.main([dead_laser, '--model', calibrated, *PAPER]) == 0
     out = capsys.readouterr().out
     interval = re.search(r'^  ([\d.]+) - ([\d.]+) s, (.+) - (.+) UTC: lowest score (\S+), '
-                         r'threshold (\S+)$', out, re.MULTILINE)
+                         r'threshold (\S+), score$', out, re.MULTILINE)
     start, end = float(interval[1]), float(interval[2])
     assert 12.0 < start < 13.5 and 19.5 < end < 23.0
     assert interval[3].startswith('1970-01-01 00:50:1')  # 3012 s after the epoch
@@ -50,14 +52,15 @@ def test_the_alarm_and_its_suspect_are_printed(calibrated: str, dead_laser: str,
 
 def test_normal_operation_is_no_alarm(calibrated: str, make_bag: Callable[..., str],
                                       capsys) -> None:
-    assert score.main([make_bag('normal.bag', robot(7000.0)), '--model', calibrated]) == 0
+    assert score.main([make_bag('normal.bag', robot(7000.0)), '--model', calibrated, *PAPER]) == 0
     assert ', alarms: 0' in capsys.readouterr().out
 
 
 def test_the_table_has_every_window_with_all_digits(calibrated: str, dead_laser: str,
                                                     robot_bags: Bags, tmp_path, capsys) -> None:
     table = tmp_path / 'w.csv'
-    assert score.main([dead_laser, robot_bags[1], '--model', calibrated, '--csv', str(table)]) == 0
+    assert score.main([dead_laser, robot_bags[1], '--model', calibrated, *PAPER, '--csv',
+                       str(table)]) == 0
     assert table.read_text().splitlines()[0] \
         == 'bag,window_start_ns,events,unknown,score,threshold,abnormal'
     rows = rows_of(table)
@@ -84,7 +87,7 @@ def test_silence_is_abnormal_and_has_no_score(calibrated: str, make_bag: Callabl
                                               tmp_path, capsys) -> None:
     silent = make_bag('silent.bag', [m for m in robot(3000.0) if not 3012.0 <= m[0] < 3015.0])
     table = tmp_path / 'w.csv'
-    assert score.main([silent, '--model', calibrated, '--csv', str(table)]) == 0
+    assert score.main([silent, '--model', calibrated, *PAPER, '--csv', str(table)]) == 0
     quiet = [row for row in rows_of(table) if row['events'] == '0']
     assert len(quiet) >= 29
     assert {(row['score'], row['abnormal']) for row in quiet} == {('', '1')}
@@ -95,7 +98,7 @@ def test_silence_up_to_the_end_of_the_recording_is_seen(calibrated: str,
                                                         capsys) -> None:
     # All components are dead; only the clock, which is no event, goes on.
     bag = make_bag('end.bag', [*robot(3000.0, 10.0), (3015.0, '/clock_server', '/clock')])
-    assert score.main([bag, '--model', calibrated]) == 0
+    assert score.main([bag, '--model', calibrated, *PAPER]) == 0
     assert '- 15.1 s (to the end of the recording)' in capsys.readouterr().out
 
 
@@ -104,7 +107,7 @@ def test_unknown_events_are_counted_and_named(calibrated: str, make_bag: Callabl
     bag = make_bag('new.bag', sorted([*robot(3000.0), (3010.0, '/new', '/a'),
                                       (3011.0, '/new', '/a'), (3012.0, '/new', '/b')]))
     table = tmp_path / 'w.csv'
-    assert score.main([bag, '--model', calibrated, '--csv', str(table)]) == 0
+    assert score.main([bag, '--model', calibrated, *PAPER, '--csv', str(table)]) == 0
     out = capsys.readouterr().out
     assert '    /new /a std_msgs/String: 2\n    /new /b std_msgs/String: 1\n' in out
     assert sum(int(row['unknown']) for row in rows_of(table)) == 3
@@ -113,7 +116,7 @@ def test_unknown_events_are_counted_and_named(calibrated: str, make_bag: Callabl
 def test_a_model_without_a_threshold_scores_and_says_so(model_file: str, dead_laser: str, tmp_path,
                                                         capsys) -> None:
     table, plot = tmp_path / 'w.csv', tmp_path / 'p.png'
-    assert score.main([dead_laser, '--model', model_file, '--csv', str(table), '--plot',
+    assert score.main([dead_laser, '--model', model_file, *PAPER, '--csv', str(table), '--plot',
                        str(plot)]) == 0
     out = capsys.readouterr().out
     assert 'not calibrated' in out and 'alarm' not in out
@@ -123,7 +126,7 @@ def test_a_model_without_a_threshold_scores_and_says_so(model_file: str, dead_la
 
 def test_the_options_of_the_alarm_are_heard(calibrated: str, dead_laser: str, capsys) -> None:
     def alarms(*options: str) -> List[Tuple[float, float]]:
-        assert score.main([dead_laser, '--model', calibrated, *options]) == 0
+        assert score.main([dead_laser, '--model', calibrated, *PAPER, *options]) == 0
         return [(float(a), float(b)) for a, b in
                 re.findall(r'^  ([\d.]+) - ([\d.]+) s', capsys.readouterr().out, re.MULTILINE)]
 
@@ -139,7 +142,7 @@ def test_the_plot_is_a_picture_that_shows_the_alarm(calibrated: str, dead_laser:
                                                     capsys) -> None:
     from matplotlib.image import imread
     plot = tmp_path / 'p.png'
-    assert score.main([dead_laser, '--model', calibrated, '--plot', str(plot)]) == 0
+    assert score.main([dead_laser, '--model', calibrated, *PAPER, '--plot', str(plot)]) == 0
     pixels = imread(str(plot))[:, :, :3]
     shade = (np.abs(pixels - (0.965, 0.811, 0.814)).max(axis=2) < 0.02).sum(axis=0)
     # The alarm lasts for a third of the time, nearly from top to bottom.

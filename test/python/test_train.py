@@ -1,12 +1,13 @@
 """`train`: what it learns, says and writes."""
 from __future__ import annotations
 
+import math
 from typing import Callable, List, Tuple
 
 import pytest
 from conftest import robot
 
-from self_awareness import TrainedModel
+from self_awareness import EvidenceModel, TrainedModel, stable_name
 from self_awareness.commands import train
 
 Bags = Tuple[str, str]
@@ -20,8 +21,8 @@ def said(capsys: pytest.CaptureFixture, arguments: List[str]) -> List[str]:
 def test_it_says_what_it_learned(robot_bags: Bags, tmp_path, capsys) -> None:
     output = str(tmp_path / 'm')
     lines = said(capsys, [*robot_bags, '-o', output])
-    assert f'{robot_bags[0]}: 30.0 s, 1281 events' in lines
-    for line in ('recordings 2', 'duration 60.0 s', 'events 2562', 'event types 3', 'sources 3',
+    assert f'{robot_bags[0]}: 30.0 s, 1282 events' in lines
+    for line in ('recordings 2', 'duration 60.0 s', 'events 2564', 'event types 3', 'sources 3',
                  'pairs 9 of 9 with delays'):
         assert line in lines
     model = TrainedModel.load(output)
@@ -84,3 +85,57 @@ def test_a_model_may_be_trained_again(robot_bags: Bags, tmp_path, capsys) -> Non
     said(capsys, [robot_bags[1], '-o', output])
     assert TrainedModel.load(output).recordings[0].bag == 'second.bag'
     assert [path.name for path in tmp_path.iterdir()] == ['m']
+
+
+def test_one_recording_gives_preliminary_limits_by_its_halves(long_bags: Bags, tmp_path,
+                                                              capsys) -> None:
+    output = str(tmp_path / 'm')
+    lines = said(capsys, [long_bags[0], '-o', output])
+    found = TrainedModel.load(output).evidence_calibration
+    # Each half settles for 5 s of its 60 s.
+    assert found.method == 'cross-fit' and found.windows == pytest.approx(1100, abs=4)
+    assert ('limits preliminary, by what one half of the training says of the other '
+            f'({found.windows} windows)') in lines
+    assert [recording.bag for recording in found.recordings] == ['monday.bag']
+    assert math.isnan(found.false_alarms_per_hour) and found.budget == 0.5
+
+
+def test_two_recordings_give_preliminary_limits_by_each_other(long_bags: Bags, tmp_path) -> None:
+    output = str(tmp_path / 'm')
+    assert train.main([*long_bags, '-o', output]) == 0
+    model = TrainedModel.load(output)
+    found = model.evidence_calibration
+    assert found.method == 'cross-fit' and found.windows == pytest.approx(2300, abs=4)
+    assert len(found.limits) == len(EvidenceModel(model).tracks)
+    assert [recording.bag for recording in found.recordings] == ['monday.bag', 'tuesday.bag']
+
+
+def test_too_little_for_limits_is_told_and_the_model_is_written(robot_bags: Bags, tmp_path,
+                                                                capsys) -> None:
+    output = str(tmp_path / 'm')
+    lines = said(capsys, [robot_bags[0], '-o', output])
+    told, = [line for line in lines if line.startswith('limits')]
+    assert told.startswith('limits none: too little normal operation') and '50 s' in told
+    assert any('rosrun self_awareness calibrate' in line for line in lines)
+    assert TrainedModel.load(output).evidence_calibration is None
+
+
+def test_the_graph_needs_a_master(robot_bags: Bags, tmp_path, monkeypatch, capsys) -> None:
+    # Nobody listens on port 1.
+    monkeypatch.setenv('ROS_MASTER_URI', 'http://127.0.0.1:1')
+    assert train.main([robot_bags[0], '--graph', '-o', str(tmp_path / 'm')]) == 1
+    error = capsys.readouterr().err
+    assert error.startswith('train: error: --graph: no master at http://127.0.0.1:1')
+    assert 'ROS_MASTER_URI' in error and error.count('\n') == 1
+    assert not (tmp_path / 'm').exists()
+
+
+def test_the_graph_is_who_subscribes_to_whom(robot_bags: Bags, tmp_path, monkeypatch) -> None:
+    state = [[['/scan', ['/laser']], ['/map', ['/slam_4242_1600000000000']], ['/charge', ['/b']]],
+             [['/scan', ['/slam_4242_1600000000000', '/log']], ['/map', ['/log']]], []]
+    monkeypatch.setattr('rosgraph.Master.getSystemState', lambda _: state)
+    output = str(tmp_path / 'm')
+    assert train.main([robot_bags[0], '--graph', '-o', output]) == 0
+    assert TrainedModel.load(output).graph == {'/laser': {stable_name('/slam_4242_1600000000000'),
+                                                          '/log'},
+                                               stable_name('/slam_4242_1600000000000'): {'/log'}}

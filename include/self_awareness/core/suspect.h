@@ -11,6 +11,11 @@ namespace self_awareness::core {
 /// Event types with fewer gaps than this in training are not judged: they have no usual delay to
 /// be measured by.
 constexpr std::uint64_t kFewestGaps = 30;
+/// The usual delay of an event type reaches from the one that this share of its delays in training
+/// does not exceed,
+constexpr double kUsualFrom = 0.01;
+/// to the one that this share does not exceed.
+constexpr double kUsualTo = 0.99;
 /// No more suspects than this are named.
 constexpr std::size_t kMostSuspects = 5;
 

@@ -125,8 +125,11 @@ def _check_known(trained: TrainedModel, normal: Sequence[RecordingEvents]) -> No
 def _find_limits(arguments: argparse.Namespace, trained: TrainedModel,
                  parameters: DetectorParameters, normal_runs: Sequence[Run],
                  faulty_runs: Sequence[Run]) -> _Measured:
-    found = evidence_limits.held_out(trained, [run.source for run in normal_runs],
-                                     parameters.settle_time, arguments.budget)
+    try:
+        found = evidence_limits.held_out(trained, [run.source for run in normal_runs],
+                                         parameters.settle_time, arguments.budget)
+    except ValueError as error:
+        raise ValueError(f'--normal: {error}; name longer recordings, or more of them') from error
     trained.evidence_calibration = found
     judged = calibration.judge(calibration.evidence_judge(trained, parameters), trained.window,
                                [*normal_runs, *faulty_runs])
@@ -291,8 +294,8 @@ def _parser() -> argparse.ArgumentParser:
                         f'hour that the limits allow (default: {evidence_limits.BUDGET:g})')
     parser.add_argument('--cutoff', type=cli.checked(Cutoff.parse),
                         metavar='HOW', help='paper: youden: most found less most false; closest: '
-                        'closest to all found and none false; fpr=RATE: this share of normal windows '
-                        'false (default: youden)')
+                        'closest to all found and none false; fpr=RATE: this share of normal '
+                        'windows false (default: youden)')
     parser.add_argument('--roc', type=cli.png_file, metavar='FILE.png', help='draw the ROC')
     parser.add_argument('--csv', metavar='FILE', help='write score and label of every window')
     cli.add_detector_arguments(parser)

@@ -10,7 +10,8 @@ from typing import Optional, Sequence
 
 from self_awareness import follow_me
 from self_awareness.commands import cli
-from self_awareness.evaluation import catalogue, experiment, report, simulated_records
+from self_awareness.evaluation import (catalogue, experiment, real_recordings,
+                                       real_recordings_report, report, simulated_records)
 from self_awareness.evaluation.experiment import Plan
 from self_awareness.follow_me_faults import effect_of
 
@@ -46,6 +47,13 @@ def _simulated(arguments: argparse.Namespace, command: str) -> None:
         print(f'written: {path}')
 
 
+def _recordings(arguments: argparse.Namespace, command: str) -> None:
+    rows = real_recordings.evaluate(arguments.data)
+    arguments.output.mkdir(parents=True, exist_ok=True)
+    for path in real_recordings_report.write(arguments.output, rows, command):
+        print(f'written: {path}')
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog='evaluate', description=__doc__.split(': ', 1)[1], epilog=_EPILOG,
@@ -55,14 +63,28 @@ def _parser() -> argparse.ArgumentParser:
         'simulated', help='the simulated follow-me robot, in simulated time',
         description='Every system learns from the same records of the simulated robot, and judges '
         'the same normal operation and the same faults, once for every seed.'))
+    _add_recordings(parts.add_parser(
+        'recordings', help='recordings of real robots that others made',
+        description='The outages in recordings of real robots, and false alarms on them.'))
     return parser
+
+
+def _add_output(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('-o', '--output', type=Path, default=Path('docs/evaluation'),
+                        metavar='DIR', help='where the page, the CSV file and the plots go '
+                        '(default: docs/evaluation)')
+
+
+def _add_recordings(parser: argparse.ArgumentParser) -> None:
+    parser.set_defaults(work=_recordings)
+    _add_output(parser)
+    parser.add_argument('--data', type=Path, required=True, metavar='DIR',
+                        help='the folder of the recordings')
 
 
 def _add_simulated(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(work=_simulated)
-    parser.add_argument('-o', '--output', type=Path, default=Path('docs/evaluation'),
-                        metavar='DIR', help='where the table, the CSV file and the plots go '
-                        '(default: docs/evaluation)')
+    _add_output(parser)
     parser.add_argument('--seeds', type=cli.checked(_positive), default=20, metavar='N',
                         help='number of repetitions, each with the next seed (default: 20)')
     parser.add_argument('--seed', type=int, default=1, help='the first seed (default: 1)')

@@ -8,6 +8,7 @@ from typing import Any, Dict, List, Optional, Sequence
 
 from self_awareness import FEWEST_GAPS, EventType, Model, TrainedModel, histogram_text
 from self_awareness.commands import cli
+from self_awareness.evidence_report import counts
 from self_awareness.model_summary import summarise
 from self_awareness.stamps import utc
 
@@ -52,6 +53,8 @@ def _print(summary: Dict[str, Any]) -> None:
     for kind in summary['event_types']:
         print(f'  {_event_type(kind)}')
     print(f'pairs        {summary["pairs"]} of {len(summary["event_types"]) ** 2} with delays')
+    print(f'graph        {_graph(summary["graph"])}')
+    _print_evidence(summary['evidence'])
     _print_calibration(summary['calibration'])
 
 
@@ -69,9 +72,34 @@ def _event_type(kind: Dict[str, Any]) -> str:
             f'{kind["source"] or "-"} {kind["scope"]} {kind["type"]}{rare}')
 
 
+def _graph(graph: Dict[str, List[str]]) -> str:
+    if not graph:
+        return 'none: roots are told from victims by the training alone (train --graph)'
+    listeners = sum(len(each) for each in graph.values())
+    return f'sources that somebody listens to: {len(graph)}, connections: {listeners}'
+
+
+def _print_evidence(evidence: Dict[str, Any]) -> None:
+    print(f'evidence     tracks: {counts(evidence["tracks"])}')
+    if evidence['not_judged']:
+        print(f'  not judged: {"; ".join(evidence["not_judged"])}')
+    calibration = evidence['calibration']
+    if calibration is None:
+        print('limits       not calibrated (rosrun self_awareness calibrate)')
+        return
+    print(f'limits       {calibration["method"]}, for {calibration["budget"]:g} false alarms an '
+          f'hour, calibrated {utc(calibration["calibrated_ns"])} UTC')
+    print(f'  of {counts(calibration["judged_tracks"])}, linker '
+          f'{calibration["linker_limit"]:.4g}')
+    print(f'  {calibration["windows"]} windows, false alarms '
+          f'{_or_none(calibration["false_alarms_per_hour"])} an hour, after persistence')
+    print('  normal recordings')
+    _print_recordings(calibration['normal'])
+
+
 def _print_calibration(calibration: Optional[Dict[str, Any]]) -> None:
     if calibration is None:
-        print('threshold    not calibrated (rosrun self_awareness calibrate)')
+        print('threshold    not calibrated (rosrun self_awareness calibrate --detector paper)')
         return
     print(f'threshold    {calibration["threshold"]!r} ({calibration["method"]}), calibrated '
           f'{utc(calibration["calibrated_ns"])} UTC')
@@ -136,7 +164,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog='info', description=__doc__.split(': ', 1)[1])
     parser.add_argument('model', metavar='MODEL', help='file written by train or calibrate')
     how = parser.add_mutually_exclusive_group()
-    how.add_argument('--json', action='store_true', help='all but the histograms, for programs')
+    how.add_argument('--json', action='store_true', help='all but the counts, for programs')
     how.add_argument('--pair', nargs=2, metavar=('A', 'B'),
                      help="draw the delays from the last A to the current B; event types are "
                           "written 'SOURCE SCOPE TYPE', and a part that only one has is enough")

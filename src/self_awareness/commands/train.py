@@ -3,9 +3,7 @@ from __future__ import annotations
 
 import argparse
 import os
-from typing import Dict, Iterator, List, Optional, Sequence, Tuple
-
-import numpy as np
+from typing import Dict, List, Optional, Sequence, Tuple
 
 from self_awareness import (FEWEST_GAPS, BagSummary, DetectorParameters, EncodingRules,
                             ModelFileError, Recording, TrainedModel, Training, encoding_file,
@@ -57,14 +55,10 @@ def _cross_fit(model: TrainedModel, arguments: argparse.Namespace) -> str:
     """Give the model preliminary limits where there is enough to find them; say how."""
     parts = [BagPart(path, arguments.start, arguments.end) for path in arguments.bags]
 
-    def read() -> Iterator[Tuple[np.ndarray, np.ndarray]]:
-        for part in parts:
-            recording = recordings.read(model, part)
-            yield recording.stamps, recording.ids
-
     try:
         model.evidence_calibration = evidence_limits.cross_fit(
-            model, read, DetectorParameters().settle_time, evidence_limits.BUDGET)
+            model, lambda: (recordings.read(model, part) for part in parts),
+            DetectorParameters().settle_time, evidence_limits.BUDGET)
     except ValueError as error:
         return f'limits       none: {error}'
     return ('limits       preliminary, by what one half of the training says of the other '

@@ -1,4 +1,6 @@
-// Bags and model files, good and bad.
+// Bags, good and bad.
+
+#include "self_awareness/ros/bag_reader.h"
 
 #include <gtest/gtest.h>
 #include <rosbag/bag.h>
@@ -13,8 +15,6 @@
 #include <vector>
 
 #include "self_awareness/core/vocabulary.h"
-#include "self_awareness/ros/bag_reader.h"
-#include "self_awareness/ros/model_file.h"
 
 namespace self_awareness::ros1 {
 namespace {
@@ -31,12 +31,13 @@ boost::shared_ptr<ros::M_string> header(const std::string& callerid, bool latchi
   return fields;
 }
 
-class FilesTest : public testing::Test {
+class BagReaderTest : public testing::Test {
  protected:
-  FilesTest() : folder_(fs::temp_directory_path() / fs::unique_path("self_awareness-%%%%%%%%")) {
+  BagReaderTest()
+      : folder_(fs::temp_directory_path() / fs::unique_path("self_awareness-%%%%%%%%")) {
     fs::create_directory(folder_);
   }
-  ~FilesTest() override { fs::remove_all(folder_); }
+  ~BagReaderTest() override { fs::remove_all(folder_); }
 
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
@@ -80,51 +81,13 @@ class FilesTest : public testing::Test {
     }
     return "";
   }
-  static std::string modelError(const std::string& file) {
-    try {
-      loadModel(file);
-    } catch (const ModelFileError& error) {
-      return error.what();
-    }
-    return "";
-  }
-
-  static TrainedModel someModel() {
-    TrainedModel model;
-    model.encoding = EncodingRules::defaults();
-    model.statistics = core::DelayStatistics(core::Binning{5000000, 20});
-    const core::EventId a = model.statistics.intern({"/a", "/x", "T"});
-    const core::EventId b = model.statistics.intern({"/b", "/y", "T[action=1]"});
-    core::DelayTrainer trainer(model.statistics);
-    for (int i = 0; i < 50; ++i) {
-      trainer.add({i * 37000000LL, i % 3 == 0 ? b : a});
-    }
-    model.stamp = ros::Time(1700000000, 0);
-    self_awareness::Recording recording;
-    recording.bag = "normal.bag";
-    recording.events = 50;
-    recording.fingerprint = 0xfedcba9876543210;
-    model.recordings = {recording};
-    return model;
-  }
-
-  // A model message that was changed after it was made.
-  template <typename Change>
-  std::string damagedModel(Change change) {
-    self_awareness::Model message = toMessage(someModel());
-    change(message);
-    rosbag::Bag bag(path("damaged"), rosbag::bagmode::Write);
-    bag.write("/model", ros::Time(1, 0), message);
-    bag.close();
-    return modelError(path("damaged"));
-  }
 
   fs::path folder_;
   EncodingRules rules_;
   core::Vocabulary vocabulary_;
 };
 
-TEST_F(FilesTest, EventsComeInOrderWithoutTheLatchedFirstMessage) {
+TEST_F(BagReaderTest, EventsComeInOrderWithoutTheLatchedFirstMessage) {
   const std::vector<core::Event> events = read(writeBag("a.bag"));
   ASSERT_EQ(events.size(), 111U);  // 100 + 10 + the second of the latching one
   EXPECT_EQ(events.front().stamp, 100 * core::kNanosecondsPerSecond);
@@ -133,7 +96,7 @@ TEST_F(FilesTest, EventsComeInOrderWithoutTheLatchedFirstMessage) {
   }
 }
 
-TEST_F(FilesTest, EqualStampsKeepTheOrderOfTheRecording) {
+TEST_F(BagReaderTest, EqualStampsKeepTheOrderOfTheRecording) {
   std_msgs::String message;
   rosbag::Bag bag(path("equal.bag"), rosbag::bagmode::Write);
   const auto node = header("/node");
@@ -154,7 +117,7 @@ TEST_F(FilesTest, EqualStampsKeepTheOrderOfTheRecording) {
   EXPECT_EQ(seen, order);
 }
 
-TEST_F(FilesTest, TheSummaryNamesTheRecordingHoweverItIsCompressed) {
+TEST_F(BagReaderTest, TheSummaryNamesTheRecordingHoweverItIsCompressed) {
   const BagSummary plain = BagReader(writeBag("plain.bag")).summary();
   EXPECT_EQ(plain.messages, 112U);
   EXPECT_EQ(plain.start, 100 * core::kNanosecondsPerSecond);
@@ -167,7 +130,7 @@ TEST_F(FilesTest, TheSummaryNamesTheRecordingHoweverItIsCompressed) {
   EXPECT_EQ(read(path("packed.bag")).size(), 111U);
 }
 
-TEST_F(FilesTest, NoMessageIsReadUnlessItsContentIsNeeded) {
+TEST_F(BagReaderTest, NoMessageIsReadUnlessItsContentIsNeeded) {
   const std::string bag = writeBag("a.bag", rosbag::compression::BZ2);
   // What cannot be unpacked cannot have been read.
   std::fstream file(bag, std::ios::in | std::ios::out | std::ios::binary);
@@ -184,7 +147,7 @@ TEST_F(FilesTest, NoMessageIsReadUnlessItsContentIsNeeded) {
   EXPECT_THROW(read(bag), BagError);
 }
 
-TEST_F(FilesTest, ContentIsReadWhereTheEncodingNamesAField) {
+TEST_F(BagReaderTest, ContentIsReadWhereTheEncodingNamesAField) {
   rules_.type_fields = {{"std_msgs/String", "data"}};
   const std::vector<core::Event> events = read(writeBag("a.bag", rosbag::compression::LZ4));
   EXPECT_EQ(vocabulary_.at(events.front().id).type,
@@ -193,7 +156,7 @@ TEST_F(FilesTest, ContentIsReadWhereTheEncodingNamesAField) {
   EXPECT_THROW(read(path("a.bag")), std::invalid_argument);
 }
 
-TEST_F(FilesTest, ARangeCutsTheRecording) {
+TEST_F(BagReaderTest, ARangeCutsTheRecording) {
   const std::string bag = writeBag("a.bag");
   TimeRange range;
   range.start = 2.0;
@@ -208,7 +171,7 @@ TEST_F(FilesTest, ARangeCutsTheRecording) {
   EXPECT_THROW(read(bag, range), std::invalid_argument);
 }
 
-TEST_F(FilesTest, SaysWhatIsWrongWithABag) {
+TEST_F(BagReaderTest, SaysWhatIsWrongWithABag) {
   EXPECT_EQ(bagError(path("absent.bag")), path("absent.bag") + ": no such file");
   EXPECT_NE(bagError(folder_.string()).find("not a file"), std::string::npos);
 
@@ -223,7 +186,7 @@ TEST_F(FilesTest, SaysWhatIsWrongWithABag) {
       << bagError(path("none.bag"));
 }
 
-TEST_F(FilesTest, EveryTruncatedBagIsRefusedWithTheMend) {
+TEST_F(BagReaderTest, EveryTruncatedBagIsRefusedWithTheMend) {
   const std::string bag = writeBag("a.bag");
   const auto size = fs::file_size(bag);
   for (const double share : {0.02, 0.1, 0.3, 0.5, 0.7, 0.9, 0.97, 0.999}) {
@@ -236,7 +199,7 @@ TEST_F(FilesTest, EveryTruncatedBagIsRefusedWithTheMend) {
   }
 }
 
-TEST_F(FilesTest, ABagThatIsStillBeingWrittenIsRefused) {
+TEST_F(BagReaderTest, ABagThatIsStillBeingWrittenIsRefused) {
   rosbag::Bag bag(path("b.bag.active"), rosbag::bagmode::Write);
   bag.setChunkThreshold(1000);
   std_msgs::String message;
@@ -246,82 +209,6 @@ TEST_F(FilesTest, ABagThatIsStillBeingWrittenIsRefused) {
   }
   EXPECT_NE(bagError(path("b.bag.active")).find("rosbag reindex"), std::string::npos);
   bag.close();
-}
-
-TEST_F(FilesTest, AModelComesBackAsItWasSaved) {
-  TrainedModel model = someModel();
-  saveModel(model, path("m"));
-  TrainedModel loaded = loadModel(path("m"));
-  EXPECT_TRUE(loaded.statistics == model.statistics);
-  EXPECT_TRUE(loaded.encoding == model.encoding);
-  EXPECT_EQ(loaded.window, model.window);
-  EXPECT_EQ(loaded.stamp, model.stamp);
-  EXPECT_FALSE(loaded.threshold());
-  ASSERT_EQ(loaded.recordings.size(), 1U);
-  EXPECT_EQ(loaded.recordings[0].fingerprint, model.recordings[0].fingerprint);
-
-  loaded.calibration = self_awareness::Calibration();
-  loaded.calibration->threshold = 1.25;
-  loaded.calibration->method = "youden";
-  saveModel(loaded, path("m"));
-  EXPECT_EQ(loadModel(path("m")).threshold(), 1.25);
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
-}
-
-TEST_F(FilesTest, AModelThatCannotBeWrittenLeavesNothingBehind) {
-  EXPECT_THROW(saveModel(someModel(), path("no/such/folder/m")), ModelFileError);
-  fs::create_directory(path("taken"));
-  EXPECT_THROW(saveModel(someModel(), path("taken")), ModelFileError);
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
-}
-
-TEST_F(FilesTest, SaysWhatIsWrongWithAModelFile) {
-  EXPECT_NE(modelError(path("absent")).find("no such file"), std::string::npos);
-  EXPECT_NE(modelError(writeBag("a.bag")).find("holds no model"), std::string::npos);
-  std::ofstream(path("text")) << "no model";
-  EXPECT_NE(modelError(path("text")).find("not a model file"), std::string::npos);
-  saveModel(someModel(), path("cut"));
-  fs::resize_file(path("cut"), fs::file_size(path("cut")) / 2);
-  EXPECT_NE(modelError(path("cut")).find(path("cut")), std::string::npos);
-}
-
-TEST_F(FilesTest, AModelOfAnotherVersionIsRefused) {
-  // The md5 as another version of the package would have it.
-  saveModel(someModel(), path("m"));
-  std::ifstream in(path("m"), std::ios::binary);
-  std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
-  const std::string md5 = ros::message_traits::md5sum<self_awareness::Model>();
-  std::size_t replaced = 0;
-  for (std::size_t at = bytes.find(md5); at != std::string::npos; at = bytes.find(md5, at + 1)) {
-    bytes.replace(at, md5.size(), "0123456789abcdef0123456789abcdef");
-    ++replaced;
-  }
-  ASSERT_GT(replaced, 0U);
-  std::ofstream(path("m"), std::ios::binary) << bytes;
-  EXPECT_NE(modelError(path("m")).find("another version"), std::string::npos)
-      << modelError(path("m"));
-}
-
-TEST_F(FilesTest, ADamagedModelIsRefused) {
-  EXPECT_EQ(damagedModel([](self_awareness::Model& /*model*/) {}), "");
-  using Message = self_awareness::Model;
-  EXPECT_NE(damagedModel([](Message& m) { m.offsets.pop_back(); }), "");
-  EXPECT_NE(damagedModel([](Message& m) { m.bins.pop_back(); }), "");
-  EXPECT_NE(damagedModel([](Message& m) { m.offsets[1] = 1000000; }), "");
-  EXPECT_NE(damagedModel([](Message& m) { m.counts[0] = 0; }), "");
-  EXPECT_NE(damagedModel([](Message& m) { m.bins[0] = -1; }), "");
-  EXPECT_NE(damagedModel([](Message& m) { m.bin_size = 0; }), "");
-  EXPECT_NE(damagedModel([](Message& m) { m.window = ros::Duration(0); }), "");
-  EXPECT_NE(damagedModel([](Message& m) { m.window = ros::Duration(-1); }), "");
-  EXPECT_NE(damagedModel([](Message& m) { m.event_types[1] = m.event_types[0]; }), "");
-  EXPECT_NE(damagedModel([](Message& m) { m.event_types.clear(); }), "");
-  EXPECT_NE(damagedModel([](Message& m) { m.encoding.source = "colour"; }), "");
-  EXPECT_NE(damagedModel([](Message& m) { m.encoding.exclude_topics = {"("}; }), "");
-  EXPECT_NE(damagedModel([](Message& m) {
-              m.calibration.resize(1);
-              m.calibration[0].threshold = std::nan("");
-            }),
-            "");
 }
 
 }  // namespace

@@ -1,0 +1,129 @@
+"""`calibrate` for the evidence detector: the limits, what is said of them, and what is refused."""
+from __future__ import annotations
+
+import csv
+import math
+import os
+import re
+from typing import Callable, List, Tuple
+
+import pytest
+
+from self_awareness import EvidenceModel, TrainedModel
+from self_awareness.commands import calibrate, train
+
+Bags = Tuple[str, str]
+
+
+@pytest.fixture(name='trained', scope='module')
+def _trained(long_bags: Bags, tmp_path_factory) -> str:
+    path = str(tmp_path_factory.mktemp('trained') / 'm')
+    assert train.main([long_bags[0], '-o', path]) == 0
+    return path
+
+
+@pytest.fixture(name='run')
+def _run(trained: str, long_bags: Bags, tmp_path, capsys) -> Callable[..., Tuple[int, str, str]]:
+    """Return a function that calibrates on the second recording: exit code, output, errors."""
+    def calibrated(*arguments: str) -> Tuple[int, str, str]:
+        code = calibrate.main(['--model', trained, '--normal', long_bags[1], '-o',
+                               str(tmp_path / 'm'), *arguments])
+        captured = capsys.readouterr()
+        return code, captured.out, captured.err
+    return calibrated
+
+
+def test_the_limits_are_stored_with_how_they_were_found(run, trained: str, tmp_path) -> None:
+    code, out, err = run('--budget', '0.25')
+    assert code == 0 and err == ''
+    assert re.search(r'watched: overdue 3, rate \d+', out)
+    model = TrainedModel.load(str(tmp_path / 'm'))
+    found = model.evidence_calibration
+    assert len(found.limits) == len(EvidenceModel(model).tracks)
+    assert all(math.isnan(limit) or limit > 0.0 for limit in found.limits)
+    assert found.linker_limit >= 1.0
+    assert (found.method, found.budget) == ('held-out', 0.25)
+    assert [recording.bag for recording in found.recordings] == ['tuesday.bag']
+    assert found.windows == pytest.approx(1150, abs=2)  # 120 s of which 5 s settle
+    assert found.false_alarms_per_hour == 0.0 and 'alarms: 0, 0 an hour' in out
+    assert found.stamp > 1.7e18
+    assert model.calibration is None  # the paper's detector is another matter
+    assert TrainedModel.load(trained).evidence_calibration.method == 'cross-fit'  # left alone
+
+
+def test_the_budget_is_used(run, tmp_path) -> None:
+    limits = []
+    for budget in ('0.1', '1000'):
+        assert run('--budget', budget)[0] == 0
+        limits.append(TrainedModel.load(str(tmp_path / 'm')).evidence_calibration.limits)
+    pairs = [(strict, lax) for strict, lax in zip(*limits)
+             if not math.isnan(strict) and not math.isnan(lax)]
+    assert all(strict >= lax for strict, lax in pairs)
+    assert any(strict > lax for strict, lax in pairs)
+
+
+def test_faults_are_told_in_a_table_by_source(run) -> None:
+    code, out, _ = run('--inject', 'crash:*')
+    assert code == 0
+    rows = [re.split(r' {2,}', line) for line in out.splitlines() if line.startswith('crash')]
+    assert [row[:3] for row in rows] == [['crash', f'/{name}', '1 of 1']
+                                         for name in ('battery', 'laser', 'slam')]
+    latency = {row[1]: float(row[3]) for row in rows}
+    assert 0.0 < latency['/laser'] < 1.0 and 0.0 < latency['/slam'] < 1.0
+    assert 0.37 < latency['/battery'] < 3.0
+    assert all(row[4:] == ['1 of 1', '1 of 1'] for row in rows)
+    head = next(line for line in out.splitlines() if line.startswith('fault'))
+    assert re.split(r' {2,}', head) == ['fault', 'source', 'found', 'median [s]', 'guilty first',
+                                        'among three']
+    assert re.search(r'^found 3 of 3 \(95 %: \d+\.\d% to 100\.0%\)$', out, re.MULTILINE)
+
+
+def test_a_fault_of_one_window_in_the_csv(run, tmp_path) -> None:
+    table = tmp_path / 'w.csv'
+    assert run('--inject', 'crash:/laser', '--csv', str(table))[0] == 0
+    with open(table, newline='') as file:
+        rows = list(csv.DictReader(file))
+    assert {row['fault'] for row in rows} == {'', 'crash:/laser'}
+    normal = [float(row['score']) for row in rows if row['label'] == 'normal']
+    assert len(normal) == pytest.approx(1150, abs=2) and min(normal) >= -1.0
+    abnormal = [float(row['score']) for row in rows if row['label'] == 'abnormal']
+    assert sum(score < -1.0 for score in abnormal) > 0.95 * len(abnormal)
+
+
+def test_the_roc_is_drawn(run, tmp_path) -> None:
+    assert run('--inject', 'crash:/laser', '--roc', str(tmp_path / 'roc.png'))[0] == 0
+    assert (tmp_path / 'roc.png').read_bytes().startswith(b'\x89PNG')
+
+
+@pytest.mark.parametrize('arguments, parts', [
+    (('--cutoff', 'youden'), ['--cutoff', '--detector paper', '--budget']),
+    (('--detector', 'paper', '--budget', '1'), ['--budget', '--detector evidence', '--cutoff']),
+    (('--settle-time', '80'), ['too little normal operation', '50 s', 'of every recording']),
+    (('--inject', 'crash:/motor'), ['/motor', '/battery, /laser, /slam']),
+])
+def test_an_error_names_the_way_out_and_writes_nothing(run, tmp_path, arguments,
+                                                       parts: List[str]) -> None:
+    code, _, err = run(*arguments)
+    assert code == 1 and err.count('\n') == 1 and err.startswith('calibrate: error: ')
+    for part in parts:
+        assert part in err
+    assert os.listdir(tmp_path) == []
+
+
+def test_short_recordings_do_not_do_and_the_error_says_how_long_they_must_be(
+        trained: str, robot_bags: Bags, tmp_path, capsys) -> None:
+    """Of 30 s, two blocks of 10 s are left after the detector settled; five are needed."""
+    arguments = ['--model', trained, '-o', str(tmp_path / 'm'), '--normal']
+    assert calibrate.main([*arguments, robot_bags[0]]) == 1
+    error = capsys.readouterr().err
+    assert '--normal' in error and 'at least 50 s' in error and 'pieces of 10 s' in error
+    assert not (tmp_path / 'm').exists()
+
+
+def test_recordings_that_were_trained_on_are_refused(run, long_bags: Bags, tmp_path) -> None:
+    os.symlink(long_bags[0], tmp_path / 'renamed.bag')
+    for option in ('--normal', '--faulty'):
+        code, _, err = run(option, str(tmp_path / 'renamed.bag'))
+        assert code == 1 and 'renamed.bag' in err and 'monday.bag' in err
+        assert 'trained on it' in err and 'BAG@START-END' in err
+    assert not (tmp_path / 'm').exists()
