@@ -1,5 +1,7 @@
 #include "self_awareness/core/detector.h"
 
+#include <algorithm>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -33,12 +35,14 @@ bool Detector::add(const Event& event) {
     settle(event.stamp);
   }
   last_stamp_ = event.stamp;
+  now_ = std::max(now_, event.stamp);
   windows_.advance(event.stamp);  // the windows before it are judged without it
   windows_.add(judge_->add(event));
   return !clock_step;
 }
 
 void Detector::advance(std::int64_t now) {
+  now_ = std::max(now_, now);
   windows_.advance(now);
 }
 
@@ -51,6 +55,7 @@ void Detector::restart() {
   windows_.restart();
   clearAlarm();
   last_stamp_.reset();
+  now_ = std::numeric_limits<std::int64_t>::min();
 }
 
 void Detector::settle(std::int64_t now) {
@@ -64,7 +69,9 @@ void Detector::clearAlarm() {
 
 void Detector::judge(const Window& window) {
   const std::int64_t end = window.start + windows_.length();
-  Judgement judgement = judge_->judge(window, end);
+  // A recording may end within its last window: nobody knows what would have come.
+  const std::int64_t known = std::min(end, now_);
+  Judgement judgement = judge_->judge(window, known);
   const bool unknown = window.unknown() > 0;
   if (unknown && parameters_.unknown != UnknownEvents::kIgnore) {
     judgement.evidence += (judgement.evidence.empty() ? "" : ", ") + std::string("unknown events");
@@ -89,7 +96,7 @@ void Detector::judge(const Window& window) {
   if (judgement.threshold && !verdict.settling && (counts || judgement.suspicious)) {
     suspicion_ = true;
     suspicious_at_ = end;
-    verdict.suspects = judge_->suspects(window, end);
+    verdict.suspects = judge_->suspects(window, known);
   } else if (end - suspicious_at_ >= parameters_.persistence.hold_time) {
     suspicion_ = false;
   }

@@ -31,6 +31,7 @@ constexpr double kLeastGainLeft = 0.7;
 // Evidence that gets nowhere near its limit in this time [ns] of a component's death is no use.
 constexpr double kLongestWait = 10e9;
 constexpr double kMostDelayLimit = 100;
+constexpr double kMostMeanGaps = 3;
 
 }  // namespace
 
@@ -96,12 +97,11 @@ void LimitFinder::add(const Event& event) {
   }
   if (!last_stamp_) {
     first_stamp_ = event.stamp;
-    last_seen_.assign(model_->size(), std::nullopt);
   }
+  last_stamp_ = event.stamp;
   windows_.advance(event.stamp);
   const std::optional<std::int64_t> gap = scorer_->add(event);
   windows_.add({event, 0, !model_->knows(event.id), gap});
-  last_stamp_ = event.stamp;
   if (second_pass_ || !model_->knows(event.id)) {
     return;
   }
@@ -135,6 +135,9 @@ void LimitFinder::finish() {
 }
 
 void LimitFinder::judge(std::int64_t end) {
+  if (end > *last_stamp_) {
+    return;  // the recording ends within its last window
+  }
   const std::vector<double>& evidence = scorer_->closeWindow(end);
   if (end - parameters_.window < *first_stamp_ + parameters_.settle_time) {
     return;
@@ -200,6 +203,11 @@ void LimitFinder::startSecondPass() {
   second_pass_ = true;
 }
 
+double LimitFinder::meanGap(EventId id) const {
+  const EvidenceStatistics::Type& type = model_->statistics().type(id);
+  return static_cast<double>(type.gap_sum) / static_cast<double>(type.gaps);
+}
+
 double LimitFinder::limit(std::size_t track) const {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const auto& [channel, to, from] = model_->tracks()[track];
@@ -210,15 +218,16 @@ double LimitFinder::limit(std::size_t track) const {
   });
   const double per_hour =
       parameters_.false_alarms_per_hour / kKinds / static_cast<double>(of_kind);
-  const EvidenceStatistics::Type& trained = model_->statistics().type(to);
   if (channel == Channel::kOverdue) {
-    EvidenceStatistics::Type gaps = trained;
+    EvidenceStatistics::Type gaps = model_->statistics().type(to);
     for (const std::int64_t gap : gaps_[to].longest_gaps) {
       gaps.addGap(gap);
     }
     const double age = overdueAge(gaps.longest_gaps, model_->statistics().duration() + duration_,
                                   per_hour / kHour);
-    return model_->overdue(to, std::llround(age));
+    // What comes when something happens may stay away for as long as nothing does.
+    const bool irregular = age > kLongestWait && age > kMostMeanGaps * meanGap(to);
+    return irregular ? kNone : model_->overdue(to, std::llround(age));
   }
   const std::vector<double>& maxima = maxima_[track];
   const double found = std::max({model_->leastLimit(track),
@@ -228,9 +237,7 @@ double LimitFinder::limit(std::size_t track) const {
     return misleading_[track] || found > kMostDelayLimit ? kNone : found;
   }
   if (channel == Channel::kAnswer) {
-    const EvidenceStatistics::Type& asking = model_->statistics().type(from);
-    const double gap = static_cast<double>(asking.gap_sum) / static_cast<double>(asking.gaps);
-    return found / model_->missed(track) * gap > kLongestWait ? kNone : found;
+    return found / model_->missed(track) * meanGap(from) > kLongestWait ? kNone : found;
   }
   return found;
 }

@@ -16,6 +16,9 @@ constexpr std::size_t kPredecessors = 3;
 constexpr double kLeastGain = 0.3;  // [nat]
 constexpr std::uint64_t kFewestDelaysOfPair = 200;
 
+// Few events in kRateSpan come in bursts, or when something happens.
+constexpr double kLeastRate = 1.5;
+
 constexpr std::size_t kAsked = 8;
 constexpr std::uint64_t kFewestAnswers = 100;
 constexpr double kMostMisses = 0.6;
@@ -164,8 +167,11 @@ std::vector<Track> chooseTracks(const EvidenceStatistics& first, const EvidenceS
   std::vector<Track> tracks;
   for (EventId id = 0; id < both.size(); ++id) {
     if (both.type(id).gaps >= kFewestGaps) {
-      for (const Channel channel : {Channel::kOverdue, Channel::kFewer, Channel::kMore}) {
-        tracks.push_back({channel, id, id});
+      tracks.push_back({Channel::kOverdue, id, id});
+      if (static_cast<double>(both.type(id).rate_sum) >=
+          kLeastRate * static_cast<double>(both.rateWindows())) {
+        tracks.push_back({Channel::kFewer, id, id});
+        tracks.push_back({Channel::kMore, id, id});
       }
     }
   }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -78,8 +79,9 @@ class Detector {
   Persistence persistence_;
   bool suspicion_ = false;          // stands
   std::int64_t suspicious_at_ = 0;  // end of the last window that was [ns], while it stands
-  std::optional<std::int64_t> last_stamp_;  // of an event [ns]
-  std::int64_t settled_at_ = 0;             // [ns], valid once started
+  std::optional<std::int64_t> last_stamp_;                       // of an event [ns]
+  std::int64_t now_ = std::numeric_limits<std::int64_t>::min();  // latest time known [ns]
+  std::int64_t settled_at_ = 0;                                  // [ns], valid once started
 };
 
 }  // namespace self_awareness::core
