@@ -115,6 +115,7 @@ TEST(EvidenceTrainer, CountsDelaysGapsAndAnswers) {
   EXPECT_EQ(in(a_after_b, 150), 1U);
   EXPECT_EQ(in(a_after_b, 240), 1U);
   EXPECT_EQ(b_after_a.answers, 2U);  // none between the last two A
+  EXPECT_EQ(counts.pair(kA, kA).answers, 0U);
   EXPECT_EQ(a_after_b.answers, 1U);  // between the first two B, none between the last two
 }
 
@@ -153,6 +154,15 @@ TEST(EvidenceTrainer, ALateEventHasNoNegativeDelay) {
   EXPECT_EQ(counts.type(kA).longest_gaps.back(), 0);
   EXPECT_EQ(counts.pair(kA, kA).delays.front(), 1U);
   EXPECT_EQ(counts.duration(), 100 * kMillisecond);
+}
+
+TEST(EvidenceTrainer, OnlyTheEventBeforeTellsAStepOfTheClock) {
+  // Two late events, each within what is late of the one before it, as everywhere (clock.h).
+  const EvidenceStatistics counts =
+      countsOf({inMilliseconds({{1000, kA}, {1160, kA}, {1100, kA}, {1040, kA}, {1200, kA}})}, 1);
+  EXPECT_EQ(counts.type(kA).gaps, 4U);
+  EXPECT_EQ(counts.type(kA).gap_sum, 320 * kMillisecond);
+  EXPECT_EQ(counts.duration(), 200 * kMillisecond);
 }
 
 TEST(EvidenceTrainer, NothingCrossesFromOneRecordingIntoTheNext) {
