@@ -93,7 +93,6 @@ void LimitFinder::add(const Event& event) {
   }
   if (!last_stamp_) {
     first_stamp_ = event.stamp;
-    last_seen_.assign(model_->size(), std::nullopt);
   }
   windows_.advance(event.stamp);
   const std::optional<std::int64_t> gap = scorer_->add(event);

@@ -70,9 +70,8 @@ class LimitFinder {
   std::shared_ptr<const EvidenceModel> judging_;
   std::optional<EvidenceScorer> scorer_;
   Windows windows_;
-  std::optional<std::int64_t> first_stamp_;             // of the recording [ns]
-  std::optional<std::int64_t> last_stamp_;              // [ns]
-  std::vector<std::optional<std::int64_t>> last_seen_;  // by id
+  std::optional<std::int64_t> first_stamp_;  // of the recording [ns]
+  std::optional<std::int64_t> last_stamp_;   // [ns]
   std::uint64_t windows_seen_ = 0;
 
   std::vector<double> block_;  // largest evidence, by track
