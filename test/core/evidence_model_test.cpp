@@ -54,21 +54,23 @@ TEST(EvidenceModel, NeedsAnEvent) {
 }
 
 TEST(EvidenceModel, OverdueIsTheLiteralSumOverTheGaps) {
-  const Events events = irregular(kA, 0, 60 * kSecond, 300 * kMillisecond, 3);
-  const EvidenceModel model(countsOf({events}), kNothing);
-  const std::vector<double> gaps = binnedGaps(events);
-  const auto b = static_cast<double>(model.longestGap(kA));
-  double all = b;
-  for (const double gap : gaps) {
-    all += gap;
-  }
-  for (const std::int64_t milliseconds : {1, 50, 200, 300, 700, 1500, 4000}) {
-    const std::int64_t age = milliseconds * kMillisecond;
-    double left = b * std::exp(-static_cast<double>(age) / b);
+  for (const Events& events : {irregular(kA, 0, 60 * kSecond, 300 * kMillisecond, 3),
+                               timer(kA, 0, 60 * kSecond, 100 * kMillisecond)}) {
+    const EvidenceModel model(countsOf({events}), kNothing);
+    const std::vector<double> gaps = binnedGaps(events);
+    const auto b = static_cast<double>(model.longestGap(kA));
+    double all = b;
     for (const double gap : gaps) {
-      left += std::max(gap - static_cast<double>(age), 0.0);
+      all += gap;
     }
-    EXPECT_NEAR(model.overdue(kA, age), -std::log(left / all), 1e-9) << milliseconds;
+    for (const std::int64_t milliseconds : {1, 50, 200, 300, 700, 1500, 4000}) {
+      const std::int64_t age = milliseconds * kMillisecond;
+      double left = b * std::exp(-static_cast<double>(age) / b);
+      for (const double gap : gaps) {
+        left += std::max(gap - static_cast<double>(age), 0.0);
+      }
+      EXPECT_NEAR(model.overdue(kA, age), -std::log(left / all), 1e-9) << milliseconds;
+    }
   }
 }
 
