@@ -7,6 +7,8 @@
 #include <memory>
 #include <random>
 #include <stdexcept>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "evidence_recordings.h"
@@ -189,7 +191,20 @@ TEST_F(LimitFinderTest, LessThanFiveBlocksAreTooLittle) {
   EXPECT_NO_THROW(finder.startSecondPass());
 }
 
-TEST_F(LimitFinderTest, CountsTheWindowsOfThe1stPassAfterSettling) {
+TEST_F(LimitFinderTest, AModelThatWatchesNothingIsSaidToBeTheReason) {
+  model_ = modelOf(timer(kA, 0, 10 * kSecond, kSecond), timer(kA, 0, 10 * kSecond, kSecond));
+  ASSERT_TRUE(model_->tracks().empty());
+  LimitFinder finder(model_, {kWindow, 5 * kSecond, 0.5});
+  feed(finder, model_, robot(100 * kSecond, 3));
+  try {
+    finder.startSecondPass();
+    FAIL() << "no exception";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("train it on more"), std::string::npos);
+  }
+}
+
+TEST_F(LimitFinderTest, CountsTheWindowsOfTheFirstPassAfterSettling) {
   LimitFinder finder(model_, {kWindow, 5 * kSecond, 0.5});
   const Events normal = timer(kA, 0, 60 * kSecond, kPeriod);
   feed(finder, model_, normal);
