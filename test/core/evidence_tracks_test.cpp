@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
 #include "evidence_recordings.h"
@@ -76,35 +78,32 @@ TEST(EvidenceTracks, FewDelaysAreNoPair) {
   EXPECT_FALSE(isWatched(chosen(asked(51), asked(50)), Channel::kAnswer, kB, kA));
 }
 
-TEST(EvidenceTracks, AtMostThreePredecessorsAndTheBestOnes) {
-  Events events = irregular(0, 0, kLength, 200 * kMillisecond, 1);
-  const Events first = events;
-  std::vector<EventType> types;
+TEST(EvidenceTracks, TheThreeBestPredecessorsAreWatched) {
+  constexpr EventId kNumber = 6;
+  const Events asked = irregular(0, 0, kLength, 200 * kMillisecond, 1);
   EvidenceStatistics counts;
-  for (EventId id = 0; id < 6; ++id) {
+  Events events;
+  for (EventId id = 0; id < kNumber; ++id) {  // one after the other
     counts.intern({"/" + std::to_string(id), "/topic", "T"});
-    if (id > 0) {
-      events = together({events, answers(id, first, id * 3 * kMillisecond)});
-    }
+    events = together({events, answers(id, asked, id * 3 * kMillisecond)});
   }
   EvidenceTrainer trainer(counts, kWindow);
   for (const Event& event : events) {
     trainer.add(event);
   }
   const InformationGain gain(counts, counts);
-  for (EventId to = 0; to < 6; ++to) {
-    std::vector<double> in;
-    std::vector<double> out;
-    const std::vector<Track> tracks = chosen(counts, counts);
-    for (EventId from = 0; from < 6; ++from) {
-      const bool watched = isWatched(tracks, Channel::kDelay, to, from);
-      (watched ? in : out).push_back(gain(from, to));
+  const std::vector<Track> tracks = chosen(counts, counts);
+  for (EventId to = 1; to < kNumber; ++to) {
+    std::vector<double> watched;
+    std::vector<double> others;
+    for (EventId from = 0; from < kNumber; ++from) {
+      const bool is_watched = isWatched(tracks, Channel::kDelay, to, from);
+      (is_watched ? watched : others).push_back(gain(from, to));
     }
-    ASSERT_LE(in.size(), 3U);
-    if (!in.empty() && in.size() == 3) {
-      EXPECT_GE(*std::min_element(in.begin(), in.end()),
-                *std::max_element(out.begin(), out.end()));
-    }
+    ASSERT_EQ(watched.size(), 3U) << to;
+    EXPECT_GE(*std::min_element(watched.begin(), watched.end()),
+              *std::max_element(others.begin(), others.end()))
+        << to;
   }
 }
 
