@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "self_awareness/core/clock.h"
+#include "self_awareness/core/suspect.h"
 
 namespace self_awareness::core {
 namespace {
@@ -190,7 +191,12 @@ void LimitFinder::closeChunk() {
 
 void LimitFinder::startSecondPass() {
   finish();
-  if (maxima_.empty() || maxima_.front().size() < kFewestBlocks) {
+  if (maxima_.empty()) {
+    throw std::invalid_argument("the model watches nothing, as no event type has " +
+                                std::to_string(kFewestGaps) +
+                                " gaps in its training: train it on more");
+  }
+  if (maxima_.front().size() < kFewestBlocks) {
     throw std::invalid_argument("too little normal operation to find limits: at least " +
                                 std::to_string(kFewestBlocks * kBlock / kNanosecondsPerSecond) +
                                 " s are needed in pieces of " +

@@ -123,11 +123,13 @@ void EvidenceTrainer::add(const Event& event) {
   counts_.resize(statistics_.size());
   if (last_stamp_) {
     closeWindows(event.stamp);
-    statistics_.addDuration(std::max<std::int64_t>(event.stamp - *last_stamp_, 0));
+    statistics_.addDuration(std::max<std::int64_t>(event.stamp - newest_stamp_, 0));
+    newest_stamp_ = std::max(newest_stamp_, event.stamp);
   } else {
+    newest_stamp_ = event.stamp;
     window_end_ = floorToGrid(event.stamp, window_) + window_;
   }
-  last_stamp_ = last_stamp_ ? std::max(*last_stamp_, event.stamp) : event.stamp;
+  last_stamp_ = event.stamp;
 
   EvidenceStatistics::Type& type = statistics_.type(event.id);
   std::optional<Seen>& last = last_seen_.at(event.id);

@@ -47,7 +47,8 @@ class LimitFinder {
   /// The recording ends.
   void finish();
   /// Ends the first pass: the limits of the tracks are found, and recordings come once more.
-  /// @throw std::invalid_argument if there was too little data: less than kFewestBlocks blocks
+  /// @throw std::invalid_argument if there was too little data: less than kFewestBlocks blocks, or
+  /// so little to train on that the model has no tracks
   void startSecondPass();
   /// @throw std::logic_error before the second pass
   EvidenceLimits limits() const;

@@ -61,7 +61,7 @@ class EvidenceModel {
   /// How surprising a delay [ns] is to a delay track, in standard deviations from what is usual.
   double surprise(std::size_t track, std::int64_t delay) const;
   /// What an answer that came, and one that did not, add to the evidence of an answer track: the
-  /// log-likelihood ratio of twice as many being left out, as far as there is room [nat].
+  /// log-likelihood ratio of half of those that usually come being left out [nat].
   double answered(std::size_t track) const { return steps_[track].answered; }
   double missed(std::size_t track) const { return steps_[track].missed; }
   /// Share of the gaps of `from` that a `to` is usually missing in, of an answer track.

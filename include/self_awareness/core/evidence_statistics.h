@@ -97,6 +97,7 @@ class EvidenceTrainer {
   std::int64_t window_;
   std::vector<std::optional<Seen>> last_seen_;  // by id
   std::optional<std::int64_t> last_stamp_;      // [ns]
+  std::int64_t newest_stamp_ = 0;               // [ns], once something was seen
   std::int64_t window_end_ = 0;                 // of the open window [ns], once something was seen
   std::uint64_t number_ = 0;
   RecentCounts counts_;

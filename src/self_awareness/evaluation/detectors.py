@@ -85,11 +85,15 @@ class Evidence:
 
     def judge(self, recording: Recording) -> Judged:
         """Judge a recording."""
+        return _judged(recording.encoded(self._trained.event_types),
+                       self.verdicts(recording, DetectorParameters()), EVIDENCE_THRESHOLD)
+
+    def verdicts(self, recording: Recording, parameters: DetectorParameters) -> Verdicts:
+        """Return what the detector says of a recording, suspicions included."""
         encoded = recording.encoded(self._trained.event_types)
         # The window in which the recording ends is the last one, hence - 1.
-        verdicts = judge_by_evidence(self._trained, self._model, DetectorParameters(),
-                                     encoded.stamps, encoded.ids, encoded.end - 1)
-        return _judged(encoded, verdicts, EVIDENCE_THRESHOLD)
+        return judge_by_evidence(self._trained, self._model, parameters, encoded.stamps,
+                                 encoded.ids, encoded.end - 1)
 
 
 def _trained(recordings: Sequence[Recording]) -> TrainedModel:

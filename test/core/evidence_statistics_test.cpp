@@ -1,0 +1,240 @@
+#include "self_awareness/core/evidence_statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <stdexcept>
+#include <vector>
+
+#include "evidence_recordings.h"
+#include "self_awareness/core/clock.h"
+
+namespace self_awareness::core {
+namespace {
+
+Events inMilliseconds(std::initializer_list<Event> events) {
+  Events scaled;
+  for (const Event& event : events) {
+    scaled.push_back({event.stamp * kMillisecond, event.id});
+  }
+  return scaled;
+}
+
+Events randomEvents(unsigned seed, EventId first, EventId last) {
+  std::mt19937 random(seed);
+  Events events;
+  std::int64_t stamp = kSecond;
+  for (int i = 0; i < 2000; ++i) {
+    stamp += static_cast<std::int64_t>(random() % 30000000);
+    events.push_back({stamp, static_cast<EventId>(first + random() % (last - first + 1))});
+  }
+  return events;
+}
+
+// The same counts, with the ids of kTypes.
+EvidenceStatistics reordered(const EvidenceStatistics& counts) {
+  EvidenceStatistics ordered = countsOf({});
+  ordered.merge(counts);
+  return ordered;
+}
+
+TEST(LogBins, AreFourAnOctaveFrom2500UsTo10240Ms) {
+  EXPECT_EQ(log_bins::bin(0), 0U);
+  EXPECT_EQ(log_bins::bin(-kSecond), 0U);
+  EXPECT_EQ(log_bins::bin(2499999), 0U);
+  EXPECT_EQ(log_bins::bin(2500000), 1U);
+  EXPECT_EQ(log_bins::bin(4999999), 4U);
+  EXPECT_EQ(log_bins::bin(5000000), 5U);
+  EXPECT_EQ(log_bins::bin(10239999999), log_bins::kBins - 2);
+  EXPECT_EQ(log_bins::bin(10240000000), log_bins::kBins - 1);
+  EXPECT_EQ(log_bins::bin(kLongestSilence), log_bins::kBins - 1);
+}
+
+TEST(LogBins, EveryEdgeBelongsToTheBinAboveIt) {
+  EXPECT_EQ(log_bins::lowerEdge(0), 0);
+  for (std::size_t bin = 1; bin < log_bins::kBins; ++bin) {
+    EXPECT_EQ(log_bins::bin(log_bins::lowerEdge(bin)), bin);
+    EXPECT_EQ(log_bins::bin(log_bins::lowerEdge(bin) - 1), bin - 1);
+  }
+}
+
+TEST(LogBins, TheMiddleIsTheGeometricMeanOfTheEdges) {
+  EXPECT_DOUBLE_EQ(log_bins::middle(0), 1.25e6);
+  EXPECT_NEAR(log_bins::middle(1), 2.5e6 * std::exp2(0.125), 1);
+  EXPECT_NEAR(log_bins::middle(48), 10.24e9 * std::exp2(-0.125), 1);
+  EXPECT_DOUBLE_EQ(log_bins::middle(49), 10.24e9);
+}
+
+TEST(RecentCounts, SlideOverTheLastWindows) {
+  RecentCounts recent(1, 2);
+  recent.add(0);
+  recent.close();
+  EXPECT_FALSE(recent.full());
+  recent.add(0);
+  recent.add(0);
+  recent.close();
+  EXPECT_TRUE(recent.full());
+  EXPECT_EQ(recent.counts(), std::vector<std::uint32_t>{3});
+  recent.resize(2);
+  recent.add(1);
+  recent.close();
+  EXPECT_EQ(recent.counts(), (std::vector<std::uint32_t>{2, 1}));
+  recent.restart();
+  EXPECT_FALSE(recent.full());
+  recent.close();
+  recent.close();
+  EXPECT_EQ(recent.counts(), (std::vector<std::uint32_t>{0, 0}));
+}
+
+TEST(EvidenceTrainer, CountsDelaysGapsAndAnswers) {
+  const EvidenceStatistics counts = countsOf(
+      {inMilliseconds({{0, kA}, {10, kB}, {100, kA}, {130, kB}, {150, kB}, {300, kA}, {390, kA}})},
+      2);
+  EXPECT_EQ(counts.type(kA).events, 4U);
+  EXPECT_EQ(counts.type(kA).gaps, 3U);
+  EXPECT_EQ(counts.type(kA).gap_sum, 390 * kMillisecond);
+  EXPECT_EQ(
+      counts.type(kA).longest_gaps,
+      (std::vector<std::int64_t>{200 * kMillisecond, 100 * kMillisecond, 90 * kMillisecond}));
+  EXPECT_EQ(counts.duration(), 390 * kMillisecond);
+
+  const auto in = [](const EvidenceStatistics::Pair& pair, std::int64_t milliseconds) {
+    return pair.delays.at(log_bins::bin(milliseconds * kMillisecond));
+  };
+  const EvidenceStatistics::Pair& b_after_a = counts.pair(kA, kB);
+  EXPECT_EQ(b_after_a.total(), 3U);
+  EXPECT_EQ(in(b_after_a, 10), 1U);
+  EXPECT_EQ(in(b_after_a, 30), 1U);
+  EXPECT_EQ(in(b_after_a, 50), 1U);  // the second B after the same A, too
+  const EvidenceStatistics::Pair& a_after_b = counts.pair(kB, kA);
+  EXPECT_EQ(a_after_b.total(), 3U);
+  EXPECT_EQ(in(a_after_b, 90), 1U);
+  EXPECT_EQ(in(a_after_b, 150), 1U);
+  EXPECT_EQ(in(a_after_b, 240), 1U);
+  EXPECT_EQ(b_after_a.answers, 2U);  // none between the last two A
+  EXPECT_EQ(counts.pair(kA, kA).answers, 0U);
+  EXPECT_EQ(a_after_b.answers, 1U);  // between the first two B, none between the last two
+}
+
+TEST(EvidenceTrainer, NoBinsWhereNoDelayWasSeen) {
+  const EvidenceStatistics counts = countsOf({inMilliseconds({{0, kA}, {10, kB}})}, 2);
+  EXPECT_TRUE(counts.pair(kB, kA).delays.empty());
+  EXPECT_EQ(counts.pair(kB, kA).total(), 0U);
+  EXPECT_EQ(counts.pair(kA, kB).total(), 1U);
+}
+
+TEST(EvidenceTrainer, CountsRatesInFullSpansOnly) {
+  EvidenceStatistics counts;
+  counts.intern(kTypes[kA]);
+  EvidenceTrainer trainer(counts, kSecond);
+  const auto add = [&](std::int64_t milliseconds, EventId id) {
+    trainer.add({milliseconds * kMillisecond, id});
+  };
+  for (const std::int64_t milliseconds : {500, 1500, 1600, 2200}) {
+    add(milliseconds, kA);
+  }
+  counts.intern(kTypes[kB]);  // first seen when A has long been counted
+  add(2500, kB);
+  add(4100, kA);
+  // 1, 2, 1, 0 A in the closed windows: 3, 3, 1 in two of them.
+  EXPECT_EQ(counts.rateWindows(), 3U);
+  EXPECT_EQ(counts.type(kA).rate_sum, 7U);
+  EXPECT_EQ(counts.type(kA).rate_squares, 19U);
+  EXPECT_EQ(counts.type(kB).rate_sum, 2U);
+  EXPECT_EQ(counts.type(kB).rate_squares, 2U);
+}
+
+TEST(EvidenceTrainer, ALateEventHasNoNegativeDelay) {
+  const EvidenceStatistics counts =
+      countsOf({inMilliseconds({{0, kA}, {100, kA}, {50, kA}, {80, kB}})}, 2);
+  EXPECT_EQ(counts.type(kA).gap_sum, 100 * kMillisecond);
+  EXPECT_EQ(counts.type(kA).longest_gaps.back(), 0);
+  EXPECT_EQ(counts.pair(kA, kA).delays.front(), 1U);
+  EXPECT_EQ(counts.duration(), 100 * kMillisecond);
+}
+
+TEST(EvidenceTrainer, OnlyTheEventBeforeTellsAStepOfTheClock) {
+  // Two late events, each within what is late of the one before it, as everywhere (clock.h).
+  const EvidenceStatistics counts =
+      countsOf({inMilliseconds({{1000, kA}, {1160, kA}, {1100, kA}, {1040, kA}, {1200, kA}})}, 1);
+  EXPECT_EQ(counts.type(kA).gaps, 4U);
+  EXPECT_EQ(counts.type(kA).gap_sum, 320 * kMillisecond);
+  EXPECT_EQ(counts.duration(), 200 * kMillisecond);
+}
+
+TEST(EvidenceTrainer, NothingCrossesFromOneRecordingIntoTheNext) {
+  const Events first = timer(kA, 0, 1500 * kMillisecond, 100 * kMillisecond);
+  const Events second = timer(kB, 1500 * kMillisecond, 3000 * kMillisecond, 100 * kMillisecond);
+  const EvidenceStatistics counts = countsOf({first, second}, 2);
+  EXPECT_EQ(counts.pair(kA, kB).total(), 0U);
+  EXPECT_EQ(counts.rateWindows(), 0U);  // 2 s are full in neither
+  EXPECT_EQ(counts.duration(), 2800 * kMillisecond);
+  const Events joined = together({first, second});
+  EXPECT_EQ(countsOf({joined}, 2).pair(kA, kB).total(), 15U);
+  EXPECT_GT(countsOf({joined}, 2).rateWindows(), 0U);
+}
+
+TEST(EvidenceTrainer, AStepOfTheClockStartsAnotherRecording) {
+  for (const std::int64_t later : {10 * kSecond + kLongestSilence + 1, -kSecond}) {
+    const Events before = timer(kA, 0, 10 * kSecond, 100 * kMillisecond);
+    const Events after = timer(kB, later, later + 10 * kSecond, 100 * kMillisecond);
+    Events stepped = before;
+    stepped.insert(stepped.end(), after.begin(), after.end());
+    EXPECT_TRUE(countsOf({stepped}, 2) == countsOf({before, after}, 2)) << later;
+  }
+}
+
+TEST(EvidenceTrainer, RefusesAWindowOfNoLength) {
+  EvidenceStatistics counts;
+  EXPECT_THROW(EvidenceTrainer(counts, 0), std::invalid_argument);
+  EXPECT_THROW(EvidenceTrainer(counts, -kWindow), std::invalid_argument);
+}
+
+TEST(EvidenceStatistics, KeepTheLongestGaps) {
+  EvidenceStatistics::Type type;
+  std::vector<std::int64_t> gaps(40);
+  std::iota(gaps.begin(), gaps.end(), 1);
+  std::shuffle(gaps.begin(), gaps.end(), std::mt19937(5));
+  for (const std::int64_t gap : gaps) {
+    type.addGap(gap);
+  }
+  ASSERT_EQ(type.longest_gaps.size(), EvidenceStatistics::kLongestGaps);
+  for (std::size_t k = 0; k < type.longest_gaps.size(); ++k) {
+    EXPECT_EQ(type.longest_gaps[k], static_cast<std::int64_t>(40 - k));
+  }
+}
+
+TEST(EvidenceStatistics, CountsOfTwoTrainingsEqualTrainingOnBoth) {
+  const Events first = randomEvents(1, kA, kB);
+  const Events second = randomEvents(2, kB, kC);
+  EvidenceStatistics sum = countsOf({first});
+  const EvidenceStatistics both = countsOf({first, second});
+  EXPECT_FALSE(sum == both);
+  sum.merge(countsOf({second}));
+  EXPECT_TRUE(sum == both);
+}
+
+TEST(EvidenceStatistics, MergingCommutesUpToTheIds) {
+  const EvidenceStatistics first = countsOf({randomEvents(1, kA, kB)}, 2);
+  EvidenceStatistics second;  // kTypes the other way round
+  for (const EventId id : {kC, kB}) {
+    second.intern(kTypes[id]);
+  }
+  EvidenceTrainer trainer(second, kWindow);
+  for (const Event& event : randomEvents(2, 0, 1)) {
+    trainer.add(event);
+  }
+  EvidenceStatistics one = first;
+  one.merge(second);
+  EvidenceStatistics other = second;
+  other.merge(first);
+  EXPECT_FALSE(one == other);
+  EXPECT_TRUE(reordered(one) == reordered(other));
+  EXPECT_GT(one.pair(kA, kB).total(), 0U);
+}
+
+}  // namespace
+}  // namespace self_awareness::core
