@@ -237,5 +237,28 @@ TEST_F(DetectorLevelsTest, ClearingTheAlarmForgetsTheSuspicion) {
   EXPECT_FALSE(window().suspicion);
 }
 
+// What would have come in the rest of the window, nobody knows.
+TEST(Detector, TheLastWindowIsJudgedAtTheRecordingsEnd) {
+  class EndsJudge : public ToldJudge {
+   public:
+    explicit EndsJudge(std::vector<std::int64_t>& ends)
+        : ToldJudge(std::make_shared<Judgement>()), ends_(ends) {}
+    Judgement judge(const Window& window, std::int64_t end) override {
+      ends_.push_back(end);
+      return ToldJudge::judge(window, end);
+    }
+
+   private:
+    std::vector<std::int64_t>& ends_;
+  };
+  std::vector<std::int64_t> ends;
+  Detector detector(std::make_unique<EndsJudge>(ends), kWindow, {}, [](const Verdict&) {});
+  detector.add({10, 0});
+  detector.add({kWindow + 20, 0});
+  detector.advance(2 * kWindow + 30);
+  detector.finish();
+  EXPECT_EQ(ends, (std::vector<std::int64_t>{kWindow, 2 * kWindow, 2 * kWindow + 30}));
+}
+
 }  // namespace
 }  // namespace self_awareness::core

@@ -120,7 +120,7 @@ TEST_F(EvidenceBlameTest, WhoComesTooOftenIsNamedWithNumbers) {
   ASSERT_EQ(ids(named), std::vector<EventId>{kC});
   EXPECT_EQ(named.front().reason, Reason::kRate);
   EXPECT_EQ(named.front().events, scorer_.recentCount(kC));
-  EXPECT_DOUBLE_EQ(named.front().usual_longest, model_->usualCount(kC, 2));
+  EXPECT_DOUBLE_EQ(named.front().usual_most, model_->usualCount(kC, 2));
 }
 
 TEST_F(EvidenceBlameTest, WhoIsSilentComesBeforeWhatIsUnusual) {

@@ -121,9 +121,12 @@ class ReferenceModel:
         self._halves = (first, second)
         self.gains = {(i, j): (gain(first, second, i, j) + gain(second, first, i, j)) / 2
                       for i in self.types for j in self.types}
-        self.tracks: List[Track] = [
-            (channel, kind, kind) for kind in self.types if len(both.gaps[kind]) >= 30
-            for channel in ('overdue', 'fewer', 'more')]
+        self.tracks: List[Track] = []
+        for kind in self.types:
+            if len(both.gaps[kind]) >= 30:
+                often = sum(both.rates[kind]) >= 1.5 * len(both.rates[kind])
+                self.tracks += [(channel, kind, kind) for channel in
+                                (('overdue', 'fewer', 'more') if often else ('overdue',))]
         for kind in self.types:
             self.tracks += [(channel, kind, other) for other in self._predecessors(kind)
                             for channel in DELAYS]
@@ -203,16 +206,17 @@ class ReferenceModel:
 
 
 class Cusum:
-    """A sum that does not fall below 0, and counts once events were as in training."""
+    """A sum from 0 to a cap that counts once events were as in training."""
 
-    def __init__(self) -> None:
+    def __init__(self, cap: float) -> None:
         self.sum = 0.0
+        self._cap = cap
         self._armed = False
         self._excesses: List[float] = []
 
     def add(self, step: float, excess: float, usual: float) -> None:
         """Add an event whose excess over training is usual up to a mean."""
-        self.sum = min(max(self.sum + step, 0.0), 200.0)
+        self.sum = min(max(self.sum + step, 0.0), self._cap)
         self._excesses.append(excess)
         if len(self._excesses) == 30:
             self._armed = self._armed or sum(self._excesses) / 30 <= usual
@@ -225,14 +229,24 @@ class Cusum:
 
 
 class ReferenceScorer:
-    """Evidence of one recording: `rows` holds that of all tracks for every window."""
+    """Evidence of one recording: `rows` holds that of all tracks for every window.
 
-    def __init__(self, model: ReferenceModel, events: Sequence[Event], window: int) -> None:
+    Args:
+        model: that judges.
+        events: of the recording.
+        window: [ns].
+        limits: of the tracks; none: not known.
+    """
+
+    def __init__(self, model: ReferenceModel, events: Sequence[Event], window: int,
+                 limits: Sequence[float] = ()) -> None:
         self._model = model
         self._window = window
         self._last: Dict[str, Tuple[int, int]] = {}  # stamp and number of the event
         self._in_window: Dict[str, List[int]] = defaultdict(list)
-        self._sums = {track: Cusum() for track in model.tracks}
+        self._caps = {track: 1.5 * limit for track, limit in zip(model.tracks, limits)
+                      if limit > 0.0}
+        self._sums = {track: self._cusum(track) for track in model.tracks}
         self.rows: List[List[float]] = []
         self._first = index = events[0][0] // window
         for number, (t, kind) in enumerate(events):
@@ -244,6 +258,9 @@ class ReferenceScorer:
                 self._last[kind] = (t, number)
                 self._in_window[kind].append(index)
         self.rows.append(self._row(index))
+
+    def _cusum(self, track: Track) -> Cusum:
+        return Cusum(self._caps.get(track, 200.0))
 
     def _add(self, t: int, kind: str) -> None:
         own = self._last.get(kind)
@@ -263,7 +280,7 @@ class ReferenceScorer:
         if own is not None and t - own[0] > 5 * self._model.longest[kind]:
             for track in self._model.tracks:
                 if kind in track[1:]:
-                    self._sums[track] = Cusum()
+                    self._sums[track] = self._cusum(track)
 
     def _row(self, index: int) -> List[float]:
         end = (index + 1) * self._window
@@ -284,107 +301,3 @@ class ReferenceScorer:
                 value = self._sums[track].evidence
             row.append(value)
         return row
-
-
-def gumbel_limit(maxima: Sequence[float], probability: float) -> float:
-    """Return what maxima exceed with the probability, by L-moments taken pair by pair."""
-    n = len(maxima)
-    mean = math.fsum(maxima) / n
-    differences = [abs(a - b) for k, a in enumerate(maxima) for b in maxima[:k]]
-    scale = math.fsum(differences) / len(differences) / 2 / math.log(2.0)
-    location = mean - 0.57721566490153286 * scale
-    return location - scale * math.log(-math.log(1.0 - probability))
-
-
-class ReferenceLimits:
-    """Limits by recordings of normal operation, each with the model that judges it.
-
-    Args:
-        model: whose limits they are.
-        recordings: events, and the model that judges them.
-        window, settle_time: [ns].
-        budget: false alarms an hour.
-    """
-
-    def __init__(self, model: ReferenceModel,
-                 recordings: Sequence[Tuple[Sequence[Event], ReferenceModel]], window: int,
-                 settle_time: int, budget: float) -> None:
-        self._model = model
-        self._recordings = recordings
-        self._window = window
-        self._budget = budget
-        self._blocks: List[Tuple[ReferenceModel, List[List[float]]]] = []
-        self.windows = 0
-        for events, judging in recordings:
-            rows = ReferenceScorer(judging, events, window).rows
-            first = events[0][0] // window
-            settled = [row for n, row in enumerate(rows)
-                       if (first + n) * window >= events[0][0] + settle_time]
-            self.windows += len(settled)
-            length = 10 * SECOND // window
-            self._blocks += [(judging, settled[begin:begin + length])
-                             for begin in range(0, len(settled) - length + 1, length)]
-        self._misleading = self._misleading_pairs()
-        self.tracks = [self._limit(n) for n in range(len(model.tracks))]
-        linked = [max(self._linker(row) for row in block) for _, block in self._blocks]
-        self.linker = max(1.0, 1.5 * max(linked),
-                          gumbel_limit(linked, budget * 10 / 3600))
-
-    def _misleading_pairs(self) -> List[Pair]:
-        pairs = []
-        for events, _ in self._recordings:
-            for chunk in self._chunks(events):
-                now = Counts([chunk], self._model.types, self._window)
-                pairs += [(i, j) for i in self._model.types for j in self._model.types
-                          if len(now.delays[i, j]) >= 50 and gain(self._model.both, now, i, j)
-                          < 0.7 * gain(self._model.both, self._model.both, i, j)]
-        return pairs
-
-    @staticmethod
-    def _chunks(events: Sequence[Event]) -> List[List[Event]]:
-        chunks: List[List[Event]] = [[]]
-        for event in events:
-            chunks[-1].append(event)
-            if event[0] - chunks[-1][0][0] >= 100 * SECOND:
-                chunks.append([])
-        return [chunk for chunk in chunks if chunk]
-
-    def _limit(self, index: int) -> float:
-        channel, kind, other = track = self._model.tracks[index]
-        of_kind = [t for t in self._model.tracks if KINDS[t[0]] == KINDS[channel]]
-        per_hour = self._budget / 4 / len(of_kind)
-        if channel == 'overdue':
-            return self._model.overdue(kind, round(self._overdue_age(kind, per_hour)))
-        maxima = [max(row[index] for row in block) for _, block in self._blocks]
-        found = max(self._least(track), 1.25 * max(maxima),
-                    gumbel_limit(maxima, min(per_hour * 10 / 3600, 0.5)))
-        if channel in DELAYS:
-            useless = (other, kind) in self._misleading or found > 100
-        else:
-            useless = channel == 'answer' and (found / self._model.answer_step(track, True)
-                                               * self._model.both.mean_gap(other) > 10 * SECOND)
-        return math.nan if useless else found
-
-    def _least(self, track: Track) -> float:
-        if track[0] == 'answer':
-            return max(4 * self._model.answer_step(track, True), 5.0)
-        return 13.0 if track[0] in DELAYS else 3.0
-
-    def _overdue_age(self, kind: str, per_hour: float) -> float:
-        gaps = list(self._model.both.gaps[kind])
-        duration = self._model.both.duration
-        for events, _ in self._recordings:
-            own = [t for t, other in events if other == kind]
-            gaps += [b - a for a, b in zip(own, own[1:])]
-            duration += events[-1][0] - events[0][0]
-        longest = sorted(gaps)[-20:]
-        excess = sum(gap - longest[0] for gap in longest) / len(longest)
-        rarer = len(longest) / (duration / SECOND) / (per_hour / 3600)
-        return max(longest[0] + excess * max(math.log(rarer), 0.0), 1.1 * longest[-1])
-
-    def _linker(self, row: Sequence[float]) -> float:
-        shares: Dict[str, float] = {}
-        for (channel, kind, _), value, limit in zip(self._model.tracks, row, self.tracks):
-            if channel in ('slow delay', 'answer') and not math.isnan(limit):
-                shares[kind] = max(shares.get(kind, 0.0), min(value / limit, 1.0))
-        return sum(shares.values())

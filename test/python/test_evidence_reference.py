@@ -7,8 +7,8 @@ from typing import Dict, List, Tuple
 
 import numpy as np
 import pytest
-from reference_evidence import (KINDS, Counts, Event, ReferenceLimits, ReferenceModel,
-                                ReferenceScorer)
+from reference_evidence import (KINDS, Counts, Event, ReferenceModel, ReferenceScorer)
+from reference_evidence_limits import ReferenceLimits
 
 from self_awareness import (EncodingRules, EventType, EvidenceModel, LimitFinder, TrainedModel,
                             Training)
