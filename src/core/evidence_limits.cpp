@@ -256,7 +256,8 @@ EvidenceLimits LimitFinder::limits() const {
   const double largest = *std::max_element(linker_maxima_.begin(), linker_maxima_.end());
   limits.linker =
       std::max({1.0, kLinkerMargin * largest,
-                gumbelLimit(linker_maxima_, parameters_.false_alarms_per_hour * kBlock / kHour)});
+                gumbelLimit(linker_maxima_,
+                            std::min(parameters_.false_alarms_per_hour * kBlock / kHour, 0.5))});
   return limits;
 }
 

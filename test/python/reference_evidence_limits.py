@@ -1,4 +1,4 @@
-"""The limits of the evidence, literally and slowly: METHOD.md, section 4, and evidence_limits.h."""
+"""The limits of the evidence, literally and slowly: METHOD.md, section 4, evidence_limits.h."""
 from __future__ import annotations
 
 import math
@@ -43,7 +43,7 @@ class ReferenceLimits:
         linked = [max(self._linker(row) for row in block)
                   for block in self._in_blocks(self.tracks)]
         self.linker = max(1.0, 1.5 * max(linked),
-                          gumbel_limit(linked, budget * 10 / 3600))
+                          gumbel_limit(linked, min(budget * 10 / 3600, 0.5)))
 
     def _settled(self, events: Sequence[Event], judging: ReferenceModel,
                  limits: Sequence[float]) -> List[List[float]]:

@@ -89,7 +89,8 @@ class MonitorCase(unittest.TestCase):
         return self.path(name)
 
     def monitor(self, model: str, name: str = 'self_awareness', **parameters) -> Process:
-        """A monitor in a process of its own, by the paper's score; settles within half a second."""
+        """A monitor in a process of its own, by the paper's score; settles within half a second.
+        """
         settings = dict({'detector': 'paper', 'unknown': 'ignore', 'settle_time': 0.5,
                          'poll_interval': 0.1}, **parameters)
         return Process('rosrun', 'self_awareness', 'self_awareness_node', '__name:=' + name,

@@ -25,8 +25,8 @@ double overdueAge(const std::vector<std::int64_t>& longest_gaps, std::int64_t du
                   double rate);
 
 /// Finds the limits of a model's evidence on normal operation that was not trained on, so that
-/// together they are exceeded less often than a number of times an hour. First the limits of the
-/// tracks, then, in a second pass over the same recordings, that of the linker.
+/// those of the tracks together are exceeded less often than a number of times an hour; and in a
+/// second pass over the same recordings that of the linker, for the same number of its own.
 class LimitFinder {
  public:
   struct Parameters {

@@ -85,8 +85,8 @@ def page(plan: Plan, results: Results, command: str) -> str:
         '## Targets', '', *tables.targets(rows), '']
     if results.trade_offs:
         lines += ['## False alarms an hour at equal latency', '',
-                  'For cc1, with thresholds from lax to strict, in all normal operation; – where none is '
-                  'so fast.', '',
+                  'For cc1, with thresholds from lax to strict, in all normal operation; – where none '
+                  'is so fast.', '',
                   *tables.trade_offs(_by_system(results.trade_offs)), '']
     lines += ['## Every fault', '', *tables.faults(rows), '']
     few = [row for row in results.rows if row.training_share < 1.0]
