@@ -102,13 +102,7 @@ def test_evidence_finds_that_the_laser_is_gone(wheeled_robot: Path, tmp_path: Pa
     assert alarms[-1].start < 70.0 and alarms[-1].end > 120.0
 
 
-_TOO_SLOW = ('event types of minutes between two events get limits that another session exceeds: '
-             'overdue and rate')
-
-
-@pytest.mark.parametrize('session', [
-    pytest.param('101', marks=pytest.mark.xfail(reason=_TOO_SLOW)), '102',
-    pytest.param('103', marks=pytest.mark.xfail(reason=_TOO_SLOW))])
+@pytest.mark.parametrize('session', ['101', '102', '103'])
 def test_evidence_leaves_a_sparse_robot_alone(shared: Path, tmp_path: Path, session: str,
                                               capsys) -> None:
     """Learned from two sessions, the third is normal, too."""

@@ -77,6 +77,21 @@ class LiveRulesTest(MonitorCase):
                 self.assertIn('never seen in training', suspect.reason)
 
     @again_if_clock_was_set
+    def test_unknown_events_are_a_suspicion_or_an_alarm(self) -> None:
+        for policy, level in (('ignore', SelfAwareness.OK), ('warn', SelfAwareness.WARN),
+                              ('error', SelfAwareness.ERROR)):
+            with self.subTest(policy), Talker('/a'), \
+                    self.monitor(self.model(), unknown=policy, subscribe='all'), \
+                    MonitorListener() as listener:
+                listener.await_settled()
+                with Talker('/joystick'):
+                    status = await_condition('the joystick is judged', lambda: next(
+                        (s for s in listener.statuses if s.unknown_events and not s.settling),
+                        None), 20)
+                self.assertEqual(status.level, level, status.message)
+                self.assertEqual('unknown events' in status.evidence, policy != 'ignore')
+
+    @again_if_clock_was_set
     def test_the_type_field_is_read_from_live_messages(self) -> None:
         types = {'visualization_msgs/Marker': 'action'}
         with Talker('/a'), Talker('/marker', Marker), \
