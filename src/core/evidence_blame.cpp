@@ -109,7 +109,8 @@ std::vector<EvidenceBlame::Candidate> EvidenceBlame::unusual(const std::vector<d
   std::map<std::string, Involved> components;
   for (std::size_t track = 0; track < shares.size(); ++track) {
     const auto& [channel, to, from] = model_->tracks()[track];
-    if (shares[track] < kLeastShare || channel == Channel::kSlowDelay) {
+    if (shares[track] < kLeastShare || channel == Channel::kSlowDelay ||
+        (channel == Channel::kOverdue && !isRare(to, scorer))) {
       continue;
     }
     const double share = std::min(shares[track], kMostShare);
@@ -139,6 +140,12 @@ std::vector<EvidenceBlame::Candidate> EvidenceBlame::unusual(const std::vector<d
   return roots;
 }
 
+// The age of an event type that is usual has some share of its limit, too.
+bool EvidenceBlame::isRare(EventId id, const EvidenceScorer& scorer) const {
+  const std::int64_t end = scorer.windowEnd();
+  return model_->logSurvival(id, end - scorer.lastSeen(id).value_or(end)) < kRareSilence;
+}
+
 Suspect EvidenceBlame::silence(EventId id, std::int64_t age) const {
   Suspect suspect;
   suspect.id = id;
@@ -166,7 +173,9 @@ Suspect EvidenceBlame::unusualTrack(std::size_t track, const EvidenceScorer& sco
     case Channel::kDelay:
     case Channel::kSlowDelay:
       suspect.reason = Suspect::Reason::kDelay;
-      suspect.other = toString(model_->vocabulary().at(from));
+      if (from != to) {
+        suspect.other = toString(model_->vocabulary().at(from));
+      }
       suspect.delay = toSeconds(scorer.lastDelay(track));
       suspect.usual_shortest = model_->usualDelay(from, to, 0.05);
       suspect.usual_longest = model_->usualDelay(from, to, 0.95);

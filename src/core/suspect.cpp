@@ -29,9 +29,9 @@ std::string describe(const Suspect& suspect) {
                     suspect.usual_fewest, suspect.usual_most);
       return text;
     case Suspect::Reason::kDelay:
-      std::snprintf(text, sizeof text, ": of late %.3f s, usually %.3f to %.3f s", suspect.delay,
+      std::snprintf(text, sizeof text, " %.3f s, usually %.3f to %.3f s", suspect.delay,
                     suspect.usual_shortest, suspect.usual_longest);
-      return "delay after " + suspect.other + text;
+      return (suspect.other.empty() ? "came after" : "delay after " + suspect.other + ":") + text;
     case Suspect::Reason::kAnswer:
       return "left out too often after " + suspect.other;
   }

@@ -39,6 +39,7 @@ class EvidenceBlame {
                                 std::int64_t end) const;
   std::vector<Candidate> unusual(const std::vector<double>& shares,
                                  const EvidenceScorer& scorer) const;
+  bool isRare(EventId id, const EvidenceScorer& scorer) const;
   Suspect silence(EventId id, std::int64_t age) const;
   Suspect unusualTrack(std::size_t track, const EvidenceScorer& scorer) const;
   const std::string& component(EventId id) const;

@@ -44,7 +44,7 @@ struct Suspect {
   double usual_most = 0;      ///< kRate: the mean of training and two spreads
   double score = 0;           ///< kUnusual: their mean score
   double usual_score = 0;     ///< kUnusual: the score to expect by training
-  std::string other;          ///< kDelay, kAnswer: the other event type
+  std::string other;          ///< kDelay, kAnswer: the other event type; empty: it follows itself
   double delay = 0;           ///< kDelay: the last one [s]
 };
 
