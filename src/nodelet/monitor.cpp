@@ -11,6 +11,7 @@
 
 #include "self_awareness/core/evidence_judge.h"
 #include "self_awareness/core/paper_judge.h"
+#include "verdict_message.h"
 
 namespace self_awareness {
 namespace {
@@ -225,7 +226,7 @@ void Monitor::onVerdict(const core::Verdict& verdict) {
   const std::int64_t end = verdict.window->start + session_->trained.window;
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   if (!verdict.suspects.empty() || !(verdict.alarm || verdict.suspicion)) {
-    suspects_ = toMessages(verdict.suspects);
+    suspects_ = toMessages(verdict.suspects, session_->vocabulary);
   }
   if (verdict.changed) {
     level_since_ = end;
@@ -235,7 +236,7 @@ void Monitor::onVerdict(const core::Verdict& verdict) {
   if (!verdict.evidence.empty() || last_.level == self_awareness::SelfAwareness::OK) {
     last_.evidence = verdict.evidence;
   }
-  last_.message = wording(verdict);
+  last_.message = wording(verdict, last_.evidence, suspects_);
   last_.window_start = toRosTime(verdict.window->start);
   last_.window.fromNSec(session_->trained.window);
   last_.score = verdict.score.value_or(kNone);
@@ -257,50 +258,6 @@ void Monitor::onVerdict(const core::Verdict& verdict) {
     alarm_publisher_.publish(last_);
     publishDiagnostics();
   }
-}
-
-std::uint8_t Monitor::levelOf(const core::Verdict& verdict) {
-  if (verdict.alarm) {
-    return self_awareness::SelfAwareness::ERROR;
-  }
-  return verdict.suspicion ? self_awareness::SelfAwareness::WARN
-                           : self_awareness::SelfAwareness::OK;
-}
-
-std::string Monitor::wording(const core::Verdict& verdict) const {
-  if (!verdict.threshold) {
-    return "not calibrated: find a threshold with rosrun self_awareness calibrate";
-  }
-  if (verdict.alarm || verdict.suspicion) {
-    std::string message = verdict.alarm ? "abnormal communication" : "suspicion of a fault";
-    message += " (" + last_.evidence + ")";
-    if (!suspects_.empty()) {
-      message += ", " + ros1::describe(suspects_.front());
-    }
-    if (suspects_.size() > 1) {
-      message += " (and " + std::to_string(suspects_.size() - 1) + " more)";
-    }
-    return message;
-  }
-  return verdict.settling ? "settling" : "normal communication";
-}
-
-std::vector<self_awareness::Suspect> Monitor::toMessages(
-    const std::vector<core::Suspect>& suspects) const {
-  std::vector<self_awareness::Suspect> messages;
-  for (const core::Suspect& suspect : suspects) {
-    const core::EventType& type = session_->vocabulary.at(suspect.id);
-    self_awareness::Suspect message;
-    message.source = type.source;
-    message.scope = type.scope;
-    message.type = type.type;
-    message.reason = core::describe(suspect);
-    message.silence = suspect.silence;
-    message.usual_shortest = suspect.usual_shortest;
-    message.usual_longest = suspect.usual_longest;
-    messages.push_back(message);
-  }
-  return messages;
 }
 
 void Monitor::standDown(const std::string& message) {

@@ -90,10 +90,6 @@ class Monitor {
   void standDown(const std::string& message);
   void publishDiagnostics();
   void refreshGraph(const std::shared_ptr<const ros1::Graph>& graph);
-  std::vector<self_awareness::Suspect> toMessages(
-      const std::vector<core::Suspect>& suspects) const;
-  static std::uint8_t levelOf(const core::Verdict& verdict);
-  std::string wording(const core::Verdict& verdict) const;
 
   ros::CallbackQueue queue_;
   ros::NodeHandle node_handle_;

@@ -43,8 +43,10 @@ void forEachEvent(const Stamps& stamps, const Ids& ids, Handler handler) {
   }
 }
 
-/// Encoding, bags, model files and training (files_bindings.cpp).
+/// Encoding, bags and model files (files_bindings.cpp).
 void bindFiles(py::module& module);
+/// Training (training_bindings.cpp).
+void bindTraining(py::module& module);
 /// Evidence and its limits (evidence_bindings.cpp).
 void bindEvidence(py::module& module);
 /// Model, scores, verdicts and ROC (detector_bindings.cpp).
