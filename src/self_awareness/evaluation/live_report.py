@@ -29,25 +29,30 @@ _INTRODUCTION = """\
 
 Written by `{command}` on {date}; do not edit.
 
-Faults induced in the 15 processes of `launch/follow_me.launch` under a real master, on a machine of
-{cores} cores, while the monitor of `launch/monitor.launch` listened with the evidence detector.
-The model: training on {training} s, limits by {calibration:g} s of other normal operation, with the
-graph of the running robot. That is less than in simulated time (2 x 100 s and 600 s), because here
-time passes as slowly as it does.
+Faults induced in the 15 processes of `launch/follow_me.launch` under a real master, on a machine
+of {cores} cores, while the monitor of `launch/monitor.launch` listened with the evidence
+detector. The model: training on {training} s, limits by {calibration:g} s of other normal
+operation, with the graph of the running robot. That is less than in simulated time (2 x 100 s and
+600 s), because here time passes as slowly as it does.
 
-Each of the {rounds} rounds: {normal:g} s of normal operation; the faults of the table in its order,
-in the same running robot, each as `induce` does it, after {quiet:g} s without an alarm; nodes that were
-killed are started again. `silence` ends the round; the robot is started anew, the monitor runs on.
+Each of the {rounds} rounds: {normal:g} s of normal operation; the faults of the table in its
+order, in the same running robot, each as `induce` does it, after {quiet:g} s without an alarm;
+nodes that were killed are started again. `silence` ends the round; the robot is started anew, the
+monitor runs on.
 
 The latency of `{live}` is from the onset to the end of the window whose status was ERROR, by ROS
-time; that of WARN (a suspicion) likewise, an ERROR being one. Median (smallest to largest); a fault
-whose alarm was not raised while it lasted counts as for ever (–). The onset is when the node was
-killed, the parameter was set or, for `extra`, its first message came. A sample is void if an alarm
-stood at the onset, if the monitor was settling, or if the machine's clock was set meanwhile.
+time; that of WARN (a suspicion) likewise, an ERROR being one. Median (smallest to largest); a
+fault whose alarm was not raised while it lasted counts as for ever (–). The onset is when the
+node was killed, the parameter was set or, for `extra`, its first message came. A sample is void
+if an alarm stood at the onset, if the monitor was settling, or if the machine's clock was set
+meanwhile.
 
 The other systems were not running: they judge the recording of the same session, having learned
 from the same training, with thresholds that a share of 0.001 of the calibration's windows falls
 below. They blame and alarm as in [simulated.md](simulated.md).
+
+The machine did other work besides: its load average at the beginning of normal operation was
+{low:.1f} to {high:.1f}, the robot's own included.
 
 All samples: [live.csv](live.csv).
 
@@ -92,11 +97,12 @@ def page(plan: Plan, samples: Sequence[Sample], command: str) -> str:
     """Return the page of tables."""
     systems = [name for name in SYSTEMS if any(sample.system == name for sample in samples)]
     kinds = [kind for kind in FAULTS_S if any(sample.fault == kind for sample in samples)]
+    loads = [sample.load for sample in samples if sample.fault == NORMAL]
     lines = [_INTRODUCTION.format(
         command=command, date=time.strftime('%Y-%m-%d', time.gmtime()), live=LIVE,
         cores=len(os.sched_getaffinity(0)), rounds=plan.rounds, normal=plan.normal_s,
         training=' + '.join(f'{length:g}' for length in plan.training),
-        calibration=plan.calibration_s, quiet=QUIET_S)]
+        calibration=plan.calibration_s, quiet=QUIET_S, low=min(loads), high=max(loads))]
     lines += ['## Alarms', '', 'Raised, of those that count; median latency (smallest to '
               'largest).', '']
     lines += table(['fault', 'lasts', f'{LIVE}: WARN', *systems],

@@ -47,6 +47,7 @@ class Stretch:
         culprits: sources to blame.
         clock_set_s: by how much the machine's clock was set meanwhile [s].
         note: what went otherwise than planned.
+        load: the machine's load average of the last minute at the onset.
     """
 
     round: int
@@ -56,6 +57,7 @@ class Stretch:
     culprits: Tuple[str, ...] = ()
     clock_set_s: float = 0.0
     note: str = ''
+    load: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -77,7 +79,7 @@ class Sample:
         suspects: at that alarm, the most likely first.
         evidence: at that alarm, in the monitor's words.
         false_alarms: of normal operation: alarms raised.
-        note: of the stretch.
+        note, load: of the stretch.
     """
 
     system: str
@@ -95,6 +97,7 @@ class Sample:
     evidence: str = ''
     false_alarms: Optional[int] = None
     note: str = ''
+    load: float = 0.0
 
 
 def measure(system: str, stretch: Stretch, statuses: Sequence[Status]) -> Sample:
@@ -167,12 +170,14 @@ def _void(stretch: Stretch, stood: bool) -> str:
 def _normal(system: str, stretch: Stretch, judged_share: float, alarms: int) -> Sample:
     return Sample(system, stretch.round, NORMAL, stretch.onset,
                   (stretch.end - stretch.onset) * judged_share, false_alarms=alarms,
-                  note=stretch.note)
+                  note=stretch.note,
+                  load=stretch.load)
 
 
 def _sample(system: str, stretch: Stretch, void: str = '') -> Sample:
     return Sample(system, stretch.round, stretch.kind, stretch.onset,
-                  stretch.end - stretch.onset, void, note=stretch.note)
+                  stretch.end - stretch.onset, void, note=stretch.note,
+                  load=stretch.load)
 
 
 def _blamed(sample: Sample, stretch: Stretch, raised_at: float,

@@ -184,23 +184,27 @@ class _Session:
     def _stretch(self, number: int, kind: str, culprits: Tuple[str, ...],
                  note: str, onset: float) -> Iterator[None]:
         """Note what happens meanwhile, and whether the clock was set."""
-        ahead = time.time() - time.monotonic()
+        ahead, load = time.time() - time.monotonic(), os.getloadavg()[0]
         yield
         end = time.time()
-        stretch = Stretch(number, kind, onset, end, culprits, end - time.monotonic() - ahead, note)
+        stretch = Stretch(number, kind, onset, end, culprits, end - time.monotonic() - ahead, note,
+                          load)
         self._stretches.append(stretch)
         self._told(stretch, self._monitor.statuses)
 
     def _await_quiet(self, limit_s: float) -> str:
         """Wait until there has been no alarm for a while; return what had to be done for it."""
-        quiet = lambda: self._monitor.quiet_for() >= QUIET_S  # noqa: E731
         try:
-            await_condition('no alarm', quiet, limit_s)
+            await_condition('no alarm', self._is_quiet, limit_s)
             return ''
         except LiveError:
             self._monitor.reset()
-            await_condition('no alarm after a ~reset of the monitor', quiet, _STARTED_WITHIN_S)
+            await_condition('no alarm after a ~reset of the monitor', self._is_quiet,
+                            _STARTED_WITHIN_S)
             return f'~reset: the alarm still stood after {limit_s:g} s'
+
+    def _is_quiet(self) -> bool:
+        return self._monitor.quiet_for() >= QUIET_S
 
     def _start_robot(self, seed: int) -> None:
         if self._robot_process is not None:
