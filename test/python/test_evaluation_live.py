@@ -115,7 +115,7 @@ def test_page_csv_and_plot(tmp_path: Path) -> None:
 
 def test_processes_are_ended_and_failures_are_told(tmp_path: Path) -> None:
     with Processes(tmp_path) as processes:
-        asleep = processes.start('asleep', 'sh', '-c', 'sleep 1000 & wait')
+        asleep = processes.start('asleep', 'sleep', '1000')
         processes.run('right', 10.0, 'echo', 'well')
         with pytest.raises(LiveError, match='exit code 3.*wrong.log'):
             processes.run('wrong', 10.0, 'sh', '-c', 'exit 3')
