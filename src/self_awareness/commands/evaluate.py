@@ -52,8 +52,9 @@ def _simulated(arguments: argparse.Namespace, command: str) -> None:
 def _live(arguments: argparse.Namespace, command: str) -> None:
     # ROS is imported where it is needed: the other part does without.
     from self_awareness.evaluation import live, live_session
-    # A termination must clean up like Ctrl-C.
-    signal.signal(signal.SIGTERM, signal.default_int_handler)
+    # A termination must clean up like Ctrl-C, which shells let be ignored in the background.
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.default_int_handler)
     plan = live_session.Plan(arguments.rounds, arguments.training, arguments.calibration,
                              arguments.normal)
     arguments.output.mkdir(parents=True, exist_ok=True)
@@ -74,8 +75,8 @@ def _folder(given: Optional[Path]) -> Iterator[Path]:
             yield Path(temporary)
         return
     given.mkdir(parents=True, exist_ok=True)
-    if any(given.iterdir()):
-        raise ValueError(f'--recordings {given}: is not empty; name a new folder')
+    if any(given.glob('session.*')):
+        raise ValueError(f'--recordings {given}: holds a session already; name another folder')
     yield given.resolve()
 
 
@@ -109,11 +110,12 @@ def _add_live(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--calibration', type=cli.checked(_calibration_s), default=240.0,
                         metavar='S', help='length of the recording that the limits are found by '
                         '[s] (default: 240)')
-    parser.add_argument('--normal', type=cli.checked(_calibration_s), default=60.0, metavar='S',
-                        help='normal operation in each round [s] (default: 60)')
+    parser.add_argument('--normal', type=cli.checked(_calibration_s), default=20.0, metavar='S',
+                        help='normal operation in each round [s] (default: 20)')
     parser.add_argument('--recordings', type=Path, metavar='DIR',
-                        help='new folder to keep recordings, model and logs in (default: they '
-                        'are removed at the end)')
+                        help='folder to keep recordings, model and logs in; recordings of normal '
+                        'operation that it holds already are used again (default: all are removed '
+                        'at the end)')
 
 
 def _add_simulated(parser: argparse.ArgumentParser) -> None:

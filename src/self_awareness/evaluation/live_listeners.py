@@ -46,9 +46,8 @@ class MonitorListener:
                 raise LiveError(f'the monitor has said nothing for {_NO_STATUS_S:g} s')
             return now - self._quiet_since if self._statuses else 0.0
 
-    @staticmethod
-    def reset() -> None:
-        """Let the monitor start afresh.
+    def reset(self) -> None:
+        """Let the monitor start afresh; what it said before does not count as quiet.
 
         Raises:
             LiveError: it does not answer.
@@ -58,6 +57,8 @@ class MonitorListener:
             rospy.ServiceProxy(f'{_MONITOR}/reset', Trigger)()
         except (rospy.ROSException, rospy.ServiceException) as error:
             raise LiveError(f'{_MONITOR}/reset: {error}') from error
+        with self._lock:
+            self._quiet_since = time.monotonic()
 
     def _on_status(self, message: SelfAwareness) -> None:
         status = Status(message.header.stamp.to_sec(), time.time(), message.level,

@@ -36,9 +36,10 @@ operation, with the graph of the running robot. That is less than in simulated t
 600 s), because here time passes as slowly as it does.
 
 Each of the {rounds} rounds: {normal:g} s of normal operation; the faults of the table in its
-order, in the same running robot, each as `induce` does it, after {quiet:g} s without an alarm;
-nodes that were killed are started again. `silence` ends the round; the robot is started anew, the
-monitor runs on.
+order, in the same running robot, each as `induce` does it. Nodes that were killed are started
+again; `silence` ends the round, and the robot is started anew. The monitor runs on. Before each
+fault its ~reset is called, and it has settled and not alarmed for {quiet:g} s: without, the alarm
+of one fault may stand at the next one's onset. How long it stands is not measured here.
 
 The latency of `{live}` is from the onset to the end of the window whose status was ERROR, by ROS
 time; that of WARN (a suspicion) likewise, an ERROR being one. Median (smallest to largest); a
