@@ -192,7 +192,7 @@ class _Session:
         self._told(stretch, self._monitor.statuses)
 
     def _reset(self) -> str:
-        """Let the monitor start afresh and wait until it is quiet; return how often it alarmed.
+        """Let the monitor start afresh and wait until it is quiet; return a note if it hardly is.
 
         The alarm of one fault must not stand at the onset of the next one.
         """
