@@ -2,14 +2,17 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import os
 import shlex
+import signal
 import sys
+import tempfile
 from pathlib import Path
-from typing import Optional, Sequence
+from typing import Iterator, Optional, Sequence
 
 from self_awareness import follow_me
-from self_awareness.commands import cli
+from self_awareness.commands import cli, induce
 from self_awareness.evaluation import (catalogue, experiment, real_recordings,
                                        real_recordings_report, report, simulated_records)
 from self_awareness.evaluation.experiment import Plan
@@ -54,6 +57,37 @@ def _recordings(arguments: argparse.Namespace, command: str) -> None:
         print(f'written: {path}')
 
 
+def _live(arguments: argparse.Namespace, command: str) -> None:
+    # ROS is imported where it is needed: the other part does without.
+    from self_awareness.evaluation import live, live_session
+    # A termination must clean up like Ctrl-C, which shells let be ignored in the background.
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.default_int_handler)
+    plan = live_session.Plan(arguments.rounds, arguments.training, arguments.calibration,
+                             arguments.normal)
+    arguments.output.mkdir(parents=True, exist_ok=True)
+    with _folder(arguments.recordings) as folder:
+        try:
+            paths = live.evaluate(plan, folder, arguments.output, command)
+        except induce.InduceError as error:
+            raise ValueError(str(error)) from error
+    for path in paths:
+        print(f'written: {path}')
+
+
+@contextlib.contextmanager
+def _folder(given: Optional[Path]) -> Iterator[Path]:
+    """Return the folder for recordings and logs; one that nobody named is removed at the end."""
+    if given is None:
+        with tempfile.TemporaryDirectory() as temporary:
+            yield Path(temporary)
+        return
+    given.mkdir(parents=True, exist_ok=True)
+    if any(given.glob('session.*')):
+        raise ValueError(f'--recordings {given}: holds a session already; name another folder')
+    yield given.resolve()
+
+
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog='evaluate', description=__doc__.split(': ', 1)[1], epilog=_EPILOG,
@@ -66,7 +100,13 @@ def _parser() -> argparse.ArgumentParser:
     _add_recordings(parts.add_parser(
         'recordings', help='recordings of real robots that others made',
         description='The outages in recordings of real robots, and false alarms on them.'))
+    _add_live(parts.add_parser(
+        'live', help='the follow-me robot as 15 processes, with the monitor beside them',
+        description='Starts master and robot, records, trains and calibrates, starts the monitor, '
+        'and induces fault after fault in rounds; a round takes about 5 minutes. Other systems '
+        'judge the recording of it afterwards.'))
     return parser
+
 
 
 def _add_output(parser: argparse.ArgumentParser) -> None:
@@ -80,6 +120,25 @@ def _add_recordings(parser: argparse.ArgumentParser) -> None:
     _add_output(parser)
     parser.add_argument('--data', type=Path, required=True, metavar='DIR',
                         help='the folder of the recordings')
+
+
+def _add_live(parser: argparse.ArgumentParser) -> None:
+    parser.set_defaults(work=_live)
+    _add_output(parser)
+    parser.add_argument('--rounds', type=cli.checked(_positive), default=5, metavar='N',
+                        help='how often each fault is induced (default: 5)')
+    parser.add_argument('--training', type=cli.checked(_calibration_s), nargs='+',
+                        default=(60.0, 60.0), metavar='S',
+                        help='lengths of the recordings to learn from [s] (default: 60 60)')
+    parser.add_argument('--calibration', type=cli.checked(_calibration_s), default=240.0,
+                        metavar='S', help='length of the recording that the limits are found by '
+                        '[s] (default: 240)')
+    parser.add_argument('--normal', type=cli.checked(_calibration_s), default=20.0, metavar='S',
+                        help='normal operation in each round [s] (default: 20)')
+    parser.add_argument('--recordings', type=Path, metavar='DIR',
+                        help='folder to keep recordings, model and logs in; recordings of normal '
+                        'operation that it holds already are used again (default: all are removed '
+                        'at the end)')
 
 
 def _add_simulated(parser: argparse.ArgumentParser) -> None:
