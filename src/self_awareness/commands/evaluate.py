@@ -108,7 +108,6 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-
 def _add_output(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('-o', '--output', type=Path, default=Path('docs/evaluation'),
                         metavar='DIR', help='where the page, the CSV file and the plots go '
