@@ -9,7 +9,7 @@ import time
 from pathlib import Path
 from typing import Callable, List
 
-_END_WITHIN_S = 15.0
+_END_WITHIN_S = 30.0  # roslaunch takes half of it before it kills its nodes, which only it can
 _POLL_S = 0.05
 
 

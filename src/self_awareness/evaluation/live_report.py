@@ -32,8 +32,9 @@ Written by `{command}` on {date}; do not edit.
 Faults induced in the 15 processes of `launch/follow_me.launch` under a real master, on a machine
 of {cores} cores, while the monitor of `launch/monitor.launch` listened with the evidence
 detector. The model: training on {training} s, limits by {calibration:g} s of other normal
-operation, with the graph of the running robot. That is less than in simulated time (2 x 100 s and
-600 s), because here time passes as slowly as it does.
+operation, with the graph of the running robot; where `--recordings` held both already, they are
+of an earlier start of the robot. That is less than in simulated time (2 x 100 s and 600 s),
+because here time passes as slowly as it does.
 
 Each of the {rounds} rounds: {normal:g} s of normal operation; the faults of the table in its
 order, in the same running robot, each as `induce` does it. Nodes that were killed are started
@@ -47,6 +48,9 @@ fault whose alarm was not raised while it lasted counts as for ever (–). The o
 node was killed, the parameter was set or, for `extra`, its first message came. A sample is void
 if an alarm stood at the onset, if the monitor was settling, or if the machine's clock was set
 meanwhile.
+
+By default (`~unknown`: `warn`) events never seen in training, those of `unknown` and `extra`, are
+a suspicion and no alarm; a new publisher, as that of `extra`, lets the monitor settle for 5 s.
 
 The other systems were not running: they judge the recording of the same session, having learned
 from the same training, with thresholds that a share of 0.001 of the calibration's windows falls
