@@ -8,6 +8,7 @@ from typing import List
 
 import pytest
 
+from self_awareness.commands import evaluate
 from self_awareness.evaluation import live_report
 from self_awareness.evaluation.live_processes import LiveError, Processes, await_condition
 from self_awareness.evaluation.live_samples import (ERROR, WARN, Sample, Status, Stretch, measure,
@@ -104,7 +105,7 @@ def test_page_csv_and_plot(tmp_path: Path) -> None:
     assert len(rows) == 6 and rows[2]['latency_s'] == '' and rows[0]['top1'] == 'True'
     text = paths[1].read_text(encoding='utf-8')
     assert 'the command' in text
-    assert ('| cc1 | 8 s | 3 of 3, 0.20 s (0.20 to 0.20) | 2 of 3, 0.40 s (0.30 to 0.40) '
+    assert ('| cc1 | 6 s | 3 of 3, 0.20 s (0.20 to 0.20) | 2 of 3, 0.40 s (0.30 to 0.40) '
             '| 0 of 1 |') in text
     assert '| cc1 | 50 % / 100 % | – | overdue |' in text
     assert 'evidence: 1 in 6.0 min' in text
@@ -123,3 +124,11 @@ def test_processes_are_ended_and_failures_are_told(tmp_path: Path) -> None:
     assert (tmp_path / 'right.log').read_text() == 'well\n'
     with pytest.raises(LiveError, match='not within 0 s: a wonder'):
         await_condition('a wonder', lambda: False, 0.0)
+
+
+def test_recording_of_a_session_is_not_overwritten(tmp_path: Path,
+                                                   capsys: pytest.CaptureFixture) -> None:
+    (tmp_path / 'session.bag').write_text('precious')
+    assert evaluate.main(['live', '-o', str(tmp_path), '--recordings', str(tmp_path)]) == 1
+    assert 'name another folder' in capsys.readouterr().err
+    assert (tmp_path / 'session.bag').read_text() == 'precious'
