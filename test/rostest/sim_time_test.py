@@ -115,18 +115,23 @@ class SimTimeTest(unittest.TestCase):
         self.check_heartbeats(listener)
 
     def check_heartbeats(self, listener: MonitorListener) -> None:
-        """None was left out since the first, and all are levels of a healthy monitor."""
+        """None was left out since the first, and all are levels of a healthy monitor.
+
+        Single windows of a replay may be a suspicion.
+        """
         beats = listener.heartbeats
         gaps = [later - earlier for earlier, later in zip(beats, beats[1:])]
         self.assertLess(max(gaps), LONGEST_HEARTBEAT_S, gaps)
-        for task in ('communication', 'monitor'):
+        for task, healthy in (('communication', DiagnosticStatus.WARN),
+                              ('monitor', DiagnosticStatus.OK)):
             self.assertEqual([(status.level, status.message)
                               for status in listener.diagnostics(task)
-                              if status.level != DiagnosticStatus.OK], [], task)
+                              if status.level > healthy], [], task)
 
     def check_no_alarm(self, listener: MonitorListener) -> None:
-        self.assertEqual([alarm.message for alarm in listener.alarms], [])
-        self.assertEqual({status.level for status in listener.statuses}, {SelfAwareness.OK})
+        self.assertEqual([alarm.message for alarm in listener.alarms
+                          if alarm.level == SelfAwareness.ERROR], [])
+        self.assertNotIn(SelfAwareness.ERROR, {status.level for status in listener.statuses})
 
     def check_normal(self, statuses: List[SelfAwareness]) -> None:
         """These windows look like normal operation."""
@@ -196,7 +201,7 @@ class SimTimeTest(unittest.TestCase):
     def test_clock_is_set_and_stops(self) -> None:
         with MonitorListener() as listener, self.start_monitor() as monitor, \
                 SimulatedRobot() as robot:
-            self.assertEqual(listener.await_settled().level, SelfAwareness.OK)
+            listener.await_settled()
             for jump_s in (-500.0, 300.0):
                 before = listener.statuses[-1]
                 seen = len(listener.statuses)
@@ -228,7 +233,7 @@ class SimTimeTest(unittest.TestCase):
         with MonitorListener() as listener, self.start_monitor():
             self.await_listening(listener)
             with Process('rosbag', 'play', '--clock', bag):
-                self.assertEqual(listener.await_settled().level, SelfAwareness.OK)
+                listener.await_settled()
                 alarm = listener.await_alarm(30)
                 self.assertGreater(alarm.header.stamp.to_sec(), fault)
                 self.assertEqual((alarm.suspects[0].source, alarm.suspects[0].scope),
