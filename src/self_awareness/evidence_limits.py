@@ -36,8 +36,8 @@ def held_out(trained: TrainedModel, recordings: Iterable[RecordingEvents], settl
         ValueError: the recordings are too short.
     """
     recordings = list(recordings)
-    calibration = _find(trained, settle_time, budget,
-                        lambda: ((r.stamps, r.ids, None) for r in recordings))
+    calibration = find(trained, settle_time, budget,
+                       lambda: ((r.stamps, r.ids, None) for r in recordings))
     calibration.method = 'held-out'
     calibration.recordings = [recording.recording for recording in recordings]
     return calibration
@@ -67,7 +67,7 @@ def cross_fit(trained: TrainedModel, read: Callable[[], Iterable[RecordingEvents
             else:
                 yield recording.stamps, recording.ids, index % 2
 
-    calibration = _find(trained, settle_time, budget, parts)
+    calibration = find(trained, settle_time, budget, parts)
     calibration.method = 'cross-fit'
     calibration.recordings = trained.recordings
     return calibration
@@ -79,8 +79,19 @@ def _middle(recording: RecordingEvents) -> int:
     return start + (end - start) // 2
 
 
-def _find(trained: TrainedModel, settle_time: int, budget: float,
-          parts: Callable[[], Iterable[Part]]) -> EvidenceCalibration:
+def find(trained: TrainedModel, settle_time: int, budget: float,
+         parts: Callable[[], Iterable[Part]]) -> EvidenceCalibration:
+    """Return limits by parts of recordings; how they were found is not said yet.
+
+    Args:
+        trained: the model.
+        settle_time: left out at the start of every part [ns].
+        budget: false alarms an hour that the limits allow.
+        parts: reads them; called twice.
+
+    Raises:
+        ValueError: the parts are too short.
+    """
     finder = LimitFinder(trained, settle_time, budget)
     for stamps, ids, half in parts():
         finder.add_events(stamps, ids, half)

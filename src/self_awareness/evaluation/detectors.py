@@ -5,10 +5,9 @@ from typing import Dict, List, Optional, Sequence, Set
 
 import numpy as np
 
-from self_awareness import (EVIDENCE_THRESHOLD, DetectorParameters, EncodingRules,
-                            EvidenceCalibration, EvidenceModel, EventType, LimitFinder, Model,
-                            TrainedModel, Training, Verdicts, evidence_limits, follow_me,
-                            judge_by_evidence)
+from self_awareness import (EVIDENCE_THRESHOLD, DetectorParameters, EncodingRules, EvidenceModel,
+                            EventType, Model, TrainedModel, Training, Verdicts, evidence_limits,
+                            follow_me, judge_by_evidence)
 from self_awareness.evaluation.recording import WINDOW, Recording
 from self_awareness.evaluation.systems import Alarm, Judged, common_threshold, distinct
 
@@ -70,18 +69,9 @@ class Evidence:
     def calibrate(self, recordings: Sequence[Recording]) -> None:
         """Find the limits."""
         encoded = [recording.encoded(self._trained.event_types) for recording in recordings]
-        finder = LimitFinder(self._trained, DetectorParameters().settle_time,
-                             evidence_limits.BUDGET)
-        for recording in encoded:
-            finder.add_events(recording.stamps, recording.ids)
-        finder.start_second_pass()
-        for recording in encoded:
-            finder.add_events(recording.stamps, recording.ids)
-        limits = finder.limits()
-        calibration = EvidenceCalibration()
-        calibration.limits = limits.tracks
-        calibration.linker_limit = limits.linker
-        self._trained.evidence_calibration = calibration
+        self._trained.evidence_calibration = evidence_limits.find(
+            self._trained, DetectorParameters().settle_time, evidence_limits.BUDGET,
+            lambda: ((recording.stamps, recording.ids, None) for recording in encoded))
 
     def judge(self, recording: Recording) -> Judged:
         """Judge a recording."""
