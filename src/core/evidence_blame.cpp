@@ -19,6 +19,11 @@ constexpr double kNearLimit = 0.75;
 // Of an unusual delay between two event types, the later one is a little more to blame.
 constexpr double kShareOfEarlier = 0.9;
 
+/// Time since the last event of a type at the end of the window that was judged [ns].
+std::int64_t age(EventId id, const EvidenceScorer& scorer) {
+  return scorer.windowEnd() - scorer.lastSeen(id).value_or(scorer.windowEnd());
+}
+
 }  // namespace
 
 EvidenceBlame::EvidenceBlame(std::shared_ptr<const EvidenceModel> model,
@@ -26,9 +31,9 @@ EvidenceBlame::EvidenceBlame(std::shared_ptr<const EvidenceModel> model,
     : model_(std::move(model)), graph_(std::move(graph)) {}
 
 std::vector<Suspect> EvidenceBlame::suspects(const std::vector<double>& shares,
-                                             const EvidenceScorer& scorer, const Window& window,
-                                             std::int64_t end) const {
-  std::vector<Candidate> candidates = silent(shares, scorer, end);
+                                             const EvidenceScorer& scorer,
+                                             const Window& window) const {
+  std::vector<Candidate> candidates = silent(shares, scorer);
   const std::vector<Candidate> others = unusual(shares, scorer);
   candidates.insert(candidates.end(), others.begin(), others.end());
 
@@ -57,8 +62,7 @@ std::vector<Suspect> EvidenceBlame::suspects(const std::vector<double>& shares,
 }
 
 std::vector<EvidenceBlame::Candidate> EvidenceBlame::silent(const std::vector<double>& shares,
-                                                            const EvidenceScorer& scorer,
-                                                            std::int64_t end) const {
+                                                            const EvidenceScorer& scorer) const {
   std::set<EventId> missing;
   for (std::size_t track = 0; track < shares.size(); ++track) {
     const Channel channel = model_->tracks()[track].channel;
@@ -69,10 +73,9 @@ std::vector<EvidenceBlame::Candidate> EvidenceBlame::silent(const std::vector<do
   }
   std::vector<Candidate> candidates;
   for (const EventId id : missing) {
-    const std::int64_t age = end - scorer.lastSeen(id).value_or(end);
-    const double survival = model_->logSurvival(id, age);
+    const double survival = logSurvival(id, scorer);
     if (survival < kRareSilence) {
-      candidates.push_back({silence(id, age), survival});
+      candidates.push_back({silence(id, scorer), survival});
     }
   }
   return rootFirst(std::move(candidates));
@@ -110,7 +113,8 @@ std::vector<EvidenceBlame::Candidate> EvidenceBlame::unusual(const std::vector<d
   for (std::size_t track = 0; track < shares.size(); ++track) {
     const auto& [channel, to, from] = model_->tracks()[track];
     if (shares[track] < kLeastShare || channel == Channel::kSlowDelay ||
-        (channel == Channel::kOverdue && !isRare(to, scorer))) {
+        // An age that is usual has some share of its limit, too.
+        (channel == Channel::kOverdue && logSurvival(to, scorer) >= kRareSilence)) {
       continue;
     }
     const double share = std::min(shares[track], kMostShare);
@@ -140,17 +144,15 @@ std::vector<EvidenceBlame::Candidate> EvidenceBlame::unusual(const std::vector<d
   return roots;
 }
 
-// The age of an event type that is usual has some share of its limit, too.
-bool EvidenceBlame::isRare(EventId id, const EvidenceScorer& scorer) const {
-  const std::int64_t end = scorer.windowEnd();
-  return model_->logSurvival(id, end - scorer.lastSeen(id).value_or(end)) < kRareSilence;
+double EvidenceBlame::logSurvival(EventId id, const EvidenceScorer& scorer) const {
+  return model_->logSurvival(id, age(id, scorer));
 }
 
-Suspect EvidenceBlame::silence(EventId id, std::int64_t age) const {
+Suspect EvidenceBlame::silence(EventId id, const EvidenceScorer& scorer) const {
   Suspect suspect;
   suspect.id = id;
   suspect.reason = Suspect::Reason::kSilent;
-  suspect.silence = toSeconds(age);
+  suspect.silence = toSeconds(age(id, scorer));
   suspect.usual_shortest = model_->usualDelay(id, id, kUsualFrom);
   suspect.usual_longest = model_->usualDelay(id, id, kUsualTo);
   return suspect;
@@ -162,7 +164,7 @@ Suspect EvidenceBlame::unusualTrack(std::size_t track, const EvidenceScorer& sco
   suspect.id = to;
   switch (channel) {
     case Channel::kOverdue:
-      return silence(to, scorer.windowEnd() - scorer.lastSeen(to).value_or(scorer.windowEnd()));
+      return silence(to, scorer);
     case Channel::kFewer:
     case Channel::kMore:
       suspect.reason = Suspect::Reason::kRate;
@@ -188,10 +190,9 @@ Suspect EvidenceBlame::unusualTrack(std::size_t track, const EvidenceScorer& sco
   return suspect;
 }
 
-// Where the encoding leaves sources out, a topic stands for who publishes on it.
 const std::string& EvidenceBlame::component(EventId id) const {
   const EventType& type = model_->vocabulary().at(id);
-  return type.source.empty() ? type.scope : type.source;
+  return componentOf(type.source, type.scope);
 }
 
 }  // namespace self_awareness::core

@@ -80,8 +80,8 @@ bool EvidenceJudge::isSilent(std::int64_t end) const {
   return false;
 }
 
-std::vector<Suspect> EvidenceJudge::suspects(const Window& window, std::int64_t end) const {
-  return blame_.suspects(shares_, scorer_, window, end);
+std::vector<Suspect> EvidenceJudge::suspects(const Window& window, std::int64_t /*end*/) const {
+  return blame_.suspects(shares_, scorer_, window);
 }
 
 }  // namespace self_awareness::core

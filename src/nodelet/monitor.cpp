@@ -158,7 +158,7 @@ void Monitor::startSession(ros1::TrainedModel trained) {
     if (type.source == ros::this_node::getName()) {
       own_topics.insert(type.scope);
     }
-    component_of_.push_back(&components_[ros1::componentOf(type.source, type.scope)]);
+    component_of_.push_back(&components_[core::componentOf(type.source, type.scope)]);
   }
   wanted.own_output = ros1::OwnOutput(ros::this_node::getName(), std::move(own_topics));
   live_events_->setEncoder(session_->encoder, wanted.own_output);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "self_awareness/core/event.h"
+
 namespace self_awareness::ros1 {
 namespace {
 
@@ -18,10 +20,6 @@ std::string number(double value) {
 }
 
 }  // namespace
-
-std::string componentOf(const std::string& source, const std::string& scope) {
-  return source.empty() ? scope : source;
-}
 
 std::string describe(const self_awareness::Suspect& suspect) {
   return (suspect.source.empty() ? "" : suspect.source + " on ") + suspect.scope + ": " +
@@ -94,7 +92,7 @@ void Diagnostics::component(const std::string& name, Status& status) const {
   status.summary(DiagnosticStatus::OK, component.last_heard ? "heard" : "not heard yet");
   const std::vector<self_awareness::Suspect>& suspects = state_.last.suspects;
   for (std::size_t i = 0; i < suspects.size() && state_.last.level != DiagnosticStatus::OK; ++i) {
-    if (componentOf(suspects[i].source, suspects[i].scope) == name) {
+    if (core::componentOf(suspects[i].source, suspects[i].scope) == name) {
       // The most likely one is to blame; the others may well be its victims.
       status.summary(i == 0 && state_.last.level == DiagnosticStatus::ERROR
                          ? DiagnosticStatus::ERROR

@@ -37,7 +37,7 @@ class EvidenceBlameTest : public testing::Test {
       shares.at(indexOf(model_->tracks(), track.channel, track.to, track.from)) = share;
     }
     scorer_.closeWindow(end);
-    return EvidenceBlame(model_, graph_).suspects(shares, scorer_, window, end);
+    return EvidenceBlame(model_, graph_).suspects(shares, scorer_, window);
   }
   static std::vector<EventId> ids(const std::vector<Suspect>& suspects) {
     std::vector<EventId> ids;

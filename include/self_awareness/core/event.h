@@ -23,6 +23,11 @@ inline bool operator<(const EventType& a, const EventType& b) {
   return std::tie(a.source, a.scope, a.type) < std::tie(b.source, b.scope, b.type);
 }
 
+/// What a component is called: its source, or where the encoding leaves sources out, its scope.
+inline const std::string& componentOf(const std::string& source, const std::string& scope) {
+  return source.empty() ? scope : source;
+}
+
 /// "SOURCE SCOPE TYPE", with "-" for an empty source: how people write and read an event type.
 std::string toString(const EventType& type);
 

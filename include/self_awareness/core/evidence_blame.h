@@ -22,10 +22,10 @@ class EvidenceBlame {
                 std::shared_ptr<const SourceGraph> graph);
 
   /// @param shares of its limit that every track of the model has reached
-  /// @param window judged, and its end [ns]
+  /// @param window that the scorer closed last
   /// @return at most kMostSuspects, the first the most likely, each event type once
   std::vector<Suspect> suspects(const std::vector<double>& shares, const EvidenceScorer& scorer,
-                                const Window& window, std::int64_t end) const;
+                                const Window& window) const;
 
  private:
   struct Candidate {
@@ -35,12 +35,12 @@ class EvidenceBlame {
 
   static bool likelier(const Candidate& a, const Candidate& b) { return a.rank < b.rank; }
   std::vector<Candidate> rootFirst(std::vector<Candidate> candidates) const;
-  std::vector<Candidate> silent(const std::vector<double>& shares, const EvidenceScorer& scorer,
-                                std::int64_t end) const;
+  std::vector<Candidate> silent(const std::vector<double>& shares,
+                                const EvidenceScorer& scorer) const;
   std::vector<Candidate> unusual(const std::vector<double>& shares,
                                  const EvidenceScorer& scorer) const;
-  bool isRare(EventId id, const EvidenceScorer& scorer) const;
-  Suspect silence(EventId id, std::int64_t age) const;
+  double logSurvival(EventId id, const EvidenceScorer& scorer) const;
+  Suspect silence(EventId id, const EvidenceScorer& scorer) const;
   Suspect unusualTrack(std::size_t track, const EvidenceScorer& scorer) const;
   const std::string& component(EventId id) const;
 

@@ -17,10 +17,6 @@ namespace self_awareness::ros1 {
 /// "SOURCE on SCOPE: REASON", without the source where the encoding leaves it out.
 std::string describe(const self_awareness::Suspect& suspect);
 
-/// What a component is called in the diagnostics: its source, or its topic where the encoding
-/// leaves sources out.
-std::string componentOf(const std::string& source, const std::string& scope);
-
 /// What the diagnostics tell; filled in by the monitor, worded by Diagnostics.
 struct MonitorState {
   struct Component {
@@ -34,7 +30,7 @@ struct MonitorState {
   bool started = false;                         ///< an event has come
   self_awareness::SelfAwareness last;           ///< the verdict on the last window, if started
   double level_for = 0;                         ///< how long it has had its level [s]
-  std::map<std::string, Component> components;  ///< by componentOf()
+  std::map<std::string, Component> components;  ///< by core::componentOf()
 
   double rate = 0;              ///< events a second, since the last report
   double processing_share = 0;  ///< share of one core spent on events and windows, 0 to 1
