@@ -49,7 +49,7 @@ Monitor::Session::Session(ros1::TrainedModel trained_model, const MonitorParamet
                      ? trained.calibration.has_value()
                      : trained.evidence_calibration.has_value()),
       graph(std::make_shared<core::SourceGraph>(trained.graph)),
-      vocabulary(trained.statistics.vocabulary()),
+      vocabulary(trained.vocabulary()),
       encoder(std::make_shared<ros1::Encoder>(
           trained.encoding, [this](const core::EventType& type) { return intern(type); })),
       detector(makeJudge(parameters), trained.window, parameters.detector, std::move(handler)) {}
@@ -62,13 +62,13 @@ std::unique_ptr<core::Judge> Monitor::Session::makeJudge(
                                               parameters.detector.silence_is_abnormal);
   }
   return std::make_unique<core::EvidenceJudge>(
-      std::make_shared<core::EvidenceModel>(trained.evidence[0], trained.evidence[1]),
-      trained.limits(), trained.window, graph);
+      std::make_shared<core::EvidenceModel>(trained.watched), trained.limits(), trained.window,
+      graph);
 }
 
 // A type field with ever new values must not fill the memory of a robot that runs for months.
 core::EventId Monitor::Session::intern(const core::EventType& type) {
-  const std::size_t known = trained.statistics.vocabulary().size();
+  const std::size_t known = trained.vocabulary().size();
   if (!vocabulary.find(type) && vocabulary.size() >= known + kMostUnknownTypes) {
     return vocabulary.intern({"", "(further topics)", "(further unknown events)"});
   }
@@ -126,7 +126,10 @@ void Monitor::load() {
     throw ros1::ModelFileError(private_node_handle_.resolveName("model") +
                                " is not set; give it the path of a model file");
   }
-  startSession(ros1::loadModel(parameters_.model));
+  startSession(
+      ros1::loadModel(parameters_.model, parameters_.method == MonitorParameters::Method::kPaper
+                                             ? ros1::ModelCounts::kDelays
+                                             : ros1::ModelCounts::kWatched));
 }
 
 std::unique_ptr<Monitor::Session> Monitor::makeSession(ros1::TrainedModel trained) {
@@ -153,7 +156,7 @@ void Monitor::startSession(ros1::TrainedModel trained) {
   Discovery::Wanted wanted;
   wanted.encoder = session_->encoder;
   std::set<std::string> own_topics;
-  for (const core::EventType& type : session_->trained.statistics.vocabulary().types()) {
+  for (const core::EventType& type : session_->trained.vocabulary().types()) {
     wanted.model_topics.insert(type.scope);
     if (type.source == ros::this_node::getName()) {
       own_topics.insert(type.scope);

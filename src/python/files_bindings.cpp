@@ -176,7 +176,9 @@ void bindModel(py::module& m) {
 
   using ros1::TrainedModel;
   py::class_<TrainedModel>(m, "TrainedModel", "All that a model file holds: counts.")
-      .def_static("load", &ros1::loadModel, py::arg("path"), "Raises ModelFileError.")
+      .def_static(
+          "load", [](const std::string& path) { return ros1::loadModel(path); }, py::arg("path"),
+          "Raises ModelFileError.")
       .def("save", &ros1::saveModel, py::arg("path"),
            "Raises ModelFileError; writes all or nothing.")
       .def_readonly("encoding", &TrainedModel::encoding)

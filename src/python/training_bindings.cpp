@@ -24,13 +24,14 @@ constexpr std::size_t kMostTypesOfField = 1000;
 class Training {
  public:
   Training(ros1::EncodingRules rules, std::int64_t bin_size, std::int64_t window,
-           std::int64_t horizon_bins)
+           std::int64_t horizon_bins, std::size_t predecessors)
       : statistics_(core::Binning{bin_size, horizon_bins}),
         trainer_(statistics_),
         evidence_trainers_{core::EvidenceTrainer(evidence_[0], window),
                            core::EvidenceTrainer(evidence_[1], window)},
         rules_(std::move(rules)),
-        window_(window) {}
+        window_(window),
+        predecessors_(predecessors) {}
 
   self_awareness::Recording addBag(const std::string& path, const ros1::TimeRange& range,
                                    bool alone, const py::object& progress) {
@@ -77,6 +78,8 @@ class Training {
     model.window = window_;
     model.statistics = statistics_;
     model.evidence = evidence_;
+    model.predecessors = predecessors_;
+    model.watch();
     model.recordings = recordings_;
     model.stamp.fromSec(std::floor(ros::WallTime::now().toSec()));
     return model;
@@ -130,6 +133,7 @@ class Training {
   std::optional<std::int64_t> middle_;  // of a recording that is alone [ns], while before it
   ros1::EncodingRules rules_;
   std::int64_t window_;
+  std::size_t predecessors_;
   std::map<std::string, std::size_t> types_of_field_;  // by datatype
   std::vector<self_awareness::Recording> recordings_;
 };
@@ -138,9 +142,12 @@ class Training {
 
 void bindTraining(py::module& m) {
   py::class_<Training>(m, "Training", "Counts the delays of one recording after the other.")
-      .def(py::init<ros1::EncodingRules, std::int64_t, std::int64_t, std::int64_t>(),
+      .def(py::init<ros1::EncodingRules, std::int64_t, std::int64_t, std::int64_t, std::size_t>(),
            py::arg("encoding"), py::arg("bin_size") = 10000000, py::arg("window") = 100000000,
-           py::arg("horizon_bins") = 0, "bin_size, window: [ns]; horizon_bins 0: unbounded")
+           py::arg("horizon_bins") = 0, py::arg("predecessors") = core::kPredecessors,
+           "bin_size, window: [ns]; horizon_bins 0: unbounded; predecessors: most of an event "
+           "type\n"
+           "that the evidence watches")
       .def(
           "add_bag",
           [](Training& self, const std::string& path, std::optional<double> start,
