@@ -1,6 +1,7 @@
 """Fixtures of the Python tests: real recordings, and small bags made to measure."""
 from __future__ import annotations
 
+import copy
 import os
 import random
 from pathlib import Path
@@ -10,6 +11,8 @@ import pytest
 import rosbag
 import rospy
 from std_msgs.msg import Header, String
+
+from self_awareness import TrainedModel
 
 Message = Tuple[float, str, str]
 """Stamp [s], source, topic."""
@@ -64,6 +67,15 @@ def jittery_robot(start: float, length: float, seed: int) -> Iterable[Message]:
     rng = random.Random(seed)
     return sorted((stamp + rng.expovariate(500.0), source, topic)
                   for stamp, source, topic in robot(start, length))
+
+
+def learned(model: TrainedModel, calibrations: bool = False) -> bytes:
+    """Return all that a model holds but the time of its training; of limits only if asked for."""
+    model = copy.copy(model)
+    if not calibrations:
+        model.calibration = model.evidence_calibration = None
+    state = model.__getstate__()
+    return state[:32] + state[40:]  # the md5 of the message, and the message without its stamp
 
 
 @pytest.fixture
