@@ -88,7 +88,7 @@ class Processes(Workers):
                     _result_of_process, lambda: self._number, description)
             except BaseException:  # GeneratorExit, too: the rest is not wanted any more
                 for child in set(multiprocessing.active_children()) - others:
-                    child.terminate()
+                    child.kill()
                 raise
 
 
@@ -111,6 +111,7 @@ class Cluster(Workers):
         self._address = address
         self._distributed = distributed
         try:
+            distributed.comm.resolve_address(address)  # of a nonsense, a client is slow to recover
             self._client = distributed.Client(address, timeout=_CONNECT_S, set_as_default=False)
         except (OSError, ValueError) as error:
             raise ValueError(f'--scheduler {address}: no scheduler of dask.distributed answers '
@@ -205,7 +206,8 @@ def _start_worker(shared: object) -> None:
     global _inherited
     _inherited = shared
     progress.silence()
-    signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C is explained by the parent
+    for number in (signal.SIGINT, signal.SIGTERM):  # Ctrl-C is explained by the parent
+        signal.signal(number, signal.SIG_DFL)
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
 

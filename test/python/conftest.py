@@ -4,6 +4,7 @@ from __future__ import annotations
 import copy
 import os
 import random
+import time
 from pathlib import Path
 from typing import Callable, Iterable, Optional, Tuple
 
@@ -67,6 +68,14 @@ def jittery_robot(start: float, length: float, seed: int) -> Iterable[Message]:
     rng = random.Random(seed)
     return sorted((stamp + rng.expovariate(500.0), source, topic)
                   for stamp, source, topic in robot(start, length))
+
+
+def wait_until(condition: Callable[[], object], what: str, deadline_s: float = 60.0) -> None:
+    """Return as soon as a condition holds."""
+    end = time.monotonic() + deadline_s
+    while not condition():
+        assert time.monotonic() < end, f'{what}: not within {deadline_s} s'
+        time.sleep(0.005)
 
 
 def learned(model: TrainedModel, calibrations: bool = False) -> bytes:
