@@ -186,6 +186,49 @@ void LimitFinder::startSecondPass() {
   second_pass_ = true;
 }
 
+void LimitFinder::startSecondPass(EvidenceLimits limits) {
+  if (limits.tracks.size() != model_->tracks().size()) {
+    throw std::invalid_argument("the limits are those of another model");
+  }
+  finish();
+  limits_ = std::move(limits);
+  second_pass_ = true;
+}
+
+LimitFinder::Findings LimitFinder::findings() const {
+  Findings found;
+  found.windows = windows_seen_;
+  found.duration = duration_;
+  found.maxima = maxima_;
+  for (const EvidenceStatistics::Type& type : gaps_) {
+    found.longest_gaps.push_back(type.longest_gaps);
+  }
+  found.misleading = misleading_.tracks();
+  found.linker_maxima = linker_maxima_;
+  return found;
+}
+
+void LimitFinder::merge(const Findings& other) {
+  if (other.maxima.size() != maxima_.size() || other.longest_gaps.size() != gaps_.size() ||
+      other.misleading.size() != misleading_.tracks().size()) {
+    throw std::invalid_argument("the findings are those of another model");
+  }
+  windows_seen_ += other.windows;
+  duration_ += other.duration;
+  for (std::size_t track = 0; track < maxima_.size(); ++track) {
+    maxima_[track].insert(maxima_[track].end(), other.maxima[track].begin(),
+                          other.maxima[track].end());
+  }
+  misleading_.add(other.misleading);
+  for (std::size_t id = 0; id < gaps_.size(); ++id) {
+    for (const std::int64_t gap : other.longest_gaps[id]) {
+      gaps_[id].addGap(gap);
+    }
+  }
+  linker_maxima_.insert(linker_maxima_.end(), other.linker_maxima.begin(),
+                        other.linker_maxima.end());
+}
+
 double LimitFinder::meanGap(EventId id) const {
   const EvidenceStatistics::Type& type = model_->statistics().type(id);
   return static_cast<double>(type.gap_sum) / static_cast<double>(type.gaps);
@@ -210,7 +253,7 @@ double LimitFinder::limit(std::size_t track, double rate) const {
                                  kMargin * *std::max_element(maxima.begin(), maxima.end()),
                                  gumbelLimit(maxima, std::min(rate * kBlock / kHour, 0.5))});
   if (channel == Channel::kDelay || channel == Channel::kSlowDelay) {
-    return misleading_.contains(track) || found > kMostDelayLimit ? kNone : found;
+    return misleading_.tracks()[track] || found > kMostDelayLimit ? kNone : found;
   }
   if (channel == Channel::kAnswer) {
     return found / model_->missed(track) * meanGap(from) > kLongestWait ? kNone : found;

@@ -60,6 +60,11 @@ void MisleadingPairs::finish() {
   closePart();
 }
 
+void MisleadingPairs::add(const std::vector<bool>& tracks) {
+  std::transform(misleading_.begin(), misleading_.end(), tracks.begin(), misleading_.begin(),
+                 std::logical_or<>());
+}
+
 void MisleadingPairs::startPart() {
   last_seen_.assign(pairs_.size(), kNever);
   duration_ = 0;

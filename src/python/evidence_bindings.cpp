@@ -1,10 +1,13 @@
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "bindings.h"
@@ -31,23 +34,80 @@ class Limits {
       : model_(makeModel(trained)),
         halves_{makeModel(trained, EvidenceModel::Learned::kSecond),
                 makeModel(trained, EvidenceModel::Learned::kFirst)},
-        finder_(model_, {trained.window, settle_time, budget}) {}
+        parameters_{trained.window, settle_time, budget},
+        finder_(model_, parameters_) {}
 
+  /// One without findings, for the same model and in the same pass.
+  std::unique_ptr<Limits> part() const {
+    return std::unique_ptr<Limits>(new Limits(*this, PartOf{}));
+  }
   void addEvents(const Stamps& stamps, const Ids& ids, std::optional<std::size_t> half) {
+    const py::gil_scoped_release release;
     finder_.startRecording(half ? halves_.at(*half) : model_);
     forEachEvent(stamps, ids, [&](const core::Event& event) { finder_.add(event); });
     finder_.finish();
   }
-  void startSecondPass() { finder_.startSecondPass(); }
+  core::LimitFinder::Findings findings() const { return finder_.findings(); }
+  void merge(const core::LimitFinder::Findings& findings) { finder_.merge(findings); }
+  core::EvidenceLimits startSecondPass(const std::optional<core::EvidenceLimits>& limits) {
+    if (limits) {
+      finder_.startSecondPass(*limits);
+    } else {
+      finder_.startSecondPass();
+    }
+    second_pass_ = true;
+    return finder_.trackLimits();
+  }
   core::EvidenceLimits limits() const { return finder_.limits(); }
   std::uint64_t windows() const { return finder_.windows(); }
 
  private:
+  struct PartOf {};
+
+  Limits(const Limits& whole, PartOf /*tag*/)
+      : model_(whole.model_),
+        halves_(whole.halves_),
+        parameters_(whole.parameters_),
+        finder_(model_, parameters_) {
+    if (whole.second_pass_) {
+      startSecondPass(whole.finder_.trackLimits());
+    }
+  }
+
   std::shared_ptr<EvidenceModel> model_;
   std::array<std::shared_ptr<EvidenceModel>, 2>
       halves_;  // that judge the half, not learned from it
+  core::LimitFinder::Parameters parameters_;
   core::LimitFinder finder_;
+  bool second_pass_ = false;
 };
+
+using LimitsState = std::tuple<std::vector<double>, double>;
+
+using Findings = core::LimitFinder::Findings;
+// Arrays are pickled as they lie in the memory: maxima are many.
+using FindingsState =
+    std::tuple<std::uint64_t, std::int64_t, std::vector<py::array_t<double>>,
+               std::vector<std::vector<std::int64_t>>, std::vector<bool>, std::vector<double>>;
+
+FindingsState stateOf(const Findings& findings) {
+  std::vector<py::array_t<double>> maxima;
+  std::transform(findings.maxima.begin(), findings.maxima.end(), std::back_inserter(maxima),
+                 [](const std::vector<double>& of_track) { return toArray(of_track); });
+  return {findings.windows,      findings.duration,   maxima,
+          findings.longest_gaps, findings.misleading, findings.linker_maxima};
+}
+
+Findings fromState(const FindingsState& state) {
+  Findings findings;
+  std::vector<py::array_t<double>> maxima;
+  std::tie(findings.windows, findings.duration, maxima, findings.longest_gaps, findings.misleading,
+           findings.linker_maxima) = state;
+  for (const py::array_t<double>& of_track : maxima) {
+    findings.maxima.emplace_back(of_track.data(), of_track.data() + of_track.size());
+  }
+  return findings;
+}
 
 /// Evidence of every track at the end of every window: [windows, tracks].
 py::array_t<double> evidenceOf(const std::shared_ptr<EvidenceModel>& model, std::int64_t window,
@@ -90,20 +150,37 @@ void bindEvidence(py::module& m) {
       .def("evidence", &evidenceOf, py::arg("window"), py::arg("stamps"), py::arg("ids"),
            "float64 [windows, tracks], at the end of every window of a recording");
 
-  py::class_<core::EvidenceLimits>(m, "EvidenceLimits", "When evidence is abnormal.")
-      .def_readonly("tracks", &core::EvidenceLimits::tracks, "by track; NaN: not judged")
-      .def_readonly("linker", &core::EvidenceLimits::linker);
+  using core::EvidenceLimits;
+  py::class_<EvidenceLimits>(m, "EvidenceLimits", "When evidence is abnormal.")
+      .def_readonly("tracks", &EvidenceLimits::tracks, "by track; NaN: not judged")
+      .def_readonly("linker", &EvidenceLimits::linker)
+      .def(py::pickle(
+          [](const EvidenceLimits& self) {
+            return LimitsState{self.tracks, self.linker};
+          },
+          [](const LimitsState& state) {
+            return EvidenceLimits{std::get<0>(state), std::get<1>(state)};
+          }));
+
+  py::class_<Findings>(m, "LimitFindings",
+                       "What recordings said to a LimitFinder; may go to another process.")
+      .def(py::pickle(&stateOf, &fromState));
 
   py::class_<Limits>(m, "LimitFinder",
-                     "Finds limits in two passes over the same recordings of normal operation.")
+                     "Finds limits in two passes over the same recordings of normal operation.\n"
+                     "Parts of a pass may be made by other finders, elsewhere, and merged.")
       .def(py::init<const ros1::TrainedModel&, std::int64_t, double>(), py::arg("trained"),
            py::arg("settle_time"), py::arg("budget"),
            "settle_time: [ns]; budget: false alarms an hour")
       .def("add_events", &Limits::addEvents, py::arg("stamps"), py::arg("ids"),
            py::arg("half") = py::none(),
            "A recording; half: 0 or 1 where that half of the training was trained on it.")
-      .def("start_second_pass", &Limits::startSecondPass,
-           "ValueError where the recordings were too short.")
+      .def("part", &Limits::part, "A finder without findings, for the same model and pass.")
+      .def("findings", &Limits::findings, "LimitFindings of what was added.")
+      .def("merge", &Limits::merge, py::arg("findings"))
+      .def("start_second_pass", &Limits::startSecondPass, py::arg("limits") = py::none(),
+           "Returns the EvidenceLimits of the tracks, by which another finder may start its own\n"
+           "second pass. ValueError where the recordings were too short.")
       .def("limits", &Limits::limits)
       .def_property_readonly("windows", &Limits::windows);
 }

@@ -6,13 +6,16 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "bindings.h"
 #include "reading.h"
 #include "self_awareness/ros/bag_reader.h"
+#include "self_awareness/ros/model_bytes.h"
 #include "self_awareness/ros/model_file.h"
+#include "self_awareness/ros/model_merge.h"
 #include "self_awareness/ros/stable_name.h"
 
 namespace self_awareness::python {
@@ -44,6 +47,29 @@ RecordedEvents readEvents(const std::string& path, const ros1::EncodingRules& ru
       progressTo(progress));
   events.event_types = vocabulary.types();
   return events;
+}
+
+using EncodingState =
+    std::tuple<bool, std::vector<std::string>, std::vector<std::string>, std::vector<std::string>,
+               std::vector<std::string>, std::map<std::string, std::string>>;
+
+EncodingState stateOf(const ros1::EncodingRules& rules) {
+  return {rules.source == ros1::EncodingRules::Source::kNone,
+          rules.include_topics,
+          rules.exclude_topics,
+          rules.include_sources,
+          rules.exclude_sources,
+          rules.type_fields};
+}
+
+ros1::EncodingRules fromState(const EncodingState& state) {
+  ros1::EncodingRules rules;
+  bool none = false;
+  std::tie(none, rules.include_topics, rules.exclude_topics, rules.include_sources,
+           rules.exclude_sources, rules.type_fields) = state;
+  rules.source =
+      none ? ros1::EncodingRules::Source::kNone : ros1::EncodingRules::Source::kCallerId;
+  return rules;
 }
 
 void bindEncoding(py::module& m) {
@@ -87,6 +113,7 @@ void bindEncoding(py::module& m) {
       .def_readwrite("type_fields", &ros1::EncodingRules::type_fields)
       .def("validate", &ros1::EncodingRules::validate,
            "ValueError where a pattern is no regular expression.")
+      .def(py::pickle(&stateOf, &fromState))
       .def("__eq__",
            [](const ros1::EncodingRules& a, const ros1::EncodingRules& b) { return a == b; });
 }
@@ -181,9 +208,31 @@ void bindModel(py::module& m) {
           "Raises ModelFileError.")
       .def("save", &ros1::saveModel, py::arg("path"),
            "Raises ModelFileError; writes all or nothing.")
+      .def("merge", &ros1::merge, py::arg("other"),
+           "Adds what another model learned, behind what this one did; drops the calibrations,\n"
+           "and watch() must follow. ValueError where they do not count the same things.")
+      .def("watch", &TrainedModel::watch, "Chooses what is watched, by all counts.")
+      .def(
+          "watched_only",
+          [](TrainedModel self) {
+            self.dropCounts();
+            return self;
+          },
+          "A copy without the counts that the evidence detector does not judge by: small.")
+      .def_readonly("predecessors", &TrainedModel::predecessors,
+                    "of an event type that are watched at most")
+      .def(
+          "swap_halves", [](TrainedModel& self) { std::swap(self.evidence[0], self.evidence[1]); },
+          "Takes the first half of the training for the second, and the second for the first;\n"
+          "not for a model with a calibration.")
+      .def(py::pickle([](const TrainedModel& self) { return py::bytes(ros1::toBytes(self)); },
+                      [](const py::bytes& state) { return ros1::fromBytes(state); }))
       .def_readonly("encoding", &TrainedModel::encoding)
       .def_readonly("window", &TrainedModel::window, "length of a window [ns]")
-      .def_readonly("recordings", &TrainedModel::recordings)
+      .def_property_readonly(
+          "recordings",
+          [](const TrainedModel& self) { return self.recordings; },  // copies: merge() moves them
+          "trained on")
       .def_property_readonly(
           "stamp", [](const TrainedModel& self) { return self.stamp.toNSec(); }, "[ns]")
       .def_readwrite("calibration", &TrainedModel::calibration,

@@ -2,23 +2,17 @@
 
 #include <array>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "bindings.h"
-#include "reading.h"
-#include "self_awareness/ros/bag_reader.h"
+#include "self_awareness/ros/encoding.h"
 #include "self_awareness/ros/model_file.h"
 
 namespace self_awareness::python {
 namespace {
-
-// Every pair of event types has a histogram: a field that is no small set of values, such as an
-// identifier, would fill the memory long before it taught anything.
-constexpr std::size_t kMostTypesOfField = 1000;
 
 /// Trains on one recording after the other.
 class Training {
@@ -33,36 +27,12 @@ class Training {
         window_(window),
         predecessors_(predecessors) {}
 
-  self_awareness::Recording addBag(const std::string& path, const ros1::TimeRange& range,
-                                   bool alone, const py::object& progress) {
-    const ros1::BagReader reader(path);
-    const ros1::Encoder encoder(rules_,
-                                [this](const core::EventType& type) { return intern(type); });
-    self_awareness::Recording recording;
-    recording.bag = path.substr(path.find_last_of('/') + 1);
-    recording.fingerprint = reader.summary().fingerprint;
-    const auto [from, to] = reader.limits(range);
-    startRecording(alone ? std::optional<std::int64_t>(from + (to - from) / 2) : std::nullopt);
-    reader.read(
-        encoder, range,
-        [&](const core::Event& event) {
-          add(event);
-          recording.start.fromNSec(recording.events == 0 ? event.stamp : recording.start.toNSec());
-          recording.end.fromNSec(event.stamp);
-          ++recording.events;
-        },
-        progressTo(progress));
-    recordings_.push_back(recording);
-    return recording;
-  }
-
   void addEvents(const std::vector<core::EventType>& types, const Stamps& stamps, const Ids& ids,
-                 bool alone) {
-    startRecording(alone && stamps.size() > 0
-                       ? std::optional<std::int64_t>(
-                             stamps.at(0) + (stamps.at(stamps.size() - 1) - stamps.at(0)) / 2)
-                       : std::nullopt);
+                 std::optional<std::int64_t> middle,
+                 const std::optional<self_awareness::Recording>& recording) {
+    startRecording(middle);
     std::vector<std::optional<core::EventId>> here(types.size());
+    const py::gil_scoped_release release;
     forEachEvent(stamps, ids, [&](const core::Event& event) {
       std::optional<core::EventId>& id = here.at(event.id);
       if (!id) {
@@ -70,16 +40,21 @@ class Training {
       }
       add({event.stamp, *id});
     });
+    if (recording) {
+      recordings_.push_back(*recording);
+    }
   }
 
-  ros1::TrainedModel model() const {
+  ros1::TrainedModel model(bool watch) const {
     ros1::TrainedModel model;
     model.encoding = rules_;
     model.window = window_;
     model.statistics = statistics_;
     model.evidence = evidence_;
     model.predecessors = predecessors_;
-    model.watch();
+    if (watch) {
+      model.watch();
+    }
     model.recordings = recordings_;
     model.stamp.fromSec(std::floor(ros::WallTime::now().toSec()));
     return model;
@@ -111,15 +86,8 @@ class Training {
     for (core::EvidenceStatistics& half : evidence_) {
       half.intern(type);  // the same id
     }
-    const std::size_t datatype_end = type.type.find('[');
-    if (statistics_.vocabulary().size() > before && datatype_end != std::string::npos) {
-      const std::string datatype = type.type.substr(0, datatype_end);
-      if (++types_of_field_[datatype] > kMostTypesOfField) {
-        throw std::invalid_argument(
-            "the type field " + datatype + ": " + rules_.type_fields.at(datatype) +
-            " has more than " + std::to_string(kMostTypesOfField) +
-            " values; name a field that says what a message does, or none for this datatype");
-      }
+    if (statistics_.vocabulary().size() > before) {
+      ros1::checkTypeFields(rules_, statistics_.vocabulary());
     }
     return id;
   }
@@ -134,7 +102,6 @@ class Training {
   ros1::EncodingRules rules_;
   std::int64_t window_;
   std::size_t predecessors_;
-  std::map<std::string, std::size_t> types_of_field_;  // by datatype
   std::vector<self_awareness::Recording> recordings_;
 };
 
@@ -149,19 +116,16 @@ void bindTraining(py::module& m) {
            "type\n"
            "that the evidence watches")
       .def(
-          "add_bag",
-          [](Training& self, const std::string& path, std::optional<double> start,
-             std::optional<double> end, bool alone, const py::object& progress) {
-            return self.addBag(path, timeRange(start, end), alone, progress);
-          },
-          py::arg("path"), py::arg("start") = py::none(), py::arg("end") = py::none(),
-          py::arg("alone") = false, py::arg("progress") = py::none(),
-          "Trains on a bag, one recording; returns its Recording. start, end: seconds from its\n"
-          "first message. alone: there is no other recording. After a BagError the training is "
-          "incomplete and must be thrown away.")
-      .def("add_events", &Training::addEvents, py::arg("event_types"), py::arg("stamps"),
-           py::arg("ids"), py::arg("alone") = false, "Trains on one recording given as arrays.")
-      .def("model", &Training::model, "The TrainedModel of all that was added.");
+          "add_events", &Training::addEvents, py::arg("event_types"), py::arg("stamps"),
+          py::arg("ids"), py::arg("middle") = py::none(), py::arg("recording") = py::none(),
+          "Trains on one recording given as arrays; ids are indices of event_types. middle: "
+          "[ns],\n"
+          "of a recording that is alone: what comes before it is one half of the training, the\n"
+          "rest the other. recording: what the model says of it. After a ValueError the training\n"
+          "is incomplete and must be thrown away.")
+      .def("model", &Training::model, py::arg("watch") = true,
+           "The TrainedModel of all that was added. watch: choose what is watched; not needed "
+           "where\nit is merged.");
 }
 
 }  // namespace self_awareness::python

@@ -66,6 +66,24 @@ bool operator==(const EncodingRules& a, const EncodingRules& b) {
   return fields(a) == fields(b);
 }
 
+void checkTypeFields(const EncodingRules& rules, const core::Vocabulary& vocabulary) {
+  std::map<std::string, std::size_t> types;  // by datatype
+  for (const core::EventType& type : vocabulary.types()) {
+    const std::size_t datatype_end = type.type.find('[');
+    if (datatype_end == std::string::npos) {
+      continue;
+    }
+    const std::string datatype = type.type.substr(0, datatype_end);
+    if (++types[datatype] > kMostTypesOfField) {
+      throw std::invalid_argument("the type field " + datatype + ": " +
+                                  rules.type_fields.at(datatype) + " has more than " +
+                                  std::to_string(kMostTypesOfField) +
+                                  " values; name a field that says what a message does, or none "
+                                  "for this datatype");
+    }
+  }
+}
+
 Connection connectionFrom(const ros::M_string& header, const std::string& topic) {
   Connection connection;
   connection.callerid = headerField(header, "callerid");

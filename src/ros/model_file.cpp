@@ -106,6 +106,7 @@ TrainedModel read(const rosbag::Bag& bag, const std::string& path, ModelCounts c
                          ": a bag, but it holds no model; train one from it "
                          "(rosrun self_awareness train)");
   }
+  check(model->isWatched(), "its evidence has not two halves");
   if (counts != ModelCounts::kWatched) {
     const std::size_t number = forEach<self_awareness::DelayHistograms>(
         bag, kDelaysTopic, path, [&](const self_awareness::DelayHistograms& message) {
@@ -144,6 +145,15 @@ bool limitsFit(const TrainedModel& model) {
 
 }  // namespace
 
+void TrainedModel::dropCounts() {
+  core::DelayStatistics types(statistics.binning());
+  for (core::EventId id = 0; id < vocabulary().size(); ++id) {
+    types.countEvent(types.intern(vocabulary().at(id)), statistics.eventCount(id));
+  }
+  statistics = std::move(types);
+  evidence = {};
+}
+
 std::optional<double> TrainedModel::threshold() const {
   return calibration ? std::optional<double>(calibration->threshold) : std::nullopt;
 }
@@ -172,8 +182,10 @@ self_awareness::Model toMessage(const TrainedModel& model) {
   for (const core::Track& track : model.watched.tracks) {
     message.tracks.push_back(toMessage(track));
   }
-  for (const core::EvidenceStatistics& half : model.watched.halves) {
-    message.watched.push_back(toMessage(half));
+  if (model.isWatched()) {
+    for (const core::EvidenceStatistics& half : model.watched.halves) {
+      message.watched.push_back(toMessage(half));
+    }
   }
   for (const auto& [from, followers] : model.graph.edges()) {
     for (const std::string& to : followers) {
@@ -204,10 +216,13 @@ TrainedModel fromMessage(const self_awareness::Model& message) {
   for (const self_awareness::Track& track : message.tracks) {
     model.watched.tracks.push_back(fromMessage(track));
   }
-  check(message.watched.size() == model.watched.halves.size(), "its evidence has not two halves");
-  std::transform(
-      message.watched.begin(), message.watched.end(), model.watched.halves.begin(),
-      [&](const self_awareness::Evidence& half) { return fromMessage(half, model.vocabulary()); });
+  check(message.watched.size() == model.watched.halves.size() ||
+            (message.watched.empty() && message.tracks.empty()),
+        "its evidence has not two halves");
+  std::transform(message.watched.begin(), message.watched.end(), model.watched.halves.begin(),
+                 [&](const self_awareness::Evidence& half) {
+                   return fromMessage(half, model.vocabulary());
+                 });
   core::checkTracks(model.watched.tracks, model.vocabulary().size());
   for (const self_awareness::GraphEdge& edge : message.graph) {
     model.graph.connect(edge.from_source, edge.to_source);
@@ -227,6 +242,9 @@ TrainedModel fromMessage(const self_awareness::Model& message) {
 }
 
 void saveModel(const TrainedModel& model, const std::string& path) {
+  if (!model.isWatched() || !model.hasCounts()) {
+    throw std::logic_error("a model is saved with all counts, and with what is watched");
+  }
   const std::string temporary = path + ".part" + std::to_string(::getpid());
   try {
     rosbag::Bag bag(temporary, rosbag::bagmode::Write);

@@ -1,19 +1,24 @@
 """Finds from where on evidence is abnormal: on normal operation that was not trained on.
 
 Recordings come twice, first for the limits of what is watched, then for that of the linker
-(core/evidence_limits.h). They are read anew each time: those of training may not fit the memory.
+(core/evidence_limits.h). Each says what it has to say for itself, in whatever process; that is
+added up.
 """
 from __future__ import annotations
 
 import math
 import time
-from typing import Callable, Iterable, Optional, Tuple
+from contextlib import closing
+from dataclasses import dataclass
+from typing import Any, Iterable, Optional, Sequence, Tuple
 
 import numpy as np
 
-from self_awareness import EvidenceCalibration, LimitFinder, TrainedModel
-from self_awareness.recordings import RecordingEvents
+from self_awareness import (EvidenceCalibration, EvidenceLimits, LimitFinder, LimitFindings,
+                            TrainedModel, recordings)
+from self_awareness.recordings import BagPart, RecordingEvents
 from self_awareness.stamps import SECOND_NS
+from self_awareness.workers import InProcess, Workers
 
 BUDGET = 0.5
 """False alarms an hour that limits are made for, if nothing else is asked for."""
@@ -22,88 +27,156 @@ Part = Tuple[np.ndarray, np.ndarray, Optional[int]]
 """Stamps [ns] and ids of a recording; the half of the training it belongs to, None: neither."""
 
 
-def held_out(trained: TrainedModel, recordings: Iterable[RecordingEvents], settle_time: int,
+@dataclass(frozen=True)
+class HeldOut:
+    """A recording that was not trained on: stamps [ns] and ids."""
+
+    stamps: np.ndarray
+    ids: np.ndarray
+
+    def parts(self, _: TrainedModel) -> Iterable[Part]:
+        """Return what there is to judge."""
+        return [(self.stamps, self.ids, None)]
+
+
+@dataclass(frozen=True)
+class TrainedOn:
+    """A recording of the training.
+
+    Args:
+        part: the bag, or the part of it.
+        half: of the training, 0 or 1; None: the recording was alone, and both come from it.
+        events: of the part, by ids of their own; None: read when they are needed, as those of all
+            recordings may not fit the memory.
+    """
+
+    part: BagPart
+    half: Optional[int]
+    events: Optional[RecordingEvents] = None
+
+    def __str__(self) -> str:
+        return str(self.part)
+
+    def parts(self, trained: TrainedModel) -> Iterable[Part]:
+        """Return what there is to judge, each by the half it does not belong to."""
+        events = self.events
+        if events is None:
+            events = recordings.read(trained, self.part)
+            ids = events.ids
+        else:
+            known = {kind: index for index, kind in enumerate(trained.event_types)}
+            ids = np.array([known[kind] for kind in events.event_types], np.uint32)[events.ids]
+        if self.half is not None:
+            return [(events.stamps, ids, self.half)]
+        second = events.stamps >= events.middle
+        return [(events.stamps[~second], ids[~second], 0), (events.stamps[second], ids[second], 1)]
+
+
+def held_out(trained: TrainedModel, found_in: Iterable[RecordingEvents], settle_time: int,
              budget: float) -> EvidenceCalibration:
     """Return limits by recordings that were not trained on.
 
     Args:
         trained: the model.
-        recordings: of normal operation.
+        found_in: recordings of normal operation.
         settle_time: left out at the start of every recording [ns].
         budget: false alarms an hour that the limits allow.
 
     Raises:
         ValueError: the recordings are too short.
     """
-    recordings = list(recordings)
+    found_in = list(found_in)
     calibration = find(trained, settle_time, budget,
-                       lambda: ((r.stamps, r.ids, None) for r in recordings))
+                       [HeldOut(recording.stamps, recording.ids) for recording in found_in])
     calibration.method = 'held-out'
-    calibration.recordings = [recording.recording for recording in recordings]
+    calibration.recordings = [recording.recording for recording in found_in]
     return calibration
 
 
-def cross_fit(trained: TrainedModel, read: Callable[[], Iterable[RecordingEvents]],
-              settle_time: int, budget: float) -> EvidenceCalibration:
-    """Return limits by the recordings of training, each judged by the half it does not belong to.
+def cross_fit(trained: TrainedModel, trained_on: Sequence[TrainedOn], settle_time: int,
+              budget: float, workers: Optional[Workers] = None) -> EvidenceCalibration:
+    """Return limits by recordings of the training, each judged by the half it does not belong to.
 
     Args:
-        trained: the model.
-        read: reads the recordings in the order of the training.
+        trained: the model; its last recordings are those of trained_on.
+        trained_on: all recordings of the training, or the last.
         settle_time: left out at the start of every recording [ns].
         budget: false alarms an hour that the limits allow.
+        workers: who does the work; None: this process.
 
     Raises:
+        BagError: a recording cannot be read any more.
         ValueError: the recordings are too short.
     """
-    alone = len(trained.recordings) == 1
-
-    def parts() -> Iterable[Part]:
-        for index, recording in enumerate(read()):
-            if alone:
-                second = recording.stamps >= _middle(recording)
-                yield recording.stamps[~second], recording.ids[~second], 0
-                yield recording.stamps[second], recording.ids[second], 1
-            else:
-                yield recording.stamps, recording.ids, index % 2
-
-    calibration = find(trained, settle_time, budget, parts)
+    calibration = find(trained, settle_time, budget, trained_on, workers)
     calibration.method = 'cross-fit'
-    calibration.recordings = trained.recordings
+    calibration.recordings = trained.recordings[-len(trained_on):]
     return calibration
 
 
-def _middle(recording: RecordingEvents) -> int:
-    """Return where the training cuts a recording that is alone [ns]."""
-    start, end = recording.part.limits(recording.origin, recording.end)
-    return start + (end - start) // 2
-
-
-def find(trained: TrainedModel, settle_time: int, budget: float,
-         parts: Callable[[], Iterable[Part]]) -> EvidenceCalibration:
-    """Return limits by parts of recordings; how they were found is not said yet.
+def find(trained: TrainedModel, settle_time: int, budget: float, tasks: Sequence[Any],
+         workers: Optional[Workers] = None) -> EvidenceCalibration:
+    """Return limits by recordings; how they were found is not said yet.
 
     Args:
         trained: the model.
-        settle_time: left out at the start of every part [ns].
+        settle_time: left out at the start of every part of a recording [ns].
         budget: false alarms an hour that the limits allow.
-        parts: reads them; called twice.
+        tasks: HeldOut or TrainedOn recordings.
+        workers: who does the work; None: this process.
 
     Raises:
-        ValueError: the parts are too short.
+        BagError: a recording cannot be read.
+        ValueError: the recordings are too short.
     """
-    finder = LimitFinder(trained, settle_time, budget)
-    for stamps, ids, half in parts():
-        finder.add_events(stamps, ids, half)
-    finder.start_second_pass()
-    for stamps, ids, half in parts():
-        finder.add_events(stamps, ids, half)
-    limits = finder.limits()
+    workers = workers or InProcess()
+    judging = _Judging(trained, settle_time, budget)
+    judging.add_all(tasks, workers, 'limits, first pass')
+    judging.start_second_pass()
+    judging.add_all(tasks, workers, 'limits, second pass')
+    limits = judging.finder.limits()
     calibration = EvidenceCalibration()
     calibration.limits = limits.tracks
     calibration.linker_limit = limits.linker
     calibration.budget = budget
     calibration.false_alarms_per_hour = math.nan
-    calibration.windows = finder.windows
+    calibration.windows = judging.finder.windows
     calibration.stamp = int(time.time()) * SECOND_NS
     return calibration
+
+
+class _Judging:
+    """What every recording is judged by; what is found stays behind when it goes elsewhere."""
+
+    def __init__(self, trained: TrainedModel, settle_time: int, budget: float,
+                 limits: Optional[EvidenceLimits] = None) -> None:
+        self._state = (trained.watched_only(), settle_time, budget)
+        self._limits = limits  # of the first pass
+        self.trained = trained
+        self.finder = LimitFinder(trained, settle_time, budget)
+        if limits is not None:
+            self.finder.start_second_pass(limits)
+
+    def __reduce__(self) -> Tuple[Any, ...]:
+        return _Judging, (*self._state, self._limits)
+
+    def add_all(self, tasks: Sequence[Any], workers: Workers, description: str) -> None:
+        """Judge recordings, and add up what they say."""
+        with closing(workers.map(_judge, self, tasks, description)) as findings:
+            for found in findings:
+                self.finder.merge(found)
+
+    def start_second_pass(self) -> None:
+        """Find the limits of the tracks.
+
+        Raises:
+            ValueError: the recordings are too short.
+        """
+        self._limits = self.finder.start_second_pass()
+
+
+def _judge(judging: _Judging, task: Any) -> LimitFindings:
+    finder = judging.finder.part()
+    for stamps, ids, half in task.parts(judging.trained):
+        finder.add_events(stamps, ids, half)
+    return finder.findings()

@@ -5,6 +5,8 @@ import os
 from contextlib import contextmanager
 from typing import Iterator, Optional, Sequence
 
+from self_awareness import ModelFileError, TrainedModel
+
 
 @contextmanager
 def replacing(path: str) -> Iterator[str]:
@@ -22,6 +24,21 @@ def replacing(path: str) -> Iterator[str]:
         if os.path.exists(temporary):
             os.remove(temporary)
         raise
+
+
+def check_replaces_model(path: str) -> None:
+    """Check that no recording is lost where somebody mixed up the arguments.
+
+    Raises:
+        ValueError: the file is there, and no model.
+    """
+    if not os.path.exists(path):
+        return
+    try:
+        TrainedModel.load(path)
+    except ModelFileError as error:
+        raise ValueError(f'{path}: is there already, and no model that could be replaced; remove '
+                         'it or choose another name') from error
 
 
 def check_outputs(outputs: Sequence[Optional[str]], inputs: Sequence[Optional[str]]) -> None:

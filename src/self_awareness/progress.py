@@ -9,10 +9,21 @@ from tqdm import tqdm
 
 _Item = TypeVar('_Item')
 
+_silent = False
+
+
+def silence() -> None:
+    """Show nothing from here on: another process shows how far the whole is."""
+    global _silent
+    _silent = True
+
 
 @contextmanager
 def messages(description: str) -> Iterator[Callable[[int, int], None]]:
     """Show how far a bag is read; hands out the callback progress(done, all) of the readers."""
+    if _silent:
+        yield lambda done, total: None
+        return
     with tqdm(desc=description, unit='msg', leave=False, disable=None) as bar:
         def update(done: int, total: int) -> None:
             bar.total = total
@@ -23,6 +34,18 @@ def messages(description: str) -> Iterator[Callable[[int, int], None]]:
 def each(items: Sequence[_Item], description: str) -> Iterable[_Item]:
     """Return the items one by one and show how many are done."""
     return tqdm(items, desc=description, leave=False, disable=None)
+
+
+@contextmanager
+def items(total: int, description: str) -> Iterator[Callable[[], object]]:
+    """Show how many of several things are done; hands out what is called after each."""
+    with tqdm(desc=description, total=total, leave=False, disable=None) as bar:
+        yield bar.update
+
+
+def say(text: str) -> None:
+    """Print a line on standard output, above the bars that are shown."""
+    tqdm.write(text)
 
 
 def waiting(seconds: float, description: str) -> Iterator[float]:

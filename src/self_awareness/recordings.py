@@ -67,6 +67,12 @@ class RecordingEvents:
     fingerprint: int
 
     @property
+    def middle(self) -> int:
+        """Where a training cuts it into halves if it is alone [ns]."""
+        start, end = self.part.limits(self.origin, self.end)
+        return start + (end - start) // 2
+
+    @property
     def recording(self) -> Recording:
         """What a model file says of the part."""
         start, end = self.part.limits(self.origin, self.end)

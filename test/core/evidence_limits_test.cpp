@@ -224,6 +224,56 @@ TEST_F(LimitFinderTest, WithoutASecondPassThereAreNoLimits) {
   EXPECT_NO_THROW(finder.limits());
 }
 
+TEST_F(LimitFinderTest, WhatRecordingsSayElsewhereAddsUp) {
+  // Pairs mislead in the second recording, and the third has no block to its end.
+  const std::vector<Events> recordings{robot(60 * kSecond, 3),
+                                       robot(110 * kSecond, 4, 60 * kMillisecond),
+                                       robot(19 * kSecond, 5), robot(45 * kSecond, 6)};
+  const LimitFinder::Parameters parameters{kWindow, 5 * kSecond, 0.5};
+  LimitFinder alone(model_, parameters);
+  LimitFinder sum(model_, parameters);
+  for (const bool first : {true, false}) {
+    std::vector<LimitFinder::Findings> elsewhere;
+    for (const Events& recording : recordings) {
+      feed(alone, model_, recording);
+      LimitFinder part(model_, parameters);
+      if (!first) {
+        part.startSecondPass(sum.trackLimits());
+      }
+      feed(part, model_, recording);
+      elsewhere.push_back(part.findings());
+    }
+    std::reverse(elsewhere.begin(), elsewhere.end());
+    for (const LimitFinder::Findings& findings : elsewhere) {
+      sum.merge(findings);
+    }
+    if (first) {
+      alone.startSecondPass();
+      sum.startSecondPass();
+    }
+  }
+  EXPECT_EQ(sum.windows(), alone.windows());
+  const EvidenceLimits a = alone.limits();
+  const EvidenceLimits b = sum.limits();
+  EXPECT_EQ(a.linker, b.linker);
+  ASSERT_EQ(a.tracks.size(), b.tracks.size());
+  EXPECT_TRUE(std::any_of(a.tracks.begin(), a.tracks.end(), [](double x) { return x != x; }));
+  EXPECT_TRUE(std::any_of(a.tracks.begin(), a.tracks.end(), [](double x) { return x == x; }));
+  for (std::size_t track = 0; track < a.tracks.size(); ++track) {
+    EXPECT_TRUE(a.tracks[track] == b.tracks[track] ||
+                (std::isnan(a.tracks[track]) && std::isnan(b.tracks[track])))
+        << track;
+  }
+}
+
+TEST_F(LimitFinderTest, WhatWasFoundForAnotherModelIsRefused) {
+  LimitFinder finder(model_, {kWindow, 5 * kSecond, 0.5});
+  const auto other = modelOf(timer(kA, 0, 100 * kSecond, kPeriod), {});
+  const LimitFinder of_other(other, {kWindow, 5 * kSecond, 0.5});
+  EXPECT_THROW(finder.merge(of_other.findings()), std::invalid_argument);
+  EXPECT_THROW(finder.startSecondPass(EvidenceLimits{{1.0}, 1.0}), std::invalid_argument);
+}
+
 TEST_F(LimitFinderTest, AStepOfTheClockIsTheStartOfAnotherRecording) {
   const Events first = robot(60 * kSecond, 3);
   const Events second = robot(60 * kSecond, 4);  // starts at 0 again

@@ -1,8 +1,10 @@
 """Fixtures of the Python tests: real recordings, and small bags made to measure."""
 from __future__ import annotations
 
+import copy
 import os
 import random
+import time
 from pathlib import Path
 from typing import Callable, Iterable, Optional, Tuple
 
@@ -10,6 +12,8 @@ import pytest
 import rosbag
 import rospy
 from std_msgs.msg import Header, String
+
+from self_awareness import TrainedModel
 
 Message = Tuple[float, str, str]
 """Stamp [s], source, topic."""
@@ -64,6 +68,23 @@ def jittery_robot(start: float, length: float, seed: int) -> Iterable[Message]:
     rng = random.Random(seed)
     return sorted((stamp + rng.expovariate(500.0), source, topic)
                   for stamp, source, topic in robot(start, length))
+
+
+def wait_until(condition: Callable[[], object], what: str, deadline_s: float = 60.0) -> None:
+    """Return as soon as a condition holds."""
+    end = time.monotonic() + deadline_s
+    while not condition():
+        assert time.monotonic() < end, f'{what}: not within {deadline_s} s'
+        time.sleep(0.005)
+
+
+def learned(model: TrainedModel, calibrations: bool = False) -> bytes:
+    """Return all that a model holds but the time of its training; of limits only if asked for."""
+    model = copy.copy(model)
+    if not calibrations:
+        model.calibration = model.evidence_calibration = None
+    state = model.__getstate__()
+    return state[:32] + state[40:]  # the md5 of the message, and the message without its stamp
 
 
 @pytest.fixture

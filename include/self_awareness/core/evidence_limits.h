@@ -39,6 +39,17 @@ class LimitFinder {
     void validate() const;
   };
 
+  /// What recordings say in one pass. That of some recordings and that of others add up to that of
+  /// all, in any order.
+  struct Findings {
+    std::uint64_t windows = 0;                            ///< looked at in the first pass
+    std::int64_t duration = 0;                            ///< [ns]
+    std::vector<std::vector<double>> maxima;              ///< largest evidence of blocks, by track
+    std::vector<std::vector<std::int64_t>> longest_gaps;  ///< [ns], by id
+    std::vector<bool> misleading;                         ///< by track
+    std::vector<double> linker_maxima;                    ///< of blocks, of the second pass
+  };
+
   LimitFinder(std::shared_ptr<const EvidenceModel> model, const Parameters& parameters);
 
   /// The next events belong to another recording, which is judged by a model: that of the
@@ -51,6 +62,16 @@ class LimitFinder {
   /// @throw std::invalid_argument if there was too little data: less than kFewestBlocks blocks, or
   /// so little to train on that the model has no tracks
   void startSecondPass();
+  /// Begins with the second pass, by what a first one elsewhere found.
+  /// @throw std::invalid_argument if that belongs to another model
+  void startSecondPass(EvidenceLimits limits);
+  /// What the recordings said that have ended, in this pass and those before.
+  Findings findings() const;
+  /// Adds what recordings said elsewhere, in the pass that goes on here.
+  /// @throw std::invalid_argument if it belongs to another model
+  void merge(const Findings& other);
+  /// Limits of the tracks alone, once the second pass has begun: the linker's is still missing.
+  const EvidenceLimits& trackLimits() const { return limits_; }
   /// @throw std::logic_error before the second pass
   EvidenceLimits limits() const;
 

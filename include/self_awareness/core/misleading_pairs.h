@@ -20,8 +20,10 @@ class MisleadingPairs {
   void add(const Event& event);
   /// The recording ends.
   void finish();
-  /// Whether a delay track was misleading in any part of what came.
-  bool contains(std::size_t track) const { return misleading_.at(track); }
+  /// Adds those of other recordings. @param tracks as of tracks()
+  void add(const std::vector<bool>& tracks);
+  /// Whether a delay track was misleading in any part of what came, by track.
+  const std::vector<bool>& tracks() const { return misleading_; }
 
  private:
   struct Pair {

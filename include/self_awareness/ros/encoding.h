@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "self_awareness/core/event.h"
+#include "self_awareness/core/vocabulary.h"
 #include "self_awareness/ros/message_field.h"
 
 namespace self_awareness::ros1 {
@@ -42,6 +43,14 @@ struct EncodingRules {
 };
 
 bool operator==(const EncodingRules& a, const EncodingRules& b);
+
+/// Every pair of event types has a histogram: a field that is no small set of values, such as an
+/// identifier, would fill the memory long before it taught anything.
+constexpr std::size_t kMostTypesOfField = 1000;
+
+/// @throw std::invalid_argument names the type field that gives more event types than
+/// kMostTypesOfField
+void checkTypeFields(const EncodingRules& rules, const core::Vocabulary& vocabulary);
 
 /// One publisher's connection to a topic, from a connection header, live or in a bag.
 struct Connection {

@@ -44,6 +44,12 @@ struct TrainedModel {
   ros::Time stamp;  ///< when it was trained
 
   const core::Vocabulary& vocabulary() const { return statistics.vocabulary(); }
+  /// Whether it holds all counts.
+  bool hasCounts() const { return evidence[0].size() > 0; }
+  /// Whether it was chosen what is watched.
+  bool isWatched() const { return watched.halves[0].size() > 0; }
+  /// Forgets all counts but those that the evidence detector judges by.
+  void dropCounts();
   /// Chooses what is watched anew, by all counts.
   void watch() { watched = core::watch(evidence[0], evidence[1], predecessors); }
   /// s* of eq. 5, if the model was calibrated.
@@ -67,6 +73,7 @@ TrainedModel fromMessage(const self_awareness::Model& message);
 /// Writes a temporary file beside `path` and renames it, so that no half-written model is ever
 /// seen.
 /// @throw ModelFileError
+/// @throw std::logic_error if it was not chosen what is watched, or counts were dropped
 void saveModel(const TrainedModel& model, const std::string& path);
 /// @throw ModelFileError if the file is missing, no model, of another version, or damaged
 TrainedModel loadModel(const std::string& path, ModelCounts counts = ModelCounts::kAll);

@@ -16,6 +16,7 @@ _Value = TypeVar('_Value')
 _LONGEST_S = 86400.0
 _UNKNOWN = {'ignore': UnknownEvents.IGNORE, 'warn': UnknownEvents.WARN,
             'error': UnknownEvents.ERROR}
+_MOST = 10_000
 _MOST_WINDOWS = 100_000
 
 
@@ -73,6 +74,13 @@ def offset(text: str) -> float:
         raise argparse.ArgumentTypeError('expected seconds from the recording\'s first message, '
                                          f'not {text!r}')
     return float(text)
+
+
+def count(text: str) -> int:
+    """Argument type: how many of something, 1 or more."""
+    if not text.isdecimal() or not 1 <= int(text) <= _MOST:
+        raise argparse.ArgumentTypeError(f'expected a number from 1 to {_MOST}, not {text!r}')
+    return int(text)
 
 
 def checked(parse: Callable[[str], _Value]) -> Callable[[str], _Value]:

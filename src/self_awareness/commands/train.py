@@ -3,22 +3,30 @@ from __future__ import annotations
 
 import argparse
 import os
-from typing import Dict, List, Optional, Sequence, Tuple
+from contextlib import closing
+from typing import Optional, Sequence
 
-from self_awareness import (FEWEST_GAPS, BagSummary, DetectorParameters, EncodingRules,
-                            ModelFileError, Recording, TrainedModel, Training, encoding_file,
-                            evidence_limits, live_graph, progress, recordings, summarise_bag)
+from self_awareness import PREDECESSORS, TrainedModel, encoding_file, live_graph, progress, training
 from self_awareness.commands import cli
-from self_awareness.output_files import check_outputs
+from self_awareness.output_files import check_outputs, check_replaces_model
 from self_awareness.recordings import BagPart
 from self_awareness.stamps import SECOND_NS
+from self_awareness.training import Counting, Trained
+from self_awareness.training_report import print_summary
+from self_awareness.workers import Cluster, InProcess, Processes, Workers
 
+_BIN, _WINDOW, _HORIZON = '0.01', '0.1', 0
+_OF_THE_MODEL = ('bin', 'window', 'horizon', 'encoding', 'predecessors')
 
 _EPILOG = """\
 The recordings should show all that is normal, start-up aside: leave it out with --start.
+The model is the same with any --jobs, and with --scheduler: every process counts one bag at a
+time, and the counts are added in the order of the bags.
 examples:
   train monday.bag tuesday.bag -o robot.model
   train run.bag --start 20 -o robot.model      from 20 s after the recording's first message on
+  train --add-to robot.model friday.bag -o robot.model
+  train /nfs/bags/*.bag --scheduler 10.0.0.1:8786 --skip-bad -o fleet.model
 """
 
 
@@ -29,122 +37,74 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 def _train(arguments: argparse.Namespace) -> None:
     check_outputs([arguments.output], arguments.bags + [arguments.encoding])
-    _check_replaces_model(arguments.output)
-    horizon_bins = _horizon_bins(arguments.horizon, arguments.bin)
-    summaries = [summarise_bag(path) for path in progress.each(arguments.bags, 'indexes')]
-    _check_distinct(summaries)
-    rules = _rules(arguments.encoding, summaries)
-    training = Training(rules, arguments.bin, arguments.window, horizon_bins)
-    alone = len(arguments.bags) == 1
-    for path in arguments.bags:
-        recording = _add(training, path, arguments.start, arguments.end, alone)
-        seconds = (recording.end - recording.start) / SECOND_NS
-        print(f'{path}: {seconds:.1f} s, {recording.events} events')
-    model = training.model()
-    if arguments.graph:
-        model.graph = live_graph.fetch()
-    limits = _cross_fit(model, arguments)
+    check_replaces_model(arguments.output)
+    base = None if arguments.add_to is None else TrainedModel.load(arguments.add_to)
+    counting = _counting(arguments, base)
+    parts = [BagPart(path, arguments.start, arguments.end) for path in arguments.bags]
+    with closing(_workers(arguments)) as workers:
+        trained = training.train(parts, counting, workers, base, arguments.skip_bad, progress.say)
+        model = trained.model
+        if counting.encoding is None and model.encoding.source == 'none':
+            print('no bag names the senders of its messages: sources are not told apart '
+                  '(source: none)')
+        if arguments.graph:
+            model.graph = live_graph.fetch()
+        limits = _limits(trained, workers)
     model.save(arguments.output)
-    _print_summary(model)
+    print_summary(model)
     print(limits)
+    for bad in trained.bad:
+        cli.warn('train', f'skipped: {bad}')
     print(f'written: {arguments.output}; next, find limits on recordings that it was not trained '
           'on (rosrun self_awareness calibrate)')
 
 
-def _cross_fit(model: TrainedModel, arguments: argparse.Namespace) -> str:
+def _limits(trained: Trained, workers: Workers) -> str:
     """Give the model preliminary limits where there is enough to find them; say how."""
-    parts = [BagPart(path, arguments.start, arguments.end) for path in arguments.bags]
-
     try:
-        model.evidence_calibration = evidence_limits.cross_fit(
-            model, lambda: (recordings.read(model, part) for part in parts),
-            DetectorParameters().settle_time, evidence_limits.BUDGET)
+        training.preliminary_limits(trained, workers)
     except ValueError as error:
         return f'limits       none: {error}'
     return ('limits       preliminary, by what one half of the training says of the other '
-            f'({model.evidence_calibration.windows} windows)')
+            f'({trained.model.evidence_calibration.windows} windows)')
 
 
-def _add(training: Training, path: str, start: Optional[float], end: Optional[float],
-         alone: bool) -> Recording:
-    with progress.messages(os.path.basename(path)) as update:
-        try:
-            recording = training.add_bag(path, start, end, alone, update)
-        except ValueError as error:
-            raise ValueError(f'{path}: {error}') from error
-    if recording.events == 0:
-        raise ValueError(f'{path}: no message is an event by the encoding; a recording of "rosbag '
-                         'play" needs "source: none" (--encoding), and a part that is too short '
-                         'another --start or --end')
-    if recording.events == 1:
-        raise ValueError(f'{path}: one event only, there is no delay to learn; leave it out or '
-                         'record for longer')
-    return recording
-
-
-def _rules(encoding: Optional[str], summaries: Sequence[BagSummary]) -> EncodingRules:
-    """Return the encoding of a file, or the defaults where the bags name no senders: without."""
-    rules = EncodingRules.defaults() if encoding is None else encoding_file.load(encoding)
-    nameless = [summary.path for summary in summaries if not summary.has_sources]
-    if rules.source == 'none' or not nameless:
-        return rules
-    if encoding is None and len(nameless) == len(summaries):
-        print('no bag names the senders of its messages: sources are not told apart '
-              '(source: none)')
-        rules.source = 'none'
-        return rules
-    raise ValueError(f'{nameless[0]}: no connection of this bag names its sender, and sources are '
-                     'to be told apart; leave the bag out, or use "source: none" for all '
-                     '(--encoding)')
-
-
-def _check_distinct(summaries: Sequence[BagSummary]) -> None:
-    paths: Dict[int, str] = {}
-    for summary in summaries:
-        if summary.fingerprint in paths:
-            raise ValueError(f'{summary.path}: the same recording as '
-                             f'{paths[summary.fingerprint]}; name it once')
-        paths[summary.fingerprint] = summary.path
-
-
-def _check_replaces_model(path: str) -> None:
-    """Check that no recording is lost where somebody mixed up the arguments."""
-    if not os.path.exists(path):
-        return
-    try:
-        TrainedModel.load(path)
-    except ModelFileError as error:
-        raise ValueError(f'{path}: is there already, and no model that could be replaced; remove '
-                         'it or choose another name') from error
-
-
-def _horizon_bins(horizon: int, bin_size: int) -> int:
+def _counting(arguments: argparse.Namespace, base: Optional[TrainedModel]) -> Counting:
+    if base is not None:
+        for option in _OF_THE_MODEL:
+            if getattr(arguments, option) is not None:
+                raise ValueError(f'--{option}: is that of {arguments.add_to} (--add-to); leave it '
+                                 'out')
+        return Counting.of(base)
+    bin_size = cli.duration(_BIN) if arguments.bin is None else arguments.bin
+    window = cli.duration(_WINDOW) if arguments.window is None else arguments.window
+    horizon = _HORIZON if arguments.horizon is None else arguments.horizon
     if horizon % bin_size:
         raise ValueError(f'--horizon {horizon / SECOND_NS:g} is no multiple of the bin size '
                          f'{bin_size / SECOND_NS:g}; choose one')
-    return horizon // bin_size
+    encoding = None if arguments.encoding is None else encoding_file.load(arguments.encoding)
+    return Counting(encoding, bin_size, window, horizon // bin_size,
+                    PREDECESSORS if arguments.predecessors is None else arguments.predecessors)
 
 
-def _print_summary(model: TrainedModel) -> None:
-    types = model.event_types
-    seconds = sum(recording.end - recording.start for recording in model.recordings) / SECOND_NS
-    sources = {event_type.source for event_type in types} - {''}
-    print(f'recordings   {len(model.recordings)}')
-    print(f'duration     {seconds:.1f} s')
-    print(f'events       {model.events}')
-    print(f'event types  {len(types)}')
-    print(f'sources      {len(sources) if sources else "not told apart"}')
-    print(f'pairs        {model.pairs} of {len(types) ** 2} with delays')
-    rare = _too_rare(model)
-    print(f'too rare to judge (fewer than {FEWEST_GAPS} gaps between two of a kind)  {len(rare)}')
-    for name, gaps in rare:
-        print(f'  {name}: {gaps} {"gap" if gaps == 1 else "gaps"}')
+def _workers(arguments: argparse.Namespace) -> Workers:
+    if arguments.scheduler is not None:
+        return Cluster(arguments.scheduler)
+    if not arguments.skip_bad:
+        _check_exist(arguments.bags)
+    jobs = min(arguments.jobs or _cores(), len(arguments.bags))
+    return InProcess() if jobs == 1 else Processes(jobs)
 
 
-def _too_rare(model: TrainedModel) -> List[Tuple[str, int]]:
-    gaps = [sum(model.histogram(i, i).values()) for i in range(len(model.event_types))]
-    return [(str(event_type), count) for event_type, count in zip(model.event_types, gaps)
-            if count < FEWEST_GAPS]
+def _check_exist(paths: Sequence[str]) -> None:
+    """Check before hours of work what a slip of the keyboard leads to."""
+    for path in paths:
+        if not os.path.exists(path):
+            raise ValueError(f'{path}: no such file')
+
+
+def _cores() -> int:
+    return len(os.sched_getaffinity(0))
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -155,12 +115,15 @@ def _parser() -> argparse.ArgumentParser:
                         help='a recording of normal operation; delays never cross from one to the '
                              'next')
     parser.add_argument('-o', '--output', required=True, metavar='MODEL', help='file to write')
-    parser.add_argument('--bin', type=cli.duration, default='0.01', metavar='S',
-                        help='size of the bins of delays in s (default: 0.01)')
-    parser.add_argument('--window', type=cli.duration, default='0.1', metavar='S',
-                        help='length of the windows that are scored, in s (default: 0.1)')
-    parser.add_argument('--horizon', type=cli.seconds, default=0, metavar='S',
+    parser.add_argument('--bin', type=cli.duration, metavar='S',
+                        help=f'size of the bins of delays in s (default: {_BIN})')
+    parser.add_argument('--window', type=cli.duration, metavar='S', help='length of the windows '
+                        f'that are scored, in s (default: {_WINDOW})')
+    parser.add_argument('--horizon', type=cli.seconds, metavar='S',
                         help='delays of this many s or more share one bin (default: no horizon)')
+    parser.add_argument('--predecessors', type=cli.count, metavar='N',
+                        help='delays since so many event types are watched of every one, the most '
+                             f'informative ones (default: {PREDECESSORS})')
     parser.add_argument('--graph', action='store_true',
                         help='ask the master of the running robot who subscribes to what, and '
                              'keep it: the root of a fault is told from its victims by it')
@@ -169,4 +132,18 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('--start', type=cli.offset, metavar='S',
                         help='use each recording from this time on, in s from its first message')
     parser.add_argument('--end', type=cli.offset, metavar='S', help='and up to this one')
+    parser.add_argument('--add-to', metavar='MODEL',
+                        help='add to what this model learned, in its encoding, bins and windows; '
+                             'it may be the file to write. Its calibrations are dropped')
+    parser.add_argument('--skip-bad', action='store_true',
+                        help='name bags that cannot be used, and go on without them; else they '
+                             'end the program')
+    where = parser.add_argument_group('many bags').add_mutually_exclusive_group()
+    where.add_argument('--jobs', type=cli.count, metavar='N',
+                       help='processes to work in (default: one for each core, and never more '
+                            'than bags)')
+    where.add_argument('--scheduler', metavar='ADDRESS',
+                       help='work on the cluster of this scheduler of dask.distributed (package '
+                            'python3-distributed); its workers must have self_awareness, and find '
+                            'the bags under the same names')
     return parser

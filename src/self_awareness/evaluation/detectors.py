@@ -10,6 +10,7 @@ from self_awareness import (EVIDENCE_THRESHOLD, PREDECESSORS, DetectorParameters
                             follow_me, judge_by_evidence)
 from self_awareness.evaluation.recording import WINDOW, Recording
 from self_awareness.evaluation.systems import Alarm, Judged, common_threshold, distinct
+from self_awareness.evidence_limits import HeldOut
 
 
 class Paper:
@@ -73,7 +74,7 @@ class Evidence:
         encoded = [recording.encoded(self._trained.event_types) for recording in recordings]
         self._trained.evidence_calibration = evidence_limits.find(
             self._trained, DetectorParameters().settle_time, evidence_limits.BUDGET,
-            lambda: ((recording.stamps, recording.ids, None) for recording in encoded))
+            [HeldOut(recording.stamps, recording.ids) for recording in encoded])
 
     def judge(self, recording: Recording) -> Judged:
         """Judge a recording."""

@@ -13,12 +13,13 @@ from typing import Callable, Dict, List, Optional, Sequence, Tuple
 import numpy as np
 
 from self_awareness import (DetectorParameters, EncodingRules, EvidenceModel, Model, Roc,
-                            TrainedModel, Training, calibration, evidence_limits, recordings)
+                            TrainedModel, calibration, recordings, training)
 from self_awareness.evaluation.peers.frequency import LearnedFrequencyMonitor
 from self_awareness.evaluation.recording import Recording
 from self_awareness.evaluation.systems import ScoringSystem, settling
 from self_awareness.recordings import BagPart, RecordingEvents
 from self_awareness.stamps import SECOND_NS
+from self_awareness.training import Counting, Trained
 
 RATE = 0.01
 """The share of normal windows that may score below the threshold of systems that have one.
@@ -135,11 +136,9 @@ class Judged:
 
 def _evidence(case: Case, data: Path) -> Judged:
     parts = [_below(data, case.training), _below(data, case.calibration)]
-    trained = _trained(parts)
-    parameters = DetectorParameters()
-    trained.evidence_calibration = evidence_limits.cross_fit(
-        trained, lambda: (recordings.read(trained, part) for part in parts),
-        parameters.settle_time, evidence_limits.BUDGET)
+    trained_on = _trained(parts)
+    training.preliminary_limits(trained_on)
+    trained, parameters = trained_on.model, DetectorParameters()
     watched = {track.to_id for track, limit in zip(EvidenceModel(trained).tracks,
                                                    trained.evidence_calibration.limits)
                if not math.isnan(limit)}
@@ -148,7 +147,7 @@ def _evidence(case: Case, data: Path) -> Judged:
 
 
 def _paper(case: Case, data: Path) -> Judged:
-    trained = _trained([_below(data, case.training)])
+    trained = _trained([_below(data, case.training)]).model
     model, parameters = Model(trained), DetectorParameters()
     normal = recordings.read(trained, _below(data, case.calibration))
     scores = calibration.paper_judge(trained, model, None, parameters)(normal.stamps, normal.ids,
@@ -159,7 +158,7 @@ def _paper(case: Case, data: Path) -> Judged:
 
 
 def _frequency_learned(case: Case, data: Path) -> Judged:
-    trained = _trained([_below(data, case.training)])  # for the encoding only
+    trained = _trained([_below(data, case.training)]).model  # for the encoding only
     scorer = LearnedFrequencyMonitor()
     scorer.train([_events(recordings.read(trained, _below(data, case.training)))])
     normal = _events(recordings.read(trained, _below(data, case.calibration)))
@@ -182,11 +181,8 @@ def _below(data: Path, part: BagPart) -> BagPart:
     return BagPart(str(data / part.path), part.start, part.end)
 
 
-def _trained(parts: Sequence[BagPart]) -> TrainedModel:
-    training = Training(EncodingRules.defaults())
-    for part in parts:
-        training.add_bag(part.path, part.start, part.end)
-    return training.model()
+def _trained(parts: Sequence[BagPart]) -> Trained:
+    return training.train(parts, Counting(EncodingRules.defaults()))
 
 
 def _paper_threshold(scores: np.ndarray) -> float:

@@ -1,0 +1,61 @@
+"""`rosrun self_awareness merge`: adds models of robots of the same kind to one."""
+from __future__ import annotations
+
+import argparse
+from typing import Optional, Sequence
+
+from self_awareness import TrainedModel
+from self_awareness.commands import cli
+from self_awareness.output_files import check_outputs, check_replaces_model
+from self_awareness.training import DistinctRecordings
+from self_awareness.training_report import print_summary
+
+_EPILOG = """\
+The models must agree in encoding, windows, bins and horizon. What they learned adds up, as if one
+training had seen all of their recordings; limits and thresholds do not: calibrate the result.
+example:
+  merge robot1.model robot2.model robot3.model -o fleet.model
+"""
+
+
+def main(argv: Optional[Sequence[str]] = None) -> int:
+    """Run the program; return its exit code (see cli.run)."""
+    return cli.run(_parser(), _merge, argv)
+
+
+def _merge(arguments: argparse.Namespace) -> None:
+    if len(arguments.models) < 2:
+        raise ValueError(f'{arguments.models[0]}: one model only; name at least two')
+    check_outputs([arguments.output], arguments.models)
+    check_replaces_model(arguments.output)
+    known = DistinctRecordings()
+    merged: Optional[TrainedModel] = None
+    for path in arguments.models:
+        model = TrainedModel.load(path)
+        for recording in model.recordings:
+            other = known.add(path, recording)
+            if other is not None:
+                raise ValueError(f'{path}: was trained on a recording ({recording.bag}) that '
+                                 f'{other} was trained on, too; it would count twice')
+        if merged is None:
+            merged = model
+            continue
+        try:
+            merged.merge(model)
+        except ValueError as error:
+            raise ValueError(f'{path}: does not fit {arguments.models[0]}: {error}') from error
+    merged.watch()
+    merged.save(arguments.output)
+    print_summary(merged)
+    print(f'written: {arguments.output}, without limits and threshold; calibrate it again (rosrun '
+          'self_awareness calibrate)')
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog='merge', description=__doc__.split(': ', 1)[1], epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('models', nargs='+', metavar='MODEL',
+                        help='file written by train or merge, or by calibrate')
+    parser.add_argument('-o', '--output', required=True, metavar='MODEL', help='file to write')
+    return parser

@@ -1,0 +1,217 @@
+"""Who does the work: this process, several of this machine, or those of an existing cluster.
+
+All give the same results in the same order, so that nobody else need know who did it.
+"""
+from __future__ import annotations
+
+import concurrent.futures
+import multiprocessing
+import multiprocessing.connection
+import os
+import pickle
+import signal
+import threading
+import warnings
+from abc import ABC, abstractmethod
+from collections import deque
+from contextlib import contextmanager
+from typing import Any, Callable, Deque, Iterator, Sequence, TypeVar
+
+from self_awareness import progress
+
+_Shared = TypeVar('_Shared')
+_Task = TypeVar('_Task')
+_Result = TypeVar('_Result')
+
+_AHEAD = 2
+"""So many tasks a worker are under way or done, and wait for their turn."""
+_RETRIES = 2
+_CONNECT_S = 10.0
+
+
+class Workers(ABC):
+    """Apply a function to many tasks. To be closed at the end."""
+
+    @abstractmethod
+    def map(self, function: Callable[[_Shared, _Task], _Result], shared: _Shared,
+            tasks: Sequence[_Task], description: str) -> Iterator[_Result]:
+        """Yield function(shared, task) of every task, in their order.
+
+        Only a few results exist at a time. A caller that may stop early closes the iterator.
+
+        Args:
+            function: of a module, not within a function.
+            shared: what all tasks need; handed over once.
+            tasks: each says by str() what it is.
+            description: of the progress bar.
+
+        Raises:
+            ValueError: the work cannot be done there.
+            Exception: what the function raises.
+        """
+
+    def close(self) -> None:
+        """Let go of what does the work."""
+
+
+class InProcess(Workers):
+    """One task after the other, in this process: arguments and results are handed over as such."""
+
+    def map(self, function: Callable[[_Shared, _Task], _Result], shared: _Shared,
+            tasks: Sequence[_Task], description: str) -> Iterator[_Result]:
+        """See Workers."""
+        for task in tasks:
+            yield function(shared, task)
+
+
+class Processes(Workers):
+    """Parallel processes of this machine.
+
+    Args:
+        number: of processes, more than 0.
+    """
+
+    def __init__(self, number: int) -> None:
+        self._number = number
+
+    def map(self, function: Callable[[_Shared, _Task], _Result], shared: _Shared,
+            tasks: Sequence[_Task], description: str) -> Iterator[_Result]:
+        """See Workers. What is shared is inherited by fork, and not copied."""
+        others = set(multiprocessing.active_children())
+        # Not spawned: that would run the program's main module, which is a script, once more.
+        with concurrent.futures.ProcessPoolExecutor(
+                min(self._number, len(tasks)), multiprocessing.get_context('fork'), _start_worker,
+                (shared,)) as pool:
+            try:
+                yield from _in_order(
+                    tasks, lambda task: pool.submit(_call_with_inherited, function, task),
+                    _result_of_process, lambda: self._number, description)
+            except BaseException:  # GeneratorExit, too: the rest is not wanted any more
+                for child in set(multiprocessing.active_children()) - others:
+                    child.kill()
+                raise
+
+
+class Cluster(Workers):
+    """The workers of an existing dask.distributed cluster.
+
+    Args:
+        address: of its scheduler.
+
+    Raises:
+        ValueError: dask.distributed is not installed, or no scheduler answers.
+    """
+
+    def __init__(self, address: str) -> None:
+        try:
+            import distributed  # optional: who has no cluster does without it
+        except ImportError as error:
+            raise ValueError('--scheduler needs dask.distributed, which is not installed '
+                             f'({error}); its package is python3-distributed') from error
+        self._address = address
+        self._distributed = distributed
+        try:
+            distributed.comm.resolve_address(address)  # of a nonsense, a client is slow to recover
+            self._client = distributed.Client(address, timeout=_CONNECT_S, set_as_default=False)
+        except (OSError, ValueError) as error:
+            raise ValueError(f'--scheduler {address}: no scheduler of dask.distributed answers '
+                             f'there ({error})') from error
+
+    def map(self, function: Callable[[_Shared, _Task], _Result], shared: _Shared,
+            tasks: Sequence[_Task], description: str) -> Iterator[_Result]:
+        """See Workers. What a worker had to do that dies is done by another one."""
+        # As the result of a task, what is shared is made again when the workers that hold it die.
+        there = self._submit(pickle.loads, pickle.dumps(shared))
+        futures = set()
+
+        def submit(task: _Task) -> Any:
+            future = self._submit(_call, function, there, task)
+            futures.add(future)
+            return future
+
+        def result(future: Any, task: _Task) -> _Result:
+            with self._explained(task):
+                data = future.result()
+            futures.remove(future)
+            return pickle.loads(data)
+
+        try:
+            yield from _in_order(tasks, submit, result,
+                                 lambda: sum(self._client.nthreads().values()), description)
+        finally:
+            self._client.cancel([there, *futures])
+
+    def close(self) -> None:
+        """Disconnect; the cluster goes on."""
+        self._client.close()
+
+    def _submit(self, function: Callable[..., Any], *arguments: Any) -> Any:
+        with warnings.catch_warnings():
+            warnings.filterwarnings('ignore', message='(?s).*[Ll]arge object')  # see map()
+            return self._client.submit(function, *arguments, pure=False, retries=_RETRIES)
+
+    @contextmanager
+    def _explained(self, task: object) -> Iterator[None]:
+        try:
+            yield
+        except self._distributed.KilledWorker as error:
+            raise ValueError(f'{task}: worker after worker died of it (of too little memory?)'
+                             ) from error
+        except ModuleNotFoundError as error:
+            raise ValueError(f'--scheduler {self._address}: its workers lack something ({error}); '
+                             'start them where the setup.bash of self_awareness was sourced'
+                             ) from error
+        except (concurrent.futures.CancelledError, OSError) as error:
+            raise ValueError(f'--scheduler {self._address}: the connection was lost ({error})'
+                             ) from error
+
+
+def _in_order(tasks: Sequence[_Task], submit: Callable[[_Task], Any],
+              result: Callable[[Any, _Task], _Result], workers: Callable[[], int],
+              description: str) -> Iterator[_Result]:
+    waiting: Deque[Any] = deque()
+    with progress.items(len(tasks), description) as one_done:
+        for task in tasks:
+            while len(waiting) >= _AHEAD * max(workers(), 1):
+                yield result(*waiting.popleft())
+                one_done()
+            waiting.append((submit(task), task))
+        while waiting:
+            yield result(*waiting.popleft())
+            one_done()
+
+
+def _call(function: Callable[[_Shared, _Task], _Result], shared: _Shared, task: _Task) -> bytes:
+    # Results wait for their turn as bytes, in which histograms are smaller than in the memory.
+    return pickle.dumps(function(shared, task))
+
+
+def _result_of_process(future: concurrent.futures.Future, task: object) -> Any:
+    try:
+        return pickle.loads(future.result())
+    except concurrent.futures.process.BrokenProcessPool as error:
+        raise ValueError(f'{task}: a process that worked on it or beside it was killed (for too '
+                         'little memory?); try fewer --jobs') from error
+
+
+_inherited: Any = None
+"""In a process of Processes: what all of its tasks need."""
+
+
+def _call_with_inherited(function: Callable[[Any, _Task], _Result], task: _Task) -> bytes:
+    return _call(function, _inherited, task)
+
+
+def _start_worker(shared: object) -> None:
+    global _inherited
+    _inherited = shared
+    progress.silence()
+    for number in (signal.SIGINT, signal.SIGTERM):  # Ctrl-C is explained by the parent
+        signal.signal(number, signal.SIG_DFL)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+
+
+def _end_with_parent() -> None:
+    # Idle workers hold both ends of their pipes, and would wait for ever.
+    multiprocessing.connection.wait([multiprocessing.parent_process().sentinel])
+    os._exit(1)

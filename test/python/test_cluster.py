@@ -1,0 +1,153 @@
+"""Training on a real cluster of dask.distributed, on loopback."""
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+from typing import Dict, Iterator, List
+
+import numpy as np
+import pytest
+from conftest import jittery_robot, learned, wait_until, write_bag
+
+from self_awareness import TrainedModel
+from self_awareness.commands import train
+
+distributed = pytest.importorskip(
+    'distributed', reason='dask.distributed (python3-distributed) is not installed')
+
+SCRIPT = Path(__file__).resolve().parents[2] / 'scripts' / 'train'
+DEADLINE_S = 60.0
+
+
+class Cluster:
+    """A scheduler and workers, each a process of its own."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.workers: Dict[str, subprocess.Popen] = {}
+        self._processes: List[subprocess.Popen] = []
+        self._file = folder / 'scheduler.json'
+        self._start('scheduler', '--port', '0', '--scheduler-file', str(self._file))
+        wait_until(self._written, 'the scheduler starts')
+        self.address = json.loads(self._file.read_text())['address']
+        self.client = distributed.Client(self.address, set_as_default=False)
+
+    def add_worker(self, name: str) -> None:
+        """Start a worker, with one thread."""
+        self.workers[name] = self._start(
+            'worker', self.address, '--name', name, '--nthreads', '1', '--no-nanny',
+            '--local-directory', str(self.folder / name), '--worker-port', '0')
+        wait_until(lambda: self.address_of(name), f'worker {name} starts')
+
+    def address_of(self, name: str) -> str:
+        """Return where a worker listens; '': it is not there."""
+        workers = self.client.scheduler_info()['workers']
+        return next((address for address, worker in workers.items() if worker['name'] == name),
+                    '')
+
+    def close(self) -> None:
+        """End all processes."""
+        self.client.close()
+        for process in self._processes:
+            process.kill()
+            process.wait()
+
+    def _start(self, kind: str, *arguments: str) -> subprocess.Popen:
+        process = subprocess.Popen(
+            [sys.executable, '-m', f'distributed.cli.dask_{kind}', *arguments, '--host',
+             '127.0.0.1', '--no-dashboard'], cwd=str(self.folder), stderr=subprocess.DEVNULL)
+        self._processes.append(process)
+        return process
+
+    def _written(self) -> bool:
+        try:
+            return bool(json.loads(self._file.read_text()))
+        except (FileNotFoundError, json.JSONDecodeError):
+            return False
+
+
+@pytest.fixture(name='cluster')
+def _cluster(tmp_path: Path) -> Iterator[Cluster]:
+    cluster = Cluster(tmp_path)
+    try:
+        yield cluster
+    finally:
+        cluster.close()
+
+
+@pytest.fixture(scope='module', name='bags')
+def _bags(tmp_path_factory: pytest.TempPathFactory) -> List[str]:
+    folder = tmp_path_factory.mktemp('bags')
+    return [write_bag(folder / f'{index}.bag', jittery_robot(1000.0 * index, 40.0, index))
+            for index in range(1, 9)]
+
+
+@pytest.fixture(scope='module', name='expected')
+def _expected(bags: List[str], tmp_path_factory: pytest.TempPathFactory) -> TrainedModel:
+    path = str(tmp_path_factory.mktemp('expected') / 'm')
+    assert train.main([*bags, '-o', path, '--jobs', '1']) == 0
+    return TrainedModel.load(path)
+
+
+def check_same(path: Path, expected: TrainedModel) -> None:
+    model = TrainedModel.load(str(path))
+    assert learned(model) == learned(expected)
+    found, wanted = model.evidence_calibration, expected.evidence_calibration
+    assert np.array_equal(found.limits, wanted.limits, equal_nan=True)
+    assert np.isfinite(found.limits).any()
+    assert (found.linker_limit, found.windows) == (wanted.linker_limit, wanted.windows)
+
+
+def test_a_worker_is_killed_and_the_result_is_right(cluster: Cluster, bags: List[str],
+                                                    expected: TrainedModel,
+                                                    tmp_path: Path) -> None:
+    for name in ('one', 'other'):
+        cluster.add_worker(name)
+    victim, process = cluster.address_of('other'), cluster.workers['other']
+    training = subprocess.Popen([sys.executable, str(SCRIPT), *bags, '-o', str(tmp_path / 'm'),
+                                 '--scheduler', cluster.address], stdout=subprocess.PIPE,
+                                stderr=subprocess.PIPE, text=True)
+    wait_until(lambda: cluster.client.processing()[victim], 'the worker gets a task')
+    # What it has now it will never finish; the scheduler cannot know.
+    os.kill(process.pid, signal.SIGSTOP)
+    wait_until(lambda: len(cluster.client.processing()[victim]) > 0, 'tasks that are its own')
+    lost = cluster.client.processing()[victim]
+    os.kill(process.pid, signal.SIGKILL)
+    out, err = training.communicate(timeout=DEADLINE_S)
+    assert training.returncode == 0, err
+    assert lost and not cluster.address_of('other') and cluster.address_of('one')
+    assert [line.split(':')[0] for line in out.splitlines()[:len(bags)]] == bags
+    check_same(tmp_path / 'm', expected)
+
+
+def test_bad_bags_are_skipped_on_a_cluster(cluster: Cluster, bags: List[str],
+                                           expected: TrainedModel, tmp_path: Path,
+                                           capsys) -> None:
+    cluster.add_worker('one')
+    missing = str(tmp_path / 'missing.bag')
+    arguments = [missing, *bags, '-o', str(tmp_path / 'm'), '--scheduler', cluster.address]
+    assert train.main(arguments) == 1
+    assert f'train: error: {missing}: no such file' in capsys.readouterr().err
+    assert not (tmp_path / 'm').exists()
+    assert train.main([*arguments, '--skip-bad']) == 0
+    assert f'train: warning: skipped: {missing}: no such file' in capsys.readouterr().err
+    check_same(tmp_path / 'm', expected)
+
+
+def test_nobody_at_the_address(bags: List[str], tmp_path: Path, monkeypatch, capsys) -> None:
+    monkeypatch.setattr('self_awareness.workers._CONNECT_S', 1.0)
+    for address in ('127.0.0.1:1', 'tcp://127.0.0.1:1', 'nonsense://x', 'none'):
+        assert train.main([*bags, '-o', str(tmp_path / 'm'), '--scheduler', address]) == 1
+        error, = capsys.readouterr().err.splitlines()
+        assert error.startswith(f'train: error: --scheduler {address}: no scheduler'), error
+
+
+def test_without_dask_its_package_is_named(bags: List[str], tmp_path: Path, monkeypatch,
+                                           capsys) -> None:
+    monkeypatch.setitem(sys.modules, 'distributed', None)
+    assert train.main([*bags, '-o', str(tmp_path / 'm'), '--scheduler', '127.0.0.1:1']) == 1
+    assert 'python3-distributed' in capsys.readouterr().err

@@ -1,0 +1,110 @@
+"""Who does the work: results in order, no more of them than needed, and nothing left behind."""
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+from typing import Tuple
+
+import pytest
+from conftest import wait_until
+
+from self_awareness.workers import InProcess, Processes, Workers
+
+EVERYONE = [InProcess(), Processes(1), Processes(3)]
+
+
+def times(factor: int, number: int) -> int:
+    return factor * number
+
+
+def after_the_next(folder: Path, number: int) -> int:
+    """Return once the next task has begun: tasks end in another order than they begin."""
+    (folder / str(number)).touch()
+    if number % 2 == 0:
+        wait_until((folder / str(number + 1)).exists, 'the next task')
+    return number
+
+
+def fail_at_two(_: None, number: int) -> int:
+    if number == 2:
+        raise ValueError('two is too much')
+    return number
+
+
+def die(_: None, __: int) -> None:
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def begin_and_hang(folder: Path, number: int) -> None:
+    (folder / f'{number}').write_text(str(os.getpid()))
+    signal.pause()
+
+
+@pytest.mark.parametrize('workers', EVERYONE)
+def test_results_come_in_order(workers: Workers) -> None:
+    assert list(workers.map(times, 3, range(20), 'test')) == list(range(0, 60, 3))
+
+
+def test_results_come_in_order_whoever_is_ready_first(tmp_path: Path) -> None:
+    assert list(Processes(2).map(after_the_next, tmp_path, range(6), 'test')) == list(range(6))
+
+
+@pytest.mark.parametrize('workers', EVERYONE)
+def test_an_error_comes_when_it_is_its_turn(workers: Workers) -> None:
+    results = workers.map(fail_at_two, None, range(5), 'test')
+    assert [next(results), next(results)] == [0, 1]
+    with pytest.raises(ValueError, match='two is too much'):
+        next(results)
+
+
+def test_work_begins_only_a_little_ahead(tmp_path: Path) -> None:
+    results = Processes(2).map(after_the_next, tmp_path, range(100), 'test')
+    next(results)
+    assert len(list(tmp_path.iterdir())) <= 5  # two for each process, and the one that came
+    results.close()
+
+
+def test_a_process_that_is_killed_is_told(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match='^0: a process .* was killed'):
+        list(Processes(2).map(die, None, range(4), 'test'))
+
+
+def alive(pid: int) -> bool:
+    try:
+        return Path(f'/proc/{pid}/stat').read_text().rsplit(')', 1)[1].split()[0] != 'Z'
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+
+
+def begun(folder: Path) -> Tuple[int, ...]:
+    texts = [path.read_text() for path in folder.glob('[0-9]*')]
+    return tuple(int(text) for text in texts if text)
+
+
+def test_what_is_not_wanted_any_more_is_not_waited_for(tmp_path: Path) -> None:
+    results = Processes(2).map(_second_hangs, tmp_path, range(8), 'test')
+    assert next(results) == 0
+    wait_until(lambda: begun(tmp_path), 'a process hangs')
+    results.close()
+    assert not any(map(alive, begun(tmp_path)))
+
+
+def _second_hangs(folder: Path, number: int) -> int:
+    if number > 0:
+        begin_and_hang(folder, number)
+    return number
+
+
+@pytest.mark.parametrize('how', [signal.SIGTERM, signal.SIGKILL])
+def test_no_process_outlives_the_program(how: signal.Signals, tmp_path: Path) -> None:
+    program = (f'import sys; sys.path.insert(0, {str(Path(__file__).parent)!r});'
+               'from pathlib import Path; from test_workers import begin_and_hang, Processes;'
+               f'list(Processes(2).map(begin_and_hang, Path({str(tmp_path)!r}), range(2), "t"))')
+    with subprocess.Popen([sys.executable, '-c', program]) as process:
+        wait_until(lambda: len(begun(tmp_path)) == 2, 'two processes hang')
+        os.kill(process.pid, how)
+        process.wait()
+    wait_until(lambda: not any(map(alive, begun(tmp_path))), 'the processes end')
