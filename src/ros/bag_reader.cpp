@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bag_index.h"
+#include "bag_messages.h"
 
 namespace self_awareness::ros1 {
 namespace {
@@ -128,10 +129,10 @@ void BagReader::read(const Encoder& encoder, const TimeRange& range, const Handl
   for (const Connection& connection : index_->connections) {
     encoders.push_back(encoder.connect(connection));
   }
-  BagMessages messages(summary_.path);
   std::vector<std::uint8_t> content;
   std::uint64_t done = 0;
   try {
+    const std::unique_ptr<BagMessages> messages = BagMessages::open(summary_.path, *index_);
     for (const BagIndexEntry& entry : index_->entries) {
       if (progress && done % kMessagesPerProgress == 0) {
         progress(done, summary_.messages);
@@ -143,7 +144,7 @@ void BagReader::read(const Encoder& encoder, const TimeRange& range, const Handl
         continue;
       }
       if (connection_encoder->needsContent()) {
-        messages.read(entry, content);
+        messages->read(entry, content);
         handler({entry.stamp, connection_encoder->id(content.data(), content.size())});
       } else {
         handler({entry.stamp, connection_encoder->id()});

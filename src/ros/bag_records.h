@@ -1,20 +1,20 @@
 #pragma once
 
+#include <rosbag/exceptions.h>
+
 #include <cstdint>
 #include <cstring>
-#include <stdexcept>
+#include <fstream>
 #include <string>
 #include <string_view>
+#include <utility>
 
 /// The records that a bag of format 2.0 is made of (wiki.ros.org/Bags/Format/2.0): a header of
 /// named fields, and data.
 namespace self_awareness::ros1::bag_records {
 
-/// The bytes are not as the format says.
-class FormatError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
+/// The file is not as the format says.
+using FormatError = rosbag::BagFormatException;
 
 constexpr std::string_view kFormat = "#ROSBAG V2.0\n";  // begins the file
 
@@ -89,5 +89,37 @@ inline std::string_view takeHeader(std::string_view& bytes, Op op) {
   }
   return header;
 }
+
+/// Enough for the header of a chunk or of a message [bytes].
+constexpr std::uint64_t kHeaderBytes = 256;
+
+/// A file that is read in pieces: no more than is asked for, as a stream's own buffer would.
+class PiecesOfFile {
+ public:
+  explicit PiecesOfFile(const std::string& path);
+
+  std::uint64_t size() const { return size_; }
+  /// What is at a position, up to the end of the file; valid until the next call. If it is not at
+  /// hand, it is read, and `ahead` [bytes] with it.
+  /// @throw FormatError if the position lies behind the end
+  std::string_view at(std::uint64_t position, std::uint64_t bytes, std::uint64_t ahead = 0);
+
+ private:
+  std::ifstream file_;
+  std::uint64_t size_ = 0;
+  std::string buffer_;
+  std::uint64_t position_ = 0;  // of the buffer
+};
+
+/// The header of a chunk.
+struct Chunk {
+  /// @throw FormatError if there is none
+  Chunk(PiecesOfFile& file, std::uint64_t position);
+
+  std::string compression;           ///< "none", "bz2" or "lz4"
+  std::uint32_t unpacked_bytes = 0;  ///< of the data
+  std::uint64_t begin = 0;           ///< of the data in the file [bytes]
+  std::uint64_t end = 0;
+};
 
 }  // namespace self_awareness::ros1::bag_records

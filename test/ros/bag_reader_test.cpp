@@ -11,7 +11,10 @@
 #include <boost/make_shared.hpp>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <map>
+#include <random>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -327,6 +330,28 @@ TEST_F(BagReaderTest, EveryTruncatedBagIsRefusedWithTheMend) {
     EXPECT_NE(error.find("rosbag reindex '" + path("cut.bag") + "'"), std::string::npos)
         << share << ": " << error;
   }
+}
+
+TEST_F(BagReaderTest, ADamagedBagIsReadOrRefused) {
+  std::ifstream file(writeBag("a.bag", rosbag::compression::LZ4), std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(file)),
+                          std::istreambuf_iterator<char>());
+  rules_.type_fields = {{"std_msgs/String", "data"}};
+  std::mt19937 random(1);
+  int refused = 0;
+  for (int i = 0; i < 300; ++i) {
+    std::string damaged = bytes;
+    damaged[random() % damaged.size()] ^= static_cast<char>(1 << random() % 8);
+    std::ofstream(path("damaged.bag"), std::ios::binary) << damaged;
+    try {
+      read(path("damaged.bag"));
+    } catch (const BagError&) {
+      ++refused;
+    } catch (const std::invalid_argument&) {  // the message's definition was hit
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 0);
 }
 
 TEST_F(BagReaderTest, ABagThatIsStillBeingWrittenIsRefused) {
