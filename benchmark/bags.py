@@ -2,9 +2,9 @@
 """Benchmark of `train` on a bag with images, beside programs that only iterate over it.
 
 Makes a bag of some 1.5 GB in a temporary folder, and runs in turn a bare `rosbag::View` iteration
-in C++, `rosbag.Bag.read_messages(raw=True)` in Python, and `train`: time, CPU time, and what they
-read of the bag. Every program is run without work as well: its start, with its imports, is told
-apart. Needs `catkin_make bags_benchmark`.
+in C++, `rosbag.Bag.read_messages(raw=True)` in Python, `read_events` (how `train` reads its bags),
+and `train`: time, CPU time, and what they read of the bag. Every program is run without work as
+well: its start, with its imports, is told apart. Needs `catkin_make bags_benchmark`.
 """
 from __future__ import annotations
 
@@ -25,6 +25,8 @@ _DOCS = Path(__file__).resolve().parents[1] / 'docs'
 _SECONDS = 160.0
 _SEED = 1
 _RAW = 'import sys, rosbag\nfor _ in rosbag.Bag(sys.argv[1]).read_messages(raw=True): pass'
+_EVENTS = ('import sys, self_awareness as s\n'
+           's.read_events(sys.argv[1], s.EncodingRules.defaults())')
 _PIECE_BYTES = 1 << 20
 
 
@@ -91,6 +93,8 @@ def programs(bag: str, model: str) -> Dict[str, Program]:
         'view': Program([view, bag], [view]),
         'read_messages': Program([sys.executable, '-c', _RAW, bag],
                                  [sys.executable, '-c', 'import rosbag']),
+        'read_events': Program([sys.executable, '-c', _EVENTS, bag],
+                               [sys.executable, '-c', 'import self_awareness']),
         'train': Program([train, bag, '-o', model], [train, '--help']),
     }
 

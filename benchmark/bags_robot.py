@@ -46,7 +46,8 @@ NODES: Dict[str, Tuple[float, List[Topic]]] = {
     '/arm': (50.0, [Topic('/arm/joint_states', JointState(position=[0.0] * 6)),
                     Topic('/arm/wrench', TwistStamped(), 1, 0.0008),
                     Topic('/arm/goal', JointState(position=[0.0] * 6), 5, 0.002)]),
-    '/guard': (25.0, [Topic('/guard/twist', TwistStamped()), Topic('/guard/range', Range(), 1, 0.004),
+    '/guard': (25.0, [Topic('/guard/twist', TwistStamped()),
+                      Topic('/guard/range', Range(), 1, 0.004),
                       Topic('/guard/state', BatteryState(), 25, 0.001)]),
 }
 """Cycles a second and topics, by node; every node logs now and then as well."""
@@ -66,8 +67,6 @@ def write(path: str, seconds: float, seed: int) -> int:
             time = genpy.Time.from_sec(stamp)
             if kind is _IMAGE:
                 kind.data = pixels
-            if isinstance(kind, Log):
-                kind.level = Log.INFO
             bag.write(topic, kind, time, connection_header={
                 'topic': topic, 'callerid': node, 'type': kind._type, 'md5sum': kind._md5sum,
                 'message_definition': kind._full_text, 'latching': '0'})
@@ -86,7 +85,7 @@ def _messages(seconds: float, rng: random.Random) -> Iterator[Tuple[float, str, 
             cycle += 1
             stamp += max(rng.gauss(1.0, 0.03) / rate, _SHORTEST_STEP_S)
         stamp = START_S + rng.expovariate(1.0 / _LOG_EVERY_S)
-        log = Log(name=node, msg='nothing out of the ordinary', file='main.cpp', line=42)
+        log = Log(level=Log.INFO, name=node, msg='nothing out of the ordinary', line=42)
         while stamp < START_S + seconds:
             yield stamp, node, '/rosout', log
             stamp += rng.expovariate(1.0 / _LOG_EVERY_S)
