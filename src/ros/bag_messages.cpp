@@ -25,10 +25,11 @@ class MessagesOfChunks : public BagMessages {
 
   void read(const BagIndexEntry& entry, std::vector<std::uint8_t>& content) override {
     if (!chunk_ || chunk_position_ != entry.chunk) {
+      const Chunk chunk(file_, entry.chunk);
       chunk_.reset();
-      chunk_.emplace(file_, entry.chunk);
+      unpack(chunk);
+      chunk_ = chunk;
       chunk_position_ = entry.chunk;
-      unpack();
     }
     if (chunk_->compression == "none") {
       const std::uint64_t position = chunk_->begin + entry.offset;
@@ -51,18 +52,18 @@ class MessagesOfChunks : public BagMessages {
     return takeNumber<std::uint32_t>(bytes);
   }
 
-  void unpack() {
-    if (chunk_->compression == "none") {
+  void unpack(const Chunk& chunk) {
+    if (chunk.compression == "none") {
       return;
     }
-    if (chunk_->compression != "bz2" && chunk_->compression != "lz4") {
-      throw FormatError("unknown compression: " + chunk_->compression);
+    if (chunk.compression != "bz2" && chunk.compression != "lz4") {
+      throw FormatError("unknown compression: " + chunk.compression);
     }
-    std::string packed(file_.at(chunk_->begin, chunk_->end - chunk_->begin));
-    unpacked_.resize(chunk_->unpacked_bytes);
+    std::string packed(file_.at(chunk.begin, chunk.end - chunk.begin));
+    unpacked_.resize(chunk.unpacked_bytes);
     rosbag::ChunkedFile().decompress(
-        chunk_->compression == "bz2" ? rosbag::compression::BZ2 : rosbag::compression::LZ4,
-        reinterpret_cast<std::uint8_t*>(&unpacked_[0]), chunk_->unpacked_bytes,
+        chunk.compression == "bz2" ? rosbag::compression::BZ2 : rosbag::compression::LZ4,
+        reinterpret_cast<std::uint8_t*>(&unpacked_[0]), chunk.unpacked_bytes,
         reinterpret_cast<std::uint8_t*>(&packed[0]), static_cast<unsigned int>(packed.size()));
   }
 
