@@ -29,6 +29,14 @@ struct RecordedEvents {
   std::vector<std::uint32_t> ids;
 };
 
+// The array reads what its owner holds, and keeps it alive: events may be many.
+template <typename T>
+py::array_t<T> viewOf(const std::vector<T>& values, const py::object& owner) {
+  py::array_t<T> view(static_cast<py::ssize_t>(values.size()), values.data(), owner);
+  view.attr("setflags")(py::arg("write") = false);
+  return view;
+}
+
 RecordedEvents readEvents(const std::string& path, const ros1::EncodingRules& rules,
                           const std::vector<core::EventType>& known, const ros1::TimeRange& range,
                           const py::object& progress) {
@@ -38,6 +46,8 @@ RecordedEvents readEvents(const std::string& path, const ros1::EncodingRules& ru
       rules, [&](const core::EventType& type) { return vocabulary.intern(type); });
   RecordedEvents events;
   events.summary = reader.summary();
+  events.stamps.reserve(events.summary.messages);
+  events.ids.reserve(events.summary.messages);
   reader.read(
       encoder, range,
       [&](const core::Event& event) {
@@ -135,9 +145,18 @@ void bindBags(py::module& m) {
   py::class_<RecordedEvents>(m, "RecordedEvents", "The events of a recording, in memory.")
       .def_readonly("summary", &RecordedEvents::summary)
       .def_readonly("event_types", &RecordedEvents::event_types, "by id")
-      .def_property_readonly("stamps",
-                             [](const RecordedEvents& self) { return toArray(self.stamps); })
-      .def_property_readonly("ids", [](const RecordedEvents& self) { return toArray(self.ids); });
+      .def_property_readonly(
+          "stamps",
+          [](const py::object& self) {
+            return viewOf(self.cast<const RecordedEvents&>().stamps, self);
+          },
+          "int64 [ns], read-only")
+      .def_property_readonly(
+          "ids",
+          [](const py::object& self) {
+            return viewOf(self.cast<const RecordedEvents&>().ids, self);
+          },
+          "uint32, read-only");
   m.def(
       "read_events",
       [](const std::string& path, const ros1::EncodingRules& encoding,
