@@ -59,6 +59,7 @@ RecordedEvents readEvents(const std::string& path, const ros1::EncodingRules& ru
   return events;
 }
 
+using EventTypeState = std::tuple<std::string, std::string, std::string>;
 using EncodingState =
     std::tuple<bool, std::vector<std::string>, std::vector<std::string>, std::vector<std::string>,
                std::vector<std::string>, std::map<std::string, std::string>>;
@@ -96,7 +97,14 @@ void bindEncoding(py::module& m) {
            [](const core::EventType& self) { return "<EventType " + core::toString(self) + ">"; })
       .def("__eq__", [](const core::EventType& a, const core::EventType& b) { return a == b; })
       .def("__hash__",
-           [](const core::EventType& self) { return py::hash(py::str(core::toString(self))); });
+           [](const core::EventType& self) { return py::hash(py::str(core::toString(self))); })
+      .def(py::pickle(
+          [](const core::EventType& self) {
+            return EventTypeState{self.source, self.scope, self.type};
+          },
+          [](const EventTypeState& state) {
+            return core::EventType{std::get<0>(state), std::get<1>(state), std::get<2>(state)};
+          }));
 
   py::class_<ros1::EncodingRules>(m, "EncodingRules",
                                   "How messages become events; see config/encoding.yaml.")

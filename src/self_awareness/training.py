@@ -18,8 +18,9 @@ from self_awareness.recordings import BagPart, RecordingEvents, overlap
 from self_awareness.stamps import SECOND_NS
 from self_awareness.workers import InProcess, Workers
 
-_MOST_KEPT_EVENTS = 20_000_000
-"""Of 12 bytes each."""
+_MOST_EVENTS_OF_BAG = 5_000_000
+_MOST_EVENTS = 20_000_000
+"""So many events, of 12 bytes each, are kept for the limits; other bags are read once more."""
 
 
 @dataclass(frozen=True)
@@ -81,10 +82,9 @@ def train(parts: Sequence[BagPart], counting: Counting, workers: Optional[Worker
             named twice, or is in the base already; some bags name senders, and some do not.
     """
     workers = workers or InProcess()
-    in_process = isinstance(workers, InProcess)
     alone = base is None and len(parts) == 1
     total = _Total(base)
-    tasks = [_Task(part, alone, in_process) for part in parts]
+    tasks = [_Task(part, alone, workers.near) for part in parts]
     with closing(workers.map(_count, counting, tasks, 'bags')) as results:
         for part, counted in zip(parts, results):
             if isinstance(counted, _Counted):
@@ -162,7 +162,7 @@ class _Total:
         self.model = base
         self.trained_on: List[TrainedOn] = []
         self.bad: List[str] = []
-        self._kept_events = 0
+        self._events = 0
         self._known = DistinctRecordings()
         for recording in [] if base is None else base.recordings:
             self._known.add(f'{recording.bag}, which the model was trained on', recording)
@@ -185,8 +185,8 @@ class _Total:
                 self.model.merge(counted.model)
             except ValueError as error:
                 raise ValueError(f'{part.path}: {error}') from error
-        self._kept_events += recording.events
-        kept = counted.events if self._kept_events <= _MOST_KEPT_EVENTS else None
+        self._events += recording.events
+        kept = counted.events if self._events <= _MOST_EVENTS else None
         self.trained_on.append(TrainedOn(part, None if alone else half, kept))
         seconds = (recording.end - recording.start) / SECOND_NS
         return f'{part.path}: {seconds:.1f} s, {recording.events} events'
@@ -220,7 +220,8 @@ def _count(counting: Counting, task: _Task) -> Union[_Counted, _Bad]:
         return _Bad(str(error))
     except ValueError as error:
         return _Bad(f'{part.path}: {error}')
-    return _Counted(training.model(watch=False), events if task.keep_events else None)
+    keep = task.keep_events and recording.events <= _MOST_EVENTS_OF_BAG
+    return _Counted(training.model(watch=False), events if keep else None)
 
 
 def _read(counting: Counting, part: BagPart) -> Tuple[RecordingEvents, EncodingRules]:

@@ -32,6 +32,9 @@ _CONNECT_S = 10.0
 class Workers(ABC):
     """Apply a function to many tasks. To be closed at the end."""
 
+    near = True
+    """Whether it costs little to hand over arguments and results."""
+
     @abstractmethod
     def map(self, function: Callable[[_Shared, _Task], _Result], shared: _Shared,
             tasks: Sequence[_Task], description: str) -> Iterator[_Result]:
@@ -101,6 +104,8 @@ class Cluster(Workers):
     Raises:
         ValueError: dask.distributed is not installed, or no scheduler answers.
     """
+
+    near = False
 
     def __init__(self, address: str) -> None:
         try:

@@ -11,10 +11,11 @@ import pytest
 import rosbag
 from conftest import robot
 
-from self_awareness.commands import calibrate, info, score, train
+from self_awareness.commands import calibrate, info, merge, score, train
 
 SCRIPTS = Path(__file__).resolve().parents[2] / 'scripts'
-PROGRAMS = {'train': train, 'calibrate': calibrate, 'score': score, 'info': info}
+PROGRAMS = {'train': train, 'calibrate': calibrate, 'score': score, 'info': info,
+            'merge': merge}
 
 
 @pytest.fixture

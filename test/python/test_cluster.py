@@ -126,8 +126,10 @@ def test_a_worker_is_killed_and_the_result_is_right(cluster: Cluster, bags: List
 
 def test_bad_bags_are_skipped_on_a_cluster(cluster: Cluster, bags: List[str],
                                            expected: TrainedModel, tmp_path: Path,
-                                           capsys) -> None:
+                                           monkeypatch, capsys) -> None:
     cluster.add_worker('one')
+    monkeypatch.chdir(Path(bags[0]).parent)
+    bags = [Path(bag).name for bag in bags]
     missing = str(tmp_path / 'missing.bag')
     arguments = [missing, *bags, '-o', str(tmp_path / 'm'), '--scheduler', cluster.address]
     assert train.main(arguments) == 1

@@ -40,7 +40,9 @@ def _train(arguments: argparse.Namespace) -> None:
     check_replaces_model(arguments.output)
     base = None if arguments.add_to is None else TrainedModel.load(arguments.add_to)
     counting = _counting(arguments, base)
-    parts = [BagPart(path, arguments.start, arguments.end) for path in arguments.bags]
+    # The workers of a cluster have working directories of their own.
+    paths = map(os.path.abspath, arguments.bags) if arguments.scheduler else arguments.bags
+    parts = [BagPart(path, arguments.start, arguments.end) for path in paths]
     with closing(_workers(arguments)) as workers:
         trained = training.train(parts, counting, workers, base, arguments.skip_bad, progress.say)
         model = trained.model
