@@ -3,8 +3,9 @@
 // load PREFIX TOPICS RATE SEED [IMAGE]
 //   PREFIX  topics are PREFIX0, PREFIX1, ...
 //   TOPICS  how many; sensor_msgs/Imu, 318 bytes of content
-//   RATE    of each [Hz]; periods vary by 2 %
-//   IMAGE   a further topic with sensor_msgs/Image at 30 Hz
+//   RATE    of each [Hz]: one timer, whose periods vary by 2 %, starts a cycle in which all are
+//           published one after the other
+//   IMAGE   a further topic with sensor_msgs/Image at 30 Hz, by a timer of its own
 //
 // Commands, one a line, from standard input, each answered by a line:
 //   await N                subscribers of every topic
@@ -19,7 +20,6 @@
 #include <chrono>
 #include <cstdint>
 #include <iostream>
-#include <queue>
 #include <random>
 #include <string>
 #include <thread>
@@ -30,6 +30,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr double kJitter = 0.02;   // of a period, either way
+constexpr double kBusy = 0.9;      // share of a period that a cycle takes
 constexpr double kImageRate = 30;  // [Hz]
 constexpr std::uint32_t kQueueSize = 1000;
 constexpr std::uint32_t kImageQueueSize = 10;
@@ -59,50 +60,49 @@ class Load {
   }
 
   std::uint64_t publish(double seconds, std::size_t image_bytes) {
-    struct Due {
-      double at;          // [s]
-      std::size_t topic;  // past the last one: the image
-      bool operator<(const Due& other) const { return at > other.at; }
-    };
+    std::uniform_real_distribution<double> phase(0, 1);
     sensor_msgs::Image image;
     image.data.resize(image_bytes);
-    std::uniform_real_distribution<double> phase(0, 1);
-    std::uniform_real_distribution<double> jitter(1 - kJitter, 1 + kJitter);
-    std::priority_queue<Due> next;
-    for (std::size_t topic = 0; topic < publishers_.size(); ++topic) {
-      next.push({phase(random_) / rate_, topic});
-    }
-    if (image_publisher_ && image_bytes > 0) {
-      next.push({phase(random_) / kImageRate, publishers_.size()});
-    }
+    const bool images = image_publisher_ && image_bytes > 0;
+    double next_image = images ? phase(random_) / kImageRate : seconds;
     std::uint64_t published = 0;
-    const Clock::time_point start = Clock::now();
-    while (ros::ok() && next.top().at < seconds) {
-      const Due due = next.top();
-      next.pop();
-      std::this_thread::sleep_until(start + std::chrono::duration_cast<Clock::duration>(
-                                                std::chrono::duration<double>(due.at)));
-      const bool is_image = due.topic == publishers_.size();
-      if (is_image) {
-        image.header.stamp = ros::Time::now();
-        image_publisher_.publish(image);
-      } else {
+    start_ = Clock::now();
+    for (double cycle = phase(random_) / rate_; cycle < seconds; cycle += jittered(1 / rate_)) {
+      double due = cycle;
+      for (const ros::Publisher& publisher : publishers_) {
+        for (; next_image < due; next_image += jittered(1 / kImageRate)) {
+          sleepUntil(next_image);
+          image.header.stamp = ros::Time::now();
+          image_publisher_.publish(image);
+          ++published;
+        }
+        sleepUntil(due);
         imu_.header.stamp = ros::Time::now();
-        publishers_[due.topic].publish(imu_);
+        publisher.publish(imu_);
+        ++published;
+        due += jittered(kBusy / rate_ / static_cast<double>(publishers_.size()));
       }
-      ++published;
-      next.push({due.at + jitter(random_) / (is_image ? kImageRate : rate_), due.topic});
     }
     return published;
   }
 
  private:
+  /// Varies a time [s].
+  double jittered(double time) {
+    return time * std::uniform_real_distribution<double>(1 - kJitter, 1 + kJitter)(random_);
+  }
+  void sleepUntil(double time) const {
+    std::this_thread::sleep_until(
+        start_ + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(time)));
+  }
+
   ros::NodeHandle node_handle_;
   std::vector<ros::Publisher> publishers_;
   ros::Publisher image_publisher_;
   sensor_msgs::Imu imu_;
   double rate_;
   std::mt19937 random_;
+  Clock::time_point start_;
 };
 
 }  // namespace
