@@ -4,7 +4,7 @@
 //   PREFIX  topics are PREFIX0, PREFIX1, ...
 //   TOPICS  how many; sensor_msgs/Imu, 318 bytes of content
 //   RATE    of each [Hz]: one timer, whose periods vary by 2 %, starts a cycle in which all are
-//           published one after the other
+//           published one after the other, at distances that vary by 50 %
 //   IMAGE   a further topic with sensor_msgs/Image at 30 Hz, by a timer of its own
 //
 // Commands, one a line, from standard input, each answered by a line:
@@ -29,9 +29,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kJitter = 0.02;   // of a period, either way
-constexpr double kBusy = 0.9;      // share of a period that a cycle takes
-constexpr double kImageRate = 30;  // [Hz]
+constexpr double kJitter = 0.02;     // of a period, either way
+constexpr double kStepJitter = 0.5;  // of the distances in a cycle
+constexpr double kBusy = 0.9;        // share of a period that a cycle takes
+constexpr double kImageRate = 30;    // [Hz]
 constexpr std::uint32_t kQueueSize = 1000;
 constexpr std::uint32_t kImageQueueSize = 10;
 
@@ -64,13 +65,14 @@ class Load {
     sensor_msgs::Image image;
     image.data.resize(image_bytes);
     const bool images = image_publisher_ && image_bytes > 0;
-    double next_image = images ? phase(random_) / kImageRate : seconds;
+    double next_image = phase(random_) / kImageRate;
     std::uint64_t published = 0;
     start_ = Clock::now();
-    for (double cycle = phase(random_) / rate_; cycle < seconds; cycle += jittered(1 / rate_)) {
+    for (double cycle = phase(random_) / rate_; cycle < seconds;
+         cycle += jittered(1 / rate_, kJitter)) {
       double due = cycle;
       for (const ros::Publisher& publisher : publishers_) {
-        for (; next_image < due; next_image += jittered(1 / kImageRate)) {
+        for (; images && next_image < due; next_image += jittered(1 / kImageRate, kJitter)) {
           sleepUntil(next_image);
           image.header.stamp = ros::Time::now();
           image_publisher_.publish(image);
@@ -80,7 +82,7 @@ class Load {
         imu_.header.stamp = ros::Time::now();
         publisher.publish(imu_);
         ++published;
-        due += jittered(kBusy / rate_ / static_cast<double>(publishers_.size()));
+        due += jittered(kBusy / rate_ / static_cast<double>(publishers_.size()), kStepJitter);
       }
     }
     return published;
@@ -88,8 +90,8 @@ class Load {
 
  private:
   /// Varies a time [s].
-  double jittered(double time) {
-    return time * std::uniform_real_distribution<double>(1 - kJitter, 1 + kJitter)(random_);
+  double jittered(double time, double jitter) {
+    return time * std::uniform_real_distribution<double>(1 - jitter, 1 + jitter)(random_);
   }
   void sleepUntil(double time) const {
     std::this_thread::sleep_until(
