@@ -30,7 +30,7 @@ TOPICS = {163: 15, 1000: 60, 5000: 300, 20000: 500}
 
 _DOCS = Path(__file__).resolve().parents[1] / 'docs'
 _WARM_UP_S = 2.0
-_MODEL_S = {163: 150.0, 1000: 90.0, 5000: 90.0, 20000: 90.0}
+_MODEL_S = {163: 40.0, 1000: 40.0, 5000: 90.0, 20000: 20.0}
 _DETECTION_RATE = 5000
 _SETTLED_S = 8.0
 _LONG_S = 600.0

@@ -11,7 +11,8 @@ from typing import IO, Iterator, List, NamedTuple, Sequence
 
 import numpy as np
 
-from self_awareness import EncodingRules, EventType, Training
+from self_awareness import (EncodingRules, EventType, EvidenceCalibration, EvidenceModel,
+                            TrainedModel, Training)
 from self_awareness.evaluation.live_processes import Processes, await_condition, free_port
 from self_awareness.stamps import SECOND_NS
 
@@ -26,6 +27,7 @@ SUBJECT_CORE = 0
 _PROGRAM = 'live_load'
 _STARTED_WITHIN_S = 60.0
 _TRAINING_WITHIN_S = 900.0
+_NEVER_REACHED = 1e6
 _SYNTHETIC_EVENTS = 300
 _SYNTHETIC_START_S = 1_600_000_000
 _TINY_IMAGE_BYTES = 3  # training needs no payload
@@ -145,7 +147,11 @@ class Robot:
 
 
 def train(processes: Processes, robot: Robot, seconds: float, model: Path) -> None:
-    """Record the robot for so long and learn a model from it."""
+    """Record the robot for so long and learn a model from it.
+
+    Where the recording is too short to find limits, there are some that are never reached: to
+    judge by them takes the same work.
+    """
     bag = model.with_suffix('.bag')
     recorder = processes.start('record', *record_command(bag, robot.topics))
     robot.await_subscribers(1)
@@ -154,6 +160,13 @@ def train(processes: Processes, robot: Robot, seconds: float, model: Path) -> No
     processes.run('train', _TRAINING_WITHIN_S, 'rosrun', 'self_awareness', 'train', str(bag),
                   '--start', '1', '-o', str(model))
     bag.unlink()
+    trained = TrainedModel.load(str(model))
+    if trained.evidence_calibration is None:
+        calibration = EvidenceCalibration()
+        calibration.limits = [_NEVER_REACHED] * len(EvidenceModel(trained).tracks)
+        calibration.linker_limit = _NEVER_REACHED
+        trained.evidence_calibration = calibration
+        trained.save(str(model))
 
 
 def write_synthetic_model(model: Path, types: int) -> None:
