@@ -96,11 +96,13 @@ Monitor::Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& priv
   for (const ros::ServiceServer& service : services_) {
     service_names.push_back(service.getService());
   }
-  live_events_ = std::make_unique<ros1::LiveEvents>(
-      node_handle_, parameters_.queue_size, [this](const core::Event& event) { onEvent(event); },
-      // It may be a publisher that the master has not told of: settling cannot wait for the next
-      // poll.
-      [this] { discovery_->pollNow(); });
+  ros1::LiveEvents::Handlers handlers;
+  handlers.on_event = [this](const core::Event& event) { onEvent(event); };
+  // It may be a publisher that the master has not told of: settling cannot wait for the next poll.
+  handlers.on_connection = [this] { discovery_->pollNow(); };
+  handlers.on_arrivals = [this] { onArrivals(); };
+  live_events_ =
+      std::make_unique<ros1::LiveEvents>(node_handle_, parameters_.queue_size, handlers);
   timer_ =
       private_node_handle_.createSteadyTimer(tickFor(kWindowWithoutModel), &Monitor::onTick, this);
   discovery_ = std::make_unique<Discovery>(*live_events_, parameters_.subscribe,
@@ -164,33 +166,39 @@ void Monitor::startSession(ros1::TrainedModel trained) {
     component_of_.push_back(&components_[core::componentOf(type.source, type.scope)]);
   }
   wanted.own_output = ros1::OwnOutput(ros::this_node::getName(), std::move(own_topics));
-  live_events_->setEncoder(session_->encoder, wanted.own_output);
+  live_events_->setEncoder(session_->encoder, wanted.own_output, session_->trained.window);
   discovery_->setWanted(std::move(wanted));
   ROS_INFO("model %s: %zu event types of %zu components, %s", parameters_.model.c_str(),
            component_of_.size(), components_.size(),
            session_->calibrated ? "calibrated" : "not calibrated, it will never alarm");
 }
 
-void Monitor::onEvent(const core::Event& event) {
+void Monitor::onArrivals() {
   const ros::WallTime begin = ros::WallTime::now();
   watchClock();
-  if (!clock_watch_.isStale(event.stamp)) {
-    if (event.id < component_of_.size()) {
-      component_of_[event.id]->last = event.stamp;
-      ++component_of_[event.id]->events;
-    }
-    ++events_;
-    if (!session_->detector.add(event)) {
-      restart();
-      session_->detector.add(event);
-    }
-  }
+  live_events_->deliver();
   processing_ += ros::WallTime::now() - begin;
+}
+
+void Monitor::onEvent(const core::Event& event) {
+  if (clock_watch_.isStale(event.stamp)) {
+    return;
+  }
+  if (event.id < component_of_.size()) {
+    component_of_[event.id]->last = event.stamp;
+    ++component_of_[event.id]->events;
+  }
+  ++events_;
+  if (!session_->detector.add(event)) {
+    restart();
+    session_->detector.add(event);
+  }
 }
 
 void Monitor::onTick(const ros::SteadyTimerEvent& /*tick*/) {
   const ros::WallTime begin = ros::WallTime::now();
   const std::int64_t now = watchClock();
+  live_events_->deliver();
   if (session_) {
     for (const ros1::Publisher& publisher : discovery_->takeNewPublishers()) {
       ROS_INFO("settling: %s began to publish %s", publisher.source.c_str(),
@@ -312,14 +320,14 @@ void Monitor::publishDiagnostics() {
   state.processing_share = processing_.toSec() / elapsed;
   state.subscriptions = discovered.subscriptions;
   state.connections = live_events_->connections();
-  state.dropped = discovered.dropped_messages;
-  state.newly_dropped = discovered.dropped_messages - reported_drops_;
+  state.dropped = live_events_->dropped();
+  state.newly_dropped = state.dropped - reported_drops_;
   state.clock_steps = clock_steps_;
   state.master_answers = discovered.master_answers;
   diagnostics_.publish(state);
   events_ = 0;
   processing_ = {};
-  reported_drops_ = discovered.dropped_messages;
+  reported_drops_ = state.dropped;
   last_report_ = now;
 }
 
