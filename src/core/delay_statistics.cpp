@@ -53,7 +53,10 @@ void DelayStatistics::merge(const DelayStatistics& other) {
   for (EventId to = 0; to < here.size(); ++to) {
     countEvent(here[to], other.event_counts_[to]);
     for (EventId from = 0; from < here.size(); ++from) {
-      pair(here[from], here[to]).merge(other.pair(from, to));
+      const Histogram& theirs = other.pair(from, to);
+      if (!theirs.empty()) {
+        pair(here[from], here[to]).merge(theirs);
+      }
     }
   }
 }

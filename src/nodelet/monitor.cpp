@@ -52,7 +52,11 @@ Monitor::Session::Session(ros1::TrainedModel trained_model, const MonitorParamet
       vocabulary(trained.vocabulary()),
       encoder(std::make_shared<ros1::Encoder>(
           trained.encoding, [this](const core::EventType& type) { return intern(type); })),
-      detector(makeJudge(parameters), trained.window, parameters.detector, std::move(handler)) {}
+      detector(makeJudge(parameters), trained.window, parameters.detector, std::move(handler)) {
+  // The judge has made of them what it needs.
+  trained.dropCounts();
+  trained.watched = {};
+}
 
 std::unique_ptr<core::Judge> Monitor::Session::makeJudge(
     const MonitorParameters& parameters) const {
