@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 #include <utility>
 
@@ -81,22 +82,39 @@ std::vector<EvidenceBlame::Candidate> EvidenceBlame::silent(const std::vector<do
   return rootFirst(std::move(candidates));
 }
 
-// Upstream before downstream is no total order: whoever has fewest others upstream is next.
+// Upstream before downstream is no total order: whoever has fewest others upstream is next. When a
+// whole robot falls silent there are as many candidates as event types, but of few components.
 std::vector<EvidenceBlame::Candidate> EvidenceBlame::rootFirst(
     std::vector<Candidate> candidates) const {
   std::stable_sort(candidates.begin(), candidates.end(), likelier);
+  std::map<std::string, std::vector<std::size_t>> by_component;  // indexes of candidates
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    by_component[component(candidates[i].suspect.id)].push_back(i);
+  }
+  std::vector<std::size_t> upstream(candidates.size(), 0);  // how many are, of those left
+  std::map<std::string, std::vector<std::size_t>> downstream;
+  for (const auto& [source, members] : by_component) {
+    for (const auto& [other, victims] : by_component) {
+      if (graph_->isUpstream(source, other)) {
+        downstream[source].insert(downstream[source].end(), victims.begin(), victims.end());
+        for (const std::size_t victim : victims) {
+          upstream[victim] += members.size();
+        }
+      }
+    }
+  }
   std::vector<Candidate> ordered;
-  while (!candidates.empty()) {
-    const auto upstream = [&](const Candidate& one) {
-      return std::count_if(candidates.begin(), candidates.end(), [&](const Candidate& other) {
-        return graph_->isUpstream(component(other.suspect.id), component(one.suspect.id));
-      });
-    };
-    const auto root = std::min_element(
-        candidates.begin(), candidates.end(),
-        [&](const Candidate& a, const Candidate& b) { return upstream(a) < upstream(b); });
-    ordered.push_back(*root);
-    candidates.erase(root);
+  std::vector<std::size_t> left(candidates.size());
+  std::iota(left.begin(), left.end(), 0);
+  while (!left.empty()) {
+    const auto root =
+        std::min_element(left.begin(), left.end(),
+                         [&](std::size_t a, std::size_t b) { return upstream[a] < upstream[b]; });
+    ordered.push_back(candidates[*root]);
+    for (const std::size_t victim : downstream[component(candidates[*root].suspect.id)]) {
+      --upstream[victim];
+    }
+    left.erase(root);
   }
   return ordered;
 }

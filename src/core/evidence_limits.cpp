@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -24,10 +25,6 @@ constexpr double kGapMargin = 1.1;
 // It depends on what the robot is at, and that changes from hour to hour.
 constexpr double kLinkerMargin = 1.5;
 constexpr std::size_t kTailGaps = 20;
-
-constexpr std::int64_t kChunk = 100 * kNanosecondsPerSecond;
-// Independent timers keep one phase for a while. What a pair says then is gone when they drift.
-constexpr double kLeastGainLeft = 0.7;
 
 // Evidence that gets nowhere near its limit in this time [ns] of a component's death is no use.
 constexpr double kLongestWait = 10e9;
@@ -79,7 +76,7 @@ LimitFinder::LimitFinder(std::shared_ptr<const EvidenceModel> model, const Param
       block_(model_->tracks().size(), 0),
       maxima_(model_->tracks().size()),
       gaps_(model_->size()),
-      misleading_(model_->tracks().size(), false) {
+      misleading_(*model_) {
   parameters_.validate();
 }
 
@@ -109,17 +106,7 @@ void LimitFinder::add(const Event& event) {
   if (gap) {
     gaps_[event.id].addGap(*gap);
   }
-  if (!chunk_trainer_) {
-    chunk_ = {};
-    for (const EventType& type : model_->vocabulary().types()) {
-      chunk_.intern(type);
-    }
-    chunk_trainer_.emplace(chunk_, parameters_.window);
-  }
-  chunk_trainer_->add(event);
-  if (chunk_.duration() >= kChunk) {
-    closeChunk();
-  }
+  misleading_.add(event);
 }
 
 void LimitFinder::finish() {
@@ -129,7 +116,7 @@ void LimitFinder::finish() {
   windows_.finish();
   closeBlock();
   if (!second_pass_) {
-    closeChunk();
+    misleading_.finish();
     duration_ += *last_stamp_ - *first_stamp_;
   }
   last_stamp_.reset();
@@ -172,23 +159,6 @@ void LimitFinder::closeBlock() {
   std::fill(block_.begin(), block_.end(), 0);
 }
 
-void LimitFinder::closeChunk() {
-  if (!chunk_trainer_) {
-    return;
-  }
-  const InformationGain usual(model_->statistics(), model_->statistics());
-  const InformationGain now(model_->statistics(), chunk_);
-  for (std::size_t track = 0; track < misleading_.size(); ++track) {
-    const auto& [channel, to, from] = model_->tracks()[track];
-    if ((channel == Channel::kDelay || channel == Channel::kSlowDelay) &&
-        chunk_.pair(from, to).total() >= InformationGain::kFewestDelays &&
-        now(from, to) < kLeastGainLeft * usual(from, to)) {
-      misleading_[track] = true;
-    }
-  }
-  chunk_trainer_.reset();
-}
-
 void LimitFinder::startSecondPass() {
   finish();
   if (maxima_.empty()) {
@@ -203,8 +173,15 @@ void LimitFinder::startSecondPass() {
                                 std::to_string(kBlock / kNanosecondsPerSecond) +
                                 " s, after the first seconds of every recording");
   }
+  // Each kind of evidence has its share of the budget, each track of the kind its share of that.
+  std::map<std::string, std::size_t> of_kind;
+  for (const Track& track : model_->tracks()) {
+    ++of_kind[channelName(track.channel)];
+  }
   for (std::size_t track = 0; track < maxima_.size(); ++track) {
-    limits_.tracks.push_back(limit(track));
+    const std::size_t number = of_kind.at(channelName(model_->tracks()[track].channel));
+    limits_.tracks.push_back(
+        limit(track, parameters_.false_alarms_per_hour / kKinds / static_cast<double>(number)));
   }
   second_pass_ = true;
 }
@@ -226,14 +203,14 @@ LimitFinder::Findings LimitFinder::findings() const {
   for (const EvidenceStatistics::Type& type : gaps_) {
     found.longest_gaps.push_back(type.longest_gaps);
   }
-  found.misleading = misleading_;
+  found.misleading = misleading_.tracks();
   found.linker_maxima = linker_maxima_;
   return found;
 }
 
 void LimitFinder::merge(const Findings& other) {
   if (other.maxima.size() != maxima_.size() || other.longest_gaps.size() != gaps_.size() ||
-      other.misleading.size() != misleading_.size()) {
+      other.misleading.size() != misleading_.tracks().size()) {
     throw std::invalid_argument("the findings are those of another model");
   }
   windows_seen_ += other.windows;
@@ -241,8 +218,8 @@ void LimitFinder::merge(const Findings& other) {
   for (std::size_t track = 0; track < maxima_.size(); ++track) {
     maxima_[track].insert(maxima_[track].end(), other.maxima[track].begin(),
                           other.maxima[track].end());
-    misleading_[track] = misleading_[track] || other.misleading[track];
   }
+  misleading_.add(other.misleading);
   for (std::size_t id = 0; id < gaps_.size(); ++id) {
     for (const std::int64_t gap : other.longest_gaps[id]) {
       gaps_[id].addGap(gap);
@@ -257,23 +234,16 @@ double LimitFinder::meanGap(EventId id) const {
   return static_cast<double>(type.gap_sum) / static_cast<double>(type.gaps);
 }
 
-double LimitFinder::limit(std::size_t track) const {
+double LimitFinder::limit(std::size_t track, double rate) const {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const auto& [channel, to, from] = model_->tracks()[track];
-  // Each kind of evidence has its share of the budget, each track of the kind its share of that.
-  const std::vector<Track>& tracks = model_->tracks();
-  const auto of_kind = std::count_if(tracks.begin(), tracks.end(), [&](const Track& other) {
-    return channelName(other.channel) == channelName(tracks[track].channel);
-  });
-  const double per_hour =
-      parameters_.false_alarms_per_hour / kKinds / static_cast<double>(of_kind);
   if (channel == Channel::kOverdue) {
     EvidenceStatistics::Type gaps = model_->statistics().type(to);
     for (const std::int64_t gap : gaps_[to].longest_gaps) {
       gaps.addGap(gap);
     }
-    const double age = overdueAge(gaps.longest_gaps, model_->statistics().duration() + duration_,
-                                  per_hour / kHour);
+    const double age =
+        overdueAge(gaps.longest_gaps, model_->statistics().duration() + duration_, rate / kHour);
     // What comes when something happens may stay away for as long as nothing does.
     const bool irregular = age > kLongestWait && age > kMostMeanGaps * meanGap(to);
     return irregular ? kNone : model_->overdue(to, std::llround(age));
@@ -281,9 +251,9 @@ double LimitFinder::limit(std::size_t track) const {
   const std::vector<double>& maxima = maxima_[track];
   const double found = std::max({model_->leastLimit(track),
                                  kMargin * *std::max_element(maxima.begin(), maxima.end()),
-                                 gumbelLimit(maxima, std::min(per_hour * kBlock / kHour, 0.5))});
+                                 gumbelLimit(maxima, std::min(rate * kBlock / kHour, 0.5))});
   if (channel == Channel::kDelay || channel == Channel::kSlowDelay) {
-    return misleading_[track] || found > kMostDelayLimit ? kNone : found;
+    return misleading_.tracks()[track] || found > kMostDelayLimit ? kNone : found;
   }
   if (channel == Channel::kAnswer) {
     return found / model_->missed(track) * meanGap(from) > kLongestWait ? kNone : found;

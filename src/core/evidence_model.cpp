@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -32,11 +30,12 @@ constexpr double kLeastAnswerLimit = 5;  // [nat]
 /// and measured on the other, both ways.
 class HeldOutSurprise {
  public:
-  void add(const std::vector<std::uint32_t>& learned, const std::vector<std::uint32_t>& measured) {
-    if (learned.empty() || measured.empty()) {
+  void add(const EvidenceStatistics::Delays& learned, const EvidenceStatistics::Delays& measured) {
+    const auto counted = [](std::uint32_t count) { return count > 0; };
+    if (std::none_of(learned.begin(), learned.end(), counted)) {
       return;
     }
-    const std::vector<double> logs = logProbabilities({learned.begin(), learned.end()});
+    const LogProbabilities logs = logProbabilities(learned);
     for (std::size_t bin = 0; bin < log_bins::kBins; ++bin) {
       count_ += measured[bin];
       sum_ -= measured[bin] * logs[bin];
@@ -55,63 +54,56 @@ class HeldOutSurprise {
   double squares_ = 0;
 };
 
-EvidenceStatistics sum(const EvidenceStatistics& first, const EvidenceStatistics& second) {
-  EvidenceStatistics both = first;
-  both.merge(second);
+EvidenceStatistics sum(const std::array<EvidenceStatistics, 2>& halves) {
+  EvidenceStatistics both = halves[0];
+  both.merge(halves[1]);
   return both;
-}
-
-// The counts of one half, with ids for the event types of the other, too.
-EvidenceStatistics withTypes(const EvidenceStatistics& both, const EvidenceStatistics& half) {
-  EvidenceStatistics counts;
-  for (const EventType& type : both.vocabulary().types()) {
-    counts.intern(type);
-  }
-  counts.merge(half);
-  return counts;
 }
 
 }  // namespace
 
-EvidenceModel::EvidenceModel(const EvidenceStatistics& first, const EvidenceStatistics& second,
-                             Learned learned)
-    : statistics_(sum(first, second)), tracks_(chooseTracks(first, second, statistics_)) {
+EvidenceModel::EvidenceModel(const WatchedEvidence& watched, Learned learned)
+    : statistics_(sum(watched.halves)), tracks_(watched.tracks) {
   if (size() == 0) {
     throw std::invalid_argument("a model needs at least one event");
   }
-  learned_ = learned == Learned::kBoth
-                 ? statistics_
-                 : withTypes(statistics_, learned == Learned::kFirst ? first : second);
+  checkTracks(tracks_, size());
+  if (learned != Learned::kBoth) {
+    half_ = watched.halves.at(learned == Learned::kFirst ? 0 : 1);
+  }
   learnGaps();
   learnRates();
-  learnDelays(withTypes(statistics_, first), withTypes(statistics_, second));
+  learnDelays(watched.halves);
   learnAnswers();
 }
 
 void EvidenceModel::learnGaps() {
   gaps_.resize(size());
   for (EventId id = 0; id < size(); ++id) {
-    const EvidenceStatistics::Type& type = learned_.type(id);
+    const EvidenceStatistics::Type& type = learned().type(id);
     if (type.gaps == 0) {
       continue;
     }
     Gaps& gaps = gaps_[id];
     gaps.longest = static_cast<double>(std::max<std::int64_t>(type.longest_gaps.front(), 1));
-    const std::vector<std::uint32_t>& counts = learned_.pair(id, id).delays;
+    const EvidenceStatistics::Delays& counts = learned().delays(id, id);
     for (std::size_t bin = 0; bin < counts.size(); ++bin) {
       if (counts[bin] > 0) {
         const double middle = std::min(log_bins::middle(bin), gaps.longest);
-        gaps.bins.emplace_back(middle, counts[bin]);
-        gaps.sum += middle * counts[bin];
+        gaps.bins.push_back({middle, static_cast<double>(counts[bin]), middle * counts[bin]});
       }
+    }
+    for (std::size_t bin = gaps.bins.size(); bin-- > 1;) {
+      gaps.bins[bin - 1].count += gaps.bins[bin].count;
+      gaps.bins[bin - 1].sum += gaps.bins[bin].sum;
     }
   }
 }
 
 void EvidenceModel::learnRates() {
-  const auto windows = static_cast<double>(std::max<std::uint64_t>(learned_.rateWindows(), 1));
+  const auto windows = static_cast<double>(std::max<std::uint64_t>(learned().rateWindows(), 1));
   for (EventId id = 0; id < size(); ++id) {
-    const EvidenceStatistics::Type& type = learned_.type(id);
+    const EvidenceStatistics::Type& type = learned().type(id);
     Rate rate;
     rate.mean = static_cast<double>(type.rate_sum) / windows;
     const double variance =
@@ -121,25 +113,22 @@ void EvidenceModel::learnRates() {
   }
 }
 
-void EvidenceModel::learnDelays(const EvidenceStatistics& first,
-                                const EvidenceStatistics& second) {
-  surprises_.resize(tracks_.size());
+void EvidenceModel::learnDelays(const std::array<EvidenceStatistics, 2>& halves) {
+  surprises_of_.resize(tracks_.size());
   for (std::size_t track = 0; track < tracks_.size(); ++track) {
     const auto& [channel, to, from] = tracks_[track];
-    if (channel != Channel::kDelay && channel != Channel::kSlowDelay) {
+    if (channel != Channel::kDelay) {
       continue;
     }
     HeldOutSurprise usual;
-    usual.add(first.pair(from, to).delays, second.pair(from, to).delays);
-    usual.add(second.pair(from, to).delays, first.pair(from, to).delays);
-    const std::vector<std::uint32_t>& counts = learned_.pair(from, to).delays;
-    std::vector<std::uint64_t> learned(counts.begin(), counts.end());
-    learned.resize(log_bins::kBins, 0);
-    const std::vector<double> logs = logProbabilities(learned);
-    for (std::size_t bin = 0; bin < log_bins::kBins; ++bin) {
-      surprises_[track][bin] =
-          std::min((-logs[bin] - usual.mean()) / usual.deviation(), kMostSurprise);
-    }
+    usual.add(halves[0].delays(from, to), halves[1].delays(from, to));
+    usual.add(halves[1].delays(from, to), halves[0].delays(from, to));
+    const LogProbabilities logs = logProbabilities(learned().delays(from, to));
+    surprises_of_[track] = surprises_of_[track + 1] = surprises_.size();
+    Surprises& surprises = surprises_.emplace_back();
+    std::transform(logs.begin(), logs.end(), surprises.begin(), [&](double log) {
+      return std::min((-log - usual.mean()) / usual.deviation(), kMostSurprise);
+    });
   }
 }
 
@@ -149,7 +138,8 @@ void EvidenceModel::learnAnswers() {
     const auto& [channel, to, from] = tracks_[track];
     if (channel == Channel::kAnswer) {
       const double usual =
-          std::clamp(core::missRate(learned_, from, to), kLeastMissRate, kMostMissRate);
+          std::clamp(core::missRate(learned().type(from).gaps, learned().answers(from, to)),
+                     kLeastMissRate, kMostMissRate);
       const double faulty = usual + (1 - usual) * kLost;
       steps_[track] = {std::log((1 - faulty) / (1 - usual)), std::log(faulty / usual), usual};
     }
@@ -162,18 +152,18 @@ double EvidenceModel::overdue(EventId id, std::int64_t age) const {
     return 0;
   }
   const auto a = static_cast<double>(std::max<std::int64_t>(age, 0));
-  double left = 0;
-  for (auto bin = gaps.bins.rbegin(); bin != gaps.bins.rend() && bin->first > a; ++bin) {
-    left += bin->second * (bin->first - a);
-  }
-  const double all = std::log(gaps.sum + gaps.longest);
+  const double all = std::log(gaps.bins.front().sum + gaps.longest);
+  const auto longer =
+      std::upper_bound(gaps.bins.begin(), gaps.bins.end(), a,
+                       [](double age, const Gaps::Bin& bin) { return age < bin.middle; });
   // Where no gap was longer, exp(-a / b) would underflow long before its logarithm.
-  return left > 0 ? all - std::log(left + gaps.longest * std::exp(-a / gaps.longest))
-                  : all - std::log(gaps.longest) + a / gaps.longest;
+  return longer != gaps.bins.end() ? all - std::log(longer->sum - a * longer->count +
+                                                    gaps.longest * std::exp(-a / gaps.longest))
+                                   : all - std::log(gaps.longest) + a / gaps.longest;
 }
 
 double EvidenceModel::logSurvival(EventId id, std::int64_t age) const {
-  const EvidenceStatistics::Type& type = learned_.type(id);
+  const EvidenceStatistics::Type& type = learned().type(id);
   if (type.gaps < kFewestGaps) {
     return 0;
   }
@@ -185,7 +175,7 @@ double EvidenceModel::logSurvival(EventId id, std::int64_t age) const {
                           longest.begin());
   if (longer == static_cast<double>(longest.size())) {
     longer = 0;
-    const std::vector<std::uint32_t>& delays = learned_.pair(id, id).delays;
+    const EvidenceStatistics::Delays& delays = learned().delays(id, id);
     for (std::size_t bin = log_bins::bin(age); bin < delays.size(); ++bin) {
       longer += delays[bin];
     }
@@ -203,11 +193,15 @@ std::int64_t EvidenceModel::longestGap(EventId id) const {
 }
 
 double EvidenceModel::usualDelay(EventId from, EventId to, double share) const {
-  const EvidenceStatistics::Pair& pair = learned_.pair(from, to);
-  const double wanted = share * static_cast<double>(pair.total());
+  const EvidenceStatistics::Delays& delays = learned().delays(from, to);
+  const std::uint64_t total = learned().total(from, to);
+  if (total == 0) {
+    return 0;
+  }
+  const double wanted = share * static_cast<double>(total);
   double below = 0;
-  for (std::size_t bin = 0; bin < pair.delays.size(); ++bin) {
-    below += pair.delays[bin];
+  for (std::size_t bin = 0; bin < delays.size(); ++bin) {
+    below += delays[bin];
     if (below >= wanted) {
       return log_bins::middle(bin) * 1e-9;
     }
@@ -217,10 +211,6 @@ double EvidenceModel::usualDelay(EventId from, EventId to, double share) const {
 
 double EvidenceModel::rate(EventId id, std::uint32_t count) const {
   return (count - rates_.at(id).mean) / rates_[id].spread;
-}
-
-double EvidenceModel::surprise(std::size_t track, std::int64_t delay) const {
-  return surprises_[track][log_bins::bin(delay)];
 }
 
 double EvidenceModel::leastLimit(std::size_t track) const {

@@ -23,77 +23,117 @@ constexpr double kMostOfLimit = 1.5;    // in units of the limit
 
 }  // namespace
 
-void EvidenceScorer::Arming::add(double excess, double usual) {
-  if (armed_) {
-    return;
+bool EvidenceScorer::arm(Arming& arming, double excess, double usual) {
+  arming.excess += excess;
+  if (++arming.events < kArmingEvents) {
+    return false;
   }
-  sum_ += excess;
-  if (++events_ == kArmingEvents) {
-    armed_ = sum_ <= usual * kArmingEvents;
-    events_ = 0;
-    sum_ = 0;
-  }
+  const bool armed = arming.excess <= usual * kArmingEvents;
+  arming = {};
+  return armed;
 }
 
 EvidenceScorer::EvidenceScorer(std::shared_ptr<const EvidenceModel> model, std::int64_t window)
-    : model_(std::move(model)),
-      delay_tracks_(model_->size()),
-      answer_tracks_(model_->size()),
-      counts_(model_->size(), rateWindows(window)),
-      caps_(model_->tracks().size(), kMostEvidence) {
-  const std::vector<Track>& tracks = model_->tracks();
-  for (std::size_t track = 0; track < tracks.size(); ++track) {
-    if (tracks[track].channel == Channel::kDelay || tracks[track].channel == Channel::kSlowDelay) {
-      delay_tracks_[tracks[track].to].push_back(track);
-    } else if (tracks[track].channel == Channel::kAnswer) {
-      answer_tracks_[tracks[track].from].push_back(track);
-    }
-  }
+    : model_(std::move(model)), counts_(model_->size(), rateWindows(window)) {
+  addTracks();
   restart();
 }
 
+void EvidenceScorer::addTracks() {
+  const std::vector<Track>& tracks = model_->tracks();
+  std::vector<std::vector<std::size_t>> pairs(model_->size());    // tracks by `to`
+  std::vector<std::vector<std::size_t>> answers(model_->size());  // tracks by `from`
+  tracks_of_.resize(model_->size());
+  for (std::size_t track = 0; track < tracks.size(); ++track) {
+    const auto& [channel, to, from] = tracks[track];
+    if (channel == Channel::kDelay) {
+      pairs[to].push_back(track);
+    } else if (channel == Channel::kAnswer) {
+      answers[from].push_back(track);
+    } else {
+      continue;
+    }
+    tracks_of_[to].push_back(track);
+    if (from != to) {
+      tracks_of_[from].push_back(track);
+    }
+  }
+  state_of_.resize(tracks.size());
+  const Sum none{0, kMostEvidence};
+  for (EventId id = 0; id < model_->size(); ++id) {
+    gone_after_.push_back(kGoneGaps * model_->longestGap(id));
+    pairs_begin_.push_back(pairs_.size());
+    for (const std::size_t track : pairs[id]) {
+      state_of_[track] = state_of_[track + 1] = pairs_.size();
+      pairs_.push_back(
+          {tracks[track].from, false, 0, model_->surprises(track).data(), none, none});
+    }
+    answers_begin_.push_back(answers_.size());
+    for (const std::size_t track : answers[id]) {
+      state_of_[track] = answers_.size();
+      answers_.push_back(
+          {tracks[track].to, false, {model_->answered(track), model_->missed(track)}, none});
+      miss_rates_.push_back(model_->missRate(track));
+    }
+  }
+  pairs_begin_.push_back(pairs_.size());
+  answers_begin_.push_back(answers_.size());
+  pairs_arming_.resize(pairs_.size());
+  answers_arming_.resize(answers_.size());
+}
+
 void EvidenceScorer::restart() {
-  last_seen_.assign(model_->size(), std::nullopt);
+  last_seen_.assign(model_->size(), {});
   number_ = 0;
   counts_.restart();
   evidence_.assign(model_->tracks().size(), 0);
-  sums_.assign(model_->tracks().size(), 0);
-  arming_.assign(model_->tracks().size(), {});
-  last_delays_.assign(model_->tracks().size(), 0);
+  for (std::size_t k = 0; k < pairs_.size(); ++k) {
+    pairs_[k].last_delay = 0;
+    disarmPair(k);
+  }
+  for (std::size_t k = 0; k < answers_.size(); ++k) {
+    disarmAnswer(k);
+  }
 }
 
 std::optional<std::int64_t> EvidenceScorer::add(const Event& event) {
   if (!model_->knows(event.id)) {
     return std::nullopt;
   }
-  const std::vector<Track>& tracks = model_->tracks();
   counts_.add(event.id);
-  std::optional<Seen>& last = last_seen_[event.id];
-  for (const std::size_t track : delay_tracks_[event.id]) {
-    const std::optional<Seen>& from = last_seen_[tracks[track].from];
+  Seen& last = last_seen_[event.id];
+  for (std::size_t k = pairs_begin_[event.id]; k < pairs_begin_[event.id + 1]; ++k) {
+    DelayPair& pair = pairs_[k];
+    const Seen& from = last_seen_[pair.from];
     // Only the first event after another answers it: those that follow while the other pauses
-    // would count one pause many times.
-    if (from && (!last || from->number >= last->number)) {
-      const double drift = tracks[track].channel == Channel::kDelay ? kDrift : kSlowDrift;
-      last_delays_[track] = event.stamp - from->stamp;
-      const double step = model_->surprise(track, last_delays_[track]) - drift;
-      sums_[track] = std::clamp(sums_[track] + step, 0.0, caps_[track]);
-      arming_[track].add(step + drift, kUsualSurprise);
-    }
-  }
-  for (const std::size_t track : answer_tracks_[event.id]) {
-    const std::optional<Seen>& to = last_seen_[tracks[track].to];
-    if (last && to) {
-      const bool missed = to->number <= last->number;
-      const double step = missed ? model_->missed(track) : model_->answered(track);
-      arming_[track].add((missed ? 1 : 0) - model_->missRate(track), kUsualMisses);
-      sums_[track] = std::clamp(sums_[track] + step, 0.0, caps_[track]);
+    // would count one pause many times. Which one that is cannot be predicted, thus no branch.
+    const bool first = from.number > 0 && from.number >= last.number;
+    const std::int64_t delay = event.stamp - from.stamp;
+    const double surprise = pair.surprises[log_bins::bin(delay)];
+    pair.last_delay = first ? delay : pair.last_delay;
+    pair.fast.add(first * (surprise - kDrift));
+    pair.slow.add(first * (surprise - kSlowDrift));
+    if (!pair.armed && first) {
+      pair.armed = arm(pairs_arming_[k], surprise, kUsualSurprise);
     }
   }
   std::optional<std::int64_t> gap;
-  if (last) {
-    gap = event.stamp - last->stamp;
-    if (*gap > kGoneGaps * model_->longestGap(event.id)) {
+  if (last.number > 0) {
+    for (std::size_t k = answers_begin_[event.id]; k < answers_begin_[event.id + 1]; ++k) {
+      Answer& answer = answers_[k];
+      const std::uint64_t number = last_seen_[answer.to].number;
+      if (number == 0) {
+        continue;
+      }
+      const std::size_t missed = number <= last.number ? 1 : 0;
+      answer.sum.add(answer.steps[missed]);
+      if (!answer.armed) {
+        answer.armed =
+            arm(answers_arming_[k], static_cast<double>(missed) - miss_rates_[k], kUsualMisses);
+      }
+    }
+    gap = event.stamp - last.stamp;
+    if (*gap > gone_after_[event.id]) {
       disarm(event.id);
     }
   }
@@ -102,21 +142,42 @@ std::optional<std::int64_t> EvidenceScorer::add(const Event& event) {
 }
 
 void EvidenceScorer::capAt(const EvidenceLimits& limits) {
-  for (std::size_t track = 0; track < caps_.size(); ++track) {
+  const auto cap = [&](std::size_t track, Sum& sum) {
     if (limits.tracks[track] > 0) {  // never so where it is NaN
-      caps_[track] = kMostOfLimit * limits.tracks[track];
+      sum.cap = kMostOfLimit * limits.tracks[track];
+    }
+  };
+  for (std::size_t track = 0; track < model_->tracks().size(); ++track) {
+    const Channel channel = model_->tracks()[track].channel;
+    if (channel == Channel::kDelay) {
+      cap(track, pairs_[state_of_[track]].fast);
+      cap(track + 1, pairs_[state_of_[track]].slow);
+    } else if (channel == Channel::kAnswer) {
+      cap(track, answers_[state_of_[track]].sum);
     }
   }
 }
 
 void EvidenceScorer::disarm(EventId id) {
-  const std::vector<Track>& tracks = model_->tracks();
-  for (std::size_t track = 0; track < tracks.size(); ++track) {
-    if (tracks[track].to == id || tracks[track].from == id) {
-      arming_[track] = {};
-      sums_[track] = 0;
+  for (const std::size_t track : tracks_of_[id]) {
+    if (model_->tracks()[track].channel == Channel::kDelay) {
+      disarmPair(state_of_[track]);
+    } else {
+      disarmAnswer(state_of_[track]);
     }
   }
+}
+
+void EvidenceScorer::disarmPair(std::size_t number) {
+  pairs_[number].fast.value = pairs_[number].slow.value = 0;
+  pairs_[number].armed = false;
+  pairs_arming_[number] = {};
+}
+
+void EvidenceScorer::disarmAnswer(std::size_t number) {
+  answers_[number].sum.value = 0;
+  answers_[number].armed = false;
+  answers_arming_[number] = {};
 }
 
 const std::vector<double>& EvidenceScorer::closeWindow(std::int64_t end) {
@@ -124,25 +185,40 @@ const std::vector<double>& EvidenceScorer::closeWindow(std::int64_t end) {
   counts_.close();
   const std::vector<Track>& tracks = model_->tracks();
   for (std::size_t track = 0; track < tracks.size(); ++track) {
-    const EventId id = tracks[track].to;
-    if (tracks[track].channel == Channel::kOverdue) {
-      evidence_[track] = last_seen_[id] ? model_->overdue(id, end - last_seen_[id]->stamp) : 0;
-    } else if (tracks[track].channel == Channel::kFewer ||
-               tracks[track].channel == Channel::kMore) {
-      const double sign = tracks[track].channel == Channel::kMore ? 1 : -1;
-      const double more =
-          counts_.full() && last_seen_[id] ? model_->rate(id, counts_.counts()[id]) : 0;
-      evidence_[track] = std::max(sign * more, 0.0);
-    } else {
-      evidence_[track] = arming_[track].armed() ? sums_[track] : 0;
+    const auto& [channel, id, from] = tracks[track];
+    const Seen& last = last_seen_[id];
+    switch (channel) {
+      case Channel::kOverdue:
+        evidence_[track] = last.number > 0 ? model_->overdue(id, end - last.stamp) : 0;
+        break;
+      case Channel::kFewer:
+      case Channel::kMore: {
+        const double sign = channel == Channel::kMore ? 1 : -1;
+        const double more =
+            counts_.full() && last.number > 0 ? model_->rate(id, counts_.counts()[id]) : 0;
+        evidence_[track] = std::max(sign * more, 0.0);
+        break;
+      }
+      case Channel::kDelay:
+      case Channel::kSlowDelay: {
+        const DelayPair& pair = pairs_[state_of_[track]];
+        const Sum& sum = channel == Channel::kDelay ? pair.fast : pair.slow;
+        evidence_[track] = pair.armed ? sum.value : 0;
+        break;
+      }
+      case Channel::kAnswer: {
+        const Answer& answer = answers_[state_of_[track]];
+        evidence_[track] = answer.armed ? answer.sum.value : 0;
+        break;
+      }
     }
   }
   return evidence_;
 }
 
 std::optional<std::int64_t> EvidenceScorer::lastSeen(EventId id) const {
-  const std::optional<Seen>& last = last_seen_.at(id);
-  return last ? std::optional<std::int64_t>(last->stamp) : std::nullopt;
+  const Seen& last = last_seen_.at(id);
+  return last.number > 0 ? std::optional<std::int64_t>(last.stamp) : std::nullopt;
 }
 
 EvidenceSum sumUp(const std::vector<double>& evidence, const EvidenceModel& model,

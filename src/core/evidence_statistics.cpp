@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
 #include <numeric>
 #include <stdexcept>
 #include <string>
 #include <tuple>
+#include <utility>
 
 #include "self_awareness/core/clock.h"
 #include "self_awareness/core/windows.h"
@@ -13,12 +15,51 @@
 namespace self_awareness::core {
 namespace {
 
-void addDelays(const std::vector<std::uint32_t>& from, std::vector<std::uint32_t>& to) {
-  if (from.empty()) {
-    return;
+using Partner = EvidenceStatistics::Partner;
+using Partners = EvidenceStatistics::Partners;
+
+constexpr EvidenceStatistics::Delays kNoDelays{};
+
+bool lowerId(const Partner& partner, EventId id) {
+  return partner.id < id;
+}
+
+template <typename Sum, typename Counts>
+void addCounts(const Counts& counts, Sum& sum) {
+  std::transform(counts.begin(), counts.end(), sum.begin(), sum.begin(), std::plus<>());
+}
+
+const Partner* find(const Partners& partners, EventId id) {
+  if (id < partners.size() && partners[id].id == id) {
+    return &partners[id];  // where all are there
   }
-  to.resize(log_bins::kBins, 0);
-  std::transform(from.begin(), from.end(), to.begin(), to.begin(), std::plus<>());
+  const auto place = std::lower_bound(partners.begin(), partners.end(), id, lowerId);
+  return place != partners.end() && place->id == id ? &*place : nullptr;
+}
+
+// Both in order, and so is the result.
+Partners sum(const Partners& a, const Partners& b) {
+  Partners both;
+  both.reserve(std::max(a.size(), b.size()));
+  auto x = a.begin();
+  auto y = b.begin();
+  while (x != a.end() || y != b.end()) {
+    if (y == b.end() || (x != a.end() && x->id < y->id)) {
+      both.push_back(*x++);
+    } else if (x == a.end() || y->id < x->id) {
+      both.push_back(*y++);
+    } else {
+      both.push_back(*x++);
+      both.back().answers += y->answers;
+      addCounts(y->delays, both.back().delays);
+      ++y;
+    }
+  }
+  return both;
+}
+
+bool isEmpty(const Partner& partner) {
+  return partner.answers == 0 && partner.delays == kNoDelays;
 }
 
 }  // namespace
@@ -40,18 +81,11 @@ void EvidenceStatistics::Type::addGap(std::int64_t gap) {
   }
 }
 
-std::uint64_t EvidenceStatistics::Pair::total() const {
-  return std::accumulate(delays.begin(), delays.end(), std::uint64_t{0});
-}
-
 EventId EvidenceStatistics::intern(const EventType& type) {
   const EventId id = vocabulary_.intern(type);
   if (id == types_.size()) {
     types_.emplace_back();
-    for (std::vector<Pair>& predecessors : pairs_) {
-      predecessors.emplace_back();
-    }
-    pairs_.emplace_back(vocabulary_.size());
+    partners_.emplace_back();
   }
   return id;
 }
@@ -62,25 +96,117 @@ void EvidenceStatistics::merge(const EvidenceStatistics& other) {
   for (const EventType& type : other.vocabulary_.types()) {
     here.push_back(intern(type));
   }
-  for (EventId to = 0; to < here.size(); ++to) {
-    const Type& theirs = other.types_[to];
-    Type& ours = types_[here[to]];
+  for (EventId id = 0; id < here.size(); ++id) {
+    const Type& theirs = other.types_[id];
+    Type& ours = types_[here[id]];
     ours.events += theirs.events;
     ours.gaps += theirs.gaps;
     ours.gap_sum += theirs.gap_sum;
     ours.rate_sum += theirs.rate_sum;
     ours.rate_squares += theirs.rate_squares;
+    addCounts(theirs.left_out, ours.left_out);
     for (const std::int64_t gap : theirs.longest_gaps) {
       ours.addGap(gap);
     }
-    for (EventId from = 0; from < here.size(); ++from) {
-      Pair& pair = pairs_[here[to]][here[from]];
-      addDelays(other.pair(from, to).delays, pair.delays);
-      pair.answers += other.pair(from, to).answers;
+    Partners partners = other.partners_[id];
+    for (Partner& partner : partners) {
+      partner.id = here[partner.id];
     }
+    std::sort(partners.begin(), partners.end(),
+              [](const Partner& a, const Partner& b) { return a.id < b.id; });
+    partners_[here[id]] = sum(partners_[here[id]], partners);
   }
   rate_windows_ += other.rate_windows_;
   duration_ += other.duration_;
+}
+
+const EvidenceStatistics::Delays& EvidenceStatistics::delays(EventId from, EventId to) const {
+  const Partner* partner = find(partners_.at(to), from);
+  return partner != nullptr ? partner->delays : kNoDelays;
+}
+
+std::uint64_t EvidenceStatistics::total(EventId from, EventId to) const {
+  const Delays& counts = delays(from, to);
+  return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
+}
+
+std::uint64_t EvidenceStatistics::answers(EventId from, EventId to) const {
+  const Partner* partner = find(partners_.at(from), to);
+  return partner != nullptr ? partner->answers : 0;
+}
+
+void EvidenceStatistics::setPartners(EventId id, Partners partners) {
+  const auto unordered =
+      std::adjacent_find(partners.begin(), partners.end(),
+                         [](const Partner& a, const Partner& b) { return a.id >= b.id; });
+  if (unordered != partners.end() || (!partners.empty() && partners.back().id >= size())) {
+    throw std::invalid_argument("partners of an event type must be event types, in order");
+  }
+  partners_.at(id) = std::move(partners);
+}
+
+EvidenceStatistics::Partners& EvidenceStatistics::allPartners(EventId id) {
+  Partners& partners = partners_.at(id);
+  if (partners.size() < size()) {
+    Partners none(size());
+    for (EventId other = 0; other < none.size(); ++other) {
+      none[other].id = other;
+    }
+    partners = sum(partners, none);
+  }
+  return partners;
+}
+
+std::vector<EvidenceStatistics::SumOfDelays> EvidenceStatistics::delaysToAny() const {
+  std::vector<SumOfDelays> sums;
+  sums.reserve(size());
+  for (const Type& type : types_) {
+    sums.push_back(type.left_out);
+  }
+  for (const Partners& partners : partners_) {
+    for (const Partner& partner : partners) {
+      addCounts(partner.delays, sums[partner.id]);
+    }
+  }
+  return sums;
+}
+
+EvidenceStatistics EvidenceStatistics::withoutPairs() const {
+  EvidenceStatistics rest;
+  rest.vocabulary_ = vocabulary_;
+  rest.types_ = types_;
+  for (Type& type : rest.types_) {
+    type.left_out.fill(0);
+  }
+  rest.partners_.resize(size());
+  rest.rate_windows_ = rate_windows_;
+  rest.duration_ = duration_;
+  return rest;
+}
+
+EvidenceStatistics EvidenceStatistics::only(const std::vector<Pair>& pairs) const {
+  std::vector<std::vector<EventId>> kept(size());
+  for (const Pair& pair : pairs) {
+    kept.at(pair.to).push_back(pair.from);
+    kept.at(pair.from).push_back(pair.to);
+  }
+  EvidenceStatistics rest = withoutPairs();
+  for (EventId id = 0; id < size(); ++id) {
+    addCounts(types_[id].left_out, rest.types_[id].left_out);
+    std::sort(kept[id].begin(), kept[id].end());
+    for (const Partner& partner : partners_[id]) {
+      if (std::binary_search(kept[id].begin(), kept[id].end(), partner.id)) {
+        rest.partners_[id].push_back(partner);
+      } else {
+        addCounts(partner.delays, rest.types_[partner.id].left_out);
+      }
+    }
+  }
+  return rest;
+}
+
+bool operator==(const EvidenceStatistics::Partner& a, const EvidenceStatistics::Partner& b) {
+  return a.id == b.id && a.answers == b.answers && a.delays == b.delays;
 }
 
 bool operator==(const EvidenceStatistics& a, const EvidenceStatistics& b) {
@@ -88,18 +214,20 @@ bool operator==(const EvidenceStatistics& a, const EvidenceStatistics& b) {
       a.duration() != b.duration()) {
     return false;
   }
-  for (EventId to = 0; to < a.size(); ++to) {
-    const EvidenceStatistics::Type& x = a.type(to);
-    const EvidenceStatistics::Type& y = b.type(to);
-    if (std::tie(x.events, x.gaps, x.gap_sum, x.longest_gaps, x.rate_sum, x.rate_squares) !=
-        std::tie(y.events, y.gaps, y.gap_sum, y.longest_gaps, y.rate_sum, y.rate_squares)) {
+  const auto counted = [](const Partners& partners) {
+    Partners without_zeros;
+    std::remove_copy_if(partners.begin(), partners.end(), std::back_inserter(without_zeros),
+                        isEmpty);
+    return without_zeros;
+  };
+  for (EventId id = 0; id < a.size(); ++id) {
+    const EvidenceStatistics::Type& x = a.type(id);
+    const EvidenceStatistics::Type& y = b.type(id);
+    if (std::tie(x.events, x.gaps, x.gap_sum, x.longest_gaps, x.rate_sum, x.rate_squares,
+                 x.left_out) != std::tie(y.events, y.gaps, y.gap_sum, y.longest_gaps, y.rate_sum,
+                                         y.rate_squares, y.left_out) ||
+        !(counted(a.partners(id)) == counted(b.partners(id)))) {
       return false;
-    }
-    for (EventId from = 0; from < a.size(); ++from) {
-      if (a.pair(from, to).delays != b.pair(from, to).delays ||
-          a.pair(from, to).answers != b.pair(from, to).answers) {
-        return false;
-      }
     }
   }
   return true;
@@ -132,22 +260,19 @@ void EvidenceTrainer::add(const Event& event) {
   last_stamp_ = event.stamp;
 
   EvidenceStatistics::Type& type = statistics_.type(event.id);
-  std::optional<Seen>& last = last_seen_.at(event.id);
+  Seen& last = last_seen_.at(event.id);
   ++type.events;
   counts_.add(event.id);
-  for (EventId other = 0; other < last_seen_.size(); ++other) {
-    if (!last_seen_[other]) {
-      continue;
+  Partner* partner = statistics_.allPartners(event.id).data();
+  for (const Seen& other : last_seen_) {
+    if (other.number > 0) {
+      ++partner->delays[log_bins::bin(event.stamp - other.stamp)];
+      partner->answers += last.number > 0 && other.number > last.number ? 1 : 0;
     }
-    std::vector<std::uint32_t>& delays = statistics_.pair(other, event.id).delays;
-    delays.resize(log_bins::kBins, 0);
-    ++delays[log_bins::bin(event.stamp - last_seen_[other]->stamp)];
-    if (last && last_seen_[other]->number > last->number) {
-      ++statistics_.pair(event.id, other).answers;
-    }
+    ++partner;
   }
-  if (last) {
-    const std::int64_t gap = std::max<std::int64_t>(event.stamp - last->stamp, 0);
+  if (last.number > 0) {
+    const std::int64_t gap = std::max<std::int64_t>(event.stamp - last.stamp, 0);
     ++type.gaps;
     type.gap_sum += gap;
     type.addGap(gap);

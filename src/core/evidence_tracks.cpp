@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
+#include <numeric>
+#include <stdexcept>
 #include <utility>
 
 #include "self_awareness/core/suspect.h"
@@ -10,9 +11,7 @@
 namespace self_awareness::core {
 namespace {
 
-// By measurement (docs/evaluation): fewer predecessors find late answers later, more of them cost
-// false alarms; with a smaller gain, timers that beat against each other get in.
-constexpr std::size_t kPredecessors = 3;
+// With a smaller gain, timers that beat against each other get in.
 constexpr double kLeastGain = 0.3;  // [nat]
 constexpr std::uint64_t kFewestDelaysOfPair = 200;
 
@@ -23,31 +22,24 @@ constexpr std::size_t kAsked = 8;
 constexpr std::uint64_t kFewestAnswers = 100;
 constexpr double kMostMisses = 0.6;
 
+using Halves = std::array<const EvidenceStatistics*, 2>;
+
 /// Gains between all pairs, the mean of both directions.
 class Gains {
  public:
-  Gains(const EvidenceStatistics& first, const EvidenceStatistics& second,
-        const EvidenceStatistics& both)
-      : size_(both.size()), gains_(size_ * size_, 0) {
-    add(first, second, both);
-    add(second, first, both);
+  explicit Gains(const Halves& halves) : size_(halves[0]->size()), gains_(size_ * size_, 0) {
+    add(*halves[0], *halves[1]);
+    add(*halves[1], *halves[0]);
   }
 
   double operator()(EventId from, EventId to) const { return gains_[to * size_ + from]; }
 
  private:
-  void add(const EvidenceStatistics& learned_from, const EvidenceStatistics& measured_on,
-           const EvidenceStatistics& both) {
+  void add(const EvidenceStatistics& learned_from, const EvidenceStatistics& measured_on) {
     const InformationGain gain(learned_from, measured_on);
-    std::vector<std::optional<EventId>> there;
-    for (const EventType& type : both.vocabulary().types()) {
-      there.push_back(learned_from.vocabulary().find(type));
-    }
     for (EventId to = 0; to < size_; ++to) {
       for (EventId from = 0; from < size_; ++from) {
-        if (there[from] && there[to]) {
-          gains_[to * size_ + from] += gain(*there[from], *there[to]) / 2;
-        }
+        gains_[to * size_ + from] += gain(from, to) / 2;
       }
     }
   }
@@ -56,45 +48,132 @@ class Gains {
   std::vector<double> gains_;
 };
 
-void addDelayTracks(const EvidenceStatistics& both, const Gains& gains,
-                    std::vector<Track>& tracks) {
-  for (EventId to = 0; to < both.size(); ++to) {
-    std::vector<std::pair<double, EventId>> best;  // by negative gain
-    for (EventId from = 0; from < both.size(); ++from) {
-      if (gains(from, to) >= kLeastGain && both.pair(from, to).total() >= kFewestDelaysOfPair) {
-        best.emplace_back(-gains(from, to), from);
+/// What to watch, by the counts of both halves.
+class Choice {
+ public:
+  Choice(const Halves& halves, std::size_t predecessors)
+      : halves_(halves),
+        predecessors_(predecessors),
+        gains_(halves),
+        types_(halves[0]->withoutPairs()) {
+    types_.merge(halves[1]->withoutPairs());
+  }
+
+  std::vector<Track> tracks() const {
+    std::vector<Track> tracks;
+    addTracksOfTypes(tracks);
+    addDelayTracks(tracks);
+    addAnswerTracks(tracks);
+    return tracks;
+  }
+
+ private:
+  using Ranked = std::vector<std::pair<double, EventId>>;  // the least first
+
+  void addTracksOfTypes(std::vector<Track>& tracks) const {
+    for (EventId id = 0; id < types_.size(); ++id) {
+      if (types_.type(id).gaps >= kFewestGaps) {
+        tracks.push_back({Channel::kOverdue, id, id});
+        if (static_cast<double>(types_.type(id).rate_sum) >=
+            kLeastRate * static_cast<double>(types_.rateWindows())) {
+          tracks.push_back({Channel::kFewer, id, id});
+          tracks.push_back({Channel::kMore, id, id});
+        }
       }
     }
-    std::sort(best.begin(), best.end());
-    for (std::size_t k = 0; k < std::min(best.size(), kPredecessors); ++k) {
-      tracks.push_back({Channel::kDelay, to, best[k].second});
-      tracks.push_back({Channel::kSlowDelay, to, best[k].second});
+  }
+
+  void addDelayTracks(std::vector<Track>& tracks) const {
+    for (EventId to = 0; to < types_.size(); ++to) {
+      Ranked best;  // by negative gain
+      for (EventId from = 0; from < types_.size(); ++from) {
+        if (gains_(from, to) >= kLeastGain &&
+            halves_[0]->total(from, to) + halves_[1]->total(from, to) >= kFewestDelaysOfPair) {
+          best.emplace_back(-gains_(from, to), from);
+        }
+      }
+      keepBest(predecessors_, best);
+      for (const auto& [gain, from] : best) {
+        tracks.push_back({Channel::kDelay, to, from});
+        tracks.push_back({Channel::kSlowDelay, to, from});
+      }
     }
   }
+
+  // Whoever follows `to` says nothing about it: a dead component's victims are silent, too.
+  void addAnswerTracks(std::vector<Track>& tracks) const {
+    for (EventId to = 0; to < types_.size(); ++to) {
+      Ranked best;  // by the time that some misses take
+      for (EventId from = 0; from < types_.size(); ++from) {
+        const EvidenceStatistics::Type& asking = types_.type(from);
+        if (from == to || asking.gaps < kFewestAnswers || types_.type(to).gaps < kFewestAnswers ||
+            gains_(to, from) > gains_(from, to) + kLeastGain) {
+          continue;
+        }
+        const double misses =
+            missRate(asking.gaps, halves_[0]->answers(from, to) + halves_[1]->answers(from, to));
+        if (misses <= kMostMisses) {
+          const double gap =
+              static_cast<double>(asking.gap_sum) / static_cast<double>(asking.gaps);
+          best.emplace_back(gap / (1 - misses), from);
+        }
+      }
+      keepBest(kAsked, best);
+      for (const auto& [time, from] : best) {
+        tracks.push_back({Channel::kAnswer, to, from});
+      }
+    }
+  }
+
+  static void keepBest(std::size_t number, Ranked& best) {
+    number = std::min(number, best.size());
+    std::partial_sort(best.begin(), best.begin() + static_cast<std::ptrdiff_t>(number),
+                      best.end());
+    best.resize(number);
+  }
+
+  Halves halves_;
+  std::size_t predecessors_;
+  Gains gains_;
+  EvidenceStatistics types_;  // counts of both halves, without pairs
+};
+
+/// The counts, with the event types of both halves and their ids.
+EvidenceStatistics withTypes(const EvidenceStatistics& first, const EvidenceStatistics& second,
+                             const EvidenceStatistics& counts) {
+  EvidenceStatistics all;
+  for (const EvidenceStatistics* half : {&first, &second}) {
+    for (const EventType& type : half->vocabulary().types()) {
+      all.intern(type);
+    }
+  }
+  all.merge(counts);
+  return all;
 }
 
-// Whoever follows `to` says nothing about it: a dead component's victims are silent, too.
-void addAnswerTracks(const EvidenceStatistics& both, const Gains& gains,
-                     std::vector<Track>& tracks) {
-  for (EventId to = 0; to < both.size(); ++to) {
-    std::vector<std::pair<double, EventId>> best;  // by the time that some misses take
-    for (EventId from = 0; from < both.size(); ++from) {
-      const EvidenceStatistics::Type& asking = both.type(from);
-      if (from == to || asking.gaps < kFewestAnswers || both.type(to).gaps < kFewestAnswers ||
-          gains(to, from) > gains(from, to) + kLeastGain) {
-        continue;
-      }
-      const double misses = missRate(both, from, to);
-      if (misses <= kMostMisses) {
-        const double gap = static_cast<double>(asking.gap_sum) / static_cast<double>(asking.gaps);
-        best.emplace_back(gap / (1 - misses), from);
-      }
-    }
-    std::sort(best.begin(), best.end());
-    for (std::size_t k = 0; k < std::min(best.size(), kAsked); ++k) {
-      tracks.push_back({Channel::kAnswer, to, best[k].second});
-    }
+std::vector<EvidenceStatistics::Pair> pairsOf(const std::vector<Track>& tracks,
+                                              std::size_t types) {
+  std::vector<EvidenceStatistics::Pair> pairs;
+  for (EventId id = 0; id < types; ++id) {
+    pairs.push_back({id, id});  // the gaps between two of a type
   }
+  for (const Track& track : tracks) {
+    pairs.push_back({track.from, track.to});
+  }
+  return pairs;
+}
+
+template <typename Counts>
+LogProbabilities logsOf(const Counts& counts) {
+  auto total = static_cast<double>(counts.size());
+  for (const std::uint64_t count : counts) {
+    total += static_cast<double>(count);
+  }
+  LogProbabilities logs{};
+  std::transform(counts.begin(), counts.end(), logs.begin(), [total](std::uint64_t count) {
+    return std::log((static_cast<double>(count) + 1) / total);
+  });
+  return logs;
 }
 
 }  // namespace
@@ -121,70 +200,73 @@ InformationGain::InformationGain(const EvidenceStatistics& learned_from,
   for (const EventType& type : learned_from.vocabulary().types()) {
     id_there_.push_back(measured_on.vocabulary().find(type));
   }
-  any_.assign(learned_from.size(), std::vector<std::uint64_t>(log_bins::kBins, 0));
-  for (EventId to = 0; to < learned_from.size(); ++to) {
-    for (EventId from = 0; from < learned_from.size(); ++from) {
-      const std::vector<std::uint32_t>& delays = learned_from.pair(from, to).delays;
-      std::transform(delays.begin(), delays.end(), any_[from].begin(), any_[from].begin(),
-                     std::plus<>());
-    }
+  for (const EvidenceStatistics::SumOfDelays& delays : learned_from.delaysToAny()) {
+    any_.push_back(logProbabilities(delays));
   }
 }
 
 double InformationGain::operator()(EventId from, EventId to) const {
-  const std::vector<std::uint32_t>& learned = learned_from_.pair(from, to).delays;
-  if (learned.empty() || !id_there_[from] || !id_there_[to]) {
+  if (!id_there_[from] || !id_there_[to]) {
     return 0;
   }
-  const EvidenceStatistics::Pair& measured = measured_on_.pair(*id_there_[from], *id_there_[to]);
-  if (measured.total() < kFewestDelays) {
+  const EvidenceStatistics::Delays& measured =
+      measured_on_.delays(*id_there_[from], *id_there_[to]);
+  const auto number = std::accumulate(measured.begin(), measured.end(), std::uint64_t{0});
+  const EvidenceStatistics::Delays& learned = learned_from_.delays(from, to);
+  const auto learned_number = std::accumulate(learned.begin(), learned.end(), std::uint64_t{0});
+  if (number < kFewestDelays || learned_number == 0) {
     return 0;
   }
-  const std::vector<double> of_pair = logProbabilities({learned.begin(), learned.end()});
-  const std::vector<double> of_any = logProbabilities(any_[from]);
+  const double total = static_cast<double>(learned_number) + log_bins::kBins;
   double sum = 0;
   for (std::size_t bin = 0; bin < log_bins::kBins; ++bin) {
-    sum += measured.delays[bin] * (of_pair[bin] - of_any[bin]);
-  }
-  return sum / static_cast<double>(measured.total());
-}
-
-std::vector<double> logProbabilities(const std::vector<std::uint64_t>& counts) {
-  double total = static_cast<double>(counts.size());
-  for (const std::uint64_t count : counts) {
-    total += static_cast<double>(count);
-  }
-  std::vector<double> logs;
-  logs.reserve(counts.size());
-  for (const std::uint64_t count : counts) {
-    logs.push_back(std::log((static_cast<double>(count) + 1) / total));
-  }
-  return logs;
-}
-
-std::vector<Track> chooseTracks(const EvidenceStatistics& first, const EvidenceStatistics& second,
-                                const EvidenceStatistics& both) {
-  std::vector<Track> tracks;
-  for (EventId id = 0; id < both.size(); ++id) {
-    if (both.type(id).gaps >= kFewestGaps) {
-      tracks.push_back({Channel::kOverdue, id, id});
-      if (static_cast<double>(both.type(id).rate_sum) >=
-          kLeastRate * static_cast<double>(both.rateWindows())) {
-        tracks.push_back({Channel::kFewer, id, id});
-        tracks.push_back({Channel::kMore, id, id});
-      }
+    if (measured[bin] > 0) {  // logarithms are what takes the time
+      sum += measured[bin] * (std::log((learned[bin] + 1.0) / total) - any_[from][bin]);
     }
   }
-  const Gains gains(first, second, both);
-  addDelayTracks(both, gains, tracks);
-  addAnswerTracks(both, gains, tracks);
-  return tracks;
+  return sum / static_cast<double>(number);
 }
 
-double missRate(const EvidenceStatistics& statistics, EventId from, EventId to) {
-  const auto gaps = static_cast<double>(statistics.type(from).gaps);
-  const auto answers = static_cast<double>(statistics.pair(from, to).answers);
-  return (gaps - answers + 0.5) / (gaps + 1);
+LogProbabilities logProbabilities(const EvidenceStatistics::Delays& counts) {
+  return logsOf(counts);
+}
+
+LogProbabilities logProbabilities(const EvidenceStatistics::SumOfDelays& counts) {
+  return logsOf(counts);
+}
+
+WatchedEvidence watch(const EvidenceStatistics& first, const EvidenceStatistics& second,
+                      std::size_t predecessors) {
+  if (first.vocabulary().types() != second.vocabulary().types()) {
+    return watch(withTypes(first, second, first), withTypes(first, second, second), predecessors);
+  }
+  const Halves halves{&first, &second};
+  WatchedEvidence watched;
+  watched.tracks = Choice(halves, predecessors).tracks();
+  const std::vector<EvidenceStatistics::Pair> pairs = pairsOf(watched.tracks, first.size());
+  watched.halves = {first.only(pairs), second.only(pairs)};
+  return watched;
+}
+
+void checkTracks(const std::vector<Track>& tracks, std::size_t types) {
+  for (std::size_t track = 0; track < tracks.size(); ++track) {
+    const auto& [channel, to, from] = tracks[track];
+    if (to >= types || from >= types) {
+      throw std::invalid_argument("it watches an event type that it does not have");
+    }
+    const bool slow = channel == Channel::kSlowDelay;
+    const std::size_t other = slow ? track - 1 : track + 1;
+    if ((slow || channel == Channel::kDelay) &&
+        (other >= tracks.size() || tracks[other].to != to || tracks[other].from != from ||
+         tracks[other].channel != (slow ? Channel::kDelay : Channel::kSlowDelay))) {
+      throw std::invalid_argument("it watches delays, but not both at present and for longer");
+    }
+  }
+}
+
+double missRate(std::uint64_t gaps, std::uint64_t answers) {
+  const auto all = static_cast<double>(gaps);
+  return (all - static_cast<double>(answers) + 0.5) / (all + 1);
 }
 
 }  // namespace self_awareness::core

@@ -120,7 +120,6 @@ void Discovery::poll(const Wanted& wanted, bool restart) {
     }
     state.graph = std::make_shared<const ros1::Graph>(std::move(*graph));
   }
-  state.dropped_messages = dropped_.count();
   const std::lock_guard<std::mutex> lock(mutex_);
   if (!state.master_answers) {
     state.subscriptions = state_.subscriptions;

@@ -2,7 +2,7 @@
 
 #include <chrono>
 #include <condition_variable>
-#include <cstdint>
+#include <cstddef>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -11,7 +11,6 @@
 #include <thread>
 #include <vector>
 
-#include "self_awareness/ros/dropped_messages.h"
 #include "self_awareness/ros/encoding.h"
 #include "self_awareness/ros/graph.h"
 #include "self_awareness/ros/live_events.h"
@@ -35,7 +34,6 @@ class Discovery {
   struct State {
     bool master_answers = true;  ///< false also while it lets a call wait for long
     std::size_t subscriptions = 0;
-    std::uint64_t dropped_messages = 0;  ///< since the start
     /// Who publishes and subscribes what; none before the master answered, the last while it does
     /// not.
     std::shared_ptr<const ros1::Graph> graph;
@@ -69,7 +67,6 @@ class Discovery {
   const ros1::SubscribePolicy policy_;
   const std::chrono::duration<double> interval_;
   ros1::MasterRegistration registration_;  // of the thread
-  ros1::DroppedMessages dropped_;          // of the thread
   ros1::NewPublishers publishers_;         // of the thread
 
   mutable std::mutex mutex_;

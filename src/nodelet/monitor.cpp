@@ -49,7 +49,7 @@ Monitor::Session::Session(ros1::TrainedModel trained_model, const MonitorParamet
                      ? trained.calibration.has_value()
                      : trained.evidence_calibration.has_value()),
       graph(std::make_shared<core::SourceGraph>(trained.graph)),
-      vocabulary(trained.statistics.vocabulary()),
+      vocabulary(trained.vocabulary()),
       encoder(std::make_shared<ros1::Encoder>(
           trained.encoding, [this](const core::EventType& type) { return intern(type); })),
       detector(makeJudge(parameters), trained.window, parameters.detector, std::move(handler)) {}
@@ -62,13 +62,13 @@ std::unique_ptr<core::Judge> Monitor::Session::makeJudge(
                                               parameters.detector.silence_is_abnormal);
   }
   return std::make_unique<core::EvidenceJudge>(
-      std::make_shared<core::EvidenceModel>(trained.evidence[0], trained.evidence[1]),
-      trained.limits(), trained.window, graph);
+      std::make_shared<core::EvidenceModel>(trained.watched), trained.limits(), trained.window,
+      graph);
 }
 
 // A type field with ever new values must not fill the memory of a robot that runs for months.
 core::EventId Monitor::Session::intern(const core::EventType& type) {
-  const std::size_t known = trained.statistics.vocabulary().size();
+  const std::size_t known = trained.vocabulary().size();
   if (!vocabulary.find(type) && vocabulary.size() >= known + kMostUnknownTypes) {
     return vocabulary.intern({"", "(further topics)", "(further unknown events)"});
   }
@@ -96,11 +96,13 @@ Monitor::Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& priv
   for (const ros::ServiceServer& service : services_) {
     service_names.push_back(service.getService());
   }
-  live_events_ = std::make_unique<ros1::LiveEvents>(
-      node_handle_, parameters_.queue_size, [this](const core::Event& event) { onEvent(event); },
-      // It may be a publisher that the master has not told of: settling cannot wait for the next
-      // poll.
-      [this] { discovery_->pollNow(); });
+  ros1::LiveEvents::Handlers handlers;
+  handlers.on_event = [this](const core::Event& event) { onEvent(event); };
+  // It may be a publisher that the master has not told of: settling cannot wait for the next poll.
+  handlers.on_connection = [this] { discovery_->pollNow(); };
+  handlers.on_arrivals = [this] { onArrivals(); };
+  live_events_ =
+      std::make_unique<ros1::LiveEvents>(node_handle_, parameters_.queue_size, handlers);
   timer_ =
       private_node_handle_.createSteadyTimer(tickFor(kWindowWithoutModel), &Monitor::onTick, this);
   discovery_ = std::make_unique<Discovery>(*live_events_, parameters_.subscribe,
@@ -126,7 +128,10 @@ void Monitor::load() {
     throw ros1::ModelFileError(private_node_handle_.resolveName("model") +
                                " is not set; give it the path of a model file");
   }
-  startSession(ros1::loadModel(parameters_.model));
+  startSession(
+      ros1::loadModel(parameters_.model, parameters_.method == MonitorParameters::Method::kPaper
+                                             ? ros1::ModelCounts::kDelays
+                                             : ros1::ModelCounts::kWatched));
 }
 
 std::unique_ptr<Monitor::Session> Monitor::makeSession(ros1::TrainedModel trained) {
@@ -153,7 +158,7 @@ void Monitor::startSession(ros1::TrainedModel trained) {
   Discovery::Wanted wanted;
   wanted.encoder = session_->encoder;
   std::set<std::string> own_topics;
-  for (const core::EventType& type : session_->trained.statistics.vocabulary().types()) {
+  for (const core::EventType& type : session_->trained.vocabulary().types()) {
     wanted.model_topics.insert(type.scope);
     if (type.source == ros::this_node::getName()) {
       own_topics.insert(type.scope);
@@ -161,33 +166,39 @@ void Monitor::startSession(ros1::TrainedModel trained) {
     component_of_.push_back(&components_[core::componentOf(type.source, type.scope)]);
   }
   wanted.own_output = ros1::OwnOutput(ros::this_node::getName(), std::move(own_topics));
-  live_events_->setEncoder(session_->encoder, wanted.own_output);
+  live_events_->setEncoder(session_->encoder, wanted.own_output, session_->trained.window);
   discovery_->setWanted(std::move(wanted));
   ROS_INFO("model %s: %zu event types of %zu components, %s", parameters_.model.c_str(),
            component_of_.size(), components_.size(),
            session_->calibrated ? "calibrated" : "not calibrated, it will never alarm");
 }
 
-void Monitor::onEvent(const core::Event& event) {
+void Monitor::onArrivals() {
   const ros::WallTime begin = ros::WallTime::now();
   watchClock();
-  if (!clock_watch_.isStale(event.stamp)) {
-    if (event.id < component_of_.size()) {
-      component_of_[event.id]->last = event.stamp;
-      ++component_of_[event.id]->events;
-    }
-    ++events_;
-    if (!session_->detector.add(event)) {
-      restart();
-      session_->detector.add(event);
-    }
-  }
+  live_events_->deliver();
   processing_ += ros::WallTime::now() - begin;
+}
+
+void Monitor::onEvent(const core::Event& event) {
+  if (clock_watch_.isStale(event.stamp)) {
+    return;
+  }
+  if (event.id < component_of_.size()) {
+    component_of_[event.id]->last = event.stamp;
+    ++component_of_[event.id]->events;
+  }
+  ++events_;
+  if (!session_->detector.add(event)) {
+    restart();
+    session_->detector.add(event);
+  }
 }
 
 void Monitor::onTick(const ros::SteadyTimerEvent& /*tick*/) {
   const ros::WallTime begin = ros::WallTime::now();
   const std::int64_t now = watchClock();
+  live_events_->deliver();
   if (session_) {
     for (const ros1::Publisher& publisher : discovery_->takeNewPublishers()) {
       ROS_INFO("settling: %s began to publish %s", publisher.source.c_str(),
@@ -309,14 +320,14 @@ void Monitor::publishDiagnostics() {
   state.processing_share = processing_.toSec() / elapsed;
   state.subscriptions = discovered.subscriptions;
   state.connections = live_events_->connections();
-  state.dropped = discovered.dropped_messages;
-  state.newly_dropped = discovered.dropped_messages - reported_drops_;
+  state.dropped = live_events_->dropped();
+  state.newly_dropped = state.dropped - reported_drops_;
   state.clock_steps = clock_steps_;
   state.master_answers = discovered.master_answers;
   diagnostics_.publish(state);
   events_ = 0;
   processing_ = {};
-  reported_drops_ = discovered.dropped_messages;
+  reported_drops_ = state.dropped;
   last_report_ = now;
 }
 

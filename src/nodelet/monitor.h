@@ -75,6 +75,7 @@ class Monitor {
   std::unique_ptr<Session> makeSession(ros1::TrainedModel trained);
   void startSession(ros1::TrainedModel trained);
 
+  void onArrivals();
   void onEvent(const core::Event& event);
   void onTick(const ros::SteadyTimerEvent& tick);
   void onVerdict(const core::Verdict& verdict);

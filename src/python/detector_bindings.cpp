@@ -229,6 +229,7 @@ void bindVerdicts(py::module& m) {
         "Verdicts on a recording by the EvidenceModel of a TrainedModel; as Model.judge.");
   m.attr("EVIDENCE_THRESHOLD") = core::EvidenceJudge::kThreshold;
   m.attr("FEWEST_GAPS") = core::kFewestGaps;
+  m.attr("PREDECESSORS") = core::kPredecessors;
   m.attr("USUAL_SHARES") = py::make_tuple(core::kUsualFrom, core::kUsualTo);
 }
 

@@ -23,7 +23,7 @@ using core::EvidenceModel;
 std::shared_ptr<EvidenceModel> makeModel(
     const ros1::TrainedModel& trained,
     EvidenceModel::Learned learned = EvidenceModel::Learned::kBoth) {
-  return std::make_shared<EvidenceModel>(trained.evidence[0], trained.evidence[1], learned);
+  return std::make_shared<EvidenceModel>(trained.watched, learned);
 }
 
 /// Finds limits on recordings that come twice each: as held-out data, or, where the model was

@@ -29,6 +29,14 @@ struct RecordedEvents {
   std::vector<std::uint32_t> ids;
 };
 
+// The array reads what its owner holds, and keeps it alive: events may be many.
+template <typename T>
+py::array_t<T> viewOf(const std::vector<T>& values, const py::object& owner) {
+  py::array_t<T> view(static_cast<py::ssize_t>(values.size()), values.data(), owner);
+  view.attr("setflags")(py::arg("write") = false);
+  return view;
+}
+
 RecordedEvents readEvents(const std::string& path, const ros1::EncodingRules& rules,
                           const std::vector<core::EventType>& known, const ros1::TimeRange& range,
                           const py::object& progress) {
@@ -38,6 +46,8 @@ RecordedEvents readEvents(const std::string& path, const ros1::EncodingRules& ru
       rules, [&](const core::EventType& type) { return vocabulary.intern(type); });
   RecordedEvents events;
   events.summary = reader.summary();
+  events.stamps.reserve(events.summary.messages);
+  events.ids.reserve(events.summary.messages);
   reader.read(
       encoder, range,
       [&](const core::Event& event) {
@@ -143,9 +153,18 @@ void bindBags(py::module& m) {
   py::class_<RecordedEvents>(m, "RecordedEvents", "The events of a recording, in memory.")
       .def_readonly("summary", &RecordedEvents::summary)
       .def_readonly("event_types", &RecordedEvents::event_types, "by id")
-      .def_property_readonly("stamps",
-                             [](const RecordedEvents& self) { return toArray(self.stamps); })
-      .def_property_readonly("ids", [](const RecordedEvents& self) { return toArray(self.ids); });
+      .def_property_readonly(
+          "stamps",
+          [](const py::object& self) {
+            return viewOf(self.cast<const RecordedEvents&>().stamps, self);
+          },
+          "int64 [ns], read-only")
+      .def_property_readonly(
+          "ids",
+          [](const py::object& self) {
+            return viewOf(self.cast<const RecordedEvents&>().ids, self);
+          },
+          "uint32, read-only");
   m.def(
       "read_events",
       [](const std::string& path, const ros1::EncodingRules& encoding,
@@ -211,12 +230,24 @@ void bindModel(py::module& m) {
 
   using ros1::TrainedModel;
   py::class_<TrainedModel>(m, "TrainedModel", "All that a model file holds: counts.")
-      .def_static("load", &ros1::loadModel, py::arg("path"), "Raises ModelFileError.")
+      .def_static(
+          "load", [](const std::string& path) { return ros1::loadModel(path); }, py::arg("path"),
+          "Raises ModelFileError.")
       .def("save", &ros1::saveModel, py::arg("path"),
            "Raises ModelFileError; writes all or nothing.")
       .def("merge", &ros1::merge, py::arg("other"),
-           "Adds what another model learned, behind what this one did; drops the calibrations.\n"
-           "ValueError where they do not count the same things.")
+           "Adds what another model learned, behind what this one did; drops the calibrations,\n"
+           "and watch() must follow. ValueError where they do not count the same things.")
+      .def("watch", &TrainedModel::watch, "Chooses what is watched, by all counts.")
+      .def(
+          "watched_only",
+          [](TrainedModel self) {
+            self.dropCounts();
+            return self;
+          },
+          "A copy without the counts that the evidence detector does not judge by: small.")
+      .def_readonly("predecessors", &TrainedModel::predecessors,
+                    "of an event type that are watched at most")
       .def(
           "swap_halves", [](TrainedModel& self) { std::swap(self.evidence[0], self.evidence[1]); },
           "Takes the first half of the training for the second, and the second for the first;\n"

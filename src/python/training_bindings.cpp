@@ -19,13 +19,14 @@ namespace {
 class Training {
  public:
   Training(ros1::EncodingRules rules, std::int64_t bin_size, std::int64_t window,
-           std::int64_t horizon_bins)
+           std::int64_t horizon_bins, std::size_t predecessors)
       : statistics_(core::Binning{bin_size, horizon_bins}),
         trainer_(statistics_),
         evidence_trainers_{core::EvidenceTrainer(evidence_[0], window),
                            core::EvidenceTrainer(evidence_[1], window)},
         rules_(std::move(rules)),
-        window_(window) {}
+        window_(window),
+        predecessors_(predecessors) {}
 
   void addEvents(const std::vector<core::EventType>& types, const Stamps& stamps, const Ids& ids,
                  std::optional<std::int64_t> middle,
@@ -47,7 +48,7 @@ class Training {
   }
 
   // Not a copy: with many event types, the counts may fill half of the memory.
-  ros1::TrainedModel model() {
+  ros1::TrainedModel model(bool watch) {
     checkNotEnded();
     ended_ = true;
     ros1::TrainedModel model;
@@ -55,6 +56,10 @@ class Training {
     model.window = window_;
     model.statistics = std::move(statistics_);
     model.evidence = std::move(evidence_);
+    model.predecessors = predecessors_;
+    if (watch) {
+      model.watch();
+    }
     model.recordings = std::move(recordings_);
     model.stamp.fromSec(std::floor(ros::WallTime::now().toSec()));
     return model;
@@ -107,6 +112,7 @@ class Training {
   std::optional<std::int64_t> middle_;  // of a recording that is alone [ns], while before it
   ros1::EncodingRules rules_;
   std::int64_t window_;
+  std::size_t predecessors_;
   std::vector<self_awareness::Recording> recordings_;
   bool ended_ = false;
 };
@@ -115,9 +121,12 @@ class Training {
 
 void bindTraining(py::module& m) {
   py::class_<Training>(m, "Training", "Counts the delays of one recording after the other.")
-      .def(py::init<ros1::EncodingRules, std::int64_t, std::int64_t, std::int64_t>(),
+      .def(py::init<ros1::EncodingRules, std::int64_t, std::int64_t, std::int64_t, std::size_t>(),
            py::arg("encoding"), py::arg("bin_size") = 10000000, py::arg("window") = 100000000,
-           py::arg("horizon_bins") = 0, "bin_size, window: [ns]; horizon_bins 0: unbounded")
+           py::arg("horizon_bins") = 0, py::arg("predecessors") = core::kPredecessors,
+           "bin_size, window: [ns]; horizon_bins 0: unbounded; predecessors: most of an event "
+           "type\n"
+           "that the evidence watches")
       .def(
           "add_events", &Training::addEvents, py::arg("event_types"), py::arg("stamps"),
           py::arg("ids"), py::arg("middle") = py::none(), py::arg("recording") = py::none(),
@@ -126,8 +135,9 @@ void bindTraining(py::module& m) {
           "of a recording that is alone: what comes before it is one half of the training, the\n"
           "rest the other. recording: what the model says of it. After a ValueError the training\n"
           "is incomplete and must be thrown away.")
-      .def("model", &Training::model,
-           "The TrainedModel of all that was added; ends the training.");
+      .def("model", &Training::model, py::arg("watch") = true,
+           "The TrainedModel of all that was added; ends the training. watch: choose what is\n"
+           "watched; not needed where it is merged.");
 }
 
 }  // namespace self_awareness::python

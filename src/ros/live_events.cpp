@@ -1,21 +1,39 @@
 #include "self_awareness/ros/live_events.h"
 
 #include <ros/console.h>
-#include <ros/serialization.h>
-#include <ros/subscribe_options.h>
 
-#include <boost/bind/bind.hpp>
+#include <algorithm>
+#include <boost/make_shared.hpp>
 #include <stdexcept>
 #include <utility>
 
 namespace self_awareness::ros1 {
 
+/// Has the thread that serves the callback queue take what has arrived.
+class LiveEvents::Wake : public ros::CallbackInterface {
+ public:
+  explicit Wake(std::function<void()> on_arrivals) : on_arrivals_(std::move(on_arrivals)) {}
+  CallResult call() override {
+    on_arrivals_();
+    return Success;
+  }
+
+ private:
+  const std::function<void()> on_arrivals_;
+};
+
 LiveEvents::LiveEvents(const ros::NodeHandle& node_handle, std::uint32_t queue_size,
-                       Handler handler, ConnectionHandler on_connection)
+                       Handlers handlers)
     : node_handle_(node_handle),
-      queue_size_(queue_size),
-      handler_(std::move(handler)),
-      on_connection_(std::move(on_connection)) {}
+      handlers_(std::move(handlers)),
+      wake_(boost::make_shared<Wake>(handlers_.on_arrivals)),
+      arrivals_(queue_size,
+                [this] { node_handle_.getCallbackQueue()->addCallback(wake_, wakeId()); }) {}
+
+LiveEvents::~LiveEvents() {
+  subscriptions_.clear();  // nothing arrives any more
+  node_handle_.getCallbackQueue()->removeByID(wakeId());
+}
 
 void LiveEvents::setTopics(const std::set<std::string>& topics, const Graph& graph) {
   for (auto subscription = subscriptions_.begin(); subscription != subscriptions_.end();) {
@@ -40,15 +58,10 @@ void LiveEvents::setTopics(const std::set<std::string>& topics, const Graph& gra
     if (subscriptions_.count(topic) > 0) {
       continue;
     }
-    ros::SubscribeOptions options;
-    options.initByFullCallbackType<const MessageEvent&>(
-        topic, queue_size_,
-        [this, topic](const MessageEvent& message) { onMessage(topic, message); });
-    options.transport_hints = ros::TransportHints().tcpNoDelay();
     const auto published = graph.topics.find(topic);
     Subscription& subscription = subscriptions_[topic];
     subscription.datatype = published == graph.topics.end() ? "" : published->second.datatype;
-    subscription.subscriber = node_handle_.subscribe(options);
+    subscription.subscriber = arrivals_.subscribe(node_handle_, topic);
   }
 }
 
@@ -60,14 +73,19 @@ void LiveEvents::renew(const Graph& graph) {
   }
 }
 
-void LiveEvents::setEncoder(std::shared_ptr<const Encoder> encoder, OwnOutput own_output) {
+void LiveEvents::setEncoder(std::shared_ptr<const Encoder> encoder, OwnOutput own_output,
+                            std::int64_t window) {
   encoder_ = std::move(encoder);
   own_output_ = std::move(own_output);
+  arrivals_.setInterval(window);
   for (auto& [key, live] : connections_) {
-    live.encoder = connect(connectionFrom(*live.header, live.topic));
+    live.encoder = connect(connectionFrom(*live.header, live.topic->name));
     if (live.encoder) {
       live.encoder->accept();  // the first message came before
     }
+  }
+  for (auto& [key, live] : connections_) {
+    chooseReading(*live.topic);
   }
 }
 
@@ -78,38 +96,64 @@ void LiveEvents::forgetClosedConnections() {
   }
 }
 
-void LiveEvents::onMessage(const std::string& topic, const MessageEvent& message) {
+void LiveEvents::deliver() {
+  arrivals_.take(delivered_);
+  for (const Arrival& arrival : delivered_) {
+    onArrival(arrival);
+  }
+  delivered_.clear();  // now: whether a connection is closed is seen by the users of its header
+}
+
+void LiveEvents::onArrival(const Arrival& arrival) {
   if (!encoder_) {
     return;
   }
-  const boost::shared_ptr<ros::M_string>& header = message.getConnectionHeaderPtr();
-  auto connection = connections_.find(header.get());
-  if (connection == connections_.end()) {
-    LiveConnection live{header, topic, connect(connectionFrom(*header, topic))};
-    connection = connections_.emplace(header.get(), std::move(live)).first;
-    if (connection->second.encoder) {
-      on_connection_();
-    }
-  }
-  std::optional<ConnectionEncoder>& encoder = connection->second.encoder;
+  std::optional<ConnectionEncoder>& encoder = connectionOf(arrival).encoder;
   if (!encoder || !encoder->accept()) {
     return;
   }
-  const auto stamp = static_cast<std::int64_t>(message.getReceiptTime().toNSec());
   if (!encoder->needsContent()) {
-    handler_({stamp, encoder->id()});
+    handlers_.on_event({arrival.stamp, encoder->id()});
     return;
   }
-  const topic_tools::ShapeShifter& content = *message.getConstMessage();
-  buffer_.resize(content.size());
-  ros::serialization::OStream stream(buffer_.data(), content.size());
-  content.write(stream);
-  try {
-    handler_({stamp, encoder->id(buffer_.data(), buffer_.size())});
-  } catch (const std::out_of_range& error) {
-    ROS_ERROR_THROTTLE(10, "%s from %s: %s; the message is left out", topic.c_str(),
-                       message.getPublisherName().c_str(), error.what());
+  if (!arrival.content) {  // it came before anybody knew that this topic is read
+    ++unread_;
+    return;
   }
+  try {
+    handlers_.on_event(
+        {arrival.stamp, encoder->id(arrival.content->data(), arrival.content->size())});
+  } catch (const std::out_of_range& error) {
+    ROS_ERROR_THROTTLE(10, "%s: %s; the message is left out", arrival.topic->name.c_str(),
+                       error.what());
+  }
+}
+
+LiveEvents::LiveConnection& LiveEvents::connectionOf(const Arrival& arrival) {
+  const auto known = connections_.find(arrival.header.get());
+  if (known != connections_.end() && known->second.topic == arrival.topic) {
+    return known->second;
+  }
+  // A connection may outlive the subscription, if somebody else in this process listens, too.
+  const auto [connection, is_new] = connections_.try_emplace(arrival.header.get());
+  LiveConnection& live = connection->second;
+  live.topic = arrival.topic;
+  if (is_new) {
+    live.header = arrival.header;
+    live.encoder = connect(connectionFrom(*arrival.header, arrival.topic->name));
+    if (live.encoder) {
+      handlers_.on_connection();
+    }
+  }
+  chooseReading(*live.topic);
+  return live;
+}
+
+void LiveEvents::chooseReading(Arrival::Topic& topic) const {
+  topic.reads = std::any_of(connections_.begin(), connections_.end(), [&](const auto& connection) {
+    const LiveConnection& live = connection.second;
+    return live.topic.get() == &topic && live.encoder && live.encoder->needsContent();
+  });
 }
 
 std::optional<ConnectionEncoder> LiveEvents::connect(const Connection& connection) const {

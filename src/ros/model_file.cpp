@@ -9,13 +9,18 @@
 #include <boost/filesystem/operations.hpp>
 #include <cmath>
 #include <cstdio>
+#include <optional>
+#include <utility>
 
+#include "self_awareness/ros/delays_message.h"
 #include "self_awareness/ros/evidence_message.h"
 
 namespace self_awareness::ros1 {
 namespace {
 
 constexpr char kTopic[] = "/model";
+constexpr char kDelaysTopic[] = "/delays";
+constexpr std::array<const char*, 2> kEvidenceTopics{"/evidence/first", "/evidence/second"};
 
 void check(bool holds, const std::string& otherwise) {
   if (!holds) {
@@ -23,7 +28,7 @@ void check(bool holds, const std::string& otherwise) {
   }
 }
 
-self_awareness::Encoding toMessage(const EncodingRules& rules) {
+self_awareness::Encoding encodingMessage(const EncodingRules& rules) {
   self_awareness::Encoding message;
   message.source = rules.source == EncodingRules::Source::kNone
                        ? self_awareness::Encoding::SOURCE_NONE
@@ -41,7 +46,7 @@ self_awareness::Encoding toMessage(const EncodingRules& rules) {
   return message;
 }
 
-EncodingRules fromMessage(const self_awareness::Encoding& message) {
+EncodingRules rulesOf(const self_awareness::Encoding& message) {
   EncodingRules rules;
   const bool none = message.source == self_awareness::Encoding::SOURCE_NONE;
   check(none || message.source == self_awareness::Encoding::SOURCE_CALLERID,
@@ -58,21 +63,7 @@ EncodingRules fromMessage(const self_awareness::Encoding& message) {
   return rules;
 }
 
-void appendHistograms(const core::DelayStatistics& statistics, self_awareness::Model& message) {
-  const std::size_t n = statistics.vocabulary().size();
-  message.offsets.push_back(0);
-  for (core::EventId to = 0; to < n; ++to) {
-    for (core::EventId from = 0; from < n; ++from) {
-      for (const core::Histogram::Entry& entry : statistics.pair(from, to).entries()) {
-        message.bins.push_back(entry.bin);
-        message.counts.push_back(entry.count);
-      }
-      message.offsets.push_back(message.bins.size());
-    }
-  }
-}
-
-core::DelayStatistics statisticsOf(const self_awareness::Model& message) {
+core::DelayStatistics eventTypesOf(const self_awareness::Model& message) {
   core::DelayStatistics statistics(core::Binning{message.bin_size, message.horizon_bins});
   for (const self_awareness::EventType& type : message.event_types) {
     const std::size_t before = statistics.vocabulary().size();
@@ -80,63 +71,88 @@ core::DelayStatistics statisticsOf(const self_awareness::Model& message) {
     check(id == before, "an event type occurs twice");
     statistics.countEvent(id, type.count);
   }
-  const std::size_t n = message.event_types.size();
-  check(message.offsets.size() == n * n + 1 && message.offsets.front() == 0 &&
-            message.offsets.back() == message.bins.size() &&
-            message.bins.size() == message.counts.size() &&
-            std::is_sorted(message.offsets.begin(), message.offsets.end()),
-        "its histograms do not fit its event types");
-  for (std::size_t histogram = 0; histogram < n * n; ++histogram) {
-    const auto from = static_cast<core::EventId>(histogram % n);
-    const auto to = static_cast<core::EventId>(histogram / n);
-    for (std::size_t i = message.offsets[histogram]; i < message.offsets[histogram + 1]; ++i) {
-      check(message.counts[i] > 0 && message.bins[i] >= 0, "a histogram has an impossible bin");
-      statistics.pair(from, to).add(message.bins[i], message.counts[i]);
-    }
-  }
   check(statistics.events() > 0, "it was trained on no event");
   return statistics;
 }
 
-self_awareness::Model::ConstPtr readMessage(const std::string& path) {
-  if (!boost::filesystem::is_regular_file(path)) {
+/// Calls visit(message) for every message on a topic; returns their number.
+template <typename Message, typename Visit>
+std::size_t forEach(const rosbag::Bag& bag, const std::string& topic, const std::string& path,
+                    Visit visit) {
+  std::size_t number = 0;
+  rosbag::View view(bag, rosbag::TopicQuery(topic));
+  for (const rosbag::MessageInstance& instance : view) {
+    if (instance.getDataType() != ros::message_traits::datatype<Message>()) {
+      break;
+    }
+    if (instance.getMD5Sum() != ros::message_traits::md5sum<Message>()) {
+      throw ModelFileError(path + ": written by another version of self_awareness (md5 " +
+                           instance.getMD5Sum() + ", this one reads " +
+                           ros::message_traits::md5sum<Message>() + "); train the model again");
+    }
+    visit(*instance.instantiate<Message>());
+    ++number;
+  }
+  return number;
+}
+
+TrainedModel read(const rosbag::Bag& bag, const std::string& path, ModelCounts counts) {
+  std::optional<TrainedModel> model;
+  forEach<self_awareness::Model>(bag, kTopic, path, [&](const self_awareness::Model& message) {
+    model = fromMessage(message);
+  });
+  if (!model) {
     throw ModelFileError(path +
-                         ": no such file; train a model first "
+                         ": a bag, but it holds no model; train one from it "
                          "(rosrun self_awareness train)");
   }
-  try {
-    rosbag::Bag bag(path, rosbag::bagmode::Read);
-    rosbag::View view(bag);
-    for (const rosbag::MessageInstance& message : view) {
-      if (message.getDataType() != ros::message_traits::datatype<self_awareness::Model>()) {
-        break;
-      }
-      if (message.getMD5Sum() != ros::message_traits::md5sum<self_awareness::Model>()) {
-        throw ModelFileError(path + ": written by another version of self_awareness (md5 " +
-                             message.getMD5Sum() + ", this one reads " +
-                             ros::message_traits::md5sum<self_awareness::Model>() +
-                             "); train the model again");
-      }
-      return message.instantiate<self_awareness::Model>();
-    }
-  } catch (const rosbag::BagException& error) {
-    throw ModelFileError(path + ": not a model file, or a damaged one (" + error.what() + ")");
-  } catch (const ros::serialization::StreamOverrunException& error) {
-    throw ModelFileError(path + ": a damaged model file (" + error.what() + ")");
+  check(model->isWatched(), "its evidence has not two halves");
+  if (counts != ModelCounts::kWatched) {
+    const std::size_t number = forEach<self_awareness::DelayHistograms>(
+        bag, kDelaysTopic, path, [&](const self_awareness::DelayHistograms& message) {
+          addMessage(message, model->statistics);
+        });
+    check(number == model->vocabulary().size(), "its histograms do not fit its event types");
   }
-  throw ModelFileError(path +
-                       ": a bag, but it holds no model; train one from it "
-                       "(rosrun self_awareness train)");
+  for (std::size_t half = 0; counts == ModelCounts::kAll && half < 2; ++half) {
+    model->evidence.at(half) = model->watched.halves.at(half).withoutPairs();
+    const std::size_t number = forEach<self_awareness::EvidencePairs>(
+        bag, kEvidenceTopics.at(half), path, [&](const self_awareness::EvidencePairs& message) {
+          setPairs(message, model->evidence.at(half));
+        });
+    check(number == model->vocabulary().size(), "its evidence does not fit its event types");
+  }
+  return std::move(*model);
+}
+
+void write(const TrainedModel& model, rosbag::Bag& bag) {
+  // A bag cannot hold a message of the time 0.
+  const ros::Time stamp = std::max(model.stamp, ros::TIME_MIN);
+  bag.write(kTopic, stamp, toMessage(model));
+  for (core::EventId id = 0; id < model.vocabulary().size(); ++id) {
+    bag.write(kDelaysTopic, stamp, toMessage(model.statistics, id));
+    for (std::size_t half = 0; half < model.evidence.size(); ++half) {
+      bag.write(kEvidenceTopics.at(half), stamp, pairsMessage(model.evidence.at(half), id));
+    }
+  }
 }
 
 bool limitsFit(const TrainedModel& model) {
   const core::EvidenceLimits limits = limitsOf(*model.evidence_calibration);
-  const core::EvidenceModel evidence(model.evidence[0], model.evidence[1]);
-  return limits.tracks.size() == evidence.tracks().size() && std::isfinite(limits.linker) &&
+  return limits.tracks.size() == model.watched.tracks.size() && std::isfinite(limits.linker) &&
          limits.linker > 0;
 }
 
 }  // namespace
+
+void TrainedModel::dropCounts() {
+  core::DelayStatistics types(statistics.binning());
+  for (core::EventId id = 0; id < vocabulary().size(); ++id) {
+    types.countEvent(types.intern(vocabulary().at(id)), statistics.eventCount(id));
+  }
+  statistics = std::move(types);
+  evidence = {};
+}
 
 std::optional<double> TrainedModel::threshold() const {
   return calibration ? std::optional<double>(calibration->threshold) : std::nullopt;
@@ -149,7 +165,7 @@ std::optional<core::EvidenceLimits> TrainedModel::limits() const {
 self_awareness::Model toMessage(const TrainedModel& model) {
   self_awareness::Model message;
   message.stamp = model.stamp;
-  message.encoding = toMessage(model.encoding);
+  message.encoding = encodingMessage(model.encoding);
   message.window.fromNSec(model.window);
   message.bin_size = model.statistics.binning().bin_size;
   message.horizon_bins = model.statistics.binning().horizon_bins;
@@ -162,9 +178,14 @@ self_awareness::Model toMessage(const TrainedModel& model) {
     event_type.count = model.statistics.eventCount(id);
     message.event_types.push_back(event_type);
   }
-  appendHistograms(model.statistics, message);
-  for (const core::EvidenceStatistics& half : model.evidence) {
-    message.evidence.push_back(toMessage(half, model.statistics.vocabulary()));
+  message.predecessors = static_cast<std::uint32_t>(model.predecessors);
+  for (const core::Track& track : model.watched.tracks) {
+    message.tracks.push_back(toMessage(track));
+  }
+  if (model.isWatched()) {
+    for (const core::EvidenceStatistics& half : model.watched.halves) {
+      message.watched.push_back(toMessage(half));
+    }
   }
   for (const auto& [from, followers] : model.graph.edges()) {
     for (const std::string& to : followers) {
@@ -187,15 +208,22 @@ self_awareness::Model toMessage(const TrainedModel& model) {
 TrainedModel fromMessage(const self_awareness::Model& message) {
   TrainedModel model;
   model.stamp = message.stamp;
-  model.encoding = fromMessage(message.encoding);
+  model.encoding = rulesOf(message.encoding);
   model.window = message.window.toNSec();
   check(model.window > 0, "its windows have no length");
-  model.statistics = statisticsOf(message);
-  check(message.evidence.size() == model.evidence.size(), "its evidence has not two halves");
-  std::transform(message.evidence.begin(), message.evidence.end(), model.evidence.begin(),
+  model.statistics = eventTypesOf(message);
+  model.predecessors = message.predecessors;
+  for (const self_awareness::Track& track : message.tracks) {
+    model.watched.tracks.push_back(fromMessage(track));
+  }
+  check(message.watched.size() == model.watched.halves.size() ||
+            (message.watched.empty() && message.tracks.empty()),
+        "its evidence has not two halves");
+  std::transform(message.watched.begin(), message.watched.end(), model.watched.halves.begin(),
                  [&](const self_awareness::Evidence& half) {
-                   return fromMessage(half, model.statistics.vocabulary());
+                   return fromMessage(half, model.vocabulary());
                  });
+  core::checkTracks(model.watched.tracks, model.vocabulary().size());
   for (const self_awareness::GraphEdge& edge : message.graph) {
     model.graph.connect(edge.from_source, edge.to_source);
   }
@@ -214,12 +242,14 @@ TrainedModel fromMessage(const self_awareness::Model& message) {
 }
 
 void saveModel(const TrainedModel& model, const std::string& path) {
+  if (!model.isWatched() || !model.hasCounts()) {
+    throw std::logic_error("a model is saved with all counts, and with what is watched");
+  }
   const std::string temporary = path + ".part" + std::to_string(::getpid());
   try {
     rosbag::Bag bag(temporary, rosbag::bagmode::Write);
     bag.setCompression(rosbag::compression::LZ4);
-    // A bag cannot hold a message of the time 0.
-    bag.write(kTopic, std::max(model.stamp, ros::TIME_MIN), toMessage(model));
+    write(model, bag);
     bag.close();
     boost::filesystem::rename(temporary, path);
   } catch (const std::exception& error) {
@@ -228,10 +258,19 @@ void saveModel(const TrainedModel& model, const std::string& path) {
   }
 }
 
-TrainedModel loadModel(const std::string& path) {
-  const self_awareness::Model::ConstPtr message = readMessage(path);
+TrainedModel loadModel(const std::string& path, ModelCounts counts) {
+  if (!boost::filesystem::is_regular_file(path)) {
+    throw ModelFileError(path +
+                         ": no such file; train a model first "
+                         "(rosrun self_awareness train)");
+  }
   try {
-    return fromMessage(*message);
+    const rosbag::Bag bag(path, rosbag::bagmode::Read);
+    return read(bag, path, counts);
+  } catch (const rosbag::BagException& error) {
+    throw ModelFileError(path + ": not a model file, or a damaged one (" + error.what() + ")");
+  } catch (const ros::serialization::StreamOverrunException& error) {
+    throw ModelFileError(path + ": a damaged model file (" + error.what() + ")");
   } catch (const std::invalid_argument& error) {
     throw ModelFileError(path + ": a damaged model file: " + error.what());
   }

@@ -51,6 +51,11 @@ void merge(TrainedModel& model, const TrainedModel& other) {
   requireSame("length of the windows", model.window, other.window, "0 s");
   requireSame("bin size", binning.bin_size, others.bin_size, "0 s");
   requireSame("horizon", horizon(binning), horizon(others), "none");
+  if (model.predecessors != other.predecessors) {
+    throw std::invalid_argument(
+        "another number of watched predecessors: " + std::to_string(other.predecessors) +
+        ", not " + std::to_string(model.predecessors));
+  }
   core::Vocabulary vocabulary = model.statistics.vocabulary();
   for (const core::EventType& type : other.statistics.vocabulary().types()) {
     vocabulary.intern(type);
@@ -68,6 +73,7 @@ void merge(TrainedModel& model, const TrainedModel& other) {
   }
   model.recordings.insert(model.recordings.end(), other.recordings.begin(),
                           other.recordings.end());
+  model.watched = {};
   model.calibration.reset();
   model.evidence_calibration.reset();
   model.stamp = std::max(model.stamp, other.stamp);

@@ -8,6 +8,7 @@ programs (`self_awareness.commands`).
 from self_awareness._core import (  # noqa: F401
     EVIDENCE_THRESHOLD,
     FEWEST_GAPS,
+    PREDECESSORS,
     USUAL_SHARES,
     Alarm,
     BagError,

@@ -3,8 +3,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import yaml
-
 from self_awareness import EncodingRules
 from self_awareness.yaml_section import Section
 
@@ -19,6 +17,9 @@ def load(path: str) -> EncodingRules:
         ValueError: it is no YAML, has an unknown key, a value of the wrong kind, or a pattern that
             is no regular expression; the message names the file and the key.
     """
+    # Here, because it takes long, and most trainings do without a file.
+    import yaml
+
     with open(path, encoding='utf-8') as file:
         try:
             data = yaml.safe_load(file)

@@ -150,7 +150,7 @@ class _Judging:
 
     def __init__(self, trained: TrainedModel, settle_time: int, budget: float,
                  limits: Optional[EvidenceLimits] = None) -> None:
-        self._state = (trained, settle_time, budget)
+        self._state = (trained.watched_only(), settle_time, budget)
         self._limits = limits  # of the first pass
         self.trained = trained
         self.finder = LimitFinder(trained, settle_time, budget)

@@ -3,8 +3,6 @@ from __future__ import annotations
 
 from typing import Dict, Set
 
-import rosgraph
-
 from self_awareness import stable_name
 
 _CALLER_ID = '/train'
@@ -18,6 +16,9 @@ def fetch() -> Dict[str, Set[str]]:
     Raises:
         ValueError: no master answers.
     """
+    # Here, because it takes long, and few trainings ask for the graph.
+    import rosgraph
+
     try:
         publishers, subscribers, _ = rosgraph.Master(_CALLER_ID).getSystemState()
     except (OSError, rosgraph.MasterException) as error:

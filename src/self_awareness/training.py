@@ -11,8 +11,8 @@ from contextlib import closing
 from dataclasses import dataclass
 from typing import Callable, Dict, List, Optional, Sequence, Tuple, Union
 
-from self_awareness import (BagError, DetectorParameters, EncodingRules, Recording, TrainedModel,
-                            Training, evidence_limits, progress, read_events)
+from self_awareness import (PREDECESSORS, BagError, DetectorParameters, EncodingRules, Recording,
+                            TrainedModel, Training, evidence_limits, progress, read_events)
 from self_awareness.evidence_limits import TrainedOn
 from self_awareness.recordings import BagPart, RecordingEvents, overlap
 from self_awareness.stamps import SECOND_NS
@@ -33,17 +33,20 @@ class Counting:
         bin_size: of delays [ns].
         window: length of a window [ns].
         horizon_bins: delays of so many bins or more share one; 0: unbounded.
+        predecessors: of an event type that are watched at most.
     """
 
     encoding: Optional[EncodingRules] = None
     bin_size: int = 10_000_000
     window: int = 100_000_000
     horizon_bins: int = 0
+    predecessors: int = PREDECESSORS
 
     @classmethod
     def of(cls, model: TrainedModel) -> Counting:
         """Return how the bags of a model were counted."""
-        return cls(copy.copy(model.encoding), model.bin_size, model.window, model.horizon_bins)
+        return cls(copy.copy(model.encoding), model.bin_size, model.window, model.horizon_bins,
+                   model.predecessors)
 
 
 @dataclass
@@ -97,6 +100,7 @@ def train(parts: Sequence[BagPart], counting: Counting, workers: Optional[Worker
         # Without the bad ones it is alone, and both halves come from it.
         again = train([total.trained_on[0].part], counting, workers)
         return Trained(again.model, again.trained_on, total.bad)
+    total.model.watch()
     return Trained(total.model, total.trained_on, total.bad)
 
 
@@ -208,7 +212,8 @@ def _count(counting: Counting, task: _Task) -> Union[_Counted, _Bad]:
         recording.end = int(events.stamps[-1])
         recording.events = len(events.stamps)
         recording.fingerprint = events.fingerprint
-        training = Training(encoding, counting.bin_size, counting.window, counting.horizon_bins)
+        training = Training(encoding, counting.bin_size, counting.window, counting.horizon_bins,
+                            counting.predecessors)
         training.add_events(events.event_types, events.stamps, events.ids,
                             events.middle if task.alone else None, recording)
     except BagError as error:
@@ -216,7 +221,7 @@ def _count(counting: Counting, task: _Task) -> Union[_Counted, _Bad]:
     except ValueError as error:
         return _Bad(f'{part.path}: {error}')
     keep = task.keep_events and recording.events <= _MOST_EVENTS_OF_BAG
-    return _Counted(training.model(), events if keep else None)
+    return _Counted(training.model(watch=False), events if keep else None)
 
 
 def _read(counting: Counting, part: BagPart) -> Tuple[RecordingEvents, EncodingRules]:

@@ -49,7 +49,7 @@ class EvidenceBlameTest : public testing::Test {
   static Track overdue(EventId id) { return {Channel::kOverdue, id, id}; }
 
   std::shared_ptr<const EvidenceModel> model_ = std::make_shared<EvidenceModel>(
-      countsOf({robot(100 * kSecond, 1)}), countsOf({robot(100 * kSecond, 2)}));
+      watch(countsOf({robot(100 * kSecond, 1)}), countsOf({robot(100 * kSecond, 2)})));
   std::shared_ptr<SourceGraph> graph_ = std::make_shared<SourceGraph>();
   EvidenceScorer scorer_{model_, kWindow};
   std::int64_t last_ = 0;
@@ -166,7 +166,7 @@ TEST_F(EvidenceBlameTest, ATopicStandsForWhomItIsNotKnownWhoSends) {
   for (const Event& event : robot(100 * kSecond, 1)) {
     trainer.add(event);
   }
-  model_ = std::make_shared<EvidenceModel>(counts, EvidenceStatistics{});
+  model_ = std::make_shared<EvidenceModel>(watch(counts, {}));
   graph_->connect("/x", "/z");
   const std::vector<Suspect> named =
       suspects({{overdue(kA), 1.5}, {overdue(kC), 1.5}}, last_ + 5 * kSecond);

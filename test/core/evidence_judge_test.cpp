@@ -44,7 +44,7 @@ class EvidenceJudgeTest : public testing::Test {
   }
 
   std::shared_ptr<const EvidenceModel> model_ =
-      std::make_shared<EvidenceModel>(followed(1), followed(2));
+      std::make_shared<EvidenceModel>(watch(followed(1), followed(2)));
   EvidenceLimits limits_;
 };
 

@@ -26,7 +26,7 @@ Events robot(std::int64_t length, unsigned seed, std::int64_t delay = 20 * kMill
 }
 
 std::shared_ptr<const EvidenceModel> modelOf(const Events& first, const Events& second) {
-  return std::make_shared<EvidenceModel>(countsOf({first}), countsOf({second}));
+  return std::make_shared<EvidenceModel>(watch(countsOf({first}), countsOf({second})));
 }
 
 class LimitFinderTest : public testing::Test {

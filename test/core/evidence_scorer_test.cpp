@@ -49,7 +49,7 @@ class EvidenceScorerTest : public testing::Test {
   double evidence(std::size_t track) { return scorer_.closeWindow(now_)[track]; }
 
   std::shared_ptr<const EvidenceModel> model_ =
-      std::make_shared<EvidenceModel>(followed(1), followed(2));
+      std::make_shared<EvidenceModel>(watch(followed(1), followed(2)));
   EvidenceScorer scorer_{model_, kWindow};
   std::int64_t now_ = 1000 * kSecond;
 };
@@ -64,7 +64,7 @@ TEST_F(EvidenceScorerTest, DelaysAddUpAsInACusumTest) {
     EXPECT_EQ(sum, 0);  // what is usual does not let it fall below 0
     for (const std::int64_t delay : {kUnusual, kUnusual, kUsual, kUnusual, kUsual, kUsual}) {
       ask(delay);
-      sum = std::max(sum + model_->surprise(pair, delay) - drift, 0.0);
+      sum = std::max(sum + model_->surprises(pair)[log_bins::bin(delay)] - drift, 0.0);
       EXPECT_DOUBLE_EQ(evidence(pair), sum);
     }
     EXPECT_GT(sum, 0);

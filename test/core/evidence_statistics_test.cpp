@@ -61,6 +61,19 @@ TEST(LogBins, EveryEdgeBelongsToTheBinAboveIt) {
   }
 }
 
+TEST(LogBins, AreThoseOfALiteralSearch) {
+  std::vector<std::int64_t> edges;
+  for (int k = 0; k < 49; ++k) {
+    edges.push_back(std::llround(2.5e6 * std::exp2(k / 4.0)));
+  }
+  std::mt19937_64 random(7);
+  for (int i = 0; i < 100000; ++i) {
+    const auto delay = static_cast<std::int64_t>(random() >> (14 + random() % 50));
+    const auto bin = std::upper_bound(edges.begin(), edges.end(), delay) - edges.begin();
+    ASSERT_EQ(log_bins::bin(delay), static_cast<std::size_t>(bin)) << delay;
+  }
+}
+
 TEST(LogBins, TheMiddleIsTheGeometricMeanOfTheEdges) {
   EXPECT_DOUBLE_EQ(log_bins::middle(0), 1.25e6);
   EXPECT_NEAR(log_bins::middle(1), 2.5e6 * std::exp2(0.125), 1);
@@ -101,29 +114,26 @@ TEST(EvidenceTrainer, CountsDelaysGapsAndAnswers) {
       (std::vector<std::int64_t>{200 * kMillisecond, 100 * kMillisecond, 90 * kMillisecond}));
   EXPECT_EQ(counts.duration(), 390 * kMillisecond);
 
-  const auto in = [](const EvidenceStatistics::Pair& pair, std::int64_t milliseconds) {
-    return pair.delays.at(log_bins::bin(milliseconds * kMillisecond));
+  const auto in = [&](EventId from, EventId to, std::int64_t milliseconds) {
+    return counts.delays(from, to).at(log_bins::bin(milliseconds * kMillisecond));
   };
-  const EvidenceStatistics::Pair& b_after_a = counts.pair(kA, kB);
-  EXPECT_EQ(b_after_a.total(), 3U);
-  EXPECT_EQ(in(b_after_a, 10), 1U);
-  EXPECT_EQ(in(b_after_a, 30), 1U);
-  EXPECT_EQ(in(b_after_a, 50), 1U);  // the second B after the same A, too
-  const EvidenceStatistics::Pair& a_after_b = counts.pair(kB, kA);
-  EXPECT_EQ(a_after_b.total(), 3U);
-  EXPECT_EQ(in(a_after_b, 90), 1U);
-  EXPECT_EQ(in(a_after_b, 150), 1U);
-  EXPECT_EQ(in(a_after_b, 240), 1U);
-  EXPECT_EQ(b_after_a.answers, 2U);  // none between the last two A
-  EXPECT_EQ(counts.pair(kA, kA).answers, 0U);
-  EXPECT_EQ(a_after_b.answers, 1U);  // between the first two B, none between the last two
+  EXPECT_EQ(counts.total(kA, kB), 3U);
+  EXPECT_EQ(in(kA, kB, 10), 1U);
+  EXPECT_EQ(in(kA, kB, 30), 1U);
+  EXPECT_EQ(in(kA, kB, 50), 1U);  // the second B after the same A, too
+  EXPECT_EQ(counts.total(kB, kA), 3U);
+  EXPECT_EQ(in(kB, kA, 90), 1U);
+  EXPECT_EQ(in(kB, kA, 150), 1U);
+  EXPECT_EQ(in(kB, kA, 240), 1U);
+  EXPECT_EQ(counts.answers(kA, kB), 2U);  // none between the last two A
+  EXPECT_EQ(counts.answers(kA, kA), 0U);
+  EXPECT_EQ(counts.answers(kB, kA), 1U);  // between the first two B, none between the last two
 }
 
-TEST(EvidenceTrainer, NoBinsWhereNoDelayWasSeen) {
+TEST(EvidenceTrainer, NoDelaysWhereNoneWasSeen) {
   const EvidenceStatistics counts = countsOf({inMilliseconds({{0, kA}, {10, kB}})}, 2);
-  EXPECT_TRUE(counts.pair(kB, kA).delays.empty());
-  EXPECT_EQ(counts.pair(kB, kA).total(), 0U);
-  EXPECT_EQ(counts.pair(kA, kB).total(), 1U);
+  EXPECT_EQ(counts.total(kB, kA), 0U);
+  EXPECT_EQ(counts.total(kA, kB), 1U);
 }
 
 TEST(EvidenceTrainer, CountsRatesInFullSpansOnly) {
@@ -152,7 +162,7 @@ TEST(EvidenceTrainer, ALateEventHasNoNegativeDelay) {
       countsOf({inMilliseconds({{0, kA}, {100, kA}, {50, kA}, {80, kB}})}, 2);
   EXPECT_EQ(counts.type(kA).gap_sum, 100 * kMillisecond);
   EXPECT_EQ(counts.type(kA).longest_gaps.back(), 0);
-  EXPECT_EQ(counts.pair(kA, kA).delays.front(), 1U);
+  EXPECT_EQ(counts.delays(kA, kA).front(), 1U);
   EXPECT_EQ(counts.duration(), 100 * kMillisecond);
 }
 
@@ -169,11 +179,11 @@ TEST(EvidenceTrainer, NothingCrossesFromOneRecordingIntoTheNext) {
   const Events first = timer(kA, 0, 1500 * kMillisecond, 100 * kMillisecond);
   const Events second = timer(kB, 1500 * kMillisecond, 3000 * kMillisecond, 100 * kMillisecond);
   const EvidenceStatistics counts = countsOf({first, second}, 2);
-  EXPECT_EQ(counts.pair(kA, kB).total(), 0U);
+  EXPECT_EQ(counts.total(kA, kB), 0U);
   EXPECT_EQ(counts.rateWindows(), 0U);  // 2 s are full in neither
   EXPECT_EQ(counts.duration(), 2800 * kMillisecond);
   const Events joined = together({first, second});
-  EXPECT_EQ(countsOf({joined}, 2).pair(kA, kB).total(), 15U);
+  EXPECT_EQ(countsOf({joined}, 2).total(kA, kB), 15U);
   EXPECT_GT(countsOf({joined}, 2).rateWindows(), 0U);
 }
 
@@ -233,7 +243,21 @@ TEST(EvidenceStatistics, MergingCommutesUpToTheIds) {
   other.merge(first);
   EXPECT_FALSE(one == other);
   EXPECT_TRUE(reordered(one) == reordered(other));
-  EXPECT_GT(one.pair(kA, kB).total(), 0U);
+  EXPECT_GT(one.total(kA, kB), 0U);
+}
+
+TEST(EvidenceStatistics, PartnersComeInOrder) {
+  EvidenceStatistics counts = countsOf({}, 2);
+  counts.setPartners(kA, {{kB, 3, {}}});
+  EXPECT_EQ(counts.answers(kA, kB), 3U);
+  EXPECT_EQ(counts.answers(kB, kA), 0U);
+  EXPECT_THROW(counts.setPartners(kA, {{kB, 3, {}}, {kA, 1, {}}}), std::invalid_argument);
+  EXPECT_THROW(counts.setPartners(kA, {{kB, 3, {}}, {kB, 1, {}}}), std::invalid_argument);
+  EXPECT_THROW(counts.setPartners(kA, {{kC, 1, {}}}), std::invalid_argument);
+  const EvidenceStatistics::Partners& all = counts.allPartners(kA);
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(all[kA].id, kA);
+  EXPECT_EQ(all[kB].answers, 3U);
 }
 
 }  // namespace

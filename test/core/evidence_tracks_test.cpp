@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -16,9 +18,7 @@ namespace {
 constexpr std::int64_t kLength = 60 * kSecond;
 
 std::vector<Track> chosen(const EvidenceStatistics& first, const EvidenceStatistics& second) {
-  EvidenceStatistics both = first;
-  both.merge(second);
-  return chooseTracks(first, second, both);
+  return watch(first, second).tracks;
 }
 
 // Two timers of the same period, the second one behind the first by a phase, and something else at
@@ -119,28 +119,73 @@ TEST(EvidenceTracks, WhoMostlyGetsNoAnswerDoesNotAsk) {
       countsOf({together({irregular(kA, 0, kLength, 50 * kMillisecond, 2),
                           irregular(kB, 0, kLength, 200 * kMillisecond, 1)})},
                2);
-  ASSERT_GT(missRate(counts, kA, kB), 0.6);
+  ASSERT_GT(missRate(counts.type(kA).gaps, counts.answers(kA, kB)), 0.6);
   const std::vector<Track> tracks = chosen(counts, counts);
   EXPECT_FALSE(isWatched(tracks, Channel::kAnswer, kB, kA));
   EXPECT_TRUE(isWatched(tracks, Channel::kAnswer, kA, kB));
 }
 
+TEST(EvidenceTracks, AsManyPredecessorsAreWatchedAsAreAskedFor) {
+  const EvidenceStatistics counts = followed(1);
+  for (const std::size_t predecessors : {0U, 1U}) {
+    const WatchedEvidence watched = watch(counts, counts, predecessors);
+    const auto of_b = std::count_if(
+        watched.tracks.begin(), watched.tracks.end(),
+        [](const Track& track) { return track.channel == Channel::kDelay && track.to == kB; });
+    EXPECT_EQ(static_cast<std::size_t>(of_b), predecessors);
+  }
+}
+
+TEST(EvidenceTracks, CountsOfWatchedPairsAreKeptAndOthersLeftOut) {
+  const EvidenceStatistics first = twoTimers(20 * kMillisecond);
+  const EvidenceStatistics second = twoTimers(70 * kMillisecond);
+  const WatchedEvidence watched = watch(first, second);
+  ASSERT_FALSE(isWatched(watched.tracks, Channel::kDelay, kA, kB));
+  for (std::size_t half = 0; half < 2; ++half) {
+    const EvidenceStatistics& all = half == 0 ? first : second;
+    const EvidenceStatistics& kept = watched.halves.at(half);
+    for (const Track& track : watched.tracks) {
+      EXPECT_EQ(kept.delays(track.from, track.to), all.delays(track.from, track.to));
+      EXPECT_EQ(kept.answers(track.from, track.to), all.answers(track.from, track.to));
+    }
+    EXPECT_EQ(kept.delaysToAny(), all.delaysToAny());
+    EXPECT_EQ(kept.duration(), all.duration());
+    EXPECT_EQ(kept.type(kA).longest_gaps, all.type(kA).longest_gaps);
+  }
+  // Nothing changes for those who see the rest only.
+  EXPECT_TRUE(watched.halves[0].only({}).withoutPairs() == first.withoutPairs());
+  EXPECT_EQ(first.only({}).partners(kA).size(), 0U);
+  EXPECT_EQ(first.only({}).delaysToAny(), first.delaysToAny());
+}
+
+TEST(EvidenceTracks, TracksOfDelaysComeInTwos) {
+  const Track overdue{Channel::kOverdue, kA, kA};
+  const Track now{Channel::kDelay, kB, kA};
+  const Track slow{Channel::kSlowDelay, kB, kA};
+  EXPECT_NO_THROW(checkTracks({overdue, now, slow}, 2));
+  EXPECT_THROW(checkTracks({overdue}, 0), std::invalid_argument);
+  EXPECT_THROW(checkTracks({now, slow}, 1), std::invalid_argument);
+  EXPECT_THROW(checkTracks({now}, 2), std::invalid_argument);
+  EXPECT_THROW(checkTracks({slow}, 2), std::invalid_argument);
+  EXPECT_THROW(checkTracks({slow, now}, 2), std::invalid_argument);
+  EXPECT_THROW(checkTracks({now, overdue, slow}, 2), std::invalid_argument);
+  EXPECT_THROW(checkTracks({now, {Channel::kSlowDelay, kA, kB}}, 2), std::invalid_argument);
+}
+
 TEST(InformationGain, IsTheMeanLogRatioOnTheOtherHalf) {
   EvidenceStatistics learned = countsOf({}, 2);
-  learned.pair(kA, kB).delays.assign(log_bins::kBins, 0);
-  learned.pair(kA, kB).delays[10] = 50;
-  learned.pair(kA, kA).delays.assign(log_bins::kBins, 0);
-  learned.pair(kA, kA).delays[20] = 100;
+  learned.allPartners(kB)[kA].delays[10] = 50;
+  learned.allPartners(kA)[kA].delays[20] = 100;
   EvidenceStatistics measured = countsOf({}, 2);
-  measured.pair(kA, kB).delays.assign(log_bins::kBins, 0);
-  measured.pair(kA, kB).delays[10] = 30;
-  measured.pair(kA, kB).delays[20] = 20;
+  EvidenceStatistics::Delays& delays = measured.allPartners(kB)[kA].delays;
+  delays[10] = 30;
+  delays[20] = 20;
   const InformationGain gain(learned, measured);
   // P: 51 and 1 of 100; Q: 51 and 101 of 200.
   EXPECT_NEAR(gain(kA, kB), (30 * std::log(2.0) + 20 * std::log(2.0 / 101)) / 50, 1e-12);
   EXPECT_EQ(gain(kA, kA), 0);  // not measured
   EXPECT_EQ(gain(kB, kA), 0);  // not learned
-  measured.pair(kA, kB).delays[20] = 19;
+  delays[20] = 19;
   EXPECT_EQ(gain(kA, kB), 0);  // too little to measure on
 }
 
@@ -153,10 +198,13 @@ TEST(InformationGain, IsZeroForATypeThatTheOtherHalfLacks) {
 }
 
 TEST(LogProbabilities, HaveOneMoreCountInEveryBin) {
-  const std::vector<double> logs = logProbabilities({0, 1, 5, 0});
-  EXPECT_DOUBLE_EQ(logs[0], std::log(0.1));
-  EXPECT_DOUBLE_EQ(logs[1], std::log(0.2));
-  EXPECT_DOUBLE_EQ(logs[2], std::log(0.6));
+  EvidenceStatistics::Delays counts{};
+  counts[1] = 10;
+  counts[2] = 40;
+  const LogProbabilities logs = logProbabilities(counts);
+  EXPECT_DOUBLE_EQ(logs[0], std::log(0.01));
+  EXPECT_DOUBLE_EQ(logs[1], std::log(0.11));
+  EXPECT_DOUBLE_EQ(logs[2], std::log(0.41));
 }
 
 }  // namespace

@@ -11,7 +11,12 @@
 #include <boost/make_shared.hpp>
 #include <cmath>
 #include <fstream>
+#include <iterator>
+#include <map>
+#include <random>
+#include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "self_awareness/core/vocabulary.h"
@@ -73,6 +78,60 @@ class BagReaderTest : public testing::Test {
     return events;
   }
 
+  // Three messages /a, one a second. rosbag writes this format no longer.
+  std::string writeBagOfFormerFormat(const std::string& name) const {
+    const auto number = [](auto value) {
+      return std::string(reinterpret_cast<const char*>(&value), sizeof value);
+    };
+    const auto block = [&](const std::string& bytes) {
+      return number(static_cast<std::uint32_t>(bytes.size())) + bytes;
+    };
+    const auto record = [&](const std::map<std::string, std::string>& fields,
+                            const std::string& data) {
+      std::string header;
+      for (const auto& [field, value] : fields) {
+        header += block(field + "=" + value);
+      }
+      return block(header) + block(data);
+    };
+    std::string bag = "#ROSBAG V1.2\n";
+    const std::string start =
+        record({{"op", "\x03"}, {"index_pos", number(std::uint64_t{0})}}, "");
+    const std::size_t first = bag.size() + start.size();
+    std::string messages = record({{"op", "\x01"},
+                                   {"topic", "/a"},
+                                   {"md5", ros::message_traits::md5sum<std_msgs::String>()},
+                                   {"type", "std_msgs/String"},
+                                   {"def", "string data\n"}},
+                                  "");
+    std::string index;
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      // The first message's place is that of the definition before it.
+      const std::uint64_t place = first + (i == 0 ? 0 : messages.size());
+      index += number(100 + i) + number(std::uint32_t{0}) + number(place);
+      messages += record({{"op", "\x02"}, {"topic", "/a"}}, block(std::string(1, "xyz"[i])));
+    }
+    const std::uint64_t index_pos = first + messages.size();
+    bag += record({{"op", "\x03"}, {"index_pos", number(index_pos)}}, "") + messages +
+           record({{"op", "\x04"},
+                   {"topic", "/a"},
+                   {"ver", number(std::uint32_t{0})},
+                   {"count", number(std::uint32_t{3})}},
+                  index);
+    std::ofstream(path(name), std::ios::binary) << bag;
+    return path(name);
+  }
+
+  // What this process has read so far, from wherever [bytes].
+  static std::uint64_t bytesRead() {
+    std::ifstream io("/proc/self/io");
+    std::string name;
+    std::uint64_t bytes = 0;
+    while (io >> name >> bytes && name != "rchar:") {
+    }
+    return bytes;
+  }
+
   static std::string bagError(const std::string& bag) {
     try {
       BagReader reader(bag);
@@ -128,6 +187,80 @@ TEST_F(BagReaderTest, TheSummaryNamesTheRecordingHoweverItIsCompressed) {
     EXPECT_EQ(packed.fingerprint, plain.fingerprint);
   }
   EXPECT_EQ(read(path("packed.bag")).size(), 111U);
+}
+
+TEST_F(BagReaderTest, TheSummaryNamesTheRecordingWhoeverWroteItAgain) {
+  const auto fingerprint = [this](const std::vector<std::pair<std::string, int>>& messages) {
+    rosbag::Bag bag(path("again.bag"), rosbag::bagmode::Write);
+    for (const auto& [topic, second] : messages) {
+      bag.write(topic, ros::Time(second, 0), std_msgs::String(), header("/node"));
+    }
+    bag.close();
+    return BagReader(path("again.bag")).summary().fingerprint;
+  };
+  const std::uint64_t once = fingerprint({{"/a", 1}, {"/b", 1}, {"/a", 2}});
+  EXPECT_EQ(fingerprint({{"/b", 1}, {"/a", 1}, {"/a", 2}}), once);
+  EXPECT_NE(fingerprint({{"/a", 1}, {"/b", 2}, {"/a", 2}}), once);
+  EXPECT_NE(fingerprint({{"/a", 1}, {"/b", 1}, {"/b", 2}}), once);
+  EXPECT_NE(fingerprint({{"/a", 1}, {"/b", 1}}), once);
+}
+
+TEST_F(BagReaderTest, ChunksThatOverlapInTimeAreReadInItsOrder) {
+  rosbag::Bag bag(path("overlap.bag"), rosbag::bagmode::Write);
+  bag.setChunkThreshold(200);
+  std_msgs::String message;
+  message.data = std::string(100, 'x');
+  constexpr int kMessages = 50;
+  for (int i = 0; i < kMessages; ++i) {
+    bag.write("/a", ros::Time(100 + i * 7 % kMessages, 0), message, header("/node"));
+  }
+  bag.close();
+  const std::vector<core::Event> events = read(path("overlap.bag"));
+  ASSERT_EQ(events.size(), static_cast<std::size_t>(kMessages));
+  for (int i = 0; i < kMessages; ++i) {
+    EXPECT_EQ(events[i].stamp, (100 + i) * core::kNanosecondsPerSecond);
+  }
+}
+
+TEST_F(BagReaderTest, NextToNothingIsReadOfABagWithImages) {
+  std_msgs::String image;
+  image.data = std::string(1000000, 'x');
+  std_msgs::String small;
+  small.data = "y";
+  rosbag::Bag bag(path("images.bag"), rosbag::bagmode::Write);
+  auto image_header = header("/camera");
+  (*image_header)["type"] = "test/Image";  // no content of it is asked for
+  for (int i = 1; i <= 5000; ++i) {
+    const ros::Time stamp = ros::Time(100, 0) + ros::Duration(0.01 * i);
+    bag.write("/small", stamp, small, header("/node"));
+    if (i % 100 == 0) {
+      bag.write("/image", stamp, image, image_header);
+    }
+  }
+  bag.close();
+  rules_.type_fields = {{"std_msgs/String", "data"}};
+  const std::uint64_t before = bytesRead();
+  EXPECT_EQ(read(path("images.bag")).size(), 5050U);
+  const auto read = static_cast<double>(bytesRead() - before);
+  EXPECT_GT(read, 5050 * 12);  // it was counted
+  EXPECT_LT(read, 0.05 * static_cast<double>(fs::file_size(path("images.bag"))));
+}
+
+TEST_F(BagReaderTest, ABagOfTheFormerFormatIsLeftToRosbag) {
+  const std::string bag = writeBagOfFormerFormat("former.bag");
+  const BagSummary summary = BagReader(bag).summary();
+  EXPECT_EQ(summary.messages, 3U);
+  EXPECT_EQ(summary.start, 100 * core::kNanosecondsPerSecond);
+  EXPECT_FALSE(summary.has_sources);
+  rules_.source = EncodingRules::Source::kNone;
+  rules_.type_fields = {{"std_msgs/String", "data"}};
+  std::string seen;
+  for (const core::Event& event : read(bag)) {
+    seen += toString(vocabulary_.at(event.id)) + '\n';
+  }
+  EXPECT_EQ(seen,
+            "- /a std_msgs/String[data=x]\n- /a std_msgs/String[data=y]\n"
+            "- /a std_msgs/String[data=z]\n");
 }
 
 TEST_F(BagReaderTest, NoMessageIsReadUnlessItsContentIsNeeded) {
@@ -197,6 +330,28 @@ TEST_F(BagReaderTest, EveryTruncatedBagIsRefusedWithTheMend) {
     EXPECT_NE(error.find("rosbag reindex '" + path("cut.bag") + "'"), std::string::npos)
         << share << ": " << error;
   }
+}
+
+TEST_F(BagReaderTest, ADamagedBagIsReadOrRefused) {
+  std::ifstream file(writeBag("a.bag", rosbag::compression::LZ4), std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(file)),
+                          std::istreambuf_iterator<char>());
+  rules_.type_fields = {{"std_msgs/String", "data"}};
+  std::mt19937 random(1);
+  int refused = 0;
+  for (int i = 0; i < 300; ++i) {
+    std::string damaged = bytes;
+    damaged[random() % damaged.size()] ^= static_cast<char>(1 << random() % 8);
+    std::ofstream(path("damaged.bag"), std::ios::binary) << damaged;
+    try {
+      read(path("damaged.bag"));
+    } catch (const BagError&) {
+      ++refused;
+    } catch (const std::invalid_argument&) {  // the message's definition was hit
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 0);
 }
 
 TEST_F(BagReaderTest, ABagThatIsStillBeingWrittenIsRefused) {

@@ -27,8 +27,8 @@ class DiscoveryTest : public testing::Test {
  protected:
   DiscoveryTest() {
     node_handle_.setCallbackQueue(&never_served_);
-    live_events_ = std::make_unique<ros1::LiveEvents>(
-        node_handle_, 1, [](const core::Event& /*event*/) {}, [] {});
+    live_events_ =
+        std::make_unique<ros1::LiveEvents>(node_handle_, 1, ros1::LiveEvents::Handlers());
     wanted_.model_topics = {"/a", "/b"};
     wanted_.encoder = std::make_shared<ros1::Encoder>(
         ros1::EncodingRules(), [](const core::EventType& /*type*/) { return 0; });

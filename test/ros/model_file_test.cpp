@@ -4,15 +4,19 @@
 
 #include <gtest/gtest.h>
 #include <rosbag/bag.h>
+#include <rosbag/view.h>
 #include <std_msgs/String.h>
 
 #include <boost/filesystem.hpp>
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <limits>
+#include <map>
 #include <string>
 #include <vector>
 
+#include "self_awareness/DelayHistograms.h"
 #include "self_awareness/core/evidence_model.h"
 
 namespace self_awareness::ros1 {
@@ -57,6 +61,7 @@ class ModelFileTest : public testing::Test {
       }
       trainer.startRecording();
     }
+    model.watch();
     model.stamp = ros::Time(1700000000, 0);
     self_awareness::Recording recording;
     recording.bag = "normal.bag";
@@ -69,10 +74,9 @@ class ModelFileTest : public testing::Test {
   // Limits for everything that the model watches; the first track is not judged.
   static TrainedModel calibratedModel() {
     TrainedModel model = someModel();
-    const core::EvidenceModel evidence(model.evidence[0], model.evidence[1]);
     model.evidence_calibration = self_awareness::EvidenceCalibration();
     model.evidence_calibration->method = self_awareness::EvidenceCalibration::HELD_OUT;
-    model.evidence_calibration->limits.assign(evidence.tracks().size(), 2.5);
+    model.evidence_calibration->limits.assign(model.watched.tracks.size(), 2.5);
     model.evidence_calibration->limits.at(0) = std::numeric_limits<double>::quiet_NaN();
     model.evidence_calibration->linker_limit = 1.5;
     model.evidence_calibration->budget = 0.25;
@@ -81,15 +85,33 @@ class ModelFileTest : public testing::Test {
     return model;
   }
 
-  // A model message that was changed after it was made.
+  // What is said of a model file whose messages were changed after they were made.
+  std::string damagedFile(
+      const std::function<void(rosbag::Bag&, const rosbag::MessageInstance&)>& write) {
+    saveModel(calibratedModel(), path("whole"));
+    const rosbag::Bag whole(path("whole"), rosbag::bagmode::Read);
+    rosbag::Bag damaged(path("damaged"), rosbag::bagmode::Write);
+    for (const rosbag::MessageInstance& message : rosbag::View(whole)) {
+      write(damaged, message);
+    }
+    damaged.close();
+    return modelError(path("damaged"));
+  }
+  template <typename Message, typename Change>
+  std::string damagedMessages(const std::string& topic, Change change) {
+    return damagedFile([&](rosbag::Bag& damaged, const rosbag::MessageInstance& message) {
+      if (message.getTopic() == topic) {
+        const auto changed = message.instantiate<Message>();
+        change(*changed);
+        damaged.write(topic, message.getTime(), *changed);
+      } else {
+        damaged.write(message.getTopic(), message.getTime(), message);
+      }
+    });
+  }
   template <typename Change>
   std::string damagedModel(Change change) {
-    self_awareness::Model message = toMessage(calibratedModel());
-    change(message);
-    rosbag::Bag bag(path("damaged"), rosbag::bagmode::Write);
-    bag.write("/model", ros::Time(1, 0), message);
-    bag.close();
-    return modelError(path("damaged"));
+    return damagedMessages<self_awareness::Model>("/model", change);
   }
 
   fs::path folder_;
@@ -156,11 +178,6 @@ TEST_F(ModelFileTest, AModelOfAnotherVersionIsRefused) {
 TEST_F(ModelFileTest, ADamagedModelIsRefused) {
   EXPECT_EQ(damagedModel([](self_awareness::Model& /*model*/) {}), "");
   using Message = self_awareness::Model;
-  EXPECT_NE(damagedModel([](Message& m) { m.offsets.pop_back(); }), "");
-  EXPECT_NE(damagedModel([](Message& m) { m.bins.pop_back(); }), "");
-  EXPECT_NE(damagedModel([](Message& m) { m.offsets[1] = 1000000; }), "");
-  EXPECT_NE(damagedModel([](Message& m) { m.counts[0] = 0; }), "");
-  EXPECT_NE(damagedModel([](Message& m) { m.bins[0] = -1; }), "");
   EXPECT_NE(damagedModel([](Message& m) { m.bin_size = 0; }), "");
   EXPECT_NE(damagedModel([](Message& m) { m.window = ros::Duration(0); }), "");
   EXPECT_NE(damagedModel([](Message& m) { m.window = ros::Duration(-1); }), "");
@@ -175,6 +192,56 @@ TEST_F(ModelFileTest, ADamagedModelIsRefused) {
             "");
 }
 
+TEST_F(ModelFileTest, DamagedDelaysAreRefused) {
+  using Delays = self_awareness::DelayHistograms;
+  const auto error = [this](void (*change)(Delays&)) {
+    return damagedMessages<Delays>("/delays", change);
+  };
+  EXPECT_EQ(error([](Delays& /*d*/) {}), "");
+  const std::string file = path("damaged") + ": a damaged model file: ";
+  for (const auto change : std::vector<void (*)(Delays&)>{
+           [](Delays& d) { d.offsets.pop_back(); }, [](Delays& d) { d.bins.pop_back(); },
+           [](Delays& d) { d.offsets[1] = 1000000; }, [](Delays& d) { d.to_id = 2; }}) {
+    EXPECT_EQ(error(change), file + "its histograms do not fit its event types");
+  }
+  EXPECT_EQ(error([](Delays& d) { d.counts[0] = 0; }), file + "a histogram has an impossible bin");
+  EXPECT_EQ(error([](Delays& d) { d.bins[0] = -1; }), file + "a histogram has an impossible bin");
+}
+
+TEST_F(ModelFileTest, AMissingMessageIsRefused) {
+  const std::string file = path("damaged") + ": a damaged model file: ";
+  for (const auto& [missing, told] : std::map<std::string, std::string>{
+           {"/delays", "its histograms do not fit its event types"},
+           {"/evidence/first", "its evidence does not fit its event types"},
+           {"/evidence/second", "its evidence does not fit its event types"}}) {
+    bool left_out = false;
+    const std::string topic = missing;
+    const std::string error =
+        damagedFile([&](rosbag::Bag& damaged, const rosbag::MessageInstance& message) {
+          if (!left_out && message.getTopic() == topic) {
+            left_out = true;
+          } else {
+            damaged.write(message.getTopic(), message.getTime(), message);
+          }
+        });
+    EXPECT_EQ(error, file + told);
+  }
+}
+
+TEST_F(ModelFileTest, NoMoreIsReadThanIsAskedFor) {
+  const TrainedModel model = calibratedModel();
+  saveModel(model, path("m"));
+  const TrainedModel watched = loadModel(path("m"), ModelCounts::kWatched);
+  EXPECT_EQ(watched.vocabulary().types(), model.vocabulary().types());
+  EXPECT_EQ(watched.statistics.eventCount(0), model.statistics.eventCount(0));
+  EXPECT_EQ(watched.statistics.pairs(), 0U);
+  EXPECT_EQ(watched.evidence[0].size(), 0U);
+  EXPECT_TRUE(watched.watched.halves[0] == model.watched.halves[0]);
+  const TrainedModel delays = loadModel(path("m"), ModelCounts::kDelays);
+  EXPECT_TRUE(delays.statistics == model.statistics);
+  EXPECT_EQ(delays.evidence[0].size(), 0U);
+}
+
 TEST_F(ModelFileTest, TheEvidenceItsLimitsAndTheGraphComeBackAsTheyWereSaved) {
   TrainedModel model = calibratedModel();
   model.graph.connect("/a", "/b");
@@ -184,6 +251,15 @@ TEST_F(ModelFileTest, TheEvidenceItsLimitsAndTheGraphComeBackAsTheyWereSaved) {
   const TrainedModel loaded = loadModel(path("m"));
   EXPECT_TRUE(loaded.evidence[0] == model.evidence[0]);
   EXPECT_TRUE(loaded.evidence[1] == model.evidence[1]);
+  EXPECT_TRUE(loaded.watched.halves[0] == model.watched.halves[0]);
+  EXPECT_TRUE(loaded.watched.halves[1] == model.watched.halves[1]);
+  ASSERT_EQ(loaded.watched.tracks.size(), model.watched.tracks.size());
+  for (std::size_t track = 0; track < loaded.watched.tracks.size(); ++track) {
+    EXPECT_EQ(loaded.watched.tracks[track].channel, model.watched.tracks[track].channel);
+    EXPECT_EQ(loaded.watched.tracks[track].to, model.watched.tracks[track].to);
+    EXPECT_EQ(loaded.watched.tracks[track].from, model.watched.tracks[track].from);
+  }
+  EXPECT_EQ(loaded.predecessors, model.predecessors);
   EXPECT_EQ(loaded.graph.edges(), model.graph.edges());
   const core::EvidenceLimits limits = loaded.limits().value();
   ASSERT_EQ(limits.tracks.size(), model.evidence_calibration->limits.size());
@@ -205,7 +281,7 @@ TEST_F(ModelFileTest, DamagedEvidenceIsRefused) {
   using Message = self_awareness::Model;
   using Evidence = self_awareness::Evidence;
   const auto error = [this](void (*change)(Evidence&)) {
-    return damagedModel([change](Message& model) { change(model.evidence.at(1)); });
+    return damagedModel([change](Message& model) { change(model.watched.at(1)); });
   };
   const std::string file = path("damaged") + ": a damaged model file: its evidence ";
   for (const auto change : std::vector<void (*)(Evidence&)>{
@@ -215,18 +291,33 @@ TEST_F(ModelFileTest, DamagedEvidenceIsRefused) {
            [](Evidence& e) { e.longest_offsets.clear(); },
            [](Evidence& e) { e.longest_offsets.at(1) = 1000000; },
            [](Evidence& e) { e.longest_gaps.pop_back(); },
-           [](Evidence& e) { e.offsets.at(0) = 1; },
-           [](Evidence& e) { std::swap(e.offsets.at(1), e.offsets.at(2)); },
-           [](Evidence& e) { e.counts.pop_back(); },
-           [](Evidence& e) { e.answers.push_back(1); }}) {
+           [](Evidence& e) { e.left_out.pop_back(); }, [](Evidence& e) { e.pairs.pop_back(); },
+           [](Evidence& e) { e.pairs.at(0).id = 1; },
+           [](Evidence& e) { e.pairs.at(0).offsets.at(0) = 1; },
+           [](Evidence& e) { e.pairs.at(0).offsets.at(1) = 1000; },
+           [](Evidence& e) { e.pairs.at(0).counts.pop_back(); },
+           [](Evidence& e) { e.pairs.at(0).answers.push_back(1); }}) {
     EXPECT_EQ(error(change), file + "does not fit its event types");
   }
   EXPECT_EQ(error([](Evidence& e) { e.duration = -1; }), file + "has a negative duration");
   EXPECT_EQ(error([](Evidence& e) { e.gap_sums.at(0) = -1; }), file + "has impossible gaps");
   EXPECT_EQ(error([](Evidence& e) { e.gaps.at(0) = 0; }), file + "has impossible gaps");
-  EXPECT_EQ(error([](Evidence& e) { e.bins.at(0) = 255; }), file + "has an impossible bin");
-  EXPECT_EQ(damagedModel([](Message& model) { model.evidence.pop_back(); }),
+  EXPECT_EQ(error([](Evidence& e) { e.pairs.at(0).bins.at(0) = 255; }),
+            file + "has an impossible bin");
+  EXPECT_EQ(damagedModel([](Message& model) { model.watched.pop_back(); }),
             file + "has not two halves");
+}
+
+TEST_F(ModelFileTest, ImpossibleTracksAreRefused) {
+  using Message = self_awareness::Model;
+  const std::string file = path("damaged") + ": a damaged model file: it watches ";
+  EXPECT_EQ(damagedModel([](Message& m) { m.tracks.at(0).channel = 6; }),
+            file + "what this version does not know");
+  EXPECT_EQ(damagedModel([](Message& m) { m.tracks.at(0).to_id = 2; }),
+            file + "an event type that it does not have");
+  EXPECT_EQ(
+      damagedModel([](Message& m) { m.tracks.at(0).channel = self_awareness::Track::DELAY; }),
+      file + "delays, but not both at present and for longer");
 }
 
 TEST_F(ModelFileTest, LimitsOfAnotherModelAreRefused) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "self_awareness/core/evidence_scorer.h"
+#include "self_awareness/core/misleading_pairs.h"
 #include "self_awareness/core/windows.h"
 
 namespace self_awareness::core {
@@ -84,9 +85,9 @@ class LimitFinder {
  private:
   void judge(std::int64_t end);
   void closeBlock();
-  void closeChunk();
   double meanGap(EventId id) const;  // of training [ns]
-  double limit(std::size_t track) const;
+  /// @param rate false alarms an hour that the track may raise
+  double limit(std::size_t track, double rate) const;
 
   std::shared_ptr<const EvidenceModel> model_;
   Parameters parameters_;
@@ -102,10 +103,7 @@ class LimitFinder {
   std::vector<std::vector<double>> maxima_;     // of blocks, by track
   std::vector<EvidenceStatistics::Type> gaps_;  // longest gaps, by id
   std::int64_t duration_ = 0;                   // [ns]
-  // Delays of a chunk of a recording, to see whether what a pair says holds all the time.
-  EvidenceStatistics chunk_;
-  std::optional<EvidenceTrainer> chunk_trainer_;
-  std::vector<bool> misleading_;  // by track
+  MisleadingPairs misleading_;
 
   bool second_pass_ = false;
   EvidenceLimits limits_;

@@ -1,9 +1,10 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <utility>
+#include <optional>
 #include <vector>
 
 #include "self_awareness/core/evidence_statistics.h"
@@ -26,18 +27,17 @@ class EvidenceModel {
   /// together will do on data never seen.
   enum class Learned { kBoth, kFirst, kSecond };
 
-  /// @param first, second the two halves of the training
-  /// @throw std::invalid_argument if they hold no event
-  EvidenceModel(const EvidenceStatistics& first, const EvidenceStatistics& second,
-                Learned learned = Learned::kBoth);
+  /// @throw std::invalid_argument if there is no event type, or the tracks are none of these
+  explicit EvidenceModel(const WatchedEvidence& watched, Learned learned = Learned::kBoth);
 
   const Vocabulary& vocabulary() const { return statistics_.vocabulary(); }
   std::size_t size() const { return statistics_.size(); }
   /// Whether the id is one of training; ids behind it stand for events never seen there.
   bool knows(EventId id) const { return id < size(); }
-  /// Counts of both halves.
+  /// Counts of both halves, of the pairs that are watched.
   const EvidenceStatistics& statistics() const { return statistics_; }
-  /// What is watched, the same whatever the probabilities were learned from.
+  /// What is watched, the same whatever the probabilities were learned from. The two tracks of a
+  /// pair's delays are neighbours, the slow one behind the other.
   const std::vector<Track>& tracks() const { return tracks_; }
 
   /// Evidence of channel overdue [nat]: -log of the probability, at a random moment of normal
@@ -58,8 +58,10 @@ class EvidenceModel {
   }
   /// How many spreads more events than on the average came in kRateSpan.
   double rate(EventId id, std::uint32_t count) const;
-  /// How surprising a delay [ns] is to a delay track, in standard deviations from what is usual.
-  double surprise(std::size_t track, std::int64_t delay) const;
+  /// How surprising the delays of each bin are, in standard deviations from what is usual.
+  using Surprises = std::array<double, log_bins::kBins>;
+  /// Those of a delay track; the same object for the two tracks of a pair.
+  const Surprises& surprises(std::size_t track) const { return surprises_[surprises_of_[track]]; }
   /// What an answer that came, and one that did not, add to the evidence of an answer track: the
   /// log-likelihood ratio of half of those that usually come being left out [nat].
   double answered(std::size_t track) const { return steps_[track].answered; }
@@ -71,9 +73,14 @@ class EvidenceModel {
 
  private:
   struct Gaps {
-    std::vector<std::pair<double, double>> bins;  // middle [ns], count
-    double sum = 0;                               // [ns]
-    double longest = 0;                           // [ns]
+    /// The gaps of a bin and of all longer ones.
+    struct Bin {
+      double middle = 0;  // [ns]
+      double count = 0;
+      double sum = 0;  // [ns]
+    };
+    std::vector<Bin> bins;  // the shortest gaps first
+    double longest = 0;     // [ns]
   };
   struct Rate {
     double mean = 0;
@@ -87,16 +94,20 @@ class EvidenceModel {
 
   void learnGaps();
   void learnRates();
-  void learnDelays(const EvidenceStatistics& first, const EvidenceStatistics& second);
+  void learnDelays(const std::array<EvidenceStatistics, 2>& halves);
   void learnAnswers();
 
-  EvidenceStatistics statistics_;  // of both halves
+  /// What the probabilities are learned from.
+  const EvidenceStatistics& learned() const { return half_ ? *half_ : statistics_; }
+
+  EvidenceStatistics statistics_;           // of both halves
+  std::optional<EvidenceStatistics> half_;  // that is learned from, with the same ids
   std::vector<Track> tracks_;
-  EvidenceStatistics learned_;                                  // with the same ids
-  std::vector<Gaps> gaps_;                                      // by id
-  std::vector<Rate> rates_;                                     // by id
-  std::vector<std::array<double, log_bins::kBins>> surprises_;  // by track, of delay tracks
-  std::vector<Steps> steps_;                                    // by track, of answer tracks
+  std::vector<Gaps> gaps_;                 // by id
+  std::vector<Rate> rates_;                // by id
+  std::vector<Surprises> surprises_;       // of pairs
+  std::vector<std::size_t> surprises_of_;  // index of its surprises, by track, of delay tracks
+  std::vector<Steps> steps_;               // by track, of answer tracks
 };
 
 }  // namespace self_awareness::core

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -34,7 +37,9 @@ class EvidenceScorer {
   /// When each event type of the model was last seen [ns], by id.
   std::optional<std::int64_t> lastSeen(EventId id) const;
   /// The last delay of a delay track [ns].
-  std::int64_t lastDelay(std::size_t track) const { return last_delays_.at(track); }
+  std::int64_t lastDelay(std::size_t track) const {
+    return pairs_[state_of_.at(track)].last_delay;
+  }
   /// Events of a type in the last kRateSpan.
   std::uint32_t recentCount(EventId id) const { return counts_.counts().at(id); }
   /// End of the window that was closed last [ns].
@@ -43,37 +48,68 @@ class EvidenceScorer {
  private:
   struct Seen {
     std::int64_t stamp = 0;    // [ns]
-    std::uint64_t number = 0;  // of the event in the recording
+    std::uint64_t number = 0;  // of the event in the recording, from 1; 0: never seen
   };
 
   /// Whether the delays or answers of a track have once been as in training since the start.
-  class Arming {
-   public:
-    /// @param excess of an event over the mean in training
-    /// @param usual the largest mean excess that is as in training
-    void add(double excess, double usual);
-    bool armed() const { return armed_; }
-
-   private:
-    double sum_ = 0;
-    std::uint32_t events_ = 0;
-    bool armed_ = false;
+  struct Arming {
+    double excess = 0;  // over the mean in training, of the last events
+    std::uint32_t events = 0;
+  };
+  /// Never below 0, nor above a cap.
+  struct Sum {
+    double value = 0;
+    double cap = 0;
+    void add(double step) {
+      const double sum = value + step;
+      const double capped = sum < cap ? sum : cap;
+      value = 0.5 * (capped + std::abs(capped));  // the larger one of it and 0, without a branch
+    }
+  };
+  // All that an event needs of a pair or an answer lies together, and those of an event type one
+  // behind the other: the time goes into fetching them.
+  /// Of the two delay tracks of a pair of event types.
+  struct DelayPair {
+    EventId from = 0;
+    bool armed = false;
+    std::int64_t last_delay = 0;        // [ns]
+    const double* surprises = nullptr;  // by bin
+    Sum fast;
+    Sum slow;
+  };
+  /// Of an answer track.
+  struct Answer {
+    EventId to = 0;
+    bool armed = false;
+    std::array<double, 2> steps{};  // of an answer that came, and of one that did not
+    Sum sum;
   };
 
+  /// @param usual the largest mean excess that is as in training
+  /// @return whether the track is armed now
+  static bool arm(Arming& arming, double excess, double usual);
+  void addTracks();
   void disarm(EventId id);
+  void disarmPair(std::size_t number);
+  void disarmAnswer(std::size_t number);
 
   std::shared_ptr<const EvidenceModel> model_;
-  std::vector<std::vector<std::size_t>> delay_tracks_;   // by `to`
-  std::vector<std::vector<std::size_t>> answer_tracks_;  // by `from`
-  std::vector<std::optional<Seen>> last_seen_;           // by id
+  // Those of event type i are the numbers [i] to [i + 1].
+  std::vector<DelayPair> pairs_;                     // by `to`
+  std::vector<std::size_t> pairs_begin_;             // N + 1
+  std::vector<Answer> answers_;                      // by `from`
+  std::vector<std::size_t> answers_begin_;           // N + 1
+  std::vector<Arming> pairs_arming_;                 // by number of the pair
+  std::vector<Arming> answers_arming_;               // by number of the answer
+  std::vector<double> miss_rates_;                   // by number of the answer
+  std::vector<std::size_t> state_of_;                // number of its pair or answer, by track
+  std::vector<std::vector<std::size_t>> tracks_of_;  // those of pairs and answers, by id
+  std::vector<std::int64_t> gone_after_;             // [ns], by id
+  std::vector<Seen> last_seen_;                      // by id
   std::uint64_t number_ = 0;
   RecentCounts counts_;
-  std::vector<double> sums_;               // of delay and answer tracks, by track
-  std::vector<double> caps_;               // of the sums, by track
-  std::vector<Arming> arming_;             // of delay and answer tracks, by track
-  std::vector<double> evidence_;           // by track
-  std::vector<std::int64_t> last_delays_;  // [ns] by track
-  std::int64_t window_end_ = 0;            // [ns]
+  std::vector<double> evidence_;  // by track
+  std::int64_t window_end_ = 0;   // [ns]
 };
 
 /// What a window's evidence comes to.

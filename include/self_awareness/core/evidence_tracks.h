@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -29,6 +31,12 @@ struct Track {
   EventId from = 0;  ///< as `to` where the channel looks at one event type only
 };
 
+/// log P by bin.
+using LogProbabilities = std::array<double, log_bins::kBins>;
+/// log P of a delay's bin, with one more count in every bin (Laplace).
+LogProbabilities logProbabilities(const EvidenceStatistics::Delays& counts);
+LogProbabilities logProbabilities(const EvidenceStatistics::SumOfDelays& counts);
+
 /// How much the delay since the last e_i says of e_j beyond what it says of any event: the mean of
 /// log P_ij - log Q_i [nat], Q_i: the delay since e_i at any event, learned from one half of the
 /// training and measured on the other (METHOD.md, section 3). What holds within a recording only,
@@ -47,18 +55,31 @@ class InformationGain {
   const EvidenceStatistics& learned_from_;
   const EvidenceStatistics& measured_on_;
   std::vector<std::optional<EventId>> id_there_;  // in measured_on_, by id
-  std::vector<std::vector<std::uint64_t>> any_;   // delays since e_i at any event, by i
+  std::vector<LogProbabilities> any_;             // of the delays since e_i at any event, by i
 };
 
-/// log P of a delay's bin, with one more count in every bin (Laplace).
-std::vector<double> logProbabilities(const std::vector<std::uint64_t>& counts);
+/// How many predecessors of an event type are watched, if nothing else is asked for. By
+/// measurement (docs/evaluation): fewer find late answers later, more cost false alarms.
+constexpr std::size_t kPredecessors = 3;
 
-/// What to watch, by the counts of the two halves of the training.
-/// @param both the sum of the halves; its ids are those of the tracks
-std::vector<Track> chooseTracks(const EvidenceStatistics& first, const EvidenceStatistics& second,
-                                const EvidenceStatistics& both);
+/// What the evidence keeps of a training: what is watched, and the counts that this needs.
+struct WatchedEvidence {
+  std::vector<Track> tracks;
+  std::array<EvidenceStatistics, 2> halves;  ///< of the training, with the same event types
+};
 
-/// Share of the gaps of `from` in which no `to` came, never quite 0 or 1.
-double missRate(const EvidenceStatistics& statistics, EventId from, EventId to);
+/// Chooses what to watch by the counts of the two halves of the training; of each half, event
+/// types that the other lacks are added.
+/// @param predecessors of an event type that are watched, the most informative ones
+WatchedEvidence watch(const EvidenceStatistics& first, const EvidenceStatistics& second,
+                      std::size_t predecessors = kPredecessors);
+
+/// @param types number of event types
+/// @throw std::invalid_argument if a track is of none of them, or the two tracks of a pair's
+/// delays are not neighbours, the slow one behind the other
+void checkTracks(const std::vector<Track>& tracks, std::size_t types);
+
+/// Share of the gaps of an event type in which another did not answer, never quite 0 or 1.
+double missRate(std::uint64_t gaps, std::uint64_t answers);
 
 }  // namespace self_awareness::core

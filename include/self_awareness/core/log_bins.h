@@ -1,7 +1,10 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 namespace self_awareness::core {
 
@@ -12,8 +15,66 @@ namespace log_bins {
 
 constexpr std::size_t kBins = 50;
 
+namespace detail {
+
+constexpr std::int64_t kFirstEdge = 2500000;  // [ns]
+inline constexpr std::array<double, 4> kQuarterOctaves{1, 1.189207115002721, 1.4142135623730951,
+                                                       1.681792830507429};
+
+/// Lower edge of the bins but the first [ns]. Whole nanoseconds: the same bin on every machine,
+/// however it rounds.
+constexpr std::array<std::int64_t, kBins - 1> makeEdges() {
+  std::array<std::int64_t, kBins - 1> edges{};
+  for (std::size_t k = 0; k < edges.size(); ++k) {
+    const auto octave = static_cast<double>(kFirstEdge << (k / 4));
+    edges[k] = static_cast<std::int64_t>(octave * kQuarterOctaves[k % 4] + 0.5);
+  }
+  return edges;
+}
+
+inline constexpr std::array<std::int64_t, kBins - 1> kEdges = makeEdges();
+
+/// An eighth of an octave between two powers of two: at most one edge lies within.
+struct Eighth {
+  std::int64_t edge = 0;  // [ns]
+  std::size_t below = 0;  // bin of what is less than the edge
+};
+
+constexpr int kFirstExponent = 21;  // 2^21 ns < kFirstEdge
+constexpr int kExponents = 13;      // up to more than the last edge
+
+constexpr std::array<Eighth, 8 * kExponents> makeEighths() {
+  std::array<Eighth, 8 * kExponents> eighths{};
+  for (std::size_t k = 0; k < eighths.size(); ++k) {
+    const std::size_t start = ((8 + k % 8) << (kFirstExponent + k / 8)) / 8;
+    std::size_t bin = 0;
+    while (bin < kEdges.size() && kEdges[bin] <= static_cast<std::int64_t>(start)) {
+      ++bin;
+    }
+    eighths[k].below = bin;
+    eighths[k].edge = bin < kEdges.size() ? kEdges[bin] : INT64_MAX;
+  }
+  return eighths;
+}
+
+inline constexpr std::array<Eighth, 8 * kExponents> kEighths = makeEighths();
+
+}  // namespace detail
+
 /// Bin of a delay [ns]; a negative delay (a late stamp) counts as 0.
-std::size_t bin(std::int64_t delay);
+inline std::size_t bin(std::int64_t delay) {
+  // The exponent of a double and the first three bits behind its point, instead of a search.
+  const auto within =
+      static_cast<double>(std::clamp(delay, detail::kFirstEdge - 1, detail::kEdges.back()));
+  static_assert(sizeof within == sizeof(std::uint64_t), "a double has 64 bits");
+  std::uint64_t bits = 0;
+  std::memcpy(&bits, &within, sizeof bits);
+  constexpr std::uint64_t kBias = 1023;
+  const detail::Eighth& eighth =
+      detail::kEighths[(bits >> 49U) - ((kBias + detail::kFirstExponent) << 3U)];
+  return eighth.below + (delay >= eighth.edge ? 1 : 0);
+}
+
 /// Smallest delay in a bin [ns]; 0 for the first one.
 std::int64_t lowerEdge(std::size_t bin);
 /// What stands for the delays in a bin [ns]: the geometric mean of its edges, for the first half

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <rosbag/bag.h>
-
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "self_awareness/core/event.h"
 #include "self_awareness/ros/encoding.h"
@@ -31,15 +31,20 @@ struct TimeRange {
 /// What a bag's index says of it.
 struct BagSummary {
   std::string path;
-  std::int64_t start = 0;         ///< of the first message [ns]
-  std::int64_t end = 0;           ///< of the last message [ns]
-  std::uint64_t messages = 0;     ///< in the bag, whether they are events or not
-  std::uint64_t fingerprint = 0;  ///< over times and topics: the same however it is compressed
-  bool has_sources = false;       ///< at least one connection names its publisher
+  std::int64_t start = 0;      ///< of the first message [ns]
+  std::int64_t end = 0;        ///< of the last message [ns]
+  std::uint64_t messages = 0;  ///< in the bag, whether they are events or not
+  /// Over the time and the topic of every message: the same however the bag is compressed, and
+  /// whichever program wrote the same messages once more.
+  std::uint64_t fingerprint = 0;
+  bool has_sources = false;  ///< at least one connection names its publisher
 };
 
-/// Reads a bag as a stream of events. Time, topic, type and callerid come from the index; a
-/// message itself is read only if the encoding needs its content.
+struct BagIndex;
+
+/// Reads a bag as a stream of events. Time, topic, type and callerid come from the index, which is
+/// read once and kept (24 bytes a message); a message itself is read only if the encoding needs
+/// its content.
 class BagReader {
  public:
   using Handler = std::function<void(const core::Event&)>;
@@ -48,6 +53,7 @@ class BagReader {
 
   /// @throw BagError if the file is missing, no bag, unindexed, truncated or without messages
   explicit BagReader(const std::string& path);
+  ~BagReader();
 
   const BagSummary& summary() const { return summary_; }
   /// First and last stamp [ns] of a range.
@@ -60,9 +66,7 @@ class BagReader {
             const Progress& progress = nullptr) const;
 
  private:
-  void summarise();
-
-  rosbag::Bag bag_;
+  std::unique_ptr<const BagIndex> index_;
   BagSummary summary_;
 };
 

@@ -1,10 +1,8 @@
 #pragma once
 
 #include <ros/callback_queue_interface.h>
-#include <ros/message_event.h>
 #include <ros/node_handle.h>
 #include <ros/subscriber.h>
-#include <topic_tools/shape_shifter.h>
 
 #include <cstdint>
 #include <functional>
@@ -14,8 +12,10 @@
 #include <set>
 #include <string>
 #include <unordered_map>
+#include <vector>
 
 #include "self_awareness/core/event.h"
+#include "self_awareness/ros/arrivals.h"
 #include "self_awareness/ros/encoding.h"
 #include "self_awareness/ros/graph.h"
 #include "self_awareness/ros/own_output.h"
@@ -26,18 +26,25 @@ namespace self_awareness::ros1 {
 /// of its receipt.
 ///
 /// Threads: setTopics() and renew() belong to one thread, everything else to the one that serves
-/// the node handle's callback queue; the two share nothing but roscpp's queue.
+/// the node handle's callback queue; the two share nothing but what has arrived.
 class LiveEvents {
  public:
-  using Handler = std::function<void(const core::Event&)>;
-  /// Called with the first message of a connection, before any event, unless the rules leave it
-  /// out.
-  using ConnectionHandler = std::function<void()>;
+  struct Handlers {
+    std::function<void(const core::Event&)> on_event;
+    /// Called with the first message of a connection, before its event, unless the rules leave it
+    /// out.
+    std::function<void()> on_connection;
+    /// Called by the callback queue when deliver() should not wait any longer: by the first
+    /// message after the end of a window, or where a topic's queue fills.
+    std::function<void()> on_arrivals;
+  };
 
-  /// @param node_handle whose callback queue the messages go through
-  /// @param queue_size messages a topic may have waiting; more are dropped, the oldest first
-  LiveEvents(const ros::NodeHandle& node_handle, std::uint32_t queue_size, Handler handler,
-             ConnectionHandler on_connection);
+  /// @param node_handle whose callback queue is used
+  /// @param queue_size messages a topic may have waiting; what comes then is dropped
+  LiveEvents(const ros::NodeHandle& node_handle, std::uint32_t queue_size, Handlers handlers);
+  ~LiveEvents();
+  LiveEvents(const LiveEvents&) = delete;
+  LiveEvents& operator=(const LiveEvents&) = delete;
 
   /// Subscribes to these topics and to no others. A topic whose type changed is subscribed to
   /// anew: roscpp holds on to the first type that it met.
@@ -50,38 +57,49 @@ class LiveEvents {
   /// Encodes from now on with this encoder. Connections that were heard are no new ones: the next
   /// message on a latching one is an event.
   /// @param own_output left out
-  void setEncoder(std::shared_ptr<const Encoder> encoder, OwnOutput own_output);
+  /// @param window length [ns]
+  void setEncoder(std::shared_ptr<const Encoder> encoder, OwnOutput own_output,
+                  std::int64_t window);
+  /// Turns what has arrived into events. It waits for this call, however long.
+  void deliver();
   /// Forgets connections that are closed.
   void forgetClosedConnections();
 
   /// Number of publishers that were heard and are connected.
   std::size_t connections() const { return connections_.size(); }
+  /// Number of messages that were dropped since the start.
+  std::uint64_t dropped() const { return arrivals_.dropped() + unread_; }
 
  private:
-  using MessageEvent = ros::MessageEvent<topic_tools::ShapeShifter const>;
+  class Wake;
   struct Subscription {
     ros::Subscriber subscriber;
     std::string datatype;
   };
   struct LiveConnection {
     boost::shared_ptr<ros::M_string> header;  // keeps the key below alive
-    std::string topic;
+    std::shared_ptr<Arrival::Topic> topic;
     std::optional<ConnectionEncoder> encoder;  // none: left out by the rules
   };
 
-  void onMessage(const std::string& topic, const MessageEvent& message);
+  void onArrival(const Arrival& arrival);
+  LiveConnection& connectionOf(const Arrival& arrival);
+  /// Has messages of the topic read if any of its connections needs that.
+  void chooseReading(Arrival::Topic& topic) const;
   std::optional<ConnectionEncoder> connect(const Connection& connection) const;
+  std::uint64_t wakeId() const { return reinterpret_cast<std::uintptr_t>(this); }
 
   ros::NodeHandle node_handle_;
-  std::uint32_t queue_size_;
-  Handler handler_;
-  ConnectionHandler on_connection_;
+  const Handlers handlers_;
+  const boost::shared_ptr<ros::CallbackInterface> wake_;
+  Arrivals arrivals_;
   std::map<std::string, Subscription> subscriptions_;  // of setTopics()'s thread
   std::shared_ptr<const Encoder> encoder_;
   OwnOutput own_output_;
   // All messages of a connection share one header object.
   std::unordered_map<const ros::M_string*, LiveConnection> connections_;
-  std::vector<std::uint8_t> buffer_;
+  std::vector<Arrival> delivered_;  // kept for its memory
+  std::uint64_t unread_ = 0;        // messages that would have had to be read
 };
 
 }  // namespace self_awareness::ros1

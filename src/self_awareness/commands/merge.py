@@ -44,6 +44,7 @@ def _merge(arguments: argparse.Namespace) -> None:
             merged.merge(model)
         except ValueError as error:
             raise ValueError(f'{path}: does not fit {arguments.models[0]}: {error}') from error
+    merged.watch()
     merged.save(arguments.output)
     print_summary(merged)
     print(f'written: {arguments.output}, without limits and threshold; calibrate it again (rosrun '

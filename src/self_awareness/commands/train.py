@@ -6,7 +6,7 @@ import os
 from contextlib import closing
 from typing import Optional, Sequence
 
-from self_awareness import TrainedModel, encoding_file, live_graph, progress, training
+from self_awareness import PREDECESSORS, TrainedModel, encoding_file, live_graph, progress, training
 from self_awareness.commands import cli
 from self_awareness.output_files import check_outputs, check_replaces_model
 from self_awareness.recordings import BagPart
@@ -16,7 +16,7 @@ from self_awareness.training_report import print_summary
 from self_awareness.workers import Cluster, InProcess, Processes, Workers
 
 _BIN, _WINDOW, _HORIZON = '0.01', '0.1', 0
-_OF_THE_MODEL = ('bin', 'window', 'horizon', 'encoding')
+_OF_THE_MODEL = ('bin', 'window', 'horizon', 'encoding', 'predecessors')
 
 _EPILOG = """\
 The recordings should show all that is normal, start-up aside: leave it out with --start.
@@ -85,7 +85,8 @@ def _counting(arguments: argparse.Namespace, base: Optional[TrainedModel]) -> Co
         raise ValueError(f'--horizon {horizon / SECOND_NS:g} is no multiple of the bin size '
                          f'{bin_size / SECOND_NS:g}; choose one')
     encoding = None if arguments.encoding is None else encoding_file.load(arguments.encoding)
-    return Counting(encoding, bin_size, window, horizon // bin_size)
+    return Counting(encoding, bin_size, window, horizon // bin_size,
+                    PREDECESSORS if arguments.predecessors is None else arguments.predecessors)
 
 
 def _workers(arguments: argparse.Namespace) -> Workers:
@@ -122,6 +123,9 @@ def _parser() -> argparse.ArgumentParser:
                         f'that are scored, in s (default: {_WINDOW})')
     parser.add_argument('--horizon', type=cli.seconds, metavar='S',
                         help='delays of this many s or more share one bin (default: no horizon)')
+    parser.add_argument('--predecessors', type=cli.count, metavar='N',
+                        help='delays since so many event types are watched of every one, the most '
+                             f'informative ones (default: {PREDECESSORS})')
     parser.add_argument('--graph', action='store_true',
                         help='ask the master of the running robot who subscribes to what, and '
                              'keep it: the root of a fault is told from its victims by it')

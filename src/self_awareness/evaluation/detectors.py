@@ -5,7 +5,7 @@ from typing import Dict, List, Optional, Sequence, Set
 
 import numpy as np
 
-from self_awareness import (EVIDENCE_THRESHOLD, DetectorParameters, EncodingRules, EvidenceModel,
+from self_awareness import (EVIDENCE_THRESHOLD, PREDECESSORS, DetectorParameters, EncodingRules, EvidenceModel,
                             EventType, Model, TrainedModel, Training, Verdicts, evidence_limits,
                             follow_me, judge_by_evidence)
 from self_awareness.evaluation.recording import WINDOW, Recording
@@ -53,17 +53,19 @@ class Evidence:
     Args:
         knows_graph: whether the model holds who listens to whom, as after a training beside the
             running robot; without, it was trained on bags alone.
+        predecessors: of an event type that are watched at most.
     """
 
-    def __init__(self, knows_graph: bool) -> None:
+    def __init__(self, knows_graph: bool, predecessors: int = PREDECESSORS) -> None:
         self.name = 'evidence' if knows_graph else 'evidence_no_graph'
         self._graph = _scenario_graph() if knows_graph else {}
+        self._predecessors = predecessors
         self._trained: Optional[TrainedModel] = None
         self._model: Optional[EvidenceModel] = None
 
     def train(self, recordings: Sequence[Recording]) -> None:
         """Count what there is to count."""
-        self._trained = _trained(recordings)
+        self._trained = _trained(recordings, self._predecessors)
         self._trained.graph = self._graph
         self._model = EvidenceModel(self._trained)
 
@@ -87,8 +89,9 @@ class Evidence:
                                  encoded.ids, encoded.end - 1)
 
 
-def _trained(recordings: Sequence[Recording]) -> TrainedModel:
-    training = Training(EncodingRules(), window=WINDOW)
+def _trained(recordings: Sequence[Recording],
+             predecessors: int = PREDECESSORS) -> TrainedModel:
+    training = Training(EncodingRules(), window=WINDOW, predecessors=predecessors)
     for recording in recordings:
         training.add_events(recording.event_types, recording.stamps, recording.ids)
     return training.model()

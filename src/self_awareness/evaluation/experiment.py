@@ -62,7 +62,9 @@ class Results:
 
 
 @dataclass(frozen=True)
-class _Records:
+class Records:
+    """What is judged in one seed."""
+
     training: List[Recording]
     calibration: Recording
     normal: Recording
@@ -90,7 +92,7 @@ def run(plan: Plan, scenario: Scenario, jobs: int) -> Results:
 
 def run_seed(plan: Plan, scenario: Scenario, seed: int) -> Results:
     """Evaluate one seed."""
-    records = _records(plan, scenario, seed)
+    records = make_records(plan, scenario, seed)
     results = Results()
     for name in plan.systems:
         for share in (1.0, plan.training_share):
@@ -99,16 +101,17 @@ def run_seed(plan: Plan, scenario: Scenario, seed: int) -> Results:
     return results
 
 
-def _records(plan: Plan, scenario: Scenario, seed: int) -> _Records:
+def make_records(plan: Plan, scenario: Scenario, seed: int) -> Records:
+    """Simulate what one seed judges."""
     normal = partial(simulated_records.normal_record, scenario, seed)
-    return _Records(
+    return Records(
         [normal(name, simulated_records.RECORD_S) for name in simulated_records.TRAINING_NAMES],
         normal(simulated_records.CALIBRATION_NAME, plan.calibration_s),
         normal(NORMAL, simulated_records.NORMAL_TEST_S),
         [simulated_records.fault_record(scenario, seed, kind) for kind in plan.faults])
 
 
-def _evaluate(name: str, share: float, seed: int, records: _Records, results: Results) -> None:
+def _evaluate(name: str, share: float, seed: int, records: Records, results: Results) -> None:
     """Let one system learn from a share of the training records, and measure it."""
     system = catalogue.make(name)
     system.train([recording.beginning(share) for recording in records.training])

@@ -1,0 +1,206 @@
+#!/usr/bin/python3
+"""Benchmark of whole processes: what the live monitor costs beside others that hear the same.
+
+Ten nodes publish at exact rates; in turn, the monitor, a bare ShapeShifter subscriber that only
+counts, and `rosbag record` listen to them on a core of their own. Needs `catkin_make
+live_benchmark`; runs a master of its own on the loopback interface.
+"""
+from __future__ import annotations
+
+import argparse
+import contextlib
+import json
+import re
+import statistics
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import Any, Dict, Iterator, List, Optional, Sequence
+
+import rospy
+
+import live_report
+from live_robot import Configuration, Robot, master, train, write_synthetic_model
+from live_subjects import Bare, Monitor, Record, Subject, usage
+from self_awareness.evaluation.live_processes import Processes
+
+TOPICS = {163: 15, 1000: 60, 5000: 300, 20000: 500}
+"""By messages a second."""
+
+_DOCS = Path(__file__).resolve().parents[1] / 'docs'
+_WARM_UP_S = 2.0
+_MODEL_S = {163: 40.0, 1000: 40.0, 5000: 90.0, 20000: 20.0}
+_DETECTION_RATE = 5000
+_SETTLED_S = 8.0
+_LONG_S = 600.0
+_STARTS = 5
+_MANY_TYPES = 1000
+_CRASHES = 5
+_WITHIN_S = 120.0
+_LOADED = re.compile(r'\[([0-9.]+)\]: model .* event types')
+_LEVEL_OK = 0
+_LEVEL_ERROR = 2
+
+
+class _Benchmark:
+    def __init__(self, folder: Path, processes: Processes, seconds: float, rounds: int) -> None:
+        self._folder = folder
+        self._processes = processes
+        self._seconds = seconds
+        self._rounds = rounds
+
+    def run(self, rates: Sequence[int]) -> Dict[str, Any]:
+        costs: List[Dict[str, Any]] = []
+        result: Dict[str, Any] = dict(live_report.machine(), seconds=self._seconds,
+                                      rounds=self._rounds, costs=costs)
+        for rate in rates:
+            model = self._folder / f'{rate}.model'
+            with Robot(Configuration(rate, TOPICS[rate], False)) as robot:
+                train(self._processes, robot, _MODEL_S[rate], model)
+            for image in (False, True):
+                with Robot(Configuration(rate, TOPICS[rate], image)) as robot:
+                    costs += self._costs(robot, model)
+            if rate == _DETECTION_RATE:
+                with Robot(Configuration(rate, TOPICS[rate], False)) as robot:
+                    result['latency'] = self._latency(robot, model)
+                    result['latency']['connected_s'] = self._connections(robot, model)
+                many = self._folder / 'many.model'
+                write_synthetic_model(many, _MANY_TYPES)
+                result['latency']['loaded_s'] = {TOPICS[rate]: self._loads(model),
+                                                _MANY_TYPES: self._loads(many)}
+        return result
+
+    def _costs(self, robot: Robot, model: Path) -> List[Dict[str, Any]]:
+        samples: Dict[str, List[Dict[str, float]]] = {}
+        monitor = Monitor(self._processes, model)
+        subjects = {'bare': Bare(self._processes, self._folder, robot.topics),
+                    'monitor': monitor,
+                    'record': Record(self._processes, self._folder, robot.topics)}
+        with contextlib.closing(monitor):
+            for _ in range(self._rounds):
+                for name, subject in subjects.items():
+                    samples.setdefault(name, []).append(self._sample(robot, subject))
+        rows = []
+        for name, of_subject in samples.items():
+            row: Dict[str, Any] = dict(robot.configuration._asdict(), subject=name)
+            for key in of_subject[0]:
+                row[key] = statistics.median(sample[key] for sample in of_subject)
+            row['dropped'] = sum(sample['dropped'] for sample in of_subject)
+            row['samples'] = [sample['cpu_share'] for sample in of_subject]
+            rows.append(row)
+            print(json.dumps(row), flush=True)
+        return rows
+
+    def _sample(self, robot: Robot, subject: Subject) -> Dict[str, float]:
+        process = subject.start()
+        robot.await_subscribers(1)
+        time.sleep(1)  # what connecting costs is not counted
+        robot.start(_WARM_UP_S + self._seconds + 0.2)
+        time.sleep(_WARM_UP_S)
+        begin, before = time.monotonic(), usage(process.pid)
+        time.sleep(self._seconds)
+        end, after = time.monotonic(), usage(process.pid)
+        published = robot.published()
+        time.sleep(0.5)  # the last window's verdict
+        counted = subject.stop()
+        return {'cpu_share': (after.cpu_s - before.cpu_s) / (end - begin),
+                'peak_bytes': after.peak_bytes, 'published': published,
+                'dropped': published - counted}
+
+    def _latency(self, robot: Robot, model: Path) -> Dict[str, Any]:
+        """Measure from a window's end to its verdict, and from a crash to the alarm."""
+        alarms = []
+        with contextlib.closing(Monitor(self._processes, model)) as monitor:
+            monitor.start()
+            robot.await_subscribers(1)
+            robot.start(_LONG_S)
+            time.sleep(_SETTLED_S)
+            for node in range(1, 1 + _CRASHES):
+                _await_quiet(monitor, 1 + 0.37 * node)  # at another moment of a window each time
+                crashed = robot.crash(node)
+                alarms.append(monitor.await_level(
+                    'an alarm', lambda level: level == _LEVEL_ERROR, _WITHIN_S) - crashed)
+                robot.restart(node, 1, _LONG_S)
+            verdicts = monitor.latencies_s
+            monitor.stop()
+        result = {'rate': robot.configuration.rate, 'topics': robot.configuration.topics,
+                  'alarm_s': alarms,
+                  'verdict_s': {'median': statistics.median(verdicts), 'most': max(verdicts),
+                                'windows': len(verdicts)}}
+        print(json.dumps(result), flush=True)
+        return result
+
+    def _connections(self, robot: Robot, model: Path) -> List[float]:
+        """Measure from the start of the process to its connection to the last topic."""
+        times = []
+        with contextlib.closing(Monitor(self._processes, model)) as monitor:
+            for _ in range(_STARTS):
+                time.sleep(2)  # the publishers notice that the one before has gone
+                begin = time.time()
+                monitor.start()
+                robot.await_subscribers(1)
+                times.append(time.time() - begin)
+                monitor.stop()
+        print(json.dumps(times), flush=True)
+        return times
+
+    def _loads(self, model: Path) -> List[float]:
+        """Measure from the start of the process to where it has loaded the model."""
+        times = []
+        with contextlib.closing(Monitor(self._processes, model)) as monitor:
+            for _ in range(_STARTS):
+                begin = time.time()
+                monitor.start()
+                monitor.await_level('diagnostics', lambda _: True, _WITHIN_S)
+                monitor.stop()  # which writes the log
+                log = (self._folder / 'monitor.log').read_text()
+                times.append(float(_LOADED.findall(log)[-1]) - begin)
+        print(json.dumps(times), flush=True)
+        return times
+
+
+def _await_quiet(monitor: Monitor, seconds: float) -> None:
+    """Wait until there is no alarm, and none comes for so long."""
+    while True:
+        monitor.await_level('no alarm', lambda level: level == _LEVEL_OK, _WITHIN_S)
+        time.sleep(seconds)
+        if monitor.level == _LEVEL_OK:
+            return
+
+
+def main(argv: Optional[Sequence[str]] = None) -> int:
+    """Run the benchmark; return the exit code."""
+    arguments = _parser().parse_args(argv)
+    with tempfile.TemporaryDirectory(dir='/dev/shm') as name:
+        folder = Path(name)
+        with master(folder) as processes, _node():
+            benchmark = _Benchmark(folder, processes, arguments.seconds, arguments.rounds)
+            result = benchmark.run(arguments.rates)
+    if set(arguments.rates) == set(TOPICS):
+        live_report.write(result, arguments.output)
+    return 0
+
+
+@contextlib.contextmanager
+def _node() -> Iterator[None]:
+    rospy.init_node('benchmark', disable_signals=True, disable_rosout=True)
+    try:
+        yield
+    finally:
+        rospy.signal_shutdown('the benchmark is over')
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog='benchmark live', description=__doc__)
+    parser.add_argument('--rates', type=int, nargs='+', default=list(TOPICS),
+                        choices=list(TOPICS), metavar='N', help='messages a second')
+    parser.add_argument('--seconds', type=float, default=10.0, help='of each measurement')
+    parser.add_argument('--rounds', type=int, default=3, help='of all subjects, in turn')
+    parser.add_argument('--output', type=Path, default=_DOCS, metavar='FOLDER',
+                        help='for performance/live.json and performance.md (default: docs)')
+    return parser
+
+
+if __name__ == '__main__':
+    sys.exit(main())

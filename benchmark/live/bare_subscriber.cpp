@@ -1,0 +1,32 @@
+// What the live monitor is measured against: subscribes to the topics named on the command line by
+// ShapeShifter, as any program does that takes messages of every type, and only counts. Prints the
+// number when it is interrupted.
+
+#include <ros/ros.h>
+#include <topic_tools/shape_shifter.h>
+
+#include <cstdint>
+#include <iostream>
+#include <vector>
+
+namespace {
+
+constexpr std::uint32_t kQueueSize = 1000;  // the monitor's default
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  ros::init(argc, argv, "bare_subscriber");
+  ros::NodeHandle node_handle;
+  std::uint64_t counted = 0;
+  std::vector<ros::Subscriber> subscribers;
+  for (int i = 1; i < argc; ++i) {
+    const boost::function<void(const topic_tools::ShapeShifter::ConstPtr&)> count =
+        [&counted](const topic_tools::ShapeShifter::ConstPtr& /*message*/) { ++counted; };
+    subscribers.push_back(node_handle.subscribe<topic_tools::ShapeShifter>(
+        argv[i], kQueueSize, count, ros::VoidConstPtr(), ros::TransportHints().tcpNoDelay()));
+  }
+  ros::spin();
+  std::cout << counted << std::endl;
+  return 0;
+}

@@ -1,0 +1,89 @@
+"""What the live benchmark found, as JSON and as a section of docs/performance.md."""
+from __future__ import annotations
+
+import json
+import os
+import platform
+import re
+import statistics
+from pathlib import Path
+from typing import Any, Dict, Iterator, List, Tuple
+
+_BEGIN, _END = '<!-- live -->', '<!-- /live -->'
+_TITLE = '# Performance\n\n'
+
+
+def write(result: Dict[str, Any], folder: Path) -> None:
+    """Write performance/live.json, and the section between the markers of performance.md."""
+    (folder / 'performance').mkdir(parents=True, exist_ok=True)
+    (folder / 'performance' / 'live.json').write_text(json.dumps(result, indent=1) + '\n')
+    page = folder / 'performance.md'
+    text = page.read_text() if page.exists() else f'{_TITLE}## The live monitor\n\n{_BEGIN}\n{_END}\n'
+    section = f'{_BEGIN}\n{markdown(result)}{_END}'
+    text, replaced = re.subn(f'{_BEGIN}.*{_END}', lambda _: section, text, flags=re.DOTALL)
+    if not replaced:
+        raise ValueError(f'{page}: has no section {_BEGIN} ... {_END}')
+    page.write_text(text)
+
+
+def machine() -> Dict[str, Any]:
+    """Return what the numbers depend on."""
+    return {'cores': os.cpu_count(), 'machine': platform.machine(), 'kernel': platform.release()}
+
+
+def markdown(result: Dict[str, Any]) -> str:
+    """Return the tables."""
+    return '\n'.join([*_costs(result), '', *_latency(result['latency'])]) + '\n'
+
+
+def _costs(result: Dict[str, Any]) -> Iterator[str]:
+    yield (f'CPU in % of a core, median of {result["rounds"]} times {result["seconds"]:g} s, all '
+           'in turn; peak of the resident memory; messages that were published and did not arrive, '
+           'of all rounds. The listener has a core for itself, the publishers another.')
+    yield ''
+    yield ('| messages/s | topics | images | bare | `rosbag record` | monitor | monitor / bare '
+           '| MB: bare | record | monitor | dropped: bare | record | monitor |')
+    yield '|--:' * 2 + '|:-:' + '|--:' * 10 + '|'
+    for (rate, topics, image), rows in _by_configuration(result['costs']).items():
+        bare, record, monitor = (rows[name] for name in ('bare', 'record', 'monitor'))
+        subjects = (bare, record, monitor)
+        ratio = monitor['cpu_share'] / bare['cpu_share']
+        yield ' | '.join([
+            f'| {rate:,} | {topics} | {"30 Hz" if image else ""}',
+            *(f'{100 * row["cpu_share"]:.1f}' for row in subjects), f'**{ratio:.2f}**',
+            *(f'{row["peak_bytes"] / 1e6:.0f}' for row in subjects),
+            *(f'{row["dropped"]:.0f}' for row in subjects)]) + ' |'
+
+
+def _by_configuration(costs: List[Dict[str, Any]]
+                      ) -> Dict[Tuple[int, int, bool], Dict[str, Dict[str, Any]]]:
+    configurations: Dict[Tuple[int, int, bool], Dict[str, Dict[str, Any]]] = {}
+    for row in costs:
+        key = (row['rate'], row['topics'], row['image'])
+        configurations.setdefault(key, {})[row['subject']] = row
+    return configurations
+
+
+def _latency(latency: Dict[str, Any]) -> Iterator[str]:
+    verdict = latency['verdict_s']
+    yield f'At {latency["rate"]:,} messages a second on {latency["topics"]} topics:'
+    yield ''
+    yield '| | median | most | of |'
+    yield '|---|--:|--:|--:|'
+    yield (f'| end of a window to its verdict on `~status` | {_ms(verdict["median"])} '
+           f'| {_ms(verdict["most"])} | {verdict["windows"]} windows |')
+    yield _row('`kill -9` of a node to the alarm on `/diagnostics`', latency['alarm_s'], 'times')
+    yield _row('start of the process until it is connected to all topics', latency['connected_s'],
+               'starts')
+    for types, seconds in latency['loaded_s'].items():
+        yield _row(f'start of the process until the model is loaded, {types} event types', seconds,
+                   'starts')
+
+
+def _row(what: str, seconds: List[float], unit: str) -> str:
+    return (f'| {what} | {_ms(statistics.median(seconds))} | {_ms(max(seconds))} '
+            f'| {len(seconds)} {unit} |')
+
+
+def _ms(seconds: float) -> str:
+    return f'{1000 * seconds:.3g} ms' if seconds < 1 else f'{seconds:.2f} s'

@@ -1,0 +1,213 @@
+"""The robot of the live benchmark: a master, ten nodes that publish, and a model of them."""
+from __future__ import annotations
+
+import contextlib
+import os
+import signal
+import subprocess
+import time
+from pathlib import Path
+from typing import IO, Iterator, List, NamedTuple, Sequence
+
+import numpy as np
+
+from self_awareness import (EncodingRules, EventType, EvidenceCalibration, EvidenceModel,
+                            TrainedModel, Training)
+from self_awareness.evaluation.live_processes import Processes, await_condition, free_port
+from self_awareness.stamps import SECOND_NS
+
+NODES = 10
+IMAGE_TOPIC = '/camera/image'
+FULL_HD_BYTES = 1920 * 1080 * 3
+LOAD_CORE = 1
+"""Of the publishers, the master and this program."""
+SUBJECT_CORE = 0
+"""Of what is measured, which has it for itself."""
+
+_PROGRAM = 'live_load'
+_STARTED_WITHIN_S = 60.0
+_TRAINING_WITHIN_S = 900.0
+_NEVER_REACHED = 1e6
+_SYNTHETIC_EVENTS = 300
+_SYNTHETIC_START_S = 1_600_000_000
+_TINY_IMAGE_BYTES = 3  # training needs no payload
+
+
+class Configuration(NamedTuple):
+    """How much is published."""
+
+    rate: int
+    """Messages a second, without the images."""
+    topics: int
+    image: bool
+    """Whether images of full HD are published besides, 30 a second."""
+
+
+def pin(core: int, *command: str) -> List[str]:
+    """Return the command as it runs on one core."""
+    return ['taskset', '-c', str(core), *command]
+
+
+@contextlib.contextmanager
+def master(folder: Path) -> Iterator[Processes]:
+    """Run a master on a free port of the loopback interface; whoever is started later finds it."""
+    port = free_port()
+    os.environ.update(ROS_MASTER_URI=f'http://127.0.0.1:{port}', ROS_IP='127.0.0.1',
+                      ROS_LOG_DIR=str(folder / 'log'))
+    os.environ.pop('ROS_HOSTNAME', None)
+    with Processes(folder) as processes:
+        processes.start('roscore', *pin(LOAD_CORE, 'roscore', '-p', str(port)))
+        await_condition('the master answers', _master_answers, _STARTED_WITHIN_S)
+        yield processes
+
+
+def _master_answers() -> bool:
+    return subprocess.run(['rosnode', 'list'], stdout=subprocess.DEVNULL,
+                          stderr=subprocess.DEVNULL, check=False).returncode == 0
+
+
+class Robot:
+    """The publishers of one configuration. As a context manager it ends them.
+
+    Args:
+        configuration: its image topic is advertised in any case.
+    """
+
+    def __init__(self, configuration: Configuration) -> None:
+        self.configuration = configuration
+        counts = [len(range(node, configuration.topics, NODES)) for node in range(NODES)]
+        self._counts = [count for count in counts if count > 0]
+        self._nodes = [self._start(node) for node in range(len(self._counts))]
+
+    def _start(self, node: int) -> subprocess.Popen:
+        rate = self.configuration.rate / self.configuration.topics
+        command = pin(LOAD_CORE, 'rosrun', 'self_awareness', _PROGRAM, _prefix(node),
+                      str(self._counts[node]), repr(rate), str(node + 1))
+        if node == 0:
+            command.append(IMAGE_TOPIC)
+        return subprocess.Popen([*command, f'__name:={self.node_name(node)}'],
+                                stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
+                                bufsize=1, start_new_session=True)
+
+    def __enter__(self) -> Robot:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for node in self._nodes:
+            _kill(node)
+
+    @property
+    def topics(self) -> List[str]:
+        """All topics, the image's first."""
+        return [IMAGE_TOPIC, *(f'{_prefix(node)}{i}' for node, count in enumerate(self._counts)
+                               for i in range(count))]
+
+    @staticmethod
+    def node_name(node: int) -> str:
+        """Return the name of a node, without its slash."""
+        return f'component_{node}'
+
+    def await_subscribers(self, count: int) -> None:
+        """Wait until every topic has so many subscribers."""
+        self._tell(f'await {count}')
+        self._answers()
+
+    def start(self, seconds: float) -> None:
+        """Let all nodes publish for so long; `published` waits for the end."""
+        self._tell(f'publish {seconds} {FULL_HD_BYTES if self.configuration.image else 0}')
+
+    def published(self) -> int:
+        """Wait until all have published; return the number of messages."""
+        return sum(int(answer) for answer in self._answers())
+
+    def publish_for_training(self, seconds: float) -> None:
+        """Publish everything, with images of next to no size."""
+        self._tell(f'publish {seconds} {_TINY_IMAGE_BYTES}')
+        self._answers()
+
+    def crash(self, node: int) -> float:
+        """Kill one node; return when [s since 1970]."""
+        stamp = time.time()
+        _kill(self._nodes[node])
+        return stamp
+
+    def restart(self, node: int, subscribers: int, seconds: float) -> None:
+        """Start a node again that crashed, and let it publish."""
+        self._nodes[node] = self._start(node)
+        _write(self._nodes[node].stdin, f'await {subscribers}')
+        _read(self._nodes[node].stdout)
+        _write(self._nodes[node].stdin, f'publish {seconds} 0')
+
+    def _tell(self, command: str) -> None:
+        for node in self._nodes:
+            _write(node.stdin, command)
+
+    def _answers(self) -> List[str]:
+        return [_read(node.stdout) for node in self._nodes]
+
+
+def train(processes: Processes, robot: Robot, seconds: float, model: Path) -> None:
+    """Record the robot for so long and learn a model from it.
+
+    Where the recording is too short to find limits, there are some that are never reached: to
+    judge by them takes the same work.
+    """
+    bag = model.with_suffix('.bag')
+    recorder = processes.start('record', *record_command(bag, robot.topics))
+    robot.await_subscribers(1)
+    robot.publish_for_training(seconds)
+    processes.end(recorder)
+    processes.run('train', _TRAINING_WITHIN_S, 'rosrun', 'self_awareness', 'train', str(bag),
+                  '--start', '1', '-o', str(model))
+    bag.unlink()
+    trained = TrainedModel.load(str(model))
+    if trained.evidence_calibration is None:
+        calibration = EvidenceCalibration()
+        calibration.limits = [_NEVER_REACHED] * len(EvidenceModel(trained).tracks)
+        calibration.linker_limit = _NEVER_REACHED
+        trained.evidence_calibration = calibration
+        trained.save(str(model))
+
+
+def write_synthetic_model(model: Path, types: int) -> None:
+    """Write a model of so many event types, each 16 times a second."""
+    rng = np.random.default_rng(1)
+    period = SECOND_NS // 16
+    ticks = np.arange(_SYNTHETIC_EVENTS)[:, None] * period
+    stamps = ticks + rng.integers(0, period, types) + rng.integers(0, period // 50, (
+        _SYNTHETIC_EVENTS, types))
+    order = np.argsort(stamps, axis=None, kind='stable')
+    training = Training(EncodingRules.defaults())
+    training.add_events(
+        [EventType(f'/{Robot.node_name(i % NODES)}', f'/topic_{i}', 'std_msgs/String')
+         for i in range(types)],
+        stamps.ravel()[order] + _SYNTHETIC_START_S * SECOND_NS, order % types)
+    training.model().save(str(model))
+
+
+def record_command(bag: Path, topics: Sequence[str]) -> List[str]:
+    """Return the command that records topics in a bag."""
+    # `rosbag record` would add a Python process that waits.
+    return ['rosrun', 'rosbag', 'record', '-b', '0', '--tcpnodelay', '-O', str(bag), *topics]
+
+
+def _prefix(node: int) -> str:
+    return f'/component_{node}/data_'
+
+
+def _write(stream: IO[str], command: str) -> None:
+    stream.write(command + '\n')
+    stream.flush()
+
+
+def _read(stream: IO[str]) -> str:
+    line = stream.readline()
+    if not line:
+        raise RuntimeError('a node of the load ended')
+    return line
+
+
+def _kill(process: subprocess.Popen) -> None:
+    with contextlib.suppress(ProcessLookupError):
+        os.killpg(process.pid, signal.SIGKILL)
+    process.wait()

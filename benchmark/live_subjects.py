@@ -1,0 +1,170 @@
+"""What the live benchmark measures: programs that hear all that the robot publishes."""
+from __future__ import annotations
+
+import abc
+import os
+import subprocess
+import threading
+import time
+from pathlib import Path
+from typing import Callable, List, NamedTuple, Sequence
+
+import rosbag
+import rospy
+from diagnostic_msgs.msg import DiagnosticArray
+
+from live_robot import SUBJECT_CORE, pin, record_command
+from self_awareness.evaluation.live_processes import Processes, await_condition
+from self_awareness.msg import SelfAwareness
+
+_LIBRARIES = Path('lib/self_awareness')
+
+
+class Usage(NamedTuple):
+    """What a process has used so far."""
+
+    cpu_s: float
+    """User and system."""
+    peak_bytes: int
+    """Resident memory at its largest."""
+
+
+def usage(pid: int) -> Usage:
+    """Return what a process and all its threads have used."""
+    # To the nanosecond, while /proc/PID/stat counts ticks of 10 ms.
+    cpu_ns = sum(int((task / 'schedstat').read_text().split()[0])
+                 for task in Path(f'/proc/{pid}/task').iterdir())
+    status = Path(f'/proc/{pid}/status').read_text()
+    peak_kib = next(int(line.split()[1]) for line in status.splitlines()
+                    if line.startswith('VmHWM:'))
+    return Usage(cpu_ns * 1e-9, peak_kib * 1024)
+
+
+class Subject(abc.ABC):
+    """A program that listens. As a context manager it runs."""
+
+    def __init__(self, processes: Processes) -> None:
+        self._processes = processes
+
+    @abc.abstractmethod
+    def start(self) -> subprocess.Popen:
+        """Start the program."""
+
+    @abc.abstractmethod
+    def stop(self) -> int:
+        """End the program; return how many messages it got."""
+
+
+class Bare(Subject):
+    """Counts by ShapeShifter subscriptions."""
+
+    def __init__(self, processes: Processes, folder: Path, topics: Sequence[str]) -> None:
+        super().__init__(processes)
+        self._log = folder / 'bare.log'
+        self._topics = topics
+
+    def start(self) -> subprocess.Popen:
+        """Start the program."""
+        self._process = self._processes.start(
+            'bare', *pin(SUBJECT_CORE, executable('live_bare_subscriber'), *self._topics))
+        return self._process
+
+    def stop(self) -> int:
+        """End the program; return how many messages it got."""
+        self._processes.end(self._process)
+        return int(self._log.read_text().split()[-1])
+
+
+class Record(Subject):
+    """`rosbag record` into a file in memory."""
+
+    def __init__(self, processes: Processes, folder: Path, topics: Sequence[str]) -> None:
+        super().__init__(processes)
+        self._bag = folder / 'measured.bag'
+        self._command = record_command(self._bag, topics)
+
+    def start(self) -> subprocess.Popen:
+        """Start the program."""
+        self._process = self._processes.start('measured', *pin(SUBJECT_CORE, *self._command))
+        return self._process
+
+    def stop(self) -> int:
+        """End the program; return how many messages it got."""
+        self._processes.end(self._process)
+        with rosbag.Bag(str(self._bag)) as bag:
+            count = bag.get_message_count()
+        self._bag.unlink()
+        return count
+
+
+class Monitor(Subject):
+    """The live monitor; listens to what it says. Needs rospy.init_node()."""
+
+    NAME = '/watch'
+
+    def __init__(self, processes: Processes, model: Path) -> None:
+        super().__init__(processes)
+        self._model = model
+        self._lock = threading.Lock()
+        self._events = 0
+        self.latencies_s: List[float] = []
+        """From the end of each window to when its verdict was heard, where it had settled."""
+        self.level = -1
+        """Of communication on /diagnostics; -1 before the first."""
+        self._changed_at = 0.0
+        self._subscribers = [
+            rospy.Subscriber(f'{self.NAME}/status', SelfAwareness, self._on_status),
+            rospy.Subscriber('/diagnostics', DiagnosticArray, self._on_diagnostics)]
+
+    def start(self) -> subprocess.Popen:
+        """Start the program."""
+        with self._lock:
+            self._events = 0
+            self.latencies_s = []
+            self.level = -1
+        self._process = self._processes.start(
+            'monitor', *pin(SUBJECT_CORE, executable('self_awareness_node'),
+                            f'__name:={self.NAME[1:]}', f'_model:={self._model}',
+                            '_subscribe:=model'))
+        return self._process
+
+    def stop(self) -> int:
+        """End the program; return how many messages it got."""
+        self._processes.end(self._process)
+        with self._lock:
+            return self._events
+
+    def close(self) -> None:
+        """Listen no longer."""
+        for subscriber in self._subscribers:
+            subscriber.unregister()
+
+    def await_level(self, what: str, holds: Callable[[int], bool], limit_s: float) -> float:
+        """Wait for a level on /diagnostics; return when it came [s since 1970]."""
+        await_condition(what, lambda: self.level >= 0 and holds(self.level), limit_s)
+        with self._lock:
+            return self._changed_at
+
+    def _on_status(self, status: SelfAwareness) -> None:
+        now = time.time()
+        with self._lock:
+            self._events += status.events
+            if not status.settling:
+                self.latencies_s.append(now - status.header.stamp.to_sec())
+
+    def _on_diagnostics(self, array: DiagnosticArray) -> None:
+        now = time.time()
+        for status in array.status:
+            if status.name == f'{self.NAME[1:]}: communication' and status.level != self.level:
+                with self._lock:
+                    self.level, self._changed_at = status.level, now
+
+
+def executable(name: str) -> str:
+    """Return the path of a program of this package as it was built."""
+    for prefix in os.environ['CMAKE_PREFIX_PATH'].split(':'):
+        path = Path(prefix) / _LIBRARIES / name
+        if path.exists():
+            return str(path)
+    raise FileNotFoundError(f'{name} is not built; catkin_make live_benchmark')
+

@@ -1,0 +1,82 @@
+#!/usr/bin/env python3
+"""Measures what the number of watched predecessors costs and brings.
+
+Trains the evidence detector on the simulated follow-me robot with several bounds on the number of
+predecessors of an event type, and judges the same normal operation and the same faults with each.
+"""
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import multiprocessing
+from functools import partial
+from pathlib import Path
+from typing import Any, Dict, List, Sequence
+
+from self_awareness import follow_me
+from self_awareness.evaluation import experiment, summary
+from self_awareness.evaluation.detectors import Evidence
+from self_awareness.evaluation.experiment import Plan
+from self_awareness.evaluation.measures import Row, fault_row, normal_row
+
+ALL = 1000
+"""More than there are event types."""
+BOUNDS = (1, 2, 3, 5, 8, ALL)
+FAULTS = ('cc1', 'cc2', 'rs', 'ac', 'lat')
+
+
+def measure(seeds: Sequence[int], jobs: int) -> List[Dict[str, Any]]:
+    """Return one row of results for every bound."""
+    plan = Plan(('evidence',), FAULTS, tuple(seeds))
+    with multiprocessing.Pool(jobs) as pool:
+        of_seeds = pool.map(partial(_measure_seed, plan), plan.seeds, chunksize=1)
+    return [_results(bound, [row for rows in of_seeds for row in rows if row.system == str(bound)])
+            for bound in BOUNDS]
+
+
+def _measure_seed(plan: Plan, seed: int) -> List[Row]:
+    records = experiment.make_records(plan, follow_me.load(), seed)
+    rows = []
+    for bound in BOUNDS:
+        system = Evidence(True, bound)
+        system.train(records.training)
+        system.calibrate([records.calibration])
+        normal = system.judge(records.normal)
+        rows.append(normal_row(str(bound), 1.0, seed, normal))
+        rows += [fault_row(str(bound), 1.0, seed, record.kind, system.judge(record.recording),
+                           record.onset, record.culprits, normal) for record in records.faults]
+    return rows
+
+
+def _results(bound: int, rows: Sequence[Row]) -> Dict[str, Any]:
+    faults = {kind: summary.of_fault(rows, kind) for kind in FAULTS}
+    return {
+        'predecessors': 'all' if bound == ALL else bound,
+        'false_alarms_per_hour': summary.false_alarms(summary.normal(rows)).per_hour,
+        'false_positive_rate': summary.false_positive_rate(summary.normal(rows)),
+        **{f'{kind}_latency': _finite(summary.latency(faults[kind], 0.5)) for kind in FAULTS},
+        **{f'{kind}_found': summary.found(faults[kind]) for kind in FAULTS},
+    }
+
+
+def _finite(value: float) -> Any:
+    return value if math.isfinite(value) else None
+
+
+def main() -> None:
+    """Write the results as JSON."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('-o', '--output', type=Path, required=True, metavar='JSON')
+    parser.add_argument('--seed', type=int, default=401, help='the first one (default: 401)')
+    parser.add_argument('--seeds', type=int, default=10, metavar='N',
+                        help='number of repetitions (default: 10)')
+    parser.add_argument('--jobs', type=int, default=2, metavar='N')
+    arguments = parser.parse_args()
+    seeds = list(range(arguments.seed, arguments.seed + arguments.seeds))
+    results = {'seeds': seeds, 'bounds': measure(seeds, arguments.jobs)}
+    arguments.output.write_text(json.dumps(results, indent=1) + '\n', encoding='utf-8')
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,125 @@
+#pragma once
+
+#include <rosbag/exceptions.h>
+
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <string>
+#include <string_view>
+#include <utility>
+
+/// The records that a bag of format 2.0 is made of (wiki.ros.org/Bags/Format/2.0): a header of
+/// named fields, and data.
+namespace self_awareness::ros1::bag_records {
+
+/// The file is not as the format says.
+using FormatError = rosbag::BagFormatException;
+
+constexpr std::string_view kFormat = "#ROSBAG V2.0\n";  // begins the file
+
+enum class Op : std::uint8_t {
+  kMessage = 0x02,
+  kFileHeader = 0x03,
+  kIndex = 0x04,
+  kChunk = 0x05,
+  kChunkInfo = 0x06,
+  kConnection = 0x07
+};
+
+/// Takes bytes from the front.
+/// @throw FormatError if there are not as many
+inline std::string_view take(std::string_view& bytes, std::size_t size) {
+  if (size > bytes.size()) {
+    throw FormatError("a record is cut off");
+  }
+  const std::string_view taken = bytes.substr(0, size);
+  bytes.remove_prefix(size);
+  return taken;
+}
+
+/// Takes a number: little endian, as the machines that ROS 1 runs on.
+template <typename Number>
+Number takeNumber(std::string_view& bytes) {
+  Number value;
+  std::memcpy(&value, take(bytes, sizeof value).data(), sizeof value);
+  return value;
+}
+
+/// Takes as many bytes as the number before them says.
+inline std::string_view takeBlock(std::string_view& bytes) {
+  const auto size = takeNumber<std::uint32_t>(bytes);
+  return take(bytes, size);
+}
+
+/// Takes a field from a header: its name and its value.
+inline std::pair<std::string_view, std::string_view> takeField(std::string_view& header) {
+  const std::string_view field = takeBlock(header);
+  const std::size_t equals = field.find('=');
+  if (equals == std::string_view::npos) {
+    throw FormatError("a field without a name");
+  }
+  return {field.substr(0, equals), field.substr(equals + 1)};
+}
+
+/// A field of a header.
+/// @throw FormatError if there is none of that name
+inline std::string_view field(std::string_view header, std::string_view name) {
+  while (!header.empty()) {
+    const auto [here, value] = takeField(header);
+    if (here == name) {
+      return value;
+    }
+  }
+  throw FormatError("no field " + std::string(name));
+}
+
+template <typename Number>
+Number number(std::string_view header, std::string_view name) {
+  std::string_view value = field(header, name);
+  return takeNumber<Number>(value);
+}
+
+/// Takes the header of a record.
+/// @throw FormatError if it is not of this kind
+inline std::string_view takeHeader(std::string_view& bytes, Op op) {
+  const std::string_view header = takeBlock(bytes);
+  if (number<std::uint8_t>(header, "op") != static_cast<std::uint8_t>(op)) {
+    throw FormatError("a record of another kind");
+  }
+  return header;
+}
+
+/// Enough for the header of a chunk or of a message [bytes].
+constexpr std::uint64_t kHeaderBytes = 256;
+
+/// A file that is read in pieces: no more than is asked for, as a stream's own buffer would.
+class PiecesOfFile {
+ public:
+  explicit PiecesOfFile(const std::string& path);
+
+  std::uint64_t size() const { return size_; }
+  /// What is at a position, up to the end of the file; valid until the next call. If it is not at
+  /// hand, it is read, and `ahead` [bytes] with it.
+  /// @throw FormatError if the position lies behind the end
+  std::string_view at(std::uint64_t position, std::uint64_t bytes, std::uint64_t ahead = 0);
+
+ private:
+  std::ifstream file_;
+  std::uint64_t size_ = 0;
+  std::string buffer_;
+  std::uint64_t position_ = 0;  // of the buffer
+};
+
+/// The header of a chunk.
+struct Chunk {
+  /// @throw FormatError if there is none
+  Chunk(PiecesOfFile& file, std::uint64_t position);
+
+  std::string compression;           ///< "none", "bz2" or "lz4"
+  std::uint32_t unpacked_bytes = 0;  ///< of the data
+  std::uint64_t begin = 0;           ///< of the data in the file [bytes]
+  std::uint64_t end = 0;
+};
+
+}  // namespace self_awareness::ros1::bag_records

@@ -1,0 +1,52 @@
+"""What a program reads of a bag."""
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import rosbag
+import rospy
+from rosgraph_msgs.msg import Log
+from sensor_msgs.msg import Image
+
+from self_awareness import EncodingRules, read_events, summarise_bag
+from self_awareness.commands import train
+
+_IMAGE_BYTES = 1_000_000
+
+
+@pytest.fixture(scope='module')
+def image_bag(tmp_path_factory: pytest.TempPathFactory) -> str:
+    """A camera's minute: an image and ten lines of its log every second."""
+    path = str(tmp_path_factory.mktemp('images') / 'images.bag')
+    image = Image(data=bytes(_IMAGE_BYTES))
+    with rosbag.Bag(path, 'w') as bag:
+        for i in range(600):
+            stamp = rospy.Time.from_sec(1000 + 0.1 * i)
+            for topic, message in [('/image', image)] * (i % 10 == 0) + [('/rosout', Log())]:
+                bag.write(topic, message, stamp, connection_header={
+                    'topic': topic, 'callerid': '/camera', 'type': message._type,
+                    'md5sum': message._md5sum, 'message_definition': message._full_text})
+    return path
+
+
+def _bytes_read() -> int:
+    counts = dict(line.split(': ') for line in Path('/proc/self/io').read_text().splitlines())
+    return int(counts['rchar'])
+
+
+def test_training_reads_next_to_nothing_of_the_images(image_bag: str, tmp_path: Path) -> None:
+    before = _bytes_read()
+    assert train.main([image_bag, '-o', str(tmp_path / 'camera.model')]) == 0
+    read = _bytes_read() - before
+    assert 600 * 12 < read < 0.05 * Path(image_bag).stat().st_size
+
+
+def test_events_outlive_what_they_were_read_with(image_bag: str) -> None:
+    stamps = read_events(image_bag, EncodingRules.defaults()).stamps
+    ids = read_events(image_bag, EncodingRules.defaults()).ids
+    assert len(stamps) == len(ids) == summarise_bag(image_bag).messages
+    assert stamps[0] == 1000 * 10**9
+    assert (stamps[1:] >= stamps[:-1]).all()
+    with pytest.raises(ValueError):
+        stamps[0] = 0
