@@ -1,5 +1,5 @@
-# Sourced by demo.sh and test.sh: installs what is missing, builds in a workspace of its own, and
-# sets up the environment. Can be run again without harm.
+# Sourced by benchmark, demo.sh and test.sh: installs what is missing, builds in a workspace of its
+# own, and sets up the environment. Can be run again without harm.
 #
 # SELF_AWARENESS_WORKSPACE  the catkin workspace; by default a folder of its own for every checkout
 #                           under ~/.cache/self_awareness

@@ -13,22 +13,6 @@ const double kRareSilence = std::log(0.01);
 // Events that score less than this share of what training lets expect are worth naming.
 constexpr double kLowScore = 0.5;
 
-// The score that an event of training has on the average, all event types tracked: its
-// probabilities weighted by how often they occur.
-double expectedScore(const Model& model, EventId to) {
-  double sum = 0;
-  for (EventId from = 0; from < model.size(); ++from) {
-    const Histogram& histogram = model.statistics().pair(from, to);
-    double expected = 0;
-    for (const Histogram::Entry& entry : histogram.entries()) {
-      const double p = static_cast<double>(entry.count) / static_cast<double>(histogram.total());
-      expected += p * p;
-    }
-    sum += model.weight(from, to) * expected;
-  }
-  return sum;
-}
-
 struct SeenInWindow {
   std::size_t events = 0;
   double score_sum = 0;
@@ -54,14 +38,14 @@ Blame::Blame(std::shared_ptr<const Model> model) : model_(std::move(model)) {
   const double bin_size = toSeconds(model_->binning().bin_size);
   usual_.resize(model_->size());
   for (EventId id = 0; id < model_->size(); ++id) {
-    const Histogram& gaps = model_->statistics().pair(id, id);
+    const Histogram& gaps = model_->gaps(id);
     Usual& usual = usual_[id];
     usual.gaps = gaps.total();
-    usual.score = expectedScore(*model_, id);
+    usual.score = model_->expectedScore(id);
     if (!gaps.empty()) {
       usual.shortest = static_cast<double>(gaps.quantile(kUsualFrom)) * bin_size;
       usual.longest = static_cast<double>(gaps.quantile(kUsualTo) + 1) * bin_size;
-      usual.maximum = static_cast<double>(gaps.entries().back().bin + 1) * bin_size;
+      usual.maximum = static_cast<double>(gaps.quantile(1) + 1) * bin_size;
     }
   }
 }
@@ -73,7 +57,7 @@ double Blame::logSurvival(EventId id, std::int64_t age) const {
   const Usual& usual = usual_[id];
   const std::int64_t bin = model_->binning().bin(age);
   std::uint64_t longer = 0;
-  const std::vector<Histogram::Entry>& gaps = model_->statistics().pair(id, id).entries();
+  const std::vector<Histogram::Entry> gaps = model_->gaps(id).entries();
   for (auto entry = gaps.rbegin(); entry != gaps.rend() && entry->bin >= bin; ++entry) {
     longer += entry->count;
   }

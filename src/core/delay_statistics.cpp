@@ -1,11 +1,18 @@
 #include "self_awareness/core/delay_statistics.h"
 
+#include <array>
 #include <numeric>
 #include <stdexcept>
 
 #include "self_awareness/core/clock.h"
 
 namespace self_awareness::core {
+namespace {
+
+// Pairs that are worked on together.
+constexpr std::size_t kBlock = 64;
+
+}  // namespace
 
 DelayStatistics::DelayStatistics(const Binning& binning) : binning_(binning) {
   binning_.validate();
@@ -15,12 +22,23 @@ EventId DelayStatistics::intern(const EventType& type) {
   const EventId id = vocabulary_.intern(type);
   if (id == event_counts_.size()) {
     event_counts_.push_back(0);
-    for (std::vector<Histogram>& predecessors : pairs_) {
-      predecessors.emplace_back();
-    }
-    pairs_.emplace_back(vocabulary_.size());
+    pairs_.emplace_back();
   }
   return id;
+}
+
+const Histogram& DelayStatistics::pair(EventId from, EventId to) const {
+  static const Histogram kEmpty;
+  const std::vector<Histogram>& predecessors = pairs_.at(to);
+  return from < predecessors.size() ? predecessors[from] : kEmpty;
+}
+
+std::vector<Histogram>& DelayStatistics::pairsTo(EventId to) {
+  std::vector<Histogram>& predecessors = pairs_.at(to);
+  if (predecessors.size() < vocabulary_.size()) {
+    predecessors.resize(vocabulary_.size());
+  }
+  return predecessors;
 }
 
 void DelayStatistics::merge(const DelayStatistics& other) {
@@ -71,8 +89,11 @@ bool operator==(const DelayStatistics& a, const DelayStatistics& b) {
   return true;
 }
 
+DelayTrainer::DelayTrainer(DelayStatistics& statistics)
+    : statistics_(statistics), bins_(statistics.binning()) {}
+
 void DelayTrainer::startRecording() {
-  last_seen_.clear();
+  seen_.clear();
   last_stamp_.reset();
 }
 
@@ -81,15 +102,30 @@ void DelayTrainer::add(const Event& event) {
     startRecording();
   }
   last_stamp_ = event.stamp;
-  last_seen_.resize(statistics_.vocabulary().size());
   statistics_.countEvent(event.id);
-  for (EventId from = 0; from < last_seen_.size(); ++from) {
-    if (last_seen_[from]) {
-      const std::int64_t delay = event.stamp - *last_seen_[from];
-      statistics_.pair(from, event.id).add(statistics_.binning().bin(delay));
+  const std::uint64_t mark = bins_.mark(event.stamp);
+  Histogram* const pairs = statistics_.pairsTo(event.id).data();
+  // All slots of a block are fetched before the first is needed: one after the other, they would
+  // be waited for one after the other.
+  std::array<EventId, kBlock> block;
+  std::array<std::int64_t, kBlock> bins;
+  EventId next = 0;
+  while (next < seen_.size()) {
+    std::size_t terms = 0;
+    for (; next < seen_.size() && terms < kBlock; ++next) {
+      if (seen_.contains(next)) {
+        block[terms] = next;
+        bins[terms] = bins_.bin(seen_.marks()[next], mark);
+        pairs[next].prefetch(bins[terms]);
+        ++terms;
+      }
+    }
+    for (std::size_t i = 0; i < terms; ++i) {
+      pairs[block[i]].add(bins[i]);
     }
   }
-  last_seen_.at(event.id) = event.stamp;
+  seen_.resize(statistics_.vocabulary().size());
+  seen_.add(event.id, mark);
 }
 
 }  // namespace self_awareness::core

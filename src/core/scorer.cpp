@@ -1,16 +1,20 @@
 #include "self_awareness/core/scorer.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace self_awareness::core {
 
-Scorer::Scorer(std::shared_ptr<const Model> model) : model_(std::move(model)) {
+Scorer::Scorer(std::shared_ptr<const Model> model)
+    : model_(std::move(model)), bins_(model_->binning()) {
   restart();
 }
 
 void Scorer::restart() {
+  seen_.clear();
+  seen_.resize(model_->size());
   last_seen_.assign(model_->size(), std::nullopt);
-  entropy_sums_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(model_->size()));
+  entropy_sums_.assign(model_->size(), 0);
 }
 
 ScoredEvent Scorer::score(const Event& event) {
@@ -20,25 +24,24 @@ ScoredEvent Scorer::score(const Event& event) {
     scored.unknown = true;
     return scored;
   }
-  const Eigen::MatrixXd& entropies = model_->entropies();
-  const double entropy_sum = entropy_sums_(event.id);
-  for (EventId from = 0; from < last_seen_.size(); ++from) {
-    if (!last_seen_[from]) {
-      continue;
-    }
-    const double probability =
-        model_->probability(from, event.id, event.stamp - *last_seen_[from]);
-    const double weight = entropy_sum > 0 ? 1 - entropies(from, event.id) / entropy_sum : 1;
-    scored.score += weight * probability;
-  }
+  const std::uint64_t mark = bins_.mark(event.stamp);
+  const DelayTable::Sums sums = model_->table(event.id).sums(seen_, mark, bins_);
+  // The weights 1 - h_ij / H_j of eq. 4, multiplied out; rounding must not make 0 less than 0.
+  const double entropy_sum = entropy_sums_[event.id];
+  scored.score = entropy_sum > 0
+                     ? std::max(sums.probabilities - sums.with_entropies / entropy_sum, 0.0)
+                     : sums.probabilities;
 
   std::optional<std::int64_t>& last = last_seen_[event.id];
   if (last) {
     scored.gap = event.stamp - *last;
   } else {
-    entropy_sums_ += entropies.row(event.id).transpose();
+    for (EventId to = 0; to < entropy_sums_.size(); ++to) {
+      entropy_sums_[to] += model_->table(to).entropy(event.id);
+    }
   }
   last = event.stamp;
+  seen_.add(event.id, mark);
   return scored;
 }
 

@@ -202,7 +202,7 @@ void bindVerdicts(py::module& m) {
             auto values = array.mutable_unchecked<2>();
             for (core::EventId from = 0; from < self.size(); ++from) {
               for (core::EventId to = 0; to < self.size(); ++to) {
-                values(from, to) = self.entropies()(from, to);
+                values(from, to) = self.entropy(from, to);
               }
             }
             return array;

@@ -70,9 +70,9 @@ class Vectors : public testing::Test {
     return statistics;
   }
 
-  // The events of the test recording; those unknown to the statistics get ids behind theirs.
-  static std::vector<Event> testEvents(const json& test_case, const DelayStatistics& statistics) {
-    Vocabulary vocabulary = statistics.vocabulary();
+  // The events of the test recording; those unknown to the model get ids behind theirs.
+  static std::vector<Event> testEvents(const json& test_case, const Model& model) {
+    Vocabulary vocabulary = model.vocabulary();
     std::vector<Event> events;
     for (const json& event : test_case["test"]) {
       events.push_back({event[0].get<std::int64_t>() * kMillisecond,
@@ -82,12 +82,12 @@ class Vectors : public testing::Test {
   }
 
   template <typename Check>
-  static void forEachPair(const json& pairs, const DelayStatistics& statistics, Check check) {
+  static void forEachPair(const json& pairs, const Vocabulary& vocabulary, Check check) {
     ASSERT_FALSE(pairs.empty());
     for (const auto& [names, expected] : pairs.items()) {
       SCOPED_TRACE(names);
-      const auto from = statistics.vocabulary().find(typeOf(names.substr(0, names.find('>'))));
-      const auto to = statistics.vocabulary().find(typeOf(names.substr(names.find('>') + 1)));
+      const auto from = vocabulary.find(typeOf(names.substr(0, names.find('>'))));
+      const auto to = vocabulary.find(typeOf(names.substr(names.find('>') + 1)));
       ASSERT_TRUE(from && to);
       check(*from, *to, expected);
     }
@@ -100,7 +100,7 @@ TEST_F(Vectors, Counts) {
   for (const json& test_case : vectors_["cases"]) {
     SCOPED_TRACE(test_case["name"].get<std::string>());
     const DelayStatistics statistics = train(test_case);
-    forEachPair(test_case["counts"], statistics,
+    forEachPair(test_case["counts"], statistics.vocabulary(),
                 [&](EventId from, EventId to, const json& expected) {
                   std::map<std::string, std::uint64_t> counts;
                   for (const Histogram::Entry& entry : statistics.pair(from, to).entries()) {
@@ -115,11 +115,11 @@ TEST_F(Vectors, EntropiesAndWeights) {
   for (const json& test_case : vectors_["cases"]) {
     SCOPED_TRACE(test_case["name"].get<std::string>());
     const Model model(train(test_case));
-    forEachPair(test_case["entropy_bits"], model.statistics(),
+    forEachPair(test_case["entropy_bits"], model.vocabulary(),
                 [&](EventId from, EventId to, const json& expected) {
-                  EXPECT_NEAR(model.entropies()(from, to), value(expected), kExact);
+                  EXPECT_NEAR(model.entropy(from, to), value(expected), kExact);
                 });
-    forEachPair(test_case["weights_all_tracked"], model.statistics(),
+    forEachPair(test_case["weights_all_tracked"], model.vocabulary(),
                 [&](EventId from, EventId to, const json& expected) {
                   EXPECT_NEAR(model.weight(from, to), value(expected), kExact);
                 });
@@ -131,7 +131,7 @@ TEST_F(Vectors, EventScores) {
     SCOPED_TRACE(test_case["name"].get<std::string>());
     const auto model = std::make_shared<const Model>(train(test_case));
     Scorer scorer(model);
-    const std::vector<Event> events = testEvents(test_case, model->statistics());
+    const std::vector<Event> events = testEvents(test_case, *model);
     ASSERT_EQ(events.size(), test_case["event_scores"].size());
     for (std::size_t i = 0; i < events.size(); ++i) {
       EXPECT_NEAR(scorer.score(events[i]).score, value(test_case["event_scores"][i]), kExact) << i;
@@ -161,7 +161,7 @@ TEST_F(Vectors, WindowsAndVerdicts) {
                           abnormal.push_back(k);
                         }
                       });
-    for (const Event& event : testEvents(test_case, model->statistics())) {
+    for (const Event& event : testEvents(test_case, *model)) {
       detector.add(event);
     }
     detector.finish();

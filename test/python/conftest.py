@@ -4,7 +4,6 @@ from __future__ import annotations
 import copy
 import os
 import random
-import struct
 import time
 from pathlib import Path
 from typing import Callable, Iterable, Optional, Tuple
@@ -15,7 +14,6 @@ import rospy
 from std_msgs.msg import Header, String
 
 from self_awareness import TrainedModel
-from self_awareness.stamps import SECOND_NS
 
 Message = Tuple[float, str, str]
 """Stamp [s], source, topic."""
@@ -86,9 +84,8 @@ def learned(model: TrainedModel, calibrations: bool = False) -> bytes:
     if not calibrations:
         model.calibration = model.evidence_calibration = None
     state = model.__getstate__()
-    stamp = struct.pack('<II', *divmod(model.stamp, SECOND_NS))  # a ROS time
-    assert stamp in state
-    return state.replace(stamp, bytes(8), 1)
+    stamp = 2 * 32 + 4  # behind the md5 of two messages and the length of the first, which begins it
+    return state[:stamp] + state[stamp + 8:]
 
 
 @pytest.fixture

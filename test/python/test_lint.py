@@ -27,6 +27,6 @@ def test_clang_format() -> None:
         version = subprocess.run(('clang-format', '--version'), stdout=subprocess.PIPE, text=True)
         if ' 14.' not in version.stdout:
             pytest.skip(f'the tree is formatted by version 14, this is {version.stdout.strip()}')
-    files = [str(path) for folder in ('include', 'src', 'test')
+    files = [str(path) for folder in ('benchmark', 'include', 'src', 'test')
              for path in sorted((ROOT / folder).rglob('*')) if path.suffix in ('.h', '.cpp')]
     _run('clang-format', '--dry-run', '-Werror', *files)

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "self_awareness/core/delay_bins.h"
 #include "self_awareness/core/event.h"
 #include "self_awareness/core/histogram.h"
 #include "self_awareness/core/vocabulary.h"
@@ -21,8 +22,10 @@ class DelayStatistics {
 
   void countEvent(EventId id, std::uint64_t count = 1) { event_counts_.at(id) += count; }
   /// Histogram of the delay from the last e_i (`from`) to the current e_j (`to`).
-  Histogram& pair(EventId from, EventId to) { return pairs_.at(to).at(from); }
-  const Histogram& pair(EventId from, EventId to) const { return pairs_.at(to).at(from); }
+  Histogram& pair(EventId from, EventId to) { return pairsTo(to).at(from); }
+  const Histogram& pair(EventId from, EventId to) const;
+  /// The histograms of all pairs with this e_j, by the id of e_i.
+  std::vector<Histogram>& pairsTo(EventId to);
 
   /// Adds the counts of `other`; event types that are new here get ids behind the present ones.
   /// @throw std::invalid_argument if the two were binned differently.
@@ -40,7 +43,8 @@ class DelayStatistics {
   Binning binning_;
   Vocabulary vocabulary_;
   std::vector<std::uint64_t> event_counts_;
-  std::vector<std::vector<Histogram>> pairs_;  // [to][from]: contiguous for the current event
+  // [to][from]: contiguous for the current event, and as long as was needed
+  std::vector<std::vector<Histogram>> pairs_;
 };
 
 bool operator==(const DelayStatistics& a, const DelayStatistics& b);
@@ -52,7 +56,7 @@ bool operator==(const DelayStatistics& a, const DelayStatistics& b);
 class DelayTrainer {
  public:
   /// @param statistics counted into; must outlive the trainer.
-  explicit DelayTrainer(DelayStatistics& statistics) : statistics_(statistics) {}
+  explicit DelayTrainer(DelayStatistics& statistics);
 
   /// Forgets what was seen: the next event belongs to another recording.
   void startRecording();
@@ -61,8 +65,9 @@ class DelayTrainer {
 
  private:
   DelayStatistics& statistics_;
-  std::vector<std::optional<std::int64_t>> last_seen_;  // [ns] by id
-  std::optional<std::int64_t> last_stamp_;              // [ns]
+  DelayBins bins_;
+  SeenTypes seen_;
+  std::optional<std::int64_t> last_stamp_;  // [ns]
 };
 
 }  // namespace self_awareness::core

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -35,8 +34,10 @@ class Scorer {
 
  private:
   std::shared_ptr<const Model> model_;
-  std::vector<std::optional<std::int64_t>> last_seen_;
-  Eigen::VectorXd entropy_sums_;  // H_j over the tracked e_i, by j
+  DelayBins bins_;
+  SeenTypes seen_;
+  std::vector<std::optional<std::int64_t>> last_seen_;  // [ns] by id
+  std::vector<double> entropy_sums_;                    // H_j over the e_i that were seen, by j
 };
 
 }  // namespace self_awareness::core

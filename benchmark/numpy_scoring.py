@@ -1,0 +1,134 @@
+"""Scores events as the paper's detector does, with the sums of numpy: what a vectorised
+implementation in Python comes to. Writes the nanoseconds of an event by the number of event types.
+"""
+from __future__ import annotations
+
+import argparse
+import json
+import time
+from pathlib import Path
+from typing import Tuple
+
+import numpy as np
+
+from self_awareness import EncodingRules, EventType, Model, Training
+
+SIZES = (15, 60, 150, 300, 1000)
+BIN_SIZE = 10_000_000  # [ns]
+BINS = 256  # the last one for all beyond
+WINDOW = 100_000_000  # [ns]
+TRAINING = 30.0  # [s]
+SCORED = 2000  # events
+ROUNDS = 5
+
+
+def events_of(types: int, duration: float) -> Tuple[np.ndarray, np.ndarray]:
+    """Return stamps [ns] and ids of timers of 50 ms to 2 s with chains of two answers each."""
+    random = np.random.default_rng(1)
+    stamps, ids = [], []
+    for timer in range(0, types, 3):
+        period = 0.05 * 40.0 ** random.random()
+        times = 2.0 * random.random() + np.cumsum(
+            period * random.normal(1.0, 0.05, int(duration / period)))
+        for kind in range(timer, min(timer + 3, types)):
+            stamps.append(times)
+            ids.append(np.full(len(times), kind))
+            delay = 0.002 + 0.038 * random.random()
+            times = times + delay * random.normal(1.0, 0.05, len(times))
+    order = np.argsort(np.concatenate(stamps), kind='stable')
+    return ((np.concatenate(stamps)[order] * 1e9).astype(np.int64),
+            np.concatenate(ids)[order].astype(np.uint32))
+
+
+class NumpyDetector:
+    """Equations 3 and 4 of the paper on dense histograms [e_j, e_i, bin]."""
+
+    def __init__(self, types: int) -> None:
+        self._counts = np.zeros((types, types, BINS), np.uint32)
+        self.restart()
+
+    def restart(self) -> None:
+        """Forget what was seen."""
+        self._last = np.zeros(len(self._counts), np.int64)
+        self._seen = np.zeros(0, np.intp)
+
+    def _bins(self, stamp: int) -> np.ndarray:
+        return np.minimum((stamp - self._last[self._seen]) // BIN_SIZE, BINS - 1)
+
+    def _track(self, stamp: int, kind: int) -> None:
+        if kind not in self._seen:
+            self._seen = np.sort(np.append(self._seen, kind))
+        self._last[kind] = stamp
+
+    def train(self, stamps: np.ndarray, ids: np.ndarray) -> None:
+        """Count the delays of a recording."""
+        for stamp, kind in zip(stamps, ids):
+            self._counts[kind, self._seen, self._bins(stamp)] += 1
+            self._track(stamp, kind)
+
+    def finish(self) -> None:
+        """Compute the entropies [bit] and scales from the counts, row by row: they are large."""
+        types = len(self._counts)
+        self._scales = np.zeros((types, types))
+        self._entropies = np.zeros((types, types))
+        for kind, counts in enumerate(self._counts):
+            totals = counts.sum(axis=1)
+            self._scales[kind] = 1.0 / np.maximum(totals, 1)
+            p = counts * self._scales[kind][:, np.newaxis]
+            self._entropies[kind] = -(p * np.log2(np.where(p > 0, p, 1.0))).sum(axis=1)
+
+    def score(self, stamp: int, kind: int) -> float:
+        """Score the event, then track it."""
+        seen = self._seen
+        p = self._counts[kind, seen, self._bins(stamp)] * self._scales[kind, seen]
+        entropies = self._entropies[kind, seen]
+        total = entropies.sum()
+        score = p.sum() - (entropies @ p / total if total > 0 else 0.0)
+        self._track(stamp, kind)
+        return float(score)
+
+
+def check(detector: NumpyDetector, types: int, stamps: np.ndarray, ids: np.ndarray) -> None:
+    """Raise AssertionError unless the sums are those of the package."""
+    training = Training(EncodingRules(), BIN_SIZE, WINDOW, BINS - 1)
+    kinds = [EventType('', f'/topic_{kind}', 'T') for kind in range(types)]
+    training.add_events(kinds, stamps, ids)
+    trained = training.model()
+    here = {kind.scope: index for index, kind in enumerate(trained.event_types)}
+    mapped = np.array([here[kinds[kind].scope] for kind in ids], dtype=np.uint32)
+    expected = Model(trained).score_events(stamps, mapped)
+    detector.restart()
+    scores = [detector.score(stamp, kind) for stamp, kind in zip(stamps, ids)]
+    np.testing.assert_allclose(scores, expected, rtol=1e-9, atol=1e-12)
+
+
+def nanoseconds(types: int) -> float:
+    """Return how long an event takes [ns]: the median of some rounds, all event types seen."""
+    stamps, ids = events_of(types, TRAINING)
+    detector = NumpyDetector(types)
+    detector.train(stamps, ids)
+    detector.finish()
+    if types == SIZES[0]:
+        check(detector, types, stamps, ids)
+    durations = []
+    for _ in range(ROUNDS):
+        detector.restart()
+        before, scored = slice(0, -SCORED), slice(-SCORED, None)
+        for stamp, kind in zip(stamps[before][-20 * types:], ids[before][-20 * types:]):
+            detector.score(stamp, kind)
+        start = time.process_time_ns()
+        for stamp, kind in zip(stamps[scored], ids[scored]):
+            detector.score(stamp, kind)
+        durations.append((time.process_time_ns() - start) / len(stamps[scored]))
+    return float(np.median(durations))
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('output', type=Path, help='JSON file')
+    arguments = parser.parse_args()
+    arguments.output.write_text(json.dumps({types: nanoseconds(types) for types in SIZES}))
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,107 @@
+"""Writes docs/performance/core.json from the output of the core's benchmarks, and from that the
+section `core` of docs/performance.md.
+"""
+from __future__ import annotations
+
+import argparse
+import json
+import statistics
+from pathlib import Path
+from typing import Any, Dict, List, Optional
+
+from page import table, write_section
+
+DETECTORS = ('paper', 'evidence')
+_PER_MILLISECOND = {'ns': 1e-6, 'us': 1e-3, 'ms': 1.0}
+
+Measured = Dict[str, Any]
+
+
+def _medians(benchmarks: List[Measured]) -> Dict[str, Measured]:
+    """Return by name and size the medians of the repetitions; time: of the processor [ms]."""
+    runs: Dict[str, List[Measured]] = {}
+    for run in benchmarks:
+        if run['run_type'] == 'iteration':
+            runs.setdefault('/'.join(run['name'].split('/')[:2]), []).append(run)
+    medians = {}
+    for name, repetitions in runs.items():
+        time = 'real_time' if 'manual_time' in repetitions[0]['name'] else 'cpu_time'
+        medians[name] = {key: value for key, value in repetitions[0].items()
+                         if isinstance(value, (int, float))}
+        medians[name]['time'] = statistics.median(
+            run[time] * _PER_MILLISECOND[run['time_unit']] for run in repetitions)
+    return medians
+
+
+def summary(raw: Measured, numpy: Dict[str, float]) -> Measured:
+    """Return what is measured of every detector by number of event types."""
+    medians = _medians(raw['benchmarks'])
+    result: Measured = {'date': raw['context']['date'][:10]}
+    for detector in DETECTORS:
+        rows = {}
+        for name, score in medians.items():
+            kind, size = name.split('/')
+            if kind != f'score{detector.capitalize()}':
+                continue
+            of = {step: medians.get(f'{step}{detector.capitalize()}/{size}')
+                  for step in ('lookUp', 'train', 'load', 'closeWindow')}
+            rows[size] = {
+                'event_ns': score['time'] * 1e6,
+                'terms': score['terms'],
+                'lookup_ns': of['lookUp']['time'] * 1e6,
+                'numpy_ns': numpy.get(size) if detector == 'paper' else None,
+                'window_ns': of['closeWindow']['time'] * 1e6 if of['closeWindow'] else None,
+                'train_events_per_s': of['train']['events'] / of['train']['time'] * 1e3,
+                'train_bytes': of['train']['bytes'],
+                'train_bytes_of_twice': of['train']['bytes_of_twice'],
+                'model_bytes': of['load']['bytes'],
+                'load_ms': of['load']['time'],
+            }
+        result[detector] = dict(sorted(rows.items(), key=lambda row: int(row[0])))
+    return result
+
+
+def _number(value: Optional[float], digits: int = 3) -> str:
+    if value is None:
+        return '–'
+    return f'{value:,.0f}' if value >= 10 ** (digits - 1) else f'{value:.{digits}g}'
+
+
+def markdown(measured: Measured) -> str:
+    """Return the section's text."""
+    parts = []
+    for detector in DETECTORS:
+        scoring = [[size, _number(row['terms']), _number(row['event_ns']),
+                    _number(row['event_ns'] / row['terms']) if row['terms'] else '–',
+                    _number(row['lookup_ns']), _number(row['event_ns'] / row['lookup_ns']),
+                    _number(row['numpy_ns']), _number(row['window_ns'])]
+                   for size, row in measured[detector].items()]
+        training = [[size, _number(row['train_events_per_s']),
+                     _number(row['train_bytes'] / 1e6), _number(row['train_bytes_of_twice'] / 1e6),
+                     _number(row['model_bytes'] / 1e6), _number(row['load_ms'])]
+                    for size, row in measured[detector].items()]
+        parts += [f'**`detector: {detector}`**, {measured["date"]}',
+                  table(('event types', 'terms an event', 'an event [ns]', 'a term [ns]',
+                         'the look-ups alone [ns]', 'ratio', 'numpy [ns]', 'a window\'s end [ns]'),
+                        scoring),
+                  table(('event types', 'training [events/s]', 'counts [MB]',
+                         'of twice the time [MB]', 'model [MB]', 'computing it [ms]'), training)]
+    return '\n\n'.join(parts)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument('raw', type=Path, help='JSON of Google Benchmark')
+    parser.add_argument('numpy', type=Path, help='JSON of numpy_scoring.py')
+    parser.add_argument('docs', type=Path, help='folder of performance.md')
+    arguments = parser.parse_args()
+    measured = summary(json.loads(arguments.raw.read_text()),
+                       json.loads(arguments.numpy.read_text()))
+    results = arguments.docs / 'performance' / 'core.json'
+    results.parent.mkdir(exist_ok=True)
+    results.write_text(json.dumps(measured, indent=1) + '\n')
+    write_section(arguments.docs / 'performance.md', 'core', markdown(measured))
+
+
+if __name__ == '__main__':
+    main()
