@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,6 +31,7 @@ class Training {
   void addEvents(const std::vector<core::EventType>& types, const Stamps& stamps, const Ids& ids,
                  std::optional<std::int64_t> middle,
                  const std::optional<self_awareness::Recording>& recording) {
+    checkNotEnded();
     startRecording(middle);
     std::vector<std::optional<core::EventId>> here(types.size());
     const py::gil_scoped_release release;
@@ -45,22 +47,31 @@ class Training {
     }
   }
 
-  ros1::TrainedModel model(bool watch) const {
+  // Not a copy: with many event types, the counts may fill half of the memory.
+  ros1::TrainedModel model(bool watch) {
+    checkNotEnded();
+    ended_ = true;
     ros1::TrainedModel model;
     model.encoding = rules_;
     model.window = window_;
-    model.statistics = statistics_;
-    model.evidence = evidence_;
+    model.statistics = std::move(statistics_);
+    model.evidence = std::move(evidence_);
     model.predecessors = predecessors_;
     if (watch) {
       model.watch();
     }
-    model.recordings = recordings_;
+    model.recordings = std::move(recordings_);
     model.stamp.fromSec(std::floor(ros::WallTime::now().toSec()));
     return model;
   }
 
  private:
+  void checkNotEnded() const {
+    if (ended_) {
+      throw std::invalid_argument("the training has handed out its model, and is over");
+    }
+  }
+
   // Recordings belong to the two halves in turn. One that is alone is cut in the middle: what
   // holds for one half of it only is at least not taken for information.
   void startRecording(std::optional<std::int64_t> middle) {
@@ -103,6 +114,7 @@ class Training {
   std::int64_t window_;
   std::size_t predecessors_;
   std::vector<self_awareness::Recording> recordings_;
+  bool ended_ = false;
 };
 
 }  // namespace
@@ -124,8 +136,8 @@ void bindTraining(py::module& m) {
           "rest the other. recording: what the model says of it. After a ValueError the training\n"
           "is incomplete and must be thrown away.")
       .def("model", &Training::model, py::arg("watch") = true,
-           "The TrainedModel of all that was added. watch: choose what is watched; not needed "
-           "where\nit is merged.");
+           "The TrainedModel of all that was added; ends the training. watch: choose what is\n"
+           "watched; not needed where it is merged.");
 }
 
 }  // namespace self_awareness::python

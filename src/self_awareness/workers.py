@@ -5,6 +5,7 @@ All give the same results in the same order, so that nobody else need know who d
 from __future__ import annotations
 
 import concurrent.futures
+import logging
 import multiprocessing
 import multiprocessing.connection
 import os
@@ -14,7 +15,7 @@ import threading
 import warnings
 from abc import ABC, abstractmethod
 from collections import deque
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import Any, Callable, Deque, Iterator, Sequence, TypeVar
 
 from self_awareness import progress
@@ -115,6 +116,8 @@ class Cluster(Workers):
                              f'({error}); its package is python3-distributed') from error
         self._address = address
         self._distributed = distributed
+        for name in ('asyncio', 'distributed', 'distributed.client'):  # exceptions tell it all
+            logging.getLogger(name).setLevel(logging.CRITICAL)
         try:
             distributed.comm.resolve_address(address)  # of a nonsense, a client is slow to recover
             self._client = distributed.Client(address, timeout=_CONNECT_S, set_as_default=False)
@@ -125,8 +128,6 @@ class Cluster(Workers):
     def map(self, function: Callable[[_Shared, _Task], _Result], shared: _Shared,
             tasks: Sequence[_Task], description: str) -> Iterator[_Result]:
         """See Workers. What a worker had to do that dies is done by another one."""
-        # As the result of a task, what is shared is made again when the workers that hold it die.
-        there = self._submit(pickle.loads, pickle.dumps(shared))
         futures = set()
 
         def submit(task: _Task) -> Any:
@@ -141,10 +142,17 @@ class Cluster(Workers):
             return pickle.loads(data)
 
         try:
+            # As the result of a task, what is shared is made again when workers die that hold it.
+            there = self._submit(pickle.loads, pickle.dumps(shared))
+            futures.add(there)
             yield from _in_order(tasks, submit, result,
                                  lambda: sum(self._client.nthreads().values()), description)
+        except (concurrent.futures.CancelledError, OSError) as error:
+            raise ValueError(f'--scheduler {self._address}: the connection was lost ({error})'
+                             ) from error
         finally:
-            self._client.cancel([there, *futures])
+            with suppress(OSError):  # without a connection there is nothing to cancel
+                self._client.cancel(list(futures))
 
     def close(self) -> None:
         """Disconnect; the cluster goes on."""
@@ -165,9 +173,6 @@ class Cluster(Workers):
         except ModuleNotFoundError as error:
             raise ValueError(f'--scheduler {self._address}: its workers lack something ({error}); '
                              'start them where the setup.bash of self_awareness was sourced'
-                             ) from error
-        except (concurrent.futures.CancelledError, OSError) as error:
-            raise ValueError(f'--scheduler {self._address}: the connection was lost ({error})'
                              ) from error
 
 

@@ -7,7 +7,7 @@ import signal
 import subprocess
 import sys
 from pathlib import Path
-from typing import Dict, Iterator, List
+from typing import Dict, Iterator, List, Optional
 
 import numpy as np
 import pytest
@@ -31,16 +31,21 @@ class Cluster:
         self.workers: Dict[str, subprocess.Popen] = {}
         self._processes: List[subprocess.Popen] = []
         self._file = folder / 'scheduler.json'
-        self._start('scheduler', '--port', '0', '--scheduler-file', str(self._file))
+        self.scheduler = self._start('scheduler', '--port', '0', '--scheduler-file', str(self._file))
         wait_until(self._written, 'the scheduler starts')
         self.address = json.loads(self._file.read_text())['address']
         self.client = distributed.Client(self.address, set_as_default=False)
 
-    def add_worker(self, name: str) -> None:
-        """Start a worker, with one thread."""
+    def add_worker(self, name: str, path: Optional[str] = None) -> None:
+        """Start a worker, with one thread.
+
+        Args:
+            name: of the worker.
+            path: where it looks for Python modules; None: where this process does.
+        """
         self.workers[name] = self._start(
             'worker', self.address, '--name', name, '--nthreads', '1', '--no-nanny',
-            '--local-directory', str(self.folder / name), '--worker-port', '0')
+            '--local-directory', str(self.folder / name), '--worker-port', '0', path=path)
         wait_until(lambda: self.address_of(name), f'worker {name} starts')
 
     def address_of(self, name: str) -> str:
@@ -56,10 +61,12 @@ class Cluster:
             process.kill()
             process.wait()
 
-    def _start(self, kind: str, *arguments: str) -> subprocess.Popen:
+    def _start(self, kind: str, *arguments: str, path: Optional[str] = None) -> subprocess.Popen:
+        environment = dict(os.environ) if path is None else {**os.environ, 'PYTHONPATH': path}
         process = subprocess.Popen(
             [sys.executable, '-m', f'distributed.cli.dask_{kind}', *arguments, '--host',
-             '127.0.0.1', '--no-dashboard'], cwd=str(self.folder), stderr=subprocess.DEVNULL)
+             '127.0.0.1', '--no-dashboard'], cwd=str(self.folder), env=environment,
+            stderr=subprocess.DEVNULL)
         self._processes.append(process)
         return process
 
@@ -118,7 +125,7 @@ def test_a_worker_is_killed_and_the_result_is_right(cluster: Cluster, bags: List
     lost = cluster.client.processing()[victim]
     os.kill(process.pid, signal.SIGKILL)
     out, err = training.communicate(timeout=DEADLINE_S)
-    assert training.returncode == 0, err
+    assert training.returncode == 0 and not err, err
     assert lost and not cluster.address_of('other') and cluster.address_of('one')
     assert [line.split(':')[0] for line in out.splitlines()[:len(bags)]] == bags
     check_same(tmp_path / 'm', expected)
@@ -138,6 +145,31 @@ def test_bad_bags_are_skipped_on_a_cluster(cluster: Cluster, bags: List[str],
     assert train.main([*arguments, '--skip-bad']) == 0
     assert f'train: warning: skipped: {missing}: no such file' in capsys.readouterr().err
     check_same(tmp_path / 'm', expected)
+
+
+def test_workers_without_the_package_are_told(cluster: Cluster, bags: List[str], tmp_path: Path,
+                                              capsys) -> None:
+    cluster.add_worker('one', path='')
+    arguments = [*bags, '-o', str(tmp_path / 'm'), '--scheduler', cluster.address]
+    assert train.main(arguments) == 1
+    error, = capsys.readouterr().err.splitlines()
+    assert error.startswith(f'train: error: --scheduler {cluster.address}: its workers lack')
+    assert "No module named 'self_awareness'" in error and 'setup.bash' in error
+
+
+def test_a_scheduler_that_dies_is_told(cluster: Cluster, bags: List[str], tmp_path: Path) -> None:
+    cluster.add_worker('one')
+    victim = cluster.address_of('one')
+    training = subprocess.Popen([sys.executable, str(SCRIPT), *bags, '-o', str(tmp_path / 'm'),
+                                 '--scheduler', cluster.address], stdout=subprocess.PIPE,
+                                stderr=subprocess.PIPE, text=True)
+    wait_until(lambda: cluster.client.processing()[victim], 'the worker gets a task')
+    cluster.scheduler.kill()
+    _, err = training.communicate(timeout=DEADLINE_S)
+    assert training.returncode == 1
+    assert err.startswith(f'train: error: --scheduler {cluster.address}: the connection was lost')
+    assert err.count('\n') == 1, err
+    assert not (tmp_path / 'm').exists()
 
 
 def test_nobody_at_the_address(bags: List[str], tmp_path: Path, monkeypatch, capsys) -> None:

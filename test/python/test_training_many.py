@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from conftest import jittery_robot, learned, robot, write_bag
 
-from self_awareness import EncodingRules, TrainedModel, Training, read_events
+from self_awareness import EncodingRules, EventType, TrainedModel, Training, read_events
 from self_awareness.commands import train
 
 LENGTH_S = 40.0
@@ -50,6 +50,16 @@ def test_bags_counted_apart_are_what_one_training_counts(bags: List[str], tmp_pa
         events = read_events(bag, EncodingRules.defaults())
         training.add_events(events.event_types, events.stamps, events.ids, None, recording)
     assert learned(TrainedModel.load(str(tmp_path / 'm'))) == learned(training.model())
+
+
+def test_a_training_ends_with_its_model() -> None:
+    training = Training(EncodingRules())
+    events = [EventType('', '/a', '')], np.arange(3), np.zeros(3)
+    training.add_events(*events)
+    training.model()
+    for more in (training.model, lambda: training.add_events(*events)):
+        with pytest.raises(ValueError, match='is over'):
+            more()
 
 
 @pytest.mark.parametrize('jobs', ['1', '2'])
