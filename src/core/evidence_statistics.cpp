@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <functional>
 #include <iterator>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 #include <string>
@@ -24,9 +25,19 @@ bool lowerId(const Partner& partner, EventId id) {
   return partner.id < id;
 }
 
-template <typename Sum, typename Counts>
-void addCounts(const Counts& counts, Sum& sum) {
+template <typename Counts>
+void addCounts(const Counts& counts, EvidenceStatistics::SumOfDelays& sum) {
   std::transform(counts.begin(), counts.end(), sum.begin(), sum.begin(), std::plus<>());
+}
+
+// A fleet's years may be more than a count holds: the largest one stands for all that are larger.
+void addCounts(const EvidenceStatistics::Delays& counts, EvidenceStatistics::Delays& sum) {
+  std::transform(counts.begin(), counts.end(), sum.begin(), sum.begin(),
+                 [](std::uint32_t a, std::uint32_t b) {
+                   return a > std::numeric_limits<std::uint32_t>::max() - b
+                              ? std::numeric_limits<std::uint32_t>::max()
+                              : a + b;
+                 });
 }
 
 const Partner* find(const Partners& partners, EventId id) {

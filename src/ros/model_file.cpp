@@ -219,10 +219,9 @@ TrainedModel fromMessage(const self_awareness::Model& message) {
   check(message.watched.size() == model.watched.halves.size() ||
             (message.watched.empty() && message.tracks.empty()),
         "its evidence has not two halves");
-  std::transform(message.watched.begin(), message.watched.end(), model.watched.halves.begin(),
-                 [&](const self_awareness::Evidence& half) {
-                   return fromMessage(half, model.vocabulary());
-                 });
+  std::transform(
+      message.watched.begin(), message.watched.end(), model.watched.halves.begin(),
+      [&](const self_awareness::Evidence& half) { return fromMessage(half, model.vocabulary()); });
   core::checkTracks(model.watched.tracks, model.vocabulary().size());
   for (const self_awareness::GraphEdge& edge : message.graph) {
     model.graph.connect(edge.from_source, edge.to_source);

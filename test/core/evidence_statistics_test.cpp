@@ -246,6 +246,17 @@ TEST(EvidenceStatistics, MergingCommutesUpToTheIds) {
   EXPECT_GT(one.total(kA, kB), 0U);
 }
 
+TEST(EvidenceStatistics, CountsDoNotWrapAround) {
+  EvidenceStatistics counts = countsOf({}, 1);
+  EvidenceStatistics::Partner partner;
+  partner.delays[3] = 3000000000U;
+  partner.delays[4] = 2000000000U;
+  counts.setPartners(kA, {partner});
+  counts.merge(EvidenceStatistics(counts));
+  EXPECT_EQ(counts.delays(kA, kA)[3], 4294967295U);
+  EXPECT_EQ(counts.delays(kA, kA)[4], 4000000000U);
+}
+
 TEST(EvidenceStatistics, PartnersComeInOrder) {
   EvidenceStatistics counts = countsOf({}, 2);
   counts.setPartners(kA, {{kB, 3, {}}});
