@@ -39,7 +39,8 @@ def markdown(result: Dict[str, Any]) -> str:
 def _costs(result: Dict[str, Any]) -> Iterator[str]:
     yield (f'CPU in % of a core, median of {result["rounds"]} times {result["seconds"]:g} s, all '
            'in turn; peak of the resident memory; messages that were published and did not '
-           'arrive, of all rounds. The listener is bound to one core, the publishers to the other.')
+           'arrive, of all rounds. The listener is bound to one core, the publishers to the '
+           'other.')
     yield ''
     yield ('| messages/s | topics | images | bare | `rosbag record` | monitor | monitor / bare '
            '| MB: bare | record | monitor | dropped: bare | record | monitor |')
