@@ -39,7 +39,6 @@ _MANY_TYPES = 1000
 _CRASHES = 5
 _WITHIN_S = 120.0
 _LOADED = re.compile(r'\[([0-9.]+)\]: model .* event types')
-_LEVEL_OK = 0
 _LEVEL_ERROR = 2
 
 
@@ -162,10 +161,11 @@ class _Benchmark:
 
 def _await_quiet(monitor: Monitor, seconds: float) -> None:
     """Wait until there is no alarm, and none comes for so long."""
+    # On a machine that is busy with something else, a suspicion may stand at any time.
     while True:
-        monitor.await_level('no alarm', lambda level: level == _LEVEL_OK, _WITHIN_S)
+        monitor.await_level('no alarm', lambda level: level < _LEVEL_ERROR, _WITHIN_S)
         time.sleep(seconds)
-        if monitor.level == _LEVEL_OK:
+        if monitor.level < _LEVEL_ERROR:
             return
 
 

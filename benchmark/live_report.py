@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any, Dict, Iterator, List, Tuple
 
 _BEGIN, _END = '<!-- live -->', '<!-- /live -->'
-_TITLE = '# Performance\n\n'
+_TITLE = '# Performance\n\n## The live monitor\n\n'
 
 
 def write(result: Dict[str, Any], folder: Path) -> None:
@@ -18,7 +18,7 @@ def write(result: Dict[str, Any], folder: Path) -> None:
     (folder / 'performance').mkdir(parents=True, exist_ok=True)
     (folder / 'performance' / 'live.json').write_text(json.dumps(result, indent=1) + '\n')
     page = folder / 'performance.md'
-    text = page.read_text() if page.exists() else f'{_TITLE}## The live monitor\n\n{_BEGIN}\n{_END}\n'
+    text = page.read_text() if page.exists() else f'{_TITLE}{_BEGIN}\n{_END}\n'
     section = f'{_BEGIN}\n{markdown(result)}{_END}'
     text, replaced = re.subn(f'{_BEGIN}.*{_END}', lambda _: section, text, flags=re.DOTALL)
     if not replaced:
@@ -38,8 +38,9 @@ def markdown(result: Dict[str, Any]) -> str:
 
 def _costs(result: Dict[str, Any]) -> Iterator[str]:
     yield (f'CPU in % of a core, median of {result["rounds"]} times {result["seconds"]:g} s, all '
-           'in turn; peak of the resident memory; messages that were published and did not arrive, '
-           'of all rounds. The listener has a core for itself, the publishers another.')
+           'in turn; peak of the resident memory; messages that were published and did not '
+           'arrive, of all rounds. The listener is bound to one core, the publishers to the '
+           'other.')
     yield ''
     yield ('| messages/s | topics | images | bare | `rosbag record` | monitor | monitor / bare '
            '| MB: bare | record | monitor | dropped: bare | record | monitor |')
