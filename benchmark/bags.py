@@ -20,6 +20,7 @@ from typing import Any, Dict, List, NamedTuple, Optional, Sequence
 
 import bags_report
 import bags_robot
+import page
 
 _DOCS = Path(__file__).resolve().parents[1] / 'docs'
 _SECONDS = 160.0
@@ -142,11 +143,11 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
         print('making the bag', file=sys.stderr)
         messages = bags_robot.write(bag, arguments.seconds, _SEED)
         print('measuring', file=sys.stderr)
-        result = dict(bags_report.machine(), rounds=arguments.rounds, seconds=arguments.seconds,
+        result = dict(page.machine(), rounds=arguments.rounds, seconds=arguments.seconds,
                       messages=messages, bag_bytes=os.path.getsize(bag),
                       programs=measure(bag, os.path.join(folder, 'robot.model'),
                                        arguments.rounds))
-    bags_report.write(result, arguments.output)
+    page.publish('bags', result, bags_report.markdown(result), arguments.output)
     print(bags_report.markdown(result))
     return 0
 

@@ -1,35 +1,10 @@
-"""What the benchmark of bags found, as JSON and as a section of docs/performance.md."""
+"""What the benchmark of bags found, as a section of docs/performance.md."""
 from __future__ import annotations
 
-import json
-import os
-import platform
-import re
-from pathlib import Path
 from typing import Any, Dict
 
-_BEGIN, _END = '<!-- bags -->', '<!-- /bags -->'
-_TITLE = '# Performance\n'
-_HEADING = '\n## Bags\n\n'
 _NAMES = {'view': '`rosbag::View`, C++', 'read_messages': '`read_messages(raw=True)`, Python',
           'read_events': '`read_events`', 'train': '`train`'}
-
-
-def write(result: Dict[str, Any], folder: Path) -> None:
-    """Write performance/bags.json, and the section between the markers of performance.md."""
-    (folder / 'performance').mkdir(parents=True, exist_ok=True)
-    (folder / 'performance' / 'bags.json').write_text(json.dumps(result, indent=1) + '\n')
-    page = folder / 'performance.md'
-    text = page.read_text() if page.exists() else _TITLE
-    if _BEGIN not in text:
-        text += f'{_HEADING}{_BEGIN}\n{_END}\n'
-    section = f'{_BEGIN}\n{markdown(result)}{_END}'
-    page.write_text(re.sub(f'{_BEGIN}.*{_END}', lambda _: section, text, flags=re.DOTALL))
-
-
-def machine() -> Dict[str, Any]:
-    """Return what the numbers depend on."""
-    return {'cores': os.cpu_count(), 'machine': platform.machine(), 'kernel': platform.release()}
 
 
 def markdown(result: Dict[str, Any]) -> str:
@@ -51,7 +26,7 @@ def markdown(result: Dict[str, Any]) -> str:
         lines.append(f'| {_NAMES[name]} | {times} '
                      f'| {100 * program["read_bytes"] / size:.2f} % '
                      f'| {100 * program["cold_disk_bytes"] / size:.2f} % |')
-    return '\n'.join(lines) + '\n'
+    return '\n'.join(lines)
 
 
 def _time(programs: Dict[str, Any], name: str, kind: str, alone: bool) -> str:

@@ -21,6 +21,7 @@ from typing import Any, Dict, Iterator, List, Optional, Sequence
 import rospy
 
 import live_report
+import page
 from live_robot import Configuration, Robot, master, train, write_synthetic_model
 from live_subjects import Bare, Monitor, Record, Subject, usage
 from self_awareness.evaluation.live_processes import Processes
@@ -51,7 +52,7 @@ class _Benchmark:
 
     def run(self, rates: Sequence[int]) -> Dict[str, Any]:
         costs: List[Dict[str, Any]] = []
-        result: Dict[str, Any] = dict(live_report.machine(), seconds=self._seconds,
+        result: Dict[str, Any] = dict(page.machine(), seconds=self._seconds,
                                       rounds=self._rounds, costs=costs)
         for rate in rates:
             model = self._folder / f'{rate}.model'
@@ -178,7 +179,7 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
             benchmark = _Benchmark(folder, processes, arguments.seconds, arguments.rounds)
             result = benchmark.run(arguments.rates)
     if set(arguments.rates) == set(TOPICS):
-        live_report.write(result, arguments.output)
+        page.publish('live', result, live_report.markdown(result), arguments.output)
     return 0
 
 

@@ -1,39 +1,12 @@
-"""What the live benchmark found, as JSON and as a section of docs/performance.md."""
+"""What the live benchmark found, as a section of docs/performance.md."""
 from __future__ import annotations
 
-import json
-import os
-import platform
-import re
 import statistics
-from pathlib import Path
 from typing import Any, Dict, Iterator, List, Tuple
-
-_BEGIN, _END = '<!-- live -->', '<!-- /live -->'
-_TITLE = '# Performance\n\n## The live monitor\n\n'
-
-
-def write(result: Dict[str, Any], folder: Path) -> None:
-    """Write performance/live.json, and the section between the markers of performance.md."""
-    (folder / 'performance').mkdir(parents=True, exist_ok=True)
-    (folder / 'performance' / 'live.json').write_text(json.dumps(result, indent=1) + '\n')
-    page = folder / 'performance.md'
-    text = page.read_text() if page.exists() else f'{_TITLE}{_BEGIN}\n{_END}\n'
-    section = f'{_BEGIN}\n{markdown(result)}{_END}'
-    text, replaced = re.subn(f'{_BEGIN}.*{_END}', lambda _: section, text, flags=re.DOTALL)
-    if not replaced:
-        raise ValueError(f'{page}: has no section {_BEGIN} ... {_END}')
-    page.write_text(text)
-
-
-def machine() -> Dict[str, Any]:
-    """Return what the numbers depend on."""
-    return {'cores': os.cpu_count(), 'machine': platform.machine(), 'kernel': platform.release()}
-
 
 def markdown(result: Dict[str, Any]) -> str:
     """Return the tables."""
-    return '\n'.join([*_costs(result), '', *_latency(result['latency'])]) + '\n'
+    return '\n'.join([*_costs(result), '', *_latency(result['latency'])])
 
 
 def _costs(result: Dict[str, Any]) -> Iterator[str]:

@@ -1,5 +1,5 @@
-"""Scores events as the paper's detector does, with the sums of numpy: what a vectorised
-implementation in Python comes to. Writes the nanoseconds of an event by the number of event types.
+"""Scores events as the detectors do, with the sums of numpy: what a vectorised implementation in
+Python comes to. Writes the nanoseconds of an event by detector and number of event types.
 """
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import argparse
 import json
 import time
 from pathlib import Path
-from typing import Tuple
+from typing import Tuple, Union
 
 import numpy as np
 
@@ -88,6 +88,47 @@ class NumpyDetector:
         return float(score)
 
 
+class NumpyEvidence:
+    """The sums of the evidence's delays and answers, of all that an event makes it look at."""
+
+    PREDECESSORS = 3
+    ASKED = 8
+
+    def __init__(self, types: int) -> None:
+        random = np.random.default_rng(1)
+        self._stamps = np.zeros(types, np.int64)
+        self._numbers = np.zeros(types, np.int64)
+        self._number = 0
+        self._edges = np.round(2.5e6 * 2.0 ** (np.arange(49) / 4.0)).astype(np.int64)
+        self._from = random.integers(0, types, (types, self.PREDECESSORS))
+        self._surprises = random.normal(0.0, 1.0, (types, self.PREDECESSORS, 50))
+        self._rows = np.arange(self.PREDECESSORS)
+        self._delays = np.zeros((2, types, self.PREDECESSORS))
+        self._drifts = np.array([[1.0], [0.5]])
+        self._asked = random.integers(0, types, (types, self.ASKED))
+        self._steps = np.array([-0.6, 1.2])
+        self._answers = np.zeros((types, self.ASKED))
+
+    def restart(self) -> None:
+        """Forget what was seen."""
+        for array in (self._stamps, self._numbers, self._delays, self._answers):
+            array.fill(0)
+
+    def score(self, stamp: int, kind: int) -> None:
+        """Add up what the event says."""
+        others = self._from[kind]
+        first = self._numbers[others] >= self._numbers[kind]
+        bins = np.searchsorted(self._edges, stamp - self._stamps[others], side='right')
+        steps = first * (self._surprises[kind, self._rows, bins] - self._drifts)
+        self._delays[:, kind] = np.clip(self._delays[:, kind] + steps, 0.0, 200.0)
+        missed = self._numbers[self._asked[kind]] <= self._numbers[kind]
+        self._answers[kind] = np.clip(self._answers[kind] + self._steps[missed.astype(np.intp)],
+                                      0.0, 200.0)
+        self._number += 1
+        self._stamps[kind] = stamp
+        self._numbers[kind] = self._number
+
+
 def check(detector: NumpyDetector, types: int, stamps: np.ndarray, ids: np.ndarray) -> None:
     """Raise AssertionError unless the sums are those of the package."""
     training = Training(EncodingRules(), BIN_SIZE, WINDOW, BINS - 1)
@@ -102,14 +143,23 @@ def check(detector: NumpyDetector, types: int, stamps: np.ndarray, ids: np.ndarr
     np.testing.assert_allclose(scores, expected, rtol=1e-9, atol=1e-12)
 
 
-def nanoseconds(types: int) -> float:
-    """Return how long an event takes [ns]: the median of some rounds, all event types seen."""
+def nanoseconds(types: int) -> Tuple[float, float]:
+    """Return how long an event takes with the paper's detector and with evidence [ns].
+
+    The medians of some rounds, all event types seen.
+    """
     stamps, ids = events_of(types, TRAINING)
     detector = NumpyDetector(types)
     detector.train(stamps, ids)
     detector.finish()
     if types == SIZES[0]:
         check(detector, types, stamps, ids)
+    return _measure(detector, types, stamps, ids), _measure(NumpyEvidence(types), types, stamps,
+                                                            ids)
+
+
+def _measure(detector: Union[NumpyDetector, NumpyEvidence], types: int, stamps: np.ndarray,
+             ids: np.ndarray) -> float:
     durations = []
     for _ in range(ROUNDS):
         detector.restart()
@@ -124,10 +174,14 @@ def nanoseconds(types: int) -> float:
 
 
 def main() -> None:
+    """Write the results."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument('output', type=Path, help='JSON file')
     arguments = parser.parse_args()
-    arguments.output.write_text(json.dumps({types: nanoseconds(types) for types in SIZES}))
+    results = {types: nanoseconds(types) for types in SIZES}
+    arguments.output.write_text(json.dumps(
+        {detector: {types: both[index] for types, both in results.items()}
+         for index, detector in enumerate(('paper', 'evidence'))}))
 
 
 if __name__ == '__main__':

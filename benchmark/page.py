@@ -1,8 +1,27 @@
 """The page docs/performance.md, whose tables are written from the JSON files of measurements."""
 from __future__ import annotations
 
+import json
+import os
+import platform
 from pathlib import Path
-from typing import List, Sequence
+from typing import Any, Dict, List, Sequence
+
+
+def machine() -> Dict[str, Any]:
+    """Return what the numbers depend on."""
+    return {'cores': os.cpu_count(), 'machine': platform.machine(), 'kernel': platform.release()}
+
+
+def publish(name: str, result: Dict[str, Any], text: str, docs: Path) -> None:
+    """Write performance/NAME.json and the section NAME of performance.md.
+
+    Raises:
+        ValueError: the page has no such section; the JSON file is written all the same.
+    """
+    (docs / 'performance').mkdir(parents=True, exist_ok=True)
+    (docs / 'performance' / f'{name}.json').write_text(json.dumps(result, indent=1) + '\n')
+    write_section(docs / 'performance.md', name, text)
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
@@ -14,7 +33,8 @@ def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
 def write_section(page: Path, name: str, text: str) -> None:
     """Replace what stands between the markers `<!-- NAME -->` and `<!-- /NAME -->` of the page.
 
-    :raise ValueError: if the page does not have each of them once
+    Raises:
+        ValueError: the page has no such section.
     """
     before, opening, rest = page.read_text().partition(f'<!-- {name} -->')
     _, closing, after = rest.partition(f'<!-- /{name} -->')

@@ -1,5 +1,5 @@
-#!/usr/bin/env python3
-"""Measures what the number of watched predecessors costs and brings.
+#!/usr/bin/python3
+"""Benchmark of the number of watched predecessors: what it costs and what it brings.
 
 Trains the evidence detector on the simulated follow-me robot with several bounds on the number of
 predecessors of an event type, and judges the same normal operation and the same faults with each.
@@ -7,19 +7,20 @@ predecessors of an event type, and judges the same normal operation and the same
 from __future__ import annotations
 
 import argparse
-import json
 import math
 import multiprocessing
 from functools import partial
 from pathlib import Path
 from typing import Any, Dict, List, Sequence
 
+import page
 from self_awareness import follow_me
 from self_awareness.evaluation import experiment, summary
 from self_awareness.evaluation.detectors import Evidence
 from self_awareness.evaluation.experiment import Plan
 from self_awareness.evaluation.measures import Row, fault_row, normal_row
 
+_DOCS = Path(__file__).resolve().parents[1] / 'docs'
 ALL = 1000
 """More than there are event types."""
 BOUNDS = (1, 2, 3, 5, 8, ALL)
@@ -64,18 +65,31 @@ def _finite(value: float) -> Any:
     return value if math.isfinite(value) else None
 
 
+def markdown(result: Dict[str, Any]) -> str:
+    """Return the table."""
+    def latency(row: Dict[str, Any], kind: str) -> str:
+        value = row[f'{kind}_latency']
+        return 'missed' if value is None else f'{value:.2f}'
+    rows = [[str(row['predecessors']), f'{row["false_alarms_per_hour"]:.2f}',
+             *(latency(row, kind) for kind in FAULTS)] for row in result['bounds']]
+    return page.table(('predecessors', 'false alarms an hour',
+                       *(f'{kind} [s]' for kind in FAULTS)), rows)
+
+
 def main() -> None:
-    """Write the results as JSON."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument('-o', '--output', type=Path, required=True, metavar='JSON')
+    """Measure, and write the results."""
+    parser = argparse.ArgumentParser(prog='benchmark predecessors', description=__doc__)
+    parser.add_argument('--output', type=Path, default=_DOCS, metavar='FOLDER',
+                        help='for performance/predecessors.json and performance.md (default: '
+                        'docs)')
     parser.add_argument('--seed', type=int, default=401, help='the first one (default: 401)')
-    parser.add_argument('--seeds', type=int, default=10, metavar='N',
-                        help='number of repetitions (default: 10)')
+    parser.add_argument('--seeds', type=int, default=20, metavar='N',
+                        help='number of repetitions (default: 20)')
     parser.add_argument('--jobs', type=int, default=2, metavar='N')
     arguments = parser.parse_args()
     seeds = list(range(arguments.seed, arguments.seed + arguments.seeds))
-    results = {'seeds': seeds, 'bounds': measure(seeds, arguments.jobs)}
-    arguments.output.write_text(json.dumps(results, indent=1) + '\n', encoding='utf-8')
+    result = {'seeds': seeds, 'bounds': measure(seeds, arguments.jobs)}
+    page.publish('predecessors', result, markdown(result), arguments.output)
 
 
 if __name__ == '__main__':

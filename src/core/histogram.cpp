@@ -165,7 +165,18 @@ void Histogram::rebuild(const Entries& entries) {
 }
 
 void Histogram::merge(const Histogram& other) {
-  for (const Entry& entry : other.entries()) {
+  add(other.entries());
+}
+
+void Histogram::add(const Entries& entries) {
+  const bool small = std::all_of(entries.begin(), entries.end(), [](const Entry& entry) {
+    return entry.bin <= kLargestBin && entry.count <= kLargestCount;
+  });
+  if (empty() && small && !entries.empty()) {
+    rebuild(entries);  // at once: bin after bin, it would be done again and again
+    return;
+  }
+  for (const Entry& entry : entries) {
     add(entry.bin, entry.count);
   }
 }

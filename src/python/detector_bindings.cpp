@@ -5,6 +5,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -190,6 +191,9 @@ void bindVerdicts(py::module& m) {
   py::class_<core::Model, std::shared_ptr<core::Model>>(
       m, "Model", "Probabilities, entropies and weights, computed from a TrainedModel's counts.")
       .def(py::init([](const ros1::TrainedModel& trained) {
+             if (!trained.hasCounts()) {
+               throw std::invalid_argument("the model was loaded without its counts");
+             }
              return std::make_shared<core::Model>(trained.statistics);
            }),
            py::arg("trained"))

@@ -231,8 +231,14 @@ void bindModel(py::module& m) {
   using ros1::TrainedModel;
   py::class_<TrainedModel>(m, "TrainedModel", "All that a model file holds: counts.")
       .def_static(
-          "load", [](const std::string& path) { return ros1::loadModel(path); }, py::arg("path"),
-          "Raises ModelFileError.")
+          "load",
+          [](const std::string& path, bool watched_only) {
+            return ros1::loadModel(
+                path, watched_only ? ros1::ModelCounts::kWatched : ros1::ModelCounts::kAll);
+          },
+          py::arg("path"), py::arg("watched_only") = false,
+          "watched_only: without the counts that the evidence detector does not judge by, as the\n"
+          "monitor does: quick and small. Raises ModelFileError.")
       .def("save", &ros1::saveModel, py::arg("path"),
            "Raises ModelFileError; writes all or nothing.")
       .def("merge", &ros1::merge, py::arg("other"),

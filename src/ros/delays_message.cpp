@@ -1,6 +1,8 @@
 #include "self_awareness/ros/delays_message.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <limits>
 #include <stdexcept>
 
 namespace self_awareness::ros1 {
@@ -29,14 +31,19 @@ void addMessage(const self_awareness::DelayHistograms& message,
       !std::is_sorted(message.offsets.begin(), message.offsets.end())) {
     throw std::invalid_argument("its histograms do not fit its event types");
   }
+  core::Histogram::Entries entries;
   for (core::EventId from = 0; from < n; ++from) {
-    core::Histogram& histogram = statistics.pair(from, message.to_id);
+    entries.clear();
+    std::int64_t least = 0;
     for (std::size_t i = message.offsets[from]; i < message.offsets[from + 1]; ++i) {
-      if (message.counts[i] == 0 || message.bins[i] < 0) {
+      if (message.counts[i] == 0 || message.bins[i] < least ||
+          message.bins[i] == std::numeric_limits<std::int64_t>::max()) {
         throw std::invalid_argument("a histogram has an impossible bin");
       }
-      histogram.add(message.bins[i], message.counts[i]);
+      least = message.bins[i] + 1;
+      entries.push_back({message.bins[i], message.counts[i]});
     }
+    statistics.pair(from, message.to_id).add(entries);
   }
 }
 

@@ -206,6 +206,12 @@ TEST_F(ModelFileTest, DamagedDelaysAreRefused) {
   }
   EXPECT_EQ(error([](Delays& d) { d.counts[0] = 0; }), file + "a histogram has an impossible bin");
   EXPECT_EQ(error([](Delays& d) { d.bins[0] = -1; }), file + "a histogram has an impossible bin");
+  EXPECT_EQ(error([](Delays& d) {
+              d.offsets = {0, 2, 2};
+              d.bins = {3, 3};
+              d.counts = {1, 1};
+            }),
+            file + "a histogram has an impossible bin");
 }
 
 TEST_F(ModelFileTest, AMissingMessageIsRefused) {

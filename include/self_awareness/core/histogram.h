@@ -37,6 +37,8 @@ class Histogram {
     }
   }
   void add(std::int64_t bin, std::uint64_t count);
+  /// @param entries sorted by bin, each bin once, with counts above 0
+  void add(const Entries& entries);
   /// Fetches what an addition to a bin is likely to need into the cache.
   void prefetch(std::int64_t bin) const {
     const std::uint64_t cell = static_cast<std::uint64_t>(bin) - first_bin_;

@@ -33,8 +33,9 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 def _score(arguments: argparse.Namespace) -> None:
     check_outputs([arguments.csv, arguments.plot], arguments.bags + [arguments.model])
     parameters = cli.detector_parameters(arguments)
-    trained = TrainedModel.load(arguments.model)
-    if arguments.detector == 'paper':
+    paper = arguments.detector == 'paper'
+    trained = TrainedModel.load(arguments.model, watched_only=not paper)
+    if paper:
         judge = calibration.paper_judge(trained, Model(trained), trained.threshold, parameters)
         threshold = trained.threshold
     else:

@@ -9,7 +9,7 @@ import statistics
 from pathlib import Path
 from typing import Any, Dict, List, Optional
 
-from page import table, write_section
+from page import publish, table
 
 DETECTORS = ('paper', 'evidence')
 _PER_MILLISECOND = {'ns': 1e-6, 'us': 1e-3, 'ms': 1.0}
@@ -33,7 +33,7 @@ def _medians(benchmarks: List[Measured]) -> Dict[str, Measured]:
     return medians
 
 
-def summary(raw: Measured, numpy: Dict[str, float]) -> Measured:
+def summary(raw: Measured, numpy: Dict[str, Dict[str, float]]) -> Measured:
     """Return what is measured of every detector by number of event types."""
     medians = _medians(raw['benchmarks'])
     result: Measured = {'date': raw['context']['date'][:10]}
@@ -44,18 +44,19 @@ def summary(raw: Measured, numpy: Dict[str, float]) -> Measured:
             if kind != f'score{detector.capitalize()}':
                 continue
             of = {step: medians.get(f'{step}{detector.capitalize()}/{size}')
-                  for step in ('lookUp', 'train', 'load', 'closeWindow')}
+                  for step in ('lookUp', 'train', 'load', 'closeWindow', 'choose')}
             rows[size] = {
                 'event_ns': score['time'] * 1e6,
                 'terms': score['terms'],
                 'lookup_ns': of['lookUp']['time'] * 1e6,
-                'numpy_ns': numpy.get(size) if detector == 'paper' else None,
+                'numpy_ns': numpy[detector][size],
                 'window_ns': of['closeWindow']['time'] * 1e6 if of['closeWindow'] else None,
                 'train_events_per_s': of['train']['events'] / of['train']['time'] * 1e3,
                 'train_bytes': of['train']['bytes'],
                 'train_bytes_of_twice': of['train']['bytes_of_twice'],
                 'model_bytes': of['load']['bytes'],
                 'load_ms': of['load']['time'],
+                'choose_ms': of['choose']['time'] if of['choose'] else None,
             }
         result[detector] = dict(sorted(rows.items(), key=lambda row: int(row[0])))
     return result
@@ -78,14 +79,15 @@ def markdown(measured: Measured) -> str:
                    for size, row in measured[detector].items()]
         training = [[size, _number(row['train_events_per_s']),
                      _number(row['train_bytes'] / 1e6), _number(row['train_bytes_of_twice'] / 1e6),
-                     _number(row['model_bytes'] / 1e6), _number(row['load_ms'])]
+                     _number(row['choose_ms']), _number(row['model_bytes'] / 1e6),
+                     _number(row['load_ms'])]
                     for size, row in measured[detector].items()]
         parts += [f'**`detector: {detector}`**, {measured["date"]}',
                   table(('event types', 'terms an event', 'an event [ns]', 'a term [ns]',
                          'the look-ups alone [ns]', 'ratio', 'numpy [ns]', 'a window\'s end [ns]'),
                         scoring),
                   table(('event types', 'training [events/s]', 'counts [MB]',
-                         'of twice the time [MB]', 'model [MB]', 'computing it [ms]'), training)]
+                         'of twice the time [MB]', 'choosing [ms]', 'model [MB]', 'computing it [ms]'), training)]
     return '\n\n'.join(parts)
 
 
@@ -97,10 +99,7 @@ def main() -> None:
     arguments = parser.parse_args()
     measured = summary(json.loads(arguments.raw.read_text()),
                        json.loads(arguments.numpy.read_text()))
-    results = arguments.docs / 'performance' / 'core.json'
-    results.parent.mkdir(exist_ok=True)
-    results.write_text(json.dumps(measured, indent=1) + '\n')
-    write_section(arguments.docs / 'performance.md', 'core', markdown(measured))
+    publish('core', measured, markdown(measured), arguments.docs)
 
 
 if __name__ == '__main__':

@@ -1,0 +1,113 @@
+#!/usr/bin/python3
+"""Benchmark of model files: training, size, and time to load, by the number of event types.
+
+Every number of event types is trained on in a process of its own, whose memory is measured. The
+events are those of numpy_scoring.py: timers of 50 ms to 2 s with chains of two answers each.
+"""
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import Any, Dict, List
+
+import page
+from numpy_scoring import SIZES, events_of
+from self_awareness import EncodingRules, EventType, TrainedModel, Training
+
+_DOCS = Path(__file__).resolve().parents[1] / 'docs'
+_SECONDS = 60.0
+_LOADS = 5
+
+
+def _train(types: int, path: str) -> Dict[str, Any]:
+    """Train and save a model; the start of the process and its events are not counted."""
+    stamps, ids = events_of(types, _SECONDS)
+    kinds = [EventType(f'/node_{kind // 3}', f'/topic_{kind}', 'T') for kind in range(types)]
+    training = Training(EncodingRules())
+    before = time.process_time()
+    middle = int(stamps[0] + stamps[-1]) // 2
+    training.add_events(kinds, stamps, ids, middle)
+    model = training.model()
+    trained = time.process_time()
+    model.save(path)
+    return {'events': len(stamps), 'train_s': trained - before,
+            'save_s': time.process_time() - trained,
+            'train_peak_bytes': 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss}
+
+
+def _load(path: str, watched_only: bool) -> Dict[str, Any]:
+    before_bytes = _resident()
+    before = time.process_time()
+    model = TrainedModel.load(path, watched_only)
+    return {'load_s': time.process_time() - before, 'load_bytes': _resident() - before_bytes,
+            'types': len(model.event_types)}
+
+
+def _resident() -> int:
+    pages = int(Path('/proc/self/statm').read_text().split()[1])
+    return pages * os.sysconf('SC_PAGE_SIZE')
+
+
+def _in_process(*arguments: str) -> Dict[str, Any]:
+    done = subprocess.run((sys.executable, '-B', __file__, *arguments), check=True,
+                          stdout=subprocess.PIPE, text=True)
+    return json.loads(done.stdout)
+
+
+def measure() -> Dict[str, Any]:
+    """Return what is measured, by number of event types."""
+    result: Dict[str, Any] = dict(page.machine(), seconds=_SECONDS, loads=_LOADS, models={})
+    with tempfile.TemporaryDirectory() as folder:
+        for types in SIZES:
+            path = os.path.join(folder, str(types))
+            row = _in_process('--train', str(types), path)
+            row['file_bytes'] = os.path.getsize(path)
+            for name, option in (('all', '--load'), ('watched', '--load-watched')):
+                loads = [_in_process(option, path) for _ in range(_LOADS)]
+                row[name] = min(loads, key=lambda load: load['load_s'])
+            result['models'][str(types)] = row
+    return result
+
+
+def markdown(result: Dict[str, Any]) -> str:
+    """Return the table."""
+    rows: List[List[str]] = []
+    for types, row in result['models'].items():
+        rows.append([types, f'{row["events"]:,}', f'{row["train_s"]:.3g}',
+                     f'{row["train_peak_bytes"] / 1e6:.0f}', f'{row["file_bytes"] / 1e6:.3g}',
+                     f'{row["save_s"]:.3g}', f'{row["watched"]["load_s"]:.3g}',
+                     f'{row["watched"]["load_bytes"] / 1e6:.3g}', f'{row["all"]["load_s"]:.3g}',
+                     f'{row["all"]["load_bytes"] / 1e6:.3g}'])
+    return page.table(('event types', 'events', 'training [s]', 'peak [MB]', 'file [MB]',
+                       'saving [s]', 'loading what is watched [s]', '[MB]', 'loading all [s]',
+                       '[MB]'), rows)
+
+
+def main() -> None:
+    """Run the benchmark, or what it runs in processes of their own."""
+    parser = argparse.ArgumentParser(prog='benchmark models', description=__doc__)
+    parser.add_argument('--output', type=Path, default=_DOCS, metavar='FOLDER',
+                        help='for performance/models.json and performance.md (default: docs)')
+    parser.add_argument('--train', nargs=2, help=argparse.SUPPRESS)
+    parser.add_argument('--load', help=argparse.SUPPRESS)
+    parser.add_argument('--load-watched', help=argparse.SUPPRESS)
+    arguments = parser.parse_args()
+    if arguments.train:
+        print(json.dumps(_train(int(arguments.train[0]), arguments.train[1])))
+    elif arguments.load or arguments.load_watched:
+        print(json.dumps(_load(arguments.load or arguments.load_watched,
+                               arguments.load is None)))
+    else:
+        result = measure()
+        page.publish('models', result, markdown(result), arguments.output)
+
+
+if __name__ == '__main__':
+    main()
