@@ -23,7 +23,7 @@ constexpr double kMostOfLimit = 1.5;    // in units of the limit
 
 }  // namespace
 
-bool EvidenceScorer::arm(Arming& arming, double excess, double usual) {
+inline bool EvidenceScorer::arm(Arming& arming, double excess, double usual) {
   arming.excess += excess;
   if (++arming.events < kArmingEvents) {
     return false;
@@ -61,23 +61,25 @@ void EvidenceScorer::addTracks() {
   state_of_.resize(tracks.size());
   const Sum none{0, kMostEvidence};
   for (EventId id = 0; id < model_->size(); ++id) {
-    gone_after_.push_back(kGoneGaps * model_->longestGap(id));
-    pairs_begin_.push_back(pairs_.size());
+    OfType type;
+    type.gone_after = kGoneGaps * model_->longestGap(id);
+    type.pairs_begin = static_cast<std::uint32_t>(pairs_.size());
     for (const std::size_t track : pairs[id]) {
       state_of_[track] = state_of_[track + 1] = pairs_.size();
       pairs_.push_back(
           {tracks[track].from, false, 0, model_->surprises(track).data(), none, none});
     }
-    answers_begin_.push_back(answers_.size());
+    type.pairs_end = static_cast<std::uint32_t>(pairs_.size());
+    type.answers_begin = static_cast<std::uint32_t>(answers_.size());
     for (const std::size_t track : answers[id]) {
       state_of_[track] = answers_.size();
       answers_.push_back(
           {tracks[track].to, false, {model_->answered(track), model_->missed(track)}, none});
       miss_rates_.push_back(model_->missRate(track));
     }
+    type.answers_end = static_cast<std::uint32_t>(answers_.size());
+    types_.push_back(type);
   }
-  pairs_begin_.push_back(pairs_.size());
-  answers_begin_.push_back(answers_.size());
   pairs_arming_.resize(pairs_.size());
   answers_arming_.resize(answers_.size());
 }
@@ -97,12 +99,13 @@ void EvidenceScorer::restart() {
 }
 
 std::optional<std::int64_t> EvidenceScorer::add(const Event& event) {
-  if (!model_->knows(event.id)) {
+  if (event.id >= types_.size()) {
     return std::nullopt;
   }
+  const OfType& type = types_[event.id];
   counts_.add(event.id);
   Seen& last = last_seen_[event.id];
-  for (std::size_t k = pairs_begin_[event.id]; k < pairs_begin_[event.id + 1]; ++k) {
+  for (std::size_t k = type.pairs_begin; k < type.pairs_end; ++k) {
     DelayPair& pair = pairs_[k];
     const Seen& from = last_seen_[pair.from];
     // Only the first event after another answers it: those that follow while the other pauses
@@ -119,7 +122,7 @@ std::optional<std::int64_t> EvidenceScorer::add(const Event& event) {
   }
   std::optional<std::int64_t> gap;
   if (last.number > 0) {
-    for (std::size_t k = answers_begin_[event.id]; k < answers_begin_[event.id + 1]; ++k) {
+    for (std::size_t k = type.answers_begin; k < type.answers_end; ++k) {
       Answer& answer = answers_[k];
       const std::uint64_t number = last_seen_[answer.to].number;
       if (number == 0) {
@@ -133,7 +136,7 @@ std::optional<std::int64_t> EvidenceScorer::add(const Event& event) {
       }
     }
     gap = event.stamp - last.stamp;
-    if (*gap > gone_after_[event.id]) {
+    if (*gap > type.gone_after) {
       disarm(event.id);
     }
   }

@@ -11,10 +11,6 @@ RecentCounts::RecentCounts(std::size_t types, std::size_t windows)
       ring_(windows, std::vector<std::uint32_t>(types, 0)),
       sums_(types, 0) {}
 
-void RecentCounts::add(EventId id) {
-  ++open_.at(id);
-}
-
 void RecentCounts::resize(std::size_t types) {
   if (types == types_) {
     return;

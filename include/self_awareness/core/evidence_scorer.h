@@ -85,6 +85,15 @@ class EvidenceScorer {
     Sum sum;
   };
 
+  /// Where its pairs and answers lie, and how long [ns] an event type must be away to be gone.
+  struct OfType {
+    std::uint32_t pairs_begin = 0;
+    std::uint32_t pairs_end = 0;
+    std::uint32_t answers_begin = 0;
+    std::uint32_t answers_end = 0;
+    std::int64_t gone_after = 0;
+  };
+
   /// @param usual the largest mean excess that is as in training
   /// @return whether the track is armed now
   static bool arm(Arming& arming, double excess, double usual);
@@ -94,17 +103,14 @@ class EvidenceScorer {
   void disarmAnswer(std::size_t number);
 
   std::shared_ptr<const EvidenceModel> model_;
-  // Those of event type i are the numbers [i] to [i + 1].
+  std::vector<OfType> types_;                        // by id
   std::vector<DelayPair> pairs_;                     // by `to`
-  std::vector<std::size_t> pairs_begin_;             // N + 1
   std::vector<Answer> answers_;                      // by `from`
-  std::vector<std::size_t> answers_begin_;           // N + 1
   std::vector<Arming> pairs_arming_;                 // by number of the pair
   std::vector<Arming> answers_arming_;               // by number of the answer
   std::vector<double> miss_rates_;                   // by number of the answer
   std::vector<std::size_t> state_of_;                // number of its pair or answer, by track
   std::vector<std::vector<std::size_t>> tracks_of_;  // those of pairs and answers, by id
-  std::vector<std::int64_t> gone_after_;             // [ns], by id
   std::vector<Seen> last_seen_;                      // by id
   std::uint64_t number_ = 0;
   RecentCounts counts_;

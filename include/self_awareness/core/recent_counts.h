@@ -15,8 +15,8 @@ class RecentCounts {
   /// @param windows how many windows are counted together, > 0
   RecentCounts(std::size_t types, std::size_t windows);
 
-  /// Counts an event in the open window.
-  void add(EventId id);
+  /// Counts an event in the open window. @param id less than the number of types
+  void add(EventId id) { ++open_[id]; }
   /// Makes room for event types that are new.
   void resize(std::size_t types);
   /// Closes the open window: counts() now holds it.
