@@ -2,12 +2,13 @@
 from __future__ import annotations
 
 import math
-from typing import Callable, List, Tuple
+from collections import Counter
+from typing import Callable, Dict, List, Tuple
 
 import pytest
 from conftest import robot
 
-from self_awareness import EvidenceModel, TrainedModel, stable_name
+from self_awareness import PREDECESSORS, EvidenceModel, Model, TrainedModel, stable_name
 from self_awareness.commands import train
 
 Bags = Tuple[str, str]
@@ -55,6 +56,33 @@ def test_the_options_reach_the_model(robot_bags: Bags, tmp_path, capsys) -> None
                                                          '- /map std_msgs/String']
     start, end = model.recordings[0].start / 1e9, model.recordings[0].end / 1e9
     assert 1010.0 <= start < 1010.05 and 1019.95 < end <= 1020.0
+
+
+def test_no_more_predecessors_are_watched_than_asked_for(robot_bags: Bags, tmp_path,
+                                                         capsys) -> None:
+    def of_types(*options: str) -> Dict[int, int]:
+        output = str(tmp_path / 'm')
+        said(capsys, [*robot_bags, '-o', output, *options])
+        model = TrainedModel.load(output)
+        assert model.predecessors == (int(options[1]) if options else PREDECESSORS)
+        # Every pair has two tracks.
+        return Counter(track.to_id for track in EvidenceModel(model).tracks
+                       if track.channel == 'pairs')
+    assert max(of_types('--predecessors', '1').values()) == 2
+    assert 2 < max(of_types('--predecessors', '2').values()) <= 4
+    assert max(of_types().values()) <= 2 * PREDECESSORS
+
+
+def test_what_is_watched_can_be_loaded_alone(robot_bags: Bags, tmp_path, capsys) -> None:
+    output = str(tmp_path / 'm')
+    said(capsys, [*robot_bags, '-o', output])
+    model = TrainedModel.load(output)
+    watched = TrainedModel.load(output, watched_only=True)
+    assert watched.event_types == model.event_types and watched.events == model.events
+    assert len(EvidenceModel(watched).tracks) == len(EvidenceModel(model).tracks)
+    assert watched.pairs == 0
+    with pytest.raises(ValueError, match='without its counts'):
+        Model(watched)
 
 
 def test_bags_without_senders_are_trained_without_sources(make_bag: Callable[..., str], tmp_path,
