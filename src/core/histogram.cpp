@@ -108,6 +108,9 @@ void Histogram::add(std::int64_t bin, std::uint64_t count) {
       *present = 0;
     }
     *present += small;
+  } else if (length_ > 0 && bin >= first_bin_ && bin - first_bin_ < lengthened()) {
+    lengthen();
+    memory_[static_cast<std::uint64_t>(bin) - first_bin_] = small;
   } else if (filled_ + 1 < capacity_ - capacity_ / 8) {
     insert(static_cast<std::uint32_t>(bin), small);
   } else {
@@ -137,7 +140,32 @@ void Histogram::addLarge(std::int64_t bin, std::uint64_t count) {
   (*large_)[bin] += count;
 }
 
-// Divides the entries between the array and the hash table anew, with room in the latter.
+std::uint32_t Histogram::lengthened() const {
+  const std::uint64_t length = std::uint64_t{length_} + length_ / 4 + 1;
+  return static_cast<std::uint32_t>(std::min<std::uint64_t>(length, kLargestBin - first_bin_));
+}
+
+// Delays since a rare event grow bin by bin: what each of them costs must not grow with them.
+void Histogram::lengthen() {
+  const Entries entries = smallEntriesOutside();
+  const std::uint32_t length = lengthened();
+  auto memory = std::make_unique<std::uint32_t[]>(length + 2 * capacity_);
+  std::copy_n(memory_.get(), length_, memory.get());
+  memory_ = std::move(memory);
+  length_ = length;
+  filled_ = 0;
+  for (const Entry& entry : entries) {
+    const auto bin = static_cast<std::uint32_t>(entry.bin);
+    const auto count = static_cast<std::uint32_t>(entry.count);
+    if (bin >= first_bin_ && bin - first_bin_ < length_) {
+      memory_[bin - first_bin_] = count;
+    } else {
+      insert(bin, count);
+    }
+  }
+}
+
+// Divides the entries between the array and the hash table anew.
 void Histogram::rebuild(const Entries& entries) {
   const auto [first, last] = wellFilled(entries.begin(), entries.end(), kCellsPerBin);
   first_bin_ = 0;
@@ -169,15 +197,22 @@ void Histogram::merge(const Histogram& other) {
 }
 
 void Histogram::add(const Entries& entries) {
-  const bool small = std::all_of(entries.begin(), entries.end(), [](const Entry& entry) {
-    return entry.bin <= kLargestBin && entry.count <= kLargestCount;
-  });
-  if (empty() && small && !entries.empty()) {
-    rebuild(entries);  // at once: bin after bin, it would be done again and again
-    return;
-  }
+  // New bins come at once: one after the other, it would be rebuilt again and again.
+  Entries added;
   for (const Entry& entry : entries) {
-    add(entry.bin, entry.count);
+    if (entry.bin > kLargestBin || entry.count > kLargestCount || find(entry.bin) != nullptr) {
+      add(entry.bin, entry.count);
+    } else {
+      added.push_back(entry);
+    }
+  }
+  if (!added.empty()) {
+    const Entries present = smallEntries();
+    Entries all;
+    all.reserve(present.size() + added.size());
+    std::merge(present.begin(), present.end(), added.begin(), added.end(), std::back_inserter(all),
+               lowerBin);
+    rebuild(all);
   }
 }
 
@@ -208,7 +243,7 @@ std::uint64_t Histogram::count(std::int64_t bin) const {
 }
 
 // Without the large ones.
-Histogram::Entries Histogram::smallEntries() const {
+Histogram::Entries Histogram::smallEntriesOutside() const {
   Entries outside;
   for (std::uint32_t slot = 0; slot < capacity_; ++slot) {
     const std::uint32_t* const bin = &memory_[length_ + 2 * slot];
@@ -217,6 +252,11 @@ Histogram::Entries Histogram::smallEntries() const {
     }
   }
   std::sort(outside.begin(), outside.end(), lowerBin);
+  return outside;
+}
+
+Histogram::Entries Histogram::smallEntries() const {
+  const Entries outside = smallEntriesOutside();
   Entries entries;
   entries.reserve(outside.size() + length_ + 1);
   const auto behind =

@@ -32,8 +32,12 @@ class MessagesOfChunks : public BagMessages {
       chunk_position_ = entry.chunk;
     }
     if (chunk_->compression == "none") {
-      const std::uint64_t position = chunk_->begin + entry.offset;
+      std::uint64_t position = chunk_->begin + entry.offset;
       std::string_view bytes = file_.at(position, kHeaderBytes, kShortMessageBytes);
+      while (const std::uint64_t size = connectionBytes(bytes)) {
+        position += size;
+        bytes = file_.at(position, kHeaderBytes, kShortMessageBytes);
+      }
       const std::size_t all = bytes.size();
       const std::uint32_t size = takeMessageSize(bytes);
       bytes = file_.at(position + (all - bytes.size()), size);
@@ -41,12 +45,27 @@ class MessagesOfChunks : public BagMessages {
     } else {
       std::string_view bytes = unpacked_;
       take(bytes, entry.offset);
+      while (const std::uint64_t size = connectionBytes(bytes)) {
+        take(bytes, size);
+      }
       const std::uint32_t size = takeMessageSize(bytes);
       assign(content, take(bytes, size));
     }
   }
 
  private:
+  /// Size of the record that the bytes begin with if it is a connection's, else 0: an index may
+  /// point at one before the message, and rosbag skips it as well.
+  static std::uint64_t connectionBytes(std::string_view bytes) {
+    const std::size_t all = bytes.size();
+    const std::string_view header = takeBlock(bytes);
+    if (number<std::uint8_t>(header, "op") != static_cast<std::uint8_t>(Op::kConnection)) {
+      return 0;
+    }
+    const auto data = takeNumber<std::uint32_t>(bytes);
+    return all - bytes.size() + data;
+  }
+
   static std::uint32_t takeMessageSize(std::string_view& bytes) {
     takeHeader(bytes, Op::kMessage);
     return takeNumber<std::uint32_t>(bytes);

@@ -59,10 +59,15 @@ bool startsLikeABag(const std::string& path) {
 }
 
 BagIndex openBag(const std::string& path) {
-  if (!boost::filesystem::exists(path)) {
+  boost::system::error_code error;
+  const boost::filesystem::file_status status = boost::filesystem::status(path, error);
+  if (status.type() == boost::filesystem::file_not_found) {
     throw BagError(path + ": no such file");
   }
-  if (!boost::filesystem::is_regular_file(path)) {
+  if (status.type() == boost::filesystem::status_error) {
+    throw BagError(path + ": cannot be read (" + error.message() + ")");
+  }
+  if (!boost::filesystem::is_regular_file(status)) {
     throw BagError(path + ": not a file; name a bag");
   }
   if (!startsLikeABag(path)) {
@@ -76,6 +81,11 @@ BagIndex openBag(const std::string& path) {
   } catch (const rosbag::BagException& error) {
     throw BagError(path + ": the bag is truncated or damaged (" + error.what() + ")" +
                    reindexHint(path));
+  } catch (const std::bad_alloc&) {  // numbers that are damaged ask for much
+    throw BagError(path + ": the bag is damaged, or there is too little memory" +
+                   reindexHint(path));
+  } catch (const std::length_error&) {
+    throw BagError(path + ": the bag is damaged" + reindexHint(path));
   }
 }
 
@@ -155,6 +165,9 @@ void BagReader::read(const Encoder& encoder, const TimeRange& range, const Handl
                    reindexHint(summary_.path));
   } catch (const std::out_of_range& error) {
     throw BagError(summary_.path + ": " + error.what());
+  } catch (const std::bad_alloc&) {
+    throw BagError(summary_.path + ": the bag is damaged, or there is too little memory" +
+                   reindexHint(summary_.path));
   }
   if (progress) {
     progress(done, summary_.messages);

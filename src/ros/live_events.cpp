@@ -120,13 +120,15 @@ void LiveEvents::onArrival(const Arrival& arrival) {
     ++unread_;
     return;
   }
+  core::Event event{arrival.stamp, 0};
   try {
-    handlers_.on_event(
-        {arrival.stamp, encoder->id(arrival.content->data(), arrival.content->size())});
+    event.id = encoder->id(arrival.content->data(), arrival.content->size());
   } catch (const std::out_of_range& error) {
     ROS_ERROR_THROTTLE(10, "%s: %s; the message is left out", arrival.topic->name.c_str(),
                        error.what());
+    return;
   }
+  handlers_.on_event(event);
 }
 
 LiveEvents::LiveConnection& LiveEvents::connectionOf(const Arrival& arrival) {

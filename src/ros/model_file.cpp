@@ -9,7 +9,9 @@
 #include <boost/filesystem/operations.hpp>
 #include <cmath>
 #include <cstdio>
+#include <new>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "self_awareness/ros/delays_message.h"
@@ -145,6 +147,11 @@ bool limitsFit(const TrainedModel& model) {
 
 }  // namespace
 
+void TrainedModel::watch() {
+  check(hasCounts(), "loaded without its counts");
+  watched = core::watch(evidence[0], evidence[1], predecessors);
+}
+
 void TrainedModel::dropCounts() {
   core::DelayStatistics types(statistics.binning());
   for (core::EventId id = 0; id < vocabulary().size(); ++id) {
@@ -272,6 +279,10 @@ TrainedModel loadModel(const std::string& path, ModelCounts counts) {
     throw ModelFileError(path + ": a damaged model file (" + error.what() + ")");
   } catch (const std::invalid_argument& error) {
     throw ModelFileError(path + ": a damaged model file: " + error.what());
+  } catch (const std::bad_alloc&) {  // numbers that are damaged ask for much
+    throw ModelFileError(path + ": a damaged model file, or too little memory");
+  } catch (const std::length_error& error) {
+    throw ModelFileError(path + ": a damaged model file (" + error.what() + ")");
   }
 }
 

@@ -45,6 +45,9 @@ void requireSameEncoding(const EncodingRules& one, const EncodingRules& other) {
 }  // namespace
 
 void merge(TrainedModel& model, const TrainedModel& other) {
+  if (!model.hasCounts() || !other.hasCounts()) {
+    throw std::invalid_argument("loaded without its counts");
+  }
   requireSameEncoding(model.encoding, other.encoding);
   const core::Binning& binning = model.statistics.binning();
   const core::Binning& others = other.statistics.binning();

@@ -83,7 +83,7 @@ def held_out(trained: TrainedModel, found_in: Iterable[RecordingEvents], settle_
         budget: false alarms an hour that the limits allow.
 
     Raises:
-        ValueError: the recordings are too short.
+        TooLittleError: the recordings are too short.
     """
     found_in = list(found_in)
     calibration = find(trained, settle_time, budget,
@@ -106,7 +106,7 @@ def cross_fit(trained: TrainedModel, trained_on: Sequence[TrainedOn], settle_tim
 
     Raises:
         BagError: a recording cannot be read any more.
-        ValueError: the recordings are too short.
+        TooLittleError: the recordings are too short.
     """
     calibration = find(trained, settle_time, budget, trained_on, workers)
     calibration.method = 'cross-fit'
@@ -127,7 +127,7 @@ def find(trained: TrainedModel, settle_time: int, budget: float, tasks: Sequence
 
     Raises:
         BagError: a recording cannot be read.
-        ValueError: the recordings are too short.
+        TooLittleError: the recordings are too short.
     """
     workers = workers or InProcess()
     judging = _Judging(trained, settle_time, budget)
@@ -143,6 +143,10 @@ def find(trained: TrainedModel, settle_time: int, budget: float, tasks: Sequence
     calibration.windows = judging.finder.windows
     calibration.stamp = int(time.time()) * SECOND_NS
     return calibration
+
+
+class TooLittleError(ValueError):
+    """There is too little normal operation to find limits on."""
 
 
 class _Judging:
@@ -170,9 +174,12 @@ class _Judging:
         """Find the limits of the tracks.
 
         Raises:
-            ValueError: the recordings are too short.
+            TooLittleError: the recordings are too short.
         """
-        self._limits = self.finder.start_second_pass()
+        try:
+            self._limits = self.finder.start_second_pass()
+        except ValueError as error:
+            raise TooLittleError(str(error)) from error
 
 
 def _judge(judging: _Judging, task: Any) -> LimitFindings:

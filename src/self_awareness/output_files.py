@@ -35,7 +35,7 @@ def check_replaces_model(path: str) -> None:
     if not os.path.exists(path):
         return
     try:
-        TrainedModel.load(path)
+        TrainedModel.load(path, watched_only=True)
     except ModelFileError as error:
         raise ValueError(f'{path}: is there already, and no model that could be replaced; remove '
                          'it or choose another name') from error

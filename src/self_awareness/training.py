@@ -109,7 +109,7 @@ def preliminary_limits(trained: Trained, workers: Optional[Workers] = None) -> N
 
     Raises:
         BagError: a recording cannot be read any more.
-        ValueError: the recordings are too short.
+        TooLittleError: the recordings are too short.
     """
     trained.model.evidence_calibration = evidence_limits.cross_fit(
         trained.model, trained.trained_on, DetectorParameters().settle_time,

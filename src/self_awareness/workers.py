@@ -4,6 +4,7 @@ All give the same results in the same order, so that nobody else need know who d
 """
 from __future__ import annotations
 
+import asyncio
 import concurrent.futures
 import logging
 import multiprocessing
@@ -110,18 +111,18 @@ class Cluster(Workers):
 
     def __init__(self, address: str) -> None:
         try:
-            import distributed  # optional: who has no cluster does without it
+            import distributed.scheduler  # optional: who has no cluster does without it
         except ImportError as error:
             raise ValueError('--scheduler needs dask.distributed, which is not installed '
                              f'({error}); its package is python3-distributed') from error
         self._address = address
-        self._distributed = distributed
+        self._killed = distributed.scheduler.KilledWorker
         for name in ('asyncio', 'distributed', 'distributed.client'):  # exceptions tell it all
             logging.getLogger(name).setLevel(logging.CRITICAL)
         try:
             distributed.comm.resolve_address(address)  # of a nonsense, a client is slow to recover
             self._client = distributed.Client(address, timeout=_CONNECT_S, set_as_default=False)
-        except (OSError, ValueError) as error:
+        except (OSError, ValueError, asyncio.TimeoutError) as error:
             raise ValueError(f'--scheduler {address}: no scheduler of dask.distributed answers '
                              f'there ({error})') from error
 
@@ -147,11 +148,11 @@ class Cluster(Workers):
             futures.add(there)
             yield from _in_order(tasks, submit, result,
                                  lambda: sum(self._client.nthreads().values()), description)
-        except (concurrent.futures.CancelledError, OSError) as error:
+        except (concurrent.futures.CancelledError, OSError, asyncio.TimeoutError) as error:
             raise ValueError(f'--scheduler {self._address}: the connection was lost ({error})'
                              ) from error
         finally:
-            with suppress(OSError):  # without a connection there is nothing to cancel
+            with suppress(OSError, asyncio.TimeoutError):  # without a connection there is nothing to cancel
                 self._client.cancel(list(futures))
 
     def close(self) -> None:
@@ -167,7 +168,7 @@ class Cluster(Workers):
     def _explained(self, task: object) -> Iterator[None]:
         try:
             yield
-        except self._distributed.KilledWorker as error:
+        except self._killed as error:
             raise ValueError(f'{task}: worker after worker died of it (of too little memory?)'
                              ) from error
         except ModuleNotFoundError as error:

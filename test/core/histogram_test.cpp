@@ -161,5 +161,25 @@ TEST(DelayBins, AreThoseOfTheBinning) {
   }
 }
 
+// As of delays since an event that comes once: were all rebuilt for every bin, it would take
+// hours.
+TEST(Histogram, GrowsBinByBinInNoTime) {
+  constexpr std::int64_t kNumber = 1000000;
+  Histogram histogram;
+  for (std::int64_t bin = 0; bin < kNumber; ++bin) {
+    histogram.add(bin);
+  }
+  EXPECT_EQ(histogram.total(), static_cast<std::uint64_t>(kNumber));
+  Histogram other;
+  for (std::int64_t bin = kNumber / 2; bin < 2 * kNumber; ++bin) {
+    other.add(bin, 2);
+  }
+  histogram.merge(other);
+  EXPECT_EQ(histogram.count(0), 1U);
+  EXPECT_EQ(histogram.count(kNumber - 1), 3U);
+  EXPECT_EQ(histogram.count(kNumber), 2U);
+  EXPECT_EQ(histogram.entries().size(), 2U * kNumber);
+}
+
 }  // namespace
 }  // namespace self_awareness::core

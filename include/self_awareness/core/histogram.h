@@ -67,7 +67,11 @@ class Histogram {
   void insert(std::uint32_t bin, std::uint32_t count);
   void addLarge(std::int64_t bin, std::uint64_t count);
   void rebuild(const Entries& entries);
+  /// Length of the array after lengthen(): a quarter more.
+  std::uint32_t lengthened() const;
+  void lengthen();
   Entries smallEntries() const;
+  Entries smallEntriesOutside() const;  // of the array
   std::uint32_t words() const { return length_ + 2 * capacity_; }
 
   // The counts of the array, then the slots of the hash table: a bin and its count each. A count

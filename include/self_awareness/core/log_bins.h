@@ -46,7 +46,7 @@ constexpr int kExponents = 13;      // up to more than the last edge
 constexpr std::array<Eighth, 8 * kExponents> makeEighths() {
   std::array<Eighth, 8 * kExponents> eighths{};
   for (std::size_t k = 0; k < eighths.size(); ++k) {
-    const std::size_t start = ((8 + k % 8) << (kFirstExponent + k / 8)) / 8;
+    const std::uint64_t start = ((std::uint64_t{8} + k % 8) << (kFirstExponent + k / 8)) / 8;
     std::size_t bin = 0;
     while (bin < kEdges.size() && kEdges[bin] <= static_cast<std::int64_t>(start)) {
       ++bin;

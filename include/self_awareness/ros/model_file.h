@@ -51,7 +51,8 @@ struct TrainedModel {
   /// Forgets all counts but those that the evidence detector judges by.
   void dropCounts();
   /// Chooses what is watched anew, by all counts.
-  void watch() { watched = core::watch(evidence[0], evidence[1], predecessors); }
+  /// @throw std::invalid_argument if it does not hold them
+  void watch();
   /// s* of eq. 5, if the model was calibrated.
   std::optional<double> threshold() const;
   /// Limits of the evidence, if it was calibrated.

@@ -4,10 +4,12 @@ from __future__ import annotations
 import argparse
 import os
 from contextlib import closing
-from typing import Optional, Sequence
+from typing import Dict, Optional, Sequence
 
-from self_awareness import PREDECESSORS, TrainedModel, encoding_file, live_graph, progress, training
+from self_awareness import (PREDECESSORS, BagError, TrainedModel, encoding_file, live_graph,
+                            progress, training)
 from self_awareness.commands import cli
+from self_awareness.evidence_limits import TooLittleError
 from self_awareness.output_files import check_outputs, check_replaces_model
 from self_awareness.recordings import BagPart
 from self_awareness.stamps import SECOND_NS
@@ -40,6 +42,8 @@ def _train(arguments: argparse.Namespace) -> None:
     check_replaces_model(arguments.output)
     base = None if arguments.add_to is None else TrainedModel.load(arguments.add_to)
     counting = _counting(arguments, base)
+    _check_distinct(arguments.bags)
+    graph = live_graph.fetch() if arguments.graph else None  # first: counting may take hours
     # The workers of a cluster have working directories of their own.
     paths = map(os.path.abspath, arguments.bags) if arguments.scheduler else arguments.bags
     parts = [BagPart(path, arguments.start, arguments.end) for path in paths]
@@ -49,9 +53,13 @@ def _train(arguments: argparse.Namespace) -> None:
         if counting.encoding is None and model.encoding.source == 'none':
             print('no bag names the senders of its messages: sources are not told apart '
                   '(source: none)')
-        if arguments.graph:
-            model.graph = live_graph.fetch()
-        limits = _limits(trained, workers)
+        if graph is not None:
+            model.graph = graph
+        try:
+            limits = _limits(trained, workers)
+        except (BagError, ValueError) as error:  # what was counted is not lost by that
+            model.save(arguments.output)
+            raise ValueError(f'{error}; {arguments.output} is written, without limits') from error
     model.save(arguments.output)
     print_summary(model)
     print(limits)
@@ -65,7 +73,7 @@ def _limits(trained: Trained, workers: Workers) -> str:
     """Give the model preliminary limits where there is enough to find them; say how."""
     try:
         training.preliminary_limits(trained, workers)
-    except ValueError as error:
+    except TooLittleError as error:
         return f'limits       none: {error}'
     return ('limits       preliminary, by what one half of the training says of the other '
             f'({trained.model.evidence_calibration.windows} windows)')
@@ -103,6 +111,15 @@ def _check_exist(paths: Sequence[str]) -> None:
     for path in paths:
         if not os.path.exists(path):
             raise ValueError(f'{path}: no such file')
+
+
+def _check_distinct(paths: Sequence[str]) -> None:
+    known: Dict[str, str] = {}
+    for path in paths:
+        real = os.path.realpath(path)
+        if real in known:
+            raise ValueError(f'{path}: the same recording as {known[real]}; name it once')
+        known[real] = path
 
 
 def _cores() -> int:
