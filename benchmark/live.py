@@ -64,6 +64,7 @@ class _Benchmark:
             if rate == _DETECTION_RATE:
                 with Robot(Configuration(rate, TOPICS[rate], False)) as robot:
                     result['latency'] = self._latency(robot, model)
+                with Robot(Configuration(rate, TOPICS[rate], False)) as robot:
                     result['latency']['connected_s'] = self._connections(robot, model)
                 many = self._folder / 'many.model'
                 write_synthetic_model(many, _MANY_TYPES)

@@ -18,6 +18,14 @@ def main(folder: str) -> int:
         except xml.etree.ElementTree.ParseError as error:
             failed.append('{}: {}'.format(path, error))
             continue
+        for suite in root.iter('testsuite'):
+            # One that could not be set up says so by its numbers alone.
+            cases = suite.findall('testcase')
+            told = sum(case.find(kind) is not None for case in cases
+                       for kind in ('error', 'failure'))
+            number = sum(int(suite.get(kind) or 0) for kind in ('errors', 'failures'))
+            if number > told and not suite.findall('testsuite'):
+                failed.append('{}: {} errors outside of tests'.format(path.stem, number - told))
         for case in root.iter('testcase'):
             name = '{} {}'.format(case.get('classname', path.stem), case.get('name'))
             if case.find('failure') is not None or case.find('error') is not None:

@@ -241,7 +241,8 @@ def make_model(path: str, bags: Sequence[str], threshold: Optional[float],
     encoding.source = source
     training = self_awareness.Training(encoding)
     for bag in bags:
-        training.add_bag(bag)
+        read = self_awareness.read_events(bag, encoding)
+        training.add_events(read.event_types, read.stamps, read.ids)
     model = training.model()
     if threshold is not None:
         calibration = self_awareness.Calibration()
