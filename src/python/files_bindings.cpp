@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "bindings.h"
-#include "reading.h"
 #include "self_awareness/ros/bag_reader.h"
 #include "self_awareness/ros/model_bytes.h"
 #include "self_awareness/ros/model_file.h"
@@ -20,6 +19,24 @@
 
 namespace self_awareness::python {
 namespace {
+
+// The progress bar lives in Python, and Ctrl-C must get through while C++ reads.
+ros1::BagReader::Progress progressTo(const py::object& callback) {
+  return [&callback](std::uint64_t done, std::uint64_t all) {
+    if (PyErr_CheckSignals() != 0) {
+      throw py::error_already_set();
+    }
+    if (!callback.is_none()) {
+      callback(done, all);
+    }
+  };
+}
+
+ros1::TimeRange timeRange(std::optional<double> start, std::optional<double> end) {
+  ros1::TimeRange range{start, end};
+  range.validate();
+  return range;
+}
 
 /// The events of a recording, in memory.
 struct RecordedEvents {

@@ -59,7 +59,7 @@ class InformationGain {
 };
 
 /// How many predecessors of an event type are watched, if nothing else is asked for. By
-/// measurement (docs/evaluation): fewer find late answers later, more cost false alarms.
+/// measurement (docs/performance.md): fewer find late answers later, many cost false alarms.
 constexpr std::size_t kPredecessors = 3;
 
 /// What the evidence keeps of a training: what is watched, and the counts that this needs.
