@@ -82,7 +82,7 @@ std::uint32_t* Histogram::find(std::int64_t bin) const {
   }
   // Neighbouring bins do not collide. There always is an empty slot.
   std::uint32_t* const slots = &memory_[length_];
-  for (auto slot = static_cast<std::uint32_t>(bin);; ++slot) {
+  for (std::size_t slot = static_cast<std::uint32_t>(bin);; ++slot) {
     slot &= capacity_ - 1;
     if (slots[2 * slot + 1] == 0) {
       return nullptr;
@@ -124,7 +124,7 @@ void Histogram::add(std::int64_t bin, std::uint64_t count) {
 // Into the hash table, which must have room for a bin that it does not have.
 void Histogram::insert(std::uint32_t bin, std::uint32_t count) {
   std::uint32_t* const slots = &memory_[length_];
-  std::uint32_t slot = bin & (capacity_ - 1);
+  std::size_t slot = bin & (capacity_ - 1);
   while (slots[2 * slot + 1] != 0) {
     slot = (slot + 1) & (capacity_ - 1);
   }

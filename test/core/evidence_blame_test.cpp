@@ -41,6 +41,7 @@ class EvidenceBlameTest : public testing::Test {
   }
   static std::vector<EventId> ids(const std::vector<Suspect>& suspects) {
     std::vector<EventId> ids;
+    ids.reserve(suspects.size());
     for (const Suspect& suspect : suspects) {
       ids.push_back(suspect.id);
     }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <random>
@@ -62,9 +63,9 @@ TEST(LogBins, EveryEdgeBelongsToTheBinAboveIt) {
 }
 
 TEST(LogBins, AreThoseOfALiteralSearch) {
-  std::vector<std::int64_t> edges;
-  for (int k = 0; k < 49; ++k) {
-    edges.push_back(std::llround(2.5e6 * std::exp2(k / 4.0)));
+  std::array<std::int64_t, log_bins::kBins - 1> edges{};
+  for (std::size_t k = 0; k < edges.size(); ++k) {
+    edges[k] = std::llround(2.5e6 * std::exp2(static_cast<double>(k) / 4));
   }
   std::mt19937_64 random(7);
   for (int i = 0; i < 100000; ++i) {

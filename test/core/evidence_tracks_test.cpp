@@ -85,7 +85,7 @@ TEST(EvidenceTracks, TheThreeBestPredecessorsAreWatched) {
   Events events;
   for (EventId id = 0; id < kNumber; ++id) {  // one after the other
     counts.intern({"/" + std::to_string(id), "/topic", "T"});
-    events = together({events, answers(id, asked, id * 3 * kMillisecond)});
+    events = together({events, answers(id, asked, 3 * kMillisecond * id)});
   }
   EvidenceTrainer trainer(counts, kWindow);
   for (const Event& event : events) {

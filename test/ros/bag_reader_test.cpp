@@ -90,7 +90,7 @@ class BagReaderTest : public testing::Test {
                             const std::string& data) {
       std::string header;
       for (const auto& [field, value] : fields) {
-        header += block(field + "=" + value);
+        header += block(std::string(field).append("=").append(value));
       }
       return block(header) + block(data);
     };
@@ -341,7 +341,8 @@ TEST_F(BagReaderTest, ADamagedBagIsReadOrRefused) {
   int refused = 0;
   for (int i = 0; i < 300; ++i) {
     std::string damaged = bytes;
-    damaged[random() % damaged.size()] ^= static_cast<char>(1 << random() % 8);
+    char& byte = damaged[random() % damaged.size()];
+    byte = static_cast<char>(byte ^ (1 << random() % 8));
     std::ofstream(path("damaged.bag"), std::ios::binary) << damaged;
     try {
       read(path("damaged.bag"));

@@ -27,6 +27,7 @@ constexpr std::array<std::int64_t, kBins - 1> makeEdges() {
   std::array<std::int64_t, kBins - 1> edges{};
   for (std::size_t k = 0; k < edges.size(); ++k) {
     const auto octave = static_cast<double>(kFirstEdge << (k / 4));
+    // std::llround is not constexpr. NOLINTNEXTLINE(bugprone-incorrect-roundings)
     edges[k] = static_cast<std::int64_t>(octave * kQuarterOctaves[k % 4] + 0.5);
   }
   return edges;
@@ -40,8 +41,8 @@ struct Eighth {
   std::size_t below = 0;  // bin of what is less than the edge
 };
 
-constexpr int kFirstExponent = 21;  // 2^21 ns < kFirstEdge
-constexpr int kExponents = 13;      // up to more than the last edge
+constexpr std::size_t kFirstExponent = 21;  // 2^21 ns < kFirstEdge
+constexpr std::size_t kExponents = 13;      // up to more than the last edge
 
 constexpr std::array<Eighth, 8 * kExponents> makeEighths() {
   std::array<Eighth, 8 * kExponents> eighths{};
