@@ -124,7 +124,7 @@ def _add_recordings(parser: argparse.ArgumentParser) -> None:
 def _add_live(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(work=_live)
     _add_output(parser)
-    parser.add_argument('--rounds', type=cli.checked(_positive), default=5, metavar='N',
+    parser.add_argument('--rounds', type=cli.count, default=5, metavar='N',
                         help='how often each fault is induced (default: 5)')
     parser.add_argument('--training', type=cli.checked(_calibration_s), nargs='+',
                         default=(60.0, 60.0), metavar='S',
@@ -143,7 +143,7 @@ def _add_live(parser: argparse.ArgumentParser) -> None:
 def _add_simulated(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(work=_simulated)
     _add_output(parser)
-    parser.add_argument('--seeds', type=cli.checked(_positive), default=20, metavar='N',
+    parser.add_argument('--seeds', type=cli.count, default=20, metavar='N',
                         help='number of repetitions, each with the next seed (default: 20)')
     parser.add_argument('--seed', type=int, default=1, help='the first seed (default: 1)')
     parser.add_argument('--calibration', type=cli.checked(_calibration_s), default=600.0,
@@ -160,14 +160,8 @@ def _add_simulated(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--faults', nargs='+', metavar='FAULT',
                         help='kinds of faults (default: all, and every regular component crashed '
                         'in turn)')
-    parser.add_argument('--jobs', type=cli.checked(_positive), default=os.cpu_count(), metavar='N',
+    parser.add_argument('--jobs', type=cli.count, default=os.cpu_count(), metavar='N',
                         help='seeds at a time (default: as many as there are cores)')
-
-
-def _positive(text: str) -> int:
-    if not text.isdecimal() or int(text) < 1:
-        raise ValueError(f'expected a number from 1 on, not {text!r}')
-    return int(text)
 
 
 def _calibration_s(text: str) -> float:
