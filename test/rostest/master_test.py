@@ -122,7 +122,11 @@ class MasterTest(unittest.TestCase):
     def await_normal(self, listener: Listener) -> None:
         """Waits until normal operation has been going on for a while; there was no alarm."""
         listener.await_message('status', settling=False, abnormal=False, number=20)
-        self.assertEqual(listener.messages('alarm'), [])
+        self.check_no_alarm(listener)
+
+    def check_no_alarm(self, listener: Listener, since: float = 0) -> None:
+        """There was none; a busy machine may have made single windows a suspicion."""
+        self.assertEqual(listener.messages('alarm', since, level=SelfAwareness.ERROR), [])
 
     def await_alarm(self, listener: Listener, since: float, source: str) -> None:
         alarm = listener.await_message('alarm', since, level=SelfAwareness.ERROR)
@@ -172,7 +176,7 @@ class MasterTest(unittest.TestCase):
         warning = listener.await_message('diagnostics', hung, task='monitor',
                                          level=DiagnosticStatus.WARN)
         self.assertEqual(warning['message'], 'the master does not answer')
-        self.assertEqual(listener.messages('alarm'), [])
+        self.check_no_alarm(listener)
         killed = time.monotonic()
         talker.send(signal.SIGKILL)
         self.await_alarm(listener, killed, '/talker')
@@ -190,7 +194,7 @@ class MasterTest(unittest.TestCase):
                                          level=DiagnosticStatus.WARN)
         self.assertEqual(warning['message'], 'the master does not answer')
         listener.await_message('status', warning['at'], abnormal=False, number=20)
-        self.assertEqual(listener.messages('alarm', dead), [])
+        self.check_no_alarm(listener, dead)
         self.assertLess(listener.longest_heartbeat(), LONGEST_HEARTBEAT_S)
 
     @again_if_clock_was_set
