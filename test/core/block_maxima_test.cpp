@@ -157,5 +157,17 @@ TEST(BlockMaxima, HaveNearlyTheLimitOfTheExactValues) {
   }
 }
 
+TEST(BlockMaxima, ThatHardlyVaryHaveALimitFarBelowTheMargin) {
+  Values values;
+  for (int k = 0; k < 1000; ++k) {
+    values.push_back(1 + 1.0 / 512 + (k % 2 == 0 ? 1e-6 : -1e-6));  // one up, one down
+  }
+  const double exact = literalLimit(values, 1e-6);
+  EXPECT_NEAR(exact, values.front(), 1e-4);
+  const double found = gumbelLimit(maximaOf(values), 1e-6);
+  EXPECT_GT(found, 1.01 * exact);
+  EXPECT_LT(found, 1.02 * exact);
+}
+
 }  // namespace
 }  // namespace self_awareness::core

@@ -11,6 +11,8 @@ namespace self_awareness::core {
 /// Rounded to the nearest of 256 values between one power of two and the next: by less than 0.2 %.
 /// Less than kLeast counts as 0, more than kMost as kMost, so that there are at most 7682 values,
 /// 61 kB; for evidence up to 200 they are 4498, 36 kB.
+/// Limits differ from those of the exact maxima by less than 0.5 %, or up to about 2 % where these
+/// vary by no more than a step: limits of tracks are at least 1.25 times the largest one.
 class BlockMaxima {
  public:
   struct Cell {
