@@ -33,14 +33,17 @@ constexpr double kMostMeanGaps = 3;
 
 }  // namespace
 
-double gumbelLimit(std::vector<double> maxima, double probability) {
-  std::sort(maxima.begin(), maxima.end());
-  const auto n = static_cast<double>(maxima.size());
+double gumbelLimit(const BlockMaxima& maxima, double probability) {
+  const auto n = static_cast<double>(maxima.number());
   double mean = 0;
   double weighted = 0;
-  for (std::size_t i = 0; i < maxima.size(); ++i) {
-    mean += maxima[i] / n;
-    weighted += static_cast<double>(i) / (n - 1) * maxima[i] / n;
+  double rank = 0;  // of the cell's first maximum, from 0
+  for (const auto& [maximum, cell_count] : maxima.cells()) {
+    const double count = cell_count;
+    const double ranks = count * (rank + (count - 1) / 2);  // their sum
+    mean += maximum * count / n;
+    weighted += ranks / (n - 1) * maximum / n;
+    rank += count;
   }
   const double scale = (2 * weighted - mean) / std::log(2.0);
   const double location = mean - kEulerMascheroni * scale;
@@ -147,10 +150,13 @@ void LimitFinder::closeBlock() {
   // Half a block at the end of a recording would have smaller maxima.
   if (static_cast<std::int64_t>(block_windows_) * parameters_.window >= kBlock) {
     if (second_pass_) {
-      linker_maxima_.push_back(linker_block_);
+      linker_maxima_.add(linker_block_);
     } else {
+      ++blocks_;
       for (std::size_t track = 0; track < block_.size(); ++track) {
-        maxima_[track].push_back(block_[track]);
+        if (model_->tracks()[track].channel != Channel::kOverdue) {
+          maxima_[track].add(block_[track]);
+        }
       }
     }
   }
@@ -166,7 +172,7 @@ void LimitFinder::startSecondPass() {
                                 std::to_string(kFewestGaps) +
                                 " gaps in its training: train it on more");
   }
-  if (maxima_.front().size() < kFewestBlocks) {
+  if (blocks_ < kFewestBlocks) {
     throw std::invalid_argument("too little normal operation to find limits: at least " +
                                 std::to_string(kFewestBlocks * kBlock / kNanosecondsPerSecond) +
                                 " s are needed in pieces of " +
@@ -199,6 +205,7 @@ LimitFinder::Findings LimitFinder::findings() const {
   Findings found;
   found.windows = windows_seen_;
   found.duration = duration_;
+  found.blocks = blocks_;
   found.maxima = maxima_;
   for (const EvidenceStatistics::Type& type : gaps_) {
     found.longest_gaps.push_back(type.longest_gaps);
@@ -215,9 +222,9 @@ void LimitFinder::merge(const Findings& other) {
   }
   windows_seen_ += other.windows;
   duration_ += other.duration;
+  blocks_ += other.blocks;
   for (std::size_t track = 0; track < maxima_.size(); ++track) {
-    maxima_[track].insert(maxima_[track].end(), other.maxima[track].begin(),
-                          other.maxima[track].end());
+    maxima_[track].merge(other.maxima[track]);
   }
   misleading_.add(other.misleading);
   for (std::size_t id = 0; id < gaps_.size(); ++id) {
@@ -225,8 +232,7 @@ void LimitFinder::merge(const Findings& other) {
       gaps_[id].addGap(gap);
     }
   }
-  linker_maxima_.insert(linker_maxima_.end(), other.linker_maxima.begin(),
-                        other.linker_maxima.end());
+  linker_maxima_.merge(other.linker_maxima);
 }
 
 double LimitFinder::meanGap(EventId id) const {
@@ -248,9 +254,8 @@ double LimitFinder::limit(std::size_t track, double rate) const {
     const bool irregular = age > kLongestWait && age > kMostMeanGaps * meanGap(to);
     return irregular ? kNone : model_->overdue(to, std::llround(age));
   }
-  const std::vector<double>& maxima = maxima_[track];
-  const double found = std::max({model_->leastLimit(track),
-                                 kMargin * *std::max_element(maxima.begin(), maxima.end()),
+  const BlockMaxima& maxima = maxima_[track];
+  const double found = std::max({model_->leastLimit(track), kMargin * maxima.largest(),
                                  gumbelLimit(maxima, std::min(rate * kBlock / kHour, 0.5))});
   if (channel == Channel::kDelay || channel == Channel::kSlowDelay) {
     return misleading_.tracks()[track] || found > kMostDelayLimit ? kNone : found;
@@ -262,13 +267,12 @@ double LimitFinder::limit(std::size_t track, double rate) const {
 }
 
 EvidenceLimits LimitFinder::limits() const {
-  if (linker_maxima_.size() < 2) {
+  if (linker_maxima_.number() < 2) {
     throw std::logic_error("limits are known after the second pass");
   }
   EvidenceLimits limits = limits_;
-  const double largest = *std::max_element(linker_maxima_.begin(), linker_maxima_.end());
   limits.linker =
-      std::max({1.0, kLinkerMargin * largest,
+      std::max({1.0, kLinkerMargin * linker_maxima_.largest(),
                 gumbelLimit(linker_maxima_,
                             std::min(parameters_.false_alarms_per_hour * kBlock / kHour, 0.5))});
   return limits;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
@@ -85,27 +84,58 @@ class Limits {
 using LimitsState = std::tuple<std::vector<double>, double>;
 
 using Findings = core::LimitFinder::Findings;
-// Arrays are pickled as they lie in the memory: maxima are many.
+// Numbers of cells, and of all cells one behind the other the maxima and their counts. Arrays are
+// pickled as they lie in the memory.
+using MaximaState =
+    std::tuple<py::array_t<std::uint32_t>, py::array_t<float>, py::array_t<std::uint32_t>>;
 using FindingsState =
-    std::tuple<std::uint64_t, std::int64_t, std::vector<py::array_t<double>>,
-               std::vector<std::vector<std::int64_t>>, std::vector<bool>, std::vector<double>>;
+    std::tuple<std::uint64_t, std::int64_t, std::uint64_t, MaximaState,
+               std::vector<std::vector<std::int64_t>>, std::vector<bool>, MaximaState>;
+
+MaximaState stateOf(const std::vector<core::BlockMaxima>& all) {
+  std::vector<std::uint32_t> sizes;
+  std::vector<float> maxima;
+  std::vector<std::uint32_t> counts;
+  for (const core::BlockMaxima& of_track : all) {
+    sizes.push_back(static_cast<std::uint32_t>(of_track.cells().size()));
+    for (const auto& [maximum, count] : of_track.cells()) {
+      maxima.push_back(maximum);
+      counts.push_back(count);
+    }
+  }
+  return {toArray(sizes), toArray(maxima), toArray(counts)};
+}
+
+std::vector<core::BlockMaxima> fromState(const MaximaState& state) {
+  const auto& [sizes, maxima, counts] = state;
+  std::vector<core::BlockMaxima> all(static_cast<std::size_t>(sizes.size()));
+  py::ssize_t cell = 0;
+  for (std::size_t track = 0; track < all.size(); ++track) {
+    for (std::uint32_t k = 0; k < sizes.at(track); ++k, ++cell) {
+      all[track].add(maxima.at(cell), counts.at(cell));
+    }
+  }
+  return all;
+}
 
 FindingsState stateOf(const Findings& findings) {
-  std::vector<py::array_t<double>> maxima;
-  std::transform(findings.maxima.begin(), findings.maxima.end(), std::back_inserter(maxima),
-                 [](const std::vector<double>& of_track) { return toArray(of_track); });
-  return {findings.windows,      findings.duration,   maxima,
-          findings.longest_gaps, findings.misleading, findings.linker_maxima};
+  return {findings.windows,
+          findings.duration,
+          findings.blocks,
+          stateOf(findings.maxima),
+          findings.longest_gaps,
+          findings.misleading,
+          stateOf(std::vector<core::BlockMaxima>{findings.linker_maxima})};
 }
 
 Findings fromState(const FindingsState& state) {
   Findings findings;
-  std::vector<py::array_t<double>> maxima;
-  std::tie(findings.windows, findings.duration, maxima, findings.longest_gaps, findings.misleading,
-           findings.linker_maxima) = state;
-  for (const py::array_t<double>& of_track : maxima) {
-    findings.maxima.emplace_back(of_track.data(), of_track.data() + of_track.size());
-  }
+  MaximaState maxima;
+  MaximaState linker_maxima;
+  std::tie(findings.windows, findings.duration, findings.blocks, maxima, findings.longest_gaps,
+           findings.misleading, linker_maxima) = state;
+  findings.maxima = fromState(maxima);
+  findings.linker_maxima = fromState(linker_maxima).at(0);
   return findings;
 }
 
@@ -164,7 +194,8 @@ void bindEvidence(py::module& m) {
 
   py::class_<Findings>(m, "LimitFindings",
                        "What recordings said to a LimitFinder; may go to another process.")
-      .def(py::pickle(&stateOf, &fromState));
+      .def(py::pickle([](const Findings& self) { return stateOf(self); },
+                      [](const FindingsState& state) { return fromState(state); }));
 
   py::class_<Limits>(m, "LimitFinder",
                      "Finds limits in two passes over the same recordings of normal operation.\n"

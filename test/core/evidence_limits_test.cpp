@@ -29,6 +29,14 @@ std::shared_ptr<const EvidenceModel> modelOf(const Events& first, const Events& 
   return std::make_shared<EvidenceModel>(watch(countsOf({first}), countsOf({second})));
 }
 
+BlockMaxima maximaOf(const std::vector<double>& values) {
+  BlockMaxima maxima;
+  for (const double value : values) {
+    maxima.add(value);
+  }
+  return maxima;
+}
+
 class LimitFinderTest : public testing::Test {
  protected:
   static void feed(LimitFinder& finder, const std::shared_ptr<const EvidenceModel>& model,
@@ -63,15 +71,17 @@ TEST(GumbelLimit, IsFittedByLMoments) {
   const double location = 7.0 / 3 - 0.5772156649015329 * scale;
   for (const double probability : {0.5, 0.01, 1e-6}) {
     const double expected = location - scale * std::log(-std::log(1 - probability));
-    EXPECT_NEAR(gumbelLimit({4, 1, 2}, probability), expected, 1e-9);  // in any order
+    EXPECT_NEAR(gumbelLimit(maximaOf({4, 1, 2}), probability), expected, 1e-9);  // in any order
   }
 }
 
 TEST(GumbelLimit, FindsTheQuantilesOfAGumbelDistribution) {
   std::mt19937 random(1);
   std::extreme_value_distribution<double> gumbel(5, 2);
-  std::vector<double> maxima(20000);
-  std::generate(maxima.begin(), maxima.end(), [&] { return gumbel(random); });
+  BlockMaxima maxima;
+  for (int k = 0; k < 20000; ++k) {
+    maxima.add(std::max(gumbel(random), 0.0));
+  }
   for (const double probability : {0.5, 0.1, 0.001, 1e-6}) {
     const double expected = 5 - 2 * std::log(-std::log1p(-probability));
     EXPECT_NEAR(gumbelLimit(maxima, probability), expected, 0.02 * expected) << probability;
@@ -79,7 +89,7 @@ TEST(GumbelLimit, FindsTheQuantilesOfAGumbelDistribution) {
 }
 
 TEST(GumbelLimit, OfMaximaThatNeverVaryIsTheirValue) {
-  EXPECT_NEAR(gumbelLimit({3, 3, 3, 3}, 1e-6), 3, 1e-9);
+  EXPECT_NEAR(gumbelLimit(maximaOf({3, 3, 3, 3}), 1e-6), 3, 1e-9);
 }
 
 TEST(OverdueAge, ExtrapolatesTheExcessOverTheShortestOfTheLongestGaps) {
@@ -263,6 +273,35 @@ TEST_F(LimitFinderTest, WhatRecordingsSayElsewhereAddsUp) {
     EXPECT_TRUE(a.tracks[track] == b.tracks[track] ||
                 (std::isnan(a.tracks[track]) && std::isnan(b.tracks[track])))
         << track;
+  }
+}
+
+TEST_F(LimitFinderTest, FindingsDoNotGrowWithTheRecording) {
+  LimitFinder finder(model_, {kWindow, 5 * kSecond, 0.5});
+  const Events normal = robot(136 * kSecond, 3);  // 13 blocks
+  const auto cells = [&] {
+    std::size_t number = 0;
+    for (const BlockMaxima& maxima : finder.findings().maxima) {
+      number += maxima.cells().size();
+    }
+    return number;
+  };
+  feed(finder, model_, normal);
+  EXPECT_EQ(finder.findings().blocks, 13U);
+  const std::size_t of_one = cells();
+  EXPECT_GT(of_one, 0U);
+  for (int k = 0; k < 9; ++k) {
+    feed(finder, model_, normal);
+  }
+  const LimitFinder::Findings findings = finder.findings();
+  EXPECT_EQ(findings.blocks, 130U);
+  EXPECT_EQ(cells(), of_one);
+  for (std::size_t track = 0; track < findings.maxima.size(); ++track) {
+    const bool overdue = model_->tracks()[track].channel == Channel::kOverdue;
+    EXPECT_EQ(findings.maxima[track].number(), overdue ? 0U : 130U) << track;
+  }
+  for (const std::vector<std::int64_t>& gaps : findings.longest_gaps) {
+    EXPECT_LE(gaps.size(), EvidenceStatistics::kLongestGaps);
   }
 }
 

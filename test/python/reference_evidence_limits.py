@@ -8,6 +8,14 @@ from reference_evidence import (DELAYS, KINDS, SECOND, Counts, Event, Pair, Refe
                                 ReferenceScorer, Track, gain)
 
 
+def rounded(maximum: float) -> float:
+    """Return the nearest of 256 values between two powers of two."""
+    if maximum < 1 / 1024:
+        return 0.0
+    step = 2.0 ** math.floor(math.log2(maximum)) / 256
+    return math.floor(maximum / step + 0.5) * step
+
+
 def gumbel_limit(maxima: Sequence[float], probability: float) -> float:
     """Return what maxima exceed with the probability, by L-moments taken pair by pair."""
     n = len(maxima)
@@ -40,7 +48,7 @@ class ReferenceLimits:
         self._blocks = self._in_blocks(())
         self._misleading = self._misleading_pairs()
         self.tracks = [self._limit(n) for n in range(len(model.tracks))]
-        linked = [max(self._linker(row) for row in block)
+        linked = [rounded(max(self._linker(row) for row in block))
                   for block in self._in_blocks(self.tracks)]
         self.linker = max(1.0, 1.5 * max(linked),
                           gumbel_limit(linked, min(budget * 10 / 3600, 0.5)))
@@ -89,7 +97,7 @@ class ReferenceLimits:
             age = self._overdue_age(kind, per_hour)
             irregular = age > 10 * SECOND and age > 3 * self._model.both.mean_gap(kind)
             return math.nan if irregular else self._model.overdue(kind, round(age))
-        maxima = [max(row[index] for row in block) for block in self._blocks]
+        maxima = [rounded(max(row[index] for row in block)) for block in self._blocks]
         found = max(self._least(track), 1.25 * max(maxima),
                     gumbel_limit(maxima, min(per_hour * 10 / 3600, 0.5)))
         if channel in DELAYS:

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "self_awareness/core/block_maxima.h"
 #include "self_awareness/core/evidence_scorer.h"
 #include "self_awareness/core/misleading_pairs.h"
 #include "self_awareness/core/windows.h"
@@ -13,9 +14,9 @@ namespace self_awareness::core {
 
 /// The limit that the largest value of a block exceeds with a small probability: a Gumbel
 /// distribution is fitted to the maxima of blocks by L-moments (Hosking 1990), and extrapolated.
-/// @param maxima at least two
+/// @param maxima of at least two blocks
 /// @param probability 0 to 1
-double gumbelLimit(std::vector<double> maxima, double probability);
+double gumbelLimit(const BlockMaxima& maxima, double probability);
 
 /// The age [ns] that gaps between two events of a type reach less often than a rate: the excess of
 /// the longest gaps over the shortest of them is taken for exponential, and extrapolated.
@@ -40,14 +41,15 @@ class LimitFinder {
   };
 
   /// What recordings say in one pass. That of some recordings and that of others add up to that of
-  /// all, in any order.
+  /// all, in any order; it does not grow with their length.
   struct Findings {
-    std::uint64_t windows = 0;                            ///< looked at in the first pass
-    std::int64_t duration = 0;                            ///< [ns]
-    std::vector<std::vector<double>> maxima;              ///< largest evidence of blocks, by track
+    std::uint64_t windows = 0;        ///< looked at in the first pass
+    std::int64_t duration = 0;        ///< [ns]
+    std::uint64_t blocks = 0;         ///< of the first pass
+    std::vector<BlockMaxima> maxima;  ///< largest evidence of blocks, by track; none for overdue
     std::vector<std::vector<std::int64_t>> longest_gaps;  ///< [ns], by id
     std::vector<bool> misleading;                         ///< by track
-    std::vector<double> linker_maxima;                    ///< of blocks, of the second pass
+    BlockMaxima linker_maxima;                            ///< of the second pass
   };
 
   LimitFinder(std::shared_ptr<const EvidenceModel> model, const Parameters& parameters);
@@ -80,7 +82,7 @@ class LimitFinder {
 
   /// The maxima are those of blocks of this length [ns]: longer than evidence remembers.
   static constexpr std::int64_t kBlock = 10 * kNanosecondsPerSecond;
-  static constexpr std::size_t kFewestBlocks = 5;
+  static constexpr std::uint64_t kFewestBlocks = 5;
 
  private:
   void judge(std::int64_t end);
@@ -100,7 +102,8 @@ class LimitFinder {
 
   std::vector<double> block_;  // largest evidence, by track
   std::size_t block_windows_ = 0;
-  std::vector<std::vector<double>> maxima_;     // of blocks, by track
+  std::uint64_t blocks_ = 0;
+  std::vector<BlockMaxima> maxima_;             // by track, none for overdue
   std::vector<EvidenceStatistics::Type> gaps_;  // longest gaps, by id
   std::int64_t duration_ = 0;                   // [ns]
   MisleadingPairs misleading_;
@@ -108,7 +111,7 @@ class LimitFinder {
   bool second_pass_ = false;
   EvidenceLimits limits_;
   double linker_block_ = 0;
-  std::vector<double> linker_maxima_;
+  BlockMaxima linker_maxima_;
 };
 
 }  // namespace self_awareness::core
