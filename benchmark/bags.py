@@ -1,14 +1,17 @@
 #!/usr/bin/python3
-"""Benchmark of `train` on a bag with images, beside programs that only iterate over it.
+"""Benchmark of `train`: on a bag with images, and on several bags with one process and with two.
 
 Makes a bag of some 1.5 GB in a temporary folder, and runs in turn a bare `rosbag::View` iteration
 in C++, `rosbag.Bag.read_messages(raw=True)` in Python, `read_events` (how `train` reads its bags),
 and `train`: time, CPU time, and what they read of the bag. Every program is run without work as
 well: its start, with its imports, is told apart. Needs `catkin_make bags_benchmark`.
+
+Then it makes bags of many event types, and trains on them with one process and with two, in turn.
 """
 from __future__ import annotations
 
 import argparse
+import json
 import os
 import statistics
 import subprocess
@@ -20,11 +23,16 @@ from typing import Any, Dict, List, NamedTuple, Optional, Sequence
 
 import bags_report
 import bags_robot
+import bags_timers
 import page
 
 _DOCS = Path(__file__).resolve().parents[1] / 'docs'
 _SECONDS = 160.0
 _SEED = 1
+_JOBS = (1, 2)
+_PARTS = 8
+_PART_SECONDS = 120.0
+_PART_TYPES = 300
 _RAW = 'import sys, rosbag\nfor _ in rosbag.Bag(sys.argv[1]).read_messages(raw=True): pass'
 _EVENTS = ('import sys, self_awareness as s\n'
            's.read_events(sys.argv[1], s.EncodingRules.defaults())')
@@ -126,27 +134,62 @@ def measure(bag: str, model: str, rounds: int) -> Dict[str, Any]:
     return result
 
 
+def measure_images(folder: str, seconds: float, rounds: int) -> Dict[str, Any]:
+    """Make a bag with images, and measure every program on it."""
+    bag = os.path.join(folder, 'robot.bag')
+    print('making the bag', file=sys.stderr)
+    messages = bags_robot.write(bag, seconds, _SEED)
+    print('measuring', file=sys.stderr)
+    result = dict(page.machine(), rounds=rounds, seconds=seconds, messages=messages,
+                  bag_bytes=os.path.getsize(bag),
+                  programs=measure(bag, os.path.join(folder, 'robot.model'), rounds))
+    os.remove(bag)
+    return result
+
+
+def measure_jobs(folder: str, seconds: float, rounds: int) -> Dict[str, Any]:
+    """Make bags of many event types, of so many seconds each; return medians by --jobs."""
+    print('making the bags', file=sys.stderr)
+    bags, messages = bags_timers.write(folder, _PARTS, _PART_TYPES, seconds)
+    for bag in bags:
+        warm(bag)
+    print('measuring', file=sys.stderr)
+    usages: Dict[int, List[Usage]] = {jobs: [] for jobs in _JOBS}
+    for _ in range(rounds):
+        for jobs, of_jobs in usages.items():
+            of_jobs.append(run([_built('train'), *bags, '-o', os.path.join(folder, 'm'),
+                                '--jobs', str(jobs)]))
+    return dict(page.machine(), rounds=rounds, seconds=seconds, bags=_PARTS,
+                types=_PART_TYPES, messages=messages,
+                jobs={str(jobs): {'wall_s': _median(of_jobs, 'wall_s'),
+                                  'cpu_s': _median(of_jobs, 'cpu_s')}
+                      for jobs, of_jobs in usages.items()})
+
+
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Run the benchmark; return the exit code."""
     parser = argparse.ArgumentParser(description=__doc__.split('\n', 1)[0])
     parser.add_argument('--seconds', type=float, default=_SECONDS, metavar='S',
-                        help=f'of the recording, 10 MB each (default: {_SECONDS:g})')
+                        help=f'of the bag with images, 10 MB each (default: {_SECONDS:g})')
     parser.add_argument('--rounds', type=int, default=11, metavar='N',
                         help='runs of every program, in turn (default: 11)')
     parser.add_argument('--folder', default=tempfile.gettempdir(), metavar='DIR',
                         help='where the bag is made (default: %(default)s)')
     parser.add_argument('--output', type=Path, default=_DOCS, metavar='DIR',
                         help='where performance.md and performance/bags.json are (default: docs)')
+    parser.add_argument('--only', choices=('images', 'jobs'),
+                        help='measure one part again; the other one stays as bags.json has it')
+    parser.add_argument('--part-seconds', type=float, default=_PART_SECONDS, metavar='S',
+                        help=f'of each bag for --jobs (default: {_PART_SECONDS:g})')
     arguments = parser.parse_args(argv)
+    result: Dict[str, Any] = {}
+    if arguments.only is not None:
+        result = json.loads((arguments.output / 'performance' / 'bags.json').read_text())
     with tempfile.TemporaryDirectory(dir=arguments.folder) as folder:
-        bag = os.path.join(folder, 'robot.bag')
-        print('making the bag', file=sys.stderr)
-        messages = bags_robot.write(bag, arguments.seconds, _SEED)
-        print('measuring', file=sys.stderr)
-        result = dict(page.machine(), rounds=arguments.rounds, seconds=arguments.seconds,
-                      messages=messages, bag_bytes=os.path.getsize(bag),
-                      programs=measure(bag, os.path.join(folder, 'robot.model'),
-                                       arguments.rounds))
+        if arguments.only != 'jobs':
+            result.update(measure_images(folder, arguments.seconds, arguments.rounds))
+        if arguments.only != 'images':
+            result['jobs'] = measure_jobs(folder, arguments.part_seconds, arguments.rounds)
     page.publish('bags', result, bags_report.markdown(result), arguments.output)
     print(bags_report.markdown(result))
     return 0

@@ -1,14 +1,14 @@
 """What the benchmark of bags found, as a section of docs/performance.md."""
 from __future__ import annotations
 
-from typing import Any, Dict
+from typing import Any, Dict, List
 
 _NAMES = {'view': '`rosbag::View`, C++', 'read_messages': '`read_messages(raw=True)`, Python',
           'read_events': '`read_events`', 'train': '`train`'}
 
 
 def markdown(result: Dict[str, Any]) -> str:
-    """Return the table."""
+    """Return the tables; that of --jobs where it was measured."""
     programs = result['programs']
     size = result['bag_bytes']
     lines = [
@@ -26,7 +26,25 @@ def markdown(result: Dict[str, Any]) -> str:
         lines.append(f'| {_NAMES[name]} | {times} '
                      f'| {100 * program["read_bytes"] / size:.2f} % '
                      f'| {100 * program["cold_disk_bytes"] / size:.2f} % |')
+    if 'jobs' in result:
+        lines += ['', *_jobs(result['jobs'])]
     return '\n'.join(lines)
+
+
+def _jobs(result: Dict[str, Any]) -> List[str]:
+    alone = result['jobs']['1']['wall_s']
+    lines = [
+        f'`train` on {result["bags"]} bags of {result["types"]} event types, '
+        f'{result["messages"]:,} messages in {result["bags"]} times {result["seconds"]:g} s, on '
+        f'{result["cores"]} cores; median of {result["rounds"]} runs in turn, the CPU of all '
+        'processes.',
+        '',
+        '| | whole program | CPU | speed-up |',
+        '|---' + '|--:' * 3 + '|']
+    for jobs, usage in result['jobs'].items():
+        lines.append(f'| `--jobs {jobs}` | {usage["wall_s"]:.2f} s | {usage["cpu_s"]:.2f} s '
+                     f'| {alone / usage["wall_s"]:.2f} |')
+    return lines
 
 
 def _time(programs: Dict[str, Any], name: str, kind: str, alone: bool) -> str:

@@ -1,15 +1,16 @@
 """Trains one model on many bags, in whatever processes.
 
-Every bag is counted for itself, and the counts are added in the order in which the bags are named:
-so the model is the same whoever counted.
+Every bag is counted for itself, and the counts are added in the order in which the bags are named,
+those of a run of neighbouring bags where they were counted: so the model is the same whoever
+counted, and only the sums of runs are handed over.
 """
 from __future__ import annotations
 
 import copy
 import os
 from contextlib import closing
-from dataclasses import dataclass
-from typing import Callable, Dict, List, Optional, Sequence, Tuple, Union
+from dataclasses import dataclass, field, replace
+from typing import Callable, Dict, Iterable, List, Optional, Sequence, Tuple
 
 from self_awareness import (PREDECESSORS, BagError, DetectorParameters, EncodingRules, Recording,
                             TrainedModel, Training, evidence_limits, progress, read_events)
@@ -18,7 +19,7 @@ from self_awareness.recordings import BagPart, RecordingEvents, overlap
 from self_awareness.stamps import SECOND_NS
 from self_awareness.workers import InProcess, Workers
 
-_MOST_EVENTS_OF_BAG = 5_000_000
+_MOST_EVENTS_OF_RUN = 5_000_000
 _MOST_EVENTS = 20_000_000
 """So many events, of 12 bytes each, are kept for the limits; other bags are read once more."""
 
@@ -83,16 +84,26 @@ def train(parts: Sequence[BagPart], counting: Counting, workers: Optional[Worker
     """
     workers = workers or InProcess()
     alone = base is None and len(parts) == 1
-    total = _Total(base)
-    tasks = [_Task(part, alone, workers.near) for part in parts]
-    with closing(workers.map(_count, counting, tasks, 'bags')) as results:
-        for part, counted in zip(parts, results):
-            if isinstance(counted, _Counted):
-                tell(total.add(part, counted, alone))
-            elif skip_bad:
-                total.bad.append(counted.error)
-                tell(f'skipped: {counted.error}')
-            else:
+    how = _How(counting, alone, skip_bad, _MOST_EVENTS_OF_RUN if workers.near else 0)
+    number = workers.runs(len(parts))
+    cuts = [len(parts) * run // number for run in range(number + 1)]
+    runs = [_Run(parts[begin:end]) for begin, end in zip(cuts, cuts[1:])]
+    distinct = DistinctRecordings()
+    for recording in [] if base is None else base.recordings:
+        distinct.add(f'{recording.bag}, which the model was trained on', recording)
+    total = _Sum(_MOST_EVENTS, base)
+    unit = 'bags' if number == len(parts) else 'runs of bags'
+    with closing(workers.map(_count_run, how, runs, unit)) as counts:
+        for counted in counts:
+            for line in counted.lines:
+                tell(line)
+            for trained_on, recording in counted.recordings():
+                path = trained_on.part.path
+                same = distinct.add(path, recording)
+                if same is not None:
+                    raise ValueError(f'{path}: the same recording as {same}; name it once')
+            total.add(counted)
+            if counted.error is not None:
                 raise ValueError(counted.error)
     if total.model is None or not total.trained_on:
         raise ValueError(f'no bag can be trained on: {total.bad[-1]}')
@@ -133,77 +144,127 @@ class DistinctRecordings:
 
 
 @dataclass(frozen=True)
-class _Task:
-    part: BagPart
+class _How:
+    """How runs are counted.
+
+    Args:
+        counting: of each bag.
+        alone: the bag is the only one, and both halves of the training come from it.
+        skip_bad: go on behind bags that cannot be used.
+        most_events: kept of a run.
+    """
+
+    counting: Counting
     alone: bool
-    keep_events: bool
+    skip_bad: bool
+    most_events: int
+
+
+@dataclass(frozen=True)
+class _Run:
+    """Neighbouring bags."""
+
+    parts: Sequence[BagPart]
 
     def __str__(self) -> str:
-        return self.part.path
+        first, last = self.parts[0].path, self.parts[-1].path
+        return first if len(self.parts) == 1 else f'one of {first} to {last}'
 
 
-@dataclass(frozen=True)
-class _Counted:
-    """The model of one bag; all counts in its first half, but for a bag that is alone."""
+@dataclass
+class _Sum:
+    """What was counted in neighbouring bags.
 
-    model: TrainedModel
-    events: Optional[RecordingEvents]
+    Args:
+        most_events: that are kept.
+        model: the sum, behind what it was before; None: no bag was good. Its recordings belong to
+            the two halves in turn: what holds in one of them only is not taken for information.
+        trained_on: the good bags.
+        lines: about each bag that is done.
+        bad: what is wrong with those that were skipped.
+        error: what is wrong with the bag that ended it; None: nothing.
+    """
 
+    most_events: int
+    model: Optional[TrainedModel] = None
+    trained_on: List[TrainedOn] = field(default_factory=list)
+    lines: List[str] = field(default_factory=list)
+    bad: List[str] = field(default_factory=list)
+    error: Optional[str] = None
+    _kept: int = field(default=0, init=False)
 
-@dataclass(frozen=True)
-class _Bad:
-    error: str
+    def recordings(self) -> Iterable[Tuple[TrainedOn, Recording]]:
+        """Return the good bags, and what the model says of them; of a sum without a base."""
+        return zip(self.trained_on, [] if self.model is None else self.model.recordings)
 
+    def add(self, other: _Sum) -> None:
+        """Add the bags behind these; the other sum is used up.
 
-class _Total:
-    """The sum of what was counted."""
+        Raises:
+            ValueError: they do not fit; nothing was added.
+        """
+        if other.model is not None:
+            self._add_counts(other)
+        self.lines += other.lines
+        self.bad += other.bad
 
-    def __init__(self, base: Optional[TrainedModel]) -> None:
-        self.model = base
-        self.trained_on: List[TrainedOn] = []
-        self.bad: List[str] = []
-        self._events = 0
-        self._known = DistinctRecordings()
-        for recording in [] if base is None else base.recordings:
-            self._known.add(f'{recording.bag}, which the model was trained on', recording)
+    def skip(self, error: str) -> None:
+        """Leave out the bag behind these."""
+        self.bad.append(error)
+        self.lines.append(f'skipped: {error}')
 
-    def add(self, part: BagPart, counted: _Counted, alone: bool) -> str:
-        """Add what was counted in the next bag, or the only one; return a line about it."""
-        recording, = counted.model.recordings
-        same = self._known.add(part.path, recording)
-        if same is not None:
-            raise ValueError(f'{part.path}: the same recording as {same}; name it once')
-        number = 0 if self.model is None else len(self.model.recordings)
-        half = number % 2  # in turn; what holds in one of them only is not taken for information
-        if half == 1:
-            counted.model.swap_halves()
+    def _add_counts(self, other: _Sum) -> None:
+        swapped = self.model is not None and len(self.model.recordings) % 2 == 1
+        if swapped:
+            other.model.swap_halves()
         if self.model is None:
-            self.model = counted.model
+            self.model = other.model
         else:
-            self._check_sources(part, counted.model)
+            self._check_sources(other)
             try:
-                self.model.merge(counted.model)
+                self.model.merge(other.model)
             except ValueError as error:
-                raise ValueError(f'{part.path}: {error}') from error
-        self._events += recording.events
-        kept = counted.events if self._events <= _MOST_EVENTS else None
-        self.trained_on.append(TrainedOn(part, None if alone else half, kept))
-        seconds = (recording.end - recording.start) / SECOND_NS
-        return f'{part.path}: {seconds:.1f} s, {recording.events} events'
+                raise ValueError(f'{_Run([each.part for each in other.trained_on])}: {error}'
+                                 ) from error
+        for each in other.trained_on:
+            half = 1 - each.half if swapped and each.half is not None else each.half
+            events = 0 if each.events is None else len(each.events.stamps)
+            keep = self._kept + events <= self.most_events
+            self._kept += events if keep else 0
+            self.trained_on.append(replace(each, half=half, events=each.events if keep else None))
 
-    def _check_sources(self, part: BagPart, added: TrainedModel) -> None:
-        if self.model.encoding.source == added.encoding.source:
+    def _check_sources(self, other: _Sum) -> None:
+        if self.model.encoding.source == other.model.encoding.source:
             return
-        nameless = part if added.encoding.source == 'none' else self.trained_on[0].part
-        raise ValueError(f'{nameless.path}: {_NAMELESS}')
+        # The two bags where one names senders and the other does not: the same in any runs.
+        before, behind = self.trained_on[-1], other.trained_on[0]
+        nameless = behind if other.model.encoding.source == 'none' else before
+        raise ValueError(f'{nameless.part.path}: {_NAMELESS}')
 
 
 _NAMELESS = ('no connection of this bag names its sender, and sources are to be told apart; leave '
              'the bag out, or use "source: none" for all (--encoding)')
 
 
-def _count(counting: Counting, task: _Task) -> Union[_Counted, _Bad]:
-    part = task.part
+class _BadBag(ValueError):
+    """Something is wrong with a bag by itself."""
+
+
+def _count_run(how: _How, run: _Run) -> _Sum:
+    total = _Sum(how.most_events)
+    for part in run.parts:
+        try:
+            total.add(_count(how, part))
+        except ValueError as error:
+            if not (how.skip_bad and isinstance(error, _BadBag)):
+                total.error = str(error)
+                break
+            total.skip(str(error))
+    return total
+
+
+def _count(how: _How, part: BagPart) -> _Sum:
+    counting = how.counting
     try:
         events, encoding = _read(counting, part)
         recording = Recording()
@@ -215,13 +276,15 @@ def _count(counting: Counting, task: _Task) -> Union[_Counted, _Bad]:
         training = Training(encoding, counting.bin_size, counting.window, counting.horizon_bins,
                             counting.predecessors)
         training.add_events(events.event_types, events.stamps, events.ids,
-                            events.middle if task.alone else None, recording)
+                            events.middle if how.alone else None, recording)
     except BagError as error:
-        return _Bad(str(error))
+        raise _BadBag(str(error)) from error
     except ValueError as error:
-        return _Bad(f'{part.path}: {error}')
-    keep = task.keep_events and recording.events <= _MOST_EVENTS_OF_BAG
-    return _Counted(training.model(watch=False), events if keep else None)
+        raise _BadBag(f'{part.path}: {error}') from error
+    seconds = (recording.end - recording.start) / SECOND_NS
+    line = f'{part.path}: {seconds:.1f} s, {recording.events} events'
+    trained_on = TrainedOn(part, None if how.alone else 0, events)
+    return _Sum(recording.events, training.model(watch=False), [trained_on], [line])
 
 
 def _read(counting: Counting, part: BagPart) -> Tuple[RecordingEvents, EncodingRules]:

@@ -7,6 +7,7 @@ from __future__ import annotations
 import asyncio
 import concurrent.futures
 import logging
+import math
 import multiprocessing
 import multiprocessing.connection
 import os
@@ -27,6 +28,10 @@ _Result = TypeVar('_Result')
 
 _AHEAD = 2
 """So many tasks a worker are under way or done, and wait for their turn."""
+_RUNS = 3
+"""So many runs of tasks a worker has to do, that all be ready at about the same time."""
+_LONGEST_RUN = 8
+"""So many tasks make a run at most, or as many as there are workers."""
 _RETRIES = 2
 _CONNECT_S = 10.0
 
@@ -54,6 +59,17 @@ class Workers(ABC):
             ValueError: the work cannot be done there.
             Exception: what the function raises.
         """
+
+    def runs(self, tasks: int) -> int:
+        """Return into how many runs tasks are best cut, where results of a run can be added up.
+
+        Args:
+            tasks: how many there are, more than 0.
+
+        Raises:
+            ValueError: the work cannot be done there.
+        """
+        return tasks  # results are handed over as such
 
     def close(self) -> None:
         """Let go of what does the work."""
@@ -95,6 +111,10 @@ class Processes(Workers):
                 for child in set(multiprocessing.active_children()) - others:
                     child.kill()
                 raise
+
+    def runs(self, tasks: int) -> int:
+        """See Workers."""
+        return _runs(tasks, self._number)
 
 
 class Cluster(Workers):
@@ -143,17 +163,19 @@ class Cluster(Workers):
             return pickle.loads(data)
 
         try:
-            # As the result of a task, what is shared is made again when workers die that hold it.
-            there = self._submit(pickle.loads, pickle.dumps(shared))
-            futures.add(there)
-            yield from _in_order(tasks, submit, result,
-                                 lambda: sum(self._client.nthreads().values()), description)
-        except (concurrent.futures.CancelledError, OSError, asyncio.TimeoutError) as error:
-            raise ValueError(f'--scheduler {self._address}: the connection was lost ({error})'
-                             ) from error
+            with self._connected():
+                # As the result of a task, it is made again when workers die that hold it.
+                there = self._submit(pickle.loads, pickle.dumps(shared))
+                futures.add(there)
+                yield from _in_order(tasks, submit, result, self._threads, description)
         finally:
             with suppress(OSError, asyncio.TimeoutError):  # without a connection there is nothing to cancel
                 self._client.cancel(list(futures))
+
+    def runs(self, tasks: int) -> int:
+        """See Workers; by the workers that are there now."""
+        with self._connected():
+            return _runs(tasks, self._threads())
 
     def close(self) -> None:
         """Disconnect; the cluster goes on."""
@@ -163,6 +185,17 @@ class Cluster(Workers):
         with warnings.catch_warnings():
             warnings.filterwarnings('ignore', message='(?s).*[Ll]arge object')  # see map()
             return self._client.submit(function, *arguments, pure=False, retries=_RETRIES)
+
+    def _threads(self) -> int:
+        return sum(self._client.nthreads().values())
+
+    @contextmanager
+    def _connected(self) -> Iterator[None]:
+        try:
+            yield
+        except (concurrent.futures.CancelledError, OSError, asyncio.TimeoutError) as error:
+            raise ValueError(f'--scheduler {self._address}: the connection was lost ({error})'
+                             ) from error
 
     @contextmanager
     def _explained(self, task: object) -> Iterator[None]:
@@ -175,6 +208,14 @@ class Cluster(Workers):
             raise ValueError(f'--scheduler {self._address}: its workers lack something ({error}); '
                              'start them where the setup.bash of self_awareness was sourced'
                              ) from error
+
+
+def _runs(tasks: int, workers: int) -> int:
+    # While one worker is busy with a run, the results of the others arrive: where a run has as
+    # many tasks as there are workers, to add those up does not take longer than that. Longer ones
+    # would only be more to do again when a worker dies.
+    longest = max(workers, _LONGEST_RUN)
+    return min(tasks, max(_RUNS * workers, math.ceil(tasks / longest), 1))
 
 
 def _in_order(tasks: Sequence[_Task], submit: Callable[[_Task], Any],

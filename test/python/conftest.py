@@ -79,10 +79,14 @@ def wait_until(condition: Callable[[], object], what: str, deadline_s: float = 6
 
 
 def learned(model: TrainedModel, calibrations: bool = False) -> bytes:
-    """Return all that a model holds but the time of its training; of limits only if asked for."""
+    """Return all that a file says of a model but when it was made; of limits only if asked for."""
     model = copy.copy(model)
     if not calibrations:
         model.calibration = model.evidence_calibration = None
+    limits = model.evidence_calibration
+    if limits is not None:
+        limits.stamp = 0
+        model.evidence_calibration = limits
     state = model.__getstate__()
     stamp = 2 * 32 + 4  # behind the md5 of two messages and the length of the first, which begins it
     return state[:stamp] + state[stamp + 8:]

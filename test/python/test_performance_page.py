@@ -39,6 +39,19 @@ def test_tables_are_those_of_the_committed_numbers(section: str) -> None:
     assert written and written[1] == module(REPORTS[section]).markdown(result)
 
 
+def test_jobs_are_compared_with_one_process_where_they_were_measured() -> None:
+    result = json.loads((DOCS / 'performance' / 'bags.json').read_text())
+    result.pop('jobs', None)
+    images = module('bags_report').markdown(result)
+    result['jobs'] = {'rounds': 3, 'seconds': 60.0, 'bags': 8, 'types': 300, 'messages': 1000,
+                      'cores': 2, 'jobs': {'1': {'wall_s': 12.0, 'cpu_s': 12.5},
+                                           '2': {'wall_s': 8.0, 'cpu_s': 14.0}}}
+    text = module('bags_report').markdown(result)
+    assert text.startswith(f'{images}\n\n`train` on 8 bags of 300 event types, 1,000 messages')
+    assert text.splitlines()[-2:] == ['| `--jobs 1` | 12.00 s | 12.50 s | 1.00 |',
+                                      '| `--jobs 2` | 8.00 s | 14.00 s | 1.50 |']
+
+
 def test_publishing_replaces_a_section_and_nothing_else(tmp_path: Path) -> None:
     (tmp_path / 'performance.md').write_text('a\n<!-- x -->\nold\n<!-- /x -->\nb\n')
     module('page').publish('x', {'cores': 2}, 'new', tmp_path)

@@ -23,7 +23,7 @@ _OF_THE_MODEL = ('bin', 'window', 'horizon', 'encoding', 'predecessors')
 _EPILOG = """\
 The recordings should show all that is normal, start-up aside: leave it out with --start.
 The model is the same with any --jobs, and with --scheduler: every process counts one bag at a
-time, and the counts are added in the order of the bags.
+time, and adds some neighbouring ones; their sums are added in the order of the bags.
 examples:
   train monday.bag tuesday.bag -o robot.model
   train run.bag --start 20 -o robot.model      from 20 s after the recording's first message on
