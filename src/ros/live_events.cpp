@@ -96,6 +96,12 @@ void LiveEvents::forgetClosedConnections() {
   }
 }
 
+std::size_t LiveEvents::connections() const {
+  return static_cast<std::size_t>(
+      std::count_if(connections_.begin(), connections_.end(),
+                    [](const auto& connection) { return connection.second.encoder.has_value(); }));
+}
+
 void LiveEvents::deliver() {
   arrivals_.take(delivered_);
   for (const Arrival& arrival : delivered_) {

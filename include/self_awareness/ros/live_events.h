@@ -65,8 +65,8 @@ class LiveEvents {
   /// Forgets connections that are closed.
   void forgetClosedConnections();
 
-  /// Number of publishers that were heard and are connected.
-  std::size_t connections() const { return connections_.size(); }
+  /// Number of publishers that were heard, are connected, and are not left out.
+  std::size_t connections() const;
   /// Number of messages that were dropped since the start.
   std::uint64_t dropped() const { return arrivals_.dropped() + unread_; }
 
