@@ -59,42 +59,54 @@ void EvidenceScorer::addTracks() {
     }
   }
   state_of_.resize(tracks.size());
-  const Sum none{0, kMostEvidence};
+  const Sums none{{}, {kMostEvidence, kMostEvidence}};
   for (EventId id = 0; id < model_->size(); ++id) {
     OfType type;
     type.gone_after = kGoneGaps * model_->longestGap(id);
     type.pairs_begin = static_cast<std::uint32_t>(pairs_.size());
     for (const std::size_t track : pairs[id]) {
       state_of_[track] = state_of_[track + 1] = pairs_.size();
-      pairs_.push_back(
-          {tracks[track].from, false, 0, model_->surprises(track).data(), none, none});
+      pairs_.push_back({tracks[track].from, false, 0, model_->surprises(track).data(), none});
     }
     type.pairs_end = static_cast<std::uint32_t>(pairs_.size());
-    type.answers_begin = static_cast<std::uint32_t>(answers_.size());
-    for (const std::size_t track : answers[id]) {
-      state_of_[track] = answers_.size();
-      answers_.push_back(
-          {tracks[track].to, false, {model_->answered(track), model_->missed(track)}, none});
-      miss_rates_.push_back(model_->missRate(track));
-    }
-    type.answers_end = static_cast<std::uint32_t>(answers_.size());
+    type.blocks_begin = static_cast<std::uint32_t>(blocks_.size());
+    addAnswers(id, answers[id]);
+    type.blocks_end = static_cast<std::uint32_t>(blocks_.size());
     types_.push_back(type);
   }
   pairs_arming_.resize(pairs_.size());
-  answers_arming_.resize(answers_.size());
+}
+
+void EvidenceScorer::addAnswers(EventId from, const std::vector<std::size_t>& tracks) {
+  for (std::size_t k = 0; k < tracks.size(); ++k) {
+    const std::size_t answer = k % AnswerBlock::kAnswers;
+    if (answer == 0) {
+      blocks_.emplace_back().to.fill(from);
+      miss_rates_.resize(blocks_.size() * AnswerBlock::kAnswers);
+      answers_arming_.resize(blocks_.size() * AnswerBlock::kAnswers);
+    }
+    const std::size_t track = tracks[k];
+    state_of_[track] = (blocks_.size() - 1) * AnswerBlock::kAnswers + answer;
+    miss_rates_[state_of_[track]] = model_->missRate(track);
+    AnswerBlock& block = blocks_.back();
+    block.to[answer] = model_->tracks()[track].to;
+    block.answered[answer / kLanes][answer % kLanes] = model_->answered(track);
+    block.missed[answer / kLanes][answer % kLanes] = model_->missed(track);
+    block.sums[answer / kLanes].caps[answer % kLanes] = kMostEvidence;
+  }
 }
 
 void EvidenceScorer::restart() {
-  last_seen_.assign(model_->size(), {});
+  stamps_.assign(model_->size(), 0);
+  numbers_.assign(model_->size(), 0);
   number_ = 0;
   counts_.restart();
   evidence_.assign(model_->tracks().size(), 0);
-  for (std::size_t k = 0; k < pairs_.size(); ++k) {
-    pairs_[k].last_delay = 0;
-    disarmPair(k);
+  for (DelayPair& pair : pairs_) {
+    pair.last_delay = 0;
   }
-  for (std::size_t k = 0; k < answers_.size(); ++k) {
-    disarmAnswer(k);
+  for (EventId id = 0; id < model_->size(); ++id) {
+    disarm(id);
   }
 }
 
@@ -104,59 +116,92 @@ std::optional<std::int64_t> EvidenceScorer::add(const Event& event) {
   }
   const OfType& type = types_[event.id];
   counts_.add(event.id);
-  Seen& last = last_seen_[event.id];
-  for (std::size_t k = type.pairs_begin; k < type.pairs_end; ++k) {
-    DelayPair& pair = pairs_[k];
-    const Seen& from = last_seen_[pair.from];
+  // What is not known to the compiler not to change is looked up again and again.
+  const std::int64_t* const stamps = stamps_.data();
+  const double* const numbers = numbers_.data();
+  const double last = numbers[event.id];
+  const Lanes since = {last, last};
+  // Where the other one was never seen, its pairs and answers are not armed yet: what is added to
+  // their sums is taken back there, which spares all the others the question.
+  DelayPair* const pairs_end = pairs_.data() + type.pairs_end;
+  for (DelayPair* pair = pairs_.data() + type.pairs_begin; pair != pairs_end; ++pair) {
     // Only the first event after another answers it: those that follow while the other pauses
     // would count one pause many times. Which one that is cannot be predicted, thus no branch.
-    const bool first = from.number > 0 && from.number >= last.number;
-    const std::int64_t delay = event.stamp - from.stamp;
-    const double surprise = pair.surprises[log_bins::bin(delay)];
-    pair.last_delay = first ? delay : pair.last_delay;
-    pair.fast.add(first * (surprise - kDrift));
-    pair.slow.add(first * (surprise - kSlowDrift));
-    if (!pair.armed && first) {
-      pair.armed = arm(pairs_arming_[k], surprise, kUsualSurprise);
+    const double number = numbers[pair->from];
+    const auto first = Lanes{number, number} >= since;  // all bits, or none
+    const std::int64_t delay = event.stamp - stamps[pair->from];
+    const double surprise = pair->surprises[log_bins::bin(delay)];
+    pair->last_delay ^= (pair->last_delay ^ delay) & first[0];
+    const Lanes steps = Lanes{surprise, surprise} - Lanes{kDrift, kSlowDrift};
+    pair->sums.add(first ? steps : Lanes{});
+    if (!pair->armed) {
+      armPair(static_cast<std::size_t>(pair - pairs_.data()), first[0] != 0, surprise);
     }
   }
   std::optional<std::int64_t> gap;
-  if (last.number > 0) {
-    for (std::size_t k = type.answers_begin; k < type.answers_end; ++k) {
-      Answer& answer = answers_[k];
-      const std::uint64_t number = last_seen_[answer.to].number;
-      if (number == 0) {
-        continue;
+  if (last > 0) {
+    AnswerBlock* const blocks_end = blocks_.data() + type.blocks_end;
+    for (AnswerBlock* block = blocks_.data() + type.blocks_begin; block != blocks_end; ++block) {
+      for (std::size_t k = 0; k < block->sums.size(); ++k) {
+        const Lanes others = {numbers[block->to[kLanes * k]], numbers[block->to[kLanes * k + 1]]};
+        block->sums[k].add(others <= since ? block->missed[k] : block->answered[k]);
       }
-      const std::size_t missed = number <= last.number ? 1 : 0;
-      answer.sum.add(answer.steps[missed]);
-      if (!answer.armed) {
-        answer.armed =
-            arm(answers_arming_[k], static_cast<double>(missed) - miss_rates_[k], kUsualMisses);
+      if (block->unarmed != 0) {
+        armAnswers(static_cast<std::size_t>(block - blocks_.data()), last);
       }
     }
-    gap = event.stamp - last.stamp;
+    gap = event.stamp - stamps[event.id];
     if (*gap > type.gone_after) {
       disarm(event.id);
     }
   }
-  last = Seen{event.stamp, ++number_};
+  stamps_[event.id] = event.stamp;
+  numbers_[event.id] = ++number_;
   return gap;
 }
 
+void EvidenceScorer::armPair(std::size_t number, bool first, double surprise) {
+  DelayPair& pair = pairs_[number];
+  if (numbers_[pair.from] == 0) {
+    pair.sums.values = Lanes{};
+    pair.last_delay = 0;
+  } else if (first) {
+    pair.armed = arm(pairs_arming_[number], surprise, kUsualSurprise);
+  }
+}
+
+void EvidenceScorer::armAnswers(std::size_t block, double since) {
+  AnswerBlock& answers = blocks_[block];
+  for (std::size_t k = 0; k < AnswerBlock::kAnswers; ++k) {
+    if (answers.armed(k)) {
+      continue;
+    }
+    const double other = numbers_[answers.to[k]];
+    const std::size_t number = block * AnswerBlock::kAnswers + k;
+    if (other == 0) {
+      answers.sums[k / kLanes].values[k % kLanes] = 0;
+    } else if (arm(answers_arming_[number], (other <= since ? 1 : 0) - miss_rates_[number],
+                   kUsualMisses)) {
+      answers.unarmed &= ~(1U << k);
+    }
+  }
+}
+
 void EvidenceScorer::capAt(const EvidenceLimits& limits) {
-  const auto cap = [&](std::size_t track, Sum& sum) {
+  const auto cap = [&](std::size_t track, Sums& sums, std::size_t lane) {
     if (limits.tracks[track] > 0) {  // never so where it is NaN
-      sum.cap = kMostOfLimit * limits.tracks[track];
+      sums.caps[lane] = kMostOfLimit * limits.tracks[track];
     }
   };
   for (std::size_t track = 0; track < model_->tracks().size(); ++track) {
     const Channel channel = model_->tracks()[track].channel;
+    const std::size_t number = state_of_[track];
     if (channel == Channel::kDelay) {
-      cap(track, pairs_[state_of_[track]].fast);
-      cap(track + 1, pairs_[state_of_[track]].slow);
+      cap(track, pairs_[number].sums, 0);
+      cap(track + 1, pairs_[number].sums, 1);
     } else if (channel == Channel::kAnswer) {
-      cap(track, answers_[state_of_[track]].sum);
+      const std::size_t answer = number % AnswerBlock::kAnswers;
+      cap(track, blocks_[number / AnswerBlock::kAnswers].sums[answer / kLanes], answer % kLanes);
     }
   }
 }
@@ -172,14 +217,16 @@ void EvidenceScorer::disarm(EventId id) {
 }
 
 void EvidenceScorer::disarmPair(std::size_t number) {
-  pairs_[number].fast.value = pairs_[number].slow.value = 0;
+  pairs_[number].sums.values = Lanes{};
   pairs_[number].armed = false;
   pairs_arming_[number] = {};
 }
 
 void EvidenceScorer::disarmAnswer(std::size_t number) {
-  answers_[number].sum.value = 0;
-  answers_[number].armed = false;
+  AnswerBlock& block = blocks_[number / AnswerBlock::kAnswers];
+  const std::size_t answer = number % AnswerBlock::kAnswers;
+  block.sums[answer / kLanes].values[answer % kLanes] = 0;
+  block.unarmed |= 1U << answer;
   answers_arming_[number] = {};
 }
 
@@ -189,29 +236,29 @@ const std::vector<double>& EvidenceScorer::closeWindow(std::int64_t end) {
   const std::vector<Track>& tracks = model_->tracks();
   for (std::size_t track = 0; track < tracks.size(); ++track) {
     const auto& [channel, id, from] = tracks[track];
-    const Seen& last = last_seen_[id];
+    const bool seen = numbers_[id] > 0;
     switch (channel) {
       case Channel::kOverdue:
-        evidence_[track] = last.number > 0 ? model_->overdue(id, end - last.stamp) : 0;
+        evidence_[track] = seen ? model_->overdue(id, end - stamps_[id]) : 0;
         break;
       case Channel::kFewer:
       case Channel::kMore: {
         const double sign = channel == Channel::kMore ? 1 : -1;
-        const double more =
-            counts_.full() && last.number > 0 ? model_->rate(id, counts_.counts()[id]) : 0;
+        const double more = counts_.full() && seen ? model_->rate(id, counts_.counts()[id]) : 0;
         evidence_[track] = std::max(sign * more, 0.0);
         break;
       }
       case Channel::kDelay:
       case Channel::kSlowDelay: {
         const DelayPair& pair = pairs_[state_of_[track]];
-        const Sum& sum = channel == Channel::kDelay ? pair.fast : pair.slow;
-        evidence_[track] = pair.armed ? sum.value : 0;
+        const std::size_t lane = channel == Channel::kDelay ? 0 : 1;
+        evidence_[track] = pair.armed ? pair.sums.values[lane] : 0;
         break;
       }
       case Channel::kAnswer: {
-        const Answer& answer = answers_[state_of_[track]];
-        evidence_[track] = answer.armed ? answer.sum.value : 0;
+        const AnswerBlock& block = blocks_[state_of_[track] / AnswerBlock::kAnswers];
+        const std::size_t answer = state_of_[track] % AnswerBlock::kAnswers;
+        evidence_[track] = block.armed(answer) ? block.sum(answer) : 0;
         break;
       }
     }
@@ -220,8 +267,7 @@ const std::vector<double>& EvidenceScorer::closeWindow(std::int64_t end) {
 }
 
 std::optional<std::int64_t> EvidenceScorer::lastSeen(EventId id) const {
-  const Seen& last = last_seen_.at(id);
-  return last.number > 0 ? std::optional<std::int64_t>(last.stamp) : std::nullopt;
+  return numbers_.at(id) > 0 ? std::optional<std::int64_t>(stamps_[id]) : std::nullopt;
 }
 
 EvidenceSum sumUp(const std::vector<double>& evidence, const EvidenceModel& model,

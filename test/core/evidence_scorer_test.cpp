@@ -194,6 +194,23 @@ TEST_F(EvidenceScorerTest, AnswersThatNeverCameAsInTrainingSayNothing) {
   EXPECT_GT(evidence(answer), 0);
 }
 
+TEST_F(EvidenceScorerTest, ATypeThatWasNeverSeenIsNotMissed) {
+  const std::size_t answer = track(Channel::kAnswer, kB, kA);
+  for (int i = 0; i < 10 * kArming; ++i) {
+    ask(std::nullopt);
+  }
+  askUsually(kArming + 1);
+  EXPECT_EQ(evidence(answer), 0);
+  ask(std::nullopt);  // armed by now
+  ask(std::nullopt);
+  EXPECT_GT(evidence(answer), 0);
+}
+
+TEST_F(EvidenceScorerTest, NoDelaySinceATypeThatWasNeverSeen) {
+  scorer_.add({now_, kB});
+  EXPECT_EQ(scorer_.lastDelay(track(Channel::kDelay, kB, kA)), 0);
+}
+
 TEST_F(EvidenceScorerTest, OverdueGoesByTheTimeSinceTheLastOne) {
   const std::size_t overdue = track(Channel::kOverdue, kA, kA);
   EXPECT_EQ(scorer_.closeWindow(now_)[overdue], 0);  // never seen since the start

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -46,51 +45,57 @@ class EvidenceScorer {
   std::int64_t windowEnd() const { return window_end_; }
 
  private:
-  struct Seen {
-    std::int64_t stamp = 0;    // [ns]
-    std::uint64_t number = 0;  // of the event in the recording, from 1; 0: never seen
-  };
-
   /// Whether the delays or answers of a track have once been as in training since the start.
   struct Arming {
     double excess = 0;  // over the mean in training, of the last events
     std::uint32_t events = 0;
   };
+  /// What is added up side by side, in vector registers where there are any.
+  static constexpr std::size_t kLanes = 2;
+  using Lanes = double __attribute__((vector_size(kLanes * sizeof(double))));
+
   /// Never below 0, nor above a cap.
-  struct Sum {
-    double value = 0;
-    double cap = 0;
-    void add(double step) {
-      const double sum = value + step;
-      const double capped = sum < cap ? sum : cap;
-      value = 0.5 * (capped + std::abs(capped));  // the larger one of it and 0, without a branch
+  struct Sums {
+    Lanes values{};
+    Lanes caps{};
+    void add(const Lanes& steps) {
+      const Lanes sums = values + steps;
+      const Lanes capped = sums < caps ? sums : caps;
+      values = capped > 0.0 ? capped : Lanes{};
     }
   };
-  // All that an event needs of a pair or an answer lies together, and those of an event type one
-  // behind the other: the time goes into fetching them.
+  // All that an event needs of a pair or of some answers lies together, and those of an event type
+  // one behind the other: the time goes into fetching them.
   /// Of the two delay tracks of a pair of event types.
   struct DelayPair {
     EventId from = 0;
     bool armed = false;
     std::int64_t last_delay = 0;        // [ns]
     const double* surprises = nullptr;  // by bin
-    Sum fast;
-    Sum slow;
+    Sums sums;                          // of the track, and of the slow one
   };
-  /// Of an answer track.
-  struct Answer {
-    EventId to = 0;
-    bool armed = false;
-    std::array<double, 2> steps{};  // of an answer that came, and of one that did not
-    Sum sum;
+  /// Of some answer tracks with the same `from`: the end of a loop over blocks is less often a
+  /// surprise for the processor. Where there are fewer of them, a block is filled up with answers
+  /// that add nothing.
+  struct AnswerBlock {
+    static constexpr std::size_t kAnswers = 4;
+    std::array<EventId, kAnswers> to{};
+    std::uint32_t unarmed = 0;  // a bit for each
+    std::array<Lanes, kAnswers / kLanes> answered{};
+    std::array<Lanes, kAnswers / kLanes> missed{};
+    std::array<Sums, kAnswers / kLanes> sums;
+
+    bool armed(std::size_t answer) const { return (unarmed >> answer & 1U) == 0; }
+    double sum(std::size_t answer) const { return sums[answer / kLanes].values[answer % kLanes]; }
   };
 
-  /// Where its pairs and answers lie, and how long [ns] an event type must be away to be gone.
+  /// Where its pairs and blocks of answers lie, and how long [ns] an event type must be away to be
+  /// gone.
   struct OfType {
     std::uint32_t pairs_begin = 0;
     std::uint32_t pairs_end = 0;
-    std::uint32_t answers_begin = 0;
-    std::uint32_t answers_end = 0;
+    std::uint32_t blocks_begin = 0;
+    std::uint32_t blocks_end = 0;
     std::int64_t gone_after = 0;
   };
 
@@ -98,6 +103,13 @@ class EvidenceScorer {
   /// @return whether the track is armed now
   static bool arm(Arming& arming, double excess, double usual);
   void addTracks();
+  /// @param tracks all answer tracks of the `from`
+  void addAnswers(EventId from, const std::vector<std::size_t>& tracks);
+  /// What a delay means for a pair that is not armed. @param first whether it counts
+  void armPair(std::size_t number, bool first, double surprise);
+  /// What an event means for the answers of a block that are not armed.
+  /// @param since number of the last event of the same type
+  void armAnswers(std::size_t block, double since);
   void disarm(EventId id);
   void disarmPair(std::size_t number);
   void disarmAnswer(std::size_t number);
@@ -105,14 +117,17 @@ class EvidenceScorer {
   std::shared_ptr<const EvidenceModel> model_;
   std::vector<OfType> types_;                        // by id
   std::vector<DelayPair> pairs_;                     // by `to`
-  std::vector<Answer> answers_;                      // by `from`
+  std::vector<AnswerBlock> blocks_;                  // by `from`
   std::vector<Arming> pairs_arming_;                 // by number of the pair
   std::vector<Arming> answers_arming_;               // by number of the answer
   std::vector<double> miss_rates_;                   // by number of the answer
   std::vector<std::size_t> state_of_;                // number of its pair or answer, by track
   std::vector<std::vector<std::size_t>> tracks_of_;  // those of pairs and answers, by id
-  std::vector<Seen> last_seen_;                      // by id
-  std::uint64_t number_ = 0;
+  std::vector<std::int64_t> stamps_;                 // of the last event [ns], by id
+  // Number of the last event in the recording, from 1, by id; 0: never seen. Exact up to 2^53, and
+  // vectors of them can be compared on every processor that adds vectors of double.
+  std::vector<double> numbers_;
+  double number_ = 0;
   RecentCounts counts_;
   std::vector<double> evidence_;  // by track
   std::int64_t window_end_ = 0;   // [ns]
