@@ -39,13 +39,17 @@ def _by_configuration(costs: List[Dict[str, Any]]
 
 
 def _latency(latency: Dict[str, Any]) -> Iterator[str]:
-    verdict = latency['verdict_s']
     yield f'At {latency["rate"]:,} messages a second on {latency["topics"]} topics:'
     yield ''
     yield '| | median | most | of |'
     yield '|---|--:|--:|--:|'
-    yield (f'| end of a window to its verdict on `~status` | {_ms(verdict["median"])} '
-           f'| {_ms(verdict["most"])} | {verdict["windows"]} windows |')
+    for what, key, unit in (('a message to the verdict on its window of 100 ms', 'message_s',
+                             'messages'),
+                            ('end of a window to its verdict on `~status`', 'verdict_s',
+                             'windows')):
+        times = latency[key]
+        yield (f'| {what} | {_ms(times["median"])} | {_ms(times["most"])} '
+               f'| {times["number"]:,} {unit} |')
     yield _row('`kill -9` of a node to the alarm on `/diagnostics`', latency['alarm_s'], 'times')
     yield _row('start of the process until it is connected to all topics', latency['connected_s'],
                'starts')

@@ -7,7 +7,7 @@ import subprocess
 import threading
 import time
 from pathlib import Path
-from typing import Callable, List, NamedTuple, Sequence
+from typing import Callable, List, NamedTuple, Sequence, Tuple
 
 import rosbag
 import rospy
@@ -107,8 +107,9 @@ class Monitor(Subject):
         self._model = model
         self._lock = threading.Lock()
         self._events = 0
-        self.latencies_s: List[float] = []
-        """From the end of each window to when its verdict was heard, where it had settled."""
+        self.verdicts: List[Tuple[float, float]] = []
+        """Of every window since it had settled: its end, and when its verdict was heard [s since
+        1970]."""
         self.level = -1
         """Of communication on /diagnostics; -1 before the first."""
         self._changed_at = 0.0
@@ -120,7 +121,7 @@ class Monitor(Subject):
         """Start the program."""
         with self._lock:
             self._events = 0
-            self.latencies_s = []
+            self.verdicts = []
             self.level = -1
         self._process = self._processes.start(
             'monitor', *pin(SUBJECT_CORE, executable('self_awareness_node'),
@@ -150,7 +151,7 @@ class Monitor(Subject):
         with self._lock:
             self._events += status.events
             if not status.settling:
-                self.latencies_s.append(now - status.header.stamp.to_sec())
+                self.verdicts.append((status.header.stamp.to_sec(), now))
 
     def _on_diagnostics(self, array: DiagnosticArray) -> None:
         now = time.time()
