@@ -33,6 +33,10 @@ class SettlingTest(MonitorCase):
                 MonitorListener() as listener:
             listener.await_settled()
             await_condition('the monitor listens', rare.get_num_connections, 20)
+            reports = len(listener.heartbeats)
+            await_condition('two reports', lambda: len(listener.heartbeats) > reports + 1, 20)
+            self.assertEqual(listener.value('monitor', 'publishers heard'), '1',
+                             'its own reports, which it hears, do not count')
             seen = len(listener.statuses)
             rare.publish()
             await_condition('it is heard', lambda: (
