@@ -11,6 +11,7 @@ import tempfile
 import time
 import unittest
 from typing import Any, Dict, List
+from urllib.parse import urlsplit
 
 import rosgraph
 import rostest
@@ -109,6 +110,18 @@ class MasterTest(unittest.TestCase):
         return self.start(sys.executable, script('talker.py'), '__name:=' + name[1:],
                           '_output:=' + topic, '_rate:={}'.format(1 / period))
 
+    def occupy(self, port: int) -> None:
+        """Lets nobody else listen on the port of a component that died, until the test ends.
+
+        By chance its successor would be given the same: roscpp takes a publisher with the same
+        URI for the one that it was connected to, and does not connect anew.
+        """
+        listening = socket.socket()
+        self.addCleanup(listening.close)
+        listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listening.bind(('', port))
+        listening.listen(1)
+
     def start_listener(self) -> Listener:
         return self.keep(Listener(sys.executable, script('listener.py'), env=self.environment))
 
@@ -170,6 +183,7 @@ class MasterTest(unittest.TestCase):
         self.start_component('/beside')
         talker = self.start_component('/talker')
         self.await_normal(listener)
+        port = urlsplit(self.master().lookupNode('/talker')).port
 
         hung = time.monotonic()
         master.send(signal.SIGSTOP)
@@ -182,6 +196,7 @@ class MasterTest(unittest.TestCase):
         self.await_alarm(listener, killed, '/talker')
         listener.await_message('diagnostics', killed, task='monitor', number=2)
 
+        self.occupy(port)
         woken = time.monotonic()
         master.send(signal.SIGCONT)
         self.start_component('/talker')
