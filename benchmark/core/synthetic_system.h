@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "self_awareness/core/event.h"
+#include "self_awareness/core/stream/event.h"
 
 namespace self_awareness::benchmarks {
 

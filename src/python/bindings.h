@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "self_awareness/core/event.h"
+#include "self_awareness/core/stream/event.h"
 
 /// What the parts of the Python module share.
 namespace self_awareness::python {

@@ -10,15 +10,15 @@
 #include <vector>
 
 #include "bindings.h"
-#include "self_awareness/core/blame.h"
-#include "self_awareness/core/clock.h"
-#include "self_awareness/core/detector.h"
-#include "self_awareness/core/evidence_judge.h"
-#include "self_awareness/core/model.h"
-#include "self_awareness/core/paper_judge.h"
-#include "self_awareness/core/persistence.h"
-#include "self_awareness/core/roc.h"
-#include "self_awareness/ros/model_file.h"
+#include "self_awareness/core/evidence/judge.h"
+#include "self_awareness/core/paper/blame.h"
+#include "self_awareness/core/paper/judge.h"
+#include "self_awareness/core/paper/model.h"
+#include "self_awareness/core/stream/clock.h"
+#include "self_awareness/core/verdict/detector.h"
+#include "self_awareness/core/verdict/persistence.h"
+#include "self_awareness/core/verdict/roc.h"
+#include "self_awareness/ros/model/model_file.h"
 
 namespace self_awareness::python {
 namespace {

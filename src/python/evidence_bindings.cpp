@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "bindings.h"
-#include "self_awareness/core/evidence_limits.h"
-#include "self_awareness/core/evidence_model.h"
-#include "self_awareness/ros/model_file.h"
+#include "self_awareness/core/evidence/limits.h"
+#include "self_awareness/core/evidence/model.h"
+#include "self_awareness/ros/model/model_file.h"
 
 namespace self_awareness::python {
 namespace {

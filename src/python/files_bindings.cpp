@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "bindings.h"
-#include "self_awareness/ros/bag_reader.h"
-#include "self_awareness/ros/model_bytes.h"
-#include "self_awareness/ros/model_file.h"
-#include "self_awareness/ros/model_merge.h"
+#include "self_awareness/ros/bag/bag_reader.h"
+#include "self_awareness/ros/model/model_bytes.h"
+#include "self_awareness/ros/model/model_file.h"
+#include "self_awareness/ros/model/model_merge.h"
 #include "self_awareness/ros/stable_name.h"
 
 namespace self_awareness::python {

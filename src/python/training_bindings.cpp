@@ -10,7 +10,7 @@
 
 #include "bindings.h"
 #include "self_awareness/ros/encoding.h"
-#include "self_awareness/ros/model_file.h"
+#include "self_awareness/ros/model/model_file.h"
 
 namespace self_awareness::python {
 namespace {

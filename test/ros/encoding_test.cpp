@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "self_awareness/core/vocabulary.h"
+#include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/ros/message_field.h"
 #include "self_awareness/ros/stable_name.h"
 

@@ -13,8 +13,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "self_awareness/core/event.h"
-#include "self_awareness/core/vocabulary.h"
+#include "self_awareness/core/stream/event.h"
+#include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/ros/message_field.h"
 
 namespace self_awareness::ros1 {

@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-#include "self_awareness/core/source_graph.h"
+#include "self_awareness/core/verdict/source_graph.h"
 
 namespace self_awareness::ros1 {
 

@@ -1,0 +1,230 @@
+// The evidence detector: taking in an event, against the bare look-ups; closing a window;
+// training; its size in memory.
+
+#include <benchmark/benchmark.h>
+
+#include <array>
+#include <map>
+#include <memory>
+#include <random>
+#include <vector>
+
+#include "allocated_bytes.h"
+#include "event_loop.h"
+#include "self_awareness/core/evidence/log_bins.h"
+#include "self_awareness/core/evidence/model.h"
+#include "self_awareness/core/evidence/scorer.h"
+#include "self_awareness/core/evidence/statistics.h"
+#include "synthetic_system.h"
+
+namespace self_awareness::benchmarks {
+namespace {
+
+using core::kNanosecondsPerSecond;
+
+constexpr std::int64_t kTrainingOfHalf = 50 * kNanosecondsPerSecond;
+constexpr std::int64_t kWindow = kNanosecondsPerSecond / 10;
+
+core::EvidenceStatistics emptyStatistics(std::size_t types) {
+  core::EvidenceStatistics statistics;
+  for (core::EventId id = 0; id < types; ++id) {
+    statistics.intern(SyntheticSystem::type(id));
+  }
+  return statistics;
+}
+
+std::array<core::EvidenceStatistics, 2> trainedHalves(std::size_t types) {
+  std::array<core::EvidenceStatistics, 2> halves = {emptyStatistics(types),
+                                                    emptyStatistics(types)};
+  SyntheticSystem system(types);
+  for (core::EvidenceStatistics& half : halves) {
+    core::EvidenceTrainer trainer(half, kWindow);
+    trainFor(kTrainingOfHalf, system, trainer);
+  }
+  return halves;
+}
+
+struct Trained {
+  core::WatchedEvidence watched;
+  std::shared_ptr<const core::EvidenceModel> model;
+  std::size_t bytes = 0;  // of the model and of a scorer
+};
+
+// Google Benchmark calls a function several times; models are the same every time.
+const Trained& trained(std::size_t types) {
+  static std::map<std::size_t, Trained> all;
+  Trained& entry = all[types];
+  if (!entry.model) {
+    const std::array<core::EvidenceStatistics, 2> halves = trainedHalves(types);
+    entry.watched = core::watch(halves[0], halves[1]);
+    const std::size_t before = allocatedBytes();
+    entry.model = std::make_shared<const core::EvidenceModel>(entry.watched);
+    const core::EvidenceScorer scorer(entry.model, kWindow);
+    entry.bytes = allocatedBytes() - before;
+  }
+  return entry;
+}
+
+// Pairs of event types that an event makes the scorer look at, by the event's type. The two tracks
+// of a pair's delays are one.
+struct Terms {
+  std::vector<std::vector<core::EventId>> delays;   // since these
+  std::vector<std::vector<core::EventId>> answers;  // of these
+};
+
+Terms termsOf(const core::EvidenceModel& model) {
+  Terms terms{std::vector<std::vector<core::EventId>>(model.size()),
+              std::vector<std::vector<core::EventId>>(model.size())};
+  for (const core::Track& track : model.tracks()) {
+    if (track.channel == core::Channel::kDelay) {
+      terms.delays[track.to].push_back(track.from);
+    } else if (track.channel == core::Channel::kAnswer) {
+      terms.answers[track.from].push_back(track.to);
+    }
+  }
+  return terms;
+}
+
+// Terms of an event, the mean over the events of a round.
+double termsPerEvent(const Terms& terms, EventLoop& events) {
+  std::size_t number = 0;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const core::EventId id = events.next().id;
+    number += terms.delays[id].size() + terms.answers[id].size();
+  }
+  return static_cast<double>(number) / static_cast<double>(events.size());
+}
+
+void scoreEvidence(benchmark::State& state) {
+  const auto types = static_cast<std::size_t>(state.range(0));
+  const Trained& entry = trained(types);
+  EventLoop events = loopOfEvents(types);
+  state.counters["terms"] = termsPerEvent(termsOf(*entry.model), events);
+  core::EvidenceScorer scorer(entry.model, kWindow);
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    scorer.add(events.next());  // from now on all types have been seen
+  }
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(scorer.add(events.next()));
+  }
+}
+BENCHMARK(scoreEvidence)->ArgsProduct({kSizes});
+
+// What has to be looked up for the terms of an event, wherever it lies in the scorer, and nothing
+// else: when the other one came, the sums of the pair, and how surprising a delay is.
+void lookUpEvidence(benchmark::State& state) {
+  struct Seen {
+    double stamp = 1;
+    double number = 1;
+  };
+  struct Pair {
+    std::array<double, 8> cells{1};
+  };
+  struct Answer {
+    std::array<double, 5> cells{1};
+  };
+  struct Term {
+    core::EventId other;
+    std::uint32_t number;
+    std::uint32_t bin;
+  };
+  const auto types = static_cast<std::size_t>(state.range(0));
+  const Terms terms = termsOf(*trained(types).model);
+  EventLoop events = loopOfEvents(types);
+  state.counters["terms"] = termsPerEvent(terms, events);
+  std::mt19937 random(1);
+  std::vector<std::vector<Term>> delays(types);
+  std::vector<std::vector<Term>> answers(types);
+  std::size_t pairs = 0;
+  std::size_t asked = 0;
+  for (core::EventId id = 0; id < types; ++id) {
+    for (const core::EventId from : terms.delays[id]) {
+      // Most delays of a pair are in a few bins.
+      delays[id].push_back({from, static_cast<std::uint32_t>(pairs++),
+                            static_cast<std::uint32_t>(random() % core::log_bins::kBins)});
+    }
+    for (const core::EventId to : terms.answers[id]) {
+      answers[id].push_back({to, static_cast<std::uint32_t>(asked++), 0});
+    }
+  }
+  const std::vector<Seen> seen(types);
+  const std::vector<Pair> of_pairs(pairs);
+  const std::vector<Answer> of_answers(asked);
+  const std::vector<std::array<double, core::log_bins::kBins>> surprises(pairs);
+  double sum = 0;
+  for (auto _ : state) {
+    const core::EventId id = events.next().id;
+    for (const Term& term : delays[id]) {
+      sum += seen[term.other].stamp + of_pairs[term.number].cells[0] +
+             surprises[term.number][term.bin];
+    }
+    for (const Term& term : answers[id]) {
+      sum += seen[term.other].number + of_answers[term.number].cells[0];
+    }
+  }
+  benchmark::DoNotOptimize(sum);
+}
+BENCHMARK(lookUpEvidence)->ArgsProduct({kSizes});
+
+void closeWindowEvidence(benchmark::State& state) {
+  const auto types = static_cast<std::size_t>(state.range(0));
+  const Trained& entry = trained(types);
+  EventLoop events = loopOfEvents(types);
+  core::EvidenceScorer scorer(entry.model, kWindow);
+  core::Event last;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    last = events.next();
+    scorer.add(last);
+  }
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(scorer.closeWindow(last.stamp + 1));
+  }
+  state.counters["tracks"] = static_cast<double>(entry.model->tracks().size());
+}
+BENCHMARK(closeWindowEvidence)->ArgsProduct({kSizes});
+
+void trainEvidence(benchmark::State& state) {
+  const auto types = static_cast<std::size_t>(state.range(0));
+  const std::size_t before = allocatedBytes();
+  for (auto _ : state) {
+    core::EvidenceStatistics statistics = emptyStatistics(types);
+    core::EvidenceTrainer trainer(statistics, kWindow);
+    SyntheticSystem system(types);
+    const TrainingRun first = trainFor(2 * kTrainingOfHalf, system, trainer);
+    state.SetIterationTime(first.seconds);
+    state.counters["events"] = static_cast<double>(first.events);
+    state.counters["bytes"] = static_cast<double>(allocatedBytes() - before);
+    trainFor(2 * kTrainingOfHalf, system, trainer);
+    state.counters["bytes_of_twice"] = static_cast<double>(allocatedBytes() - before);
+  }
+}
+BENCHMARK(trainEvidence)
+    ->ArgsProduct({kSizes})
+    ->Repetitions(1)
+    ->UseManualTime()
+    ->MinTime(0.2)
+    ->Unit(benchmark::kMillisecond);
+
+void chooseEvidence(benchmark::State& state) {
+  const std::array<core::EvidenceStatistics, 2> halves =
+      trainedHalves(static_cast<std::size_t>(state.range(0)));
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(core::watch(halves[0], halves[1]));
+  }
+}
+BENCHMARK(chooseEvidence)->ArgsProduct({kSizes})->Repetitions(1)->Unit(benchmark::kMillisecond);
+
+void loadEvidence(benchmark::State& state) {
+  const Trained& entry = trained(static_cast<std::size_t>(state.range(0)));
+  for (auto _ : state) {
+    core::EvidenceModel model(entry.watched);
+    benchmark::DoNotOptimize(model);
+  }
+  state.counters["bytes"] = static_cast<double>(entry.bytes);
+}
+BENCHMARK(loadEvidence)->ArgsProduct({kSizes})->Repetitions(1)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace self_awareness::benchmarks
+
+BENCHMARK_MAIN();

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "self_awareness/core/evidence/model.h"
+
+namespace self_awareness::core {
+
+/// Finds pairs of event types whose delays say less in a part of a recording than in the whole
+/// training: independent timers keep one phase for a while, and what they say then is gone when
+/// they drift.
+class MisleadingPairs {
+ public:
+  explicit MisleadingPairs(const EvidenceModel& model);
+
+  /// The next event of a recording, in its order. @param event of a type that the model knows
+  void add(const Event& event);
+  /// The recording ends.
+  void finish();
+  /// Adds those of other recordings. @param tracks as of tracks()
+  void add(const std::vector<bool>& tracks);
+  /// Whether a delay track was misleading in any part of what came, by track.
+  const std::vector<bool>& tracks() const { return misleading_; }
+
+ private:
+  struct Pair {
+    EventId from = 0;
+    std::size_t track = 0;                           // the first of its two
+    std::array<double, log_bins::kBins> log_ratios;  // log P_ij - log Q_i [nat], by bin
+    double usual_gain = 0;                           // their mean in training [nat]
+    EvidenceStatistics::Delays delays{};             // of the part
+  };
+
+  void startPart();
+  void closePart();
+
+  std::vector<std::vector<Pair>> pairs_;  // by `to`
+  std::vector<std::int64_t> last_seen_;   // [ns] by id, kNever before the first in the part
+  std::int64_t newest_stamp_ = 0;         // [ns]
+  std::int64_t duration_ = 0;             // of the part [ns]
+  bool started_ = false;                  // the part
+  std::vector<bool> misleading_;          // by track
+};
+
+}  // namespace self_awareness::core

@@ -1,0 +1,148 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "self_awareness/core/evidence/model.h"
+#include "self_awareness/core/stream/recent_counts.h"
+
+namespace self_awareness::core {
+
+/// Gathers the evidence of every track from the events of one recording (METHOD.md, section 3).
+/// Delays and answers are summed up as in Page's CUSUM test: what is usual takes from the sum,
+/// what is not adds to it, and below 0 it does not fall. A fault that lasts is found soon, one
+/// that comes and goes later, and chance alone hardly gets anywhere.
+class EvidenceScorer {
+ public:
+  /// @param window length [ns] of the windows that rates are counted in
+  EvidenceScorer(std::shared_ptr<const EvidenceModel> model, std::int64_t window);
+
+  /// Lets no sum grow far beyond its limit: an alarm must not outlast its cause for long.
+  void capAt(const EvidenceLimits& limits);
+
+  /// @param event ids the model does not know are left out
+  /// @return delay since the last event of the same type [ns], if there was one
+  std::optional<std::int64_t> add(const Event& event);
+  /// Closes a window. @param end of the window [ns]. @return evidence by track, 0: none
+  const std::vector<double>& closeWindow(std::int64_t end);
+  /// Forgets what was seen: another recording, or the clock was set.
+  void restart();
+
+  const EvidenceModel& model() const { return *model_; }
+  /// When each event type of the model was last seen [ns], by id.
+  std::optional<std::int64_t> lastSeen(EventId id) const;
+  /// The last delay of a delay track [ns].
+  std::int64_t lastDelay(std::size_t track) const {
+    return pairs_[state_of_.at(track)].last_delay;
+  }
+  /// Events of a type in the last kRateSpan.
+  std::uint32_t recentCount(EventId id) const { return counts_.counts().at(id); }
+  /// End of the window that was closed last [ns].
+  std::int64_t windowEnd() const { return window_end_; }
+
+ private:
+  /// Whether the delays or answers of a track have once been as in training since the start.
+  struct Arming {
+    double excess = 0;  // over the mean in training, of the last events
+    std::uint32_t events = 0;
+  };
+  /// What is added up side by side, in vector registers where there are any.
+  static constexpr std::size_t kLanes = 2;
+  using Lanes = double __attribute__((vector_size(kLanes * sizeof(double))));
+
+  /// Never below 0, nor above a cap.
+  struct Sums {
+    Lanes values{};
+    Lanes caps{};
+    void add(const Lanes& steps) {
+      const Lanes sums = values + steps;
+      const Lanes capped = sums < caps ? sums : caps;
+      values = capped > 0.0 ? capped : Lanes{};
+    }
+  };
+  // All that an event needs of a pair or of some answers lies together, and those of an event type
+  // one behind the other: the time goes into fetching them.
+  /// Of the two delay tracks of a pair of event types.
+  struct DelayPair {
+    EventId from = 0;
+    bool armed = false;
+    std::int64_t last_delay = 0;        // [ns]
+    const double* surprises = nullptr;  // by bin
+    Sums sums;                          // of the track, and of the slow one
+  };
+  /// Of some answer tracks with the same `from`: the end of a loop over blocks is less often a
+  /// surprise for the processor. Where there are fewer of them, a block is filled up with answers
+  /// that add nothing.
+  struct AnswerBlock {
+    static constexpr std::size_t kAnswers = 4;
+    std::array<EventId, kAnswers> to{};
+    std::uint32_t unarmed = 0;  // a bit for each
+    std::array<Lanes, kAnswers / kLanes> answered{};
+    std::array<Lanes, kAnswers / kLanes> missed{};
+    std::array<Sums, kAnswers / kLanes> sums;
+
+    bool armed(std::size_t answer) const { return (unarmed >> answer & 1U) == 0; }
+    double sum(std::size_t answer) const { return sums[answer / kLanes].values[answer % kLanes]; }
+  };
+
+  /// Where its pairs and blocks of answers lie, and how long [ns] an event type must be away to be
+  /// gone.
+  struct OfType {
+    std::uint32_t pairs_begin = 0;
+    std::uint32_t pairs_end = 0;
+    std::uint32_t blocks_begin = 0;
+    std::uint32_t blocks_end = 0;
+    std::int64_t gone_after = 0;
+  };
+
+  /// @param usual the largest mean excess that is as in training
+  /// @return whether the track is armed now
+  static bool arm(Arming& arming, double excess, double usual);
+  void addTracks();
+  /// @param tracks all answer tracks of the `from`
+  void addAnswers(EventId from, const std::vector<std::size_t>& tracks);
+  /// What a delay means for a pair that is not armed. @param first whether it counts
+  void armPair(std::size_t number, bool first, double surprise);
+  /// What an event means for the answers of a block that are not armed.
+  /// @param since number of the last event of the same type
+  void armAnswers(std::size_t block, double since);
+  void disarm(EventId id);
+  void disarmPair(std::size_t number);
+  void disarmAnswer(std::size_t number);
+
+  std::shared_ptr<const EvidenceModel> model_;
+  std::vector<OfType> types_;                        // by id
+  std::vector<DelayPair> pairs_;                     // by `to`
+  std::vector<AnswerBlock> blocks_;                  // by `from`
+  std::vector<Arming> pairs_arming_;                 // by number of the pair
+  std::vector<Arming> answers_arming_;               // by number of the answer
+  std::vector<double> miss_rates_;                   // by number of the answer
+  std::vector<std::size_t> state_of_;                // number of its pair or answer, by track
+  std::vector<std::vector<std::size_t>> tracks_of_;  // those of pairs and answers, by id
+  std::vector<std::int64_t> stamps_;                 // of the last event [ns], by id
+  // Number of the last event in the recording, from 1, by id; 0: never seen. Exact up to 2^53, and
+  // vectors of them can be compared on every processor that adds vectors of double.
+  std::vector<double> numbers_;
+  double number_ = 0;
+  RecentCounts counts_;
+  std::vector<double> evidence_;  // by track
+  std::int64_t window_end_ = 0;   // [ns]
+};
+
+/// What a window's evidence comes to.
+struct EvidenceSum {
+  double largest = 0;  ///< of the tracks, in units of their limits
+  double linker = 0;   ///< evidence of all event types together, not in units of its limit
+};
+
+/// The largest evidence, and the linker's: the sum over the event types of the largest share of
+/// its limit that one of their slow delay and answer tracks has reached, at most 1. It links what
+/// is too little for an alarm wherever it is looked at alone (paper, section V-C).
+EvidenceSum sumUp(const std::vector<double>& evidence, const EvidenceModel& model,
+                  const EvidenceLimits& limits);
+
+}  // namespace self_awareness::core

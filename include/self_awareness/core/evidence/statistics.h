@@ -1,0 +1,139 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "self_awareness/core/evidence/log_bins.h"
+#include "self_awareness/core/stream/event.h"
+#include "self_awareness/core/stream/recent_counts.h"
+#include "self_awareness/core/stream/vocabulary.h"
+
+namespace self_awareness::core {
+
+/// The rate of an event type is its number of events in this time [ns].
+constexpr std::int64_t kRateSpan = 2 * kNanosecondsPerSecond;
+
+/// Number of windows of a length [ns] in kRateSpan, at least 1.
+std::size_t rateWindows(std::int64_t window);
+
+/// What the evidence learns (METHOD.md, section 3), as counts: those of two trainings add up to
+/// those of a training on both.
+class EvidenceStatistics {
+ public:
+  /// So many of the longest gaps of a type are kept: the tail beyond them is extrapolated.
+  static constexpr std::size_t kLongestGaps = 32;
+
+  /// Counts of delays, by log_bins.
+  using Delays = std::array<std::uint32_t, log_bins::kBins>;
+  using SumOfDelays = std::array<std::uint64_t, log_bins::kBins>;
+
+  /// Gaps between two events of a type, and its events.
+  struct Type {
+    std::uint64_t events = 0;
+    std::uint64_t gaps = 0;
+    std::int64_t gap_sum = 0;                ///< [ns]
+    std::vector<std::int64_t> longest_gaps;  ///< [ns], the longest first
+    std::uint64_t rate_sum = 0;              ///< events in kRateSpan, over all windows
+    std::uint64_t rate_squares = 0;
+    /// Delays since the last event of the type in pairs whose counts were left out (only()).
+    SumOfDelays left_out{};
+
+    void addGap(std::int64_t gap);
+  };
+  /// What is counted of an event type e and another one, with one event of e.
+  struct Partner {
+    EventId id = 0;             ///< of the other one
+    std::uint64_t answers = 0;  ///< gaps between two e in which the other came
+    Delays delays{};            ///< from the last of the other to an e
+  };
+  /// Ordered by id, each there once.
+  using Partners = std::vector<Partner>;
+  /// An ordered pair of event types, `from` before `to`.
+  struct Pair {
+    EventId from = 0;
+    EventId to = 0;
+  };
+
+  /// Makes room for the event type and returns its id.
+  EventId intern(const EventType& type);
+  /// Adds the counts of `other`; event types that are new here get ids behind the present ones.
+  void merge(const EvidenceStatistics& other);
+
+  const Vocabulary& vocabulary() const { return vocabulary_; }
+  std::size_t size() const { return vocabulary_.size(); }
+  Type& type(EventId id) { return types_.at(id); }
+  const Type& type(EventId id) const { return types_.at(id); }
+  /// Delays from the last `from` to a `to`; zeros where none was counted.
+  const Delays& delays(EventId from, EventId to) const;
+  /// Number of these delays.
+  std::uint64_t total(EventId from, EventId to) const;
+  /// Gaps of `from` in which a `to` came.
+  std::uint64_t answers(EventId from, EventId to) const;
+  const Partners& partners(EventId id) const { return partners_.at(id); }
+  /// Gives an event type these partners.
+  /// @throw std::invalid_argument if they are not in order
+  void setPartners(EventId id, Partners partners);
+  /// Makes sure that all event types are partners of this one, so that the index is the id.
+  Partners& allPartners(EventId id);
+
+  /// Delays from the last event of a type to any event, by type.
+  std::vector<SumOfDelays> delaysToAny() const;
+  /// The counts of all event types, but of these pairs only, whichever way round; delaysToAny()
+  /// stays the same.
+  EvidenceStatistics only(const std::vector<Pair>& pairs) const;
+
+  /// The counts of all event types without any pair.
+  EvidenceStatistics withoutPairs() const;
+
+  /// Windows in which rates were counted, the same for all types.
+  std::uint64_t rateWindows() const { return rate_windows_; }
+  void addRateWindows(std::uint64_t windows) { rate_windows_ += windows; }
+  /// Time between the first and the last event of the recordings [ns].
+  std::int64_t duration() const { return duration_; }
+  void addDuration(std::int64_t duration) { duration_ += duration; }
+
+ private:
+  Vocabulary vocabulary_;
+  std::vector<Type> types_;
+  std::vector<Partners> partners_;  // by id: contiguous for the current event
+  std::uint64_t rate_windows_ = 0;
+  std::int64_t duration_ = 0;
+};
+
+bool operator==(const EvidenceStatistics& a, const EvidenceStatistics& b);
+
+/// Counts one recording after the other into an EvidenceStatistics, in one pass. No delay and no
+/// window crosses from one recording into the next, nor a step of the clock (clock.h).
+class EvidenceTrainer {
+ public:
+  /// @param statistics counted into; must outlive the trainer
+  /// @param window length [ns] of the windows in which rates are counted, > 0
+  /// @throw std::invalid_argument
+  EvidenceTrainer(EvidenceStatistics& statistics, std::int64_t window);
+
+  /// Forgets what was seen: the next event belongs to another recording.
+  void startRecording();
+  /// @param event with an id of the statistics' vocabulary; in the order of the recording.
+  void add(const Event& event);
+
+ private:
+  struct Seen {
+    std::int64_t stamp = 0;    // [ns]
+    std::uint64_t number = 0;  // of the event in the recording, from 1; 0: never seen
+  };
+
+  void closeWindows(std::int64_t now);
+
+  EvidenceStatistics& statistics_;
+  std::int64_t window_;
+  std::vector<Seen> last_seen_;             // by id
+  std::optional<std::int64_t> last_stamp_;  // [ns]
+  std::int64_t newest_stamp_ = 0;           // [ns], once something was seen
+  std::int64_t window_end_ = 0;             // of the open window [ns], once something was seen
+  std::uint64_t number_ = 0;
+  RecentCounts counts_;
+};
+
+}  // namespace self_awareness::core

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "self_awareness/core/stream/event.h"
+
+namespace self_awareness::core {
+
+/// How delays are put into bins.
+struct Binning {
+  std::int64_t bin_size = 10000000;  ///< s_b [ns], > 0
+  std::int64_t horizon_bins = 0;     ///< delays of this many bins or more share one overflow bin
+                                     ///< with this index; 0: unbounded, as in the paper
+
+  /// Bin of a delay [ns] by integer floor division; a negative delay (a late stamp) counts as 0.
+  std::int64_t bin(std::int64_t delay) const;
+  /// @throw std::invalid_argument if a value is out of range.
+  void validate() const;
+};
+
+bool operator==(const Binning& a, const Binning& b);
+
+/// Bins of the delays between stamps, the same as Binning's, without a division for every delay: a
+/// stamp is divided once, into a mark whose upper bits are the quotient and whose lower ones the
+/// remainder. The upper bits of the difference of two marks are the bin, as the lower ones borrow
+/// from them. Exact for delays up to 2^61 ns, 73 years.
+class DelayBins {
+ public:
+  /// @throw std::invalid_argument if a value of the binning is out of range
+  explicit DelayBins(const Binning& binning);
+
+  /// Mark of a stamp [ns].
+  std::uint64_t mark(std::int64_t stamp) const {
+    const std::int64_t remainder = stamp % bin_size_;
+    const std::int64_t below = remainder < 0 ? 1 : 0;
+    return (static_cast<std::uint64_t>(stamp / bin_size_ - below) << remainder_bits_) +
+           static_cast<std::uint64_t>(remainder + below * bin_size_);
+  }
+  /// Bin of the delay from the mark `from` to the mark `to`.
+  std::int64_t bin(std::uint64_t from, std::uint64_t to) const {
+    const auto difference = static_cast<std::int64_t>(to - from);
+    return std::min(std::max<std::int64_t>(difference, 0) >> remainder_bits_, last_bin_);
+  }
+  /// Number of lower bits of a mark.
+  int remainderBits() const { return remainder_bits_; }
+  /// The largest bin that there is.
+  std::int64_t lastBin() const { return last_bin_; }
+
+ private:
+  std::int64_t bin_size_;  // [ns]
+  std::int64_t last_bin_;
+  int remainder_bits_ = 0;
+};
+
+/// The event types seen so far in a recording, the "E" of eq. 3, with the marks of their last
+/// events.
+class SeenTypes {
+ public:
+  /// Makes room for a number of event types.
+  void resize(std::size_t types);
+  void clear();
+  /// @param id less than the number of event types
+  void add(EventId id, std::uint64_t mark);
+
+  std::size_t size() const { return marks_.size(); }
+  bool contains(EventId id) const { return masks_[id] != 0; }
+  /// By id: all bits are set of those seen, none of the others.
+  const std::vector<std::uint32_t>& masks() const { return masks_; }
+  /// By id, of those seen.
+  const std::vector<std::uint64_t>& marks() const { return marks_; }
+  /// The smallest and the largest mark so far.
+  std::uint64_t oldest() const { return oldest_; }
+  std::uint64_t newest() const { return newest_; }
+
+ private:
+  std::vector<std::uint32_t> masks_;
+  std::vector<std::uint64_t> marks_;
+  std::uint64_t oldest_ = 0;
+  std::uint64_t newest_ = 0;
+  bool any_ = false;
+};
+
+}  // namespace self_awareness::core

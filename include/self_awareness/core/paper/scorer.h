@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "self_awareness/core/paper/model.h"
+
+namespace self_awareness::core {
+
+/// An event with what the scorer found.
+struct ScoredEvent {
+  Event event;
+  double score = 0;                 ///< s_j of eq. 3, 0 or more; 0 if the event is unknown
+  bool unknown = false;             ///< never seen in training
+  std::optional<std::int64_t> gap;  ///< delay since the last event of the same type [ns]
+};
+
+/// Scores events one after the other: eq. 3 with the weights of eq. 4 over the event types of
+/// training that were seen before in this recording. An event is scored first, then tracked.
+class Scorer {
+ public:
+  explicit Scorer(std::shared_ptr<const Model> model);
+
+  /// @param event ids the model does not know are unknown events: scored 0 and not tracked.
+  ScoredEvent score(const Event& event);
+  /// Forgets what was seen: another recording, or the clock was set.
+  void restart();
+
+  /// When each event type of the model was last seen [ns], by id.
+  const std::vector<std::optional<std::int64_t>>& lastSeen() const { return last_seen_; }
+  const Model& model() const { return *model_; }
+
+ private:
+  std::shared_ptr<const Model> model_;
+  DelayBins bins_;
+  SeenTypes seen_;
+  std::vector<std::optional<std::int64_t>> last_seen_;  // [ns] by id
+  std::vector<double> entropy_sums_;                    // H_j over the e_i that were seen, by j
+};
+
+}  // namespace self_awareness::core

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "self_awareness/core/stream/event.h"
+
+namespace self_awareness::core {
+
+/// The set U_E of event types, each with a dense id in the order of first appearance.
+class Vocabulary {
+ public:
+  Vocabulary() = default;
+  /// @throw std::invalid_argument if a type occurs twice.
+  explicit Vocabulary(const std::vector<EventType>& types);
+
+  /// The id of `type`, which is added if it is new.
+  EventId intern(const EventType& type);
+  std::optional<EventId> find(const EventType& type) const;
+  /// @throw std::out_of_range
+  const EventType& at(EventId id) const { return types_.at(id); }
+  std::size_t size() const { return types_.size(); }
+  const std::vector<EventType>& types() const { return types_; }
+
+ private:
+  std::vector<EventType> types_;
+  std::map<EventType, EventId> ids_;
+};
+
+}  // namespace self_awareness::core

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "self_awareness/core/stream/windows.h"
+#include "self_awareness/core/verdict/suspect.h"
+
+namespace self_awareness::core {
+
+/// What a judge says of one window.
+struct Judgement {
+  std::optional<double> score;      ///< low is abnormal; none: it says nothing of such a window
+  std::optional<double> threshold;  ///< none: not calibrated
+  bool abnormal = false;            ///< score < threshold (eq. 5), or silence
+  bool certain = false;             ///< an alarm at once: what was found has lasted already
+  bool suspicious = false;          ///< not abnormal, but on the way to it
+  std::string evidence;             ///< what made the window abnormal or suspicious, in words
+};
+
+/// Judges the windows of one recording after its events came in: the method behind the detector.
+class Judge {
+ public:
+  virtual ~Judge() = default;
+
+  /// Takes in the next event; ids the model does not know are unknown events.
+  virtual ScoredEvent add(const Event& event) = 0;
+  /// Judges a window that is over. @param end of the window [ns]
+  virtual Judgement judge(const Window& window, std::int64_t end) = 0;
+  /// Who may have made the window judged last abnormal, the first the most likely.
+  virtual std::vector<Suspect> suspects(const Window& window, std::int64_t end) const = 0;
+  /// Forgets what was seen: another recording, or the clock was set.
+  virtual void restart() = 0;
+};
+
+}  // namespace self_awareness::core

@@ -1,0 +1,216 @@
+#include "self_awareness/core/evidence/blame.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+#include <utility>
+
+namespace self_awareness::core {
+namespace {
+
+// A silence that one gap in a hundred reaches is worth naming once a window is abnormal.
+const double kRareSilence = std::log(0.01);
+// Evidence below this share of its limit says nothing of who is involved.
+constexpr double kLeastShare = 0.3;
+constexpr double kMostShare = 2;
+// When the first piece of evidence passes its limit, that of its root may still be on the way.
+constexpr double kNearLimit = 0.75;
+// Of an unusual delay between two event types, the later one is a little more to blame.
+constexpr double kShareOfEarlier = 0.9;
+
+/// Time since the last event of a type at the end of the window that was judged [ns].
+std::int64_t age(EventId id, const EvidenceScorer& scorer) {
+  return scorer.windowEnd() - scorer.lastSeen(id).value_or(scorer.windowEnd());
+}
+
+}  // namespace
+
+EvidenceBlame::EvidenceBlame(std::shared_ptr<const EvidenceModel> model,
+                             std::shared_ptr<const SourceGraph> graph)
+    : model_(std::move(model)), graph_(std::move(graph)) {}
+
+std::vector<Suspect> EvidenceBlame::suspects(const std::vector<double>& shares,
+                                             const EvidenceScorer& scorer,
+                                             const Window& window) const {
+  std::vector<Candidate> candidates = silent(shares, scorer);
+  const std::vector<Candidate> others = unusual(shares, scorer);
+  candidates.insert(candidates.end(), others.begin(), others.end());
+
+  std::vector<Suspect> suspects;
+  std::set<EventId> named;
+  const auto name = [&](const Suspect& suspect) {
+    if (suspects.size() < kMostSuspects && named.insert(suspect.id).second) {
+      suspects.push_back(suspect);
+    }
+  };
+  for (const Candidate& candidate : candidates) {
+    name(candidate.suspect);
+  }
+  for (const ScoredEvent& scored : window.events) {
+    if (scored.unknown) {
+      Suspect suspect;
+      suspect.id = scored.event.id;
+      suspect.reason = Suspect::Reason::kUnknown;
+      suspect.events = static_cast<std::size_t>(std::count_if(
+          window.events.begin(), window.events.end(),
+          [&](const ScoredEvent& other) { return other.event.id == scored.event.id; }));
+      name(suspect);
+    }
+  }
+  return suspects;
+}
+
+std::vector<EvidenceBlame::Candidate> EvidenceBlame::silent(const std::vector<double>& shares,
+                                                            const EvidenceScorer& scorer) const {
+  std::set<EventId> missing;
+  for (std::size_t track = 0; track < shares.size(); ++track) {
+    const Channel channel = model_->tracks()[track].channel;
+    if (shares[track] > kNearLimit &&
+        (channel == Channel::kOverdue || channel == Channel::kAnswer)) {
+      missing.insert(model_->tracks()[track].to);
+    }
+  }
+  std::vector<Candidate> candidates;
+  for (const EventId id : missing) {
+    const double survival = logSurvival(id, scorer);
+    if (survival < kRareSilence) {
+      candidates.push_back({silence(id, scorer), survival});
+    }
+  }
+  return rootFirst(std::move(candidates));
+}
+
+// Upstream before downstream is no total order: whoever has fewest others upstream is next. When a
+// whole robot falls silent there are as many candidates as event types, but of few components.
+std::vector<EvidenceBlame::Candidate> EvidenceBlame::rootFirst(
+    std::vector<Candidate> candidates) const {
+  std::stable_sort(candidates.begin(), candidates.end(), likelier);
+  std::map<std::string, std::vector<std::size_t>> by_component;  // indexes of candidates
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    by_component[component(candidates[i].suspect.id)].push_back(i);
+  }
+  std::vector<std::size_t> upstream(candidates.size(), 0);  // how many are, of those left
+  std::map<std::string, std::vector<std::size_t>> downstream;
+  for (const auto& [source, members] : by_component) {
+    for (const auto& [other, victims] : by_component) {
+      if (graph_->isUpstream(source, other)) {
+        downstream[source].insert(downstream[source].end(), victims.begin(), victims.end());
+        for (const std::size_t victim : victims) {
+          upstream[victim] += members.size();
+        }
+      }
+    }
+  }
+  std::vector<Candidate> ordered;
+  std::vector<std::size_t> left(candidates.size());
+  std::iota(left.begin(), left.end(), 0);
+  while (!left.empty()) {
+    const auto root =
+        std::min_element(left.begin(), left.end(),
+                         [&](std::size_t a, std::size_t b) { return upstream[a] < upstream[b]; });
+    ordered.push_back(candidates[*root]);
+    for (const std::size_t victim : downstream[component(candidates[*root].suspect.id)]) {
+      --upstream[victim];
+    }
+    left.erase(root);
+  }
+  return ordered;
+}
+
+std::vector<EvidenceBlame::Candidate> EvidenceBlame::unusual(const std::vector<double>& shares,
+                                                             const EvidenceScorer& scorer) const {
+  struct Involved {
+    double sum = 0;
+    std::size_t track = 0;  // the one that says most
+    double largest = 0;
+    bool own = false;  // something is wrong with it, whatever the others do
+  };
+  std::map<std::string, Involved> components;
+  for (std::size_t track = 0; track < shares.size(); ++track) {
+    const auto& [channel, to, from] = model_->tracks()[track];
+    if (shares[track] < kLeastShare || channel == Channel::kSlowDelay ||
+        // An age that is usual has some share of its limit, too.
+        (channel == Channel::kOverdue && logSurvival(to, scorer) >= kRareSilence)) {
+      continue;
+    }
+    const double share = std::min(shares[track], kMostShare);
+    Involved& later = components[component(to)];
+    later.sum += share;
+    later.own |= shares[track] > kNearLimit && channel != Channel::kOverdue &&
+                 (channel != Channel::kDelay || from == to);
+    if (share > later.largest) {
+      later.largest = share;
+      later.track = track;
+    }
+    if (channel == Channel::kDelay && component(from) != component(to)) {
+      components[component(from)].sum += kShareOfEarlier * share;
+    }
+  }
+  std::vector<Candidate> roots;
+  std::vector<Candidate> others;
+  for (const auto& [name, involved] : components) {
+    if (involved.largest > 0) {
+      (involved.own ? roots : others)
+          .push_back({unusualTrack(involved.track, scorer), -involved.sum});
+    }
+  }
+  roots = rootFirst(std::move(roots));
+  std::stable_sort(others.begin(), others.end(), likelier);
+  roots.insert(roots.end(), others.begin(), others.end());
+  return roots;
+}
+
+double EvidenceBlame::logSurvival(EventId id, const EvidenceScorer& scorer) const {
+  return model_->logSurvival(id, age(id, scorer));
+}
+
+Suspect EvidenceBlame::silence(EventId id, const EvidenceScorer& scorer) const {
+  Suspect suspect;
+  suspect.id = id;
+  suspect.reason = Suspect::Reason::kSilent;
+  suspect.silence = toSeconds(age(id, scorer));
+  suspect.usual_shortest = model_->usualDelay(id, id, kUsualFrom);
+  suspect.usual_longest = model_->usualDelay(id, id, kUsualTo);
+  return suspect;
+}
+
+Suspect EvidenceBlame::unusualTrack(std::size_t track, const EvidenceScorer& scorer) const {
+  const auto& [channel, to, from] = model_->tracks()[track];
+  Suspect suspect;
+  suspect.id = to;
+  switch (channel) {
+    case Channel::kOverdue:
+      return silence(to, scorer);
+    case Channel::kFewer:
+    case Channel::kMore:
+      suspect.reason = Suspect::Reason::kRate;
+      suspect.events = scorer.recentCount(to);
+      suspect.usual_fewest = std::max(model_->usualCount(to, -2), 0.0);
+      suspect.usual_most = model_->usualCount(to, 2);
+      break;
+    case Channel::kDelay:
+    case Channel::kSlowDelay:
+      suspect.reason = Suspect::Reason::kDelay;
+      if (from != to) {
+        suspect.other = toString(model_->vocabulary().at(from));
+      }
+      suspect.delay = toSeconds(scorer.lastDelay(track));
+      suspect.usual_shortest = model_->usualDelay(from, to, 0.05);
+      suspect.usual_longest = model_->usualDelay(from, to, 0.95);
+      break;
+    case Channel::kAnswer:
+      suspect.reason = Suspect::Reason::kAnswer;
+      suspect.other = toString(model_->vocabulary().at(from));
+      break;
+  }
+  return suspect;
+}
+
+const std::string& EvidenceBlame::component(EventId id) const {
+  const EventType& type = model_->vocabulary().at(id);
+  return componentOf(type.source, type.scope);
+}
+
+}  // namespace self_awareness::core

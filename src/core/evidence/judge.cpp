@@ -1,0 +1,87 @@
+#include "self_awareness/core/evidence/judge.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+namespace self_awareness::core {
+namespace {
+
+// The linker is suspicious from this share of its limit on.
+constexpr double kSuspicious = 0.75;
+// Whoever has been overdue for so long [ns] is silent: further windows would say nothing new.
+constexpr std::int64_t kConfirmation = kNanosecondsPerSecond / 10;
+
+}  // namespace
+
+EvidenceJudge::EvidenceJudge(std::shared_ptr<const EvidenceModel> model,
+                             std::optional<EvidenceLimits> limits, std::int64_t window,
+                             std::shared_ptr<const SourceGraph> graph)
+    : model_(std::move(model)),
+      limits_(std::move(limits)),
+      scorer_(model_, window),
+      blame_(model_, std::move(graph)),
+      shares_(model_->tracks().size(), 0) {
+  if (limits_ && (limits_->tracks.size() != model_->tracks().size() ||
+                  !std::isfinite(limits_->linker) || limits_->linker <= 0)) {
+    throw std::invalid_argument("the limits are not those of the model: calibrate it again");
+  }
+  if (limits_) {
+    scorer_.capAt(*limits_);
+  }
+}
+
+ScoredEvent EvidenceJudge::add(const Event& event) {
+  return {event, 0, !model_->knows(event.id), scorer_.add(event)};
+}
+
+Judgement EvidenceJudge::judge(const Window& /*window*/, std::int64_t end) {
+  Judgement judgement;
+  const std::vector<double>& evidence = scorer_.closeWindow(end);
+  if (!limits_) {
+    return judgement;
+  }
+  std::set<std::string> channels;
+  for (std::size_t track = 0; track < evidence.size(); ++track) {
+    const double share = evidence[track] / limits_->tracks[track];
+    shares_[track] = std::isnan(share) ? 0 : share;
+    if (shares_[track] > 1 && model_->tracks()[track].channel != Channel::kSlowDelay) {
+      channels.insert(channelName(model_->tracks()[track].channel));
+    }
+  }
+  const EvidenceSum sum = sumUp(evidence, *model_, *limits_);
+  const double linker = sum.linker / limits_->linker;
+  judgement.score = -std::max(sum.largest, linker);
+  judgement.threshold = kThreshold;
+  judgement.abnormal = *judgement.score < kThreshold;
+  judgement.certain = linker > 1 || isSilent(end);
+  judgement.suspicious = linker > kSuspicious;
+  if (judgement.suspicious) {
+    channels.insert("linker");
+  }
+  for (const std::string& channel : channels) {
+    judgement.evidence += (judgement.evidence.empty() ? "" : ", ") + channel;
+  }
+  return judgement;
+}
+
+bool EvidenceJudge::isSilent(std::int64_t end) const {
+  const std::vector<Track>& tracks = model_->tracks();
+  for (std::size_t track = 0; track < tracks.size(); ++track) {
+    const EventId id = tracks[track].to;
+    if (tracks[track].channel == Channel::kOverdue && shares_[track] > 1 &&
+        model_->overdue(id, end - scorer_.lastSeen(id).value_or(end) - kConfirmation) >
+            limits_->tracks[track]) {
+      return true;
+    }
+  }
+  return false;
+}
+
+std::vector<Suspect> EvidenceJudge::suspects(const Window& window, std::int64_t /*end*/) const {
+  return blame_.suspects(shares_, scorer_, window);
+}
+
+}  // namespace self_awareness::core

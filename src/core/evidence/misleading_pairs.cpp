@@ -1,0 +1,97 @@
+#include "self_awareness/core/evidence/misleading_pairs.h"
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <numeric>
+
+namespace self_awareness::core {
+namespace {
+
+constexpr std::int64_t kPart = 100 * kNanosecondsPerSecond;
+constexpr double kLeastGainLeft = 0.7;
+constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::min();
+
+}  // namespace
+
+MisleadingPairs::MisleadingPairs(const EvidenceModel& model)
+    : pairs_(model.size()), misleading_(model.tracks().size(), false) {
+  const EvidenceStatistics& training = model.statistics();
+  const InformationGain gain(training, training);
+  const std::vector<EvidenceStatistics::SumOfDelays> to_any = training.delaysToAny();
+  for (std::size_t track = 0; track < model.tracks().size(); ++track) {
+    const auto& [channel, to, from] = model.tracks()[track];
+    if (channel != Channel::kDelay) {
+      continue;
+    }
+    Pair pair;
+    pair.from = from;
+    pair.track = track;
+    const LogProbabilities of_pair = logProbabilities(training.delays(from, to));
+    const LogProbabilities of_any = logProbabilities(to_any[from]);
+    std::transform(of_pair.begin(), of_pair.end(), of_any.begin(), pair.log_ratios.begin(),
+                   std::minus<>());
+    pair.usual_gain = gain(from, to);
+    pairs_[to].push_back(pair);
+  }
+  startPart();
+}
+
+void MisleadingPairs::add(const Event& event) {
+  if (started_) {
+    duration_ += std::max<std::int64_t>(event.stamp - newest_stamp_, 0);
+    newest_stamp_ = std::max(newest_stamp_, event.stamp);
+  } else {
+    newest_stamp_ = event.stamp;
+    started_ = true;
+  }
+  for (Pair& pair : pairs_[event.id]) {
+    if (last_seen_[pair.from] != kNever) {
+      ++pair.delays[log_bins::bin(event.stamp - last_seen_[pair.from])];
+    }
+  }
+  last_seen_[event.id] = event.stamp;
+  if (duration_ >= kPart) {
+    closePart();
+  }
+}
+
+void MisleadingPairs::finish() {
+  closePart();
+}
+
+void MisleadingPairs::add(const std::vector<bool>& tracks) {
+  std::transform(misleading_.begin(), misleading_.end(), tracks.begin(), misleading_.begin(),
+                 std::logical_or<>());
+}
+
+void MisleadingPairs::startPart() {
+  last_seen_.assign(pairs_.size(), kNever);
+  duration_ = 0;
+  started_ = false;
+  for (std::vector<Pair>& pairs : pairs_) {
+    for (Pair& pair : pairs) {
+      pair.delays.fill(0);
+    }
+  }
+}
+
+void MisleadingPairs::closePart() {
+  for (const std::vector<Pair>& pairs : pairs_) {
+    for (const Pair& pair : pairs) {
+      const auto number =
+          std::accumulate(pair.delays.begin(), pair.delays.end(), std::uint64_t{0});
+      if (number < InformationGain::kFewestDelays) {
+        continue;
+      }
+      const double sum =
+          std::inner_product(pair.delays.begin(), pair.delays.end(), pair.log_ratios.begin(), 0.0);
+      if (sum / static_cast<double>(number) < kLeastGainLeft * pair.usual_gain) {
+        misleading_[pair.track] = misleading_[pair.track + 1] = true;
+      }
+    }
+  }
+  startPart();
+}
+
+}  // namespace self_awareness::core

@@ -1,0 +1,232 @@
+#include "self_awareness/core/evidence/model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "self_awareness/core/verdict/suspect.h"
+
+namespace self_awareness::core {
+namespace {
+
+// A single event proves little, however improbable; and delays of one bin vary by nothing.
+constexpr double kMostSurprise = 6;
+constexpr double kLeastDeviation = 0.5;  // [nat]
+
+// Share of the answers that come which a fault is supposed to take away.
+constexpr double kLost = 0.5;
+constexpr double kLeastMissRate = 0.1;
+constexpr double kMostMissRate = 0.95;
+
+// Below these, training data by the hour would be needed to tell chance from fault. One event that
+// comes late makes two unusual delays, one too long and one too short: they must not do.
+constexpr double kLeastRateLimit = 3;
+constexpr double kLeastDelayLimit = 2 * kMostSurprise + 1;
+constexpr double kLeastMisses = 4;
+constexpr double kLeastAnswerLimit = 5;  // [nat]
+
+/// Mean and standard deviation of -log P of a pair's delays, learned from one half of the training
+/// and measured on the other, both ways.
+class HeldOutSurprise {
+ public:
+  void add(const EvidenceStatistics::Delays& learned, const EvidenceStatistics::Delays& measured) {
+    const auto counted = [](std::uint32_t count) { return count > 0; };
+    if (std::none_of(learned.begin(), learned.end(), counted)) {
+      return;
+    }
+    const LogProbabilities logs = logProbabilities(learned);
+    for (std::size_t bin = 0; bin < log_bins::kBins; ++bin) {
+      count_ += measured[bin];
+      sum_ -= measured[bin] * logs[bin];
+      squares_ += measured[bin] * logs[bin] * logs[bin];
+    }
+  }
+  double mean() const { return count_ > 0 ? sum_ / count_ : 0; }
+  double deviation() const {
+    const double variance = count_ > 0 ? squares_ / count_ - mean() * mean() : 0;
+    return std::max(std::sqrt(std::max(variance, 0.0)), kLeastDeviation);
+  }
+
+ private:
+  double count_ = 0;
+  double sum_ = 0;
+  double squares_ = 0;
+};
+
+EvidenceStatistics sum(const std::array<EvidenceStatistics, 2>& halves) {
+  EvidenceStatistics both = halves[0];
+  both.merge(halves[1]);
+  return both;
+}
+
+}  // namespace
+
+EvidenceModel::EvidenceModel(const WatchedEvidence& watched, Learned learned)
+    : statistics_(sum(watched.halves)), tracks_(watched.tracks) {
+  if (size() == 0) {
+    throw std::invalid_argument("a model needs at least one event");
+  }
+  checkTracks(tracks_, size());
+  if (learned != Learned::kBoth) {
+    half_ = watched.halves.at(learned == Learned::kFirst ? 0 : 1);
+  }
+  learnGaps();
+  learnRates();
+  learnDelays(watched.halves);
+  learnAnswers();
+}
+
+void EvidenceModel::learnGaps() {
+  gaps_.resize(size());
+  for (EventId id = 0; id < size(); ++id) {
+    const EvidenceStatistics::Type& type = learned().type(id);
+    if (type.gaps == 0) {
+      continue;
+    }
+    Gaps& gaps = gaps_[id];
+    gaps.longest = static_cast<double>(std::max<std::int64_t>(type.longest_gaps.front(), 1));
+    const EvidenceStatistics::Delays& counts = learned().delays(id, id);
+    for (std::size_t bin = 0; bin < counts.size(); ++bin) {
+      if (counts[bin] > 0) {
+        const double middle = std::min(log_bins::middle(bin), gaps.longest);
+        gaps.bins.push_back({middle, static_cast<double>(counts[bin]), middle * counts[bin]});
+      }
+    }
+    for (std::size_t bin = gaps.bins.size(); bin-- > 1;) {
+      gaps.bins[bin - 1].count += gaps.bins[bin].count;
+      gaps.bins[bin - 1].sum += gaps.bins[bin].sum;
+    }
+  }
+}
+
+void EvidenceModel::learnRates() {
+  const auto windows = static_cast<double>(std::max<std::uint64_t>(learned().rateWindows(), 1));
+  for (EventId id = 0; id < size(); ++id) {
+    const EvidenceStatistics::Type& type = learned().type(id);
+    Rate rate;
+    rate.mean = static_cast<double>(type.rate_sum) / windows;
+    const double variance =
+        static_cast<double>(type.rate_squares) / windows - rate.mean * rate.mean;
+    rate.spread = std::sqrt(std::max(variance, 0.0) + std::min(1.0, rate.mean / 4) + 0.25);
+    rates_.push_back(rate);
+  }
+}
+
+void EvidenceModel::learnDelays(const std::array<EvidenceStatistics, 2>& halves) {
+  surprises_of_.resize(tracks_.size());
+  for (std::size_t track = 0; track < tracks_.size(); ++track) {
+    const auto& [channel, to, from] = tracks_[track];
+    if (channel != Channel::kDelay) {
+      continue;
+    }
+    HeldOutSurprise usual;
+    usual.add(halves[0].delays(from, to), halves[1].delays(from, to));
+    usual.add(halves[1].delays(from, to), halves[0].delays(from, to));
+    const LogProbabilities logs = logProbabilities(learned().delays(from, to));
+    surprises_of_[track] = surprises_of_[track + 1] = surprises_.size();
+    Surprises& surprises = surprises_.emplace_back();
+    std::transform(logs.begin(), logs.end(), surprises.begin(), [&](double log) {
+      return std::min((-log - usual.mean()) / usual.deviation(), kMostSurprise);
+    });
+  }
+}
+
+void EvidenceModel::learnAnswers() {
+  steps_.resize(tracks_.size());
+  for (std::size_t track = 0; track < tracks_.size(); ++track) {
+    const auto& [channel, to, from] = tracks_[track];
+    if (channel == Channel::kAnswer) {
+      const double usual =
+          std::clamp(core::missRate(learned().type(from).gaps, learned().answers(from, to)),
+                     kLeastMissRate, kMostMissRate);
+      const double faulty = usual + (1 - usual) * kLost;
+      steps_[track] = {std::log((1 - faulty) / (1 - usual)), std::log(faulty / usual), usual};
+    }
+  }
+}
+
+double EvidenceModel::overdue(EventId id, std::int64_t age) const {
+  const Gaps& gaps = gaps_.at(id);
+  if (gaps.bins.empty()) {
+    return 0;
+  }
+  const auto a = static_cast<double>(std::max<std::int64_t>(age, 0));
+  const double all = std::log(gaps.bins.front().sum + gaps.longest);
+  const auto longer =
+      std::upper_bound(gaps.bins.begin(), gaps.bins.end(), a,
+                       [](double age, const Gaps::Bin& bin) { return age < bin.middle; });
+  // Where no gap was longer, exp(-a / b) would underflow long before its logarithm.
+  return longer != gaps.bins.end() ? all - std::log(longer->sum - a * longer->count +
+                                                    gaps.longest * std::exp(-a / gaps.longest))
+                                   : all - std::log(gaps.longest) + a / gaps.longest;
+}
+
+double EvidenceModel::logSurvival(EventId id, std::int64_t age) const {
+  const EvidenceStatistics::Type& type = learned().type(id);
+  if (type.gaps < kFewestGaps) {
+    return 0;
+  }
+  // The longest gaps are known exactly, the others by their bins.
+  const std::vector<std::int64_t>& longest = type.longest_gaps;
+  auto longer =
+      static_cast<double>(std::partition_point(longest.begin(), longest.end(),
+                                               [&](std::int64_t gap) { return gap > age; }) -
+                          longest.begin());
+  if (longer == static_cast<double>(longest.size())) {
+    longer = 0;
+    const EvidenceStatistics::Delays& delays = learned().delays(id, id);
+    for (std::size_t bin = log_bins::bin(age); bin < delays.size(); ++bin) {
+      longer += delays[bin];
+    }
+  }
+  const double tail =
+      static_cast<double>(age) / static_cast<double>(std::max<std::int64_t>(longest.front(), 1));
+  const double all = std::log(static_cast<double>(type.gaps) + 1);
+  // Where no gap was longer, exp(-tail) would underflow long before its logarithm.
+  return longer > 0 ? std::log(longer + std::exp(-tail)) - all : -tail - all;
+}
+
+std::int64_t EvidenceModel::longestGap(EventId id) const {
+  const std::vector<std::int64_t>& longest = statistics_.type(id).longest_gaps;
+  return longest.empty() ? 0 : longest.front();
+}
+
+double EvidenceModel::usualDelay(EventId from, EventId to, double share) const {
+  const EvidenceStatistics::Delays& delays = learned().delays(from, to);
+  const std::uint64_t total = learned().total(from, to);
+  if (total == 0) {
+    return 0;
+  }
+  const double wanted = share * static_cast<double>(total);
+  double below = 0;
+  for (std::size_t bin = 0; bin < delays.size(); ++bin) {
+    below += delays[bin];
+    if (below >= wanted) {
+      return log_bins::middle(bin) * 1e-9;
+    }
+  }
+  return 0;
+}
+
+double EvidenceModel::rate(EventId id, std::uint32_t count) const {
+  return (count - rates_.at(id).mean) / rates_[id].spread;
+}
+
+double EvidenceModel::leastLimit(std::size_t track) const {
+  switch (tracks_.at(track).channel) {
+    case Channel::kOverdue:
+      return 0;
+    case Channel::kFewer:
+    case Channel::kMore:
+      return kLeastRateLimit;
+    case Channel::kDelay:
+    case Channel::kSlowDelay:
+      return kLeastDelayLimit;
+    case Channel::kAnswer:
+      return std::max(kLeastMisses * steps_[track].missed, kLeastAnswerLimit);
+  }
+  return 0;
+}
+
+}  // namespace self_awareness::core

@@ -1,0 +1,294 @@
+#include "self_awareness/core/evidence/scorer.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace self_awareness::core {
+namespace {
+
+// What usual delays take from the sum, in standard deviations: much finds strong evidence without
+// false alarms, little lets weak evidence add up.
+constexpr double kDrift = 1;
+constexpr double kSlowDrift = 0.5;
+// Independent timers keep one phase as long as they run, and have another one in every run:
+// training may have met the same one by chance every time. So delays and answers count from when
+// they have once been as in training, and anew when one of the event types comes back after it was
+// gone.
+constexpr std::uint32_t kArmingEvents = 30;
+constexpr double kUsualSurprise = 0.3;  // standard deviations above the mean of training
+constexpr double kUsualMisses = 0.15;   // share of the gaps above that of training
+constexpr std::int64_t kGoneGaps = 5;   // times the longest gap in training
+constexpr double kMostEvidence = 200;   // while limits are not known
+constexpr double kMostOfLimit = 1.5;    // in units of the limit
+
+}  // namespace
+
+inline bool EvidenceScorer::arm(Arming& arming, double excess, double usual) {
+  arming.excess += excess;
+  if (++arming.events < kArmingEvents) {
+    return false;
+  }
+  const bool armed = arming.excess <= usual * kArmingEvents;
+  arming = {};
+  return armed;
+}
+
+EvidenceScorer::EvidenceScorer(std::shared_ptr<const EvidenceModel> model, std::int64_t window)
+    : model_(std::move(model)), counts_(model_->size(), rateWindows(window)) {
+  addTracks();
+  restart();
+}
+
+void EvidenceScorer::addTracks() {
+  const std::vector<Track>& tracks = model_->tracks();
+  std::vector<std::vector<std::size_t>> pairs(model_->size());    // tracks by `to`
+  std::vector<std::vector<std::size_t>> answers(model_->size());  // tracks by `from`
+  tracks_of_.resize(model_->size());
+  for (std::size_t track = 0; track < tracks.size(); ++track) {
+    const auto& [channel, to, from] = tracks[track];
+    if (channel == Channel::kDelay) {
+      pairs[to].push_back(track);
+    } else if (channel == Channel::kAnswer) {
+      answers[from].push_back(track);
+    } else {
+      continue;
+    }
+    tracks_of_[to].push_back(track);
+    if (from != to) {
+      tracks_of_[from].push_back(track);
+    }
+  }
+  state_of_.resize(tracks.size());
+  const Sums none{{}, {kMostEvidence, kMostEvidence}};
+  for (EventId id = 0; id < model_->size(); ++id) {
+    OfType type;
+    type.gone_after = kGoneGaps * model_->longestGap(id);
+    type.pairs_begin = static_cast<std::uint32_t>(pairs_.size());
+    for (const std::size_t track : pairs[id]) {
+      state_of_[track] = state_of_[track + 1] = pairs_.size();
+      pairs_.push_back({tracks[track].from, false, 0, model_->surprises(track).data(), none});
+    }
+    type.pairs_end = static_cast<std::uint32_t>(pairs_.size());
+    type.blocks_begin = static_cast<std::uint32_t>(blocks_.size());
+    addAnswers(id, answers[id]);
+    type.blocks_end = static_cast<std::uint32_t>(blocks_.size());
+    types_.push_back(type);
+  }
+  pairs_arming_.resize(pairs_.size());
+}
+
+void EvidenceScorer::addAnswers(EventId from, const std::vector<std::size_t>& tracks) {
+  for (std::size_t k = 0; k < tracks.size(); ++k) {
+    const std::size_t answer = k % AnswerBlock::kAnswers;
+    if (answer == 0) {
+      blocks_.emplace_back().to.fill(from);
+      miss_rates_.resize(blocks_.size() * AnswerBlock::kAnswers);
+      answers_arming_.resize(blocks_.size() * AnswerBlock::kAnswers);
+    }
+    const std::size_t track = tracks[k];
+    state_of_[track] = (blocks_.size() - 1) * AnswerBlock::kAnswers + answer;
+    miss_rates_[state_of_[track]] = model_->missRate(track);
+    AnswerBlock& block = blocks_.back();
+    block.to[answer] = model_->tracks()[track].to;
+    block.answered[answer / kLanes][answer % kLanes] = model_->answered(track);
+    block.missed[answer / kLanes][answer % kLanes] = model_->missed(track);
+    block.sums[answer / kLanes].caps[answer % kLanes] = kMostEvidence;
+  }
+}
+
+void EvidenceScorer::restart() {
+  stamps_.assign(model_->size(), 0);
+  numbers_.assign(model_->size(), 0);
+  number_ = 0;
+  counts_.restart();
+  evidence_.assign(model_->tracks().size(), 0);
+  for (DelayPair& pair : pairs_) {
+    pair.last_delay = 0;
+  }
+  for (EventId id = 0; id < model_->size(); ++id) {
+    disarm(id);
+  }
+}
+
+std::optional<std::int64_t> EvidenceScorer::add(const Event& event) {
+  if (event.id >= types_.size()) {
+    return std::nullopt;
+  }
+  const OfType& type = types_[event.id];
+  counts_.add(event.id);
+  // What is not known to the compiler not to change is looked up again and again.
+  const std::int64_t* const stamps = stamps_.data();
+  const double* const numbers = numbers_.data();
+  const double last = numbers[event.id];
+  const Lanes since = {last, last};
+  // Where the other one was never seen, its pairs and answers are not armed yet: what is added to
+  // their sums is taken back there, which spares all the others the question.
+  DelayPair* const pairs_end = pairs_.data() + type.pairs_end;
+  for (DelayPair* pair = pairs_.data() + type.pairs_begin; pair != pairs_end; ++pair) {
+    // Only the first event after another answers it: those that follow while the other pauses
+    // would count one pause many times. Which one that is cannot be predicted, thus no branch.
+    const double number = numbers[pair->from];
+    const auto first = Lanes{number, number} >= since;  // all bits, or none
+    const std::int64_t delay = event.stamp - stamps[pair->from];
+    const double surprise = pair->surprises[log_bins::bin(delay)];
+    pair->last_delay ^= (pair->last_delay ^ delay) & first[0];
+    const Lanes steps = Lanes{surprise, surprise} - Lanes{kDrift, kSlowDrift};
+    pair->sums.add(first ? steps : Lanes{});
+    if (!pair->armed) {
+      armPair(static_cast<std::size_t>(pair - pairs_.data()), first[0] != 0, surprise);
+    }
+  }
+  std::optional<std::int64_t> gap;
+  if (last > 0) {
+    AnswerBlock* const blocks_end = blocks_.data() + type.blocks_end;
+    for (AnswerBlock* block = blocks_.data() + type.blocks_begin; block != blocks_end; ++block) {
+      for (std::size_t k = 0; k < block->sums.size(); ++k) {
+        const Lanes others = {numbers[block->to[kLanes * k]], numbers[block->to[kLanes * k + 1]]};
+        block->sums[k].add(others <= since ? block->missed[k] : block->answered[k]);
+      }
+      if (block->unarmed != 0) {
+        armAnswers(static_cast<std::size_t>(block - blocks_.data()), last);
+      }
+    }
+    gap = event.stamp - stamps[event.id];
+    if (*gap > type.gone_after) {
+      disarm(event.id);
+    }
+  }
+  stamps_[event.id] = event.stamp;
+  numbers_[event.id] = ++number_;
+  return gap;
+}
+
+void EvidenceScorer::armPair(std::size_t number, bool first, double surprise) {
+  DelayPair& pair = pairs_[number];
+  if (numbers_[pair.from] == 0) {
+    pair.sums.values = Lanes{};
+    pair.last_delay = 0;
+  } else if (first) {
+    pair.armed = arm(pairs_arming_[number], surprise, kUsualSurprise);
+  }
+}
+
+void EvidenceScorer::armAnswers(std::size_t block, double since) {
+  AnswerBlock& answers = blocks_[block];
+  for (std::size_t k = 0; k < AnswerBlock::kAnswers; ++k) {
+    if (answers.armed(k)) {
+      continue;
+    }
+    const double other = numbers_[answers.to[k]];
+    const std::size_t number = block * AnswerBlock::kAnswers + k;
+    if (other == 0) {
+      answers.sums[k / kLanes].values[k % kLanes] = 0;
+    } else if (arm(answers_arming_[number], (other <= since ? 1 : 0) - miss_rates_[number],
+                   kUsualMisses)) {
+      answers.unarmed &= ~(1U << k);
+    }
+  }
+}
+
+void EvidenceScorer::capAt(const EvidenceLimits& limits) {
+  const auto cap = [&](std::size_t track, Sums& sums, std::size_t lane) {
+    if (limits.tracks[track] > 0) {  // never so where it is NaN
+      sums.caps[lane] = kMostOfLimit * limits.tracks[track];
+    }
+  };
+  for (std::size_t track = 0; track < model_->tracks().size(); ++track) {
+    const Channel channel = model_->tracks()[track].channel;
+    const std::size_t number = state_of_[track];
+    if (channel == Channel::kDelay) {
+      cap(track, pairs_[number].sums, 0);
+      cap(track + 1, pairs_[number].sums, 1);
+    } else if (channel == Channel::kAnswer) {
+      const std::size_t answer = number % AnswerBlock::kAnswers;
+      cap(track, blocks_[number / AnswerBlock::kAnswers].sums[answer / kLanes], answer % kLanes);
+    }
+  }
+}
+
+void EvidenceScorer::disarm(EventId id) {
+  for (const std::size_t track : tracks_of_[id]) {
+    if (model_->tracks()[track].channel == Channel::kDelay) {
+      disarmPair(state_of_[track]);
+    } else {
+      disarmAnswer(state_of_[track]);
+    }
+  }
+}
+
+void EvidenceScorer::disarmPair(std::size_t number) {
+  pairs_[number].sums.values = Lanes{};
+  pairs_[number].armed = false;
+  pairs_arming_[number] = {};
+}
+
+void EvidenceScorer::disarmAnswer(std::size_t number) {
+  AnswerBlock& block = blocks_[number / AnswerBlock::kAnswers];
+  const std::size_t answer = number % AnswerBlock::kAnswers;
+  block.sums[answer / kLanes].values[answer % kLanes] = 0;
+  block.unarmed |= 1U << answer;
+  answers_arming_[number] = {};
+}
+
+const std::vector<double>& EvidenceScorer::closeWindow(std::int64_t end) {
+  window_end_ = end;
+  counts_.close();
+  const std::vector<Track>& tracks = model_->tracks();
+  for (std::size_t track = 0; track < tracks.size(); ++track) {
+    const auto& [channel, id, from] = tracks[track];
+    const bool seen = numbers_[id] > 0;
+    switch (channel) {
+      case Channel::kOverdue:
+        evidence_[track] = seen ? model_->overdue(id, end - stamps_[id]) : 0;
+        break;
+      case Channel::kFewer:
+      case Channel::kMore: {
+        const double sign = channel == Channel::kMore ? 1 : -1;
+        const double more = counts_.full() && seen ? model_->rate(id, counts_.counts()[id]) : 0;
+        evidence_[track] = std::max(sign * more, 0.0);
+        break;
+      }
+      case Channel::kDelay:
+      case Channel::kSlowDelay: {
+        const DelayPair& pair = pairs_[state_of_[track]];
+        const std::size_t lane = channel == Channel::kDelay ? 0 : 1;
+        evidence_[track] = pair.armed ? pair.sums.values[lane] : 0;
+        break;
+      }
+      case Channel::kAnswer: {
+        const AnswerBlock& block = blocks_[state_of_[track] / AnswerBlock::kAnswers];
+        const std::size_t answer = state_of_[track] % AnswerBlock::kAnswers;
+        evidence_[track] = block.armed(answer) ? block.sum(answer) : 0;
+        break;
+      }
+    }
+  }
+  return evidence_;
+}
+
+std::optional<std::int64_t> EvidenceScorer::lastSeen(EventId id) const {
+  return numbers_.at(id) > 0 ? std::optional<std::int64_t>(stamps_[id]) : std::nullopt;
+}
+
+EvidenceSum sumUp(const std::vector<double>& evidence, const EvidenceModel& model,
+                  const EvidenceLimits& limits) {
+  EvidenceSum sum;
+  std::vector<double> linked(model.size(), 0);
+  for (std::size_t track = 0; track < evidence.size(); ++track) {
+    const double share = evidence[track] / limits.tracks[track];
+    const Channel channel = model.tracks()[track].channel;
+    if (channel != Channel::kSlowDelay && share > sum.largest) {  // never so where it is NaN
+      sum.largest = share;
+    }
+    if ((channel == Channel::kSlowDelay || channel == Channel::kAnswer) && share > 0) {
+      double& of_type = linked[model.tracks()[track].to];
+      of_type = std::max(of_type, std::min(share, 1.0));
+    }
+  }
+  for (const double share : linked) {
+    sum.linker += share;
+  }
+  return sum;
+}
+
+}  // namespace self_awareness::core

@@ -1,0 +1,272 @@
+#include "self_awareness/core/evidence/tracks.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+
+#include "self_awareness/core/verdict/suspect.h"
+
+namespace self_awareness::core {
+namespace {
+
+// With a smaller gain, timers that beat against each other get in.
+constexpr double kLeastGain = 0.3;  // [nat]
+constexpr std::uint64_t kFewestDelaysOfPair = 200;
+
+// Few events in kRateSpan come in bursts, or when something happens.
+constexpr double kLeastRate = 1.5;
+
+constexpr std::size_t kAsked = 8;
+constexpr std::uint64_t kFewestAnswers = 100;
+constexpr double kMostMisses = 0.6;
+
+using Halves = std::array<const EvidenceStatistics*, 2>;
+
+/// Gains between all pairs, the mean of both directions.
+class Gains {
+ public:
+  explicit Gains(const Halves& halves) : size_(halves[0]->size()), gains_(size_ * size_, 0) {
+    add(*halves[0], *halves[1]);
+    add(*halves[1], *halves[0]);
+  }
+
+  double operator()(EventId from, EventId to) const { return gains_[to * size_ + from]; }
+
+ private:
+  void add(const EvidenceStatistics& learned_from, const EvidenceStatistics& measured_on) {
+    const InformationGain gain(learned_from, measured_on);
+    for (EventId to = 0; to < size_; ++to) {
+      for (EventId from = 0; from < size_; ++from) {
+        gains_[to * size_ + from] += gain(from, to) / 2;
+      }
+    }
+  }
+
+  std::size_t size_;
+  std::vector<double> gains_;
+};
+
+/// What to watch, by the counts of both halves.
+class Choice {
+ public:
+  Choice(const Halves& halves, std::size_t predecessors)
+      : halves_(halves),
+        predecessors_(predecessors),
+        gains_(halves),
+        types_(halves[0]->withoutPairs()) {
+    types_.merge(halves[1]->withoutPairs());
+  }
+
+  std::vector<Track> tracks() const {
+    std::vector<Track> tracks;
+    addTracksOfTypes(tracks);
+    addDelayTracks(tracks);
+    addAnswerTracks(tracks);
+    return tracks;
+  }
+
+ private:
+  using Ranked = std::vector<std::pair<double, EventId>>;  // the least first
+
+  void addTracksOfTypes(std::vector<Track>& tracks) const {
+    for (EventId id = 0; id < types_.size(); ++id) {
+      if (types_.type(id).gaps >= kFewestGaps) {
+        tracks.push_back({Channel::kOverdue, id, id});
+        if (static_cast<double>(types_.type(id).rate_sum) >=
+            kLeastRate * static_cast<double>(types_.rateWindows())) {
+          tracks.push_back({Channel::kFewer, id, id});
+          tracks.push_back({Channel::kMore, id, id});
+        }
+      }
+    }
+  }
+
+  void addDelayTracks(std::vector<Track>& tracks) const {
+    for (EventId to = 0; to < types_.size(); ++to) {
+      Ranked best;  // by negative gain
+      for (EventId from = 0; from < types_.size(); ++from) {
+        if (gains_(from, to) >= kLeastGain &&
+            halves_[0]->total(from, to) + halves_[1]->total(from, to) >= kFewestDelaysOfPair) {
+          best.emplace_back(-gains_(from, to), from);
+        }
+      }
+      keepBest(predecessors_, best);
+      for (const auto& [gain, from] : best) {
+        tracks.push_back({Channel::kDelay, to, from});
+        tracks.push_back({Channel::kSlowDelay, to, from});
+      }
+    }
+  }
+
+  // Whoever follows `to` says nothing about it: a dead component's victims are silent, too.
+  void addAnswerTracks(std::vector<Track>& tracks) const {
+    for (EventId to = 0; to < types_.size(); ++to) {
+      Ranked best;  // by the time that some misses take
+      for (EventId from = 0; from < types_.size(); ++from) {
+        const EvidenceStatistics::Type& asking = types_.type(from);
+        if (from == to || asking.gaps < kFewestAnswers || types_.type(to).gaps < kFewestAnswers ||
+            gains_(to, from) > gains_(from, to) + kLeastGain) {
+          continue;
+        }
+        const double misses =
+            missRate(asking.gaps, halves_[0]->answers(from, to) + halves_[1]->answers(from, to));
+        if (misses <= kMostMisses) {
+          const double gap =
+              static_cast<double>(asking.gap_sum) / static_cast<double>(asking.gaps);
+          best.emplace_back(gap / (1 - misses), from);
+        }
+      }
+      keepBest(kAsked, best);
+      for (const auto& [time, from] : best) {
+        tracks.push_back({Channel::kAnswer, to, from});
+      }
+    }
+  }
+
+  static void keepBest(std::size_t number, Ranked& best) {
+    number = std::min(number, best.size());
+    std::partial_sort(best.begin(), best.begin() + static_cast<std::ptrdiff_t>(number),
+                      best.end());
+    best.resize(number);
+  }
+
+  Halves halves_;
+  std::size_t predecessors_;
+  Gains gains_;
+  EvidenceStatistics types_;  // counts of both halves, without pairs
+};
+
+/// The counts, with the event types of both halves and their ids.
+EvidenceStatistics withTypes(const EvidenceStatistics& first, const EvidenceStatistics& second,
+                             const EvidenceStatistics& counts) {
+  EvidenceStatistics all;
+  for (const EvidenceStatistics* half : {&first, &second}) {
+    for (const EventType& type : half->vocabulary().types()) {
+      all.intern(type);
+    }
+  }
+  all.merge(counts);
+  return all;
+}
+
+std::vector<EvidenceStatistics::Pair> pairsOf(const std::vector<Track>& tracks,
+                                              std::size_t types) {
+  std::vector<EvidenceStatistics::Pair> pairs;
+  for (EventId id = 0; id < types; ++id) {
+    pairs.push_back({id, id});  // the gaps between two of a type
+  }
+  for (const Track& track : tracks) {
+    pairs.push_back({track.from, track.to});
+  }
+  return pairs;
+}
+
+template <typename Counts>
+LogProbabilities logsOf(const Counts& counts) {
+  auto total = static_cast<double>(counts.size());
+  for (const std::uint64_t count : counts) {
+    total += static_cast<double>(count);
+  }
+  LogProbabilities logs{};
+  std::transform(counts.begin(), counts.end(), logs.begin(), [total](std::uint64_t count) {
+    return std::log((static_cast<double>(count) + 1) / total);
+  });
+  return logs;
+}
+
+}  // namespace
+
+std::string channelName(Channel channel) {
+  switch (channel) {
+    case Channel::kOverdue:
+      return "overdue";
+    case Channel::kFewer:
+    case Channel::kMore:
+      return "rate";
+    case Channel::kDelay:
+    case Channel::kSlowDelay:
+      return "pairs";
+    case Channel::kAnswer:
+      return "answers";
+  }
+  return "";
+}
+
+InformationGain::InformationGain(const EvidenceStatistics& learned_from,
+                                 const EvidenceStatistics& measured_on)
+    : learned_from_(learned_from), measured_on_(measured_on) {
+  for (const EventType& type : learned_from.vocabulary().types()) {
+    id_there_.push_back(measured_on.vocabulary().find(type));
+  }
+  for (const EvidenceStatistics::SumOfDelays& delays : learned_from.delaysToAny()) {
+    any_.push_back(logProbabilities(delays));
+  }
+}
+
+double InformationGain::operator()(EventId from, EventId to) const {
+  if (!id_there_[from] || !id_there_[to]) {
+    return 0;
+  }
+  const EvidenceStatistics::Delays& measured =
+      measured_on_.delays(*id_there_[from], *id_there_[to]);
+  const auto number = std::accumulate(measured.begin(), measured.end(), std::uint64_t{0});
+  const EvidenceStatistics::Delays& learned = learned_from_.delays(from, to);
+  const auto learned_number = std::accumulate(learned.begin(), learned.end(), std::uint64_t{0});
+  if (number < kFewestDelays || learned_number == 0) {
+    return 0;
+  }
+  const double total = static_cast<double>(learned_number) + log_bins::kBins;
+  double sum = 0;
+  for (std::size_t bin = 0; bin < log_bins::kBins; ++bin) {
+    if (measured[bin] > 0) {  // logarithms are what takes the time
+      sum += measured[bin] * (std::log((learned[bin] + 1.0) / total) - any_[from][bin]);
+    }
+  }
+  return sum / static_cast<double>(number);
+}
+
+LogProbabilities logProbabilities(const EvidenceStatistics::Delays& counts) {
+  return logsOf(counts);
+}
+
+LogProbabilities logProbabilities(const EvidenceStatistics::SumOfDelays& counts) {
+  return logsOf(counts);
+}
+
+WatchedEvidence watch(const EvidenceStatistics& first, const EvidenceStatistics& second,
+                      std::size_t predecessors) {
+  if (first.vocabulary().types() != second.vocabulary().types()) {
+    return watch(withTypes(first, second, first), withTypes(first, second, second), predecessors);
+  }
+  const Halves halves{&first, &second};
+  WatchedEvidence watched;
+  watched.tracks = Choice(halves, predecessors).tracks();
+  const std::vector<EvidenceStatistics::Pair> pairs = pairsOf(watched.tracks, first.size());
+  watched.halves = {first.only(pairs), second.only(pairs)};
+  return watched;
+}
+
+void checkTracks(const std::vector<Track>& tracks, std::size_t types) {
+  for (std::size_t track = 0; track < tracks.size(); ++track) {
+    const auto& [channel, to, from] = tracks[track];
+    if (to >= types || from >= types) {
+      throw std::invalid_argument("it watches an event type that it does not have");
+    }
+    const bool slow = channel == Channel::kSlowDelay;
+    const std::size_t other = slow ? track - 1 : track + 1;
+    if ((slow || channel == Channel::kDelay) &&
+        (other >= tracks.size() || tracks[other].to != to || tracks[other].from != from ||
+         tracks[other].channel != (slow ? Channel::kDelay : Channel::kSlowDelay))) {
+      throw std::invalid_argument("it watches delays, but not both at present and for longer");
+    }
+  }
+}
+
+double missRate(std::uint64_t gaps, std::uint64_t answers) {
+  const auto all = static_cast<double>(gaps);
+  return (all - static_cast<double>(answers) + 0.5) / (all + 1);
+}
+
+}  // namespace self_awareness::core

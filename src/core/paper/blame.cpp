@@ -1,0 +1,128 @@
+#include "self_awareness/core/paper/blame.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace self_awareness::core {
+namespace {
+
+// A silence that one gap in a hundred reaches is worth naming once the window is abnormal.
+const double kRareSilence = std::log(0.01);
+// Events that score less than this share of what training lets expect are worth naming.
+constexpr double kLowScore = 0.5;
+
+struct SeenInWindow {
+  std::size_t events = 0;
+  double score_sum = 0;
+  std::int64_t longest_gap = 0;
+  bool unknown = false;
+};
+
+std::map<EventId, SeenInWindow> eventsByType(const Window& window) {
+  std::map<EventId, SeenInWindow> seen;
+  for (const ScoredEvent& scored : window.events) {
+    SeenInWindow& type = seen[scored.event.id];
+    ++type.events;
+    type.score_sum += scored.score;
+    type.longest_gap = std::max(type.longest_gap, scored.gap.value_or(0));
+    type.unknown = scored.unknown;
+  }
+  return seen;
+}
+
+}  // namespace
+
+Blame::Blame(std::shared_ptr<const Model> model) : model_(std::move(model)) {
+  const double bin_size = toSeconds(model_->binning().bin_size);
+  usual_.resize(model_->size());
+  for (EventId id = 0; id < model_->size(); ++id) {
+    const Histogram& gaps = model_->gaps(id);
+    Usual& usual = usual_[id];
+    usual.gaps = gaps.total();
+    usual.score = model_->expectedScore(id);
+    if (!gaps.empty()) {
+      usual.shortest = static_cast<double>(gaps.quantile(kUsualFrom)) * bin_size;
+      usual.longest = static_cast<double>(gaps.quantile(kUsualTo) + 1) * bin_size;
+      usual.maximum = static_cast<double>(gaps.quantile(1) + 1) * bin_size;
+    }
+  }
+}
+
+double Blame::logSurvival(EventId id, std::int64_t age) const {
+  if (!judged(id)) {
+    return 0;
+  }
+  const Usual& usual = usual_[id];
+  const std::int64_t bin = model_->binning().bin(age);
+  std::uint64_t longer = 0;
+  const std::vector<Histogram::Entry> gaps = model_->gaps(id).entries();
+  for (auto entry = gaps.rbegin(); entry != gaps.rend() && entry->bin >= bin; ++entry) {
+    longer += entry->count;
+  }
+  const double tail = toSeconds(age) / usual.maximum;
+  const double all = std::log(static_cast<double>(usual.gaps) + 1);
+  // Where no gap was longer, exp(-tail) would underflow long before its logarithm.
+  return longer == 0 ? -tail - all : std::log(static_cast<double>(longer) + std::exp(-tail)) - all;
+}
+
+std::vector<Suspect> Blame::suspects(const Window& window,
+                                     const std::vector<std::optional<std::int64_t>>& last_seen,
+                                     std::int64_t end) const {
+  std::map<EventId, SeenInWindow> seen = eventsByType(window);
+  std::vector<std::pair<double, Suspect>> overdue;  // by the logarithm of survival
+  std::vector<std::pair<double, Suspect>> unknown;  // by the number of events, negative
+  std::vector<std::pair<double, Suspect>> unusual;  // by the share of the expected score
+
+  for (EventId id = 0; id < model_->size(); ++id) {
+    if (!last_seen[id] || !judged(id)) {
+      continue;
+    }
+    const std::int64_t age = end - *last_seen[id];
+    const auto in_window = seen.find(id);
+    const std::int64_t gap = in_window == seen.end() ? 0 : in_window->second.longest_gap;
+    const double log_survival = logSurvival(id, std::max(age, gap));
+    if (log_survival > kRareSilence) {
+      continue;
+    }
+    Suspect suspect;
+    suspect.id = id;
+    suspect.reason = age >= gap ? Suspect::Reason::kSilent : Suspect::Reason::kLate;
+    suspect.silence = toSeconds(std::max(age, gap));
+    suspect.usual_shortest = usual_[id].shortest;
+    suspect.usual_longest = usual_[id].longest;
+    overdue.emplace_back(log_survival, suspect);
+    seen.erase(id);
+  }
+  for (const auto& [id, type] : seen) {
+    Suspect suspect;
+    suspect.id = id;
+    suspect.events = type.events;
+    if (type.unknown) {
+      suspect.reason = Suspect::Reason::kUnknown;
+      unknown.emplace_back(-static_cast<double>(type.events), suspect);
+      continue;
+    }
+    suspect.reason = Suspect::Reason::kUnusual;
+    suspect.score = type.score_sum / static_cast<double>(type.events);
+    suspect.usual_score = usual_[id].score;
+    if (suspect.score < kLowScore * suspect.usual_score) {
+      unusual.emplace_back(suspect.score / suspect.usual_score, suspect);
+    }
+  }
+
+  std::vector<Suspect> ranked;
+  for (auto* group : {&overdue, &unknown, &unusual}) {
+    std::stable_sort(group->begin(), group->end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
+    for (const auto& [rank, suspect] : *group) {
+      if (ranked.size() < kMostSuspects) {
+        ranked.push_back(suspect);
+      }
+    }
+  }
+  return ranked;
+}
+
+}  // namespace self_awareness::core

@@ -1,0 +1,33 @@
+#include "self_awareness/core/stream/vocabulary.h"
+
+#include <stdexcept>
+
+namespace self_awareness::core {
+
+std::string toString(const EventType& type) {
+  return (type.source.empty() ? "-" : type.source) + " " + type.scope + " " + type.type;
+}
+
+Vocabulary::Vocabulary(const std::vector<EventType>& types) {
+  for (const EventType& type : types) {
+    if (find(type)) {
+      throw std::invalid_argument("event type occurs twice: " + toString(type));
+    }
+    intern(type);
+  }
+}
+
+EventId Vocabulary::intern(const EventType& type) {
+  const auto [entry, is_new] = ids_.try_emplace(type, static_cast<EventId>(types_.size()));
+  if (is_new) {
+    types_.push_back(type);
+  }
+  return entry->second;
+}
+
+std::optional<EventId> Vocabulary::find(const EventType& type) const {
+  const auto entry = ids_.find(type);
+  return entry == ids_.end() ? std::nullopt : std::optional<EventId>(entry->second);
+}
+
+}  // namespace self_awareness::core

@@ -1,0 +1,45 @@
+#include "self_awareness/core/verdict/persistence.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+namespace self_awareness::core {
+
+void Persistence::Parameters::validate() const {
+  if (alarm_windows < 1 || alarm_windows > alarm_of) {
+    throw std::invalid_argument("alarm_windows must lie between 1 and alarm_of, but " +
+                                std::to_string(alarm_windows) + " of " + std::to_string(alarm_of) +
+                                " was asked for");
+  }
+  if (hold_time < 0) {
+    throw std::invalid_argument("hold_time must be 0 or more");
+  }
+}
+
+Persistence::Persistence(const Parameters& parameters) : parameters_(parameters) {
+  parameters_.validate();
+}
+
+bool Persistence::add(bool abnormal, std::int64_t end, bool certain) {
+  recent_.push_back(abnormal);
+  if (recent_.size() > static_cast<std::size_t>(parameters_.alarm_of)) {
+    recent_.pop_front();
+  }
+  if (abnormal) {
+    last_abnormal_ = end;
+  }
+  if (certain || std::count(recent_.begin(), recent_.end(), true) >= parameters_.alarm_windows) {
+    raised_ = true;
+  } else if (raised_ && end - last_abnormal_ >= parameters_.hold_time) {
+    raised_ = false;
+  }
+  return raised_;
+}
+
+void Persistence::clear() {
+  recent_.clear();
+  raised_ = false;
+}
+
+}  // namespace self_awareness::core

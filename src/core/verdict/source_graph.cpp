@@ -1,0 +1,39 @@
+#include "self_awareness/core/verdict/source_graph.h"
+
+#include <utility>
+#include <vector>
+
+namespace self_awareness::core {
+
+bool SourceGraph::isUpstream(const std::string& from, const std::string& to) const {
+  const std::optional<std::size_t> there = distance(from, to);
+  const std::optional<std::size_t> back = distance(to, from);
+  return from != to && there && (!back || *there < *back);
+}
+
+std::optional<std::size_t> SourceGraph::distance(const std::string& from,
+                                                 const std::string& to) const {
+  std::set<std::string> seen{from};
+  std::vector<std::string> reached{from};
+  for (std::size_t steps = 1; !reached.empty(); ++steps) {
+    std::vector<std::string> next;
+    for (const std::string& source : reached) {
+      const auto followers = followers_.find(source);
+      if (followers == followers_.end()) {
+        continue;
+      }
+      if (followers->second.count(to) > 0) {
+        return steps;
+      }
+      for (const std::string& follower : followers->second) {
+        if (seen.insert(follower).second) {
+          next.push_back(follower);
+        }
+      }
+    }
+    reached = std::move(next);
+  }
+  return std::nullopt;
+}
+
+}  // namespace self_awareness::core

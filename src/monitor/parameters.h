@@ -1,0 +1,32 @@
+#pragma once
+
+#include <ros/node_handle.h>
+
+#include <cstdint>
+#include <string>
+
+#include "self_awareness/core/verdict/detector.h"
+#include "self_awareness/ros/graph.h"
+
+namespace self_awareness {
+
+/// All parameters of the monitor; config/self_awareness.yaml explains each to its user.
+struct MonitorParameters {
+  enum class Method { kEvidence, kPaper };
+
+  std::string model;                    ///< ~model: path of the model file
+  Method method = Method::kEvidence;    ///< ~detector
+  core::Detector::Parameters detector;  ///< ~settle_time, ~alarm_windows, ~alarm_of,
+                                        ///< ~hold_time, ~silence, ~unknown
+  ros1::SubscribePolicy subscribe = ros1::SubscribePolicy::kUsed;  ///< ~subscribe
+  double poll_interval = 1.0;        ///< ~poll_interval: of the master [s], > 0
+  std::uint32_t queue_size = 1000;   ///< ~queue_size: messages a topic may have waiting
+  bool source_diagnostics = true;    ///< ~source_diagnostics: one status per source
+  std::string hardware_id = "none";  ///< ~hardware_id: of the diagnostics
+
+  /// Reads the parameters, checks and logs them; warns of those it does not know.
+  /// @throw std::invalid_argument names the parameter, its value and what it may be
+  static MonitorParameters load(const ros::NodeHandle& private_node_handle);
+};
+
+}  // namespace self_awareness

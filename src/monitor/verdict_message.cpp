@@ -1,0 +1,53 @@
+#include "verdict_message.h"
+
+#include "diagnostics.h"
+#include "self_awareness/SelfAwareness.h"
+
+namespace self_awareness {
+
+std::uint8_t levelOf(const core::Verdict& verdict) {
+  if (verdict.alarm) {
+    return self_awareness::SelfAwareness::ERROR;
+  }
+  return verdict.suspicion ? self_awareness::SelfAwareness::WARN
+                           : self_awareness::SelfAwareness::OK;
+}
+
+std::vector<self_awareness::Suspect> toMessages(const std::vector<core::Suspect>& suspects,
+                                                const core::Vocabulary& vocabulary) {
+  std::vector<self_awareness::Suspect> messages;
+  for (const core::Suspect& suspect : suspects) {
+    const core::EventType& type = vocabulary.at(suspect.id);
+    self_awareness::Suspect message;
+    message.source = type.source;
+    message.scope = type.scope;
+    message.type = type.type;
+    message.reason = core::describe(suspect);
+    message.silence = suspect.silence;
+    message.usual_shortest = suspect.usual_shortest;
+    message.usual_longest = suspect.usual_longest;
+    messages.push_back(message);
+  }
+  return messages;
+}
+
+std::string wording(const core::Verdict& verdict, const std::string& evidence,
+                    const std::vector<self_awareness::Suspect>& suspects) {
+  if (!verdict.threshold) {
+    return "not calibrated: find limits with rosrun self_awareness calibrate";
+  }
+  if (verdict.alarm || verdict.suspicion) {
+    std::string message = verdict.alarm ? "abnormal communication" : "suspicion of a fault";
+    message += " (" + evidence + ")";
+    if (!suspects.empty()) {
+      message += ", " + ros1::describe(suspects.front());
+    }
+    if (suspects.size() > 1) {
+      message += " (and " + std::to_string(suspects.size() - 1) + " more)";
+    }
+    return message;
+  }
+  return verdict.settling ? "settling" : "normal communication";
+}
+
+}  // namespace self_awareness

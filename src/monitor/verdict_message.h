@@ -1,0 +1,25 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "self_awareness/Suspect.h"
+#include "self_awareness/core/stream/vocabulary.h"
+#include "self_awareness/core/verdict/detector.h"
+
+namespace self_awareness {
+
+/// Level of SelfAwareness.msg: ERROR for an alarm, WARN for a suspicion.
+std::uint8_t levelOf(const core::Verdict& verdict);
+
+/// @param vocabulary that the suspects' ids are of
+std::vector<self_awareness::Suspect> toMessages(const std::vector<core::Suspect>& suspects,
+                                                const core::Vocabulary& vocabulary);
+
+/// The verdict in words.
+/// @param evidence, suspects those of the last window that had any, while the level is not OK
+std::string wording(const core::Verdict& verdict, const std::string& evidence,
+                    const std::vector<self_awareness::Suspect>& suspects);
+
+}  // namespace self_awareness

@@ -1,0 +1,177 @@
+#include "self_awareness/ros/bag/bag_reader.h"
+
+#include <rosbag/exceptions.h>
+
+#include <algorithm>
+#include <boost/filesystem/operations.hpp>
+#include <cmath>
+#include <fstream>
+#include <vector>
+
+#include "bag_index.h"
+#include "bag_messages.h"
+
+namespace self_awareness::ros1 {
+namespace {
+
+constexpr std::uint64_t kMessagesPerProgress = 10000;
+
+// FNV-1a, 64 bit.
+std::uint64_t hash(const std::string& text) {
+  std::uint64_t hash = 0xcbf29ce484222325;
+  for (const char c : text) {
+    hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001b3;
+  }
+  return hash;
+}
+
+// The finaliser of SplitMix64: every bit of the value changes half of the bits.
+std::uint64_t mix(std::uint64_t value) {
+  value = (value ^ value >> 30) * 0xbf58476d1ce4e5b9;
+  value = (value ^ value >> 27) * 0x94d049bb133111eb;
+  return value ^ value >> 31;
+}
+
+// Names the recording, guards nothing. A sum, so that the order of messages with the same stamp
+// does not matter: another program may write them in another one.
+std::uint64_t fingerprint(const BagIndex& index) {
+  std::vector<std::uint64_t> topics;
+  topics.reserve(index.connections.size());
+  for (const Connection& connection : index.connections) {
+    topics.push_back(hash(connection.topic));
+  }
+  std::uint64_t sum = 0;
+  for (const BagIndexEntry& entry : index.entries) {
+    sum += mix(topics[entry.connection] + static_cast<std::uint64_t>(entry.stamp));
+  }
+  return sum;
+}
+
+std::string reindexHint(const std::string& path) {
+  return "; mend it with: rosbag reindex '" + path + "'";
+}
+
+bool startsLikeABag(const std::string& path) {
+  constexpr char kMagic[] = "#ROSBAG V";
+  char start[sizeof kMagic] = {};
+  std::ifstream(path, std::ios::binary).read(start, sizeof start - 1);
+  return std::string(start) == kMagic;
+}
+
+BagIndex openBag(const std::string& path) {
+  boost::system::error_code error;
+  const boost::filesystem::file_status status = boost::filesystem::status(path, error);
+  if (status.type() == boost::filesystem::file_not_found) {
+    throw BagError(path + ": no such file");
+  }
+  if (status.type() == boost::filesystem::status_error) {
+    throw BagError(path + ": cannot be read (" + error.message() + ")");
+  }
+  if (!boost::filesystem::is_regular_file(status)) {
+    throw BagError(path + ": not a file; name a bag");
+  }
+  if (!startsLikeABag(path)) {
+    throw BagError(path + ": not a bag of ROS 1");
+  }
+  try {
+    return readBagIndex(path);
+  } catch (const rosbag::BagUnindexedException&) {
+    throw BagError(path + ": the bag has no index, its recording was not ended properly" +
+                   reindexHint(path));
+  } catch (const rosbag::BagException& error) {
+    throw BagError(path + ": the bag is truncated or damaged (" + error.what() + ")" +
+                   reindexHint(path));
+  } catch (const std::bad_alloc&) {  // numbers that are damaged ask for much
+    throw BagError(path + ": the bag is damaged, or there is too little memory" +
+                   reindexHint(path));
+  } catch (const std::length_error&) {
+    throw BagError(path + ": the bag is damaged" + reindexHint(path));
+  }
+}
+
+std::int64_t fromSeconds(double seconds) {
+  return std::llround(seconds * 1e9);
+}
+
+}  // namespace
+
+void TimeRange::validate() const {
+  if ((start && !(*start >= 0)) || (end && !(*end > start.value_or(0)))) {
+    throw std::invalid_argument(
+        "a time range must have 0 <= start < end, in seconds from the recording's start");
+  }
+}
+
+BagReader::BagReader(const std::string& path)
+    : index_(std::make_unique<const BagIndex>(openBag(path))) {
+  if (index_->entries.empty()) {
+    throw BagError(path + ": the bag holds no messages");
+  }
+  summary_.path = path;
+  summary_.start = index_->entries.front().stamp;
+  summary_.end = index_->entries.back().stamp;
+  summary_.messages = index_->entries.size();
+  summary_.fingerprint = fingerprint(*index_);
+  summary_.has_sources =
+      std::any_of(index_->connections.begin(), index_->connections.end(),
+                  [](const Connection& connection) { return !connection.callerid.empty(); });
+}
+
+BagReader::~BagReader() = default;
+
+std::pair<std::int64_t, std::int64_t> BagReader::limits(const TimeRange& range) const {
+  range.validate();
+  return {
+      summary_.start + fromSeconds(range.start.value_or(0)),
+      range.end ? std::min(summary_.start + fromSeconds(*range.end), summary_.end) : summary_.end};
+}
+
+void BagReader::read(const Encoder& encoder, const TimeRange& range, const Handler& handler,
+                     const Progress& progress) const {
+  const auto [from, to] = limits(range);
+  if (from > summary_.end) {
+    throw BagError(summary_.path + ": the time range begins after the recording's end (" +
+                   std::to_string(core::toSeconds(summary_.end - summary_.start)) + " s)");
+  }
+
+  std::vector<std::optional<ConnectionEncoder>> encoders;
+  encoders.reserve(index_->connections.size());
+  for (const Connection& connection : index_->connections) {
+    encoders.push_back(encoder.connect(connection));
+  }
+  std::vector<std::uint8_t> content;
+  std::uint64_t done = 0;
+  try {
+    const std::unique_ptr<BagMessages> messages = BagMessages::open(summary_.path, *index_);
+    for (const BagIndexEntry& entry : index_->entries) {
+      if (progress && done % kMessagesPerProgress == 0) {
+        progress(done, summary_.messages);
+      }
+      ++done;
+      std::optional<ConnectionEncoder>& connection_encoder = encoders[entry.connection];
+      if (!connection_encoder || !connection_encoder->accept() || entry.stamp < from ||
+          entry.stamp > to) {
+        continue;
+      }
+      if (connection_encoder->needsContent()) {
+        messages->read(entry, content);
+        handler({entry.stamp, connection_encoder->id(content.data(), content.size())});
+      } else {
+        handler({entry.stamp, connection_encoder->id()});
+      }
+    }
+  } catch (const rosbag::BagException& error) {
+    throw BagError(summary_.path + ": a message cannot be read (" + error.what() + ")" +
+                   reindexHint(summary_.path));
+  } catch (const std::out_of_range& error) {
+    throw BagError(summary_.path + ": " + error.what());
+  } catch (const std::bad_alloc&) {
+    throw BagError(summary_.path + ": the bag is damaged, or there is too little memory" +
+                   reindexHint(summary_.path));
+  }
+  if (progress) {
+    progress(done, summary_.messages);
+  }
+}
+
+}  // namespace self_awareness::ros1

@@ -1,0 +1,44 @@
+#include "self_awareness/ros/live/clock_watch.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "self_awareness/core/stream/clock.h"
+
+namespace self_awareness::ros1 {
+namespace {
+
+using core::kNanosecondsPerSecond;
+
+// NTP slews what is less; a step this small is within what a busy robot's delays vary by.
+constexpr std::int64_t kSmallestWallStep = kNanosecondsPerSecond / 2;
+// A replay may run faster than life, but hardly a hundred times.
+constexpr std::int64_t kFastestSimulation = 100;
+constexpr std::int64_t kSmallestSimulatedStep = 5 * kNanosecondsPerSecond;
+
+bool wasSet(std::int64_t ros_advance, std::int64_t steady_advance, bool simulated) {
+  if (!simulated) {
+    return std::abs(ros_advance - steady_advance) > kSmallestWallStep;
+  }
+  return ros_advance < -core::kLatestEvent ||
+         ros_advance > std::max(kSmallestSimulatedStep, kFastestSimulation * steady_advance);
+}
+
+}  // namespace
+
+bool ClockWatch::look(std::int64_t ros_now, std::int64_t steady_now, bool simulated) {
+  const bool set =
+      last_ && wasSet(ros_now - last_->ros_time, steady_now - last_->steady_time, simulated);
+  last_ = Look{ros_now, steady_now};
+  if (set) {
+    set_at_ = ros_now;
+  }
+  return set;
+}
+
+bool ClockWatch::isStale(std::int64_t stamp) const {
+  return set_at_ &&
+         (stamp < *set_at_ - core::kLatestEvent || stamp > last_->ros_time + core::kLatestEvent);
+}
+
+}  // namespace self_awareness::ros1

@@ -1,0 +1,180 @@
+#include "self_awareness/ros/live/live_events.h"
+
+#include <ros/console.h>
+
+#include <algorithm>
+#include <boost/make_shared.hpp>
+#include <stdexcept>
+#include <utility>
+
+namespace self_awareness::ros1 {
+
+/// Has the thread that serves the callback queue take what has arrived.
+class LiveEvents::Wake : public ros::CallbackInterface {
+ public:
+  explicit Wake(std::function<void()> on_arrivals) : on_arrivals_(std::move(on_arrivals)) {}
+  CallResult call() override {
+    on_arrivals_();
+    return Success;
+  }
+
+ private:
+  const std::function<void()> on_arrivals_;
+};
+
+LiveEvents::LiveEvents(const ros::NodeHandle& node_handle, std::uint32_t queue_size,
+                       Handlers handlers)
+    : node_handle_(node_handle),
+      handlers_(std::move(handlers)),
+      wake_(boost::make_shared<Wake>(handlers_.on_arrivals)),
+      arrivals_(queue_size,
+                [this] { node_handle_.getCallbackQueue()->addCallback(wake_, wakeId()); }) {}
+
+LiveEvents::~LiveEvents() {
+  subscriptions_.clear();  // nothing arrives any more
+  node_handle_.getCallbackQueue()->removeByID(wakeId());
+}
+
+void LiveEvents::setTopics(const std::set<std::string>& topics, const Graph& graph) {
+  for (auto subscription = subscriptions_.begin(); subscription != subscriptions_.end();) {
+    const auto published = graph.topics.find(subscription->first);
+    const std::string datatype = published == graph.topics.end() ? "" : published->second.datatype;
+    std::string& expected = subscription->second.datatype;
+    if (expected.empty() || expected == "*") {
+      expected = datatype;
+    }
+    const bool type_changed = !datatype.empty() && datatype != "*" && datatype != expected;
+    if (type_changed) {
+      ROS_WARN("%s: the type changed from %s to %s; subscribing anew", subscription->first.c_str(),
+               expected.c_str(), datatype.c_str());
+    }
+    if (type_changed || topics.count(subscription->first) == 0) {
+      subscription = subscriptions_.erase(subscription);
+    } else {
+      ++subscription;
+    }
+  }
+  for (const std::string& topic : topics) {
+    if (subscriptions_.count(topic) > 0) {
+      continue;
+    }
+    const auto published = graph.topics.find(topic);
+    Subscription& subscription = subscriptions_[topic];
+    subscription.datatype = published == graph.topics.end() ? "" : published->second.datatype;
+    subscription.subscriber = arrivals_.subscribe(node_handle_, topic);
+  }
+}
+
+void LiveEvents::renew(const Graph& graph) {
+  for (const auto& [name, topic] : graph.topics) {
+    if (!topic.publishers.empty()) {
+      subscriptions_.erase(name);
+    }
+  }
+}
+
+void LiveEvents::setEncoder(std::shared_ptr<const Encoder> encoder, OwnOutput own_output,
+                            std::int64_t window) {
+  encoder_ = std::move(encoder);
+  own_output_ = std::move(own_output);
+  arrivals_.setInterval(window);
+  for (auto& [key, live] : connections_) {
+    live.encoder = connect(connectionFrom(*live.header, live.topic->name));
+    if (live.encoder) {
+      live.encoder->accept();  // the first message came before
+    }
+  }
+  for (auto& [key, live] : connections_) {
+    chooseReading(*live.topic);
+  }
+}
+
+void LiveEvents::forgetClosedConnections() {
+  for (auto connection = connections_.begin(); connection != connections_.end();) {
+    connection = connection->second.header.use_count() == 1 ? connections_.erase(connection)
+                                                            : std::next(connection);
+  }
+}
+
+std::size_t LiveEvents::connections() const {
+  return static_cast<std::size_t>(
+      std::count_if(connections_.begin(), connections_.end(),
+                    [](const auto& connection) { return connection.second.encoder.has_value(); }));
+}
+
+void LiveEvents::deliver() {
+  arrivals_.take(delivered_);
+  for (const Arrival& arrival : delivered_) {
+    onArrival(arrival);
+  }
+  delivered_.clear();  // now: whether a connection is closed is seen by the users of its header
+}
+
+void LiveEvents::onArrival(const Arrival& arrival) {
+  if (!encoder_) {
+    return;
+  }
+  std::optional<ConnectionEncoder>& encoder = connectionOf(arrival).encoder;
+  if (!encoder || !encoder->accept()) {
+    return;
+  }
+  if (!encoder->needsContent()) {
+    handlers_.on_event({arrival.stamp, encoder->id()});
+    return;
+  }
+  if (!arrival.content) {  // it came before anybody knew that this topic is read
+    ++unread_;
+    return;
+  }
+  core::Event event{arrival.stamp, 0};
+  try {
+    event.id = encoder->id(arrival.content->data(), arrival.content->size());
+  } catch (const std::out_of_range& error) {
+    ROS_ERROR_THROTTLE(10, "%s: %s; the message is left out", arrival.topic->name.c_str(),
+                       error.what());
+    return;
+  }
+  handlers_.on_event(event);
+}
+
+LiveEvents::LiveConnection& LiveEvents::connectionOf(const Arrival& arrival) {
+  const auto known = connections_.find(arrival.header.get());
+  if (known != connections_.end() && known->second.topic == arrival.topic) {
+    return known->second;
+  }
+  // A connection may outlive the subscription, if somebody else in this process listens, too.
+  const auto [connection, is_new] = connections_.try_emplace(arrival.header.get());
+  LiveConnection& live = connection->second;
+  live.topic = arrival.topic;
+  if (is_new) {
+    live.header = arrival.header;
+    live.encoder = connect(connectionFrom(*arrival.header, arrival.topic->name));
+    if (live.encoder) {
+      handlers_.on_connection();
+    }
+  }
+  chooseReading(*live.topic);
+  return live;
+}
+
+void LiveEvents::chooseReading(Arrival::Topic& topic) const {
+  topic.reads = std::any_of(connections_.begin(), connections_.end(), [&](const auto& connection) {
+    const LiveConnection& live = connection.second;
+    return live.topic.get() == &topic && live.encoder && live.encoder->needsContent();
+  });
+}
+
+std::optional<ConnectionEncoder> LiveEvents::connect(const Connection& connection) const {
+  if (own_output_.covers(connection.callerid, connection.topic)) {
+    return std::nullopt;
+  }
+  try {
+    return encoder_->connect(connection);
+  } catch (const std::invalid_argument& error) {
+    ROS_ERROR("%s from %s: %s; its messages are left out", connection.topic.c_str(),
+              connection.callerid.c_str(), error.what());
+    return std::nullopt;
+  }
+}
+
+}  // namespace self_awareness::ros1

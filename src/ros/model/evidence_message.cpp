@@ -1,0 +1,159 @@
+#include "self_awareness/ros/model/evidence_message.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace self_awareness::ros1 {
+namespace {
+
+void check(bool holds, const std::string& otherwise) {
+  if (!holds) {
+    throw std::invalid_argument(otherwise);
+  }
+}
+
+bool areOffsets(const std::vector<std::uint64_t>& offsets, std::size_t groups,
+                std::size_t entries) {
+  return offsets.size() == groups + 1 && offsets.front() == 0 && offsets.back() == entries &&
+         std::is_sorted(offsets.begin(), offsets.end());
+}
+
+void appendType(const core::EvidenceStatistics::Type& type, self_awareness::Evidence& message) {
+  message.events.push_back(type.events);
+  message.gaps.push_back(type.gaps);
+  message.gap_sums.push_back(type.gap_sum);
+  message.longest_gaps.insert(message.longest_gaps.end(), type.longest_gaps.begin(),
+                              type.longest_gaps.end());
+  message.longest_offsets.push_back(message.longest_gaps.size());
+  message.rate_sums.push_back(type.rate_sum);
+  message.rate_squares.push_back(type.rate_squares);
+  message.left_out.insert(message.left_out.end(), type.left_out.begin(), type.left_out.end());
+}
+
+void checkSizes(const self_awareness::Evidence& message, std::size_t n) {
+  for (const std::size_t size :
+       {message.events.size(), message.gaps.size(), message.gap_sums.size(),
+        message.rate_sums.size(), message.rate_squares.size(), message.pairs.size()}) {
+    check(size == n, "its evidence does not fit its event types");
+  }
+  check(areOffsets(message.longest_offsets, n, message.longest_gaps.size()) &&
+            message.left_out.size() == n * core::log_bins::kBins,
+        "its evidence does not fit its event types");
+  check(message.duration >= 0, "its evidence has a negative duration");
+}
+
+core::EvidenceStatistics::Type typeOf(const self_awareness::Evidence& message, std::size_t id) {
+  core::EvidenceStatistics::Type type;
+  type.events = message.events[id];
+  type.gaps = message.gaps[id];
+  type.gap_sum = message.gap_sums[id];
+  type.rate_sum = message.rate_sums[id];
+  type.rate_squares = message.rate_squares[id];
+  for (std::size_t k = message.longest_offsets[id]; k < message.longest_offsets[id + 1]; ++k) {
+    type.addGap(message.longest_gaps[k]);
+  }
+  std::copy_n(message.left_out.begin() + static_cast<std::ptrdiff_t>(id * core::log_bins::kBins),
+              core::log_bins::kBins, type.left_out.begin());
+  check(type.gap_sum >= 0 && (type.gaps > 0) == !type.longest_gaps.empty(),
+        "its evidence has impossible gaps");
+  return type;
+}
+
+}  // namespace
+
+self_awareness::Evidence toMessage(const core::EvidenceStatistics& statistics) {
+  self_awareness::Evidence message;
+  message.rate_windows = statistics.rateWindows();
+  message.duration = statistics.duration();
+  message.longest_offsets.push_back(0);
+  for (core::EventId id = 0; id < statistics.size(); ++id) {
+    appendType(statistics.type(id), message);
+    message.pairs.push_back(pairsMessage(statistics, id));
+  }
+  return message;
+}
+
+self_awareness::EvidencePairs pairsMessage(const core::EvidenceStatistics& statistics,
+                                           core::EventId id) {
+  self_awareness::EvidencePairs message;
+  message.id = id;
+  message.offsets.push_back(0);
+  for (const core::EvidenceStatistics::Partner& partner : statistics.partners(id)) {
+    for (std::size_t bin = 0; bin < partner.delays.size(); ++bin) {
+      if (partner.delays[bin] > 0) {
+        message.bins.push_back(static_cast<std::uint8_t>(bin));
+        message.counts.push_back(partner.delays[bin]);
+      }
+    }
+    if (partner.answers > 0 || message.offsets.back() < message.bins.size()) {
+      message.partners.push_back(partner.id);
+      message.answers.push_back(partner.answers);
+      message.offsets.push_back(message.bins.size());
+    }
+  }
+  return message;
+}
+
+core::EvidenceStatistics fromMessage(const self_awareness::Evidence& message,
+                                     const core::Vocabulary& vocabulary) {
+  const std::size_t n = vocabulary.size();
+  checkSizes(message, n);
+  core::EvidenceStatistics statistics;
+  for (const core::EventType& type : vocabulary.types()) {
+    statistics.intern(type);
+  }
+  statistics.addRateWindows(message.rate_windows);
+  statistics.addDuration(message.duration);
+  for (core::EventId id = 0; id < n; ++id) {
+    statistics.type(id) = typeOf(message, id);
+    check(message.pairs[id].id == id, "its evidence does not fit its event types");
+    setPairs(message.pairs[id], statistics);
+  }
+  return statistics;
+}
+
+void setPairs(const self_awareness::EvidencePairs& message, core::EvidenceStatistics& statistics) {
+  check(message.id < statistics.size() && message.answers.size() == message.partners.size() &&
+            areOffsets(message.offsets, message.partners.size(), message.bins.size()) &&
+            message.bins.size() == message.counts.size(),
+        "its evidence does not fit its event types");
+  core::EvidenceStatistics::Partners partners(message.partners.size());
+  for (std::size_t k = 0; k < partners.size(); ++k) {
+    partners[k].id = message.partners[k];
+    partners[k].answers = message.answers[k];
+    for (std::size_t i = message.offsets[k]; i < message.offsets[k + 1]; ++i) {
+      check(message.bins[i] < core::log_bins::kBins, "its evidence has an impossible bin");
+      partners[k].delays[message.bins[i]] += message.counts[i];
+    }
+  }
+  statistics.setPartners(message.id, std::move(partners));
+}
+
+self_awareness::Track toMessage(const core::Track& track) {
+  self_awareness::Track message;
+  message.channel = static_cast<std::uint8_t>(track.channel);
+  message.to_id = track.to;
+  message.from_id = track.from;
+  return message;
+}
+
+core::Track fromMessage(const self_awareness::Track& message) {
+  using self_awareness::Track;
+  static_assert(static_cast<int>(core::Channel::kOverdue) == Track::OVERDUE &&
+                    static_cast<int>(core::Channel::kFewer) == Track::FEWER &&
+                    static_cast<int>(core::Channel::kMore) == Track::MORE &&
+                    static_cast<int>(core::Channel::kDelay) == Track::DELAY &&
+                    static_cast<int>(core::Channel::kSlowDelay) == Track::SLOW_DELAY &&
+                    static_cast<int>(core::Channel::kAnswer) == Track::ANSWER,
+                "the message has the channels of the core");
+  check(message.channel <= Track::ANSWER, "it watches what this version does not know");
+  return {static_cast<core::Channel>(message.channel), message.to_id, message.from_id};
+}
+
+core::EvidenceLimits limitsOf(const self_awareness::EvidenceCalibration& message) {
+  return {message.limits, message.linker_limit};
+}
+
+}  // namespace self_awareness::ros1

@@ -1,0 +1,113 @@
+#include "self_awareness/ros/model/model_bytes.h"
+
+#include <ros/message_traits.h>
+#include <ros/serialization.h>
+
+#include <cstdint>
+#include <cstring>
+#include <stdexcept>
+
+#include "self_awareness/ros/model/delays_message.h"
+#include "self_awareness/ros/model/evidence_message.h"
+
+namespace self_awareness::ros1 {
+namespace {
+
+namespace serialization = ros::serialization;
+using Length = std::uint32_t;
+
+std::string version() {
+  return std::string(ros::message_traits::md5sum<self_awareness::Model>()) +
+         ros::message_traits::md5sum<self_awareness::DelayHistograms>();
+}
+
+/// Appends a message, its length before it.
+template <typename Message>
+void append(const Message& message, std::string& bytes) {
+  const Length length = serialization::serializationLength(message);
+  const std::size_t begin = bytes.size();
+  bytes.resize(begin + sizeof length + length);
+  std::memcpy(&bytes[begin], &length, sizeof length);
+  serialization::OStream stream(reinterpret_cast<std::uint8_t*>(&bytes[begin + sizeof length]),
+                                length);
+  serialization::serialize(stream, message);
+}
+
+/// Takes one message after the other.
+class Reader {
+ public:
+  Reader(const std::string& bytes, std::size_t begin) : bytes_(bytes), next_(begin) {}
+
+  bool done() const { return next_ == bytes_.size(); }
+
+  template <typename Message>
+  Message take() {
+    Length length = 0;
+    require(sizeof length);
+    std::memcpy(&length, &bytes_[next_], sizeof length);
+    next_ += sizeof length;
+    require(length);
+    // The stream takes its bytes for writable, though nothing is written.
+    serialization::IStream stream(
+        reinterpret_cast<std::uint8_t*>(const_cast<char*>(bytes_.data() + next_)), length);
+    next_ += length;
+    Message message;
+    try {
+      serialization::deserialize(stream, message);
+    } catch (const serialization::StreamOverrunException& error) {
+      throw std::invalid_argument(std::string("a damaged model: ") + error.what());
+    }
+    return message;
+  }
+
+ private:
+  void require(std::size_t number) const {
+    if (bytes_.size() - next_ < number) {
+      throw std::invalid_argument("a damaged model: it ends too soon");
+    }
+  }
+
+  const std::string& bytes_;
+  std::size_t next_;
+};
+
+}  // namespace
+
+std::string toBytes(const TrainedModel& model) {
+  std::string bytes = version();
+  append(toMessage(model), bytes);
+  for (core::EventId id = 0; model.hasCounts() && id < model.vocabulary().size(); ++id) {
+    append(toMessage(model.statistics, id), bytes);
+    for (const core::EvidenceStatistics& half : model.evidence) {
+      if (id == 0) {
+        append(toMessage(half.withoutPairs()), bytes);
+      }
+      append(pairsMessage(half, id), bytes);
+    }
+  }
+  return bytes;
+}
+
+TrainedModel fromBytes(const std::string& bytes) {
+  const std::string expected = version();
+  if (bytes.compare(0, expected.size(), expected) != 0) {
+    throw std::invalid_argument("a model of another version of self_awareness");
+  }
+  Reader reader(bytes, expected.size());
+  TrainedModel model = fromMessage(reader.take<self_awareness::Model>());
+  for (core::EventId id = 0; !reader.done() && id < model.vocabulary().size(); ++id) {
+    addMessage(reader.take<self_awareness::DelayHistograms>(), model.statistics);
+    for (core::EvidenceStatistics& half : model.evidence) {
+      if (id == 0) {
+        half = fromMessage(reader.take<self_awareness::Evidence>(), model.vocabulary());
+      }
+      setPairs(reader.take<self_awareness::EvidencePairs>(), half);
+    }
+  }
+  if (!reader.done()) {
+    throw std::invalid_argument("a damaged model: there is more than belongs to it");
+  }
+  return model;
+}
+
+}  // namespace self_awareness::ros1

@@ -1,0 +1,289 @@
+#include "self_awareness/ros/model/model_file.h"
+
+#include <rosbag/bag.h>
+#include <rosbag/exceptions.h>
+#include <rosbag/view.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <boost/filesystem/operations.hpp>
+#include <cmath>
+#include <cstdio>
+#include <new>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "self_awareness/ros/model/delays_message.h"
+#include "self_awareness/ros/model/evidence_message.h"
+
+namespace self_awareness::ros1 {
+namespace {
+
+constexpr char kTopic[] = "/model";
+constexpr char kDelaysTopic[] = "/delays";
+constexpr std::array<const char*, 2> kEvidenceTopics{"/evidence/first", "/evidence/second"};
+
+void check(bool holds, const std::string& otherwise) {
+  if (!holds) {
+    throw std::invalid_argument(otherwise);
+  }
+}
+
+self_awareness::Encoding encodingMessage(const EncodingRules& rules) {
+  self_awareness::Encoding message;
+  message.source = rules.source == EncodingRules::Source::kNone
+                       ? self_awareness::Encoding::SOURCE_NONE
+                       : self_awareness::Encoding::SOURCE_CALLERID;
+  message.include_topics = rules.include_topics;
+  message.exclude_topics = rules.exclude_topics;
+  message.include_sources = rules.include_sources;
+  message.exclude_sources = rules.exclude_sources;
+  for (const auto& [datatype, field] : rules.type_fields) {
+    self_awareness::TypeField type_field;
+    type_field.datatype = datatype;
+    type_field.field = field;
+    message.type_fields.push_back(type_field);
+  }
+  return message;
+}
+
+EncodingRules rulesOf(const self_awareness::Encoding& message) {
+  EncodingRules rules;
+  const bool none = message.source == self_awareness::Encoding::SOURCE_NONE;
+  check(none || message.source == self_awareness::Encoding::SOURCE_CALLERID,
+        "its encoding has the unknown source '" + message.source + "'");
+  rules.source = none ? EncodingRules::Source::kNone : EncodingRules::Source::kCallerId;
+  rules.include_topics = message.include_topics;
+  rules.exclude_topics = message.exclude_topics;
+  rules.include_sources = message.include_sources;
+  rules.exclude_sources = message.exclude_sources;
+  for (const self_awareness::TypeField& type_field : message.type_fields) {
+    rules.type_fields[type_field.datatype] = type_field.field;
+  }
+  rules.validate();
+  return rules;
+}
+
+core::DelayStatistics eventTypesOf(const self_awareness::Model& message) {
+  core::DelayStatistics statistics(core::Binning{message.bin_size, message.horizon_bins});
+  for (const self_awareness::EventType& type : message.event_types) {
+    const std::size_t before = statistics.vocabulary().size();
+    const core::EventId id = statistics.intern({type.source, type.scope, type.type});
+    check(id == before, "an event type occurs twice");
+    statistics.countEvent(id, type.count);
+  }
+  check(statistics.events() > 0, "it was trained on no event");
+  return statistics;
+}
+
+/// Calls visit(message) for every message on a topic; returns their number.
+template <typename Message, typename Visit>
+std::size_t forEach(const rosbag::Bag& bag, const std::string& topic, const std::string& path,
+                    Visit visit) {
+  std::size_t number = 0;
+  rosbag::View view(bag, rosbag::TopicQuery(topic));
+  for (const rosbag::MessageInstance& instance : view) {
+    if (instance.getDataType() != ros::message_traits::datatype<Message>()) {
+      break;
+    }
+    if (instance.getMD5Sum() != ros::message_traits::md5sum<Message>()) {
+      throw ModelFileError(path + ": written by another version of self_awareness (md5 " +
+                           instance.getMD5Sum() + ", this one reads " +
+                           ros::message_traits::md5sum<Message>() + "); train the model again");
+    }
+    visit(*instance.instantiate<Message>());
+    ++number;
+  }
+  return number;
+}
+
+TrainedModel read(const rosbag::Bag& bag, const std::string& path, ModelCounts counts) {
+  std::optional<TrainedModel> model;
+  forEach<self_awareness::Model>(bag, kTopic, path, [&](const self_awareness::Model& message) {
+    model = fromMessage(message);
+  });
+  if (!model) {
+    throw ModelFileError(path +
+                         ": a bag, but it holds no model; train one from it "
+                         "(rosrun self_awareness train)");
+  }
+  check(model->isWatched(), "its evidence has not two halves");
+  if (counts != ModelCounts::kWatched) {
+    const std::size_t number = forEach<self_awareness::DelayHistograms>(
+        bag, kDelaysTopic, path, [&](const self_awareness::DelayHistograms& message) {
+          addMessage(message, model->statistics);
+        });
+    check(number == model->vocabulary().size(), "its histograms do not fit its event types");
+  }
+  for (std::size_t half = 0; counts == ModelCounts::kAll && half < 2; ++half) {
+    model->evidence.at(half) = model->watched.halves.at(half).withoutPairs();
+    const std::size_t number = forEach<self_awareness::EvidencePairs>(
+        bag, kEvidenceTopics.at(half), path, [&](const self_awareness::EvidencePairs& message) {
+          setPairs(message, model->evidence.at(half));
+        });
+    check(number == model->vocabulary().size(), "its evidence does not fit its event types");
+  }
+  return std::move(*model);
+}
+
+void write(const TrainedModel& model, rosbag::Bag& bag) {
+  // A bag cannot hold a message of the time 0.
+  const ros::Time stamp = std::max(model.stamp, ros::TIME_MIN);
+  bag.write(kTopic, stamp, toMessage(model));
+  for (core::EventId id = 0; id < model.vocabulary().size(); ++id) {
+    bag.write(kDelaysTopic, stamp, toMessage(model.statistics, id));
+    for (std::size_t half = 0; half < model.evidence.size(); ++half) {
+      bag.write(kEvidenceTopics.at(half), stamp, pairsMessage(model.evidence.at(half), id));
+    }
+  }
+}
+
+bool limitsFit(const TrainedModel& model) {
+  const core::EvidenceLimits limits = limitsOf(*model.evidence_calibration);
+  return limits.tracks.size() == model.watched.tracks.size() && std::isfinite(limits.linker) &&
+         limits.linker > 0;
+}
+
+}  // namespace
+
+void TrainedModel::watch() {
+  check(hasCounts(), "loaded without its counts");
+  watched = core::watch(evidence[0], evidence[1], predecessors);
+}
+
+void TrainedModel::dropCounts() {
+  core::DelayStatistics types(statistics.binning());
+  for (core::EventId id = 0; id < vocabulary().size(); ++id) {
+    types.countEvent(types.intern(vocabulary().at(id)), statistics.eventCount(id));
+  }
+  statistics = std::move(types);
+  evidence = {};
+}
+
+std::optional<double> TrainedModel::threshold() const {
+  return calibration ? std::optional<double>(calibration->threshold) : std::nullopt;
+}
+
+std::optional<core::EvidenceLimits> TrainedModel::limits() const {
+  return evidence_calibration ? std::optional(limitsOf(*evidence_calibration)) : std::nullopt;
+}
+
+self_awareness::Model toMessage(const TrainedModel& model) {
+  self_awareness::Model message;
+  message.stamp = model.stamp;
+  message.encoding = encodingMessage(model.encoding);
+  message.window.fromNSec(model.window);
+  message.bin_size = model.statistics.binning().bin_size;
+  message.horizon_bins = model.statistics.binning().horizon_bins;
+  for (core::EventId id = 0; id < model.statistics.vocabulary().size(); ++id) {
+    const core::EventType& type = model.statistics.vocabulary().at(id);
+    self_awareness::EventType event_type;
+    event_type.source = type.source;
+    event_type.scope = type.scope;
+    event_type.type = type.type;
+    event_type.count = model.statistics.eventCount(id);
+    message.event_types.push_back(event_type);
+  }
+  message.predecessors = static_cast<std::uint32_t>(model.predecessors);
+  for (const core::Track& track : model.watched.tracks) {
+    message.tracks.push_back(toMessage(track));
+  }
+  if (model.isWatched()) {
+    for (const core::EvidenceStatistics& half : model.watched.halves) {
+      message.watched.push_back(toMessage(half));
+    }
+  }
+  for (const auto& [from, followers] : model.graph.edges()) {
+    for (const std::string& to : followers) {
+      self_awareness::GraphEdge edge;
+      edge.from_source = from;
+      edge.to_source = to;
+      message.graph.push_back(edge);
+    }
+  }
+  message.recordings = model.recordings;
+  if (model.calibration) {
+    message.calibration.push_back(*model.calibration);
+  }
+  if (model.evidence_calibration) {
+    message.evidence_calibration.push_back(*model.evidence_calibration);
+  }
+  return message;
+}
+
+TrainedModel fromMessage(const self_awareness::Model& message) {
+  TrainedModel model;
+  model.stamp = message.stamp;
+  model.encoding = rulesOf(message.encoding);
+  model.window = message.window.toNSec();
+  check(model.window > 0, "its windows have no length");
+  model.statistics = eventTypesOf(message);
+  model.predecessors = message.predecessors;
+  for (const self_awareness::Track& track : message.tracks) {
+    model.watched.tracks.push_back(fromMessage(track));
+  }
+  check(message.watched.size() == model.watched.halves.size() ||
+            (message.watched.empty() && message.tracks.empty()),
+        "its evidence has not two halves");
+  std::transform(
+      message.watched.begin(), message.watched.end(), model.watched.halves.begin(),
+      [&](const self_awareness::Evidence& half) { return fromMessage(half, model.vocabulary()); });
+  core::checkTracks(model.watched.tracks, model.vocabulary().size());
+  for (const self_awareness::GraphEdge& edge : message.graph) {
+    model.graph.connect(edge.from_source, edge.to_source);
+  }
+  model.recordings = message.recordings;
+  check(message.calibration.size() <= 1, "it has more than one calibration");
+  if (!message.calibration.empty()) {
+    model.calibration = message.calibration.front();
+    check(std::isfinite(model.calibration->threshold), "its threshold is not a finite number");
+  }
+  check(message.evidence_calibration.size() <= 1, "it has more than one calibration");
+  if (!message.evidence_calibration.empty()) {
+    model.evidence_calibration = message.evidence_calibration.front();
+    check(limitsFit(model), "its limits are not those of its evidence; calibrate it again");
+  }
+  return model;
+}
+
+void saveModel(const TrainedModel& model, const std::string& path) {
+  if (!model.isWatched() || !model.hasCounts()) {
+    throw std::logic_error("a model is saved with all counts, and with what is watched");
+  }
+  const std::string temporary = path + ".part" + std::to_string(::getpid());
+  try {
+    rosbag::Bag bag(temporary, rosbag::bagmode::Write);
+    bag.setCompression(rosbag::compression::LZ4);
+    write(model, bag);
+    bag.close();
+    boost::filesystem::rename(temporary, path);
+  } catch (const std::exception& error) {
+    std::remove(temporary.c_str());
+    throw ModelFileError(path + ": cannot be written (" + error.what() + ")");
+  }
+}
+
+TrainedModel loadModel(const std::string& path, ModelCounts counts) {
+  if (!boost::filesystem::is_regular_file(path)) {
+    throw ModelFileError(path +
+                         ": no such file; train a model first "
+                         "(rosrun self_awareness train)");
+  }
+  try {
+    const rosbag::Bag bag(path, rosbag::bagmode::Read);
+    return read(bag, path, counts);
+  } catch (const rosbag::BagException& error) {
+    throw ModelFileError(path + ": not a model file, or a damaged one (" + error.what() + ")");
+  } catch (const ros::serialization::StreamOverrunException& error) {
+    throw ModelFileError(path + ": a damaged model file (" + error.what() + ")");
+  } catch (const std::invalid_argument& error) {
+    throw ModelFileError(path + ": a damaged model file: " + error.what());
+  } catch (const std::bad_alloc&) {  // numbers that are damaged ask for much
+    throw ModelFileError(path + ": a damaged model file, or too little memory");
+  } catch (const std::length_error& error) {
+    throw ModelFileError(path + ": a damaged model file (" + error.what() + ")");
+  }
+}
+
+}  // namespace self_awareness::ros1

@@ -1,0 +1,85 @@
+#include "self_awareness/ros/model/model_merge.h"
+
+#include <algorithm>
+#include <iomanip>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+
+namespace self_awareness::ros1 {
+namespace {
+
+std::string seconds(std::int64_t nanoseconds) {
+  std::ostringstream text;
+  text << std::setprecision(12) << core::toSeconds(nanoseconds) << " s";
+  return text.str();
+}
+
+std::int64_t horizon(const core::Binning& binning) {
+  return binning.horizon_bins * binning.bin_size;
+}
+
+// @param none what 0 stands for
+void requireSame(const std::string& what, std::int64_t one, std::int64_t other,
+                 const std::string& none) {
+  const auto text = [&](std::int64_t time) { return time == 0 ? none : seconds(time); };
+  if (one != other) {
+    throw std::invalid_argument("another " + what + ": " + text(other) + ", not " + text(one));
+  }
+}
+
+void requireSameEncoding(const EncodingRules& one, const EncodingRules& other) {
+  const auto require = [](const std::string& what, bool same) {
+    if (!same) {
+      throw std::invalid_argument("another encoding: " + what + " differs");
+    }
+  };
+  require("source", one.source == other.source);
+  require("include_topics", one.include_topics == other.include_topics);
+  require("exclude_topics", one.exclude_topics == other.exclude_topics);
+  require("include_sources", one.include_sources == other.include_sources);
+  require("exclude_sources", one.exclude_sources == other.exclude_sources);
+  require("type_fields", one.type_fields == other.type_fields);
+}
+
+}  // namespace
+
+void merge(TrainedModel& model, const TrainedModel& other) {
+  if (!model.hasCounts() || !other.hasCounts()) {
+    throw std::invalid_argument("loaded without its counts");
+  }
+  requireSameEncoding(model.encoding, other.encoding);
+  const core::Binning& binning = model.statistics.binning();
+  const core::Binning& others = other.statistics.binning();
+  requireSame("length of the windows", model.window, other.window, "0 s");
+  requireSame("bin size", binning.bin_size, others.bin_size, "0 s");
+  requireSame("horizon", horizon(binning), horizon(others), "none");
+  if (model.predecessors != other.predecessors) {
+    throw std::invalid_argument(
+        "another number of watched predecessors: " + std::to_string(other.predecessors) +
+        ", not " + std::to_string(model.predecessors));
+  }
+  core::Vocabulary vocabulary = model.statistics.vocabulary();
+  for (const core::EventType& type : other.statistics.vocabulary().types()) {
+    vocabulary.intern(type);
+  }
+  checkTypeFields(model.encoding, vocabulary);
+
+  model.statistics.merge(other.statistics);
+  for (std::size_t half = 0; half < model.evidence.size(); ++half) {
+    model.evidence[half].merge(other.evidence[half]);
+  }
+  for (const auto& [from, followers] : other.graph.edges()) {
+    for (const std::string& to : followers) {
+      model.graph.connect(from, to);
+    }
+  }
+  model.recordings.insert(model.recordings.end(), other.recordings.begin(),
+                          other.recordings.end());
+  model.watched = {};
+  model.calibration.reset();
+  model.evidence_calibration.reset();
+  model.stamp = std::max(model.stamp, other.stamp);
+}
+
+}  // namespace self_awareness::ros1

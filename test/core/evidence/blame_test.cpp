@@ -1,0 +1,178 @@
+#include "self_awareness/core/evidence/blame.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "recordings.h"
+
+namespace self_awareness::core {
+namespace {
+
+using Reason = Suspect::Reason;
+
+// A every 200 ms at random, B 20 ms after it, C often.
+Events robot(std::int64_t length, unsigned seed) {
+  const Events asked = irregular(kA, 0, length, 200 * kMillisecond, seed);
+  return together({asked, answers(kB, asked, 20 * kMillisecond),
+                   irregular(kC, 0, length, 30 * kMillisecond, seed + 100)});
+}
+
+class EvidenceBlameTest : public testing::Test {
+ protected:
+  EvidenceBlameTest() {
+    for (const Event& event : robot(10 * kSecond, 3)) {
+      scorer_.add(event);
+      last_ = event.stamp;
+    }
+  }
+  // Who is named where tracks have reached these shares of their limits.
+  std::vector<Suspect> suspects(const std::vector<std::pair<Track, double>>& reached,
+                                std::int64_t end, const Window& window = {}) {
+    std::vector<double> shares(model_->tracks().size(), 0);
+    for (const auto& [track, share] : reached) {
+      shares.at(indexOf(model_->tracks(), track.channel, track.to, track.from)) = share;
+    }
+    scorer_.closeWindow(end);
+    return EvidenceBlame(model_, graph_).suspects(shares, scorer_, window);
+  }
+  static std::vector<EventId> ids(const std::vector<Suspect>& suspects) {
+    std::vector<EventId> ids;
+    ids.reserve(suspects.size());
+    for (const Suspect& suspect : suspects) {
+      ids.push_back(suspect.id);
+    }
+    return ids;
+  }
+  static Track overdue(EventId id) { return {Channel::kOverdue, id, id}; }
+
+  std::shared_ptr<const EvidenceModel> model_ = std::make_shared<EvidenceModel>(
+      watch(countsOf({robot(100 * kSecond, 1)}), countsOf({robot(100 * kSecond, 2)})));
+  std::shared_ptr<SourceGraph> graph_ = std::make_shared<SourceGraph>();
+  EvidenceScorer scorer_{model_, kWindow};
+  std::int64_t last_ = 0;
+};
+
+TEST_F(EvidenceBlameTest, NobodyIsNamedForNothing) {
+  EXPECT_TRUE(suspects({}, last_ + kWindow).empty());
+}
+
+TEST_F(EvidenceBlameTest, WithoutAGraphTheLeastProbableSilenceComesFirst) {
+  const std::int64_t end = last_ + 5 * kSecond;
+  ASSERT_LT(model_->logSurvival(kC, end - *scorer_.lastSeen(kC)),
+            model_->logSurvival(kA, end - *scorer_.lastSeen(kA)));
+  const std::vector<Suspect> named = suspects({{overdue(kA), 1.5}, {overdue(kC), 1.2}}, end);
+  EXPECT_EQ(ids(named), (std::vector<EventId>{kC, kA}));
+  for (const Suspect& suspect : named) {
+    EXPECT_EQ(suspect.reason, Reason::kSilent);
+    EXPECT_NEAR(suspect.silence, 5, 0.5);
+    EXPECT_LT(suspect.usual_shortest, suspect.usual_longest);
+  }
+}
+
+TEST_F(EvidenceBlameTest, TheRootOfTheSilentComesBeforeItsVictims) {
+  graph_->connect("/a", "/b");
+  graph_->connect("/b", "/c");
+  const std::vector<Suspect> named =
+      suspects({{overdue(kA), 1.1}, {overdue(kB), 1.5}, {overdue(kC), 3}}, last_ + 5 * kSecond);
+  EXPECT_EQ(ids(named), (std::vector<EventId>{kA, kB, kC}));
+}
+
+TEST_F(EvidenceBlameTest, InALoopTheShorterWayDecides) {
+  graph_->connect("/b", "/a");
+  graph_->connect("/a", "/c");
+  graph_->connect("/c", "/b");
+  const std::int64_t end = last_ + 5 * kSecond;
+  EXPECT_EQ(ids(suspects({{overdue(kC), 1.5}, {overdue(kA), 1.5}}, end)),
+            (std::vector<EventId>{kA, kC}));
+  EXPECT_EQ(ids(suspects({{overdue(kA), 1.5}, {overdue(kB), 1.5}}, end)),
+            (std::vector<EventId>{kB, kA}));
+}
+
+TEST_F(EvidenceBlameTest, ARootThatIsNearItsLimitIsNamedAlready) {
+  graph_->connect("/a", "/b");
+  const std::int64_t end = last_ + 5 * kSecond;
+  EXPECT_EQ(ids(suspects({{overdue(kA), 0.8}, {overdue(kB), 1.5}}, end)),
+            (std::vector<EventId>{kA, kB}));
+}
+
+TEST_F(EvidenceBlameTest, WhoAnswersLateIsNamedBeforeWhomItAnswers) {
+  const std::vector<Suspect> named = suspects({{{Channel::kDelay, kB, kA}, 1.5}}, last_ + kWindow);
+  ASSERT_EQ(ids(named), std::vector<EventId>{kB});
+  EXPECT_EQ(named.front().reason, Reason::kDelay);
+  EXPECT_EQ(named.front().other, toString(kTypes[kA]));
+  EXPECT_NEAR(named.front().delay, 0.020, 1e-9);
+  EXPECT_NEAR(named.front().usual_shortest, 0.020, 0.004);
+}
+
+TEST_F(EvidenceBlameTest, WhoLeavesAnswersOutIsNamed) {
+  const std::vector<Suspect> named =
+      suspects({{{Channel::kAnswer, kB, kA}, 1.5}}, last_ + kWindow);
+  ASSERT_EQ(ids(named), std::vector<EventId>{kB});
+  EXPECT_EQ(named.front().reason, Reason::kAnswer);
+  EXPECT_EQ(named.front().other, toString(kTypes[kA]));
+}
+
+TEST_F(EvidenceBlameTest, WhoComesTooOftenIsNamedWithNumbers) {
+  const std::vector<Suspect> named = suspects({{{Channel::kMore, kC, kC}, 1.5}}, last_ + kWindow);
+  ASSERT_EQ(ids(named), std::vector<EventId>{kC});
+  EXPECT_EQ(named.front().reason, Reason::kRate);
+  EXPECT_EQ(named.front().events, scorer_.recentCount(kC));
+  EXPECT_DOUBLE_EQ(named.front().usual_most, model_->usualCount(kC, 2));
+}
+
+TEST_F(EvidenceBlameTest, WhoIsSilentComesBeforeWhatIsUnusual) {
+  const std::vector<Suspect> named =
+      suspects({{{Channel::kMore, kC, kC}, 2}, {overdue(kA), 1.1}}, last_ + 5 * kSecond);
+  EXPECT_EQ(ids(named), (std::vector<EventId>{kA, kC}));
+}
+
+TEST_F(EvidenceBlameTest, WhatIsWrongWithOneselfCountsMoreThanDelaysAfterOthers) {
+  // B's delays after A are unusual because A comes at another rate.
+  const std::vector<Suspect> named = suspects(
+      {{{Channel::kDelay, kB, kA}, 1.9}, {{Channel::kMore, kA, kA}, 1.1}}, last_ + kWindow);
+  EXPECT_EQ(ids(named), (std::vector<EventId>{kA, kB}));
+}
+
+TEST_F(EvidenceBlameTest, UnknownEventsAreNamedLast) {
+  Window window;
+  for (const EventId id : {5U, 4U, 5U}) {
+    window.events.push_back({{last_, id}, 0, true, std::nullopt});
+  }
+  window.events.push_back({{last_, kA}, 0, false, std::nullopt});
+  const std::vector<Suspect> named = suspects({{overdue(kA), 1.5}}, last_ + 5 * kSecond, window);
+  ASSERT_EQ(ids(named), (std::vector<EventId>{kA, 5, 4}));
+  EXPECT_EQ(named[1].reason, Reason::kUnknown);
+  EXPECT_EQ(named[1].events, 2U);
+  EXPECT_EQ(named[2].events, 1U);
+}
+
+TEST_F(EvidenceBlameTest, NoMoreThanFiveAreNamed) {
+  Window window;
+  for (EventId id = 10; id < 20; ++id) {
+    window.events.push_back({{last_, id}, 0, true, std::nullopt});
+  }
+  EXPECT_EQ(suspects({}, last_ + kWindow, window).size(), kMostSuspects);
+}
+
+TEST_F(EvidenceBlameTest, ATopicStandsForWhomItIsNotKnownWhoSends) {
+  EvidenceStatistics counts;
+  for (const EventType& type : kTypes) {
+    counts.intern({"", type.scope, type.type});
+  }
+  EvidenceTrainer trainer(counts, kWindow);
+  for (const Event& event : robot(100 * kSecond, 1)) {
+    trainer.add(event);
+  }
+  model_ = std::make_shared<EvidenceModel>(watch(counts, {}));
+  graph_->connect("/x", "/z");
+  const std::vector<Suspect> named =
+      suspects({{overdue(kA), 1.5}, {overdue(kC), 1.5}}, last_ + 5 * kSecond);
+  EXPECT_EQ(ids(named), (std::vector<EventId>{kA, kC}));
+}
+
+}  // namespace
+}  // namespace self_awareness::core

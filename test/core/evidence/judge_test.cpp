@@ -1,0 +1,149 @@
+#include "self_awareness/core/evidence/judge.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <tuple>
+
+#include "recordings.h"
+
+namespace self_awareness::core {
+namespace {
+
+constexpr std::int64_t kPeriod = 200 * kMillisecond;
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+EvidenceStatistics followed(unsigned seed) {
+  const Events asked = irregular(kA, 0, 100 * kSecond, kPeriod, seed);
+  return countsOf({together({asked, answers(kB, asked, 20 * kMillisecond)})}, 2);
+}
+
+class EvidenceJudgeTest : public testing::Test {
+ protected:
+  // Nothing is judged but what a test gives a limit.
+  EvidenceJudgeTest() {
+    limits_.tracks.assign(model_->tracks().size(), kNone);
+    limits_.linker = 100;
+  }
+  std::size_t track(Channel channel, EventId to, EventId from) const {
+    return indexOf(model_->tracks(), channel, to, from);
+  }
+  EvidenceJudge makeJudge(const std::optional<EvidenceLimits>& limits) const {
+    return EvidenceJudge(model_, limits, kWindow, std::make_shared<SourceGraph>());
+  }
+  // As in training, so that all that is watched counts, and then answers that come late.
+  static void feed(EvidenceJudge& judge, int late) {
+    for (int i = 0; i < 40 + late; ++i) {
+      const std::int64_t delay = i < 40 ? 20 * kMillisecond : 70 * kMillisecond;
+      judge.add({i * kPeriod, kA});
+      judge.add({i * kPeriod + delay, kB});
+    }
+  }
+
+  std::shared_ptr<const EvidenceModel> model_ =
+      std::make_shared<EvidenceModel>(watch(followed(1), followed(2)));
+  EvidenceLimits limits_;
+};
+
+TEST_F(EvidenceJudgeTest, TheScoreIsTheLargestShareOfALimit) {
+  const std::int64_t age = 700 * kMillisecond;
+  const double evidence = model_->overdue(kA, age);
+  for (const double share : {0.5, 0.99, 1.01}) {
+    limits_.tracks[track(Channel::kOverdue, kA, kA)] = evidence / share;
+    EvidenceJudge judge = makeJudge(limits_);
+    judge.add({0, kA});
+    const Judgement judgement = judge.judge({}, age);
+    EXPECT_NEAR(judgement.score.value(), -share, 1e-12);
+    EXPECT_EQ(judgement.threshold, -1);
+    EXPECT_EQ(judgement.abnormal, share > 1);
+    EXPECT_EQ(judgement.evidence, share > 1 ? "overdue" : "");
+    EXPECT_FALSE(judgement.certain);
+    EXPECT_FALSE(judgement.suspicious);
+  }
+}
+
+TEST_F(EvidenceJudgeTest, ASilenceThatHasLastedIsCertain) {
+  limits_.tracks[track(Channel::kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
+  EvidenceJudge judge = makeJudge(limits_);
+  judge.add({0, kA});
+  EXPECT_FALSE(judge.judge({}, kSecond).abnormal);
+  const Judgement soon = judge.judge({}, kSecond + 50 * kMillisecond);
+  EXPECT_TRUE(soon.abnormal);
+  EXPECT_FALSE(soon.certain);
+  EXPECT_TRUE(judge.judge({}, kSecond + 101 * kMillisecond).certain);
+}
+
+TEST_F(EvidenceJudgeTest, LateAnswersAreAbnormalButNotCertain) {
+  const std::size_t delay = track(Channel::kDelay, kB, kA);
+  limits_.tracks[delay] = model_->leastLimit(delay);
+  EvidenceJudge usual = makeJudge(limits_);
+  feed(usual, 0);
+  EXPECT_EQ(usual.judge({}, 40 * kPeriod).score, 0);
+  EvidenceJudge judge = makeJudge(limits_);
+  feed(judge, 5);
+  const Judgement judgement = judge.judge({}, 45 * kPeriod);
+  EXPECT_TRUE(judgement.abnormal);
+  EXPECT_FALSE(judgement.certain);
+  EXPECT_EQ(judgement.evidence, "pairs");
+  ASSERT_FALSE(judge.suspects({}, 45 * kPeriod).empty());
+  EXPECT_EQ(judge.suspects({}, 45 * kPeriod).front().id, kB);
+}
+
+TEST_F(EvidenceJudgeTest, TheLinkerIsSuspiciousNearItsLimitAndCertainBeyondIt) {
+  const std::size_t slow = track(Channel::kSlowDelay, kB, kA);
+  limits_.tracks[slow] = 1;  // five late answers are far beyond: a share of 1
+  for (const auto& [limit, suspicious, certain] :
+       {std::tuple(2.0, false, false), std::tuple(1.2, true, false),
+        std::tuple(0.9, true, true)}) {
+    limits_.linker = limit;
+    EvidenceJudge judge = makeJudge(limits_);
+    feed(judge, 5);
+    const Judgement judgement = judge.judge({}, 45 * kPeriod);
+    EXPECT_NEAR(judgement.score.value(), -1 / limit, 1e-12);
+    EXPECT_EQ(judgement.suspicious, suspicious) << limit;
+    EXPECT_EQ(judgement.certain, certain) << limit;
+    EXPECT_EQ(judgement.abnormal, certain) << limit;
+    EXPECT_EQ(judgement.evidence, suspicious ? "linker" : "") << limit;
+  }
+}
+
+TEST_F(EvidenceJudgeTest, WithoutLimitsItSaysNothing) {
+  EvidenceJudge judge = makeJudge(std::nullopt);
+  judge.add({0, kA});
+  const Judgement judgement = judge.judge({}, 3000 * kSecond);
+  EXPECT_FALSE(judgement.score.has_value());
+  EXPECT_FALSE(judgement.threshold.has_value());
+  EXPECT_FALSE(judgement.abnormal || judgement.certain || judgement.suspicious);
+}
+
+TEST_F(EvidenceJudgeTest, KnowsUnknownEvents) {
+  EvidenceJudge judge = makeJudge(limits_);
+  EXPECT_FALSE(judge.add({0, kA}).unknown);
+  EXPECT_TRUE(judge.add({0, kC}).unknown);
+}
+
+TEST_F(EvidenceJudgeTest, ARestartForgetsWhatWasSeen) {
+  limits_.tracks[track(Channel::kOverdue, kA, kA)] = 1;
+  EvidenceJudge judge = makeJudge(limits_);
+  judge.add({0, kA});
+  EXPECT_TRUE(judge.judge({}, 100 * kSecond).abnormal);
+  judge.restart();
+  EXPECT_FALSE(judge.judge({}, 100 * kSecond).abnormal);
+}
+
+TEST_F(EvidenceJudgeTest, RefusesLimitsOfAnotherModel) {
+  EvidenceLimits few = limits_;
+  few.tracks.pop_back();
+  EXPECT_THROW(makeJudge(few), std::invalid_argument);
+  for (const double linker : {kNone, 0.0, -1.0, std::numeric_limits<double>::infinity()}) {
+    EvidenceLimits unusable = limits_;
+    unusable.linker = linker;
+    EXPECT_THROW(makeJudge(unusable), std::invalid_argument) << linker;
+  }
+}
+
+}  // namespace
+}  // namespace self_awareness::core

@@ -1,0 +1,235 @@
+#include "self_awareness/core/evidence/model.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "recordings.h"
+
+namespace self_awareness::core {
+namespace {
+
+const EvidenceStatistics kNothing = countsOf({});
+
+// Gaps [ns] as the model knows them: by the middle of their bins, none beyond the longest.
+std::vector<double> binnedGaps(const Events& events) {
+  std::vector<double> gaps;
+  double longest = 0;
+  for (std::size_t k = 1; k < events.size(); ++k) {
+    const std::int64_t gap = events[k].stamp - events[k - 1].stamp;
+    longest = std::max(longest, static_cast<double>(gap));
+    gaps.push_back(log_bins::middle(log_bins::bin(gap)));
+  }
+  for (double& gap : gaps) {
+    gap = std::min(gap, longest);
+  }
+  return gaps;
+}
+
+// Counts of one event type's rate.
+EvidenceStatistics ofRate(std::uint64_t sum, std::uint64_t squares, std::uint64_t windows) {
+  EvidenceStatistics counts;
+  counts.intern(kTypes[kA]);
+  counts.type(kA).rate_sum = sum;
+  counts.type(kA).rate_squares = squares;
+  counts.addRateWindows(windows);
+  return counts;
+}
+
+// B comes 20 or 40 ms after A, which comes at random.
+EvidenceStatistics pairCounts(unsigned seed) {
+  const Events asked = irregular(kA, 0, 100 * kSecond, 200 * kMillisecond, seed);
+  Events answered = answers(kB, asked, 20 * kMillisecond);
+  for (std::size_t k = 0; k < answered.size(); k += 3) {
+    answered[k].stamp += 20 * kMillisecond;
+  }
+  return countsOf({together({asked, answered})}, 2);
+}
+
+TEST(EvidenceModel, NeedsAnEvent) {
+  EXPECT_THROW(EvidenceModel(watch({}, {})), std::invalid_argument);
+}
+
+TEST(EvidenceModel, OverdueIsTheLiteralSumOverTheGaps) {
+  for (const Events& events : {irregular(kA, 0, 60 * kSecond, 300 * kMillisecond, 3),
+                               timer(kA, 0, 60 * kSecond, 100 * kMillisecond)}) {
+    const EvidenceModel model(watch(countsOf({events}), kNothing));
+    const std::vector<double> gaps = binnedGaps(events);
+    const auto b = static_cast<double>(model.longestGap(kA));
+    double all = b;
+    for (const double gap : gaps) {
+      all += gap;
+    }
+    for (const std::int64_t milliseconds : {1, 50, 200, 300, 700, 1500, 4000}) {
+      const std::int64_t age = milliseconds * kMillisecond;
+      double left = b * std::exp(-static_cast<double>(age) / b);
+      for (const double gap : gaps) {
+        left += std::max(gap - static_cast<double>(age), 0.0);
+      }
+      EXPECT_NEAR(model.overdue(kA, age), -std::log(left / all), 1e-9) << milliseconds;
+    }
+  }
+}
+
+TEST(EvidenceModel, OverdueRisesFromZeroWithoutEnd) {
+  const EvidenceModel model(
+      watch(countsOf({irregular(kA, 0, 60 * kSecond, 300 * kMillisecond, 3)}), kNothing));
+  EXPECT_NEAR(model.overdue(kA, 0), 0, 1e-12);
+  EXPECT_NEAR(model.overdue(kA, -kSecond), 0, 1e-12);
+  double before = 0;
+  for (std::int64_t age = kMillisecond; age < 3600 * kSecond; age += age / 4 + 1) {
+    const double now = model.overdue(kA, age);
+    ASSERT_GT(now, before) << age;
+    ASSERT_TRUE(std::isfinite(now)) << age;
+    before = now;
+  }
+}
+
+TEST(EvidenceModel, OverdueWeighsGapsByTheirLength) {
+  // 1000 gaps of 100 ms and one of 10 s: a tenth of the time lies in the long one.
+  Events events = timer(kA, 0, 100 * kSecond + 1, 100 * kMillisecond);
+  events.push_back({events.back().stamp + 10 * kSecond, kA});
+  const EvidenceModel model(watch(countsOf({events}), kNothing));
+  const double of_time = std::exp(-model.overdue(kA, kSecond));
+  const double of_gaps = std::exp(model.logSurvival(kA, kSecond));
+  EXPECT_NEAR(of_time, 0.15, 0.02);  // the long gap and the tail beyond it
+  EXPECT_NEAR(of_gaps, 0.002, 0.0002);
+}
+
+TEST(EvidenceModel, ATypeThatNeverRepeatedHasNoEvidence) {
+  const EvidenceModel model(
+      watch(countsOf({{{0, kA}, {kSecond, kB}, {2 * kSecond, kB}}}), kNothing));
+  EXPECT_EQ(model.overdue(kA, 3600 * kSecond), 0);
+  EXPECT_EQ(model.logSurvival(kA, 3600 * kSecond), 0);
+  EXPECT_EQ(model.longestGap(kA), 0);
+  EXPECT_EQ(model.longestGap(kB), kSecond);
+  EXPECT_TRUE(model.tracks().empty());
+}
+
+TEST(EvidenceModel, SurvivalIsTheShareOfGapsAndATailBeyondThem) {
+  const EvidenceModel model(
+      watch(countsOf({timer(kA, 0, 10 * kSecond + 1, 100 * kMillisecond)}), kNothing));
+  EXPECT_NEAR(model.logSurvival(kA, 200 * kMillisecond), -2 - std::log(101), 1e-12);
+  EXPECT_NEAR(model.logSurvival(kA, 50 * kMillisecond),
+              std::log(100 + std::exp(-0.5)) - std::log(101), 1e-12);
+}
+
+TEST(EvidenceModel, RateIsTheNumberOfSpreadsAboveTheMean) {
+  // Mean 4, variance 1; min(1, 4 / 4) + 1/4 more.
+  const EvidenceModel often(watch(ofRate(40, 170, 10), {}));
+  EXPECT_NEAR(often.rate(kA, 7), 2, 1e-12);
+  EXPECT_NEAR(often.rate(kA, 1), -2, 1e-12);
+  EXPECT_NEAR(often.usualCount(kA, 2), 7, 1e-12);
+  // Mean 0.4, variance 0.24, min(1, 0.1) + 1/4 more.
+  const EvidenceModel rarely(watch(ofRate(4, 4, 10), {}));
+  EXPECT_NEAR(rarely.rate(kA, 1), 0.6 / std::sqrt(0.59), 1e-12);
+  // The halves add up.
+  const EvidenceModel halves(watch(ofRate(10, 45, 3), ofRate(30, 125, 7)));
+  EXPECT_NEAR(halves.rate(kA, 7), 2, 1e-12);
+}
+
+TEST(EvidenceModel, MissRateIsNeverQuiteZeroOrOne) {
+  EXPECT_DOUBLE_EQ(missRate(99, 80), 0.195);
+  EXPECT_DOUBLE_EQ(missRate(99, 99), 0.005);
+  EXPECT_DOUBLE_EQ(missRate(0, 0), 0.5);
+  EXPECT_DOUBLE_EQ(missRate(99, 0), 0.995);
+}
+
+TEST(EvidenceModel, AnswersAreALogLikelihoodRatio) {
+  const Events asked = timer(kA, 0, 100 * kSecond, 100 * kMillisecond);
+  Events answered = answers(kB, asked, 30 * kMillisecond);
+  std::size_t index = 0;  // every fifth is left out
+  answered.erase(std::remove_if(answered.begin(), answered.end(),
+                                [&](const Event&) { return index++ % 5 == 0; }),
+                 answered.end());
+  const EvidenceStatistics counts = countsOf({together({asked, answered})}, 2);
+  const EvidenceModel model(watch(counts, counts));
+  const std::size_t track = indexOf(model.tracks(), Channel::kAnswer, kB, kA);
+  ASSERT_LT(track, model.tracks().size());
+  const double usual = missRate(2 * counts.type(kA).gaps, 2 * counts.answers(kA, kB));
+  EXPECT_NEAR(usual, 0.2, 0.001);
+  EXPECT_DOUBLE_EQ(model.missRate(track), usual);
+  // The fault takes away half of the answers that came.
+  EXPECT_NEAR(model.answered(track), std::log(0.5), 1e-12);
+  EXPECT_NEAR(model.missed(track), std::log((usual + (1 - usual) / 2) / usual), 1e-12);
+  // In normal operation the sum of the ratios falls, with the fault it rises.
+  EXPECT_LT(usual * model.missed(track) + (1 - usual) * model.answered(track), 0);
+  EXPECT_GT(0.6 * model.missed(track) + 0.4 * model.answered(track), 0);
+  EXPECT_GE(model.leastLimit(track), 4 * model.missed(track));
+}
+
+TEST(EvidenceModel, SurpriseIsStandardisedByWhatTheOtherHalfFinds) {
+  const EvidenceStatistics half = pairCounts(1);
+  const EvidenceModel model(watch(half, half), EvidenceModel::Learned::kFirst);
+  const std::size_t track = indexOf(model.tracks(), Channel::kDelay, kB, kA);
+  ASSERT_LT(track, model.tracks().size());
+  double mean = 0;
+  double squares = 0;
+  for (std::size_t bin = 0; bin < log_bins::kBins; ++bin) {
+    const double share = half.delays(kA, kB)[bin] / static_cast<double>(half.total(kA, kB));
+    const double surprise = model.surprises(track)[bin];
+    mean += share * surprise;
+    squares += share * surprise * surprise;
+  }
+  EXPECT_NEAR(mean, 0, 1e-9);
+  EXPECT_LE(squares, 1 + 1e-9);  // less where the delays vary by less than half a nat
+  EXPECT_GT(squares, 0.3);
+}
+
+TEST(EvidenceModel, SurpriseIsBounded) {
+  const EvidenceModel model(watch(pairCounts(1), pairCounts(2)));
+  for (const Channel channel : {Channel::kDelay, Channel::kSlowDelay}) {
+    const std::size_t track = indexOf(model.tracks(), channel, kB, kA);
+    ASSERT_LT(track, model.tracks().size());
+    double largest = 0;
+    for (std::int64_t delay = 0; delay < 20 * kSecond; delay += kMillisecond) {
+      largest = std::max(largest, model.surprises(track)[log_bins::bin(delay)]);
+    }
+    EXPECT_DOUBLE_EQ(largest, 6);
+    EXPECT_LT(model.surprises(track)[log_bins::bin(20 * kMillisecond)], 0);
+    EXPECT_GT(model.leastLimit(track), 2 * largest);  // one late event makes two unusual delays
+  }
+}
+
+TEST(EvidenceModel, TheTracksStayWhateverProbabilitiesWereLearnedFrom) {
+  const EvidenceStatistics first = pairCounts(1);
+  const EvidenceStatistics second = pairCounts(2);
+  const EvidenceModel both(watch(first, second));
+  const EvidenceModel half(watch(first, second), EvidenceModel::Learned::kFirst);
+  const EvidenceModel other(watch(first, second), EvidenceModel::Learned::kSecond);
+  ASSERT_EQ(both.tracks().size(), half.tracks().size());
+  for (std::size_t track = 0; track < both.tracks().size(); ++track) {
+    EXPECT_EQ(both.tracks()[track].channel, half.tracks()[track].channel);
+    EXPECT_EQ(both.tracks()[track].to, half.tracks()[track].to);
+    EXPECT_EQ(both.tracks()[track].from, half.tracks()[track].from);
+  }
+  EXPECT_NE(half.overdue(kA, kSecond), other.overdue(kA, kSecond));
+  EXPECT_DOUBLE_EQ(half.overdue(kA, kSecond),
+                   EvidenceModel(watch(first, {})).overdue(kA, kSecond));
+}
+
+TEST(EvidenceModel, AHalfMayLackAnEventType) {
+  EvidenceStatistics second;  // B alone, so that its id is another one
+  second.intern(kTypes[kB]);
+  EvidenceTrainer trainer(second, kWindow);
+  for (const Event& event : timer(0, 0, 10 * kSecond, 100 * kMillisecond)) {
+    trainer.add(event);
+  }
+  const EvidenceStatistics first = countsOf({timer(kA, 0, 10 * kSecond, 100 * kMillisecond)}, 1);
+  const EvidenceModel model(watch(first, second), EvidenceModel::Learned::kSecond);
+  EXPECT_EQ(model.overdue(kA, kSecond), 0);
+  EXPECT_GT(model.overdue(kB, kSecond), 1);
+}
+
+TEST(EvidenceModel, UsualDelaysAreThoseThatAShareDidNotExceed) {
+  const EvidenceModel model(watch(pairCounts(1), pairCounts(2)));
+  EXPECT_NEAR(model.usualDelay(kA, kB, 0.05), 0.020, 0.004);
+  EXPECT_NEAR(model.usualDelay(kA, kB, 0.60), 0.020, 0.004);
+  EXPECT_NEAR(model.usualDelay(kA, kB, 0.95), 0.040, 0.008);
+}
+
+}  // namespace
+}  // namespace self_awareness::core

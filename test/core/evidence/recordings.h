@@ -1,0 +1,103 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <initializer_list>
+#include <random>
+#include <vector>
+
+#include "self_awareness/core/evidence/statistics.h"
+#include "self_awareness/core/evidence/tracks.h"
+
+/// Recordings made to measure for the tests of the evidence detector.
+namespace self_awareness::core {
+
+constexpr std::int64_t kMillisecond = 1000000;
+constexpr std::int64_t kSecond = 1000 * kMillisecond;
+constexpr std::int64_t kWindow = 100 * kMillisecond;
+
+/// Ids in the recordings below, and the event types they stand for.
+constexpr EventId kA = 0;
+constexpr EventId kB = 1;
+constexpr EventId kC = 2;
+inline const std::vector<EventType> kTypes{
+    {"/a", "/x", "T"}, {"/b", "/y", "T"}, {"/c", "/z", "T"}};
+
+using Events = std::vector<Event>;
+
+/// Events of several components in the order of their stamps.
+inline Events together(std::initializer_list<Events> parts) {
+  Events events;
+  for (const Events& part : parts) {
+    events.insert(events.end(), part.begin(), part.end());
+  }
+  std::stable_sort(events.begin(), events.end(),
+                   [](const Event& a, const Event& b) { return a.stamp < b.stamp; });
+  return events;
+}
+
+/// A timer from `start` to `end` [ns].
+inline Events timer(EventId id, std::int64_t start, std::int64_t end, std::int64_t period) {
+  Events events;
+  for (std::int64_t stamp = start; stamp < end; stamp += period) {
+    events.push_back({stamp, id});
+  }
+  return events;
+}
+
+/// Events at random, with a mean gap of `gap` [ns], none shorter than a quarter of it.
+inline Events irregular(EventId id, std::int64_t start, std::int64_t end, std::int64_t gap,
+                        unsigned seed) {
+  std::mt19937 random(seed);
+  std::exponential_distribution<double> wait(1 / (0.75 * static_cast<double>(gap)));
+  Events events;
+  for (std::int64_t stamp = start; stamp < end;
+       stamp += gap / 4 + static_cast<std::int64_t>(wait(random))) {
+    events.push_back({stamp, id});
+  }
+  return events;
+}
+
+/// What answers every one of other events after a delay [ns].
+inline Events answers(EventId id, const Events& asked, std::int64_t delay) {
+  Events events;
+  for (const Event& event : asked) {
+    events.push_back({event.stamp + delay, id});
+  }
+  return events;
+}
+
+/// Counts of recordings, with the first so many of kTypes.
+inline EvidenceStatistics countsOf(const std::vector<Events>& recordings,
+                                   std::size_t types = kTypes.size()) {
+  EvidenceStatistics statistics;
+  for (std::size_t id = 0; id < types; ++id) {
+    statistics.intern(kTypes[id]);
+  }
+  EvidenceTrainer trainer(statistics, kWindow);
+  for (const Events& events : recordings) {
+    trainer.startRecording();
+    for (const Event& event : events) {
+      trainer.add(event);
+    }
+  }
+  return statistics;
+}
+
+/// Index of a track; its number if it is not watched.
+inline std::size_t indexOf(const std::vector<Track>& tracks, Channel channel, EventId to,
+                           EventId from) {
+  return static_cast<std::size_t>(std::find_if(tracks.begin(), tracks.end(),
+                                               [&](const Track& track) {
+                                                 return track.channel == channel &&
+                                                        track.to == to && track.from == from;
+                                               }) -
+                                  tracks.begin());
+}
+
+inline bool isWatched(const std::vector<Track>& tracks, Channel channel, EventId to,
+                      EventId from) {
+  return indexOf(tracks, channel, to, from) < tracks.size();
+}
+
+}  // namespace self_awareness::core

@@ -1,0 +1,276 @@
+#include "self_awareness/core/evidence/statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <stdexcept>
+#include <vector>
+
+#include "recordings.h"
+#include "self_awareness/core/stream/clock.h"
+
+namespace self_awareness::core {
+namespace {
+
+Events inMilliseconds(std::initializer_list<Event> events) {
+  Events scaled;
+  for (const Event& event : events) {
+    scaled.push_back({event.stamp * kMillisecond, event.id});
+  }
+  return scaled;
+}
+
+Events randomEvents(unsigned seed, EventId first, EventId last) {
+  std::mt19937 random(seed);
+  Events events;
+  std::int64_t stamp = kSecond;
+  for (int i = 0; i < 2000; ++i) {
+    stamp += static_cast<std::int64_t>(random() % 30000000);
+    events.push_back({stamp, static_cast<EventId>(first + random() % (last - first + 1))});
+  }
+  return events;
+}
+
+// The same counts, with the ids of kTypes.
+EvidenceStatistics reordered(const EvidenceStatistics& counts) {
+  EvidenceStatistics ordered = countsOf({});
+  ordered.merge(counts);
+  return ordered;
+}
+
+TEST(LogBins, AreFourAnOctaveFrom2500UsTo10240Ms) {
+  EXPECT_EQ(log_bins::bin(0), 0U);
+  EXPECT_EQ(log_bins::bin(-kSecond), 0U);
+  EXPECT_EQ(log_bins::bin(2499999), 0U);
+  EXPECT_EQ(log_bins::bin(2500000), 1U);
+  EXPECT_EQ(log_bins::bin(4999999), 4U);
+  EXPECT_EQ(log_bins::bin(5000000), 5U);
+  EXPECT_EQ(log_bins::bin(10239999999), log_bins::kBins - 2);
+  EXPECT_EQ(log_bins::bin(10240000000), log_bins::kBins - 1);
+  EXPECT_EQ(log_bins::bin(kLongestSilence), log_bins::kBins - 1);
+}
+
+TEST(LogBins, EveryEdgeBelongsToTheBinAboveIt) {
+  EXPECT_EQ(log_bins::lowerEdge(0), 0);
+  for (std::size_t bin = 1; bin < log_bins::kBins; ++bin) {
+    EXPECT_EQ(log_bins::bin(log_bins::lowerEdge(bin)), bin);
+    EXPECT_EQ(log_bins::bin(log_bins::lowerEdge(bin) - 1), bin - 1);
+  }
+}
+
+TEST(LogBins, AreThoseOfALiteralSearch) {
+  std::array<std::int64_t, log_bins::kBins - 1> edges{};
+  for (std::size_t k = 0; k < edges.size(); ++k) {
+    edges[k] = std::llround(2.5e6 * std::exp2(static_cast<double>(k) / 4));
+  }
+  std::mt19937_64 random(7);
+  for (int i = 0; i < 100000; ++i) {
+    const auto delay = static_cast<std::int64_t>(random() >> (14 + random() % 50));
+    const auto bin = std::upper_bound(edges.begin(), edges.end(), delay) - edges.begin();
+    ASSERT_EQ(log_bins::bin(delay), static_cast<std::size_t>(bin)) << delay;
+  }
+}
+
+TEST(LogBins, TheMiddleIsTheGeometricMeanOfTheEdges) {
+  EXPECT_DOUBLE_EQ(log_bins::middle(0), 1.25e6);
+  EXPECT_NEAR(log_bins::middle(1), 2.5e6 * std::exp2(0.125), 1);
+  EXPECT_NEAR(log_bins::middle(48), 10.24e9 * std::exp2(-0.125), 1);
+  EXPECT_DOUBLE_EQ(log_bins::middle(49), 10.24e9);
+}
+
+TEST(RecentCounts, SlideOverTheLastWindows) {
+  RecentCounts recent(1, 2);
+  recent.add(0);
+  recent.close();
+  EXPECT_FALSE(recent.full());
+  recent.add(0);
+  recent.add(0);
+  recent.close();
+  EXPECT_TRUE(recent.full());
+  EXPECT_EQ(recent.counts(), std::vector<std::uint32_t>{3});
+  recent.resize(2);
+  recent.add(1);
+  recent.close();
+  EXPECT_EQ(recent.counts(), (std::vector<std::uint32_t>{2, 1}));
+  recent.restart();
+  EXPECT_FALSE(recent.full());
+  recent.close();
+  recent.close();
+  EXPECT_EQ(recent.counts(), (std::vector<std::uint32_t>{0, 0}));
+}
+
+TEST(EvidenceTrainer, CountsDelaysGapsAndAnswers) {
+  const EvidenceStatistics counts = countsOf(
+      {inMilliseconds({{0, kA}, {10, kB}, {100, kA}, {130, kB}, {150, kB}, {300, kA}, {390, kA}})},
+      2);
+  EXPECT_EQ(counts.type(kA).events, 4U);
+  EXPECT_EQ(counts.type(kA).gaps, 3U);
+  EXPECT_EQ(counts.type(kA).gap_sum, 390 * kMillisecond);
+  EXPECT_EQ(
+      counts.type(kA).longest_gaps,
+      (std::vector<std::int64_t>{200 * kMillisecond, 100 * kMillisecond, 90 * kMillisecond}));
+  EXPECT_EQ(counts.duration(), 390 * kMillisecond);
+
+  const auto in = [&](EventId from, EventId to, std::int64_t milliseconds) {
+    return counts.delays(from, to).at(log_bins::bin(milliseconds * kMillisecond));
+  };
+  EXPECT_EQ(counts.total(kA, kB), 3U);
+  EXPECT_EQ(in(kA, kB, 10), 1U);
+  EXPECT_EQ(in(kA, kB, 30), 1U);
+  EXPECT_EQ(in(kA, kB, 50), 1U);  // the second B after the same A, too
+  EXPECT_EQ(counts.total(kB, kA), 3U);
+  EXPECT_EQ(in(kB, kA, 90), 1U);
+  EXPECT_EQ(in(kB, kA, 150), 1U);
+  EXPECT_EQ(in(kB, kA, 240), 1U);
+  EXPECT_EQ(counts.answers(kA, kB), 2U);  // none between the last two A
+  EXPECT_EQ(counts.answers(kA, kA), 0U);
+  EXPECT_EQ(counts.answers(kB, kA), 1U);  // between the first two B, none between the last two
+}
+
+TEST(EvidenceTrainer, NoDelaysWhereNoneWasSeen) {
+  const EvidenceStatistics counts = countsOf({inMilliseconds({{0, kA}, {10, kB}})}, 2);
+  EXPECT_EQ(counts.total(kB, kA), 0U);
+  EXPECT_EQ(counts.total(kA, kB), 1U);
+}
+
+TEST(EvidenceTrainer, CountsRatesInFullSpansOnly) {
+  EvidenceStatistics counts;
+  counts.intern(kTypes[kA]);
+  EvidenceTrainer trainer(counts, kSecond);
+  const auto add = [&](std::int64_t milliseconds, EventId id) {
+    trainer.add({milliseconds * kMillisecond, id});
+  };
+  for (const std::int64_t milliseconds : {500, 1500, 1600, 2200}) {
+    add(milliseconds, kA);
+  }
+  counts.intern(kTypes[kB]);  // first seen when A has long been counted
+  add(2500, kB);
+  add(4100, kA);
+  // 1, 2, 1, 0 A in the closed windows: 3, 3, 1 in two of them.
+  EXPECT_EQ(counts.rateWindows(), 3U);
+  EXPECT_EQ(counts.type(kA).rate_sum, 7U);
+  EXPECT_EQ(counts.type(kA).rate_squares, 19U);
+  EXPECT_EQ(counts.type(kB).rate_sum, 2U);
+  EXPECT_EQ(counts.type(kB).rate_squares, 2U);
+}
+
+TEST(EvidenceTrainer, ALateEventHasNoNegativeDelay) {
+  const EvidenceStatistics counts =
+      countsOf({inMilliseconds({{0, kA}, {100, kA}, {50, kA}, {80, kB}})}, 2);
+  EXPECT_EQ(counts.type(kA).gap_sum, 100 * kMillisecond);
+  EXPECT_EQ(counts.type(kA).longest_gaps.back(), 0);
+  EXPECT_EQ(counts.delays(kA, kA).front(), 1U);
+  EXPECT_EQ(counts.duration(), 100 * kMillisecond);
+}
+
+TEST(EvidenceTrainer, OnlyTheEventBeforeTellsAStepOfTheClock) {
+  // Two late events, each within what is late of the one before it, as everywhere (clock.h).
+  const EvidenceStatistics counts =
+      countsOf({inMilliseconds({{1000, kA}, {1160, kA}, {1100, kA}, {1040, kA}, {1200, kA}})}, 1);
+  EXPECT_EQ(counts.type(kA).gaps, 4U);
+  EXPECT_EQ(counts.type(kA).gap_sum, 320 * kMillisecond);
+  EXPECT_EQ(counts.duration(), 200 * kMillisecond);
+}
+
+TEST(EvidenceTrainer, NothingCrossesFromOneRecordingIntoTheNext) {
+  const Events first = timer(kA, 0, 1500 * kMillisecond, 100 * kMillisecond);
+  const Events second = timer(kB, 1500 * kMillisecond, 3000 * kMillisecond, 100 * kMillisecond);
+  const EvidenceStatistics counts = countsOf({first, second}, 2);
+  EXPECT_EQ(counts.total(kA, kB), 0U);
+  EXPECT_EQ(counts.rateWindows(), 0U);  // 2 s are full in neither
+  EXPECT_EQ(counts.duration(), 2800 * kMillisecond);
+  const Events joined = together({first, second});
+  EXPECT_EQ(countsOf({joined}, 2).total(kA, kB), 15U);
+  EXPECT_GT(countsOf({joined}, 2).rateWindows(), 0U);
+}
+
+TEST(EvidenceTrainer, AStepOfTheClockStartsAnotherRecording) {
+  for (const std::int64_t later : {10 * kSecond + kLongestSilence + 1, -kSecond}) {
+    const Events before = timer(kA, 0, 10 * kSecond, 100 * kMillisecond);
+    const Events after = timer(kB, later, later + 10 * kSecond, 100 * kMillisecond);
+    Events stepped = before;
+    stepped.insert(stepped.end(), after.begin(), after.end());
+    EXPECT_TRUE(countsOf({stepped}, 2) == countsOf({before, after}, 2)) << later;
+  }
+}
+
+TEST(EvidenceTrainer, RefusesAWindowOfNoLength) {
+  EvidenceStatistics counts;
+  EXPECT_THROW(EvidenceTrainer(counts, 0), std::invalid_argument);
+  EXPECT_THROW(EvidenceTrainer(counts, -kWindow), std::invalid_argument);
+}
+
+TEST(EvidenceStatistics, KeepTheLongestGaps) {
+  EvidenceStatistics::Type type;
+  std::vector<std::int64_t> gaps(40);
+  std::iota(gaps.begin(), gaps.end(), 1);
+  std::shuffle(gaps.begin(), gaps.end(), std::mt19937(5));
+  for (const std::int64_t gap : gaps) {
+    type.addGap(gap);
+  }
+  ASSERT_EQ(type.longest_gaps.size(), EvidenceStatistics::kLongestGaps);
+  for (std::size_t k = 0; k < type.longest_gaps.size(); ++k) {
+    EXPECT_EQ(type.longest_gaps[k], static_cast<std::int64_t>(40 - k));
+  }
+}
+
+TEST(EvidenceStatistics, CountsOfTwoTrainingsEqualTrainingOnBoth) {
+  const Events first = randomEvents(1, kA, kB);
+  const Events second = randomEvents(2, kB, kC);
+  EvidenceStatistics sum = countsOf({first});
+  const EvidenceStatistics both = countsOf({first, second});
+  EXPECT_FALSE(sum == both);
+  sum.merge(countsOf({second}));
+  EXPECT_TRUE(sum == both);
+}
+
+TEST(EvidenceStatistics, MergingCommutesUpToTheIds) {
+  const EvidenceStatistics first = countsOf({randomEvents(1, kA, kB)}, 2);
+  EvidenceStatistics second;  // kTypes the other way round
+  for (const EventId id : {kC, kB}) {
+    second.intern(kTypes[id]);
+  }
+  EvidenceTrainer trainer(second, kWindow);
+  for (const Event& event : randomEvents(2, 0, 1)) {
+    trainer.add(event);
+  }
+  EvidenceStatistics one = first;
+  one.merge(second);
+  EvidenceStatistics other = second;
+  other.merge(first);
+  EXPECT_FALSE(one == other);
+  EXPECT_TRUE(reordered(one) == reordered(other));
+  EXPECT_GT(one.total(kA, kB), 0U);
+}
+
+TEST(EvidenceStatistics, CountsDoNotWrapAround) {
+  EvidenceStatistics counts = countsOf({}, 1);
+  EvidenceStatistics::Partner partner;
+  partner.delays[3] = 3000000000U;
+  partner.delays[4] = 2000000000U;
+  counts.setPartners(kA, {partner});
+  counts.merge(EvidenceStatistics(counts));
+  EXPECT_EQ(counts.delays(kA, kA)[3], 4294967295U);
+  EXPECT_EQ(counts.delays(kA, kA)[4], 4000000000U);
+}
+
+TEST(EvidenceStatistics, PartnersComeInOrder) {
+  EvidenceStatistics counts = countsOf({}, 2);
+  counts.setPartners(kA, {{kB, 3, {}}});
+  EXPECT_EQ(counts.answers(kA, kB), 3U);
+  EXPECT_EQ(counts.answers(kB, kA), 0U);
+  EXPECT_THROW(counts.setPartners(kA, {{kB, 3, {}}, {kA, 1, {}}}), std::invalid_argument);
+  EXPECT_THROW(counts.setPartners(kA, {{kB, 3, {}}, {kB, 1, {}}}), std::invalid_argument);
+  EXPECT_THROW(counts.setPartners(kA, {{kC, 1, {}}}), std::invalid_argument);
+  const EvidenceStatistics::Partners& all = counts.allPartners(kA);
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(all[kA].id, kA);
+  EXPECT_EQ(all[kB].answers, 3U);
+}
+
+}  // namespace
+}  // namespace self_awareness::core

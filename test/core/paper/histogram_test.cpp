@@ -1,0 +1,185 @@
+#include "self_awareness/core/paper/histogram.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <random>
+#include <vector>
+
+#include "self_awareness/core/paper/delay_bins.h"
+
+namespace self_awareness::core {
+namespace {
+
+using Counts = std::map<std::int64_t, std::uint64_t>;
+
+constexpr std::int64_t kTwoTo32 = std::int64_t{1} << 32;
+
+Histogram histogramOf(const std::vector<std::int64_t>& bins) {
+  Histogram histogram;
+  for (const std::int64_t bin : bins) {
+    histogram.add(bin);
+  }
+  return histogram;
+}
+
+void expectCounts(const Histogram& histogram, const Counts& expected) {
+  Counts counts;
+  std::uint64_t total = 0;
+  std::int64_t previous = -1;
+  for (const Histogram::Entry& entry : histogram.entries()) {
+    EXPECT_GT(entry.bin, previous);
+    previous = entry.bin;
+    counts[entry.bin] = entry.count;
+    total += entry.count;
+    EXPECT_EQ(histogram.count(entry.bin), entry.count);
+  }
+  EXPECT_EQ(counts, expected);
+  EXPECT_EQ(histogram.total(), total);
+  EXPECT_EQ(histogram.empty(), expected.empty());
+}
+
+// Bins of well filled stretches, scattered ones, and both.
+std::vector<std::int64_t> randomBins(unsigned seed) {
+  std::mt19937_64 random(seed);
+  const std::int64_t stretch = 1 + static_cast<std::int64_t>(random() % 300);
+  const std::int64_t start = static_cast<std::int64_t>(random() % 1000);
+  const std::uint64_t scattered = random() % 5;  // of 4
+  std::vector<std::int64_t> bins(random() % 3000);
+  for (std::int64_t& bin : bins) {
+    bin = random() % 4 < scattered ? static_cast<std::int64_t>(random() % 100000)
+                                   : start + static_cast<std::int64_t>(random()) % stretch;
+    bin = std::max<std::int64_t>(bin, 0);
+  }
+  return bins;
+}
+
+TEST(Histogram, CountsLikeAMap) {
+  for (unsigned seed = 0; seed < 200; ++seed) {
+    SCOPED_TRACE(seed);
+    Counts expected;
+    const std::vector<std::int64_t> bins = randomBins(seed);
+    for (const std::int64_t bin : bins) {
+      ++expected[bin];
+    }
+    const Histogram histogram = histogramOf(bins);
+    expectCounts(histogram, expected);
+    EXPECT_EQ(histogram.count(200000), 0U);
+  }
+}
+
+TEST(Histogram, OrderDoesNotMatter) {
+  for (unsigned seed = 0; seed < 50; ++seed) {
+    SCOPED_TRACE(seed);
+    std::vector<std::int64_t> bins = randomBins(seed);
+    const Histogram forward = histogramOf(bins);
+    std::reverse(bins.begin(), bins.end());
+    const Histogram backward = histogramOf(bins);
+    std::sort(bins.begin(), bins.end());
+    EXPECT_TRUE(forward == backward);
+    EXPECT_TRUE(forward == histogramOf(bins));
+    EXPECT_EQ(forward.entropyBits(), backward.entropyBits());  // to the last bit
+    bins.push_back(7);
+    EXPECT_FALSE(forward == histogramOf(bins));
+  }
+}
+
+TEST(Histogram, MergesInAnyOrder) {
+  const std::vector<std::int64_t> a = randomBins(1);
+  const std::vector<std::int64_t> b = randomBins(2);
+  std::vector<std::int64_t> both = a;
+  both.insert(both.end(), b.begin(), b.end());
+  Histogram a_then_b = histogramOf(a);
+  a_then_b.merge(histogramOf(b));
+  Histogram b_then_a = histogramOf(b);
+  b_then_a.merge(histogramOf(a));
+  EXPECT_TRUE(a_then_b == histogramOf(both));
+  EXPECT_TRUE(a_then_b == b_then_a);
+}
+
+TEST(Histogram, CopiesAreIndependent) {
+  Histogram histogram = histogramOf(randomBins(3));
+  histogram.add(kTwoTo32);
+  Histogram copy = histogram;
+  EXPECT_TRUE(copy == histogram);
+  copy.add(5);
+  copy.add(kTwoTo32);
+  EXPECT_FALSE(copy == histogram);
+  EXPECT_EQ(histogram.count(kTwoTo32), 1U);
+  const Histogram moved = std::move(copy);
+  EXPECT_EQ(moved.count(kTwoTo32), 2U);
+}
+
+TEST(Histogram, CountsBeyond32Bits) {
+  Histogram histogram;
+  for (const std::int64_t bin : {3, 1000000}) {  // in the array, and outside of it
+    histogram.add(bin, kTwoTo32 - 2);
+    histogram.add(bin);
+    histogram.add(bin);
+    histogram.add(bin);
+    histogram.add(bin, 5 * kTwoTo32);
+  }
+  const auto count = static_cast<std::uint64_t>(6 * kTwoTo32 + 1);
+  expectCounts(histogram, {{3, count}, {1000000, count}});
+  EXPECT_EQ(histogram.entropyBits(), 1);
+}
+
+TEST(Histogram, BinsBeyond32Bits) {
+  const std::int64_t largest = std::numeric_limits<std::int64_t>::max();
+  const Histogram histogram =
+      histogramOf({5, kTwoTo32 + 5, kTwoTo32 - 1, kTwoTo32, largest, kTwoTo32 + 5});
+  expectCounts(histogram,
+               {{5, 1}, {kTwoTo32 - 1, 1}, {kTwoTo32, 1}, {kTwoTo32 + 5, 2}, {largest, 1}});
+}
+
+TEST(Histogram, AddingNothingAddsNoBin) {
+  Histogram histogram;
+  histogram.add(5, 0);
+  expectCounts(histogram, {});
+}
+
+TEST(DelayBins, AreThoseOfTheBinning) {
+  std::mt19937_64 random(1);
+  for (const std::int64_t size : {std::int64_t{1}, std::int64_t{3}, std::int64_t{10000000},
+                                  std::int64_t{1} << 24, 2 * kTwoTo32 + 1}) {
+    for (const std::int64_t horizon : {std::int64_t{0}, std::int64_t{20}}) {
+      const Binning binning{size, horizon};
+      const DelayBins bins(binning);
+      for (int i = 0; i < 10000; ++i) {
+        const std::int64_t from =
+            static_cast<std::int64_t>(random() >> 2) - (i % 2 == 0 ? 0 : std::int64_t{1} << 61);
+        const std::int64_t delay = static_cast<std::int64_t>(random() >> (4 + i % 60));
+        const std::int64_t rounded = delay / size * size;  // on an edge
+        ASSERT_EQ(bins.bin(bins.mark(from), bins.mark(from + delay)), binning.bin(delay));
+        ASSERT_EQ(bins.bin(bins.mark(from), bins.mark(from + rounded)), binning.bin(rounded));
+        ASSERT_EQ(bins.bin(bins.mark(from + delay), bins.mark(from)), 0) << "late";
+      }
+    }
+  }
+}
+
+// As of delays since an event that comes once: were all rebuilt for every bin, it would take
+// hours.
+TEST(Histogram, GrowsBinByBinInNoTime) {
+  constexpr std::int64_t kNumber = 1000000;
+  Histogram histogram;
+  for (std::int64_t bin = 0; bin < kNumber; ++bin) {
+    histogram.add(bin);
+  }
+  EXPECT_EQ(histogram.total(), static_cast<std::uint64_t>(kNumber));
+  Histogram other;
+  for (std::int64_t bin = kNumber / 2; bin < 2 * kNumber; ++bin) {
+    other.add(bin, 2);
+  }
+  histogram.merge(other);
+  EXPECT_EQ(histogram.count(0), 1U);
+  EXPECT_EQ(histogram.count(kNumber - 1), 3U);
+  EXPECT_EQ(histogram.count(kNumber), 2U);
+  EXPECT_EQ(histogram.entries().size(), 2U * kNumber);
+}
+
+}  // namespace
+}  // namespace self_awareness::core

@@ -1,0 +1,264 @@
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "self_awareness/core/verdict/detector.h"
+
+namespace self_awareness::core {
+namespace {
+
+constexpr std::int64_t kWindow = 100000000;
+constexpr std::int64_t kSecond = 10 * kWindow;
+constexpr EventId kUnknownId = 7;
+
+// Says of every window what the test wants to hear.
+class ToldJudge : public Judge {
+ public:
+  explicit ToldJudge(std::shared_ptr<Judgement> told) : told_(std::move(told)) {}
+
+  ScoredEvent add(const Event& event) override {
+    return {event, 0, event.id == kUnknownId, std::nullopt};
+  }
+  Judgement judge(const Window& /*window*/, std::int64_t /*end*/) override { return *told_; }
+  std::vector<Suspect> suspects(const Window& /*window*/, std::int64_t /*end*/) const override {
+    return {Suspect{}};
+  }
+  void restart() override {}
+
+ private:
+  std::shared_ptr<Judgement> told_;
+};
+
+class DetectorLevelsTest : public testing::Test {
+ protected:
+  // Normal operation until the detector has settled.
+  void start(UnknownEvents unknown = UnknownEvents::kWarn) {
+    Detector::Parameters parameters;
+    parameters.unknown = unknown;
+    parameters.settle_time = kSecond;
+    told_->threshold = -1;
+    detector_ = std::make_unique<Detector>(std::make_unique<ToldJudge>(told_), kWindow, parameters,
+                                           [this](const Verdict& verdict) {
+                                             verdict_ = verdict;
+                                             changes_ += verdict.changed ? 1 : 0;
+                                           });
+    detector_->add({0, 0});
+    windows(10);
+  }
+  // A window, with an event if one is asked for.
+  const Verdict& window(std::optional<EventId> id = std::nullopt) {
+    if (id) {
+      detector_->add({now_, *id});
+    }
+    detector_->advance(now_ += kWindow);
+    return verdict_;
+  }
+  void windows(int number) {
+    for (int i = 0; i < number; ++i) {
+      window();
+    }
+  }
+  const Verdict& abnormalWindow() {
+    told_->abnormal = true;
+    window();
+    told_->abnormal = false;
+    return verdict_;
+  }
+
+  std::shared_ptr<Judgement> told_ = std::make_shared<Judgement>();
+  std::unique_ptr<Detector> detector_;
+  std::int64_t now_ = 0;
+  Verdict verdict_;
+  int changes_ = 0;
+};
+
+TEST_F(DetectorLevelsTest, NormalOperationIsNoSuspicion) {
+  start();
+  windows(100);
+  EXPECT_FALSE(verdict_.suspicion);
+  EXPECT_FALSE(verdict_.alarm);
+  EXPECT_TRUE(verdict_.suspects.empty());
+  EXPECT_EQ(changes_, 0);
+}
+
+TEST_F(DetectorLevelsTest, OneAbnormalWindowIsASuspicionThatEndsAfterTheHoldTime) {
+  start();
+  EXPECT_TRUE(abnormalWindow().suspicion);
+  EXPECT_TRUE(verdict_.changed);
+  EXPECT_FALSE(verdict_.alarm);
+  EXPECT_EQ(verdict_.suspects.size(), 1U);
+  windows(19);
+  EXPECT_TRUE(verdict_.suspicion);
+  EXPECT_FALSE(verdict_.changed);
+  EXPECT_TRUE(verdict_.suspects.empty());
+  EXPECT_FALSE(window().suspicion);
+  EXPECT_TRUE(verdict_.changed);
+  EXPECT_EQ(changes_, 2);
+}
+
+TEST_F(DetectorLevelsTest, WhatIsOnTheWayToAbnormalIsASuspicion) {
+  start();
+  told_->suspicious = true;
+  told_->evidence = "linker";
+  windows(100);
+  EXPECT_TRUE(verdict_.suspicion);
+  EXPECT_FALSE(verdict_.abnormal);
+  EXPECT_FALSE(verdict_.alarm);
+  EXPECT_EQ(verdict_.evidence, "linker");
+  EXPECT_EQ(verdict_.suspects.size(), 1U);
+}
+
+TEST_F(DetectorLevelsTest, AnAlarmTakesThePlaceOfTheSuspicion) {
+  start();
+  told_->abnormal = true;
+  windows(2);
+  EXPECT_TRUE(verdict_.suspicion);
+  EXPECT_TRUE(window().alarm);
+  EXPECT_TRUE(verdict_.changed);
+  EXPECT_FALSE(verdict_.suspicion);
+  told_->abnormal = false;
+  windows(19);
+  EXPECT_TRUE(verdict_.alarm);
+  EXPECT_FALSE(window().alarm);
+  EXPECT_TRUE(verdict_.changed);
+  EXPECT_FALSE(verdict_.suspicion);
+  EXPECT_EQ(changes_, 3);
+}
+
+TEST_F(DetectorLevelsTest, ASuspicionMayOutlastTheAlarm) {
+  start();
+  told_->abnormal = true;
+  windows(3);
+  told_->abnormal = false;
+  told_->suspicious = true;
+  windows(19);
+  EXPECT_TRUE(verdict_.alarm);
+  EXPECT_FALSE(window().alarm);
+  EXPECT_TRUE(verdict_.suspicion);
+  EXPECT_TRUE(verdict_.changed);
+  EXPECT_FALSE(window().changed);
+}
+
+TEST_F(DetectorLevelsTest, WhatIsCertainRaisesTheAlarmAtOnce) {
+  start();
+  told_->certain = true;
+  window();
+  EXPECT_FALSE(verdict_.alarm);  // certain of a window that is not abnormal
+  EXPECT_TRUE(abnormalWindow().alarm);
+  EXPECT_FALSE(verdict_.suspicion);
+}
+
+TEST_F(DetectorLevelsTest, UnknownEventsAreASuspicionByDefault) {
+  start();
+  EXPECT_TRUE(window(kUnknownId).suspicion);
+  EXPECT_FALSE(verdict_.abnormal);
+  EXPECT_FALSE(verdict_.alarm);
+  EXPECT_EQ(verdict_.evidence, "unknown events");
+  EXPECT_EQ(verdict_.suspects.size(), 1U);
+  for (int i = 0; i < 100; ++i) {
+    window(kUnknownId);
+  }
+  EXPECT_TRUE(verdict_.suspicion);
+  EXPECT_FALSE(verdict_.alarm);
+  windows(20);
+  EXPECT_FALSE(verdict_.suspicion);
+}
+
+TEST_F(DetectorLevelsTest, UnknownEventsMayBeIgnored) {
+  start(UnknownEvents::kIgnore);
+  EXPECT_FALSE(window(kUnknownId).suspicion);
+  EXPECT_EQ(verdict_.evidence, "");
+  EXPECT_EQ(changes_, 0);
+}
+
+TEST_F(DetectorLevelsTest, UnknownEventsMayBeAnAlarmAtOnce) {
+  start(UnknownEvents::kError);
+  EXPECT_FALSE(window(0).alarm);
+  EXPECT_TRUE(window(kUnknownId).alarm);
+  EXPECT_TRUE(verdict_.abnormal);
+  EXPECT_EQ(verdict_.evidence, "unknown events");
+}
+
+TEST_F(DetectorLevelsTest, UnknownEventsAreToldBesideOtherEvidence) {
+  start();
+  told_->evidence = "rate";
+  EXPECT_EQ(window(kUnknownId).evidence, "rate, unknown events");
+}
+
+TEST_F(DetectorLevelsTest, SettlingHoldsASuspicionOff) {
+  for (const UnknownEvents unknown : {UnknownEvents::kWarn, UnknownEvents::kError}) {
+    now_ = 0;
+    start(unknown);
+    changes_ = 0;
+    detector_->settle(now_);
+    for (int i = 0; i < 10; ++i) {
+      told_->abnormal = i % 3 == 0;
+      window(kUnknownId);
+      EXPECT_TRUE(verdict_.settling);
+      EXPECT_FALSE(verdict_.suspicion) << i;
+      EXPECT_FALSE(verdict_.alarm) << i;
+      EXPECT_TRUE(verdict_.suspects.empty());
+    }
+    told_->abnormal = false;
+    EXPECT_EQ(changes_, 0);
+    window(kUnknownId);
+    EXPECT_EQ(verdict_.suspicion, unknown == UnknownEvents::kWarn);
+    EXPECT_EQ(verdict_.alarm, unknown == UnknownEvents::kError);
+  }
+}
+
+TEST_F(DetectorLevelsTest, AStandingSuspicionStandsWhileItSettles) {
+  start();
+  abnormalWindow();
+  detector_->settle(now_);
+  windows(9);
+  EXPECT_TRUE(verdict_.suspicion);
+  windows(11);
+  EXPECT_FALSE(verdict_.suspicion);
+}
+
+TEST_F(DetectorLevelsTest, WithoutCalibrationNothingIsSuspicious) {
+  start(UnknownEvents::kError);
+  told_->threshold.reset();
+  told_->suspicious = true;
+  EXPECT_FALSE(window(kUnknownId).suspicion);
+  EXPECT_FALSE(verdict_.alarm);
+  EXPECT_FALSE(verdict_.abnormal);
+}
+
+TEST_F(DetectorLevelsTest, ClearingTheAlarmForgetsTheSuspicion) {
+  start();
+  abnormalWindow();
+  detector_->clearAlarm();
+  EXPECT_FALSE(window().suspicion);
+}
+
+// What would have come in the rest of the window, nobody knows.
+TEST(Detector, TheLastWindowIsJudgedAtTheRecordingsEnd) {
+  class EndsJudge : public ToldJudge {
+   public:
+    explicit EndsJudge(std::vector<std::int64_t>& ends)
+        : ToldJudge(std::make_shared<Judgement>()), ends_(ends) {}
+    Judgement judge(const Window& window, std::int64_t end) override {
+      ends_.push_back(end);
+      return ToldJudge::judge(window, end);
+    }
+
+   private:
+    std::vector<std::int64_t>& ends_;
+  };
+  std::vector<std::int64_t> ends;
+  Detector detector(std::make_unique<EndsJudge>(ends), kWindow, {}, [](const Verdict&) {});
+  detector.add({10, 0});
+  detector.add({kWindow + 20, 0});
+  detector.advance(2 * kWindow + 30);
+  detector.finish();
+  EXPECT_EQ(ends, (std::vector<std::int64_t>{kWindow, 2 * kWindow, 2 * kWindow + 30}));
+}
+
+}  // namespace
+}  // namespace self_awareness::core

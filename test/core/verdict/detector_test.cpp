@@ -1,0 +1,277 @@
+#include "self_awareness/core/verdict/detector.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "self_awareness/core/paper/blame.h"
+#include "self_awareness/core/paper/judge.h"
+#include "self_awareness/core/stream/clock.h"
+
+namespace self_awareness::core {
+namespace {
+
+constexpr std::int64_t kMillisecond = 1000000;
+constexpr std::int64_t kSecond = 1000 * kMillisecond;
+const EventType kLaser{"/player", "/scan", "sensor_msgs/LaserScan"};
+const EventType kPose{"/slam", "/pose", "geometry_msgs/PoseStamped"};
+const EventType kWheels{"/base", "/odom", "nav_msgs/Odometry"};
+
+// A robot like clockwork: a scan every 80 ms, its pose 10 ms later, odometry every 20 ms.
+std::vector<Event> clockwork(std::int64_t start, std::int64_t end, bool laser) {
+  std::vector<Event> events;
+  for (std::int64_t t = start; t < end; t += 10 * kMillisecond) {
+    const std::int64_t phase = (t - start) / kMillisecond;
+    if (laser && phase % 80 == 0) {
+      events.push_back({t, 0});
+    }
+    if (laser && phase % 80 == 10) {
+      events.push_back({t, 1});
+    }
+    if (phase % 20 == 0) {
+      events.push_back({t + kMillisecond, 2});
+    }
+  }
+  return events;
+}
+
+std::shared_ptr<const Model> trainedModel() {
+  DelayStatistics statistics(Binning{10 * kMillisecond, 0});
+  for (const EventType& type : {kLaser, kPose, kWheels}) {
+    statistics.intern(type);
+  }
+  DelayTrainer trainer(statistics);
+  for (const Event& event : clockwork(0, 60 * kSecond, true)) {
+    trainer.add(event);
+  }
+  return std::make_shared<const Model>(statistics);
+}
+
+struct Seen {
+  std::int64_t start;
+  bool abnormal;
+  bool settling;
+  bool alarm;
+  bool changed;
+  std::vector<Suspect> suspects;
+};
+
+class DetectorTest : public testing::Test {
+ protected:
+  Detector makeDetector(std::optional<double> threshold,
+                        const Detector::Parameters& parameters = {}) {
+    return Detector(
+        std::make_unique<PaperJudge>(model_, threshold, parameters.silence_is_abnormal),
+        100 * kMillisecond, parameters, [this](const Verdict& verdict) {
+          seen_.push_back({verdict.window->start, verdict.abnormal, verdict.settling,
+                           verdict.alarm, verdict.changed, verdict.suspects});
+        });
+  }
+  static void feed(Detector& detector, const std::vector<Event>& events) {
+    for (const Event& event : events) {
+      detector.add(event);
+    }
+  }
+  // The end of the window that raised the alarm first.
+  std::optional<std::int64_t> firstAlarm() const {
+    for (const Seen& seen : seen_) {
+      if (seen.changed && seen.alarm) {
+        return seen.start + 100 * kMillisecond;
+      }
+    }
+    return std::nullopt;
+  }
+
+  std::shared_ptr<const Model> model_ = trainedModel();
+  std::vector<Seen> seen_;
+};
+
+TEST_F(DetectorTest, NormalOperationIsNeverAbnormalOnceSettled) {
+  Detector detector = makeDetector(0.5);
+  feed(detector, clockwork(1000 * kSecond, 1030 * kSecond, true));
+  detector.finish();
+  ASSERT_EQ(seen_.size(), 300U);
+  for (const Seen& seen : seen_) {
+    EXPECT_FALSE(seen.abnormal && !seen.settling) << seen.start;
+    EXPECT_EQ(seen.settling, seen.start < 1005 * kSecond) << seen.start;
+  }
+}
+
+TEST_F(DetectorTest, NamesTheComponentThatFellSilent) {
+  Detector detector = makeDetector(1.5);
+  feed(detector, clockwork(1000 * kSecond, 1010 * kSecond, true));
+  feed(detector, clockwork(1010 * kSecond, 1015 * kSecond, false));
+  const auto alarm = firstAlarm();
+  ASSERT_TRUE(alarm.has_value());
+  EXPECT_GT(*alarm, 1010 * kSecond);
+  EXPECT_LE(*alarm, 1011 * kSecond);
+  ASSERT_FALSE(seen_.back().suspects.empty());
+  const Suspect& first = seen_.back().suspects.front();
+  EXPECT_EQ(model_->vocabulary().at(first.id), kLaser);
+  EXPECT_EQ(first.reason, Suspect::Reason::kSilent);
+  EXPECT_NEAR(first.silence, 5.0, 0.3);
+  EXPECT_NE(describe(first).find("silent for 4."), std::string::npos) << describe(first);
+  EXPECT_NE(describe(first).find("usually every 0.080 to 0.090 s"), std::string::npos)
+      << describe(first);
+}
+
+TEST_F(DetectorTest, TotalSilenceIsAbnormalByTimeAlone) {
+  Detector detector = makeDetector(0.5);
+  feed(detector, clockwork(1000 * kSecond, 1010 * kSecond, true));
+  detector.advance(1011 * kSecond);
+  const auto alarm = firstAlarm();
+  ASSERT_TRUE(alarm.has_value());
+  EXPECT_EQ(*alarm, 1010300 * kMillisecond);  // the third window without an event
+  EXPECT_EQ(seen_.size(), 110U);
+}
+
+TEST_F(DetectorTest, SilenceMayBeIgnored) {
+  Detector::Parameters parameters;
+  parameters.silence_is_abnormal = false;
+  Detector detector = makeDetector(0.5, parameters);
+  feed(detector, clockwork(1000 * kSecond, 1010 * kSecond, true));
+  detector.advance(1020 * kSecond);
+  EXPECT_FALSE(firstAlarm().has_value());
+}
+
+TEST_F(DetectorTest, WithoutAThresholdNothingIsAbnormal) {
+  Detector detector = makeDetector(std::nullopt);
+  feed(detector, clockwork(1000 * kSecond, 1010 * kSecond, true));
+  detector.advance(1020 * kSecond);
+  for (const Seen& seen : seen_) {
+    EXPECT_FALSE(seen.abnormal || seen.alarm);
+  }
+}
+
+TEST_F(DetectorTest, UnknownEventsScoreZeroAndAreNamed) {
+  Detector detector = makeDetector(1.5);
+  feed(detector, clockwork(1000 * kSecond, 1010 * kSecond, true));
+  std::vector<Event> events = clockwork(1010 * kSecond, 1012 * kSecond, true);
+  std::vector<Event> disturbed;
+  for (const Event& event : events) {
+    disturbed.push_back(event);
+    for (int i = 0; i < 5; ++i) {
+      disturbed.push_back({event.stamp, 3});  // the vocabulary ends at 2
+    }
+  }
+  feed(detector, disturbed);
+  ASSERT_TRUE(firstAlarm().has_value());
+  ASSERT_FALSE(seen_.back().suspects.empty());
+  EXPECT_EQ(seen_.back().suspects.front().id, 3U);
+  EXPECT_EQ(seen_.back().suspects.front().reason, Suspect::Reason::kUnknown);
+}
+
+TEST_F(DetectorTest, AStepOfTheClockStartsAfreshWithoutAnAlarm) {
+  for (const std::int64_t step : {-500 * kSecond, kLongestSilence + kSecond}) {
+    seen_.clear();
+    Detector detector = makeDetector(0.5);
+    feed(detector, clockwork(1000 * kSecond, 1010 * kSecond, true));
+    const std::vector<Event> after = clockwork(1010 * kSecond + step, 1020 * kSecond + step, true);
+    EXPECT_FALSE(detector.add(after.front()));
+    feed(detector, {after.begin() + 1, after.end()});
+    detector.finish();
+    EXPECT_FALSE(firstAlarm().has_value()) << step;
+    EXPECT_LT(seen_.size(), 205U) << step;  // no windows for time that never was
+    EXPECT_TRUE(seen_[120].settling) << step;
+  }
+}
+
+TEST_F(DetectorTest, ALateEventCountsInTheOpenWindow) {
+  Detector detector = makeDetector(0.5);
+  detector.add({1000 * kSecond + 150 * kMillisecond, 2});
+  EXPECT_TRUE(detector.add({1000 * kSecond + 90 * kMillisecond, 2}));
+  detector.finish();
+  ASSERT_EQ(seen_.size(), 1U);
+  EXPECT_EQ(seen_.front().start, 1000 * kSecond + 100 * kMillisecond);
+}
+
+TEST_F(DetectorTest, SettlingHoldsAlarmsOffAndLetsAStandingOneStand) {
+  Detector detector = makeDetector(1.5);
+  feed(detector, clockwork(1000 * kSecond, 1010 * kSecond, true));
+  detector.settle(1010 * kSecond);
+  feed(detector, clockwork(1010 * kSecond, 1014 * kSecond, false));
+  EXPECT_FALSE(firstAlarm().has_value());
+  feed(detector, clockwork(1014 * kSecond, 1017 * kSecond, false));
+  ASSERT_TRUE(firstAlarm().has_value());
+  EXPECT_GE(*firstAlarm(), 1015 * kSecond);
+  detector.settle(1017 * kSecond);
+  detector.add({1017 * kSecond + 500 * kMillisecond, 2});
+  EXPECT_TRUE(seen_.back().alarm);
+}
+
+TEST_F(DetectorTest, RefusesAThresholdThatIsNoNumber) {
+  EXPECT_THROW(makeDetector(std::nan("")), std::invalid_argument);
+  EXPECT_THROW(makeDetector(std::numeric_limits<double>::infinity()), std::invalid_argument);
+}
+
+TEST(Windows, LieOnTheAbsoluteGridAlsoBeforeTheEpoch) {
+  std::vector<std::int64_t> starts;
+  Windows windows(100, [&](const Window& window) { starts.push_back(window.start); });
+  ScoredEvent event;
+  event.event.stamp = -101;
+  windows.add(event);
+  event.event.stamp = -1;
+  windows.add(event);
+  windows.finish();
+  EXPECT_EQ(starts, (std::vector<std::int64_t>{-200, -100}));
+  EXPECT_THROW(Windows(0, nullptr), std::invalid_argument);
+}
+
+TEST(Persistence, RaisesAtKOfNAndClearsAfterTheHoldTime) {
+  Persistence persistence({3, 5, 200});
+  std::int64_t end = 0;
+  const auto add = [&](bool abnormal) { return persistence.add(abnormal, end += 100); };
+  for (const bool abnormal : {true, false, true, false, false}) {
+    EXPECT_FALSE(add(abnormal));
+  }
+  EXPECT_FALSE(add(true));  // 2 of the last 5
+  EXPECT_FALSE(add(false));
+  EXPECT_FALSE(add(true));
+  EXPECT_TRUE(add(true));  // 3 of 5
+  EXPECT_TRUE(add(false));
+  EXPECT_FALSE(add(false));
+}
+
+TEST(Persistence, HoldsWhileAbnormalWindowsKeepComing) {
+  Persistence persistence({1, 1, 250});
+  EXPECT_TRUE(persistence.add(true, 100));
+  EXPECT_TRUE(persistence.add(false, 200));
+  EXPECT_TRUE(persistence.add(true, 300));
+  EXPECT_TRUE(persistence.add(false, 400));
+  EXPECT_TRUE(persistence.add(false, 500));
+  EXPECT_FALSE(persistence.add(false, 600));
+}
+
+TEST(Persistence, RefusesImpossibleValues) {
+  EXPECT_THROW(Persistence({0, 5, 0}), std::invalid_argument);
+  EXPECT_THROW(Persistence({6, 5, 0}), std::invalid_argument);
+  EXPECT_THROW(Persistence({1, 5, -1}), std::invalid_argument);
+}
+
+TEST(Blame, ATypeWithFewGapsHasNoOpinion) {
+  DelayStatistics statistics(Binning{10 * kMillisecond, 0});
+  const EventId rare = statistics.intern(kLaser);
+  const EventId common = statistics.intern(kPose);
+  DelayTrainer trainer(statistics);
+  for (std::uint64_t i = 0; i <= kFewestGaps; ++i) {
+    trainer.add({static_cast<std::int64_t>(i) * kSecond, common});
+    if (i < kFewestGaps) {
+      trainer.add({static_cast<std::int64_t>(i) * kSecond, rare});
+    }
+  }
+  const Blame blame(std::make_shared<const Model>(statistics));
+  EXPECT_FALSE(blame.judged(rare));
+  EXPECT_TRUE(blame.judged(common));
+  EXPECT_EQ(blame.logSurvival(rare, 3600 * kSecond), 0);
+  // One virtual gap of the tail on 30 of 1 s: 1.01 s is the upper edge of the longest one's bin.
+  EXPECT_NEAR(blame.logSurvival(common, 2 * kSecond), -2 / 1.01 - std::log(31), 1e-12);
+  EXPECT_NEAR(blame.logSurvival(common, kSecond),
+              std::log(30 + std::exp(-1 / 1.01)) - std::log(31), 1e-12);
+}
+
+}  // namespace
+}  // namespace self_awareness::core

@@ -1,0 +1,371 @@
+// Bags, good and bad.
+
+#include "self_awareness/ros/bag/bag_reader.h"
+
+#include <gtest/gtest.h>
+#include <rosbag/bag.h>
+#include <std_msgs/String.h>
+#include <visualization_msgs/Marker.h>
+
+#include <boost/filesystem.hpp>
+#include <boost/make_shared.hpp>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "self_awareness/core/stream/vocabulary.h"
+
+namespace self_awareness::ros1 {
+namespace {
+
+namespace fs = boost::filesystem;
+
+boost::shared_ptr<ros::M_string> header(const std::string& callerid, bool latching = false) {
+  auto fields = boost::make_shared<ros::M_string>();
+  (*fields)["callerid"] = callerid;
+  (*fields)["latching"] = latching ? "1" : "0";
+  (*fields)["type"] = ros::message_traits::datatype<std_msgs::String>();
+  (*fields)["md5sum"] = ros::message_traits::md5sum<std_msgs::String>();
+  (*fields)["message_definition"] = ros::message_traits::definition<std_msgs::String>();
+  return fields;
+}
+
+class BagReaderTest : public testing::Test {
+ protected:
+  BagReaderTest()
+      : folder_(fs::temp_directory_path() / fs::unique_path("self_awareness-%%%%%%%%")) {
+    fs::create_directory(folder_);
+  }
+  ~BagReaderTest() override { fs::remove_all(folder_); }
+
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  // Ten seconds of two nodes, 10 Hz and 1 Hz, and a latching one.
+  std::string writeBag(const std::string& name,
+                       rosbag::CompressionType compression = rosbag::compression::Uncompressed) {
+    rosbag::Bag bag(path(name), rosbag::bagmode::Write);
+    bag.setCompression(compression);
+    std_msgs::String message;
+    message.data = std::string(1000, 'x');
+    const auto fast = header("/fast");
+    const auto slow = header("/slow");
+    const auto latched = header("/latched", true);
+    bag.write("/state", ros::Time(100, 0), message, latched);
+    for (int i = 0; i < 100; ++i) {
+      const ros::Time stamp = ros::Time(100, 0) + ros::Duration(0.1 * i);
+      bag.write("/a", stamp, message, fast);
+      if (i % 10 == 0) {
+        bag.write("/b", stamp, message, slow);
+      }
+    }
+    bag.write("/state", ros::Time(105, 0), message, latched);
+    bag.close();
+    return path(name);
+  }
+
+  std::vector<core::Event> read(const std::string& bag, const TimeRange& range = {}) {
+    std::vector<core::Event> events;
+    const Encoder encoder(
+        rules_, [this](const core::EventType& type) { return vocabulary_.intern(type); });
+    BagReader(bag).read(encoder, range,
+                        [&](const core::Event& event) { events.push_back(event); });
+    return events;
+  }
+
+  // Three messages /a, one a second. rosbag writes this format no longer.
+  std::string writeBagOfFormerFormat(const std::string& name) const {
+    const auto number = [](auto value) {
+      return std::string(reinterpret_cast<const char*>(&value), sizeof value);
+    };
+    const auto block = [&](const std::string& bytes) {
+      return number(static_cast<std::uint32_t>(bytes.size())) + bytes;
+    };
+    const auto record = [&](const std::map<std::string, std::string>& fields,
+                            const std::string& data) {
+      std::string header;
+      for (const auto& [field, value] : fields) {
+        header += block(std::string(field).append("=").append(value));
+      }
+      return block(header) + block(data);
+    };
+    std::string bag = "#ROSBAG V1.2\n";
+    const std::string start =
+        record({{"op", "\x03"}, {"index_pos", number(std::uint64_t{0})}}, "");
+    const std::size_t first = bag.size() + start.size();
+    std::string messages = record({{"op", "\x01"},
+                                   {"topic", "/a"},
+                                   {"md5", ros::message_traits::md5sum<std_msgs::String>()},
+                                   {"type", "std_msgs/String"},
+                                   {"def", "string data\n"}},
+                                  "");
+    std::string index;
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      // The first message's place is that of the definition before it.
+      const std::uint64_t place = first + (i == 0 ? 0 : messages.size());
+      index += number(100 + i) + number(std::uint32_t{0}) + number(place);
+      messages += record({{"op", "\x02"}, {"topic", "/a"}}, block(std::string(1, "xyz"[i])));
+    }
+    const std::uint64_t index_pos = first + messages.size();
+    bag += record({{"op", "\x03"}, {"index_pos", number(index_pos)}}, "") + messages +
+           record({{"op", "\x04"},
+                   {"topic", "/a"},
+                   {"ver", number(std::uint32_t{0})},
+                   {"count", number(std::uint32_t{3})}},
+                  index);
+    std::ofstream(path(name), std::ios::binary) << bag;
+    return path(name);
+  }
+
+  // What this process has read so far, from wherever [bytes].
+  static std::uint64_t bytesRead() {
+    std::ifstream io("/proc/self/io");
+    std::string name;
+    std::uint64_t bytes = 0;
+    while (io >> name >> bytes && name != "rchar:") {
+    }
+    return bytes;
+  }
+
+  static std::string bagError(const std::string& bag) {
+    try {
+      BagReader reader(bag);
+    } catch (const BagError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  fs::path folder_;
+  EncodingRules rules_;
+  core::Vocabulary vocabulary_;
+};
+
+TEST_F(BagReaderTest, EventsComeInOrderWithoutTheLatchedFirstMessage) {
+  const std::vector<core::Event> events = read(writeBag("a.bag"));
+  ASSERT_EQ(events.size(), 111U);  // 100 + 10 + the second of the latching one
+  EXPECT_EQ(events.front().stamp, 100 * core::kNanosecondsPerSecond);
+  for (std::size_t i = 1; i < events.size(); ++i) {
+    EXPECT_GE(events[i].stamp, events[i - 1].stamp);
+  }
+}
+
+TEST_F(BagReaderTest, EqualStampsKeepTheOrderOfTheRecording) {
+  std_msgs::String message;
+  rosbag::Bag bag(path("equal.bag"), rosbag::bagmode::Write);
+  const auto node = header("/node");
+  std::string order;
+  for (int round = 1; round < 20; ++round) {
+    // Each topic is first, last and between at times.
+    for (int i = 0; i < 3; ++i) {
+      const char topic = static_cast<char>('a' + (i * (round % 2 + 1) + round) % 3);
+      order += topic;
+      bag.write(std::string("/") + topic, ros::Time(round, 0), message, node);
+    }
+  }
+  bag.close();
+  std::string seen;
+  for (const core::Event& event : read(path("equal.bag"))) {
+    seen += vocabulary_.at(event.id).scope.back();
+  }
+  EXPECT_EQ(seen, order);
+}
+
+TEST_F(BagReaderTest, TheSummaryNamesTheRecordingHoweverItIsCompressed) {
+  const BagSummary plain = BagReader(writeBag("plain.bag")).summary();
+  EXPECT_EQ(plain.messages, 112U);
+  EXPECT_EQ(plain.start, 100 * core::kNanosecondsPerSecond);
+  EXPECT_EQ(plain.end, 109900 * (core::kNanosecondsPerSecond / 1000));
+  EXPECT_TRUE(plain.has_sources);
+  for (const auto compression : {rosbag::compression::BZ2, rosbag::compression::LZ4}) {
+    const BagSummary packed = BagReader(writeBag("packed.bag", compression)).summary();
+    EXPECT_EQ(packed.fingerprint, plain.fingerprint);
+  }
+  EXPECT_EQ(read(path("packed.bag")).size(), 111U);
+}
+
+TEST_F(BagReaderTest, TheSummaryNamesTheRecordingWhoeverWroteItAgain) {
+  const auto fingerprint = [this](const std::vector<std::pair<std::string, int>>& messages) {
+    rosbag::Bag bag(path("again.bag"), rosbag::bagmode::Write);
+    for (const auto& [topic, second] : messages) {
+      bag.write(topic, ros::Time(second, 0), std_msgs::String(), header("/node"));
+    }
+    bag.close();
+    return BagReader(path("again.bag")).summary().fingerprint;
+  };
+  const std::uint64_t once = fingerprint({{"/a", 1}, {"/b", 1}, {"/a", 2}});
+  EXPECT_EQ(fingerprint({{"/b", 1}, {"/a", 1}, {"/a", 2}}), once);
+  EXPECT_NE(fingerprint({{"/a", 1}, {"/b", 2}, {"/a", 2}}), once);
+  EXPECT_NE(fingerprint({{"/a", 1}, {"/b", 1}, {"/b", 2}}), once);
+  EXPECT_NE(fingerprint({{"/a", 1}, {"/b", 1}}), once);
+}
+
+TEST_F(BagReaderTest, ChunksThatOverlapInTimeAreReadInItsOrder) {
+  rosbag::Bag bag(path("overlap.bag"), rosbag::bagmode::Write);
+  bag.setChunkThreshold(200);
+  std_msgs::String message;
+  message.data = std::string(100, 'x');
+  constexpr int kMessages = 50;
+  for (int i = 0; i < kMessages; ++i) {
+    bag.write("/a", ros::Time(100 + i * 7 % kMessages, 0), message, header("/node"));
+  }
+  bag.close();
+  const std::vector<core::Event> events = read(path("overlap.bag"));
+  ASSERT_EQ(events.size(), static_cast<std::size_t>(kMessages));
+  for (int i = 0; i < kMessages; ++i) {
+    EXPECT_EQ(events[i].stamp, (100 + i) * core::kNanosecondsPerSecond);
+  }
+}
+
+TEST_F(BagReaderTest, NextToNothingIsReadOfABagWithImages) {
+  std_msgs::String image;
+  image.data = std::string(1000000, 'x');
+  std_msgs::String small;
+  small.data = "y";
+  rosbag::Bag bag(path("images.bag"), rosbag::bagmode::Write);
+  auto image_header = header("/camera");
+  (*image_header)["type"] = "test/Image";  // no content of it is asked for
+  for (int i = 1; i <= 5000; ++i) {
+    const ros::Time stamp = ros::Time(100, 0) + ros::Duration(0.01 * i);
+    bag.write("/small", stamp, small, header("/node"));
+    if (i % 100 == 0) {
+      bag.write("/image", stamp, image, image_header);
+    }
+  }
+  bag.close();
+  rules_.type_fields = {{"std_msgs/String", "data"}};
+  const std::uint64_t before = bytesRead();
+  EXPECT_EQ(read(path("images.bag")).size(), 5050U);
+  const auto read = static_cast<double>(bytesRead() - before);
+  EXPECT_GT(read, 5050 * 12);  // it was counted
+  EXPECT_LT(read, 0.05 * static_cast<double>(fs::file_size(path("images.bag"))));
+}
+
+TEST_F(BagReaderTest, ABagOfTheFormerFormatIsLeftToRosbag) {
+  const std::string bag = writeBagOfFormerFormat("former.bag");
+  const BagSummary summary = BagReader(bag).summary();
+  EXPECT_EQ(summary.messages, 3U);
+  EXPECT_EQ(summary.start, 100 * core::kNanosecondsPerSecond);
+  EXPECT_FALSE(summary.has_sources);
+  rules_.source = EncodingRules::Source::kNone;
+  rules_.type_fields = {{"std_msgs/String", "data"}};
+  std::string seen;
+  for (const core::Event& event : read(bag)) {
+    seen += toString(vocabulary_.at(event.id)) + '\n';
+  }
+  EXPECT_EQ(seen,
+            "- /a std_msgs/String[data=x]\n- /a std_msgs/String[data=y]\n"
+            "- /a std_msgs/String[data=z]\n");
+}
+
+TEST_F(BagReaderTest, NoMessageIsReadUnlessItsContentIsNeeded) {
+  const std::string bag = writeBag("a.bag", rosbag::compression::BZ2);
+  // What cannot be unpacked cannot have been read.
+  std::fstream file(bag, std::ios::in | std::ios::out | std::ios::binary);
+  file.seekg(0, std::ios::beg);
+  std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  const std::size_t compressed = bytes.find("BZh");
+  ASSERT_NE(compressed, std::string::npos);
+  file.clear();
+  file.seekp(static_cast<std::streamoff>(compressed + 20));
+  file.write("\0\0\0\0\0\0\0\0", 8);
+  file.close();
+  EXPECT_EQ(read(bag).size(), 111U);
+  rules_.type_fields = {{"std_msgs/String", "data"}};
+  EXPECT_THROW(read(bag), BagError);
+}
+
+TEST_F(BagReaderTest, ContentIsReadWhereTheEncodingNamesAField) {
+  rules_.type_fields = {{"std_msgs/String", "data"}};
+  const std::vector<core::Event> events = read(writeBag("a.bag", rosbag::compression::LZ4));
+  EXPECT_EQ(vocabulary_.at(events.front().id).type,
+            "std_msgs/String[data=" + std::string(64, 'x') + "]");
+  rules_.type_fields = {{"std_msgs/String", "verb"}};
+  EXPECT_THROW(read(path("a.bag")), std::invalid_argument);
+}
+
+TEST_F(BagReaderTest, ARangeCutsTheRecording) {
+  const std::string bag = writeBag("a.bag");
+  TimeRange range;
+  range.start = 2.0;
+  range.end = 3.0;
+  EXPECT_EQ(read(bag, range).size(), 11U + 2U);  // both ends included
+  range = {};
+  range.start = 60.0;
+  EXPECT_THROW(read(bag, range), BagError);
+  range.start = -1.0;
+  EXPECT_THROW(read(bag, range), std::invalid_argument);
+  range.start = std::nan("");
+  EXPECT_THROW(read(bag, range), std::invalid_argument);
+}
+
+TEST_F(BagReaderTest, SaysWhatIsWrongWithABag) {
+  EXPECT_EQ(bagError(path("absent.bag")), path("absent.bag") + ": no such file");
+  EXPECT_NE(bagError(folder_.string()).find("not a file"), std::string::npos);
+
+  std::ofstream(path("empty.bag")).close();
+  EXPECT_NE(bagError(path("empty.bag")).find("not a bag"), std::string::npos);
+  std::ofstream(path("text.bag")) << "This is no bag but text that goes on for quite a while.\n";
+  EXPECT_NE(bagError(path("text.bag")).find(path("text.bag") + ": not a bag"), std::string::npos)
+      << bagError(path("text.bag"));
+
+  rosbag::Bag(path("none.bag"), rosbag::bagmode::Write).close();
+  EXPECT_NE(bagError(path("none.bag")).find("holds no messages"), std::string::npos)
+      << bagError(path("none.bag"));
+}
+
+TEST_F(BagReaderTest, EveryTruncatedBagIsRefusedWithTheMend) {
+  const std::string bag = writeBag("a.bag");
+  const auto size = fs::file_size(bag);
+  for (const double share : {0.02, 0.1, 0.3, 0.5, 0.7, 0.9, 0.97, 0.999}) {
+    fs::copy_file(bag, path("cut.bag"), fs::copy_option::overwrite_if_exists);
+    fs::resize_file(path("cut.bag"),
+                    static_cast<std::uintmax_t>(share * static_cast<double>(size)));
+    const std::string error = bagError(path("cut.bag"));
+    EXPECT_NE(error.find("rosbag reindex '" + path("cut.bag") + "'"), std::string::npos)
+        << share << ": " << error;
+  }
+}
+
+TEST_F(BagReaderTest, ADamagedBagIsReadOrRefused) {
+  std::ifstream file(writeBag("a.bag", rosbag::compression::LZ4), std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(file)),
+                          std::istreambuf_iterator<char>());
+  rules_.type_fields = {{"std_msgs/String", "data"}};
+  std::mt19937 random(1);
+  int refused = 0;
+  for (int i = 0; i < 300; ++i) {
+    std::string damaged = bytes;
+    char& byte = damaged[random() % damaged.size()];
+    byte = static_cast<char>(byte ^ (1 << random() % 8));
+    std::ofstream(path("damaged.bag"), std::ios::binary) << damaged;
+    try {
+      read(path("damaged.bag"));
+    } catch (const BagError&) {
+      ++refused;
+    } catch (const std::invalid_argument&) {  // the message's definition was hit
+      ++refused;
+    }
+  }
+  EXPECT_GT(refused, 0);
+}
+
+TEST_F(BagReaderTest, ABagThatIsStillBeingWrittenIsRefused) {
+  rosbag::Bag bag(path("b.bag.active"), rosbag::bagmode::Write);
+  bag.setChunkThreshold(1000);
+  std_msgs::String message;
+  message.data = std::string(1000, 'x');
+  for (int i = 1; i < 20; ++i) {
+    bag.write("/a", ros::Time(i, 0), message);
+  }
+  EXPECT_NE(bagError(path("b.bag.active")).find("rosbag reindex"), std::string::npos);
+  bag.close();
+}
+
+}  // namespace
+}  // namespace self_awareness::ros1

@@ -1,0 +1,211 @@
+// Needs a master: this process publishes, and listens to itself.
+
+#include "self_awareness/ros/live/live_events.h"
+
+#include <gtest/gtest.h>
+#include <ros/callback_queue.h>
+#include <ros/ros.h>
+#include <std_msgs/String.h>
+#include <topic_tools/shape_shifter.h>
+
+#include <fstream>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "self_awareness/core/stream/vocabulary.h"
+
+namespace self_awareness::ros1 {
+namespace {
+
+constexpr std::int64_t kWindow = 100000000;  // [ns]
+constexpr std::uint32_t kQueueSize = 300;
+constexpr std::size_t kMegabyte = 1000000;
+
+std::size_t residentBytes() {
+  std::ifstream status("/proc/self/status");
+  std::string word;
+  while (status >> word && word != "VmRSS:") {
+  }
+  std::size_t kibibytes = 0;
+  status >> kibibytes;
+  return kibibytes * 1024;
+}
+
+std_msgs::String message(const std::string& data) {
+  std_msgs::String message;
+  message.data = data;
+  return message;
+}
+
+class LiveEventsTest : public testing::Test {
+ protected:
+  LiveEventsTest() {
+    node_handle_.setCallbackQueue(&queue_);
+    LiveEvents::Handlers handlers;
+    handlers.on_event = [this](const core::Event& event) {
+      types_.push_back(vocabulary_.at(event.id).type);
+    };
+    handlers.on_connection = [this] { ++connections_; };
+    handlers.on_arrivals = [this] { ++wakes_; };
+    live_events_ = std::make_unique<LiveEvents>(node_handle_, kQueueSize, handlers);
+    encode({});
+  }
+
+  void encode(const std::map<std::string, std::string>& type_fields,
+              std::int64_t window = kWindow) {
+    EncodingRules rules;
+    rules.type_fields = type_fields;
+    live_events_->setEncoder(
+        std::make_shared<Encoder>(
+            rules, [this](const core::EventType& type) { return vocabulary_.intern(type); }),
+        {}, window);
+  }
+  /// A publisher that is subscribed to.
+  ros::Publisher advertise(const std::string& topic) {
+    ros::Publisher publisher = node_handle_.advertise<std_msgs::String>(topic, kQueueSize);
+    live_events_->setTopics({topic}, {});
+    const boost::function<void(const topic_tools::ShapeShifter::ConstPtr&)> count =
+        [this](const topic_tools::ShapeShifter::ConstPtr& /*message*/) { ++arrived_; };
+    arrivals_ = node_handle_.subscribe<topic_tools::ShapeShifter>(topic, 1000, count);
+    await([&] { return publisher.getNumSubscribers() > 0; });
+    return publisher;
+  }
+  /// Publishes so many messages, and waits until they have arrived.
+  void publish(const ros::Publisher& publisher, const std_msgs::String& message,
+               std::size_t count = 1) {
+    arrived_ = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      publisher.publish(message);
+    }
+    // The second subscription of a process gets each message after the first.
+    await([&] { return arrived_ == count; });
+  }
+  void await(const std::function<bool()>& condition) {
+    const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(20);
+    while (!condition()) {
+      ASSERT_LT(ros::WallTime::now(), deadline);
+      queue_.callAvailable(ros::WallDuration(0.01));
+    }
+  }
+  std::vector<std::string> delivered() {
+    types_.clear();
+    live_events_->deliver();
+    return types_;
+  }
+
+  using Types = std::vector<std::string>;
+  ros::NodeHandle node_handle_;
+  ros::CallbackQueue queue_;
+  ros::Subscriber arrivals_;
+  std::size_t arrived_ = 0;
+  core::Vocabulary vocabulary_;
+  Types types_;
+  int connections_ = 0;
+  int wakes_ = 0;
+  std::unique_ptr<LiveEvents> live_events_;
+};
+
+TEST_F(LiveEventsTest, DropsAndCountsWhatDoesNotFit) {
+  const ros::Publisher publisher = advertise("/a");
+  publish(publisher, message(""), kQueueSize + 7);
+  EXPECT_EQ(live_events_->dropped(), 7U);
+  EXPECT_EQ(delivered().size(), kQueueSize);
+  EXPECT_EQ(connections_, 1);
+  publish(publisher, message(""));
+  EXPECT_EQ(delivered().size(), 1U);
+  EXPECT_EQ(live_events_->dropped(), 7U);
+}
+
+TEST_F(LiveEventsTest, ReadsAMessageFromTheFirstOnWhereTheEncodingNeedsIt) {
+  encode({{"std_msgs/String", "data"}});
+  const ros::Publisher publisher = advertise("/a");
+  publish(publisher, message("on"));
+  publish(publisher, message("off"));
+  EXPECT_EQ(delivered(), (Types{"std_msgs/String[data=on]", "std_msgs/String[data=off]"}));
+}
+
+TEST_F(LiveEventsTest, AnotherEncoderMayReadWhatThisOneDoesNot) {
+  const ros::Publisher publisher = advertise("/a");
+  publish(publisher, message("on"));
+  EXPECT_EQ(delivered(), Types{"std_msgs/String"});
+  publish(publisher, message("waits, unread"));
+  encode({{"std_msgs/String", "data"}});
+  EXPECT_EQ(delivered(), Types());
+  EXPECT_EQ(live_events_->dropped(), 1U);
+  publish(publisher, message("on"));
+  EXPECT_EQ(delivered(), Types{"std_msgs/String[data=on]"});
+  encode({});
+  publish(publisher, message("on"));
+  EXPECT_EQ(delivered(), Types{"std_msgs/String"});
+  EXPECT_EQ(live_events_->dropped(), 1U);
+  EXPECT_EQ(connections_, 1);
+}
+
+TEST_F(LiveEventsTest, TwoOfOneProcessDoNotDisturbEachOther) {
+  LiveEvents::Handlers handlers;
+  Types others;
+  handlers.on_event = [&](const core::Event& event) {
+    others.push_back(vocabulary_.at(event.id).type);
+  };
+  handlers.on_connection = handlers.on_arrivals = [] {};
+  LiveEvents other(node_handle_, kQueueSize, handlers);
+  EncodingRules rules;
+  rules.type_fields = {{"std_msgs/String", "data"}};
+  other.setEncoder(
+      std::make_shared<Encoder>(
+          rules, [this](const core::EventType& type) { return vocabulary_.intern(type); }),
+      {}, kWindow);
+  other.setTopics({"/a"}, {});
+  const ros::Publisher publisher = advertise("/a");
+  for (int i = 0; i < 2; ++i) {
+    publish(publisher, message("on"));
+    EXPECT_EQ(delivered(), Types{"std_msgs/String"});
+    other.deliver();
+  }
+  EXPECT_EQ(others, Types(2, "std_msgs/String[data=on]"));
+}
+
+TEST_F(LiveEventsTest, KeepsNoPayloadThatNobodyReads) {
+  const ros::Publisher publisher = advertise("/a");
+  const std_msgs::String big = message(std::string(4 * kMegabyte, ' '));
+  publish(publisher, big);
+  ASSERT_EQ(delivered().size(), 1U);
+  const std::size_t before = residentBytes();
+  for (int i = 0; i < 100; ++i) {
+    publish(publisher, big);
+  }
+  EXPECT_LT(residentBytes(), before + 40 * kMegabyte);  // of 400 that were published
+  EXPECT_EQ(delivered().size(), 100U);
+}
+
+TEST_F(LiveEventsTest, WakesForANewWindow) {
+  const ros::Publisher publisher = advertise("/a");
+  publish(publisher, message(""));
+  const int before = wakes_;
+  ros::WallDuration(1.5e-9 * kWindow).sleep();
+  publish(publisher, message(""));
+  EXPECT_EQ(wakes_, before + 1);
+}
+
+TEST_F(LiveEventsTest, WakesBeforeItsQueueIsFull) {
+  encode({}, 1000000 * kWindow);
+  const ros::Publisher publisher = advertise("/a");
+  publish(publisher, message(""), kQueueSize / 2);
+  const int before = wakes_;
+  publish(publisher, message(""));
+  EXPECT_EQ(wakes_, before + 1);
+  EXPECT_EQ(live_events_->dropped(), 0U);
+}
+
+}  // namespace
+}  // namespace self_awareness::ros1
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  ros::init(argc, argv, "live_events_test");
+  ros::start();
+  return RUN_ALL_TESTS();
+}

@@ -1,0 +1,169 @@
+#include "self_awareness/ros/model/model_merge.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "self_awareness/ros/model/model_bytes.h"
+
+namespace self_awareness::ros1 {
+namespace {
+
+using Types = std::vector<core::EventType>;
+
+const core::EventType kScan{"/a", "/scan", "T"};
+const core::EventType kMap{"/b", "/map", "T"};
+const core::EventType kPose{"/b", "/pose", "T[status=1]"};
+
+// Each event type in turn, 40 ms after the other, from a time on; counted into one of the halves.
+void trainOn(TrainedModel& model, const Types& types, std::int64_t start, std::size_t half) {
+  core::DelayTrainer trainer(model.statistics);
+  core::EvidenceTrainer evidence(model.evidence.at(half), model.window);
+  for (int i = 0; i < 200; ++i) {
+    const core::EventType& type = types[static_cast<std::size_t>(i) % types.size()];
+    const core::EventId id = model.statistics.intern(type);
+    for (core::EvidenceStatistics& statistics : model.evidence) {
+      statistics.intern(type);
+    }
+    const core::Event event{start + i * (40000000LL + start / 1000), id};
+    trainer.add(event);
+    evidence.add(event);
+  }
+  self_awareness::Recording recording;
+  recording.fingerprint = static_cast<std::uint64_t>(start);
+  model.recordings.push_back(recording);
+}
+
+class ModelMergeTest : public testing::Test {
+ protected:
+  ModelMergeTest() {
+    for (TrainedModel* model : {&first_, &second_, &both_}) {
+      model->encoding = EncodingRules::defaults();
+      model->statistics = core::DelayStatistics(core::Binning{5000000, 20});
+    }
+    trainOn(first_, {kScan, kMap}, 1000, 0);
+    trainOn(second_, {kMap, kPose, kScan}, 7000, 1);
+    trainOn(both_, {kScan, kMap}, 1000, 0);
+    trainOn(both_, {kMap, kPose, kScan}, 7000, 1);
+  }
+
+  std::string errorOf(const std::function<void(TrainedModel&)>& change) const {
+    TrainedModel model = first_;
+    TrainedModel other = second_;
+    change(other);
+    try {
+      merge(model, other);
+    } catch (const std::invalid_argument& error) {
+      EXPECT_TRUE(model.statistics == first_.statistics);
+      EXPECT_TRUE(model.evidence == first_.evidence);
+      EXPECT_EQ(model.recordings.size(), 1U);
+      return error.what();
+    }
+    return "";
+  }
+
+  TrainedModel first_;
+  TrainedModel second_;
+  TrainedModel both_;
+};
+
+TEST_F(ModelMergeTest, CountsAddUpToThoseOfATrainingOnBoth) {
+  merge(first_, second_);
+  EXPECT_EQ(first_.statistics.vocabulary().types(), (Types{kScan, kMap, kPose}));
+  EXPECT_TRUE(first_.statistics == both_.statistics);
+  EXPECT_TRUE(first_.evidence[0] == both_.evidence[0]);
+  EXPECT_TRUE(first_.evidence[1] == both_.evidence[1]);
+  ASSERT_EQ(first_.recordings.size(), 2U);
+  EXPECT_EQ(first_.recordings[1].fingerprint, 7000U);
+}
+
+TEST_F(ModelMergeTest, EdgesAreThoseOfBothAndTheStampTheLater) {
+  first_.graph.connect("/a", "/b");
+  second_.graph.connect("/a", "/c");
+  second_.graph.connect("/b", "/c");
+  first_.stamp = ros::Time(3);
+  second_.stamp = ros::Time(2);
+  merge(first_, second_);
+  EXPECT_EQ(first_.graph.edges(),
+            (std::map<std::string, std::set<std::string>>{{"/a", {"/b", "/c"}}, {"/b", {"/c"}}}));
+  EXPECT_EQ(first_.stamp, ros::Time(3));
+}
+
+TEST_F(ModelMergeTest, CalibrationsAreDropped) {
+  first_.calibration = self_awareness::Calibration();
+  first_.evidence_calibration = self_awareness::EvidenceCalibration();
+  merge(first_, second_);
+  EXPECT_FALSE(first_.threshold());
+  EXPECT_FALSE(first_.limits());
+}
+
+TEST_F(ModelMergeTest, SaysWhatDoesNotFitAndLeavesTheModelAsItWas) {
+  EXPECT_EQ(errorOf([](TrainedModel& /*model*/) {}), "");
+  const auto bins = [](std::int64_t size, std::int64_t horizon) {
+    return [size, horizon](TrainedModel& model) {
+      model.statistics = core::DelayStatistics(core::Binning{size, horizon});
+    };
+  };
+  EXPECT_EQ(errorOf(bins(5000001, 20)), "another bin size: 0.005000001 s, not 0.005 s");
+  EXPECT_EQ(errorOf(bins(5000000, 0)), "another horizon: none, not 0.1 s");
+  EXPECT_EQ(errorOf([](TrainedModel& model) { model.window = 200000000; }),
+            "another length of the windows: 0.2 s, not 0.1 s");
+  const std::string encoding = "another encoding: ";
+  EXPECT_EQ(
+      errorOf([](TrainedModel& model) { model.encoding.source = EncodingRules::Source::kNone; }),
+      encoding + "source differs");
+  EXPECT_EQ(errorOf([](TrainedModel& model) { model.encoding.include_topics = {"/x"}; }),
+            encoding + "include_topics differs");
+  EXPECT_EQ(errorOf([](TrainedModel& model) { model.encoding.exclude_topics = {"/x"}; }),
+            encoding + "exclude_topics differs");
+  EXPECT_EQ(errorOf([](TrainedModel& model) { model.encoding.include_sources = {"/x"}; }),
+            encoding + "include_sources differs");
+  EXPECT_EQ(errorOf([](TrainedModel& model) { model.encoding.exclude_sources.clear(); }),
+            encoding + "exclude_sources differs");
+  EXPECT_EQ(errorOf([](TrainedModel& model) { model.encoding.type_fields["T"] = "status"; }),
+            encoding + "type_fields differs");
+}
+
+TEST_F(ModelMergeTest, AFieldHasOnlySoManyValuesTogether) {
+  const auto withValues = [this](std::size_t from, std::size_t to) {
+    return [this, from, to](TrainedModel& model) {
+      model.statistics = core::DelayStatistics(first_.statistics.binning());
+      for (std::size_t i = from; i < to; ++i) {
+        model.statistics.intern({"", "/x", "T[status=" + std::to_string(i) + "]"});
+      }
+    };
+  };
+  first_.encoding.type_fields["T"] = "status";
+  second_.encoding.type_fields["T"] = "status";
+  withValues(0, 600)(first_);
+  EXPECT_EQ(errorOf(withValues(100, kMostTypesOfField)), "");
+  EXPECT_EQ(errorOf(withValues(600, kMostTypesOfField + 1))
+                .find("the type field T: status has more than 1000 values"),
+            0U);
+}
+
+TEST_F(ModelMergeTest, AModelIsTheSameAfterItWasBytes) {
+  both_.graph.connect("/a", "/c");
+  both_.stamp = ros::Time(3, 4);
+  const TrainedModel again = fromBytes(toBytes(both_));
+  EXPECT_TRUE(again.statistics == both_.statistics);
+  EXPECT_TRUE(again.evidence[0] == both_.evidence[0]);
+  EXPECT_TRUE(again.evidence[1] == both_.evidence[1]);
+  EXPECT_EQ(again.graph.edges(), both_.graph.edges());
+  EXPECT_EQ(again.stamp, both_.stamp);
+  EXPECT_EQ(toBytes(again), toBytes(both_));
+}
+
+TEST_F(ModelMergeTest, BytesOfAnotherVersionOrHalfOfThemAreRefused) {
+  std::string bytes = toBytes(both_);
+  EXPECT_THROW(fromBytes(bytes.substr(0, bytes.size() / 2)), std::invalid_argument);
+  EXPECT_THROW(fromBytes(""), std::invalid_argument);
+  bytes[0] = bytes[0] == '0' ? '1' : '0';
+  EXPECT_THROW(fromBytes(bytes), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace self_awareness::ros1
