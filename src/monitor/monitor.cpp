@@ -61,12 +61,12 @@ Monitor::Session::Session(ros1::TrainedModel trained_model, const MonitorParamet
 std::unique_ptr<core::Judge> Monitor::Session::makeJudge(
     const MonitorParameters& parameters) const {
   if (parameters.method == MonitorParameters::Method::kPaper) {
-    return std::make_unique<core::PaperJudge>(std::make_shared<core::Model>(trained.statistics),
-                                              trained.threshold(),
-                                              parameters.detector.silence_is_abnormal);
+    return std::make_unique<core::paper::Judge>(
+        std::make_shared<core::paper::Model>(trained.statistics), trained.threshold(),
+        parameters.detector.silence_is_abnormal);
   }
-  return std::make_unique<core::EvidenceJudge>(
-      std::make_shared<core::EvidenceModel>(trained.watched), trained.limits(), trained.window,
+  return std::make_unique<core::evidence::Judge>(
+      std::make_shared<core::evidence::Model>(trained.watched), trained.limits(), trained.window,
       graph);
 }
 

@@ -89,28 +89,28 @@ Verdicts judge(std::unique_ptr<core::Judge> judge, std::int64_t window,
   return verdicts;
 }
 
-Verdicts judgeByPaper(const std::shared_ptr<core::Model>& model, std::int64_t window,
+Verdicts judgeByPaper(const std::shared_ptr<core::paper::Model>& model, std::int64_t window,
                       std::optional<double> threshold,
                       const core::Detector::Parameters& parameters, const Stamps& stamps,
                       const Ids& ids, std::optional<std::int64_t> end) {
   return judge(
-      std::make_unique<core::PaperJudge>(model, threshold, parameters.silence_is_abnormal), window,
-      parameters, stamps, ids, end);
+      std::make_unique<core::paper::Judge>(model, threshold, parameters.silence_is_abnormal),
+      window, parameters, stamps, ids, end);
 }
 
 Verdicts judgeByEvidence(const ros1::TrainedModel& trained,
-                         const std::shared_ptr<core::EvidenceModel>& model,
+                         const std::shared_ptr<core::evidence::Model>& model,
                          const core::Detector::Parameters& parameters, const Stamps& stamps,
                          const Ids& ids, std::optional<std::int64_t> end) {
   return judge(
-      std::make_unique<core::EvidenceJudge>(model, trained.limits(), trained.window,
-                                            std::make_shared<core::SourceGraph>(trained.graph)),
+      std::make_unique<core::evidence::Judge>(model, trained.limits(), trained.window,
+                                              std::make_shared<core::SourceGraph>(trained.graph)),
       trained.window, parameters, stamps, ids, end);
 }
 
-std::vector<double> scoreEvents(const std::shared_ptr<core::Model>& model, const Stamps& stamps,
-                                const Ids& ids) {
-  core::Scorer scorer(model);
+std::vector<double> scoreEvents(const std::shared_ptr<core::paper::Model>& model,
+                                const Stamps& stamps, const Ids& ids) {
+  core::paper::Scorer scorer(model);
   std::vector<double> scores;
   forEachEvent(stamps, ids,
                [&](const core::Event& event) { scores.push_back(scorer.score(event).score); });
@@ -188,20 +188,20 @@ void bindVerdicts(py::module& m) {
           "WARN: no alarm, but something was abnormal of late")
       .def_readonly("alarms", &Verdicts::alarms);
 
-  py::class_<core::Model, std::shared_ptr<core::Model>>(
+  py::class_<core::paper::Model, std::shared_ptr<core::paper::Model>>(
       m, "Model", "Probabilities, entropies and weights, computed from a TrainedModel's counts.")
       .def(py::init([](const ros1::TrainedModel& trained) {
              if (!trained.hasCounts()) {
                throw std::invalid_argument("the model was loaded without its counts");
              }
-             return std::make_shared<core::Model>(trained.statistics);
+             return std::make_shared<core::paper::Model>(trained.statistics);
            }),
            py::arg("trained"))
-      .def("probability", &core::Model::probability, py::arg("from_id"), py::arg("to_id"),
+      .def("probability", &core::paper::Model::probability, py::arg("from_id"), py::arg("to_id"),
            py::arg("delay"), "P_ij of a delay [ns]")
       .def_property_readonly(
           "entropies",
-          [](const core::Model& self) {
+          [](const core::paper::Model& self) {
             py::array_t<double> array({self.size(), self.size()});
             auto values = array.mutable_unchecked<2>();
             for (core::EventId from = 0; from < self.size(); ++from) {
@@ -212,15 +212,15 @@ void bindVerdicts(py::module& m) {
             return array;
           },
           "h_ij [bit], [from, to]")
-      .def("weight", &core::Model::weight, py::arg("from_id"), py::arg("to_id"),
+      .def("weight", &core::paper::Model::weight, py::arg("from_id"), py::arg("to_id"),
            "w_ij where all event types are tracked")
-      .def("log_survival", [](const std::shared_ptr<core::Model>& self, core::EventId id,
-                              std::int64_t age) { return core::Blame(self).logSurvival(id, age); })
+      .def("log_survival",
+           [](const std::shared_ptr<core::paper::Model>& self, core::EventId id,
+              std::int64_t age) { return core::paper::Blame(self).logSurvival(id, age); })
       .def(
           "score_events",
-          [](const std::shared_ptr<core::Model>& self, const Stamps& stamps, const Ids& ids) {
-            return toArray(scoreEvents(self, stamps, ids));
-          },
+          [](const std::shared_ptr<core::paper::Model>& self, const Stamps& stamps,
+             const Ids& ids) { return toArray(scoreEvents(self, stamps, ids)); },
           py::arg("stamps"), py::arg("ids"), "s_j of every event, float64")
       .def("judge", &judgeByPaper, py::arg("window"), py::arg("threshold"), py::arg("parameters"),
            py::arg("stamps"), py::arg("ids"), py::arg("end") = py::none(),
@@ -231,9 +231,9 @@ void bindVerdicts(py::module& m) {
   m.def("judge_by_evidence", &judgeByEvidence, py::arg("trained"), py::arg("model"),
         py::arg("parameters"), py::arg("stamps"), py::arg("ids"), py::arg("end") = py::none(),
         "Verdicts on a recording by the EvidenceModel of a TrainedModel; as Model.judge.");
-  m.attr("EVIDENCE_THRESHOLD") = core::EvidenceJudge::kThreshold;
+  m.attr("EVIDENCE_THRESHOLD") = core::evidence::Judge::kThreshold;
   m.attr("FEWEST_GAPS") = core::kFewestGaps;
-  m.attr("PREDECESSORS") = core::kPredecessors;
+  m.attr("PREDECESSORS") = core::evidence::kPredecessors;
   m.attr("USUAL_SHARES") = py::make_tuple(core::kUsualFrom, core::kUsualTo);
 }
 

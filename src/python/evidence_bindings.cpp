@@ -17,12 +17,12 @@
 namespace self_awareness::python {
 namespace {
 
-using core::EvidenceModel;
+namespace evidence = core::evidence;
 
-std::shared_ptr<EvidenceModel> makeModel(
+std::shared_ptr<evidence::Model> makeModel(
     const ros1::TrainedModel& trained,
-    EvidenceModel::Learned learned = EvidenceModel::Learned::kBoth) {
-  return std::make_shared<EvidenceModel>(trained.watched, learned);
+    evidence::Model::Learned learned = evidence::Model::Learned::kBoth) {
+  return std::make_shared<evidence::Model>(trained.watched, learned);
 }
 
 /// Finds limits on recordings that come twice each: as held-out data, or, where the model was
@@ -31,8 +31,8 @@ class Limits {
  public:
   Limits(const ros1::TrainedModel& trained, std::int64_t settle_time, double budget)
       : model_(makeModel(trained)),
-        halves_{makeModel(trained, EvidenceModel::Learned::kSecond),
-                makeModel(trained, EvidenceModel::Learned::kFirst)},
+        halves_{makeModel(trained, evidence::Model::Learned::kSecond),
+                makeModel(trained, evidence::Model::Learned::kFirst)},
         parameters_{trained.window, settle_time, budget},
         finder_(model_, parameters_) {}
 
@@ -46,9 +46,9 @@ class Limits {
     forEachEvent(stamps, ids, [&](const core::Event& event) { finder_.add(event); });
     finder_.finish();
   }
-  core::LimitFinder::Findings findings() const { return finder_.findings(); }
-  void merge(const core::LimitFinder::Findings& findings) { finder_.merge(findings); }
-  core::EvidenceLimits startSecondPass(const std::optional<core::EvidenceLimits>& limits) {
+  evidence::LimitFinder::Findings findings() const { return finder_.findings(); }
+  void merge(const evidence::LimitFinder::Findings& findings) { finder_.merge(findings); }
+  evidence::Limits startSecondPass(const std::optional<evidence::Limits>& limits) {
     if (limits) {
       finder_.startSecondPass(*limits);
     } else {
@@ -57,7 +57,7 @@ class Limits {
     second_pass_ = true;
     return finder_.trackLimits();
   }
-  core::EvidenceLimits limits() const { return finder_.limits(); }
+  evidence::Limits limits() const { return finder_.limits(); }
   std::uint64_t windows() const { return finder_.windows(); }
 
  private:
@@ -73,17 +73,17 @@ class Limits {
     }
   }
 
-  std::shared_ptr<EvidenceModel> model_;
-  std::array<std::shared_ptr<EvidenceModel>, 2>
+  std::shared_ptr<evidence::Model> model_;
+  std::array<std::shared_ptr<evidence::Model>, 2>
       halves_;  // that judge the half, not learned from it
-  core::LimitFinder::Parameters parameters_;
-  core::LimitFinder finder_;
+  evidence::LimitFinder::Parameters parameters_;
+  evidence::LimitFinder finder_;
   bool second_pass_ = false;
 };
 
 using LimitsState = std::tuple<std::vector<double>, double>;
 
-using Findings = core::LimitFinder::Findings;
+using Findings = evidence::LimitFinder::Findings;
 // Numbers of cells, and of all cells one behind the other the maxima and their counts. Arrays are
 // pickled as they lie in the memory.
 using MaximaState =
@@ -92,11 +92,11 @@ using FindingsState =
     std::tuple<std::uint64_t, std::int64_t, std::uint64_t, MaximaState,
                std::vector<std::vector<std::int64_t>>, std::vector<bool>, MaximaState>;
 
-MaximaState stateOf(const std::vector<core::BlockMaxima>& all) {
+MaximaState stateOf(const std::vector<evidence::BlockMaxima>& all) {
   std::vector<std::uint32_t> sizes;
   std::vector<float> maxima;
   std::vector<std::uint32_t> counts;
-  for (const core::BlockMaxima& of_track : all) {
+  for (const evidence::BlockMaxima& of_track : all) {
     sizes.push_back(static_cast<std::uint32_t>(of_track.cells().size()));
     for (const auto& [maximum, count] : of_track.cells()) {
       maxima.push_back(maximum);
@@ -106,9 +106,9 @@ MaximaState stateOf(const std::vector<core::BlockMaxima>& all) {
   return {toArray(sizes), toArray(maxima), toArray(counts)};
 }
 
-std::vector<core::BlockMaxima> fromState(const MaximaState& state) {
+std::vector<evidence::BlockMaxima> fromState(const MaximaState& state) {
   const auto& [sizes, maxima, counts] = state;
-  std::vector<core::BlockMaxima> all(static_cast<std::size_t>(sizes.size()));
+  std::vector<evidence::BlockMaxima> all(static_cast<std::size_t>(sizes.size()));
   py::ssize_t cell = 0;
   for (std::size_t track = 0; track < all.size(); ++track) {
     for (std::uint32_t k = 0; k < sizes.at(track); ++k, ++cell) {
@@ -125,7 +125,7 @@ FindingsState stateOf(const Findings& findings) {
           stateOf(findings.maxima),
           findings.longest_gaps,
           findings.misleading,
-          stateOf(std::vector<core::BlockMaxima>{findings.linker_maxima})};
+          stateOf(std::vector<evidence::BlockMaxima>{findings.linker_maxima})};
 }
 
 Findings fromState(const FindingsState& state) {
@@ -140,9 +140,9 @@ Findings fromState(const FindingsState& state) {
 }
 
 /// Evidence of every track at the end of every window: [windows, tracks].
-py::array_t<double> evidenceOf(const std::shared_ptr<EvidenceModel>& model, std::int64_t window,
+py::array_t<double> evidenceOf(const std::shared_ptr<evidence::Model>& model, std::int64_t window,
                                const Stamps& stamps, const Ids& ids) {
-  core::EvidenceScorer scorer(model, window);
+  evidence::Scorer scorer(model, window);
   std::vector<double> rows;
   core::Windows windows(window, [&](const core::Window& closed) {
     const std::vector<double>& evidence = scorer.closeWindow(closed.start + window);
@@ -162,34 +162,33 @@ py::array_t<double> evidenceOf(const std::shared_ptr<EvidenceModel>& model, std:
 }  // namespace
 
 void bindEvidence(py::module& m) {
-  using core::Track;
+  using evidence::Track;
   py::class_<Track>(m, "Track", "One thing that the evidence detector watches.")
       .def_property_readonly(
-          "channel", [](const Track& self) { return core::channelName(self.channel); },
+          "channel", [](const Track& self) { return evidence::channelName(self.channel); },
           "overdue, rate, pairs or answers")
       .def_readonly("to_id", &Track::to)
       .def_readonly("from_id", &Track::from, "as to_id where one event type is looked at");
 
-  py::class_<EvidenceModel, std::shared_ptr<EvidenceModel>>(
+  py::class_<evidence::Model, std::shared_ptr<evidence::Model>>(
       m, "EvidenceModel", "What normal operation lets expect, from a TrainedModel's counts.")
       .def(py::init([](const ros1::TrainedModel& trained) { return makeModel(trained); }),
            py::arg("trained"))
-      .def_property_readonly("tracks", &EvidenceModel::tracks)
-      .def("overdue", &EvidenceModel::overdue, py::arg("id"), py::arg("age"), "age: [ns]")
-      .def("log_survival", &EvidenceModel::logSurvival, py::arg("id"), py::arg("age"))
+      .def_property_readonly("tracks", &evidence::Model::tracks)
+      .def("overdue", &evidence::Model::overdue, py::arg("id"), py::arg("age"), "age: [ns]")
+      .def("log_survival", &evidence::Model::logSurvival, py::arg("id"), py::arg("age"))
       .def("evidence", &evidenceOf, py::arg("window"), py::arg("stamps"), py::arg("ids"),
            "float64 [windows, tracks], at the end of every window of a recording");
 
-  using core::EvidenceLimits;
-  py::class_<EvidenceLimits>(m, "EvidenceLimits", "When evidence is abnormal.")
-      .def_readonly("tracks", &EvidenceLimits::tracks, "by track; NaN: not judged")
-      .def_readonly("linker", &EvidenceLimits::linker)
+  py::class_<evidence::Limits>(m, "EvidenceLimits", "When evidence is abnormal.")
+      .def_readonly("tracks", &evidence::Limits::tracks, "by track; NaN: not judged")
+      .def_readonly("linker", &evidence::Limits::linker)
       .def(py::pickle(
-          [](const EvidenceLimits& self) {
+          [](const evidence::Limits& self) {
             return LimitsState{self.tracks, self.linker};
           },
           [](const LimitsState& state) {
-            return EvidenceLimits{std::get<0>(state), std::get<1>(state)};
+            return evidence::Limits{std::get<0>(state), std::get<1>(state)};
           }));
 
   py::class_<Findings>(m, "LimitFindings",

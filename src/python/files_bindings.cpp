@@ -322,7 +322,8 @@ void bindModel(py::module& m) {
           "histogram",
           [](const TrainedModel& self, core::EventId from, core::EventId to) {
             std::map<std::int64_t, std::uint64_t> counts;
-            for (const core::Histogram::Entry& entry : self.statistics.pair(from, to).entries()) {
+            for (const core::paper::Histogram::Entry& entry :
+                 self.statistics.pair(from, to).entries()) {
               counts[entry.bin] = entry.count;
             }
             return counts;

@@ -20,10 +20,10 @@ class Training {
  public:
   Training(ros1::EncodingRules rules, std::int64_t bin_size, std::int64_t window,
            std::int64_t horizon_bins, std::size_t predecessors)
-      : statistics_(core::Binning{bin_size, horizon_bins}),
+      : statistics_(core::paper::Binning{bin_size, horizon_bins}),
         trainer_(statistics_),
-        evidence_trainers_{core::EvidenceTrainer(evidence_[0], window),
-                           core::EvidenceTrainer(evidence_[1], window)},
+        evidence_trainers_{core::evidence::Trainer(evidence_[0], window),
+                           core::evidence::Trainer(evidence_[1], window)},
         rules_(std::move(rules)),
         window_(window),
         predecessors_(predecessors) {}
@@ -94,7 +94,7 @@ class Training {
   core::EventId intern(const core::EventType& type) {
     const std::size_t before = statistics_.vocabulary().size();
     const core::EventId id = statistics_.intern(type);
-    for (core::EvidenceStatistics& half : evidence_) {
+    for (core::evidence::Statistics& half : evidence_) {
       half.intern(type);  // the same id
     }
     if (statistics_.vocabulary().size() > before) {
@@ -103,10 +103,10 @@ class Training {
     return id;
   }
 
-  core::DelayStatistics statistics_;
-  core::DelayTrainer trainer_;
-  std::array<core::EvidenceStatistics, 2> evidence_;
-  std::array<core::EvidenceTrainer, 2> evidence_trainers_;
+  core::paper::DelayStatistics statistics_;
+  core::paper::DelayTrainer trainer_;
+  std::array<core::evidence::Statistics, 2> evidence_;
+  std::array<core::evidence::Trainer, 2> evidence_trainers_;
   std::size_t recording_ = 0;
   std::size_t half_ = 0;                // that is trained
   std::optional<std::int64_t> middle_;  // of a recording that is alone [ns], while before it
@@ -123,7 +123,7 @@ void bindTraining(py::module& m) {
   py::class_<Training>(m, "Training", "Counts the delays of one recording after the other.")
       .def(py::init<ros1::EncodingRules, std::int64_t, std::int64_t, std::int64_t, std::size_t>(),
            py::arg("encoding"), py::arg("bin_size") = 10000000, py::arg("window") = 100000000,
-           py::arg("horizon_bins") = 0, py::arg("predecessors") = core::kPredecessors,
+           py::arg("horizon_bins") = 0, py::arg("predecessors") = core::evidence::kPredecessors,
            "bin_size, window: [ns]; horizon_bins 0: unbounded; predecessors: most of an event "
            "type\n"
            "that the evidence watches")

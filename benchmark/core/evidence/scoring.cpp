@@ -20,33 +20,33 @@
 namespace self_awareness::benchmarks {
 namespace {
 
+namespace evidence = core::evidence;
 using core::kNanosecondsPerSecond;
 
 constexpr std::int64_t kTrainingOfHalf = 50 * kNanosecondsPerSecond;
 constexpr std::int64_t kWindow = kNanosecondsPerSecond / 10;
 
-core::EvidenceStatistics emptyStatistics(std::size_t types) {
-  core::EvidenceStatistics statistics;
+evidence::Statistics emptyStatistics(std::size_t types) {
+  evidence::Statistics statistics;
   for (core::EventId id = 0; id < types; ++id) {
     statistics.intern(SyntheticSystem::type(id));
   }
   return statistics;
 }
 
-std::array<core::EvidenceStatistics, 2> trainedHalves(std::size_t types) {
-  std::array<core::EvidenceStatistics, 2> halves = {emptyStatistics(types),
-                                                    emptyStatistics(types)};
+std::array<evidence::Statistics, 2> trainedHalves(std::size_t types) {
+  std::array<evidence::Statistics, 2> halves = {emptyStatistics(types), emptyStatistics(types)};
   SyntheticSystem system(types);
-  for (core::EvidenceStatistics& half : halves) {
-    core::EvidenceTrainer trainer(half, kWindow);
+  for (evidence::Statistics& half : halves) {
+    evidence::Trainer trainer(half, kWindow);
     trainFor(kTrainingOfHalf, system, trainer);
   }
   return halves;
 }
 
 struct Trained {
-  core::WatchedEvidence watched;
-  std::shared_ptr<const core::EvidenceModel> model;
+  evidence::Watched watched;
+  std::shared_ptr<const evidence::Model> model;
   std::size_t bytes = 0;  // of the model and of a scorer
 };
 
@@ -55,11 +55,11 @@ const Trained& trained(std::size_t types) {
   static std::map<std::size_t, Trained> all;
   Trained& entry = all[types];
   if (!entry.model) {
-    const std::array<core::EvidenceStatistics, 2> halves = trainedHalves(types);
-    entry.watched = core::watch(halves[0], halves[1]);
+    const std::array<evidence::Statistics, 2> halves = trainedHalves(types);
+    entry.watched = evidence::watch(halves[0], halves[1]);
     const std::size_t before = allocatedBytes();
-    entry.model = std::make_shared<const core::EvidenceModel>(entry.watched);
-    const core::EvidenceScorer scorer(entry.model, kWindow);
+    entry.model = std::make_shared<const evidence::Model>(entry.watched);
+    const evidence::Scorer scorer(entry.model, kWindow);
     entry.bytes = allocatedBytes() - before;
   }
   return entry;
@@ -72,13 +72,13 @@ struct Terms {
   std::vector<std::vector<core::EventId>> answers;  // of these
 };
 
-Terms termsOf(const core::EvidenceModel& model) {
+Terms termsOf(const evidence::Model& model) {
   Terms terms{std::vector<std::vector<core::EventId>>(model.size()),
               std::vector<std::vector<core::EventId>>(model.size())};
-  for (const core::Track& track : model.tracks()) {
-    if (track.channel == core::Channel::kDelay) {
+  for (const evidence::Track& track : model.tracks()) {
+    if (track.channel == evidence::Channel::kDelay) {
       terms.delays[track.to].push_back(track.from);
-    } else if (track.channel == core::Channel::kAnswer) {
+    } else if (track.channel == evidence::Channel::kAnswer) {
       terms.answers[track.from].push_back(track.to);
     }
   }
@@ -100,7 +100,7 @@ void scoreEvidence(benchmark::State& state) {
   const Trained& entry = trained(types);
   EventLoop events = loopOfEvents(types);
   state.counters["terms"] = termsPerEvent(termsOf(*entry.model), events);
-  core::EvidenceScorer scorer(entry.model, kWindow);
+  evidence::Scorer scorer(entry.model, kWindow);
   for (std::size_t i = 0; i < events.size(); ++i) {
     scorer.add(events.next());  // from now on all types have been seen
   }
@@ -141,7 +141,7 @@ void lookUpEvidence(benchmark::State& state) {
     for (const core::EventId from : terms.delays[id]) {
       // Most delays of a pair are in a few bins.
       delays[id].push_back({from, static_cast<std::uint32_t>(pairs++),
-                            static_cast<std::uint32_t>(random() % core::log_bins::kBins)});
+                            static_cast<std::uint32_t>(random() % evidence::log_bins::kBins)});
     }
     for (const core::EventId to : terms.answers[id]) {
       answers[id].push_back({to, static_cast<std::uint32_t>(asked++), 0});
@@ -150,7 +150,7 @@ void lookUpEvidence(benchmark::State& state) {
   const std::vector<Seen> seen(types);
   const std::vector<Pair> of_pairs(pairs);
   const std::vector<Answer> of_answers(asked);
-  const std::vector<std::array<double, core::log_bins::kBins>> surprises(pairs);
+  const std::vector<std::array<double, evidence::log_bins::kBins>> surprises(pairs);
   double sum = 0;
   for (auto _ : state) {
     const core::EventId id = events.next().id;
@@ -170,7 +170,7 @@ void closeWindowEvidence(benchmark::State& state) {
   const auto types = static_cast<std::size_t>(state.range(0));
   const Trained& entry = trained(types);
   EventLoop events = loopOfEvents(types);
-  core::EvidenceScorer scorer(entry.model, kWindow);
+  evidence::Scorer scorer(entry.model, kWindow);
   core::Event last;
   for (std::size_t i = 0; i < events.size(); ++i) {
     last = events.next();
@@ -187,8 +187,8 @@ void trainEvidence(benchmark::State& state) {
   const auto types = static_cast<std::size_t>(state.range(0));
   const std::size_t before = allocatedBytes();
   for (auto _ : state) {
-    core::EvidenceStatistics statistics = emptyStatistics(types);
-    core::EvidenceTrainer trainer(statistics, kWindow);
+    evidence::Statistics statistics = emptyStatistics(types);
+    evidence::Trainer trainer(statistics, kWindow);
     SyntheticSystem system(types);
     const TrainingRun first = trainFor(2 * kTrainingOfHalf, system, trainer);
     state.SetIterationTime(first.seconds);
@@ -206,10 +206,10 @@ BENCHMARK(trainEvidence)
     ->Unit(benchmark::kMillisecond);
 
 void chooseEvidence(benchmark::State& state) {
-  const std::array<core::EvidenceStatistics, 2> halves =
+  const std::array<evidence::Statistics, 2> halves =
       trainedHalves(static_cast<std::size_t>(state.range(0)));
   for (auto _ : state) {
-    benchmark::DoNotOptimize(core::watch(halves[0], halves[1]));
+    benchmark::DoNotOptimize(evidence::watch(halves[0], halves[1]));
   }
 }
 BENCHMARK(chooseEvidence)->ArgsProduct({kSizes})->Repetitions(1)->Unit(benchmark::kMillisecond);
@@ -217,7 +217,7 @@ BENCHMARK(chooseEvidence)->ArgsProduct({kSizes})->Repetitions(1)->Unit(benchmark
 void loadEvidence(benchmark::State& state) {
   const Trained& entry = trained(static_cast<std::size_t>(state.range(0)));
   for (auto _ : state) {
-    core::EvidenceModel model(entry.watched);
+    evidence::Model model(entry.watched);
     benchmark::DoNotOptimize(model);
   }
   state.counters["bytes"] = static_cast<double>(entry.bytes);

@@ -17,13 +17,14 @@
 namespace self_awareness::benchmarks {
 namespace {
 
+namespace paper = core::paper;
 using core::kNanosecondsPerSecond;
 
 constexpr std::int64_t kTraining = 100 * kNanosecondsPerSecond;
-const core::Binning kBinning{10000000, 0};
+const paper::Binning kBinning{10000000, 0};
 
-core::DelayStatistics emptyStatistics(std::size_t types) {
-  core::DelayStatistics statistics(kBinning);
+paper::DelayStatistics emptyStatistics(std::size_t types) {
+  paper::DelayStatistics statistics(kBinning);
   for (core::EventId id = 0; id < types; ++id) {
     statistics.intern(SyntheticSystem::type(id));
   }
@@ -31,8 +32,8 @@ core::DelayStatistics emptyStatistics(std::size_t types) {
 }
 
 struct Trained {
-  core::DelayStatistics statistics;
-  std::shared_ptr<const core::Model> model;
+  paper::DelayStatistics statistics;
+  std::shared_ptr<const paper::Model> model;
   std::size_t bytes = 0;  // of the model
 };
 
@@ -42,11 +43,11 @@ const Trained& trained(std::size_t types) {
   const auto [place, is_new] = all.try_emplace(types, Trained{emptyStatistics(types), nullptr, 0});
   Trained& entry = place->second;
   if (is_new) {
-    core::DelayTrainer trainer(entry.statistics);
+    paper::DelayTrainer trainer(entry.statistics);
     SyntheticSystem system(types);
     trainFor(kTraining, system, trainer);
     const std::size_t before = allocatedBytes();
-    entry.model = std::make_shared<const core::Model>(entry.statistics);
+    entry.model = std::make_shared<const paper::Model>(entry.statistics);
     entry.bytes = allocatedBytes() - before;
   }
   return entry;
@@ -54,7 +55,7 @@ const Trained& trained(std::size_t types) {
 
 void scorePaper(benchmark::State& state) {
   const auto types = static_cast<std::size_t>(state.range(0));
-  core::Scorer scorer(trained(types).model);
+  paper::Scorer scorer(trained(types).model);
   EventLoop events = loopOfEvents(types);
   for (std::size_t i = 0; i < events.size(); ++i) {
     scorer.score(events.next());  // from now on all types are tracked
@@ -108,8 +109,8 @@ void trainPaper(benchmark::State& state) {
   const auto types = static_cast<std::size_t>(state.range(0));
   const std::size_t before = allocatedBytes();
   for (auto _ : state) {
-    core::DelayStatistics statistics = emptyStatistics(types);
-    core::DelayTrainer trainer(statistics);
+    paper::DelayStatistics statistics = emptyStatistics(types);
+    paper::DelayTrainer trainer(statistics);
     SyntheticSystem system(types);
     const TrainingRun first = trainFor(kTraining, system, trainer);
     state.SetIterationTime(first.seconds);
@@ -137,7 +138,7 @@ BENCHMARK(trainPaper)
 void loadPaper(benchmark::State& state) {
   const Trained& entry = trained(static_cast<std::size_t>(state.range(0)));
   for (auto _ : state) {
-    core::Model model(entry.statistics);
+    paper::Model model(entry.statistics);
     benchmark::DoNotOptimize(model);
   }
   state.counters["bytes"] = static_cast<double>(entry.bytes);

@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-namespace self_awareness::core {
+namespace self_awareness::core::evidence {
 namespace {
 
 // A silence that one gap in a hundred reaches is worth naming once a window is abnormal.
@@ -21,19 +21,17 @@ constexpr double kNearLimit = 0.75;
 constexpr double kShareOfEarlier = 0.9;
 
 /// Time since the last event of a type at the end of the window that was judged [ns].
-std::int64_t age(EventId id, const EvidenceScorer& scorer) {
+std::int64_t age(EventId id, const Scorer& scorer) {
   return scorer.windowEnd() - scorer.lastSeen(id).value_or(scorer.windowEnd());
 }
 
 }  // namespace
 
-EvidenceBlame::EvidenceBlame(std::shared_ptr<const EvidenceModel> model,
-                             std::shared_ptr<const SourceGraph> graph)
+Blame::Blame(std::shared_ptr<const Model> model, std::shared_ptr<const SourceGraph> graph)
     : model_(std::move(model)), graph_(std::move(graph)) {}
 
-std::vector<Suspect> EvidenceBlame::suspects(const std::vector<double>& shares,
-                                             const EvidenceScorer& scorer,
-                                             const Window& window) const {
+std::vector<Suspect> Blame::suspects(const std::vector<double>& shares, const Scorer& scorer,
+                                     const Window& window) const {
   std::vector<Candidate> candidates = silent(shares, scorer);
   const std::vector<Candidate> others = unusual(shares, scorer);
   candidates.insert(candidates.end(), others.begin(), others.end());
@@ -62,8 +60,8 @@ std::vector<Suspect> EvidenceBlame::suspects(const std::vector<double>& shares,
   return suspects;
 }
 
-std::vector<EvidenceBlame::Candidate> EvidenceBlame::silent(const std::vector<double>& shares,
-                                                            const EvidenceScorer& scorer) const {
+std::vector<Blame::Candidate> Blame::silent(const std::vector<double>& shares,
+                                            const Scorer& scorer) const {
   std::set<EventId> missing;
   for (std::size_t track = 0; track < shares.size(); ++track) {
     const Channel channel = model_->tracks()[track].channel;
@@ -84,8 +82,7 @@ std::vector<EvidenceBlame::Candidate> EvidenceBlame::silent(const std::vector<do
 
 // Upstream before downstream is no total order: whoever has fewest others upstream is next. When a
 // whole robot falls silent there are as many candidates as event types, but of few components.
-std::vector<EvidenceBlame::Candidate> EvidenceBlame::rootFirst(
-    std::vector<Candidate> candidates) const {
+std::vector<Blame::Candidate> Blame::rootFirst(std::vector<Candidate> candidates) const {
   std::stable_sort(candidates.begin(), candidates.end(), likelier);
   std::map<std::string, std::vector<std::size_t>> by_component;  // indexes of candidates
   for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -119,8 +116,8 @@ std::vector<EvidenceBlame::Candidate> EvidenceBlame::rootFirst(
   return ordered;
 }
 
-std::vector<EvidenceBlame::Candidate> EvidenceBlame::unusual(const std::vector<double>& shares,
-                                                             const EvidenceScorer& scorer) const {
+std::vector<Blame::Candidate> Blame::unusual(const std::vector<double>& shares,
+                                             const Scorer& scorer) const {
   struct Involved {
     double sum = 0;
     std::size_t track = 0;  // the one that says most
@@ -162,11 +159,11 @@ std::vector<EvidenceBlame::Candidate> EvidenceBlame::unusual(const std::vector<d
   return roots;
 }
 
-double EvidenceBlame::logSurvival(EventId id, const EvidenceScorer& scorer) const {
+double Blame::logSurvival(EventId id, const Scorer& scorer) const {
   return model_->logSurvival(id, age(id, scorer));
 }
 
-Suspect EvidenceBlame::silence(EventId id, const EvidenceScorer& scorer) const {
+Suspect Blame::silence(EventId id, const Scorer& scorer) const {
   Suspect suspect;
   suspect.id = id;
   suspect.reason = Suspect::Reason::kSilent;
@@ -176,7 +173,7 @@ Suspect EvidenceBlame::silence(EventId id, const EvidenceScorer& scorer) const {
   return suspect;
 }
 
-Suspect EvidenceBlame::unusualTrack(std::size_t track, const EvidenceScorer& scorer) const {
+Suspect Blame::unusualTrack(std::size_t track, const Scorer& scorer) const {
   const auto& [channel, to, from] = model_->tracks()[track];
   Suspect suspect;
   suspect.id = to;
@@ -208,9 +205,9 @@ Suspect EvidenceBlame::unusualTrack(std::size_t track, const EvidenceScorer& sco
   return suspect;
 }
 
-const std::string& EvidenceBlame::component(EventId id) const {
+const std::string& Blame::component(EventId id) const {
   const EventType& type = model_->vocabulary().at(id);
   return componentOf(type.source, type.scope);
 }
 
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::evidence

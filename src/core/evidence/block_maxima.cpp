@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace self_awareness::core {
+namespace self_awareness::core::evidence {
 namespace {
 
 constexpr int kFractionBits = 8;
@@ -43,4 +43,4 @@ std::uint64_t BlockMaxima::number() const {
                          [](std::uint64_t sum, const Cell& cell) { return sum + cell.count; });
 }
 
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::evidence

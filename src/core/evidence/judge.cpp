@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace self_awareness::core {
+namespace self_awareness::core::evidence {
 namespace {
 
 // The linker is suspicious from this share of its limit on.
@@ -16,9 +16,8 @@ constexpr std::int64_t kConfirmation = kNanosecondsPerSecond / 10;
 
 }  // namespace
 
-EvidenceJudge::EvidenceJudge(std::shared_ptr<const EvidenceModel> model,
-                             std::optional<EvidenceLimits> limits, std::int64_t window,
-                             std::shared_ptr<const SourceGraph> graph)
+Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, std::int64_t window,
+             std::shared_ptr<const SourceGraph> graph)
     : model_(std::move(model)),
       limits_(std::move(limits)),
       scorer_(model_, window),
@@ -33,11 +32,11 @@ EvidenceJudge::EvidenceJudge(std::shared_ptr<const EvidenceModel> model,
   }
 }
 
-ScoredEvent EvidenceJudge::add(const Event& event) {
+ScoredEvent Judge::add(const Event& event) {
   return {event, 0, !model_->knows(event.id), scorer_.add(event)};
 }
 
-Judgement EvidenceJudge::judge(const Window& /*window*/, std::int64_t end) {
+Judgement Judge::judge(const Window& /*window*/, std::int64_t end) {
   Judgement judgement;
   const std::vector<double>& evidence = scorer_.closeWindow(end);
   if (!limits_) {
@@ -51,7 +50,7 @@ Judgement EvidenceJudge::judge(const Window& /*window*/, std::int64_t end) {
       channels.insert(channelName(model_->tracks()[track].channel));
     }
   }
-  const EvidenceSum sum = sumUp(evidence, *model_, *limits_);
+  const Sum sum = sumUp(evidence, *model_, *limits_);
   const double linker = sum.linker / limits_->linker;
   judgement.score = -std::max(sum.largest, linker);
   judgement.threshold = kThreshold;
@@ -67,7 +66,7 @@ Judgement EvidenceJudge::judge(const Window& /*window*/, std::int64_t end) {
   return judgement;
 }
 
-bool EvidenceJudge::isSilent(std::int64_t end) const {
+bool Judge::isSilent(std::int64_t end) const {
   const std::vector<Track>& tracks = model_->tracks();
   for (std::size_t track = 0; track < tracks.size(); ++track) {
     const EventId id = tracks[track].to;
@@ -80,8 +79,8 @@ bool EvidenceJudge::isSilent(std::int64_t end) const {
   return false;
 }
 
-std::vector<Suspect> EvidenceJudge::suspects(const Window& window, std::int64_t /*end*/) const {
+std::vector<Suspect> Judge::suspects(const Window& window, std::int64_t /*end*/) const {
   return blame_.suspects(shares_, scorer_, window);
 }
 
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::evidence

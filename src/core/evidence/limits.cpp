@@ -11,7 +11,7 @@
 #include "self_awareness/core/stream/clock.h"
 #include "self_awareness/core/verdict/suspect.h"
 
-namespace self_awareness::core {
+namespace self_awareness::core::evidence {
 namespace {
 
 constexpr double kEulerMascheroni = 0.57721566490153286;
@@ -71,7 +71,7 @@ void LimitFinder::Parameters::validate() const {
   }
 }
 
-LimitFinder::LimitFinder(std::shared_ptr<const EvidenceModel> model, const Parameters& parameters)
+LimitFinder::LimitFinder(std::shared_ptr<const Model> model, const Parameters& parameters)
     : model_(std::move(model)),
       parameters_(parameters),
       windows_(parameters.window,
@@ -83,7 +83,7 @@ LimitFinder::LimitFinder(std::shared_ptr<const EvidenceModel> model, const Param
   parameters_.validate();
 }
 
-void LimitFinder::startRecording(std::shared_ptr<const EvidenceModel> model) {
+void LimitFinder::startRecording(std::shared_ptr<const Model> model) {
   finish();
   judging_ = std::move(model);
   scorer_.emplace(judging_, parameters_.window);
@@ -192,7 +192,7 @@ void LimitFinder::startSecondPass() {
   second_pass_ = true;
 }
 
-void LimitFinder::startSecondPass(EvidenceLimits limits) {
+void LimitFinder::startSecondPass(Limits limits) {
   if (limits.tracks.size() != model_->tracks().size()) {
     throw std::invalid_argument("the limits are those of another model");
   }
@@ -207,7 +207,7 @@ LimitFinder::Findings LimitFinder::findings() const {
   found.duration = duration_;
   found.blocks = blocks_;
   found.maxima = maxima_;
-  for (const EvidenceStatistics::Type& type : gaps_) {
+  for (const Statistics::Type& type : gaps_) {
     found.longest_gaps.push_back(type.longest_gaps);
   }
   found.misleading = misleading_.tracks();
@@ -236,7 +236,7 @@ void LimitFinder::merge(const Findings& other) {
 }
 
 double LimitFinder::meanGap(EventId id) const {
-  const EvidenceStatistics::Type& type = model_->statistics().type(id);
+  const Statistics::Type& type = model_->statistics().type(id);
   return static_cast<double>(type.gap_sum) / static_cast<double>(type.gaps);
 }
 
@@ -244,7 +244,7 @@ double LimitFinder::limit(std::size_t track, double rate) const {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   const auto& [channel, to, from] = model_->tracks()[track];
   if (channel == Channel::kOverdue) {
-    EvidenceStatistics::Type gaps = model_->statistics().type(to);
+    Statistics::Type gaps = model_->statistics().type(to);
     for (const std::int64_t gap : gaps_[to].longest_gaps) {
       gaps.addGap(gap);
     }
@@ -266,11 +266,11 @@ double LimitFinder::limit(std::size_t track, double rate) const {
   return found;
 }
 
-EvidenceLimits LimitFinder::limits() const {
+Limits LimitFinder::limits() const {
   if (linker_maxima_.number() < 2) {
     throw std::logic_error("limits are known after the second pass");
   }
-  EvidenceLimits limits = limits_;
+  Limits limits = limits_;
   limits.linker =
       std::max({1.0, kLinkerMargin * linker_maxima_.largest(),
                 gumbelLimit(linker_maxima_,
@@ -278,4 +278,4 @@ EvidenceLimits LimitFinder::limits() const {
   return limits;
 }
 
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::evidence

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace self_awareness::core::log_bins {
+namespace self_awareness::core::evidence::log_bins {
 
 std::int64_t lowerEdge(std::size_t bin) {
   return bin == 0 ? 0 : detail::kEdges.at(bin - 1);
@@ -16,4 +16,4 @@ double middle(std::size_t bin) {
   return bin + 1 == kBins ? lower : std::sqrt(lower * static_cast<double>(lowerEdge(bin + 1)));
 }
 
-}  // namespace self_awareness::core::log_bins
+}  // namespace self_awareness::core::evidence::log_bins

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numeric>
 
-namespace self_awareness::core {
+namespace self_awareness::core::evidence {
 namespace {
 
 constexpr std::int64_t kPart = 100 * kNanosecondsPerSecond;
@@ -14,11 +14,11 @@ constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::min();
 
 }  // namespace
 
-MisleadingPairs::MisleadingPairs(const EvidenceModel& model)
+MisleadingPairs::MisleadingPairs(const Model& model)
     : pairs_(model.size()), misleading_(model.tracks().size(), false) {
-  const EvidenceStatistics& training = model.statistics();
+  const Statistics& training = model.statistics();
   const InformationGain gain(training, training);
-  const std::vector<EvidenceStatistics::SumOfDelays> to_any = training.delaysToAny();
+  const std::vector<Statistics::SumOfDelays> to_any = training.delaysToAny();
   for (std::size_t track = 0; track < model.tracks().size(); ++track) {
     const auto& [channel, to, from] = model.tracks()[track];
     if (channel != Channel::kDelay) {
@@ -94,4 +94,4 @@ void MisleadingPairs::closePart() {
   startPart();
 }
 
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::evidence

@@ -7,7 +7,7 @@
 
 #include "self_awareness/core/verdict/suspect.h"
 
-namespace self_awareness::core {
+namespace self_awareness::core::evidence {
 namespace {
 
 // A single event proves little, however improbable; and delays of one bin vary by nothing.
@@ -30,7 +30,7 @@ constexpr double kLeastAnswerLimit = 5;  // [nat]
 /// and measured on the other, both ways.
 class HeldOutSurprise {
  public:
-  void add(const EvidenceStatistics::Delays& learned, const EvidenceStatistics::Delays& measured) {
+  void add(const Statistics::Delays& learned, const Statistics::Delays& measured) {
     const auto counted = [](std::uint32_t count) { return count > 0; };
     if (std::none_of(learned.begin(), learned.end(), counted)) {
       return;
@@ -54,15 +54,15 @@ class HeldOutSurprise {
   double squares_ = 0;
 };
 
-EvidenceStatistics sum(const std::array<EvidenceStatistics, 2>& halves) {
-  EvidenceStatistics both = halves[0];
+Statistics sum(const std::array<Statistics, 2>& halves) {
+  Statistics both = halves[0];
   both.merge(halves[1]);
   return both;
 }
 
 }  // namespace
 
-EvidenceModel::EvidenceModel(const WatchedEvidence& watched, Learned learned)
+Model::Model(const Watched& watched, Learned learned)
     : statistics_(sum(watched.halves)), tracks_(watched.tracks) {
   if (size() == 0) {
     throw std::invalid_argument("a model needs at least one event");
@@ -77,16 +77,16 @@ EvidenceModel::EvidenceModel(const WatchedEvidence& watched, Learned learned)
   learnAnswers();
 }
 
-void EvidenceModel::learnGaps() {
+void Model::learnGaps() {
   gaps_.resize(size());
   for (EventId id = 0; id < size(); ++id) {
-    const EvidenceStatistics::Type& type = learned().type(id);
+    const Statistics::Type& type = learned().type(id);
     if (type.gaps == 0) {
       continue;
     }
     Gaps& gaps = gaps_[id];
     gaps.longest = static_cast<double>(std::max<std::int64_t>(type.longest_gaps.front(), 1));
-    const EvidenceStatistics::Delays& counts = learned().delays(id, id);
+    const Statistics::Delays& counts = learned().delays(id, id);
     for (std::size_t bin = 0; bin < counts.size(); ++bin) {
       if (counts[bin] > 0) {
         const double middle = std::min(log_bins::middle(bin), gaps.longest);
@@ -100,10 +100,10 @@ void EvidenceModel::learnGaps() {
   }
 }
 
-void EvidenceModel::learnRates() {
+void Model::learnRates() {
   const auto windows = static_cast<double>(std::max<std::uint64_t>(learned().rateWindows(), 1));
   for (EventId id = 0; id < size(); ++id) {
-    const EvidenceStatistics::Type& type = learned().type(id);
+    const Statistics::Type& type = learned().type(id);
     Rate rate;
     rate.mean = static_cast<double>(type.rate_sum) / windows;
     const double variance =
@@ -113,7 +113,7 @@ void EvidenceModel::learnRates() {
   }
 }
 
-void EvidenceModel::learnDelays(const std::array<EvidenceStatistics, 2>& halves) {
+void Model::learnDelays(const std::array<Statistics, 2>& halves) {
   surprises_of_.resize(tracks_.size());
   for (std::size_t track = 0; track < tracks_.size(); ++track) {
     const auto& [channel, to, from] = tracks_[track];
@@ -132,13 +132,13 @@ void EvidenceModel::learnDelays(const std::array<EvidenceStatistics, 2>& halves)
   }
 }
 
-void EvidenceModel::learnAnswers() {
+void Model::learnAnswers() {
   steps_.resize(tracks_.size());
   for (std::size_t track = 0; track < tracks_.size(); ++track) {
     const auto& [channel, to, from] = tracks_[track];
     if (channel == Channel::kAnswer) {
       const double usual =
-          std::clamp(core::missRate(learned().type(from).gaps, learned().answers(from, to)),
+          std::clamp(evidence::missRate(learned().type(from).gaps, learned().answers(from, to)),
                      kLeastMissRate, kMostMissRate);
       const double faulty = usual + (1 - usual) * kLost;
       steps_[track] = {std::log((1 - faulty) / (1 - usual)), std::log(faulty / usual), usual};
@@ -146,7 +146,7 @@ void EvidenceModel::learnAnswers() {
   }
 }
 
-double EvidenceModel::overdue(EventId id, std::int64_t age) const {
+double Model::overdue(EventId id, std::int64_t age) const {
   const Gaps& gaps = gaps_.at(id);
   if (gaps.bins.empty()) {
     return 0;
@@ -162,8 +162,8 @@ double EvidenceModel::overdue(EventId id, std::int64_t age) const {
                                    : all - std::log(gaps.longest) + a / gaps.longest;
 }
 
-double EvidenceModel::logSurvival(EventId id, std::int64_t age) const {
-  const EvidenceStatistics::Type& type = learned().type(id);
+double Model::logSurvival(EventId id, std::int64_t age) const {
+  const Statistics::Type& type = learned().type(id);
   if (type.gaps < kFewestGaps) {
     return 0;
   }
@@ -175,7 +175,7 @@ double EvidenceModel::logSurvival(EventId id, std::int64_t age) const {
                           longest.begin());
   if (longer == static_cast<double>(longest.size())) {
     longer = 0;
-    const EvidenceStatistics::Delays& delays = learned().delays(id, id);
+    const Statistics::Delays& delays = learned().delays(id, id);
     for (std::size_t bin = log_bins::bin(age); bin < delays.size(); ++bin) {
       longer += delays[bin];
     }
@@ -187,13 +187,13 @@ double EvidenceModel::logSurvival(EventId id, std::int64_t age) const {
   return longer > 0 ? std::log(longer + std::exp(-tail)) - all : -tail - all;
 }
 
-std::int64_t EvidenceModel::longestGap(EventId id) const {
+std::int64_t Model::longestGap(EventId id) const {
   const std::vector<std::int64_t>& longest = statistics_.type(id).longest_gaps;
   return longest.empty() ? 0 : longest.front();
 }
 
-double EvidenceModel::usualDelay(EventId from, EventId to, double share) const {
-  const EvidenceStatistics::Delays& delays = learned().delays(from, to);
+double Model::usualDelay(EventId from, EventId to, double share) const {
+  const Statistics::Delays& delays = learned().delays(from, to);
   const std::uint64_t total = learned().total(from, to);
   if (total == 0) {
     return 0;
@@ -209,11 +209,11 @@ double EvidenceModel::usualDelay(EventId from, EventId to, double share) const {
   return 0;
 }
 
-double EvidenceModel::rate(EventId id, std::uint32_t count) const {
+double Model::rate(EventId id, std::uint32_t count) const {
   return (count - rates_.at(id).mean) / rates_[id].spread;
 }
 
-double EvidenceModel::leastLimit(std::size_t track) const {
+double Model::leastLimit(std::size_t track) const {
   switch (tracks_.at(track).channel) {
     case Channel::kOverdue:
       return 0;
@@ -229,4 +229,4 @@ double EvidenceModel::leastLimit(std::size_t track) const {
   return 0;
 }
 
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::evidence

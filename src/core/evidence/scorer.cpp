@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace self_awareness::core {
+namespace self_awareness::core::evidence {
 namespace {
 
 // What usual delays take from the sum, in standard deviations: much finds strong evidence without
@@ -23,7 +23,7 @@ constexpr double kMostOfLimit = 1.5;    // in units of the limit
 
 }  // namespace
 
-inline bool EvidenceScorer::arm(Arming& arming, double excess, double usual) {
+inline bool Scorer::arm(Arming& arming, double excess, double usual) {
   arming.excess += excess;
   if (++arming.events < kArmingEvents) {
     return false;
@@ -33,13 +33,13 @@ inline bool EvidenceScorer::arm(Arming& arming, double excess, double usual) {
   return armed;
 }
 
-EvidenceScorer::EvidenceScorer(std::shared_ptr<const EvidenceModel> model, std::int64_t window)
+Scorer::Scorer(std::shared_ptr<const Model> model, std::int64_t window)
     : model_(std::move(model)), counts_(model_->size(), rateWindows(window)) {
   addTracks();
   restart();
 }
 
-void EvidenceScorer::addTracks() {
+void Scorer::addTracks() {
   const std::vector<Track>& tracks = model_->tracks();
   std::vector<std::vector<std::size_t>> pairs(model_->size());    // tracks by `to`
   std::vector<std::vector<std::size_t>> answers(model_->size());  // tracks by `from`
@@ -77,7 +77,7 @@ void EvidenceScorer::addTracks() {
   pairs_arming_.resize(pairs_.size());
 }
 
-void EvidenceScorer::addAnswers(EventId from, const std::vector<std::size_t>& tracks) {
+void Scorer::addAnswers(EventId from, const std::vector<std::size_t>& tracks) {
   for (std::size_t k = 0; k < tracks.size(); ++k) {
     const std::size_t answer = k % AnswerBlock::kAnswers;
     if (answer == 0) {
@@ -96,7 +96,7 @@ void EvidenceScorer::addAnswers(EventId from, const std::vector<std::size_t>& tr
   }
 }
 
-void EvidenceScorer::restart() {
+void Scorer::restart() {
   stamps_.assign(model_->size(), 0);
   numbers_.assign(model_->size(), 0);
   number_ = 0;
@@ -110,7 +110,7 @@ void EvidenceScorer::restart() {
   }
 }
 
-std::optional<std::int64_t> EvidenceScorer::add(const Event& event) {
+std::optional<std::int64_t> Scorer::add(const Event& event) {
   if (event.id >= types_.size()) {
     return std::nullopt;
   }
@@ -160,7 +160,7 @@ std::optional<std::int64_t> EvidenceScorer::add(const Event& event) {
   return gap;
 }
 
-void EvidenceScorer::armPair(std::size_t number, bool first, double surprise) {
+void Scorer::armPair(std::size_t number, bool first, double surprise) {
   DelayPair& pair = pairs_[number];
   if (numbers_[pair.from] == 0) {
     pair.sums.values = Lanes{};
@@ -170,7 +170,7 @@ void EvidenceScorer::armPair(std::size_t number, bool first, double surprise) {
   }
 }
 
-void EvidenceScorer::armAnswers(std::size_t block, double since) {
+void Scorer::armAnswers(std::size_t block, double since) {
   AnswerBlock& answers = blocks_[block];
   for (std::size_t k = 0; k < AnswerBlock::kAnswers; ++k) {
     if (answers.armed(k)) {
@@ -187,7 +187,7 @@ void EvidenceScorer::armAnswers(std::size_t block, double since) {
   }
 }
 
-void EvidenceScorer::capAt(const EvidenceLimits& limits) {
+void Scorer::capAt(const Limits& limits) {
   const auto cap = [&](std::size_t track, Sums& sums, std::size_t lane) {
     if (limits.tracks[track] > 0) {  // never so where it is NaN
       sums.caps[lane] = kMostOfLimit * limits.tracks[track];
@@ -206,7 +206,7 @@ void EvidenceScorer::capAt(const EvidenceLimits& limits) {
   }
 }
 
-void EvidenceScorer::disarm(EventId id) {
+void Scorer::disarm(EventId id) {
   for (const std::size_t track : tracks_of_[id]) {
     if (model_->tracks()[track].channel == Channel::kDelay) {
       disarmPair(state_of_[track]);
@@ -216,13 +216,13 @@ void EvidenceScorer::disarm(EventId id) {
   }
 }
 
-void EvidenceScorer::disarmPair(std::size_t number) {
+void Scorer::disarmPair(std::size_t number) {
   pairs_[number].sums.values = Lanes{};
   pairs_[number].armed = false;
   pairs_arming_[number] = {};
 }
 
-void EvidenceScorer::disarmAnswer(std::size_t number) {
+void Scorer::disarmAnswer(std::size_t number) {
   AnswerBlock& block = blocks_[number / AnswerBlock::kAnswers];
   const std::size_t answer = number % AnswerBlock::kAnswers;
   block.sums[answer / kLanes].values[answer % kLanes] = 0;
@@ -230,7 +230,7 @@ void EvidenceScorer::disarmAnswer(std::size_t number) {
   answers_arming_[number] = {};
 }
 
-const std::vector<double>& EvidenceScorer::closeWindow(std::int64_t end) {
+const std::vector<double>& Scorer::closeWindow(std::int64_t end) {
   window_end_ = end;
   counts_.close();
   const std::vector<Track>& tracks = model_->tracks();
@@ -266,13 +266,12 @@ const std::vector<double>& EvidenceScorer::closeWindow(std::int64_t end) {
   return evidence_;
 }
 
-std::optional<std::int64_t> EvidenceScorer::lastSeen(EventId id) const {
+std::optional<std::int64_t> Scorer::lastSeen(EventId id) const {
   return numbers_.at(id) > 0 ? std::optional<std::int64_t>(stamps_[id]) : std::nullopt;
 }
 
-EvidenceSum sumUp(const std::vector<double>& evidence, const EvidenceModel& model,
-                  const EvidenceLimits& limits) {
-  EvidenceSum sum;
+Sum sumUp(const std::vector<double>& evidence, const Model& model, const Limits& limits) {
+  Sum sum;
   std::vector<double> linked(model.size(), 0);
   for (std::size_t track = 0; track < evidence.size(); ++track) {
     const double share = evidence[track] / limits.tracks[track];
@@ -291,4 +290,4 @@ EvidenceSum sumUp(const std::vector<double>& evidence, const EvidenceModel& mode
   return sum;
 }
 
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::evidence

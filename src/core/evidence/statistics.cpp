@@ -13,25 +13,25 @@
 #include "self_awareness/core/stream/clock.h"
 #include "self_awareness/core/stream/windows.h"
 
-namespace self_awareness::core {
+namespace self_awareness::core::evidence {
 namespace {
 
-using Partner = EvidenceStatistics::Partner;
-using Partners = EvidenceStatistics::Partners;
+using Partner = Statistics::Partner;
+using Partners = Statistics::Partners;
 
-constexpr EvidenceStatistics::Delays kNoDelays{};
+constexpr Statistics::Delays kNoDelays{};
 
 bool lowerId(const Partner& partner, EventId id) {
   return partner.id < id;
 }
 
 template <typename Counts>
-void addCounts(const Counts& counts, EvidenceStatistics::SumOfDelays& sum) {
+void addCounts(const Counts& counts, Statistics::SumOfDelays& sum) {
   std::transform(counts.begin(), counts.end(), sum.begin(), sum.begin(), std::plus<>());
 }
 
 // A fleet's years may be more than a count holds: the largest one stands for all that are larger.
-void addCounts(const EvidenceStatistics::Delays& counts, EvidenceStatistics::Delays& sum) {
+void addCounts(const Statistics::Delays& counts, Statistics::Delays& sum) {
   std::transform(counts.begin(), counts.end(), sum.begin(), sum.begin(),
                  [](std::uint32_t a, std::uint32_t b) {
                    return a > std::numeric_limits<std::uint32_t>::max() - b
@@ -83,7 +83,7 @@ std::size_t rateWindows(std::int64_t window) {
   return static_cast<std::size_t>(std::max<std::int64_t>(kRateSpan / window, 1));
 }
 
-void EvidenceStatistics::Type::addGap(std::int64_t gap) {
+void Statistics::Type::addGap(std::int64_t gap) {
   const auto place =
       std::lower_bound(longest_gaps.begin(), longest_gaps.end(), gap, std::greater<>());
   if (longest_gaps.size() < kLongestGaps || place != longest_gaps.end()) {
@@ -92,7 +92,7 @@ void EvidenceStatistics::Type::addGap(std::int64_t gap) {
   }
 }
 
-EventId EvidenceStatistics::intern(const EventType& type) {
+EventId Statistics::intern(const EventType& type) {
   const EventId id = vocabulary_.intern(type);
   if (id == types_.size()) {
     types_.emplace_back();
@@ -101,7 +101,7 @@ EventId EvidenceStatistics::intern(const EventType& type) {
   return id;
 }
 
-void EvidenceStatistics::merge(const EvidenceStatistics& other) {
+void Statistics::merge(const Statistics& other) {
   std::vector<EventId> here;
   here.reserve(other.size());
   for (const EventType& type : other.vocabulary_.types()) {
@@ -131,22 +131,22 @@ void EvidenceStatistics::merge(const EvidenceStatistics& other) {
   duration_ += other.duration_;
 }
 
-const EvidenceStatistics::Delays& EvidenceStatistics::delays(EventId from, EventId to) const {
+const Statistics::Delays& Statistics::delays(EventId from, EventId to) const {
   const Partner* partner = find(partners_.at(to), from);
   return partner != nullptr ? partner->delays : kNoDelays;
 }
 
-std::uint64_t EvidenceStatistics::total(EventId from, EventId to) const {
+std::uint64_t Statistics::total(EventId from, EventId to) const {
   const Delays& counts = delays(from, to);
   return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
 }
 
-std::uint64_t EvidenceStatistics::answers(EventId from, EventId to) const {
+std::uint64_t Statistics::answers(EventId from, EventId to) const {
   const Partner* partner = find(partners_.at(from), to);
   return partner != nullptr ? partner->answers : 0;
 }
 
-void EvidenceStatistics::setPartners(EventId id, Partners partners) {
+void Statistics::setPartners(EventId id, Partners partners) {
   const auto unordered =
       std::adjacent_find(partners.begin(), partners.end(),
                          [](const Partner& a, const Partner& b) { return a.id >= b.id; });
@@ -156,7 +156,7 @@ void EvidenceStatistics::setPartners(EventId id, Partners partners) {
   partners_.at(id) = std::move(partners);
 }
 
-EvidenceStatistics::Partners& EvidenceStatistics::allPartners(EventId id) {
+Statistics::Partners& Statistics::allPartners(EventId id) {
   Partners& partners = partners_.at(id);
   if (partners.size() < size()) {
     Partners none(size());
@@ -168,7 +168,7 @@ EvidenceStatistics::Partners& EvidenceStatistics::allPartners(EventId id) {
   return partners;
 }
 
-std::vector<EvidenceStatistics::SumOfDelays> EvidenceStatistics::delaysToAny() const {
+std::vector<Statistics::SumOfDelays> Statistics::delaysToAny() const {
   std::vector<SumOfDelays> sums;
   sums.reserve(size());
   for (const Type& type : types_) {
@@ -182,8 +182,8 @@ std::vector<EvidenceStatistics::SumOfDelays> EvidenceStatistics::delaysToAny() c
   return sums;
 }
 
-EvidenceStatistics EvidenceStatistics::withoutPairs() const {
-  EvidenceStatistics rest;
+Statistics Statistics::withoutPairs() const {
+  Statistics rest;
   rest.vocabulary_ = vocabulary_;
   rest.types_ = types_;
   for (Type& type : rest.types_) {
@@ -195,13 +195,13 @@ EvidenceStatistics EvidenceStatistics::withoutPairs() const {
   return rest;
 }
 
-EvidenceStatistics EvidenceStatistics::only(const std::vector<Pair>& pairs) const {
+Statistics Statistics::only(const std::vector<Pair>& pairs) const {
   std::vector<std::vector<EventId>> kept(size());
   for (const Pair& pair : pairs) {
     kept.at(pair.to).push_back(pair.from);
     kept.at(pair.from).push_back(pair.to);
   }
-  EvidenceStatistics rest = withoutPairs();
+  Statistics rest = withoutPairs();
   for (EventId id = 0; id < size(); ++id) {
     addCounts(types_[id].left_out, rest.types_[id].left_out);
     std::sort(kept[id].begin(), kept[id].end());
@@ -216,11 +216,11 @@ EvidenceStatistics EvidenceStatistics::only(const std::vector<Pair>& pairs) cons
   return rest;
 }
 
-bool operator==(const EvidenceStatistics::Partner& a, const EvidenceStatistics::Partner& b) {
+bool operator==(const Statistics::Partner& a, const Statistics::Partner& b) {
   return a.id == b.id && a.answers == b.answers && a.delays == b.delays;
 }
 
-bool operator==(const EvidenceStatistics& a, const EvidenceStatistics& b) {
+bool operator==(const Statistics& a, const Statistics& b) {
   if (a.vocabulary().types() != b.vocabulary().types() || a.rateWindows() != b.rateWindows() ||
       a.duration() != b.duration()) {
     return false;
@@ -232,8 +232,8 @@ bool operator==(const EvidenceStatistics& a, const EvidenceStatistics& b) {
     return without_zeros;
   };
   for (EventId id = 0; id < a.size(); ++id) {
-    const EvidenceStatistics::Type& x = a.type(id);
-    const EvidenceStatistics::Type& y = b.type(id);
+    const Statistics::Type& x = a.type(id);
+    const Statistics::Type& y = b.type(id);
     if (std::tie(x.events, x.gaps, x.gap_sum, x.longest_gaps, x.rate_sum, x.rate_squares,
                  x.left_out) != std::tie(y.events, y.gaps, y.gap_sum, y.longest_gaps, y.rate_sum,
                                          y.rate_squares, y.left_out) ||
@@ -244,17 +244,17 @@ bool operator==(const EvidenceStatistics& a, const EvidenceStatistics& b) {
   return true;
 }
 
-EvidenceTrainer::EvidenceTrainer(EvidenceStatistics& statistics, std::int64_t window)
+Trainer::Trainer(Statistics& statistics, std::int64_t window)
     : statistics_(statistics), window_(window), counts_(0, rateWindows(window)) {}
 
-void EvidenceTrainer::startRecording() {
+void Trainer::startRecording() {
   last_seen_.clear();
   last_stamp_.reset();
   number_ = 0;
   counts_.restart();
 }
 
-void EvidenceTrainer::add(const Event& event) {
+void Trainer::add(const Event& event) {
   if (last_stamp_ && isClockStep(*last_stamp_, event.stamp)) {
     startRecording();
   }
@@ -270,7 +270,7 @@ void EvidenceTrainer::add(const Event& event) {
   }
   last_stamp_ = event.stamp;
 
-  EvidenceStatistics::Type& type = statistics_.type(event.id);
+  Statistics::Type& type = statistics_.type(event.id);
   Seen& last = last_seen_.at(event.id);
   ++type.events;
   counts_.add(event.id);
@@ -291,7 +291,7 @@ void EvidenceTrainer::add(const Event& event) {
   last = Seen{event.stamp, ++number_};
 }
 
-void EvidenceTrainer::closeWindows(std::int64_t now) {
+void Trainer::closeWindows(std::int64_t now) {
   for (; window_end_ <= now; window_end_ += window_) {
     counts_.close();
     if (!counts_.full()) {
@@ -306,4 +306,4 @@ void EvidenceTrainer::closeWindows(std::int64_t now) {
   }
 }
 
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::evidence

@@ -8,7 +8,7 @@
 
 #include "self_awareness/core/verdict/suspect.h"
 
-namespace self_awareness::core {
+namespace self_awareness::core::evidence {
 namespace {
 
 // With a smaller gain, timers that beat against each other get in.
@@ -22,7 +22,7 @@ constexpr std::size_t kAsked = 8;
 constexpr std::uint64_t kFewestAnswers = 100;
 constexpr double kMostMisses = 0.6;
 
-using Halves = std::array<const EvidenceStatistics*, 2>;
+using Halves = std::array<const Statistics*, 2>;
 
 /// Gains between all pairs, the mean of both directions.
 class Gains {
@@ -35,7 +35,7 @@ class Gains {
   double operator()(EventId from, EventId to) const { return gains_[to * size_ + from]; }
 
  private:
-  void add(const EvidenceStatistics& learned_from, const EvidenceStatistics& measured_on) {
+  void add(const Statistics& learned_from, const Statistics& measured_on) {
     const InformationGain gain(learned_from, measured_on);
     for (EventId to = 0; to < size_; ++to) {
       for (EventId from = 0; from < size_; ++from) {
@@ -105,7 +105,7 @@ class Choice {
     for (EventId to = 0; to < types_.size(); ++to) {
       Ranked best;  // by the time that some misses take
       for (EventId from = 0; from < types_.size(); ++from) {
-        const EvidenceStatistics::Type& asking = types_.type(from);
+        const Statistics::Type& asking = types_.type(from);
         if (from == to || asking.gaps < kFewestAnswers || types_.type(to).gaps < kFewestAnswers ||
             gains_(to, from) > gains_(from, to) + kLeastGain) {
           continue;
@@ -135,14 +135,13 @@ class Choice {
   Halves halves_;
   std::size_t predecessors_;
   Gains gains_;
-  EvidenceStatistics types_;  // counts of both halves, without pairs
+  Statistics types_;  // counts of both halves, without pairs
 };
 
 /// The counts, with the event types of both halves and their ids.
-EvidenceStatistics withTypes(const EvidenceStatistics& first, const EvidenceStatistics& second,
-                             const EvidenceStatistics& counts) {
-  EvidenceStatistics all;
-  for (const EvidenceStatistics* half : {&first, &second}) {
+Statistics withTypes(const Statistics& first, const Statistics& second, const Statistics& counts) {
+  Statistics all;
+  for (const Statistics* half : {&first, &second}) {
     for (const EventType& type : half->vocabulary().types()) {
       all.intern(type);
     }
@@ -151,9 +150,8 @@ EvidenceStatistics withTypes(const EvidenceStatistics& first, const EvidenceStat
   return all;
 }
 
-std::vector<EvidenceStatistics::Pair> pairsOf(const std::vector<Track>& tracks,
-                                              std::size_t types) {
-  std::vector<EvidenceStatistics::Pair> pairs;
+std::vector<Statistics::Pair> pairsOf(const std::vector<Track>& tracks, std::size_t types) {
+  std::vector<Statistics::Pair> pairs;
   for (EventId id = 0; id < types; ++id) {
     pairs.push_back({id, id});  // the gaps between two of a type
   }
@@ -194,13 +192,12 @@ std::string channelName(Channel channel) {
   return "";
 }
 
-InformationGain::InformationGain(const EvidenceStatistics& learned_from,
-                                 const EvidenceStatistics& measured_on)
+InformationGain::InformationGain(const Statistics& learned_from, const Statistics& measured_on)
     : learned_from_(learned_from), measured_on_(measured_on) {
   for (const EventType& type : learned_from.vocabulary().types()) {
     id_there_.push_back(measured_on.vocabulary().find(type));
   }
-  for (const EvidenceStatistics::SumOfDelays& delays : learned_from.delaysToAny()) {
+  for (const Statistics::SumOfDelays& delays : learned_from.delaysToAny()) {
     any_.push_back(logProbabilities(delays));
   }
 }
@@ -209,10 +206,9 @@ double InformationGain::operator()(EventId from, EventId to) const {
   if (!id_there_[from] || !id_there_[to]) {
     return 0;
   }
-  const EvidenceStatistics::Delays& measured =
-      measured_on_.delays(*id_there_[from], *id_there_[to]);
+  const Statistics::Delays& measured = measured_on_.delays(*id_there_[from], *id_there_[to]);
   const auto number = std::accumulate(measured.begin(), measured.end(), std::uint64_t{0});
-  const EvidenceStatistics::Delays& learned = learned_from_.delays(from, to);
+  const Statistics::Delays& learned = learned_from_.delays(from, to);
   const auto learned_number = std::accumulate(learned.begin(), learned.end(), std::uint64_t{0});
   if (number < kFewestDelays || learned_number == 0) {
     return 0;
@@ -227,23 +223,22 @@ double InformationGain::operator()(EventId from, EventId to) const {
   return sum / static_cast<double>(number);
 }
 
-LogProbabilities logProbabilities(const EvidenceStatistics::Delays& counts) {
+LogProbabilities logProbabilities(const Statistics::Delays& counts) {
   return logsOf(counts);
 }
 
-LogProbabilities logProbabilities(const EvidenceStatistics::SumOfDelays& counts) {
+LogProbabilities logProbabilities(const Statistics::SumOfDelays& counts) {
   return logsOf(counts);
 }
 
-WatchedEvidence watch(const EvidenceStatistics& first, const EvidenceStatistics& second,
-                      std::size_t predecessors) {
+Watched watch(const Statistics& first, const Statistics& second, std::size_t predecessors) {
   if (first.vocabulary().types() != second.vocabulary().types()) {
     return watch(withTypes(first, second, first), withTypes(first, second, second), predecessors);
   }
   const Halves halves{&first, &second};
-  WatchedEvidence watched;
+  Watched watched;
   watched.tracks = Choice(halves, predecessors).tracks();
-  const std::vector<EvidenceStatistics::Pair> pairs = pairsOf(watched.tracks, first.size());
+  const std::vector<Statistics::Pair> pairs = pairsOf(watched.tracks, first.size());
   watched.halves = {first.only(pairs), second.only(pairs)};
   return watched;
 }
@@ -269,4 +264,4 @@ double missRate(std::uint64_t gaps, std::uint64_t answers) {
   return (all - static_cast<double>(answers) + 0.5) / (all + 1);
 }
 
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::evidence

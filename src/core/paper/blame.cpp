@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-namespace self_awareness::core {
+namespace self_awareness::core::paper {
 namespace {
 
 // A silence that one gap in a hundred reaches is worth naming once the window is abnormal.
@@ -125,4 +125,4 @@ std::vector<Suspect> Blame::suspects(const Window& window,
   return ranked;
 }
 
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::paper

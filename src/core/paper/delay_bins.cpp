@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace self_awareness::core {
+namespace self_awareness::core::paper {
 
 std::int64_t Binning::bin(std::int64_t delay) const {
   const std::int64_t index = std::max<std::int64_t>(delay, 0) / bin_size;
@@ -58,4 +58,4 @@ void SeenTypes::add(EventId id, std::uint64_t mark) {
   masks_[id] = ~std::uint32_t{0};
 }
 
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::paper

@@ -6,7 +6,7 @@
 
 #include "self_awareness/core/stream/clock.h"
 
-namespace self_awareness::core {
+namespace self_awareness::core::paper {
 namespace {
 
 // Pairs that are worked on together.
@@ -131,4 +131,4 @@ void DelayTrainer::add(const Event& event) {
   seen_.add(event.id, mark);
 }
 
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::paper

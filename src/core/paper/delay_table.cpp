@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace self_awareness::core {
+namespace self_awareness::core::paper {
 namespace {
 
 // This bin and larger ones are in no array.
@@ -203,4 +203,4 @@ std::vector<double> DelayTable::meanProbabilities() const {
   return means;
 }
 
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::paper

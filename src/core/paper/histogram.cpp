@@ -5,7 +5,7 @@
 #include <iterator>
 #include <utility>
 
-namespace self_awareness::core {
+namespace self_awareness::core::paper {
 namespace {
 
 // An array may have so many cells for every bin with counts: it then takes not much more memory
@@ -317,4 +317,4 @@ bool operator==(const Histogram& a, const Histogram& b) {
   return std::equal(in_a.begin(), in_a.end(), in_b.begin(), in_b.end(), same);
 }
 
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::paper

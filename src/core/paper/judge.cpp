@@ -3,10 +3,10 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace self_awareness::core {
+namespace self_awareness::core::paper {
 
-PaperJudge::PaperJudge(const std::shared_ptr<const Model>& model, std::optional<double> threshold,
-                       bool silence_is_abnormal)
+Judge::Judge(const std::shared_ptr<const Model>& model, std::optional<double> threshold,
+             bool silence_is_abnormal)
     : threshold_(threshold),
       silence_is_abnormal_(silence_is_abnormal),
       scorer_(model),
@@ -16,7 +16,7 @@ PaperJudge::PaperJudge(const std::shared_ptr<const Model>& model, std::optional<
   }
 }
 
-Judgement PaperJudge::judge(const Window& window, std::int64_t /*end*/) {
+Judgement Judge::judge(const Window& window, std::int64_t /*end*/) {
   Judgement judgement;
   judgement.score = window.score();
   judgement.threshold = threshold_;
@@ -30,8 +30,8 @@ Judgement PaperJudge::judge(const Window& window, std::int64_t /*end*/) {
   return judgement;
 }
 
-std::vector<Suspect> PaperJudge::suspects(const Window& window, std::int64_t end) const {
+std::vector<Suspect> Judge::suspects(const Window& window, std::int64_t end) const {
   return blame_.suspects(window, scorer_.lastSeen(), end);
 }
 
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::paper

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-namespace self_awareness::core {
+namespace self_awareness::core::paper {
 
 Model::Model(const DelayStatistics& statistics)
     : vocabulary_(statistics.vocabulary()), binning_(statistics.binning()) {
@@ -39,4 +39,4 @@ double Model::expectedScore(EventId to) const {
   return score;
 }
 
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::paper

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace self_awareness::core {
+namespace self_awareness::core::paper {
 
 Scorer::Scorer(std::shared_ptr<const Model> model)
     : model_(std::move(model)), bins_(model_->binning()) {
@@ -45,4 +45,4 @@ ScoredEvent Scorer::score(const Event& event) {
   return scored;
 }
 
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::paper

@@ -7,13 +7,13 @@
 
 namespace self_awareness::ros1 {
 
-self_awareness::DelayHistograms toMessage(const core::DelayStatistics& statistics,
+self_awareness::DelayHistograms toMessage(const core::paper::DelayStatistics& statistics,
                                           core::EventId to) {
   self_awareness::DelayHistograms message;
   message.to_id = to;
   message.offsets.push_back(0);
   for (core::EventId from = 0; from < statistics.vocabulary().size(); ++from) {
-    for (const core::Histogram::Entry& entry : statistics.pair(from, to).entries()) {
+    for (const core::paper::Histogram::Entry& entry : statistics.pair(from, to).entries()) {
       message.bins.push_back(entry.bin);
       message.counts.push_back(entry.count);
     }
@@ -23,7 +23,7 @@ self_awareness::DelayHistograms toMessage(const core::DelayStatistics& statistic
 }
 
 void addMessage(const self_awareness::DelayHistograms& message,
-                core::DelayStatistics& statistics) {
+                core::paper::DelayStatistics& statistics) {
   const std::size_t n = statistics.vocabulary().size();
   if (message.to_id >= n || message.offsets.size() != n + 1 || message.offsets.front() != 0 ||
       message.offsets.back() != message.bins.size() ||
@@ -31,7 +31,7 @@ void addMessage(const self_awareness::DelayHistograms& message,
       !std::is_sorted(message.offsets.begin(), message.offsets.end())) {
     throw std::invalid_argument("its histograms do not fit its event types");
   }
-  core::Histogram::Entries entries;
+  core::paper::Histogram::Entries entries;
   for (core::EventId from = 0; from < n; ++from) {
     entries.clear();
     std::int64_t least = 0;

@@ -8,6 +8,8 @@
 namespace self_awareness::ros1 {
 namespace {
 
+namespace evidence = core::evidence;
+
 void check(bool holds, const std::string& otherwise) {
   if (!holds) {
     throw std::invalid_argument(otherwise);
@@ -20,7 +22,7 @@ bool areOffsets(const std::vector<std::uint64_t>& offsets, std::size_t groups,
          std::is_sorted(offsets.begin(), offsets.end());
 }
 
-void appendType(const core::EvidenceStatistics::Type& type, self_awareness::Evidence& message) {
+void appendType(const evidence::Statistics::Type& type, self_awareness::Evidence& message) {
   message.events.push_back(type.events);
   message.gaps.push_back(type.gaps);
   message.gap_sums.push_back(type.gap_sum);
@@ -39,13 +41,13 @@ void checkSizes(const self_awareness::Evidence& message, std::size_t n) {
     check(size == n, "its evidence does not fit its event types");
   }
   check(areOffsets(message.longest_offsets, n, message.longest_gaps.size()) &&
-            message.left_out.size() == n * core::log_bins::kBins,
+            message.left_out.size() == n * evidence::log_bins::kBins,
         "its evidence does not fit its event types");
   check(message.duration >= 0, "its evidence has a negative duration");
 }
 
-core::EvidenceStatistics::Type typeOf(const self_awareness::Evidence& message, std::size_t id) {
-  core::EvidenceStatistics::Type type;
+evidence::Statistics::Type typeOf(const self_awareness::Evidence& message, std::size_t id) {
+  evidence::Statistics::Type type;
   type.events = message.events[id];
   type.gaps = message.gaps[id];
   type.gap_sum = message.gap_sums[id];
@@ -54,8 +56,9 @@ core::EvidenceStatistics::Type typeOf(const self_awareness::Evidence& message, s
   for (std::size_t k = message.longest_offsets[id]; k < message.longest_offsets[id + 1]; ++k) {
     type.addGap(message.longest_gaps[k]);
   }
-  std::copy_n(message.left_out.begin() + static_cast<std::ptrdiff_t>(id * core::log_bins::kBins),
-              core::log_bins::kBins, type.left_out.begin());
+  std::copy_n(
+      message.left_out.begin() + static_cast<std::ptrdiff_t>(id * evidence::log_bins::kBins),
+      evidence::log_bins::kBins, type.left_out.begin());
   check(type.gap_sum >= 0 && (type.gaps > 0) == !type.longest_gaps.empty(),
         "its evidence has impossible gaps");
   return type;
@@ -63,7 +66,7 @@ core::EvidenceStatistics::Type typeOf(const self_awareness::Evidence& message, s
 
 }  // namespace
 
-self_awareness::Evidence toMessage(const core::EvidenceStatistics& statistics) {
+self_awareness::Evidence toMessage(const evidence::Statistics& statistics) {
   self_awareness::Evidence message;
   message.rate_windows = statistics.rateWindows();
   message.duration = statistics.duration();
@@ -75,12 +78,12 @@ self_awareness::Evidence toMessage(const core::EvidenceStatistics& statistics) {
   return message;
 }
 
-self_awareness::EvidencePairs pairsMessage(const core::EvidenceStatistics& statistics,
+self_awareness::EvidencePairs pairsMessage(const evidence::Statistics& statistics,
                                            core::EventId id) {
   self_awareness::EvidencePairs message;
   message.id = id;
   message.offsets.push_back(0);
-  for (const core::EvidenceStatistics::Partner& partner : statistics.partners(id)) {
+  for (const evidence::Statistics::Partner& partner : statistics.partners(id)) {
     for (std::size_t bin = 0; bin < partner.delays.size(); ++bin) {
       if (partner.delays[bin] > 0) {
         message.bins.push_back(static_cast<std::uint8_t>(bin));
@@ -96,11 +99,11 @@ self_awareness::EvidencePairs pairsMessage(const core::EvidenceStatistics& stati
   return message;
 }
 
-core::EvidenceStatistics fromMessage(const self_awareness::Evidence& message,
-                                     const core::Vocabulary& vocabulary) {
+evidence::Statistics fromMessage(const self_awareness::Evidence& message,
+                                 const core::Vocabulary& vocabulary) {
   const std::size_t n = vocabulary.size();
   checkSizes(message, n);
-  core::EvidenceStatistics statistics;
+  evidence::Statistics statistics;
   for (const core::EventType& type : vocabulary.types()) {
     statistics.intern(type);
   }
@@ -114,24 +117,24 @@ core::EvidenceStatistics fromMessage(const self_awareness::Evidence& message,
   return statistics;
 }
 
-void setPairs(const self_awareness::EvidencePairs& message, core::EvidenceStatistics& statistics) {
+void setPairs(const self_awareness::EvidencePairs& message, evidence::Statistics& statistics) {
   check(message.id < statistics.size() && message.answers.size() == message.partners.size() &&
             areOffsets(message.offsets, message.partners.size(), message.bins.size()) &&
             message.bins.size() == message.counts.size(),
         "its evidence does not fit its event types");
-  core::EvidenceStatistics::Partners partners(message.partners.size());
+  evidence::Statistics::Partners partners(message.partners.size());
   for (std::size_t k = 0; k < partners.size(); ++k) {
     partners[k].id = message.partners[k];
     partners[k].answers = message.answers[k];
     for (std::size_t i = message.offsets[k]; i < message.offsets[k + 1]; ++i) {
-      check(message.bins[i] < core::log_bins::kBins, "its evidence has an impossible bin");
+      check(message.bins[i] < evidence::log_bins::kBins, "its evidence has an impossible bin");
       partners[k].delays[message.bins[i]] += message.counts[i];
     }
   }
   statistics.setPartners(message.id, std::move(partners));
 }
 
-self_awareness::Track toMessage(const core::Track& track) {
+self_awareness::Track toMessage(const evidence::Track& track) {
   self_awareness::Track message;
   message.channel = static_cast<std::uint8_t>(track.channel);
   message.to_id = track.to;
@@ -139,20 +142,20 @@ self_awareness::Track toMessage(const core::Track& track) {
   return message;
 }
 
-core::Track fromMessage(const self_awareness::Track& message) {
+evidence::Track fromMessage(const self_awareness::Track& message) {
   using self_awareness::Track;
-  static_assert(static_cast<int>(core::Channel::kOverdue) == Track::OVERDUE &&
-                    static_cast<int>(core::Channel::kFewer) == Track::FEWER &&
-                    static_cast<int>(core::Channel::kMore) == Track::MORE &&
-                    static_cast<int>(core::Channel::kDelay) == Track::DELAY &&
-                    static_cast<int>(core::Channel::kSlowDelay) == Track::SLOW_DELAY &&
-                    static_cast<int>(core::Channel::kAnswer) == Track::ANSWER,
+  static_assert(static_cast<int>(evidence::Channel::kOverdue) == Track::OVERDUE &&
+                    static_cast<int>(evidence::Channel::kFewer) == Track::FEWER &&
+                    static_cast<int>(evidence::Channel::kMore) == Track::MORE &&
+                    static_cast<int>(evidence::Channel::kDelay) == Track::DELAY &&
+                    static_cast<int>(evidence::Channel::kSlowDelay) == Track::SLOW_DELAY &&
+                    static_cast<int>(evidence::Channel::kAnswer) == Track::ANSWER,
                 "the message has the channels of the core");
   check(message.channel <= Track::ANSWER, "it watches what this version does not know");
-  return {static_cast<core::Channel>(message.channel), message.to_id, message.from_id};
+  return {static_cast<evidence::Channel>(message.channel), message.to_id, message.from_id};
 }
 
-core::EvidenceLimits limitsOf(const self_awareness::EvidenceCalibration& message) {
+evidence::Limits limitsOf(const self_awareness::EvidenceCalibration& message) {
   return {message.limits, message.linker_limit};
 }
 

@@ -78,7 +78,7 @@ std::string toBytes(const TrainedModel& model) {
   append(toMessage(model), bytes);
   for (core::EventId id = 0; model.hasCounts() && id < model.vocabulary().size(); ++id) {
     append(toMessage(model.statistics, id), bytes);
-    for (const core::EvidenceStatistics& half : model.evidence) {
+    for (const core::evidence::Statistics& half : model.evidence) {
       if (id == 0) {
         append(toMessage(half.withoutPairs()), bytes);
       }
@@ -97,7 +97,7 @@ TrainedModel fromBytes(const std::string& bytes) {
   TrainedModel model = fromMessage(reader.take<self_awareness::Model>());
   for (core::EventId id = 0; !reader.done() && id < model.vocabulary().size(); ++id) {
     addMessage(reader.take<self_awareness::DelayHistograms>(), model.statistics);
-    for (core::EvidenceStatistics& half : model.evidence) {
+    for (core::evidence::Statistics& half : model.evidence) {
       if (id == 0) {
         half = fromMessage(reader.take<self_awareness::Evidence>(), model.vocabulary());
       }

@@ -65,8 +65,9 @@ EncodingRules rulesOf(const self_awareness::Encoding& message) {
   return rules;
 }
 
-core::DelayStatistics eventTypesOf(const self_awareness::Model& message) {
-  core::DelayStatistics statistics(core::Binning{message.bin_size, message.horizon_bins});
+core::paper::DelayStatistics eventTypesOf(const self_awareness::Model& message) {
+  core::paper::DelayStatistics statistics(
+      core::paper::Binning{message.bin_size, message.horizon_bins});
   for (const self_awareness::EventType& type : message.event_types) {
     const std::size_t before = statistics.vocabulary().size();
     const core::EventId id = statistics.intern({type.source, type.scope, type.type});
@@ -140,7 +141,7 @@ void write(const TrainedModel& model, rosbag::Bag& bag) {
 }
 
 bool limitsFit(const TrainedModel& model) {
-  const core::EvidenceLimits limits = limitsOf(*model.evidence_calibration);
+  const core::evidence::Limits limits = limitsOf(*model.evidence_calibration);
   return limits.tracks.size() == model.watched.tracks.size() && std::isfinite(limits.linker) &&
          limits.linker > 0;
 }
@@ -149,11 +150,11 @@ bool limitsFit(const TrainedModel& model) {
 
 void TrainedModel::watch() {
   check(hasCounts(), "loaded without its counts");
-  watched = core::watch(evidence[0], evidence[1], predecessors);
+  watched = core::evidence::watch(evidence[0], evidence[1], predecessors);
 }
 
 void TrainedModel::dropCounts() {
-  core::DelayStatistics types(statistics.binning());
+  core::paper::DelayStatistics types(statistics.binning());
   for (core::EventId id = 0; id < vocabulary().size(); ++id) {
     types.countEvent(types.intern(vocabulary().at(id)), statistics.eventCount(id));
   }
@@ -165,7 +166,7 @@ std::optional<double> TrainedModel::threshold() const {
   return calibration ? std::optional<double>(calibration->threshold) : std::nullopt;
 }
 
-std::optional<core::EvidenceLimits> TrainedModel::limits() const {
+std::optional<core::evidence::Limits> TrainedModel::limits() const {
   return evidence_calibration ? std::optional(limitsOf(*evidence_calibration)) : std::nullopt;
 }
 
@@ -186,11 +187,11 @@ self_awareness::Model toMessage(const TrainedModel& model) {
     message.event_types.push_back(event_type);
   }
   message.predecessors = static_cast<std::uint32_t>(model.predecessors);
-  for (const core::Track& track : model.watched.tracks) {
+  for (const core::evidence::Track& track : model.watched.tracks) {
     message.tracks.push_back(toMessage(track));
   }
   if (model.isWatched()) {
-    for (const core::EvidenceStatistics& half : model.watched.halves) {
+    for (const core::evidence::Statistics& half : model.watched.halves) {
       message.watched.push_back(toMessage(half));
     }
   }
@@ -229,7 +230,7 @@ TrainedModel fromMessage(const self_awareness::Model& message) {
   std::transform(
       message.watched.begin(), message.watched.end(), model.watched.halves.begin(),
       [&](const self_awareness::Evidence& half) { return fromMessage(half, model.vocabulary()); });
-  core::checkTracks(model.watched.tracks, model.vocabulary().size());
+  core::evidence::checkTracks(model.watched.tracks, model.vocabulary().size());
   for (const self_awareness::GraphEdge& edge : message.graph) {
     model.graph.connect(edge.from_source, edge.to_source);
   }

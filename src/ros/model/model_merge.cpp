@@ -15,7 +15,7 @@ std::string seconds(std::int64_t nanoseconds) {
   return text.str();
 }
 
-std::int64_t horizon(const core::Binning& binning) {
+std::int64_t horizon(const core::paper::Binning& binning) {
   return binning.horizon_bins * binning.bin_size;
 }
 
@@ -49,8 +49,8 @@ void merge(TrainedModel& model, const TrainedModel& other) {
     throw std::invalid_argument("loaded without its counts");
   }
   requireSameEncoding(model.encoding, other.encoding);
-  const core::Binning& binning = model.statistics.binning();
-  const core::Binning& others = other.statistics.binning();
+  const core::paper::Binning& binning = model.statistics.binning();
+  const core::paper::Binning& others = other.statistics.binning();
   requireSame("length of the windows", model.window, other.window, "0 s");
   requireSame("bin size", binning.bin_size, others.bin_size, "0 s");
   requireSame("horizon", horizon(binning), horizon(others), "none");

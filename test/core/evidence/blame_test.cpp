@@ -9,7 +9,7 @@
 
 #include "recordings.h"
 
-namespace self_awareness::core {
+namespace self_awareness::core::evidence {
 namespace {
 
 using Reason = Suspect::Reason;
@@ -37,7 +37,7 @@ class EvidenceBlameTest : public testing::Test {
       shares.at(indexOf(model_->tracks(), track.channel, track.to, track.from)) = share;
     }
     scorer_.closeWindow(end);
-    return EvidenceBlame(model_, graph_).suspects(shares, scorer_, window);
+    return Blame(model_, graph_).suspects(shares, scorer_, window);
   }
   static std::vector<EventId> ids(const std::vector<Suspect>& suspects) {
     std::vector<EventId> ids;
@@ -49,10 +49,10 @@ class EvidenceBlameTest : public testing::Test {
   }
   static Track overdue(EventId id) { return {Channel::kOverdue, id, id}; }
 
-  std::shared_ptr<const EvidenceModel> model_ = std::make_shared<EvidenceModel>(
+  std::shared_ptr<const Model> model_ = std::make_shared<Model>(
       watch(countsOf({robot(100 * kSecond, 1)}), countsOf({robot(100 * kSecond, 2)})));
   std::shared_ptr<SourceGraph> graph_ = std::make_shared<SourceGraph>();
-  EvidenceScorer scorer_{model_, kWindow};
+  Scorer scorer_{model_, kWindow};
   std::int64_t last_ = 0;
 };
 
@@ -159,15 +159,15 @@ TEST_F(EvidenceBlameTest, NoMoreThanFiveAreNamed) {
 }
 
 TEST_F(EvidenceBlameTest, ATopicStandsForWhomItIsNotKnownWhoSends) {
-  EvidenceStatistics counts;
+  Statistics counts;
   for (const EventType& type : kTypes) {
     counts.intern({"", type.scope, type.type});
   }
-  EvidenceTrainer trainer(counts, kWindow);
+  Trainer trainer(counts, kWindow);
   for (const Event& event : robot(100 * kSecond, 1)) {
     trainer.add(event);
   }
-  model_ = std::make_shared<EvidenceModel>(watch(counts, {}));
+  model_ = std::make_shared<Model>(watch(counts, {}));
   graph_->connect("/x", "/z");
   const std::vector<Suspect> named =
       suspects({{overdue(kA), 1.5}, {overdue(kC), 1.5}}, last_ + 5 * kSecond);
@@ -175,4 +175,4 @@ TEST_F(EvidenceBlameTest, ATopicStandsForWhomItIsNotKnownWhoSends) {
 }
 
 }  // namespace
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::evidence

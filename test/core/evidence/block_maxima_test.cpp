@@ -10,7 +10,7 @@
 
 #include "self_awareness/core/evidence/limits.h"
 
-namespace self_awareness::core {
+namespace self_awareness::core::evidence {
 namespace {
 
 using Values = std::vector<double>;
@@ -170,4 +170,4 @@ TEST(BlockMaxima, ThatHardlyVaryHaveALimitFarBelowTheMargin) {
 }
 
 }  // namespace
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::evidence

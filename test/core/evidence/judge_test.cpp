@@ -10,13 +10,13 @@
 
 #include "recordings.h"
 
-namespace self_awareness::core {
+namespace self_awareness::core::evidence {
 namespace {
 
 constexpr std::int64_t kPeriod = 200 * kMillisecond;
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-EvidenceStatistics followed(unsigned seed) {
+Statistics followed(unsigned seed) {
   const Events asked = irregular(kA, 0, 100 * kSecond, kPeriod, seed);
   return countsOf({together({asked, answers(kB, asked, 20 * kMillisecond)})}, 2);
 }
@@ -31,11 +31,11 @@ class EvidenceJudgeTest : public testing::Test {
   std::size_t track(Channel channel, EventId to, EventId from) const {
     return indexOf(model_->tracks(), channel, to, from);
   }
-  EvidenceJudge makeJudge(const std::optional<EvidenceLimits>& limits) const {
-    return EvidenceJudge(model_, limits, kWindow, std::make_shared<SourceGraph>());
+  Judge makeJudge(const std::optional<Limits>& limits) const {
+    return Judge(model_, limits, kWindow, std::make_shared<SourceGraph>());
   }
   // As in training, so that all that is watched counts, and then answers that come late.
-  static void feed(EvidenceJudge& judge, int late) {
+  static void feed(Judge& judge, int late) {
     for (int i = 0; i < 40 + late; ++i) {
       const std::int64_t delay = i < 40 ? 20 * kMillisecond : 70 * kMillisecond;
       judge.add({i * kPeriod, kA});
@@ -43,9 +43,8 @@ class EvidenceJudgeTest : public testing::Test {
     }
   }
 
-  std::shared_ptr<const EvidenceModel> model_ =
-      std::make_shared<EvidenceModel>(watch(followed(1), followed(2)));
-  EvidenceLimits limits_;
+  std::shared_ptr<const Model> model_ = std::make_shared<Model>(watch(followed(1), followed(2)));
+  Limits limits_;
 };
 
 TEST_F(EvidenceJudgeTest, TheScoreIsTheLargestShareOfALimit) {
@@ -53,7 +52,7 @@ TEST_F(EvidenceJudgeTest, TheScoreIsTheLargestShareOfALimit) {
   const double evidence = model_->overdue(kA, age);
   for (const double share : {0.5, 0.99, 1.01}) {
     limits_.tracks[track(Channel::kOverdue, kA, kA)] = evidence / share;
-    EvidenceJudge judge = makeJudge(limits_);
+    Judge judge = makeJudge(limits_);
     judge.add({0, kA});
     const Judgement judgement = judge.judge({}, age);
     EXPECT_NEAR(judgement.score.value(), -share, 1e-12);
@@ -67,7 +66,7 @@ TEST_F(EvidenceJudgeTest, TheScoreIsTheLargestShareOfALimit) {
 
 TEST_F(EvidenceJudgeTest, ASilenceThatHasLastedIsCertain) {
   limits_.tracks[track(Channel::kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
-  EvidenceJudge judge = makeJudge(limits_);
+  Judge judge = makeJudge(limits_);
   judge.add({0, kA});
   EXPECT_FALSE(judge.judge({}, kSecond).abnormal);
   const Judgement soon = judge.judge({}, kSecond + 50 * kMillisecond);
@@ -79,10 +78,10 @@ TEST_F(EvidenceJudgeTest, ASilenceThatHasLastedIsCertain) {
 TEST_F(EvidenceJudgeTest, LateAnswersAreAbnormalButNotCertain) {
   const std::size_t delay = track(Channel::kDelay, kB, kA);
   limits_.tracks[delay] = model_->leastLimit(delay);
-  EvidenceJudge usual = makeJudge(limits_);
+  Judge usual = makeJudge(limits_);
   feed(usual, 0);
   EXPECT_EQ(usual.judge({}, 40 * kPeriod).score, 0);
-  EvidenceJudge judge = makeJudge(limits_);
+  Judge judge = makeJudge(limits_);
   feed(judge, 5);
   const Judgement judgement = judge.judge({}, 45 * kPeriod);
   EXPECT_TRUE(judgement.abnormal);
@@ -99,7 +98,7 @@ TEST_F(EvidenceJudgeTest, TheLinkerIsSuspiciousNearItsLimitAndCertainBeyondIt) {
        {std::tuple(2.0, false, false), std::tuple(1.2, true, false),
         std::tuple(0.9, true, true)}) {
     limits_.linker = limit;
-    EvidenceJudge judge = makeJudge(limits_);
+    Judge judge = makeJudge(limits_);
     feed(judge, 5);
     const Judgement judgement = judge.judge({}, 45 * kPeriod);
     EXPECT_NEAR(judgement.score.value(), -1 / limit, 1e-12);
@@ -111,7 +110,7 @@ TEST_F(EvidenceJudgeTest, TheLinkerIsSuspiciousNearItsLimitAndCertainBeyondIt) {
 }
 
 TEST_F(EvidenceJudgeTest, WithoutLimitsItSaysNothing) {
-  EvidenceJudge judge = makeJudge(std::nullopt);
+  Judge judge = makeJudge(std::nullopt);
   judge.add({0, kA});
   const Judgement judgement = judge.judge({}, 3000 * kSecond);
   EXPECT_FALSE(judgement.score.has_value());
@@ -120,14 +119,14 @@ TEST_F(EvidenceJudgeTest, WithoutLimitsItSaysNothing) {
 }
 
 TEST_F(EvidenceJudgeTest, KnowsUnknownEvents) {
-  EvidenceJudge judge = makeJudge(limits_);
+  Judge judge = makeJudge(limits_);
   EXPECT_FALSE(judge.add({0, kA}).unknown);
   EXPECT_TRUE(judge.add({0, kC}).unknown);
 }
 
 TEST_F(EvidenceJudgeTest, ARestartForgetsWhatWasSeen) {
   limits_.tracks[track(Channel::kOverdue, kA, kA)] = 1;
-  EvidenceJudge judge = makeJudge(limits_);
+  Judge judge = makeJudge(limits_);
   judge.add({0, kA});
   EXPECT_TRUE(judge.judge({}, 100 * kSecond).abnormal);
   judge.restart();
@@ -135,15 +134,15 @@ TEST_F(EvidenceJudgeTest, ARestartForgetsWhatWasSeen) {
 }
 
 TEST_F(EvidenceJudgeTest, RefusesLimitsOfAnotherModel) {
-  EvidenceLimits few = limits_;
+  Limits few = limits_;
   few.tracks.pop_back();
   EXPECT_THROW(makeJudge(few), std::invalid_argument);
   for (const double linker : {kNone, 0.0, -1.0, std::numeric_limits<double>::infinity()}) {
-    EvidenceLimits unusable = limits_;
+    Limits unusable = limits_;
     unusable.linker = linker;
     EXPECT_THROW(makeJudge(unusable), std::invalid_argument) << linker;
   }
 }
 
 }  // namespace
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::evidence

@@ -13,7 +13,7 @@
 
 #include "recordings.h"
 
-namespace self_awareness::core {
+namespace self_awareness::core::evidence {
 namespace {
 
 constexpr std::int64_t kPeriod = 200 * kMillisecond;
@@ -25,8 +25,8 @@ Events robot(std::int64_t length, unsigned seed, std::int64_t delay = 20 * kMill
       {asked, answers(kB, asked, delay), irregular(kC, 0, length, 50 * kMillisecond, seed + 100)});
 }
 
-std::shared_ptr<const EvidenceModel> modelOf(const Events& first, const Events& second) {
-  return std::make_shared<EvidenceModel>(watch(countsOf({first}), countsOf({second})));
+std::shared_ptr<const Model> modelOf(const Events& first, const Events& second) {
+  return std::make_shared<Model>(watch(countsOf({first}), countsOf({second})));
 }
 
 BlockMaxima maximaOf(const std::vector<double>& values) {
@@ -39,7 +39,7 @@ BlockMaxima maximaOf(const std::vector<double>& values) {
 
 class LimitFinderTest : public testing::Test {
  protected:
-  static void feed(LimitFinder& finder, const std::shared_ptr<const EvidenceModel>& model,
+  static void feed(LimitFinder& finder, const std::shared_ptr<const Model>& model,
                    const Events& events) {
     finder.startRecording(model);
     for (const Event& event : events) {
@@ -47,22 +47,21 @@ class LimitFinderTest : public testing::Test {
     }
     finder.finish();
   }
-  static EvidenceLimits limitsOf(const std::shared_ptr<const EvidenceModel>& model,
-                                 const Events& events, double budget = 0.5) {
+  static Limits limitsOf(const std::shared_ptr<const Model>& model, const Events& events,
+                         double budget = 0.5) {
     LimitFinder finder(model, {kWindow, 5 * kSecond, budget});
     feed(finder, model, events);
     finder.startSecondPass();
     feed(finder, model, events);
     return finder.limits();
   }
-  double limit(const EvidenceLimits& limits, Channel channel, EventId to, EventId from) const {
+  double limit(const Limits& limits, Channel channel, EventId to, EventId from) const {
     const std::size_t track = indexOf(model_->tracks(), channel, to, from);
     EXPECT_LT(track, model_->tracks().size());
     return limits.tracks.at(track);
   }
 
-  std::shared_ptr<const EvidenceModel> model_ =
-      modelOf(robot(100 * kSecond, 1), robot(100 * kSecond, 2));
+  std::shared_ptr<const Model> model_ = modelOf(robot(100 * kSecond, 1), robot(100 * kSecond, 2));
 };
 
 TEST(GumbelLimit, IsFittedByLMoments) {
@@ -115,14 +114,14 @@ TEST(OverdueAge, LooksAtTheTwentyLongestGaps) {
 
 TEST_F(LimitFinderTest, AreFiniteAndAboveAllThatWasSeen) {
   const Events normal = robot(200 * kSecond, 3);
-  const EvidenceLimits limits = limitsOf(model_, normal);
+  const Limits limits = limitsOf(model_, normal);
   ASSERT_EQ(limits.tracks.size(), model_->tracks().size());
   EXPECT_GE(limits.linker, 1);
-  EvidenceScorer scorer(model_, kWindow);
+  Scorer scorer(model_, kWindow);
   std::int64_t end = kWindow;
   for (const Event& event : normal) {
     for (; event.stamp >= end; end += kWindow) {
-      const EvidenceSum sum = sumUp(scorer.closeWindow(end), *model_, limits);
+      const Sum sum = sumUp(scorer.closeWindow(end), *model_, limits);
       if (end > 5 * kSecond) {
         EXPECT_LE(sum.largest, 1) << end;
         EXPECT_LT(sum.linker, limits.linker) << end;
@@ -140,8 +139,8 @@ TEST_F(LimitFinderTest, AreFiniteAndAboveAllThatWasSeen) {
 
 TEST_F(LimitFinderTest, ASmallerBudgetHasHigherLimits) {
   const Events normal = robot(200 * kSecond, 3);
-  const EvidenceLimits lax = limitsOf(model_, normal, 5);
-  const EvidenceLimits strict = limitsOf(model_, normal, 0.05);
+  const Limits lax = limitsOf(model_, normal, 5);
+  const Limits strict = limitsOf(model_, normal, 0.05);
   for (std::size_t track = 0; track < lax.tracks.size(); ++track) {
     EXPECT_FALSE(strict.tracks[track] < lax.tracks[track]) << track;
   }
@@ -149,7 +148,7 @@ TEST_F(LimitFinderTest, ASmallerBudgetHasHigherLimits) {
 }
 
 TEST_F(LimitFinderTest, APairThatMisleadsIsNotJudged) {
-  const EvidenceLimits holds = limitsOf(model_, robot(200 * kSecond, 3));
+  const Limits holds = limitsOf(model_, robot(200 * kSecond, 3));
   EXPECT_TRUE(std::isfinite(limit(holds, Channel::kDelay, kB, kA)));
   EXPECT_TRUE(std::isfinite(limit(holds, Channel::kSlowDelay, kB, kA)));
   // It held in both halves of the training by chance: in another recording it never does, so that
@@ -162,7 +161,7 @@ TEST_F(LimitFinderTest, APairThatMisleadsIsNotJudged) {
       finder.startSecondPass();
     }
   }
-  const EvidenceLimits lost = finder.limits();
+  const Limits lost = finder.limits();
   EXPECT_TRUE(std::isnan(limit(lost, Channel::kDelay, kB, kA)));
   EXPECT_TRUE(std::isnan(limit(lost, Channel::kSlowDelay, kB, kA)));
   EXPECT_TRUE(std::isfinite(limit(lost, Channel::kOverdue, kB, kB)));
@@ -175,7 +174,7 @@ TEST_F(LimitFinderTest, APairWhoseEvidenceRunsAwayIsNotJudged) {
       event.stamp += 40 * kMillisecond;
     }
   }
-  const EvidenceLimits lost = limitsOf(model_, together({drifted}));
+  const Limits lost = limitsOf(model_, together({drifted}));
   EXPECT_TRUE(std::isnan(limit(lost, Channel::kDelay, kB, kA)));
 }
 
@@ -263,8 +262,8 @@ TEST_F(LimitFinderTest, WhatRecordingsSayElsewhereAddsUp) {
     }
   }
   EXPECT_EQ(sum.windows(), alone.windows());
-  const EvidenceLimits a = alone.limits();
-  const EvidenceLimits b = sum.limits();
+  const Limits a = alone.limits();
+  const Limits b = sum.limits();
   EXPECT_EQ(a.linker, b.linker);
   ASSERT_EQ(a.tracks.size(), b.tracks.size());
   EXPECT_TRUE(std::any_of(a.tracks.begin(), a.tracks.end(), [](double x) { return x != x; }));
@@ -301,7 +300,7 @@ TEST_F(LimitFinderTest, FindingsDoNotGrowWithTheRecording) {
     EXPECT_EQ(findings.maxima[track].number(), overdue ? 0U : 130U) << track;
   }
   for (const std::vector<std::int64_t>& gaps : findings.longest_gaps) {
-    EXPECT_LE(gaps.size(), EvidenceStatistics::kLongestGaps);
+    EXPECT_LE(gaps.size(), Statistics::kLongestGaps);
   }
 }
 
@@ -310,7 +309,7 @@ TEST_F(LimitFinderTest, WhatWasFoundForAnotherModelIsRefused) {
   const auto other = modelOf(timer(kA, 0, 100 * kSecond, kPeriod), {});
   const LimitFinder of_other(other, {kWindow, 5 * kSecond, 0.5});
   EXPECT_THROW(finder.merge(of_other.findings()), std::invalid_argument);
-  EXPECT_THROW(finder.startSecondPass(EvidenceLimits{{1.0}, 1.0}), std::invalid_argument);
+  EXPECT_THROW(finder.startSecondPass(Limits{{1.0}, 1.0}), std::invalid_argument);
 }
 
 TEST_F(LimitFinderTest, AStepOfTheClockIsTheStartOfAnotherRecording) {
@@ -330,8 +329,8 @@ TEST_F(LimitFinderTest, AStepOfTheClockIsTheStartOfAnotherRecording) {
     }
   }
   EXPECT_EQ(apart.windows(), stepped.windows());
-  const EvidenceLimits a = apart.limits();
-  const EvidenceLimits b = stepped.limits();
+  const Limits a = apart.limits();
+  const Limits b = stepped.limits();
   EXPECT_EQ(a.linker, b.linker);
   for (std::size_t track = 0; track < a.tracks.size(); ++track) {
     EXPECT_TRUE(a.tracks[track] == b.tracks[track] ||
@@ -348,4 +347,4 @@ TEST_F(LimitFinderTest, RefusesImpossibleValues) {
 }
 
 }  // namespace
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::evidence

@@ -9,10 +9,10 @@
 
 #include "recordings.h"
 
-namespace self_awareness::core {
+namespace self_awareness::core::evidence {
 namespace {
 
-const EvidenceStatistics kNothing = countsOf({});
+const Statistics kNothing = countsOf({});
 
 // Gaps [ns] as the model knows them: by the middle of their bins, none beyond the longest.
 std::vector<double> binnedGaps(const Events& events) {
@@ -30,8 +30,8 @@ std::vector<double> binnedGaps(const Events& events) {
 }
 
 // Counts of one event type's rate.
-EvidenceStatistics ofRate(std::uint64_t sum, std::uint64_t squares, std::uint64_t windows) {
-  EvidenceStatistics counts;
+Statistics ofRate(std::uint64_t sum, std::uint64_t squares, std::uint64_t windows) {
+  Statistics counts;
   counts.intern(kTypes[kA]);
   counts.type(kA).rate_sum = sum;
   counts.type(kA).rate_squares = squares;
@@ -40,7 +40,7 @@ EvidenceStatistics ofRate(std::uint64_t sum, std::uint64_t squares, std::uint64_
 }
 
 // B comes 20 or 40 ms after A, which comes at random.
-EvidenceStatistics pairCounts(unsigned seed) {
+Statistics pairCounts(unsigned seed) {
   const Events asked = irregular(kA, 0, 100 * kSecond, 200 * kMillisecond, seed);
   Events answered = answers(kB, asked, 20 * kMillisecond);
   for (std::size_t k = 0; k < answered.size(); k += 3) {
@@ -50,13 +50,13 @@ EvidenceStatistics pairCounts(unsigned seed) {
 }
 
 TEST(EvidenceModel, NeedsAnEvent) {
-  EXPECT_THROW(EvidenceModel(watch({}, {})), std::invalid_argument);
+  EXPECT_THROW(Model(watch({}, {})), std::invalid_argument);
 }
 
 TEST(EvidenceModel, OverdueIsTheLiteralSumOverTheGaps) {
   for (const Events& events : {irregular(kA, 0, 60 * kSecond, 300 * kMillisecond, 3),
                                timer(kA, 0, 60 * kSecond, 100 * kMillisecond)}) {
-    const EvidenceModel model(watch(countsOf({events}), kNothing));
+    const Model model(watch(countsOf({events}), kNothing));
     const std::vector<double> gaps = binnedGaps(events);
     const auto b = static_cast<double>(model.longestGap(kA));
     double all = b;
@@ -75,7 +75,7 @@ TEST(EvidenceModel, OverdueIsTheLiteralSumOverTheGaps) {
 }
 
 TEST(EvidenceModel, OverdueRisesFromZeroWithoutEnd) {
-  const EvidenceModel model(
+  const Model model(
       watch(countsOf({irregular(kA, 0, 60 * kSecond, 300 * kMillisecond, 3)}), kNothing));
   EXPECT_NEAR(model.overdue(kA, 0), 0, 1e-12);
   EXPECT_NEAR(model.overdue(kA, -kSecond), 0, 1e-12);
@@ -92,7 +92,7 @@ TEST(EvidenceModel, OverdueWeighsGapsByTheirLength) {
   // 1000 gaps of 100 ms and one of 10 s: a tenth of the time lies in the long one.
   Events events = timer(kA, 0, 100 * kSecond + 1, 100 * kMillisecond);
   events.push_back({events.back().stamp + 10 * kSecond, kA});
-  const EvidenceModel model(watch(countsOf({events}), kNothing));
+  const Model model(watch(countsOf({events}), kNothing));
   const double of_time = std::exp(-model.overdue(kA, kSecond));
   const double of_gaps = std::exp(model.logSurvival(kA, kSecond));
   EXPECT_NEAR(of_time, 0.15, 0.02);  // the long gap and the tail beyond it
@@ -100,8 +100,7 @@ TEST(EvidenceModel, OverdueWeighsGapsByTheirLength) {
 }
 
 TEST(EvidenceModel, ATypeThatNeverRepeatedHasNoEvidence) {
-  const EvidenceModel model(
-      watch(countsOf({{{0, kA}, {kSecond, kB}, {2 * kSecond, kB}}}), kNothing));
+  const Model model(watch(countsOf({{{0, kA}, {kSecond, kB}, {2 * kSecond, kB}}}), kNothing));
   EXPECT_EQ(model.overdue(kA, 3600 * kSecond), 0);
   EXPECT_EQ(model.logSurvival(kA, 3600 * kSecond), 0);
   EXPECT_EQ(model.longestGap(kA), 0);
@@ -110,7 +109,7 @@ TEST(EvidenceModel, ATypeThatNeverRepeatedHasNoEvidence) {
 }
 
 TEST(EvidenceModel, SurvivalIsTheShareOfGapsAndATailBeyondThem) {
-  const EvidenceModel model(
+  const Model model(
       watch(countsOf({timer(kA, 0, 10 * kSecond + 1, 100 * kMillisecond)}), kNothing));
   EXPECT_NEAR(model.logSurvival(kA, 200 * kMillisecond), -2 - std::log(101), 1e-12);
   EXPECT_NEAR(model.logSurvival(kA, 50 * kMillisecond),
@@ -119,15 +118,15 @@ TEST(EvidenceModel, SurvivalIsTheShareOfGapsAndATailBeyondThem) {
 
 TEST(EvidenceModel, RateIsTheNumberOfSpreadsAboveTheMean) {
   // Mean 4, variance 1; min(1, 4 / 4) + 1/4 more.
-  const EvidenceModel often(watch(ofRate(40, 170, 10), {}));
+  const Model often(watch(ofRate(40, 170, 10), {}));
   EXPECT_NEAR(often.rate(kA, 7), 2, 1e-12);
   EXPECT_NEAR(often.rate(kA, 1), -2, 1e-12);
   EXPECT_NEAR(often.usualCount(kA, 2), 7, 1e-12);
   // Mean 0.4, variance 0.24, min(1, 0.1) + 1/4 more.
-  const EvidenceModel rarely(watch(ofRate(4, 4, 10), {}));
+  const Model rarely(watch(ofRate(4, 4, 10), {}));
   EXPECT_NEAR(rarely.rate(kA, 1), 0.6 / std::sqrt(0.59), 1e-12);
   // The halves add up.
-  const EvidenceModel halves(watch(ofRate(10, 45, 3), ofRate(30, 125, 7)));
+  const Model halves(watch(ofRate(10, 45, 3), ofRate(30, 125, 7)));
   EXPECT_NEAR(halves.rate(kA, 7), 2, 1e-12);
 }
 
@@ -145,8 +144,8 @@ TEST(EvidenceModel, AnswersAreALogLikelihoodRatio) {
   answered.erase(std::remove_if(answered.begin(), answered.end(),
                                 [&](const Event&) { return index++ % 5 == 0; }),
                  answered.end());
-  const EvidenceStatistics counts = countsOf({together({asked, answered})}, 2);
-  const EvidenceModel model(watch(counts, counts));
+  const Statistics counts = countsOf({together({asked, answered})}, 2);
+  const Model model(watch(counts, counts));
   const std::size_t track = indexOf(model.tracks(), Channel::kAnswer, kB, kA);
   ASSERT_LT(track, model.tracks().size());
   const double usual = missRate(2 * counts.type(kA).gaps, 2 * counts.answers(kA, kB));
@@ -162,8 +161,8 @@ TEST(EvidenceModel, AnswersAreALogLikelihoodRatio) {
 }
 
 TEST(EvidenceModel, SurpriseIsStandardisedByWhatTheOtherHalfFinds) {
-  const EvidenceStatistics half = pairCounts(1);
-  const EvidenceModel model(watch(half, half), EvidenceModel::Learned::kFirst);
+  const Statistics half = pairCounts(1);
+  const Model model(watch(half, half), Model::Learned::kFirst);
   const std::size_t track = indexOf(model.tracks(), Channel::kDelay, kB, kA);
   ASSERT_LT(track, model.tracks().size());
   double mean = 0;
@@ -180,7 +179,7 @@ TEST(EvidenceModel, SurpriseIsStandardisedByWhatTheOtherHalfFinds) {
 }
 
 TEST(EvidenceModel, SurpriseIsBounded) {
-  const EvidenceModel model(watch(pairCounts(1), pairCounts(2)));
+  const Model model(watch(pairCounts(1), pairCounts(2)));
   for (const Channel channel : {Channel::kDelay, Channel::kSlowDelay}) {
     const std::size_t track = indexOf(model.tracks(), channel, kB, kA);
     ASSERT_LT(track, model.tracks().size());
@@ -195,11 +194,11 @@ TEST(EvidenceModel, SurpriseIsBounded) {
 }
 
 TEST(EvidenceModel, TheTracksStayWhateverProbabilitiesWereLearnedFrom) {
-  const EvidenceStatistics first = pairCounts(1);
-  const EvidenceStatistics second = pairCounts(2);
-  const EvidenceModel both(watch(first, second));
-  const EvidenceModel half(watch(first, second), EvidenceModel::Learned::kFirst);
-  const EvidenceModel other(watch(first, second), EvidenceModel::Learned::kSecond);
+  const Statistics first = pairCounts(1);
+  const Statistics second = pairCounts(2);
+  const Model both(watch(first, second));
+  const Model half(watch(first, second), Model::Learned::kFirst);
+  const Model other(watch(first, second), Model::Learned::kSecond);
   ASSERT_EQ(both.tracks().size(), half.tracks().size());
   for (std::size_t track = 0; track < both.tracks().size(); ++track) {
     EXPECT_EQ(both.tracks()[track].channel, half.tracks()[track].channel);
@@ -207,29 +206,28 @@ TEST(EvidenceModel, TheTracksStayWhateverProbabilitiesWereLearnedFrom) {
     EXPECT_EQ(both.tracks()[track].from, half.tracks()[track].from);
   }
   EXPECT_NE(half.overdue(kA, kSecond), other.overdue(kA, kSecond));
-  EXPECT_DOUBLE_EQ(half.overdue(kA, kSecond),
-                   EvidenceModel(watch(first, {})).overdue(kA, kSecond));
+  EXPECT_DOUBLE_EQ(half.overdue(kA, kSecond), Model(watch(first, {})).overdue(kA, kSecond));
 }
 
 TEST(EvidenceModel, AHalfMayLackAnEventType) {
-  EvidenceStatistics second;  // B alone, so that its id is another one
+  Statistics second;  // B alone, so that its id is another one
   second.intern(kTypes[kB]);
-  EvidenceTrainer trainer(second, kWindow);
+  Trainer trainer(second, kWindow);
   for (const Event& event : timer(0, 0, 10 * kSecond, 100 * kMillisecond)) {
     trainer.add(event);
   }
-  const EvidenceStatistics first = countsOf({timer(kA, 0, 10 * kSecond, 100 * kMillisecond)}, 1);
-  const EvidenceModel model(watch(first, second), EvidenceModel::Learned::kSecond);
+  const Statistics first = countsOf({timer(kA, 0, 10 * kSecond, 100 * kMillisecond)}, 1);
+  const Model model(watch(first, second), Model::Learned::kSecond);
   EXPECT_EQ(model.overdue(kA, kSecond), 0);
   EXPECT_GT(model.overdue(kB, kSecond), 1);
 }
 
 TEST(EvidenceModel, UsualDelaysAreThoseThatAShareDidNotExceed) {
-  const EvidenceModel model(watch(pairCounts(1), pairCounts(2)));
+  const Model model(watch(pairCounts(1), pairCounts(2)));
   EXPECT_NEAR(model.usualDelay(kA, kB, 0.05), 0.020, 0.004);
   EXPECT_NEAR(model.usualDelay(kA, kB, 0.60), 0.020, 0.004);
   EXPECT_NEAR(model.usualDelay(kA, kB, 0.95), 0.040, 0.008);
 }
 
 }  // namespace
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::evidence

@@ -10,7 +10,7 @@
 #include "self_awareness/core/evidence/tracks.h"
 
 /// Recordings made to measure for the tests of the evidence detector.
-namespace self_awareness::core {
+namespace self_awareness::core::evidence {
 
 constexpr std::int64_t kMillisecond = 1000000;
 constexpr std::int64_t kSecond = 1000 * kMillisecond;
@@ -68,13 +68,13 @@ inline Events answers(EventId id, const Events& asked, std::int64_t delay) {
 }
 
 /// Counts of recordings, with the first so many of kTypes.
-inline EvidenceStatistics countsOf(const std::vector<Events>& recordings,
-                                   std::size_t types = kTypes.size()) {
-  EvidenceStatistics statistics;
+inline Statistics countsOf(const std::vector<Events>& recordings,
+                           std::size_t types = kTypes.size()) {
+  Statistics statistics;
   for (std::size_t id = 0; id < types; ++id) {
     statistics.intern(kTypes[id]);
   }
-  EvidenceTrainer trainer(statistics, kWindow);
+  Trainer trainer(statistics, kWindow);
   for (const Events& events : recordings) {
     trainer.startRecording();
     for (const Event& event : events) {
@@ -100,4 +100,4 @@ inline bool isWatched(const std::vector<Track>& tracks, Channel channel, EventId
   return indexOf(tracks, channel, to, from) < tracks.size();
 }
 
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::evidence

@@ -12,7 +12,7 @@
 
 #include "recordings.h"
 
-namespace self_awareness::core {
+namespace self_awareness::core::evidence {
 namespace {
 
 constexpr std::int64_t kPeriod = 200 * kMillisecond;
@@ -21,7 +21,7 @@ constexpr std::int64_t kUnusual = 60 * kMillisecond;
 constexpr int kArming = 30;  // events
 
 // A comes irregularly, and B kUsual after it.
-EvidenceStatistics followed(unsigned seed) {
+Statistics followed(unsigned seed) {
   const Events asked = irregular(kA, 0, 100 * kSecond, kPeriod, seed);
   return countsOf({together({asked, answers(kB, asked, kUsual)})}, 2);
 }
@@ -48,9 +48,8 @@ class EvidenceScorerTest : public testing::Test {
   }
   double evidence(std::size_t track) { return scorer_.closeWindow(now_)[track]; }
 
-  std::shared_ptr<const EvidenceModel> model_ =
-      std::make_shared<EvidenceModel>(watch(followed(1), followed(2)));
-  EvidenceScorer scorer_{model_, kWindow};
+  std::shared_ptr<const Model> model_ = std::make_shared<Model>(watch(followed(1), followed(2)));
+  Scorer scorer_{model_, kWindow};
   std::int64_t now_ = 1000 * kSecond;
 };
 
@@ -172,7 +171,7 @@ TEST_F(EvidenceScorerTest, MissedAnswersAddUpAsInACusumTest) {
 
 TEST_F(EvidenceScorerTest, NoSumGrowsFarBeyondItsLimit) {
   const std::size_t pair = track(Channel::kDelay, kB, kA);
-  EvidenceLimits limits;
+  Limits limits;
   limits.tracks.assign(model_->tracks().size(), 14);
   scorer_.capAt(limits);
   askUsually(kArming);
@@ -274,7 +273,7 @@ TEST_F(EvidenceScorerTest, ARestartForgetsAll) {
 
 TEST_F(EvidenceScorerTest, TheLinkerAddsUpTheLargestShareOfEveryEventType) {
   const std::vector<Track>& tracks = model_->tracks();
-  EvidenceLimits limits;
+  Limits limits;
   limits.tracks.assign(tracks.size(), 10);
   std::vector<double> evidence(tracks.size(), 0);
   evidence[track(Channel::kOverdue, kA, kA)] = 7;
@@ -282,7 +281,7 @@ TEST_F(EvidenceScorerTest, TheLinkerAddsUpTheLargestShareOfEveryEventType) {
   evidence[track(Channel::kSlowDelay, kB, kA)] = 30;  // at most 1
   evidence[track(Channel::kAnswer, kB, kA)] = 4;      // less than that
   evidence[track(Channel::kSlowDelay, kA, kA)] = 2;
-  EvidenceSum sum = sumUp(evidence, *model_, limits);
+  Sum sum = sumUp(evidence, *model_, limits);
   EXPECT_DOUBLE_EQ(sum.largest, 0.8);
   EXPECT_DOUBLE_EQ(sum.linker, 1.2);
 
@@ -294,4 +293,4 @@ TEST_F(EvidenceScorerTest, TheLinkerAddsUpTheLargestShareOfEveryEventType) {
 }
 
 }  // namespace
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::evidence

@@ -13,7 +13,7 @@
 #include "recordings.h"
 #include "self_awareness/core/stream/clock.h"
 
-namespace self_awareness::core {
+namespace self_awareness::core::evidence {
 namespace {
 
 Events inMilliseconds(std::initializer_list<Event> events) {
@@ -36,8 +36,8 @@ Events randomEvents(unsigned seed, EventId first, EventId last) {
 }
 
 // The same counts, with the ids of kTypes.
-EvidenceStatistics reordered(const EvidenceStatistics& counts) {
-  EvidenceStatistics ordered = countsOf({});
+Statistics reordered(const Statistics& counts) {
+  Statistics ordered = countsOf({});
   ordered.merge(counts);
   return ordered;
 }
@@ -104,7 +104,7 @@ TEST(RecentCounts, SlideOverTheLastWindows) {
 }
 
 TEST(EvidenceTrainer, CountsDelaysGapsAndAnswers) {
-  const EvidenceStatistics counts = countsOf(
+  const Statistics counts = countsOf(
       {inMilliseconds({{0, kA}, {10, kB}, {100, kA}, {130, kB}, {150, kB}, {300, kA}, {390, kA}})},
       2);
   EXPECT_EQ(counts.type(kA).events, 4U);
@@ -132,15 +132,15 @@ TEST(EvidenceTrainer, CountsDelaysGapsAndAnswers) {
 }
 
 TEST(EvidenceTrainer, NoDelaysWhereNoneWasSeen) {
-  const EvidenceStatistics counts = countsOf({inMilliseconds({{0, kA}, {10, kB}})}, 2);
+  const Statistics counts = countsOf({inMilliseconds({{0, kA}, {10, kB}})}, 2);
   EXPECT_EQ(counts.total(kB, kA), 0U);
   EXPECT_EQ(counts.total(kA, kB), 1U);
 }
 
 TEST(EvidenceTrainer, CountsRatesInFullSpansOnly) {
-  EvidenceStatistics counts;
+  Statistics counts;
   counts.intern(kTypes[kA]);
-  EvidenceTrainer trainer(counts, kSecond);
+  Trainer trainer(counts, kSecond);
   const auto add = [&](std::int64_t milliseconds, EventId id) {
     trainer.add({milliseconds * kMillisecond, id});
   };
@@ -159,7 +159,7 @@ TEST(EvidenceTrainer, CountsRatesInFullSpansOnly) {
 }
 
 TEST(EvidenceTrainer, ALateEventHasNoNegativeDelay) {
-  const EvidenceStatistics counts =
+  const Statistics counts =
       countsOf({inMilliseconds({{0, kA}, {100, kA}, {50, kA}, {80, kB}})}, 2);
   EXPECT_EQ(counts.type(kA).gap_sum, 100 * kMillisecond);
   EXPECT_EQ(counts.type(kA).longest_gaps.back(), 0);
@@ -169,7 +169,7 @@ TEST(EvidenceTrainer, ALateEventHasNoNegativeDelay) {
 
 TEST(EvidenceTrainer, OnlyTheEventBeforeTellsAStepOfTheClock) {
   // Two late events, each within what is late of the one before it, as everywhere (clock.h).
-  const EvidenceStatistics counts =
+  const Statistics counts =
       countsOf({inMilliseconds({{1000, kA}, {1160, kA}, {1100, kA}, {1040, kA}, {1200, kA}})}, 1);
   EXPECT_EQ(counts.type(kA).gaps, 4U);
   EXPECT_EQ(counts.type(kA).gap_sum, 320 * kMillisecond);
@@ -179,7 +179,7 @@ TEST(EvidenceTrainer, OnlyTheEventBeforeTellsAStepOfTheClock) {
 TEST(EvidenceTrainer, NothingCrossesFromOneRecordingIntoTheNext) {
   const Events first = timer(kA, 0, 1500 * kMillisecond, 100 * kMillisecond);
   const Events second = timer(kB, 1500 * kMillisecond, 3000 * kMillisecond, 100 * kMillisecond);
-  const EvidenceStatistics counts = countsOf({first, second}, 2);
+  const Statistics counts = countsOf({first, second}, 2);
   EXPECT_EQ(counts.total(kA, kB), 0U);
   EXPECT_EQ(counts.rateWindows(), 0U);  // 2 s are full in neither
   EXPECT_EQ(counts.duration(), 2800 * kMillisecond);
@@ -199,20 +199,20 @@ TEST(EvidenceTrainer, AStepOfTheClockStartsAnotherRecording) {
 }
 
 TEST(EvidenceTrainer, RefusesAWindowOfNoLength) {
-  EvidenceStatistics counts;
-  EXPECT_THROW(EvidenceTrainer(counts, 0), std::invalid_argument);
-  EXPECT_THROW(EvidenceTrainer(counts, -kWindow), std::invalid_argument);
+  Statistics counts;
+  EXPECT_THROW(Trainer(counts, 0), std::invalid_argument);
+  EXPECT_THROW(Trainer(counts, -kWindow), std::invalid_argument);
 }
 
 TEST(EvidenceStatistics, KeepTheLongestGaps) {
-  EvidenceStatistics::Type type;
+  Statistics::Type type;
   std::vector<std::int64_t> gaps(40);
   std::iota(gaps.begin(), gaps.end(), 1);
   std::shuffle(gaps.begin(), gaps.end(), std::mt19937(5));
   for (const std::int64_t gap : gaps) {
     type.addGap(gap);
   }
-  ASSERT_EQ(type.longest_gaps.size(), EvidenceStatistics::kLongestGaps);
+  ASSERT_EQ(type.longest_gaps.size(), Statistics::kLongestGaps);
   for (std::size_t k = 0; k < type.longest_gaps.size(); ++k) {
     EXPECT_EQ(type.longest_gaps[k], static_cast<std::int64_t>(40 - k));
   }
@@ -221,26 +221,26 @@ TEST(EvidenceStatistics, KeepTheLongestGaps) {
 TEST(EvidenceStatistics, CountsOfTwoTrainingsEqualTrainingOnBoth) {
   const Events first = randomEvents(1, kA, kB);
   const Events second = randomEvents(2, kB, kC);
-  EvidenceStatistics sum = countsOf({first});
-  const EvidenceStatistics both = countsOf({first, second});
+  Statistics sum = countsOf({first});
+  const Statistics both = countsOf({first, second});
   EXPECT_FALSE(sum == both);
   sum.merge(countsOf({second}));
   EXPECT_TRUE(sum == both);
 }
 
 TEST(EvidenceStatistics, MergingCommutesUpToTheIds) {
-  const EvidenceStatistics first = countsOf({randomEvents(1, kA, kB)}, 2);
-  EvidenceStatistics second;  // kTypes the other way round
+  const Statistics first = countsOf({randomEvents(1, kA, kB)}, 2);
+  Statistics second;  // kTypes the other way round
   for (const EventId id : {kC, kB}) {
     second.intern(kTypes[id]);
   }
-  EvidenceTrainer trainer(second, kWindow);
+  Trainer trainer(second, kWindow);
   for (const Event& event : randomEvents(2, 0, 1)) {
     trainer.add(event);
   }
-  EvidenceStatistics one = first;
+  Statistics one = first;
   one.merge(second);
-  EvidenceStatistics other = second;
+  Statistics other = second;
   other.merge(first);
   EXPECT_FALSE(one == other);
   EXPECT_TRUE(reordered(one) == reordered(other));
@@ -248,29 +248,29 @@ TEST(EvidenceStatistics, MergingCommutesUpToTheIds) {
 }
 
 TEST(EvidenceStatistics, CountsDoNotWrapAround) {
-  EvidenceStatistics counts = countsOf({}, 1);
-  EvidenceStatistics::Partner partner;
+  Statistics counts = countsOf({}, 1);
+  Statistics::Partner partner;
   partner.delays[3] = 3000000000U;
   partner.delays[4] = 2000000000U;
   counts.setPartners(kA, {partner});
-  counts.merge(EvidenceStatistics(counts));
+  counts.merge(Statistics(counts));
   EXPECT_EQ(counts.delays(kA, kA)[3], 4294967295U);
   EXPECT_EQ(counts.delays(kA, kA)[4], 4000000000U);
 }
 
 TEST(EvidenceStatistics, PartnersComeInOrder) {
-  EvidenceStatistics counts = countsOf({}, 2);
+  Statistics counts = countsOf({}, 2);
   counts.setPartners(kA, {{kB, 3, {}}});
   EXPECT_EQ(counts.answers(kA, kB), 3U);
   EXPECT_EQ(counts.answers(kB, kA), 0U);
   EXPECT_THROW(counts.setPartners(kA, {{kB, 3, {}}, {kA, 1, {}}}), std::invalid_argument);
   EXPECT_THROW(counts.setPartners(kA, {{kB, 3, {}}, {kB, 1, {}}}), std::invalid_argument);
   EXPECT_THROW(counts.setPartners(kA, {{kC, 1, {}}}), std::invalid_argument);
-  const EvidenceStatistics::Partners& all = counts.allPartners(kA);
+  const Statistics::Partners& all = counts.allPartners(kA);
   ASSERT_EQ(all.size(), 2U);
   EXPECT_EQ(all[kA].id, kA);
   EXPECT_EQ(all[kB].answers, 3U);
 }
 
 }  // namespace
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::evidence

@@ -12,30 +12,30 @@
 #include "recordings.h"
 #include "self_awareness/core/verdict/suspect.h"
 
-namespace self_awareness::core {
+namespace self_awareness::core::evidence {
 namespace {
 
 constexpr std::int64_t kLength = 60 * kSecond;
 
-std::vector<Track> chosen(const EvidenceStatistics& first, const EvidenceStatistics& second) {
+std::vector<Track> chosen(const Statistics& first, const Statistics& second) {
   return watch(first, second).tracks;
 }
 
 // Two timers of the same period, the second one behind the first by a phase, and something else at
 // random times.
-EvidenceStatistics twoTimers(std::int64_t phase) {
+Statistics twoTimers(std::int64_t phase) {
   return countsOf({together({timer(kA, 0, kLength, 100 * kMillisecond),
                              timer(kB, phase, kLength, 100 * kMillisecond),
                              irregular(kC, 0, kLength, 50 * kMillisecond, 1)})});
 }
 
 // A comes at random, and B follows it.
-EvidenceStatistics followed(unsigned seed) {
+Statistics followed(unsigned seed) {
   const Events asked = irregular(kA, 0, kLength, 200 * kMillisecond, seed);
   return countsOf({together({asked, answers(kB, asked, 20 * kMillisecond)})}, 2);
 }
 
-EvidenceStatistics gapsOf(EventId id, std::int64_t gaps) {
+Statistics gapsOf(EventId id, std::int64_t gaps) {
   return countsOf({timer(id, 0, gaps * kSecond + 1, kSecond)});
 }
 
@@ -81,13 +81,13 @@ TEST(EvidenceTracks, FewDelaysAreNoPair) {
 TEST(EvidenceTracks, TheThreeBestPredecessorsAreWatched) {
   constexpr EventId kNumber = 6;
   const Events asked = irregular(0, 0, kLength, 200 * kMillisecond, 1);
-  EvidenceStatistics counts;
+  Statistics counts;
   Events events;
   for (EventId id = 0; id < kNumber; ++id) {  // one after the other
     counts.intern({"/" + std::to_string(id), "/topic", "T"});
     events = together({events, answers(id, asked, 3 * kMillisecond * id)});
   }
-  EvidenceTrainer trainer(counts, kWindow);
+  Trainer trainer(counts, kWindow);
   for (const Event& event : events) {
     trainer.add(event);
   }
@@ -115,7 +115,7 @@ TEST(EvidenceTracks, AFollowerDoesNotAskForWhatItFollows) {
 }
 
 TEST(EvidenceTracks, WhoMostlyGetsNoAnswerDoesNotAsk) {
-  const EvidenceStatistics counts =
+  const Statistics counts =
       countsOf({together({irregular(kA, 0, kLength, 50 * kMillisecond, 2),
                           irregular(kB, 0, kLength, 200 * kMillisecond, 1)})},
                2);
@@ -126,9 +126,9 @@ TEST(EvidenceTracks, WhoMostlyGetsNoAnswerDoesNotAsk) {
 }
 
 TEST(EvidenceTracks, AsManyPredecessorsAreWatchedAsAreAskedFor) {
-  const EvidenceStatistics counts = followed(1);
+  const Statistics counts = followed(1);
   for (const std::size_t predecessors : {0U, 1U}) {
-    const WatchedEvidence watched = watch(counts, counts, predecessors);
+    const Watched watched = watch(counts, counts, predecessors);
     const auto of_b = std::count_if(
         watched.tracks.begin(), watched.tracks.end(),
         [](const Track& track) { return track.channel == Channel::kDelay && track.to == kB; });
@@ -137,13 +137,13 @@ TEST(EvidenceTracks, AsManyPredecessorsAreWatchedAsAreAskedFor) {
 }
 
 TEST(EvidenceTracks, CountsOfWatchedPairsAreKeptAndOthersLeftOut) {
-  const EvidenceStatistics first = twoTimers(20 * kMillisecond);
-  const EvidenceStatistics second = twoTimers(70 * kMillisecond);
-  const WatchedEvidence watched = watch(first, second);
+  const Statistics first = twoTimers(20 * kMillisecond);
+  const Statistics second = twoTimers(70 * kMillisecond);
+  const Watched watched = watch(first, second);
   ASSERT_FALSE(isWatched(watched.tracks, Channel::kDelay, kA, kB));
   for (std::size_t half = 0; half < 2; ++half) {
-    const EvidenceStatistics& all = half == 0 ? first : second;
-    const EvidenceStatistics& kept = watched.halves.at(half);
+    const Statistics& all = half == 0 ? first : second;
+    const Statistics& kept = watched.halves.at(half);
     for (const Track& track : watched.tracks) {
       EXPECT_EQ(kept.delays(track.from, track.to), all.delays(track.from, track.to));
       EXPECT_EQ(kept.answers(track.from, track.to), all.answers(track.from, track.to));
@@ -173,11 +173,11 @@ TEST(EvidenceTracks, TracksOfDelaysComeInTwos) {
 }
 
 TEST(InformationGain, IsTheMeanLogRatioOnTheOtherHalf) {
-  EvidenceStatistics learned = countsOf({}, 2);
+  Statistics learned = countsOf({}, 2);
   learned.allPartners(kB)[kA].delays[10] = 50;
   learned.allPartners(kA)[kA].delays[20] = 100;
-  EvidenceStatistics measured = countsOf({}, 2);
-  EvidenceStatistics::Delays& delays = measured.allPartners(kB)[kA].delays;
+  Statistics measured = countsOf({}, 2);
+  Statistics::Delays& delays = measured.allPartners(kB)[kA].delays;
   delays[10] = 30;
   delays[20] = 20;
   const InformationGain gain(learned, measured);
@@ -190,15 +190,14 @@ TEST(InformationGain, IsTheMeanLogRatioOnTheOtherHalf) {
 }
 
 TEST(InformationGain, IsZeroForATypeThatTheOtherHalfLacks) {
-  const EvidenceStatistics learned = followed(1);
-  const EvidenceStatistics measured =
-      countsOf({irregular(kA, 0, kLength, 200 * kMillisecond, 2)}, 1);
+  const Statistics learned = followed(1);
+  const Statistics measured = countsOf({irregular(kA, 0, kLength, 200 * kMillisecond, 2)}, 1);
   EXPECT_GT(InformationGain(learned, learned)(kA, kB), 0.3);
   EXPECT_EQ(InformationGain(learned, measured)(kA, kB), 0);
 }
 
 TEST(LogProbabilities, HaveOneMoreCountInEveryBin) {
-  EvidenceStatistics::Delays counts{};
+  Statistics::Delays counts{};
   counts[1] = 10;
   counts[2] = 40;
   const LogProbabilities logs = logProbabilities(counts);
@@ -208,4 +207,4 @@ TEST(LogProbabilities, HaveOneMoreCountInEveryBin) {
 }
 
 }  // namespace
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::evidence

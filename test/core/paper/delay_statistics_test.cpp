@@ -8,7 +8,7 @@
 
 #include "self_awareness/core/stream/clock.h"
 
-namespace self_awareness::core {
+namespace self_awareness::core::paper {
 namespace {
 
 const EventType kA{"/a", "/x", "T"};
@@ -95,4 +95,4 @@ TEST(Vocabulary, RefusesATypeThatOccursTwice) {
 }
 
 }  // namespace
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::paper

@@ -11,7 +11,7 @@
 
 #include "self_awareness/core/paper/delay_bins.h"
 
-namespace self_awareness::core {
+namespace self_awareness::core::paper {
 namespace {
 
 using Counts = std::map<std::int64_t, std::uint64_t>;
@@ -182,4 +182,4 @@ TEST(Histogram, GrowsBinByBinInNoTime) {
 }
 
 }  // namespace
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::paper

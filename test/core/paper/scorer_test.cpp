@@ -14,7 +14,7 @@
 #include "self_awareness/core/paper/delay_statistics.h"
 #include "self_awareness/core/paper/model.h"
 
-namespace self_awareness::core {
+namespace self_awareness::core::paper {
 namespace {
 
 class LiteralScorer {
@@ -88,7 +88,7 @@ void expectLiteralScores(const DelayStatistics& statistics, const std::vector<Ev
   EXPECT_GT(largest, 0.01);
 }
 
-TEST(Scorer, ScoresLiterallyForAnyNumberOfTypes) {
+TEST(PaperScorer, ScoresLiterallyForAnyNumberOfTypes) {
   for (const std::size_t types : {2, 3, 4, 5, 63, 64, 65, 130}) {
     SCOPED_TRACE(types);
     const std::size_t always = (types + 1) / 2;
@@ -101,34 +101,34 @@ TEST(Scorer, ScoresLiterallyForAnyNumberOfTypes) {
   }
 }
 
-TEST(Scorer, ScoresLiterallyWithScatteredDelays) {
+TEST(PaperScorer, ScoresLiterallyWithScatteredDelays) {
   const std::vector<Event> training = randomEvents(1, 20, 15, 3000, 500000000);
   const DelayStatistics statistics = train(Binning{10000000, 0}, 20, training);
   expectLiteralScores(statistics, training);
   expectLiteralScores(statistics, randomEvents(2, 20, 15, 1000, 500000000));
 }
 
-TEST(Scorer, ScoresLiterallyWithAHorizon) {
+TEST(PaperScorer, ScoresLiterallyWithAHorizon) {
   const std::vector<Event> training = randomEvents(1, 20, 15, 3000, 20000000);
   const DelayStatistics statistics = train(Binning{10000000, 20}, 20, training);
   expectLiteralScores(statistics, randomEvents(2, 20, 15, 1000, 20000000));
 }
 
-TEST(Scorer, ScoresLiterallyWhereBinsNeed33Bits) {
+TEST(PaperScorer, ScoresLiterallyWhereBinsNeed33Bits) {
   const std::vector<Event> training = randomEvents(1, 3, 2, 500, 2000000000);
   const DelayStatistics statistics = train(Binning{1, 0}, 3, training);
   EXPECT_GT(statistics.pair(2, 0).quantile(1), std::int64_t{1} << 32);
   expectLiteralScores(statistics, training);
 }
 
-TEST(Scorer, ScoresLiterallyWhereCountsNeed33Bits) {
+TEST(PaperScorer, ScoresLiterallyWhereCountsNeed33Bits) {
   DelayStatistics statistics = train(Binning{10000000, 0}, 3, randomEvents(1, 3, 3, 500, 5000000));
   statistics.pair(0, 1).add(2, std::uint64_t{1} << 33);
   statistics.pair(1, 1).add(1, (std::uint64_t{1} << 31) + 1);
   expectLiteralScores(statistics, randomEvents(2, 3, 3, 500, 5000000));
 }
 
-TEST(Model, KnowsWhatAnEventScoresOnTheAverage) {
+TEST(PaperModel, KnowsWhatAnEventScoresOnTheAverage) {
   const DelayStatistics statistics =
       train(Binning{10000000, 0}, 20, randomEvents(1, 20, 15, 3000, 200000000));
   const Model model(statistics);
@@ -148,4 +148,4 @@ TEST(Model, KnowsWhatAnEventScoresOnTheAverage) {
 }
 
 }  // namespace
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::paper

@@ -17,7 +17,7 @@
 #include "self_awareness/core/verdict/detector.h"
 #include "self_awareness/core/verdict/roc.h"
 
-namespace self_awareness::core {
+namespace self_awareness::core::paper {
 namespace {
 
 using nlohmann::json;
@@ -146,8 +146,8 @@ TEST_F(Vectors, WindowsAndVerdicts) {
     const std::int64_t length = test_case["window_ms"].get<std::int64_t>() * kMillisecond;
     std::vector<std::int64_t> abnormal;
     std::size_t i = 0;
-    Detector detector(std::make_unique<PaperJudge>(model, value(test_case["threshold"]), true),
-                      length, Detector::Parameters(), [&](const Verdict& verdict) {
+    Detector detector(std::make_unique<Judge>(model, value(test_case["threshold"]), true), length,
+                      Detector::Parameters(), [&](const Verdict& verdict) {
                         ASSERT_LT(i, test_case["windows"].size());
                         const json& expected = test_case["windows"][i++];
                         const std::int64_t k = verdict.window->start / length;
@@ -182,4 +182,4 @@ TEST_F(Vectors, Roc) {
 }
 
 }  // namespace
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::paper

@@ -39,16 +39,16 @@ std::vector<Event> clockwork(std::int64_t start, std::int64_t end, bool laser) {
   return events;
 }
 
-std::shared_ptr<const Model> trainedModel() {
-  DelayStatistics statistics(Binning{10 * kMillisecond, 0});
+std::shared_ptr<const paper::Model> trainedModel() {
+  paper::DelayStatistics statistics(paper::Binning{10 * kMillisecond, 0});
   for (const EventType& type : {kLaser, kPose, kWheels}) {
     statistics.intern(type);
   }
-  DelayTrainer trainer(statistics);
+  paper::DelayTrainer trainer(statistics);
   for (const Event& event : clockwork(0, 60 * kSecond, true)) {
     trainer.add(event);
   }
-  return std::make_shared<const Model>(statistics);
+  return std::make_shared<const paper::Model>(statistics);
 }
 
 struct Seen {
@@ -65,7 +65,7 @@ class DetectorTest : public testing::Test {
   Detector makeDetector(std::optional<double> threshold,
                         const Detector::Parameters& parameters = {}) {
     return Detector(
-        std::make_unique<PaperJudge>(model_, threshold, parameters.silence_is_abnormal),
+        std::make_unique<paper::Judge>(model_, threshold, parameters.silence_is_abnormal),
         100 * kMillisecond, parameters, [this](const Verdict& verdict) {
           seen_.push_back({verdict.window->start, verdict.abnormal, verdict.settling,
                            verdict.alarm, verdict.changed, verdict.suspects});
@@ -86,7 +86,7 @@ class DetectorTest : public testing::Test {
     return std::nullopt;
   }
 
-  std::shared_ptr<const Model> model_ = trainedModel();
+  std::shared_ptr<const paper::Model> model_ = trainedModel();
   std::vector<Seen> seen_;
 };
 
@@ -252,18 +252,18 @@ TEST(Persistence, RefusesImpossibleValues) {
   EXPECT_THROW(Persistence({1, 5, -1}), std::invalid_argument);
 }
 
-TEST(Blame, ATypeWithFewGapsHasNoOpinion) {
-  DelayStatistics statistics(Binning{10 * kMillisecond, 0});
+TEST(PaperBlame, ATypeWithFewGapsHasNoOpinion) {
+  paper::DelayStatistics statistics(paper::Binning{10 * kMillisecond, 0});
   const EventId rare = statistics.intern(kLaser);
   const EventId common = statistics.intern(kPose);
-  DelayTrainer trainer(statistics);
+  paper::DelayTrainer trainer(statistics);
   for (std::uint64_t i = 0; i <= kFewestGaps; ++i) {
     trainer.add({static_cast<std::int64_t>(i) * kSecond, common});
     if (i < kFewestGaps) {
       trainer.add({static_cast<std::int64_t>(i) * kSecond, rare});
     }
   }
-  const Blame blame(std::make_shared<const Model>(statistics));
+  const paper::Blame blame(std::make_shared<const paper::Model>(statistics));
   EXPECT_FALSE(blame.judged(rare));
   EXPECT_TRUE(blame.judged(common));
   EXPECT_EQ(blame.logSurvival(rare, 3600 * kSecond), 0);

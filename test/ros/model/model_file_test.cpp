@@ -46,14 +46,14 @@ class ModelFileTest : public testing::Test {
   static TrainedModel someModel() {
     TrainedModel model;
     model.encoding = EncodingRules::defaults();
-    model.statistics = core::DelayStatistics(core::Binning{5000000, 20});
+    model.statistics = core::paper::DelayStatistics(core::paper::Binning{5000000, 20});
     const core::EventId a = model.statistics.intern({"/a", "/x", "T"});
     const core::EventId b = model.statistics.intern({"/b", "/y", "T[action=1]"});
-    core::DelayTrainer trainer(model.statistics);
-    for (core::EvidenceStatistics& half : model.evidence) {
+    core::paper::DelayTrainer trainer(model.statistics);
+    for (core::evidence::Statistics& half : model.evidence) {
       half.intern(model.statistics.vocabulary().at(a));
       half.intern(model.statistics.vocabulary().at(b));
-      core::EvidenceTrainer evidence(half, model.window);
+      core::evidence::Trainer evidence(half, model.window);
       for (int i = 0; i < 150; ++i) {
         const core::Event event{i * 37000000LL, i % 3 == 0 ? b : a};
         trainer.add(event);
@@ -267,7 +267,7 @@ TEST_F(ModelFileTest, TheEvidenceItsLimitsAndTheGraphComeBackAsTheyWereSaved) {
   }
   EXPECT_EQ(loaded.predecessors, model.predecessors);
   EXPECT_EQ(loaded.graph.edges(), model.graph.edges());
-  const core::EvidenceLimits limits = loaded.limits().value();
+  const core::evidence::Limits limits = loaded.limits().value();
   ASSERT_EQ(limits.tracks.size(), model.evidence_calibration->limits.size());
   EXPECT_TRUE(std::isnan(limits.tracks[0]));
   EXPECT_EQ(limits.tracks[1], 2.5);

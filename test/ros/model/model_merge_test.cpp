@@ -20,12 +20,12 @@ const core::EventType kPose{"/b", "/pose", "T[status=1]"};
 
 // Each event type in turn, 40 ms after the other, from a time on; counted into one of the halves.
 void trainOn(TrainedModel& model, const Types& types, std::int64_t start, std::size_t half) {
-  core::DelayTrainer trainer(model.statistics);
-  core::EvidenceTrainer evidence(model.evidence.at(half), model.window);
+  core::paper::DelayTrainer trainer(model.statistics);
+  core::evidence::Trainer evidence(model.evidence.at(half), model.window);
   for (int i = 0; i < 200; ++i) {
     const core::EventType& type = types[static_cast<std::size_t>(i) % types.size()];
     const core::EventId id = model.statistics.intern(type);
-    for (core::EvidenceStatistics& statistics : model.evidence) {
+    for (core::evidence::Statistics& statistics : model.evidence) {
       statistics.intern(type);
     }
     const core::Event event{start + i * (40000000LL + start / 1000), id};
@@ -42,7 +42,7 @@ class ModelMergeTest : public testing::Test {
   ModelMergeTest() {
     for (TrainedModel* model : {&first_, &second_, &both_}) {
       model->encoding = EncodingRules::defaults();
-      model->statistics = core::DelayStatistics(core::Binning{5000000, 20});
+      model->statistics = core::paper::DelayStatistics(core::paper::Binning{5000000, 20});
     }
     trainOn(first_, {kScan, kMap}, 1000, 0);
     trainOn(second_, {kMap, kPose, kScan}, 7000, 1);
@@ -104,7 +104,7 @@ TEST_F(ModelMergeTest, SaysWhatDoesNotFitAndLeavesTheModelAsItWas) {
   EXPECT_EQ(errorOf([](TrainedModel& /*model*/) {}), "");
   const auto bins = [](std::int64_t size, std::int64_t horizon) {
     return [size, horizon](TrainedModel& model) {
-      model.statistics = core::DelayStatistics(core::Binning{size, horizon});
+      model.statistics = core::paper::DelayStatistics(core::paper::Binning{size, horizon});
     };
   };
   EXPECT_EQ(errorOf(bins(5000001, 20)), "another bin size: 0.005000001 s, not 0.005 s");
@@ -130,7 +130,7 @@ TEST_F(ModelMergeTest, SaysWhatDoesNotFitAndLeavesTheModelAsItWas) {
 TEST_F(ModelMergeTest, AFieldHasOnlySoManyValuesTogether) {
   const auto withValues = [this](std::size_t from, std::size_t to) {
     return [this, from, to](TrainedModel& model) {
-      model.statistics = core::DelayStatistics(first_.statistics.binning());
+      model.statistics = core::paper::DelayStatistics(first_.statistics.binning());
       for (std::size_t i = from; i < to; ++i) {
         model.statistics.intern({"", "/x", "T[status=" + std::to_string(i) + "]"});
       }

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace self_awareness::core {
+namespace self_awareness::core::evidence {
 
 /// The maxima of blocks of a quantity that is not negative, rounded, and how often each came: in
 /// any order and from any number of parts the same, in memory that does not grow with time.
@@ -41,4 +41,4 @@ class BlockMaxima {
   std::vector<Cell> cells_;
 };
 
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::evidence

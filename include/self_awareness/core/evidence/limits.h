@@ -10,7 +10,7 @@
 #include "self_awareness/core/evidence/scorer.h"
 #include "self_awareness/core/stream/windows.h"
 
-namespace self_awareness::core {
+namespace self_awareness::core::evidence {
 
 /// The limit that the largest value of a block exceeds with a small probability: a Gumbel
 /// distribution is fitted to the maxima of blocks by L-moments (Hosking 1990), and extrapolated.
@@ -52,11 +52,11 @@ class LimitFinder {
     BlockMaxima linker_maxima;                            ///< of the second pass
   };
 
-  LimitFinder(std::shared_ptr<const EvidenceModel> model, const Parameters& parameters);
+  LimitFinder(std::shared_ptr<const Model> model, const Parameters& parameters);
 
   /// The next events belong to another recording, which is judged by a model: that of the
   /// constructor, or one learned from the other half of the training, with the same tracks.
-  void startRecording(std::shared_ptr<const EvidenceModel> model);
+  void startRecording(std::shared_ptr<const Model> model);
   void add(const Event& event);
   /// The recording ends.
   void finish();
@@ -66,16 +66,16 @@ class LimitFinder {
   void startSecondPass();
   /// Begins with the second pass, by what a first one elsewhere found.
   /// @throw std::invalid_argument if that belongs to another model
-  void startSecondPass(EvidenceLimits limits);
+  void startSecondPass(Limits limits);
   /// What the recordings said that have ended, in this pass and those before.
   Findings findings() const;
   /// Adds what recordings said elsewhere, in the pass that goes on here.
   /// @throw std::invalid_argument if it belongs to another model
   void merge(const Findings& other);
   /// Limits of the tracks alone, once the second pass has begun: the linker's is still missing.
-  const EvidenceLimits& trackLimits() const { return limits_; }
+  const Limits& trackLimits() const { return limits_; }
   /// @throw std::logic_error before the second pass
-  EvidenceLimits limits() const;
+  Limits limits() const;
 
   /// Windows that were looked at, of one pass.
   std::uint64_t windows() const { return windows_seen_; }
@@ -91,10 +91,10 @@ class LimitFinder {
   /// @param rate false alarms an hour that the track may raise
   double limit(std::size_t track, double rate) const;
 
-  std::shared_ptr<const EvidenceModel> model_;
+  std::shared_ptr<const Model> model_;
   Parameters parameters_;
-  std::shared_ptr<const EvidenceModel> judging_;
-  std::optional<EvidenceScorer> scorer_;
+  std::shared_ptr<const Model> judging_;
+  std::optional<Scorer> scorer_;
   Windows windows_;
   std::optional<std::int64_t> first_stamp_;  // of the recording [ns]
   std::optional<std::int64_t> last_stamp_;   // [ns]
@@ -103,15 +103,15 @@ class LimitFinder {
   std::vector<double> block_;  // largest evidence, by track
   std::size_t block_windows_ = 0;
   std::uint64_t blocks_ = 0;
-  std::vector<BlockMaxima> maxima_;             // by track, none for overdue
-  std::vector<EvidenceStatistics::Type> gaps_;  // longest gaps, by id
-  std::int64_t duration_ = 0;                   // [ns]
+  std::vector<BlockMaxima> maxima_;     // by track, none for overdue
+  std::vector<Statistics::Type> gaps_;  // longest gaps, by id
+  std::int64_t duration_ = 0;           // [ns]
   MisleadingPairs misleading_;
 
   bool second_pass_ = false;
-  EvidenceLimits limits_;
+  Limits limits_;
   double linker_block_ = 0;
   BlockMaxima linker_maxima_;
 };
 
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::evidence

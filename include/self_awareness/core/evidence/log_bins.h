@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <cstring>
 
-namespace self_awareness::core {
+namespace self_awareness::core::evidence {
 
 /// How the evidence puts delays into bins (METHOD.md, section 3): four bins an octave from 2.5 ms
 /// to 10.24 s, one for all below and one for all beyond. Relative precision is what delays of a
@@ -83,4 +83,4 @@ std::int64_t lowerEdge(std::size_t bin);
 double middle(std::size_t bin);
 
 }  // namespace log_bins
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::evidence

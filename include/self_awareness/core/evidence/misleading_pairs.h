@@ -7,14 +7,14 @@
 
 #include "self_awareness/core/evidence/model.h"
 
-namespace self_awareness::core {
+namespace self_awareness::core::evidence {
 
 /// Finds pairs of event types whose delays say less in a part of a recording than in the whole
 /// training: independent timers keep one phase for a while, and what they say then is gone when
 /// they drift.
 class MisleadingPairs {
  public:
-  explicit MisleadingPairs(const EvidenceModel& model);
+  explicit MisleadingPairs(const Model& model);
 
   /// The next event of a recording, in its order. @param event of a type that the model knows
   void add(const Event& event);
@@ -31,7 +31,7 @@ class MisleadingPairs {
     std::size_t track = 0;                           // the first of its two
     std::array<double, log_bins::kBins> log_ratios;  // log P_ij - log Q_i [nat], by bin
     double usual_gain = 0;                           // their mean in training [nat]
-    EvidenceStatistics::Delays delays{};             // of the part
+    Statistics::Delays delays{};                     // of the part
   };
 
   void startPart();
@@ -45,4 +45,4 @@ class MisleadingPairs {
   std::vector<bool> misleading_;          // by track
 };
 
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::evidence

@@ -10,10 +10,10 @@
 #include "self_awareness/core/evidence/statistics.h"
 #include "self_awareness/core/evidence/tracks.h"
 
-namespace self_awareness::core {
+namespace self_awareness::core::evidence {
 
 /// When evidence is abnormal: found on normal data that was not trained on (evidence_limits.h).
-struct EvidenceLimits {
+struct Limits {
   /// By track of the model; NaN: not judged, the track proved useless or misleading.
   std::vector<double> tracks;
   double linker = std::numeric_limits<double>::quiet_NaN();
@@ -21,21 +21,21 @@ struct EvidenceLimits {
 
 /// What normal operation lets expect, computed once from counts and never changed, so that threads
 /// may share it.
-class EvidenceModel {
+class Model {
  public:
   /// The counts that probabilities are learned from. One half serves to try on the other what both
   /// together will do on data never seen.
   enum class Learned { kBoth, kFirst, kSecond };
 
   /// @throw std::invalid_argument if there is no event type, or the tracks are none of these
-  explicit EvidenceModel(const WatchedEvidence& watched, Learned learned = Learned::kBoth);
+  explicit Model(const Watched& watched, Learned learned = Learned::kBoth);
 
   const Vocabulary& vocabulary() const { return statistics_.vocabulary(); }
   std::size_t size() const { return statistics_.size(); }
   /// Whether the id is one of training; ids behind it stand for events never seen there.
   bool knows(EventId id) const { return id < size(); }
   /// Counts of both halves, of the pairs that are watched.
-  const EvidenceStatistics& statistics() const { return statistics_; }
+  const Statistics& statistics() const { return statistics_; }
   /// What is watched, the same whatever the probabilities were learned from. The two tracks of a
   /// pair's delays are neighbours, the slow one behind the other.
   const std::vector<Track>& tracks() const { return tracks_; }
@@ -94,14 +94,14 @@ class EvidenceModel {
 
   void learnGaps();
   void learnRates();
-  void learnDelays(const std::array<EvidenceStatistics, 2>& halves);
+  void learnDelays(const std::array<Statistics, 2>& halves);
   void learnAnswers();
 
   /// What the probabilities are learned from.
-  const EvidenceStatistics& learned() const { return half_ ? *half_ : statistics_; }
+  const Statistics& learned() const { return half_ ? *half_ : statistics_; }
 
-  EvidenceStatistics statistics_;           // of both halves
-  std::optional<EvidenceStatistics> half_;  // that is learned from, with the same ids
+  Statistics statistics_;           // of both halves
+  std::optional<Statistics> half_;  // that is learned from, with the same ids
   std::vector<Track> tracks_;
   std::vector<Gaps> gaps_;                 // by id
   std::vector<Rate> rates_;                // by id
@@ -110,4 +110,4 @@ class EvidenceModel {
   std::vector<Steps> steps_;               // by track, of answer tracks
 };
 
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::evidence

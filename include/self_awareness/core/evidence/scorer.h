@@ -10,19 +10,19 @@
 #include "self_awareness/core/evidence/model.h"
 #include "self_awareness/core/stream/recent_counts.h"
 
-namespace self_awareness::core {
+namespace self_awareness::core::evidence {
 
 /// Gathers the evidence of every track from the events of one recording (METHOD.md, section 3).
 /// Delays and answers are summed up as in Page's CUSUM test: what is usual takes from the sum,
 /// what is not adds to it, and below 0 it does not fall. A fault that lasts is found soon, one
 /// that comes and goes later, and chance alone hardly gets anywhere.
-class EvidenceScorer {
+class Scorer {
  public:
   /// @param window length [ns] of the windows that rates are counted in
-  EvidenceScorer(std::shared_ptr<const EvidenceModel> model, std::int64_t window);
+  Scorer(std::shared_ptr<const Model> model, std::int64_t window);
 
   /// Lets no sum grow far beyond its limit: an alarm must not outlast its cause for long.
-  void capAt(const EvidenceLimits& limits);
+  void capAt(const Limits& limits);
 
   /// @param event ids the model does not know are left out
   /// @return delay since the last event of the same type [ns], if there was one
@@ -32,7 +32,7 @@ class EvidenceScorer {
   /// Forgets what was seen: another recording, or the clock was set.
   void restart();
 
-  const EvidenceModel& model() const { return *model_; }
+  const Model& model() const { return *model_; }
   /// When each event type of the model was last seen [ns], by id.
   std::optional<std::int64_t> lastSeen(EventId id) const;
   /// The last delay of a delay track [ns].
@@ -114,7 +114,7 @@ class EvidenceScorer {
   void disarmPair(std::size_t number);
   void disarmAnswer(std::size_t number);
 
-  std::shared_ptr<const EvidenceModel> model_;
+  std::shared_ptr<const Model> model_;
   std::vector<OfType> types_;                        // by id
   std::vector<DelayPair> pairs_;                     // by `to`
   std::vector<AnswerBlock> blocks_;                  // by `from`
@@ -134,7 +134,7 @@ class EvidenceScorer {
 };
 
 /// What a window's evidence comes to.
-struct EvidenceSum {
+struct Sum {
   double largest = 0;  ///< of the tracks, in units of their limits
   double linker = 0;   ///< evidence of all event types together, not in units of its limit
 };
@@ -142,7 +142,6 @@ struct EvidenceSum {
 /// The largest evidence, and the linker's: the sum over the event types of the largest share of
 /// its limit that one of their slow delay and answer tracks has reached, at most 1. It links what
 /// is too little for an alarm wherever it is looked at alone (paper, section V-C).
-EvidenceSum sumUp(const std::vector<double>& evidence, const EvidenceModel& model,
-                  const EvidenceLimits& limits);
+Sum sumUp(const std::vector<double>& evidence, const Model& model, const Limits& limits);
 
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::evidence

@@ -10,7 +10,7 @@
 #include "self_awareness/core/stream/recent_counts.h"
 #include "self_awareness/core/stream/vocabulary.h"
 
-namespace self_awareness::core {
+namespace self_awareness::core::evidence {
 
 /// The rate of an event type is its number of events in this time [ns].
 constexpr std::int64_t kRateSpan = 2 * kNanosecondsPerSecond;
@@ -20,7 +20,7 @@ std::size_t rateWindows(std::int64_t window);
 
 /// What the evidence learns (METHOD.md, section 3), as counts: those of two trainings add up to
 /// those of a training on both.
-class EvidenceStatistics {
+class Statistics {
  public:
   /// So many of the longest gaps of a type are kept: the tail beyond them is extrapolated.
   static constexpr std::size_t kLongestGaps = 32;
@@ -59,7 +59,7 @@ class EvidenceStatistics {
   /// Makes room for the event type and returns its id.
   EventId intern(const EventType& type);
   /// Adds the counts of `other`; event types that are new here get ids behind the present ones.
-  void merge(const EvidenceStatistics& other);
+  void merge(const Statistics& other);
 
   const Vocabulary& vocabulary() const { return vocabulary_; }
   std::size_t size() const { return vocabulary_.size(); }
@@ -82,10 +82,10 @@ class EvidenceStatistics {
   std::vector<SumOfDelays> delaysToAny() const;
   /// The counts of all event types, but of these pairs only, whichever way round; delaysToAny()
   /// stays the same.
-  EvidenceStatistics only(const std::vector<Pair>& pairs) const;
+  Statistics only(const std::vector<Pair>& pairs) const;
 
   /// The counts of all event types without any pair.
-  EvidenceStatistics withoutPairs() const;
+  Statistics withoutPairs() const;
 
   /// Windows in which rates were counted, the same for all types.
   std::uint64_t rateWindows() const { return rate_windows_; }
@@ -102,16 +102,16 @@ class EvidenceStatistics {
   std::int64_t duration_ = 0;
 };
 
-bool operator==(const EvidenceStatistics& a, const EvidenceStatistics& b);
+bool operator==(const Statistics& a, const Statistics& b);
 
-/// Counts one recording after the other into an EvidenceStatistics, in one pass. No delay and no
+/// Counts one recording after the other into an Statistics, in one pass. No delay and no
 /// window crosses from one recording into the next, nor a step of the clock (clock.h).
-class EvidenceTrainer {
+class Trainer {
  public:
   /// @param statistics counted into; must outlive the trainer
   /// @param window length [ns] of the windows in which rates are counted, > 0
   /// @throw std::invalid_argument
-  EvidenceTrainer(EvidenceStatistics& statistics, std::int64_t window);
+  Trainer(Statistics& statistics, std::int64_t window);
 
   /// Forgets what was seen: the next event belongs to another recording.
   void startRecording();
@@ -126,7 +126,7 @@ class EvidenceTrainer {
 
   void closeWindows(std::int64_t now);
 
-  EvidenceStatistics& statistics_;
+  Statistics& statistics_;
   std::int64_t window_;
   std::vector<Seen> last_seen_;             // by id
   std::optional<std::int64_t> last_stamp_;  // [ns]
@@ -136,4 +136,4 @@ class EvidenceTrainer {
   RecentCounts counts_;
 };
 
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::evidence

@@ -9,7 +9,7 @@
 
 #include "self_awareness/core/evidence/statistics.h"
 
-namespace self_awareness::core {
+namespace self_awareness::core::evidence {
 
 /// What a piece of evidence looks at.
 enum class Channel {
@@ -34,8 +34,8 @@ struct Track {
 /// log P by bin.
 using LogProbabilities = std::array<double, log_bins::kBins>;
 /// log P of a delay's bin, with one more count in every bin (Laplace).
-LogProbabilities logProbabilities(const EvidenceStatistics::Delays& counts);
-LogProbabilities logProbabilities(const EvidenceStatistics::SumOfDelays& counts);
+LogProbabilities logProbabilities(const Statistics::Delays& counts);
+LogProbabilities logProbabilities(const Statistics::SumOfDelays& counts);
 
 /// How much the delay since the last e_i says of e_j beyond what it says of any event: the mean of
 /// log P_ij - log Q_i [nat], Q_i: the delay since e_i at any event, learned from one half of the
@@ -46,14 +46,14 @@ class InformationGain {
   /// Fewer delays than this are not measured on.
   static constexpr std::uint64_t kFewestDelays = 50;
 
-  InformationGain(const EvidenceStatistics& learned_from, const EvidenceStatistics& measured_on);
+  InformationGain(const Statistics& learned_from, const Statistics& measured_on);
 
   /// 0 where there are no delays to learn from or to measure on. Ids are those of `learned_from`.
   double operator()(EventId from, EventId to) const;
 
  private:
-  const EvidenceStatistics& learned_from_;
-  const EvidenceStatistics& measured_on_;
+  const Statistics& learned_from_;
+  const Statistics& measured_on_;
   std::vector<std::optional<EventId>> id_there_;  // in measured_on_, by id
   std::vector<LogProbabilities> any_;             // of the delays since e_i at any event, by i
 };
@@ -63,16 +63,16 @@ class InformationGain {
 constexpr std::size_t kPredecessors = 3;
 
 /// What the evidence keeps of a training: what is watched, and the counts that this needs.
-struct WatchedEvidence {
+struct Watched {
   std::vector<Track> tracks;
-  std::array<EvidenceStatistics, 2> halves;  ///< of the training, with the same event types
+  std::array<Statistics, 2> halves;  ///< of the training, with the same event types
 };
 
 /// Chooses what to watch by the counts of the two halves of the training; of each half, event
 /// types that the other lacks are added.
 /// @param predecessors of an event type that are watched, the most informative ones
-WatchedEvidence watch(const EvidenceStatistics& first, const EvidenceStatistics& second,
-                      std::size_t predecessors = kPredecessors);
+Watched watch(const Statistics& first, const Statistics& second,
+              std::size_t predecessors = kPredecessors);
 
 /// @param types number of event types
 /// @throw std::invalid_argument if a track is of none of them, or the two tracks of a pair's
@@ -82,4 +82,4 @@ void checkTracks(const std::vector<Track>& tracks, std::size_t types);
 /// Share of the gaps of an event type in which another did not answer, never quite 0 or 1.
 double missRate(std::uint64_t gaps, std::uint64_t answers);
 
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::evidence

@@ -10,7 +10,7 @@
 #include "self_awareness/core/stream/windows.h"
 #include "self_awareness/core/verdict/suspect.h"
 
-namespace self_awareness::core {
+namespace self_awareness::core::paper {
 
 /// Ranks the event types that an abnormal window may be blamed on (METHOD.md, section 5): first
 /// those with the smallest probability of so long a silence by their own gaps in training, then
@@ -46,4 +46,4 @@ class Blame {
   std::vector<Usual> usual_;  // by id
 };
 
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::paper

@@ -6,7 +6,7 @@
 
 #include "self_awareness/core/stream/event.h"
 
-namespace self_awareness::core {
+namespace self_awareness::core::paper {
 
 /// How delays are put into bins.
 struct Binning {
@@ -82,4 +82,4 @@ class SeenTypes {
   bool any_ = false;
 };
 
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::paper

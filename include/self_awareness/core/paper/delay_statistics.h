@@ -9,7 +9,7 @@
 #include "self_awareness/core/stream/event.h"
 #include "self_awareness/core/stream/vocabulary.h"
 
-namespace self_awareness::core {
+namespace self_awareness::core::paper {
 
 /// The delays between every ordered pair of event types, as counts (section III-B of the paper).
 /// Counts of two trainings add up to the counts of a training on both.
@@ -70,4 +70,4 @@ class DelayTrainer {
   std::optional<std::int64_t> last_stamp_;  // [ns]
 };
 
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::paper

@@ -7,7 +7,7 @@
 #include "self_awareness/core/paper/histogram.h"
 #include "self_awareness/core/stream/event.h"
 
-namespace self_awareness::core {
+namespace self_awareness::core::paper {
 
 /// The histograms of one e_j with all e_i, laid out for the score of an e_j: the counts of a pair
 /// stand in an array over the stretch of bins that is well filled, all arrays behind one another.
@@ -62,4 +62,4 @@ class DelayTable {
   std::vector<Scattered> scattered_;  // sorted by e_i and bin
 };
 
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::paper

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace self_awareness::core {
+namespace self_awareness::core::paper {
 
 /// Counts of delays per bin: P_ij of the paper before it is normalised. Every pair of event types
 /// has one, so it is small: an array over the stretch of bins that is well filled, and a hash
@@ -94,4 +94,4 @@ std::pair<Histogram::Entries::const_iterator, Histogram::Entries::const_iterator
     Histogram::Entries::const_iterator begin, Histogram::Entries::const_iterator end,
     std::int64_t worth);
 
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::paper

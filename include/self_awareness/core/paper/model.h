@@ -6,7 +6,7 @@
 #include "self_awareness/core/paper/delay_statistics.h"
 #include "self_awareness/core/paper/delay_table.h"
 
-namespace self_awareness::core {
+namespace self_awareness::core::paper {
 
 /// The self-awareness model M = {P_ij} of section III-B with the entropies of eq. 4, computed once
 /// from counts and never changed, so that threads may share it.
@@ -42,4 +42,4 @@ class Model {
   std::vector<Histogram> gaps_;       // by id
 };
 
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::paper

@@ -6,16 +6,9 @@
 #include <vector>
 
 #include "self_awareness/core/paper/model.h"
+#include "self_awareness/core/stream/windows.h"
 
-namespace self_awareness::core {
-
-/// An event with what the scorer found.
-struct ScoredEvent {
-  Event event;
-  double score = 0;                 ///< s_j of eq. 3, 0 or more; 0 if the event is unknown
-  bool unknown = false;             ///< never seen in training
-  std::optional<std::int64_t> gap;  ///< delay since the last event of the same type [ns]
-};
+namespace self_awareness::core::paper {
 
 /// Scores events one after the other: eq. 3 with the weights of eq. 4 over the event types of
 /// training that were seen before in this recording. An event is scored first, then tracked.
@@ -40,4 +33,4 @@ class Scorer {
   std::vector<double> entropy_sums_;                    // H_j over the e_i that were seen, by j
 };
 
-}  // namespace self_awareness::core
+}  // namespace self_awareness::core::paper

@@ -5,13 +5,21 @@
 #include <optional>
 #include <vector>
 
-#include "self_awareness/core/paper/scorer.h"
+#include "self_awareness/core/stream/event.h"
 
 namespace self_awareness::core {
 
 /// Start of the window [ns] that a stamp [ns] lies in, on the absolute grid of window lengths
 /// [ns].
 std::int64_t floorToGrid(std::int64_t stamp, std::int64_t length);
+
+/// An event with what the scorer found.
+struct ScoredEvent {
+  Event event;
+  double score = 0;                 ///< s_j of eq. 3, 0 or more; 0 if the event is unknown
+  bool unknown = false;             ///< never seen in training
+  std::optional<std::int64_t> gap;  ///< delay since the last event of the same type [ns]
+};
 
 /// One window of eq. 2.
 struct Window {

@@ -6,10 +6,11 @@
 namespace self_awareness::ros1 {
 
 /// The delays from all event types to one.
-self_awareness::DelayHistograms toMessage(const core::DelayStatistics& statistics,
+self_awareness::DelayHistograms toMessage(const core::paper::DelayStatistics& statistics,
                                           core::EventId to);
 /// Adds a message's counts.
 /// @throw std::invalid_argument says what in the message contradicts itself or the event types
-void addMessage(const self_awareness::DelayHistograms& message, core::DelayStatistics& statistics);
+void addMessage(const self_awareness::DelayHistograms& message,
+                core::paper::DelayStatistics& statistics);
 
 }  // namespace self_awareness::ros1

@@ -30,14 +30,15 @@ struct TrainedModel {
   EncodingRules encoding;
   std::int64_t window = 100000000;  ///< length of a window [ns]
   /// Counts of the paper's detector; the event types only where they were not loaded.
-  core::DelayStatistics statistics{core::Binning{}};
+  core::paper::DelayStatistics statistics{core::paper::Binning{}};
   /// All counts of the evidence detector, of the two halves of the training; none where they were
   /// not loaded. Models are added, and trained on, by these.
-  std::array<core::EvidenceStatistics, 2> evidence;
+  std::array<core::evidence::Statistics, 2> evidence;
   /// What of them the evidence detector judges by.
-  core::WatchedEvidence watched;
-  std::size_t predecessors = core::kPredecessors;  ///< of an event type that are watched at most
-  core::SourceGraph graph;                         ///< who listens to whom; empty: not known
+  core::evidence::Watched watched;
+  std::size_t predecessors =
+      core::evidence::kPredecessors;  ///< of an event type that are watched at most
+  core::SourceGraph graph;            ///< who listens to whom; empty: not known
   std::vector<self_awareness::Recording> recordings;       ///< trained on
   std::optional<self_awareness::Calibration> calibration;  ///< of the paper's detector
   std::optional<self_awareness::EvidenceCalibration> evidence_calibration;
@@ -56,7 +57,7 @@ struct TrainedModel {
   /// s* of eq. 5, if the model was calibrated.
   std::optional<double> threshold() const;
   /// Limits of the evidence, if it was calibrated.
-  std::optional<core::EvidenceLimits> limits() const;
+  std::optional<core::evidence::Limits> limits() const;
 };
 
 /// What of a model file's counts is read: they take time and memory where event types are many.
