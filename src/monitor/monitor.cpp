@@ -19,7 +19,6 @@ namespace {
 // Messages that came before a window's end may wait in the queue for this long when it is closed.
 constexpr std::int64_t kGrace = 20000000;  // [ns]
 constexpr int kTicksPerWindow = 4;
-constexpr std::int64_t kWindowWithoutModel = 100000000;  // [ns]
 constexpr std::size_t kMostUnknownTypes = 1000;
 
 ros::Time toRosTime(std::int64_t nanoseconds) {
@@ -61,13 +60,11 @@ Monitor::Session::Session(ros1::TrainedModel trained_model, const MonitorParamet
 std::unique_ptr<core::Judge> Monitor::Session::makeJudge(
     const MonitorParameters& parameters) const {
   if (parameters.method == MonitorParameters::Method::kPaper) {
-    return std::make_unique<core::paper::Judge>(
-        std::make_shared<core::paper::Model>(trained.statistics), trained.threshold(),
-        parameters.detector.silence_is_abnormal);
+    return core::paper::makeJudge(std::make_shared<core::paper::Model>(trained.statistics),
+                                  trained.threshold(), parameters.detector.silence_is_abnormal);
   }
-  return std::make_unique<core::evidence::Judge>(
-      std::make_shared<core::evidence::Model>(trained.watched), trained.limits(), trained.window,
-      graph);
+  return core::evidence::makeJudge(std::make_shared<core::evidence::Model>(trained.watched),
+                                   trained.limits(), trained.window, graph);
 }
 
 // A type field with ever new values must not fill the memory of a robot that runs for months.
@@ -107,8 +104,8 @@ Monitor::Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& priv
   handlers.on_arrivals = [this] { onArrivals(); };
   live_events_ =
       std::make_unique<ros1::LiveEvents>(node_handle_, parameters_.queue_size, handlers);
-  timer_ =
-      private_node_handle_.createSteadyTimer(tickFor(kWindowWithoutModel), &Monitor::onTick, this);
+  timer_ = private_node_handle_.createSteadyTimer(tickFor(core::kDefaultWindow), &Monitor::onTick,
+                                                  this);
   discovery_ = std::make_unique<Discovery>(*live_events_, parameters_.subscribe,
                                            parameters_.poll_interval, service_names);
   try {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "bindings.h"
+#include "core/paper/scorer.h"
 #include "self_awareness/core/evidence/judge.h"
-#include "self_awareness/core/paper/blame.h"
 #include "self_awareness/core/paper/judge.h"
 #include "self_awareness/core/paper/model.h"
 #include "self_awareness/core/stream/clock.h"
@@ -93,19 +93,17 @@ Verdicts judgeByPaper(const std::shared_ptr<core::paper::Model>& model, std::int
                       std::optional<double> threshold,
                       const core::Detector::Parameters& parameters, const Stamps& stamps,
                       const Ids& ids, std::optional<std::int64_t> end) {
-  return judge(
-      std::make_unique<core::paper::Judge>(model, threshold, parameters.silence_is_abnormal),
-      window, parameters, stamps, ids, end);
+  return judge(core::paper::makeJudge(model, threshold, parameters.silence_is_abnormal), window,
+               parameters, stamps, ids, end);
 }
 
 Verdicts judgeByEvidence(const ros1::TrainedModel& trained,
                          const std::shared_ptr<core::evidence::Model>& model,
                          const core::Detector::Parameters& parameters, const Stamps& stamps,
                          const Ids& ids, std::optional<std::int64_t> end) {
-  return judge(
-      std::make_unique<core::evidence::Judge>(model, trained.limits(), trained.window,
-                                              std::make_shared<core::SourceGraph>(trained.graph)),
-      trained.window, parameters, stamps, ids, end);
+  return judge(core::evidence::makeJudge(model, trained.limits(), trained.window,
+                                         std::make_shared<core::SourceGraph>(trained.graph)),
+               trained.window, parameters, stamps, ids, end);
 }
 
 std::vector<double> scoreEvents(const std::shared_ptr<core::paper::Model>& model,
@@ -214,9 +212,7 @@ void bindVerdicts(py::module& m) {
           "h_ij [bit], [from, to]")
       .def("weight", &core::paper::Model::weight, py::arg("from_id"), py::arg("to_id"),
            "w_ij where all event types are tracked")
-      .def("log_survival",
-           [](const std::shared_ptr<core::paper::Model>& self, core::EventId id,
-              std::int64_t age) { return core::paper::Blame(self).logSurvival(id, age); })
+      .def("log_survival", &core::paper::Model::logSurvival, py::arg("id"), py::arg("age"))
       .def(
           "score_events",
           [](const std::shared_ptr<core::paper::Model>& self, const Stamps& stamps,
@@ -231,7 +227,8 @@ void bindVerdicts(py::module& m) {
   m.def("judge_by_evidence", &judgeByEvidence, py::arg("trained"), py::arg("model"),
         py::arg("parameters"), py::arg("stamps"), py::arg("ids"), py::arg("end") = py::none(),
         "Verdicts on a recording by the EvidenceModel of a TrainedModel; as Model.judge.");
-  m.attr("EVIDENCE_THRESHOLD") = core::evidence::Judge::kThreshold;
+  m.attr("EVIDENCE_THRESHOLD") = core::evidence::kThreshold;
+  m.attr("DEFAULT_WINDOW") = core::kDefaultWindow;  // [ns]
   m.attr("FEWEST_GAPS") = core::kFewestGaps;
   m.attr("PREDECESSORS") = core::evidence::kPredecessors;
   m.attr("USUAL_SHARES") = py::make_tuple(core::kUsualFrom, core::kUsualTo);

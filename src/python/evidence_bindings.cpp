@@ -1,15 +1,17 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "bindings.h"
+#include "core/evidence/scorer.h"
+#include "self_awareness/core/evidence/cross_fit.h"
 #include "self_awareness/core/evidence/limits.h"
 #include "self_awareness/core/evidence/model.h"
 #include "self_awareness/ros/model/model_file.h"
@@ -19,66 +21,37 @@ namespace {
 
 namespace evidence = core::evidence;
 
-std::shared_ptr<evidence::Model> makeModel(
-    const ros1::TrainedModel& trained,
-    evidence::Model::Learned learned = evidence::Model::Learned::kBoth) {
-  return std::make_shared<evidence::Model>(trained.watched, learned);
-}
-
-/// Finds limits on recordings that come twice each: as held-out data, or, where the model was
-/// trained on them, judged by what the other half of the training says.
-class Limits {
- public:
-  Limits(const ros1::TrainedModel& trained, std::int64_t settle_time, double budget)
-      : model_(makeModel(trained)),
-        halves_{makeModel(trained, evidence::Model::Learned::kSecond),
-                makeModel(trained, evidence::Model::Learned::kFirst)},
-        parameters_{trained.window, settle_time, budget},
-        finder_(model_, parameters_) {}
+/// A search for limits, and who judges the recordings.
+struct LimitSearch {
+  LimitSearch(std::shared_ptr<const evidence::CrossFit> models,
+              const evidence::LimitFinder::Parameters& parameters)
+      : cross_fit(std::move(models)), finder(cross_fit->model(), parameters) {}
 
   /// One without findings, for the same model and in the same pass.
-  std::unique_ptr<Limits> part() const {
-    return std::unique_ptr<Limits>(new Limits(*this, PartOf{}));
+  std::unique_ptr<LimitSearch> part() const {
+    auto search = std::make_unique<LimitSearch>(cross_fit, finder.parameters());
+    if (finder.inSecondPass()) {
+      search->finder.startSecondPass(finder.trackLimits());
+    }
+    return search;
   }
   void addEvents(const Stamps& stamps, const Ids& ids, std::optional<std::size_t> half) {
     const py::gil_scoped_release release;
-    finder_.startRecording(half ? halves_.at(*half) : model_);
-    forEachEvent(stamps, ids, [&](const core::Event& event) { finder_.add(event); });
-    finder_.finish();
+    finder.startRecording(cross_fit->judging(half));
+    forEachEvent(stamps, ids, [&](const core::Event& event) { finder.add(event); });
+    finder.finish();
   }
-  evidence::LimitFinder::Findings findings() const { return finder_.findings(); }
-  void merge(const evidence::LimitFinder::Findings& findings) { finder_.merge(findings); }
   evidence::Limits startSecondPass(const std::optional<evidence::Limits>& limits) {
     if (limits) {
-      finder_.startSecondPass(*limits);
+      finder.startSecondPass(*limits);
     } else {
-      finder_.startSecondPass();
+      finder.startSecondPass();
     }
-    second_pass_ = true;
-    return finder_.trackLimits();
-  }
-  evidence::Limits limits() const { return finder_.limits(); }
-  std::uint64_t windows() const { return finder_.windows(); }
-
- private:
-  struct PartOf {};
-
-  Limits(const Limits& whole, PartOf /*tag*/)
-      : model_(whole.model_),
-        halves_(whole.halves_),
-        parameters_(whole.parameters_),
-        finder_(model_, parameters_) {
-    if (whole.second_pass_) {
-      startSecondPass(whole.finder_.trackLimits());
-    }
+    return finder.trackLimits();
   }
 
-  std::shared_ptr<evidence::Model> model_;
-  std::array<std::shared_ptr<evidence::Model>, 2>
-      halves_;  // that judge the half, not learned from it
-  evidence::LimitFinder::Parameters parameters_;
-  evidence::LimitFinder finder_;
-  bool second_pass_ = false;
+  std::shared_ptr<const evidence::CrossFit> cross_fit;
+  evidence::LimitFinder finder;
 };
 
 using LimitsState = std::tuple<std::vector<double>, double>;
@@ -139,21 +112,39 @@ Findings fromState(const FindingsState& state) {
   return findings;
 }
 
-/// Evidence of every track at the end of every window: [windows, tracks].
+/// The evidence of every track at the end of every window.
+class EvidenceRows : public core::WindowObserver {
+ public:
+  EvidenceRows(const std::shared_ptr<const evidence::Model>& model, std::int64_t window)
+      : model_(*model), scorer_(model, window), window_(window) {}
+
+  core::ObservedEvent observe(const core::Event& event) override {
+    return {event, !model_.knows(event.id), scorer_.add(event)};
+  }
+  void close(const core::Window& window, std::int64_t /*end*/) override {
+    const std::vector<double>& evidence = scorer_.closeWindow(window.start + window_);
+    rows_.insert(rows_.end(), evidence.begin(), evidence.end());
+  }
+  void onClockStep() override { scorer_.restart(); }
+
+  const std::vector<double>& rows() const { return rows_; }
+
+ private:
+  const evidence::Model& model_;
+  evidence::Scorer scorer_;
+  std::int64_t window_;
+  std::vector<double> rows_;
+};
+
+/// [windows, tracks]
 py::array_t<double> evidenceOf(const std::shared_ptr<evidence::Model>& model, std::int64_t window,
                                const Stamps& stamps, const Ids& ids) {
-  evidence::Scorer scorer(model, window);
-  std::vector<double> rows;
-  core::Windows windows(window, [&](const core::Window& closed) {
-    const std::vector<double>& evidence = scorer.closeWindow(closed.start + window);
-    rows.insert(rows.end(), evidence.begin(), evidence.end());
-  });
-  forEachEvent(stamps, ids, [&](const core::Event& event) {
-    windows.advance(event.stamp);
-    windows.add({event, 0, !model->knows(event.id), scorer.add(event)});
-  });
+  EvidenceRows observer(model, window);
+  core::Windows windows(window, observer);
+  forEachEvent(stamps, ids, [&](const core::Event& event) { windows.add(event); });
   windows.finish();
   const std::size_t tracks = model->tracks().size();
+  const std::vector<double>& rows = observer.rows();
   py::array_t<double> array({tracks == 0 ? 0 : rows.size() / tracks, tracks});
   std::copy(rows.begin(), rows.end(), array.mutable_data());
   return array;
@@ -172,7 +163,9 @@ void bindEvidence(py::module& m) {
 
   py::class_<evidence::Model, std::shared_ptr<evidence::Model>>(
       m, "EvidenceModel", "What normal operation lets expect, from a TrainedModel's counts.")
-      .def(py::init([](const ros1::TrainedModel& trained) { return makeModel(trained); }),
+      .def(py::init([](const ros1::TrainedModel& trained) {
+             return std::make_shared<evidence::Model>(trained.watched);
+           }),
            py::arg("trained"))
       .def_property_readonly("tracks", &evidence::Model::tracks)
       .def("overdue", &evidence::Model::overdue, py::arg("id"), py::arg("age"), "age: [ns]")
@@ -196,23 +189,35 @@ void bindEvidence(py::module& m) {
       .def(py::pickle([](const Findings& self) { return stateOf(self); },
                       [](const FindingsState& state) { return fromState(state); }));
 
-  py::class_<Limits>(m, "LimitFinder",
-                     "Finds limits in two passes over the same recordings of normal operation.\n"
-                     "Parts of a pass may be made by other finders, elsewhere, and merged.")
-      .def(py::init<const ros1::TrainedModel&, std::int64_t, double>(), py::arg("trained"),
-           py::arg("settle_time"), py::arg("budget"),
-           "settle_time: [ns]; budget: false alarms an hour")
-      .def("add_events", &Limits::addEvents, py::arg("stamps"), py::arg("ids"),
+  py::class_<LimitSearch>(
+      m, "LimitFinder",
+      "Finds limits in two passes over the same recordings of normal operation.\n"
+      "Parts of a pass may be made by other finders, elsewhere, and merged.")
+      .def(
+          py::init([](const ros1::TrainedModel& trained, std::int64_t settle_time, double budget) {
+            return std::make_unique<LimitSearch>(
+                std::make_shared<evidence::CrossFit>(trained.watched),
+                evidence::LimitFinder::Parameters{trained.window, settle_time, budget});
+          }),
+          py::arg("trained"), py::arg("settle_time"), py::arg("budget"),
+          "settle_time: [ns]; budget: false alarms an hour")
+      .def("add_events", &LimitSearch::addEvents, py::arg("stamps"), py::arg("ids"),
            py::arg("half") = py::none(),
            "A recording; half: 0 or 1 where that half of the training was trained on it.")
-      .def("part", &Limits::part, "A finder without findings, for the same model and pass.")
-      .def("findings", &Limits::findings, "LimitFindings of what was added.")
-      .def("merge", &Limits::merge, py::arg("findings"))
-      .def("start_second_pass", &Limits::startSecondPass, py::arg("limits") = py::none(),
+      .def("part", &LimitSearch::part, "A finder without findings, for the same model and pass.")
+      .def(
+          "findings", [](const LimitSearch& self) { return self.finder.findings(); },
+          "LimitFindings of what was added.")
+      .def(
+          "merge",
+          [](LimitSearch& self, const Findings& findings) { self.finder.merge(findings); },
+          py::arg("findings"))
+      .def("start_second_pass", &LimitSearch::startSecondPass, py::arg("limits") = py::none(),
            "Returns the EvidenceLimits of the tracks, by which another finder may start its own\n"
            "second pass. ValueError where the recordings were too short.")
-      .def("limits", &Limits::limits)
-      .def_property_readonly("windows", &Limits::windows);
+      .def("limits", [](const LimitSearch& self) { return self.finder.limits(); })
+      .def_property_readonly("windows",
+                             [](const LimitSearch& self) { return self.finder.windows(); });
 }
 
 }  // namespace self_awareness::python

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "allocated_bytes.h"
+#include "core/evidence/log_bins.h"
+#include "core/evidence/scorer.h"
 #include "event_loop.h"
-#include "self_awareness/core/evidence/log_bins.h"
 #include "self_awareness/core/evidence/model.h"
-#include "self_awareness/core/evidence/scorer.h"
 #include "self_awareness/core/evidence/statistics.h"
 #include "synthetic_system.h"
 

@@ -8,10 +8,11 @@
 #include <vector>
 
 #include "allocated_bytes.h"
+#include "core/paper/delay_trainer.h"
+#include "core/paper/scorer.h"
 #include "event_loop.h"
 #include "self_awareness/core/paper/delay_statistics.h"
 #include "self_awareness/core/paper/model.h"
-#include "self_awareness/core/paper/scorer.h"
 #include "synthetic_system.h"
 
 namespace self_awareness::benchmarks {

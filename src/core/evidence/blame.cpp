@@ -1,4 +1,4 @@
-#include "self_awareness/core/evidence/blame.h"
+#include "core/evidence/blame.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,8 +10,6 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-// A silence that one gap in a hundred reaches is worth naming once a window is abnormal.
-const double kRareSilence = std::log(0.01);
 // Evidence below this share of its limit says nothing of who is involved.
 constexpr double kLeastShare = 0.3;
 constexpr double kMostShare = 2;
@@ -46,14 +44,14 @@ std::vector<Suspect> Blame::suspects(const std::vector<double>& shares, const Sc
   for (const Candidate& candidate : candidates) {
     name(candidate.suspect);
   }
-  for (const ScoredEvent& scored : window.events) {
-    if (scored.unknown) {
+  for (const ObservedEvent& observed : window.events) {
+    if (observed.unknown) {
       Suspect suspect;
-      suspect.id = scored.event.id;
+      suspect.id = observed.event.id;
       suspect.reason = Suspect::Reason::kUnknown;
       suspect.events = static_cast<std::size_t>(std::count_if(
           window.events.begin(), window.events.end(),
-          [&](const ScoredEvent& other) { return other.event.id == scored.event.id; }));
+          [&](const ObservedEvent& other) { return other.event.id == observed.event.id; }));
       name(suspect);
     }
   }

@@ -4,7 +4,12 @@
 #include <cmath>
 #include <set>
 #include <stdexcept>
+#include <string>
 #include <utility>
+#include <vector>
+
+#include "core/evidence/blame.h"
+#include "core/evidence/scorer.h"
 
 namespace self_awareness::core::evidence {
 namespace {
@@ -14,7 +19,26 @@ constexpr double kSuspicious = 0.75;
 // Whoever has been overdue for so long [ns] is silent: further windows would say nothing new.
 constexpr std::int64_t kConfirmation = kNanosecondsPerSecond / 10;
 
-}  // namespace
+class Judge : public core::Judge {
+ public:
+  Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, std::int64_t window,
+        std::shared_ptr<const SourceGraph> graph);
+
+  ObservedEvent add(const Event& event) override {
+    return {event, !model_->knows(event.id), scorer_.add(event)};
+  }
+  Judgement judge(const Window& window, std::int64_t end, NameSuspects suspects) override;
+  void restart() override { scorer_.restart(); }
+
+ private:
+  bool isSilent(std::int64_t end) const;
+
+  std::shared_ptr<const Model> model_;
+  std::optional<Limits> limits_;
+  Scorer scorer_;
+  Blame blame_;
+  std::vector<double> shares_;  // of its limit that each track has reached
+};
 
 Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, std::int64_t window,
              std::shared_ptr<const SourceGraph> graph)
@@ -32,11 +56,7 @@ Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, s
   }
 }
 
-ScoredEvent Judge::add(const Event& event) {
-  return {event, 0, !model_->knows(event.id), scorer_.add(event)};
-}
-
-Judgement Judge::judge(const Window& /*window*/, std::int64_t end) {
+Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects suspects) {
   Judgement judgement;
   const std::vector<double>& evidence = scorer_.closeWindow(end);
   if (!limits_) {
@@ -63,6 +83,10 @@ Judgement Judge::judge(const Window& /*window*/, std::int64_t end) {
   for (const std::string& channel : channels) {
     judgement.evidence += (judgement.evidence.empty() ? "" : ", ") + channel;
   }
+  if (suspects == NameSuspects::kAlways ||
+      (suspects == NameSuspects::kIfUnusual && (judgement.abnormal || judgement.suspicious))) {
+    judgement.suspects = blame_.suspects(shares_, scorer_, window);
+  }
   return judgement;
 }
 
@@ -79,8 +103,12 @@ bool Judge::isSilent(std::int64_t end) const {
   return false;
 }
 
-std::vector<Suspect> Judge::suspects(const Window& window, std::int64_t /*end*/) const {
-  return blame_.suspects(shares_, scorer_, window);
+}  // namespace
+
+std::unique_ptr<core::Judge> makeJudge(std::shared_ptr<const Model> model,
+                                       std::optional<Limits> limits, std::int64_t window,
+                                       std::shared_ptr<const SourceGraph> graph) {
+  return std::make_unique<Judge>(std::move(model), std::move(limits), window, std::move(graph));
 }
 
 }  // namespace self_awareness::core::evidence

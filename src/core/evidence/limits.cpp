@@ -8,7 +8,8 @@
 #include <string>
 #include <utility>
 
-#include "self_awareness/core/stream/clock.h"
+#include "core/evidence/misleading_pairs.h"
+#include "core/evidence/scorer.h"
 #include "self_awareness/core/verdict/suspect.h"
 
 namespace self_awareness::core::evidence {
@@ -74,59 +75,72 @@ void LimitFinder::Parameters::validate() const {
 LimitFinder::LimitFinder(std::shared_ptr<const Model> model, const Parameters& parameters)
     : model_(std::move(model)),
       parameters_(parameters),
-      windows_(parameters.window,
-               [this](const Window& window) { judge(window.start + parameters_.window); }),
+      windows_(parameters.window, *this),
       block_(model_->tracks().size(), 0),
       maxima_(model_->tracks().size()),
       gaps_(model_->size()),
-      misleading_(*model_) {
+      misleading_(std::make_unique<MisleadingPairs>(*model_)) {
   parameters_.validate();
 }
+
+LimitFinder::~LimitFinder() = default;
 
 void LimitFinder::startRecording(std::shared_ptr<const Model> model) {
   finish();
   judging_ = std::move(model);
-  scorer_.emplace(judging_, parameters_.window);
+  startScoring();
+}
+
+void LimitFinder::startScoring() {
+  scorer_ = std::make_unique<Scorer>(judging_, parameters_.window);
   if (second_pass_) {
     scorer_->capAt(limits_);  // as the detector does
   }
 }
 
 void LimitFinder::add(const Event& event) {
-  if (last_stamp_ && isClockStep(*last_stamp_, event.stamp)) {
-    startRecording(judging_);
-  }
-  if (!last_stamp_) {
+  windows_.add(event);
+}
+
+ObservedEvent LimitFinder::observe(const Event& event) {
+  if (!first_stamp_) {
     first_stamp_ = event.stamp;
   }
   last_stamp_ = event.stamp;
-  windows_.advance(event.stamp);
-  const std::optional<std::int64_t> gap = scorer_->add(event);
-  windows_.add({event, 0, !model_->knows(event.id), gap});
-  if (second_pass_ || !model_->knows(event.id)) {
-    return;
+  const ObservedEvent observed{event, !model_->knows(event.id), scorer_->add(event)};
+  if (!second_pass_ && !observed.unknown) {
+    if (observed.gap) {
+      gaps_[event.id].addGap(*observed.gap);
+    }
+    misleading_->add(event);
   }
-  if (gap) {
-    gaps_[event.id].addGap(*gap);
-  }
-  misleading_.add(event);
+  return observed;
+}
+
+void LimitFinder::onClockStep() {
+  endRecording();
+  startScoring();
 }
 
 void LimitFinder::finish() {
-  if (!last_stamp_) {
-    return;
-  }
   windows_.finish();
-  closeBlock();
-  if (!second_pass_) {
-    misleading_.finish();
-    duration_ += *last_stamp_ - *first_stamp_;
-  }
-  last_stamp_.reset();
+  endRecording();
 }
 
-void LimitFinder::judge(std::int64_t end) {
-  if (end > *last_stamp_) {
+void LimitFinder::endRecording() {
+  if (!first_stamp_) {
+    return;
+  }
+  closeBlock();
+  if (!second_pass_) {
+    misleading_->finish();
+    duration_ += last_stamp_ - *first_stamp_;
+  }
+  first_stamp_.reset();
+}
+
+void LimitFinder::close(const Window& window, std::int64_t end) {
+  if (end < window.start + parameters_.window) {
     return;  // the recording ends within its last window
   }
   const std::vector<double>& evidence = scorer_->closeWindow(end);
@@ -210,14 +224,14 @@ LimitFinder::Findings LimitFinder::findings() const {
   for (const Statistics::Type& type : gaps_) {
     found.longest_gaps.push_back(type.longest_gaps);
   }
-  found.misleading = misleading_.tracks();
+  found.misleading = misleading_->tracks();
   found.linker_maxima = linker_maxima_;
   return found;
 }
 
 void LimitFinder::merge(const Findings& other) {
   if (other.maxima.size() != maxima_.size() || other.longest_gaps.size() != gaps_.size() ||
-      other.misleading.size() != misleading_.tracks().size()) {
+      other.misleading.size() != misleading_->tracks().size()) {
     throw std::invalid_argument("the findings are those of another model");
   }
   windows_seen_ += other.windows;
@@ -226,7 +240,7 @@ void LimitFinder::merge(const Findings& other) {
   for (std::size_t track = 0; track < maxima_.size(); ++track) {
     maxima_[track].merge(other.maxima[track]);
   }
-  misleading_.add(other.misleading);
+  misleading_->add(other.misleading);
   for (std::size_t id = 0; id < gaps_.size(); ++id) {
     for (const std::int64_t gap : other.longest_gaps[id]) {
       gaps_[id].addGap(gap);
@@ -258,7 +272,7 @@ double LimitFinder::limit(std::size_t track, double rate) const {
   const double found = std::max({model_->leastLimit(track), kMargin * maxima.largest(),
                                  gumbelLimit(maxima, std::min(rate * kBlock / kHour, 0.5))});
   if (channel == Channel::kDelay || channel == Channel::kSlowDelay) {
-    return misleading_.tracks()[track] || found > kMostDelayLimit ? kNone : found;
+    return misleading_->tracks()[track] || found > kMostDelayLimit ? kNone : found;
   }
   if (channel == Channel::kAnswer) {
     return found / model_->missed(track) * meanGap(from) > kLongestWait ? kNone : found;

@@ -1,4 +1,4 @@
-#include "self_awareness/core/evidence/log_bins.h"
+#include "core/evidence/log_bins.h"
 
 #include <cmath>
 

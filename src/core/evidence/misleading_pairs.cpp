@@ -1,4 +1,4 @@
-#include "self_awareness/core/evidence/misleading_pairs.h"
+#include "core/evidence/misleading_pairs.h"
 
 #include <algorithm>
 #include <functional>

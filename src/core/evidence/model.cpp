@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/evidence/log_bins.h"
 #include "self_awareness/core/verdict/suspect.h"
 
 namespace self_awareness::core::evidence {

@@ -1,7 +1,9 @@
-#include "self_awareness/core/evidence/scorer.h"
+#include "core/evidence/scorer.h"
 
 #include <algorithm>
 #include <utility>
+
+#include "core/evidence/log_bins.h"
 
 namespace self_awareness::core::evidence {
 namespace {

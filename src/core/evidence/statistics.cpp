@@ -10,6 +10,7 @@
 #include <tuple>
 #include <utility>
 
+#include "core/evidence/log_bins.h"
 #include "self_awareness/core/stream/clock.h"
 #include "self_awareness/core/stream/windows.h"
 

@@ -1,4 +1,4 @@
-#include "self_awareness/core/paper/blame.h"
+#include "core/paper/blame.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,6 @@
 namespace self_awareness::core::paper {
 namespace {
 
-// A silence that one gap in a hundred reaches is worth naming once the window is abnormal.
-const double kRareSilence = std::log(0.01);
 // Events that score less than this share of what training lets expect are worth naming.
 constexpr double kLowScore = 0.5;
 
@@ -20,14 +18,16 @@ struct SeenInWindow {
   bool unknown = false;
 };
 
-std::map<EventId, SeenInWindow> eventsByType(const Window& window) {
+std::map<EventId, SeenInWindow> eventsByType(const Window& window,
+                                             const std::vector<double>& scores) {
   std::map<EventId, SeenInWindow> seen;
-  for (const ScoredEvent& scored : window.events) {
-    SeenInWindow& type = seen[scored.event.id];
+  for (std::size_t i = 0; i < window.events.size(); ++i) {
+    const ObservedEvent& observed = window.events[i];
+    SeenInWindow& type = seen[observed.event.id];
     ++type.events;
-    type.score_sum += scored.score;
-    type.longest_gap = std::max(type.longest_gap, scored.gap.value_or(0));
-    type.unknown = scored.unknown;
+    type.score_sum += scores.at(i);
+    type.longest_gap = std::max(type.longest_gap, observed.gap.value_or(0));
+    type.unknown = observed.unknown;
   }
   return seen;
 }
@@ -45,44 +45,26 @@ Blame::Blame(std::shared_ptr<const Model> model) : model_(std::move(model)) {
     if (!gaps.empty()) {
       usual.shortest = static_cast<double>(gaps.quantile(kUsualFrom)) * bin_size;
       usual.longest = static_cast<double>(gaps.quantile(kUsualTo) + 1) * bin_size;
-      usual.maximum = static_cast<double>(gaps.quantile(1) + 1) * bin_size;
     }
   }
 }
 
-double Blame::logSurvival(EventId id, std::int64_t age) const {
-  if (!judged(id)) {
-    return 0;
-  }
-  const Usual& usual = usual_[id];
-  const std::int64_t bin = model_->binning().bin(age);
-  std::uint64_t longer = 0;
-  const std::vector<Histogram::Entry> gaps = model_->gaps(id).entries();
-  for (auto entry = gaps.rbegin(); entry != gaps.rend() && entry->bin >= bin; ++entry) {
-    longer += entry->count;
-  }
-  const double tail = toSeconds(age) / usual.maximum;
-  const double all = std::log(static_cast<double>(usual.gaps) + 1);
-  // Where no gap was longer, exp(-tail) would underflow long before its logarithm.
-  return longer == 0 ? -tail - all : std::log(static_cast<double>(longer) + std::exp(-tail)) - all;
-}
-
-std::vector<Suspect> Blame::suspects(const Window& window,
+std::vector<Suspect> Blame::suspects(const Window& window, const std::vector<double>& scores,
                                      const std::vector<std::optional<std::int64_t>>& last_seen,
                                      std::int64_t end) const {
-  std::map<EventId, SeenInWindow> seen = eventsByType(window);
+  std::map<EventId, SeenInWindow> seen = eventsByType(window, scores);
   std::vector<std::pair<double, Suspect>> overdue;  // by the logarithm of survival
   std::vector<std::pair<double, Suspect>> unknown;  // by the number of events, negative
   std::vector<std::pair<double, Suspect>> unusual;  // by the share of the expected score
 
   for (EventId id = 0; id < model_->size(); ++id) {
-    if (!last_seen[id] || !judged(id)) {
+    if (!last_seen[id] || usual_[id].gaps < kFewestGaps) {
       continue;
     }
     const std::int64_t age = end - *last_seen[id];
     const auto in_window = seen.find(id);
     const std::int64_t gap = in_window == seen.end() ? 0 : in_window->second.longest_gap;
-    const double log_survival = logSurvival(id, std::max(age, gap));
+    const double log_survival = model_->logSurvival(id, std::max(age, gap));
     if (log_survival > kRareSilence) {
       continue;
     }

@@ -1,4 +1,4 @@
-#include "self_awareness/core/paper/delay_table.h"
+#include "core/paper/delay_table.h"
 
 #include <algorithm>
 #include <array>

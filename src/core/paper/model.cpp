@@ -1,6 +1,10 @@
 #include "self_awareness/core/paper/model.h"
 
+#include <cmath>
 #include <stdexcept>
+
+#include "core/paper/delay_table.h"
+#include "self_awareness/core/verdict/suspect.h"
 
 namespace self_awareness::core::paper {
 
@@ -22,6 +26,16 @@ Model::Model(const DelayStatistics& statistics)
   }
 }
 
+Model::~Model() = default;
+
+const DelayTable& Model::table(EventId to) const {
+  return tables_[to];
+}
+
+double Model::entropy(EventId from, EventId to) const {
+  return tables_.at(to).entropy(from);
+}
+
 double Model::probability(EventId from, EventId to, std::int64_t delay) const {
   return tables_.at(to).probability(from, binning_.bin(delay));
 }
@@ -37,6 +51,25 @@ double Model::expectedScore(EventId to) const {
     score += weight(from, to) * probabilities[from];
   }
   return score;
+}
+
+double Model::logSurvival(EventId id, std::int64_t age) const {
+  const Histogram& gaps = gaps_.at(id);
+  const std::uint64_t total = gaps.total();
+  if (total < kFewestGaps) {
+    return 0;
+  }
+  const std::int64_t bin = binning_.bin(age);
+  std::uint64_t longer = 0;
+  const Histogram::Entries entries = gaps.entries();
+  for (auto entry = entries.rbegin(); entry != entries.rend() && entry->bin >= bin; ++entry) {
+    longer += entry->count;
+  }
+  const double longest = static_cast<double>(gaps.quantile(1) + 1) * toSeconds(binning_.bin_size);
+  const double tail = toSeconds(age) / longest;
+  const double all = std::log(static_cast<double>(total) + 1);
+  // Where no gap was longer, exp(-tail) would underflow long before its logarithm.
+  return longer == 0 ? -tail - all : std::log(static_cast<double>(longer) + std::exp(-tail)) - all;
 }
 
 }  // namespace self_awareness::core::paper

@@ -1,7 +1,9 @@
-#include "self_awareness/core/paper/scorer.h"
+#include "core/paper/scorer.h"
 
 #include <algorithm>
 #include <utility>
+
+#include "core/paper/delay_table.h"
 
 namespace self_awareness::core::paper {
 
@@ -17,11 +19,11 @@ void Scorer::restart() {
   entropy_sums_.assign(model_->size(), 0);
 }
 
-ScoredEvent Scorer::score(const Event& event) {
-  ScoredEvent scored;
-  scored.event = event;
+Scorer::Scored Scorer::score(const Event& event) {
+  Scored scored;
+  scored.event.event = event;
   if (!model_->knows(event.id)) {
-    scored.unknown = true;
+    scored.event.unknown = true;
     return scored;
   }
   const std::uint64_t mark = bins_.mark(event.stamp);
@@ -34,7 +36,7 @@ ScoredEvent Scorer::score(const Event& event) {
 
   std::optional<std::int64_t>& last = last_seen_[event.id];
   if (last) {
-    scored.gap = event.stamp - *last;
+    scored.event.gap = event.stamp - *last;
   } else {
     for (EventId to = 0; to < entropy_sums_.size(); ++to) {
       entropy_sums_[to] += model_->table(to).entropy(event.id);

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
-#include <utility>
+
+#include "self_awareness/core/stream/clock.h"
 
 namespace self_awareness::core {
 
@@ -12,41 +13,43 @@ std::int64_t floorToGrid(std::int64_t stamp, std::int64_t length) {
   return stamp - (remainder < 0 ? remainder + length : remainder);
 }
 
-std::optional<double> Window::score() const {
-  if (events.empty()) {
-    return std::nullopt;
-  }
-  double sum = 0;
-  for (const ScoredEvent& event : events) {
-    sum += event.score;
-  }
-  return sum / static_cast<double>(events.size());
-}
-
 std::size_t Window::unknown() const {
   return static_cast<std::size_t>(std::count_if(
-      events.begin(), events.end(), [](const ScoredEvent& event) { return event.unknown; }));
+      events.begin(), events.end(), [](const ObservedEvent& event) { return event.unknown; }));
 }
 
-Windows::Windows(std::int64_t length, Handler handler)
-    : length_(length), handler_(std::move(handler)) {
+Windows::Windows(std::int64_t length, WindowObserver& observer)
+    : length_(length), observer_(observer) {
   if (length_ <= 0) {
     throw std::invalid_argument("window length must be more than 0 ns, it is " +
                                 std::to_string(length_));
   }
 }
 
-void Windows::add(const ScoredEvent& event) {
-  advance(event.event.stamp);
-  if (!open_) {
-    open_ = Window{floorToGrid(event.event.stamp, length_), {}};
+bool Windows::add(const Event& event) {
+  const bool clock_step = last_stamp_ && isClockStep(*last_stamp_, event.stamp);
+  if (clock_step) {
+    restart();
+    observer_.onClockStep();
   }
-  open_->events.push_back(event);
+  last_stamp_ = event.stamp;
+  advance(event.stamp);
+  const ObservedEvent observed = observer_.observe(event);
+  if (!open_) {
+    open_ = Window{floorToGrid(event.stamp, length_), {}};
+    now_ = event.stamp;
+  }
+  open_->events.push_back(observed);
+  return !clock_step;
 }
 
 void Windows::advance(std::int64_t now) {
-  while (open_ && open_->start + length_ <= now) {
-    handler_(*open_);
+  if (!open_) {
+    return;
+  }
+  now_ = std::max(now_, now);
+  while (open_->start + length_ <= now) {
+    observer_.close(*open_, open_->start + length_);
     open_->start += length_;
     open_->events.clear();
   }
@@ -54,9 +57,14 @@ void Windows::advance(std::int64_t now) {
 
 void Windows::finish() {
   if (open_) {
-    handler_(*open_);
-    open_.reset();
+    observer_.close(*open_, std::min(open_->start + length_, now_));
   }
+  restart();
+}
+
+void Windows::restart() {
+  open_.reset();
+  last_stamp_.reset();
 }
 
 }  // namespace self_awareness::core

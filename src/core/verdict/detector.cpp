@@ -1,11 +1,8 @@
 #include "self_awareness/core/verdict/detector.h"
 
-#include <algorithm>
-#include <limits>
 #include <stdexcept>
+#include <string>
 #include <utility>
-
-#include "self_awareness/core/stream/clock.h"
 
 namespace self_awareness::core {
 
@@ -21,28 +18,21 @@ Detector::Detector(std::unique_ptr<Judge> judge, std::int64_t window, const Para
     : judge_(std::move(judge)),
       parameters_(parameters),
       handler_(std::move(handler)),
-      windows_(window, [this](const Window& closed) { this->judge(closed); }),
+      windows_(window, *this),
       persistence_(parameters.persistence) {
   parameters_.validate();
 }
 
 bool Detector::add(const Event& event) {
-  const bool clock_step = last_stamp_ && isClockStep(*last_stamp_, event.stamp);
-  if (clock_step) {
-    restart();
-  }
-  if (!last_stamp_) {
+  const bool first = !started();
+  const bool same_clock = windows_.add(event);
+  if (first || !same_clock) {
     settle(event.stamp);
   }
-  last_stamp_ = event.stamp;
-  now_ = std::max(now_, event.stamp);
-  windows_.advance(event.stamp);  // the windows before it are judged without it
-  windows_.add(judge_->add(event));
-  return !clock_step;
+  return same_clock;
 }
 
 void Detector::advance(std::int64_t now) {
-  now_ = std::max(now_, now);
   windows_.advance(now);
 }
 
@@ -51,11 +41,13 @@ void Detector::finish() {
 }
 
 void Detector::restart() {
-  judge_->restart();
   windows_.restart();
+  onClockStep();
+}
+
+void Detector::onClockStep() {
+  judge_->restart();
   clearAlarm();
-  last_stamp_.reset();
-  now_ = std::numeric_limits<std::int64_t>::min();
 }
 
 void Detector::settle(std::int64_t now) {
@@ -67,13 +59,15 @@ void Detector::clearAlarm() {
   suspicion_ = false;
 }
 
-void Detector::judge(const Window& window) {
-  const std::int64_t end = window.start + windows_.length();
-  // A recording may end within its last window: nobody knows what would have come.
-  const std::int64_t known = std::min(end, now_);
-  Judgement judgement = judge_->judge(window, known);
-  const bool unknown = window.unknown() > 0;
-  if (unknown && parameters_.unknown != UnknownEvents::kIgnore) {
+void Detector::close(const Window& window, std::int64_t end) {
+  const std::int64_t window_end = window.start + windows_.length();
+  const bool settling = window.start < settled_at_;
+  const bool unknown = window.unknown() > 0 && parameters_.unknown != UnknownEvents::kIgnore;
+  Judgement judgement = judge_->judge(window, end,
+                                      settling  ? NameSuspects::kNever
+                                      : unknown ? NameSuspects::kAlways
+                                                : NameSuspects::kIfUnusual);
+  if (unknown) {
     judgement.evidence += (judgement.evidence.empty() ? "" : ", ") + std::string("unknown events");
     judgement.suspicious = true;
   }
@@ -87,17 +81,17 @@ void Detector::judge(const Window& window) {
   verdict.score = judgement.score;
   verdict.threshold = judgement.threshold;
   verdict.abnormal = judgement.abnormal;
-  verdict.settling = window.start < settled_at_;
+  verdict.settling = settling;
   verdict.evidence = judgement.evidence;
-  const bool counts = verdict.abnormal && !verdict.settling;
+  verdict.suspects = std::move(judgement.suspects);
+  const bool counts = verdict.abnormal && !settling;
   const bool stood = persistence_.raised();
   const bool was_suspicion = suspicion_;
-  verdict.alarm = persistence_.add(counts, end, counts && judgement.certain);
-  if (judgement.threshold && !verdict.settling && (counts || judgement.suspicious)) {
+  verdict.alarm = persistence_.add(counts, window_end, counts && judgement.certain);
+  if (judgement.threshold && !settling && (counts || judgement.suspicious)) {
     suspicion_ = true;
-    suspicious_at_ = end;
-    verdict.suspects = judge_->suspects(window, known);
-  } else if (end - suspicious_at_ >= parameters_.persistence.hold_time) {
+    suspicious_at_ = window_end;
+  } else if (window_end - suspicious_at_ >= parameters_.persistence.hold_time) {
     suspicion_ = false;
   }
   verdict.suspicion = suspicion_ && !verdict.alarm;

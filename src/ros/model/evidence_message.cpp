@@ -41,7 +41,7 @@ void checkSizes(const self_awareness::Evidence& message, std::size_t n) {
     check(size == n, "its evidence does not fit its event types");
   }
   check(areOffsets(message.longest_offsets, n, message.longest_gaps.size()) &&
-            message.left_out.size() == n * evidence::log_bins::kBins,
+            message.left_out.size() == n * evidence::kDelayBins,
         "its evidence does not fit its event types");
   check(message.duration >= 0, "its evidence has a negative duration");
 }
@@ -57,8 +57,8 @@ evidence::Statistics::Type typeOf(const self_awareness::Evidence& message, std::
     type.addGap(message.longest_gaps[k]);
   }
   std::copy_n(
-      message.left_out.begin() + static_cast<std::ptrdiff_t>(id * evidence::log_bins::kBins),
-      evidence::log_bins::kBins, type.left_out.begin());
+      message.left_out.begin() + static_cast<std::ptrdiff_t>(id * evidence::kDelayBins),
+      evidence::kDelayBins, type.left_out.begin());
   check(type.gap_sum >= 0 && (type.gaps > 0) == !type.longest_gaps.empty(),
         "its evidence has impossible gaps");
   return type;
@@ -127,7 +127,7 @@ void setPairs(const self_awareness::EvidencePairs& message, evidence::Statistics
     partners[k].id = message.partners[k];
     partners[k].answers = message.answers[k];
     for (std::size_t i = message.offsets[k]; i < message.offsets[k + 1]; ++i) {
-      check(message.bins[i] < evidence::log_bins::kBins, "its evidence has an impossible bin");
+      check(message.bins[i] < evidence::kDelayBins, "its evidence has an impossible bin");
       partners[k].delays[message.bins[i]] += message.counts[i];
     }
   }

@@ -1,4 +1,4 @@
-#include "self_awareness/core/evidence/blame.h"
+#include "core/evidence/blame.h"
 
 #include <gtest/gtest.h>
 
@@ -140,9 +140,9 @@ TEST_F(EvidenceBlameTest, WhatIsWrongWithOneselfCountsMoreThanDelaysAfterOthers)
 TEST_F(EvidenceBlameTest, UnknownEventsAreNamedLast) {
   Window window;
   for (const EventId id : {5U, 4U, 5U}) {
-    window.events.push_back({{last_, id}, 0, true, std::nullopt});
+    window.events.push_back({{last_, id}, true, std::nullopt});
   }
-  window.events.push_back({{last_, kA}, 0, false, std::nullopt});
+  window.events.push_back({{last_, kA}, false, std::nullopt});
   const std::vector<Suspect> named = suspects({{overdue(kA), 1.5}}, last_ + 5 * kSecond, window);
   ASSERT_EQ(ids(named), (std::vector<EventId>{kA, 5, 4}));
   EXPECT_EQ(named[1].reason, Reason::kUnknown);
@@ -153,7 +153,7 @@ TEST_F(EvidenceBlameTest, UnknownEventsAreNamedLast) {
 TEST_F(EvidenceBlameTest, NoMoreThanFiveAreNamed) {
   Window window;
   for (EventId id = 10; id < 20; ++id) {
-    window.events.push_back({{last_, id}, 0, true, std::nullopt});
+    window.events.push_back({{last_, id}, true, std::nullopt});
   }
   EXPECT_EQ(suspects({}, last_ + kWindow, window).size(), kMostSuspects);
 }

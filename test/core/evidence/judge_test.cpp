@@ -31,11 +31,15 @@ class EvidenceJudgeTest : public testing::Test {
   std::size_t track(Channel channel, EventId to, EventId from) const {
     return indexOf(model_->tracks(), channel, to, from);
   }
-  Judge makeJudge(const std::optional<Limits>& limits) const {
-    return Judge(model_, limits, kWindow, std::make_shared<SourceGraph>());
+  std::unique_ptr<core::Judge> newJudge(const std::optional<Limits>& limits) const {
+    return makeJudge(model_, limits, kWindow, std::make_shared<SourceGraph>());
+  }
+  static Judgement judgeAt(core::Judge& judge, std::int64_t end,
+                           NameSuspects suspects = NameSuspects::kNever) {
+    return judge.judge({}, end, suspects);
   }
   // As in training, so that all that is watched counts, and then answers that come late.
-  static void feed(Judge& judge, int late) {
+  static void feed(core::Judge& judge, int late) {
     for (int i = 0; i < 40 + late; ++i) {
       const std::int64_t delay = i < 40 ? 20 * kMillisecond : 70 * kMillisecond;
       judge.add({i * kPeriod, kA});
@@ -52,9 +56,9 @@ TEST_F(EvidenceJudgeTest, TheScoreIsTheLargestShareOfALimit) {
   const double evidence = model_->overdue(kA, age);
   for (const double share : {0.5, 0.99, 1.01}) {
     limits_.tracks[track(Channel::kOverdue, kA, kA)] = evidence / share;
-    Judge judge = makeJudge(limits_);
-    judge.add({0, kA});
-    const Judgement judgement = judge.judge({}, age);
+    const std::unique_ptr<core::Judge> judge = newJudge(limits_);
+    judge->add({0, kA});
+    const Judgement judgement = judgeAt(*judge, age);
     EXPECT_NEAR(judgement.score.value(), -share, 1e-12);
     EXPECT_EQ(judgement.threshold, -1);
     EXPECT_EQ(judgement.abnormal, share > 1);
@@ -66,29 +70,41 @@ TEST_F(EvidenceJudgeTest, TheScoreIsTheLargestShareOfALimit) {
 
 TEST_F(EvidenceJudgeTest, ASilenceThatHasLastedIsCertain) {
   limits_.tracks[track(Channel::kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
-  Judge judge = makeJudge(limits_);
-  judge.add({0, kA});
-  EXPECT_FALSE(judge.judge({}, kSecond).abnormal);
-  const Judgement soon = judge.judge({}, kSecond + 50 * kMillisecond);
+  const std::unique_ptr<core::Judge> judge = newJudge(limits_);
+  judge->add({0, kA});
+  EXPECT_FALSE(judgeAt(*judge, kSecond).abnormal);
+  const Judgement soon = judgeAt(*judge, kSecond + 50 * kMillisecond);
   EXPECT_TRUE(soon.abnormal);
   EXPECT_FALSE(soon.certain);
-  EXPECT_TRUE(judge.judge({}, kSecond + 101 * kMillisecond).certain);
+  EXPECT_TRUE(judgeAt(*judge, kSecond + 101 * kMillisecond).certain);
 }
 
 TEST_F(EvidenceJudgeTest, LateAnswersAreAbnormalButNotCertain) {
   const std::size_t delay = track(Channel::kDelay, kB, kA);
   limits_.tracks[delay] = model_->leastLimit(delay);
-  Judge usual = makeJudge(limits_);
-  feed(usual, 0);
-  EXPECT_EQ(usual.judge({}, 40 * kPeriod).score, 0);
-  Judge judge = makeJudge(limits_);
-  feed(judge, 5);
-  const Judgement judgement = judge.judge({}, 45 * kPeriod);
+  const std::unique_ptr<core::Judge> usual = newJudge(limits_);
+  feed(*usual, 0);
+  EXPECT_EQ(judgeAt(*usual, 40 * kPeriod).score, 0);
+  const std::unique_ptr<core::Judge> judge = newJudge(limits_);
+  feed(*judge, 5);
+  const Judgement judgement = judgeAt(*judge, 45 * kPeriod, NameSuspects::kIfUnusual);
   EXPECT_TRUE(judgement.abnormal);
   EXPECT_FALSE(judgement.certain);
   EXPECT_EQ(judgement.evidence, "pairs");
-  ASSERT_FALSE(judge.suspects({}, 45 * kPeriod).empty());
-  EXPECT_EQ(judge.suspects({}, 45 * kPeriod).front().id, kB);
+  ASSERT_FALSE(judgement.suspects.empty());
+  EXPECT_EQ(judgement.suspects.front().id, kB);
+}
+
+TEST_F(EvidenceJudgeTest, NamesSuspectsOnlyWhereTheyAreAskedFor) {
+  limits_.tracks[track(Channel::kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
+  const std::unique_ptr<core::Judge> judge = newJudge(limits_);
+  judge->add({0, kA});
+  const Window unknown{0, {{{0, kC}, true, {}}}};
+  EXPECT_TRUE(judge->judge(unknown, kPeriod, NameSuspects::kIfUnusual).suspects.empty());
+  EXPECT_EQ(judge->judge(unknown, kPeriod, NameSuspects::kAlways).suspects.size(), 1U);
+  EXPECT_TRUE(judge->judge({}, 2 * kSecond, NameSuspects::kNever).suspects.empty());
+  EXPECT_EQ(judge->judge({}, 2 * kSecond, NameSuspects::kIfUnusual).suspects.size(), 1U);
+  EXPECT_TRUE(newJudge(std::nullopt)->judge(unknown, 0, NameSuspects::kAlways).suspects.empty());
 }
 
 TEST_F(EvidenceJudgeTest, TheLinkerIsSuspiciousNearItsLimitAndCertainBeyondIt) {
@@ -98,9 +114,9 @@ TEST_F(EvidenceJudgeTest, TheLinkerIsSuspiciousNearItsLimitAndCertainBeyondIt) {
        {std::tuple(2.0, false, false), std::tuple(1.2, true, false),
         std::tuple(0.9, true, true)}) {
     limits_.linker = limit;
-    Judge judge = makeJudge(limits_);
-    feed(judge, 5);
-    const Judgement judgement = judge.judge({}, 45 * kPeriod);
+    const std::unique_ptr<core::Judge> judge = newJudge(limits_);
+    feed(*judge, 5);
+    const Judgement judgement = judgeAt(*judge, 45 * kPeriod);
     EXPECT_NEAR(judgement.score.value(), -1 / limit, 1e-12);
     EXPECT_EQ(judgement.suspicious, suspicious) << limit;
     EXPECT_EQ(judgement.certain, certain) << limit;
@@ -110,37 +126,37 @@ TEST_F(EvidenceJudgeTest, TheLinkerIsSuspiciousNearItsLimitAndCertainBeyondIt) {
 }
 
 TEST_F(EvidenceJudgeTest, WithoutLimitsItSaysNothing) {
-  Judge judge = makeJudge(std::nullopt);
-  judge.add({0, kA});
-  const Judgement judgement = judge.judge({}, 3000 * kSecond);
+  const std::unique_ptr<core::Judge> judge = newJudge(std::nullopt);
+  judge->add({0, kA});
+  const Judgement judgement = judgeAt(*judge, 3000 * kSecond);
   EXPECT_FALSE(judgement.score.has_value());
   EXPECT_FALSE(judgement.threshold.has_value());
   EXPECT_FALSE(judgement.abnormal || judgement.certain || judgement.suspicious);
 }
 
 TEST_F(EvidenceJudgeTest, KnowsUnknownEvents) {
-  Judge judge = makeJudge(limits_);
-  EXPECT_FALSE(judge.add({0, kA}).unknown);
-  EXPECT_TRUE(judge.add({0, kC}).unknown);
+  const std::unique_ptr<core::Judge> judge = newJudge(limits_);
+  EXPECT_FALSE(judge->add({0, kA}).unknown);
+  EXPECT_TRUE(judge->add({0, kC}).unknown);
 }
 
 TEST_F(EvidenceJudgeTest, ARestartForgetsWhatWasSeen) {
   limits_.tracks[track(Channel::kOverdue, kA, kA)] = 1;
-  Judge judge = makeJudge(limits_);
-  judge.add({0, kA});
-  EXPECT_TRUE(judge.judge({}, 100 * kSecond).abnormal);
-  judge.restart();
-  EXPECT_FALSE(judge.judge({}, 100 * kSecond).abnormal);
+  const std::unique_ptr<core::Judge> judge = newJudge(limits_);
+  judge->add({0, kA});
+  EXPECT_TRUE(judgeAt(*judge, 100 * kSecond).abnormal);
+  judge->restart();
+  EXPECT_FALSE(judgeAt(*judge, 100 * kSecond).abnormal);
 }
 
 TEST_F(EvidenceJudgeTest, RefusesLimitsOfAnotherModel) {
   Limits few = limits_;
   few.tracks.pop_back();
-  EXPECT_THROW(makeJudge(few), std::invalid_argument);
+  EXPECT_THROW(newJudge(few), std::invalid_argument);
   for (const double linker : {kNone, 0.0, -1.0, std::numeric_limits<double>::infinity()}) {
     Limits unusable = limits_;
     unusable.linker = linker;
-    EXPECT_THROW(makeJudge(unusable), std::invalid_argument) << linker;
+    EXPECT_THROW(newJudge(unusable), std::invalid_argument) << linker;
   }
 }
 

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/evidence/scorer.h"
 #include "recordings.h"
 
 namespace self_awareness::core::evidence {

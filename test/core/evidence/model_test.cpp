@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "core/evidence/log_bins.h"
 #include "recordings.h"
 
 namespace self_awareness::core::evidence {

@@ -1,4 +1,4 @@
-#include "self_awareness/core/evidence/scorer.h"
+#include "core/evidence/scorer.h"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/evidence/log_bins.h"
 #include "recordings.h"
 
 namespace self_awareness::core::evidence {

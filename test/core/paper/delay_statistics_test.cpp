@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "core/paper/delay_trainer.h"
 #include "self_awareness/core/stream/clock.h"
 
 namespace self_awareness::core::paper {

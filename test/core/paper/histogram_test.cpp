@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "self_awareness/core/paper/delay_bins.h"
+#include "core/paper/delay_bins.h"
 
 namespace self_awareness::core::paper {
 namespace {

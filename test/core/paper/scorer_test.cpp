@@ -1,6 +1,6 @@
 // The scorer against equations 3 and 4, written down literally.
 
-#include "self_awareness/core/paper/scorer.h"
+#include "core/paper/scorer.h"
 
 #include <gtest/gtest.h>
 
@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "core/paper/delay_trainer.h"
 #include "self_awareness/core/paper/delay_statistics.h"
 #include "self_awareness/core/paper/model.h"
 

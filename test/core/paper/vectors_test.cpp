@@ -10,10 +10,11 @@
 #include <string>
 #include <vector>
 
+#include "core/paper/delay_trainer.h"
+#include "core/paper/scorer.h"
 #include "self_awareness/core/paper/delay_statistics.h"
 #include "self_awareness/core/paper/judge.h"
 #include "self_awareness/core/paper/model.h"
-#include "self_awareness/core/paper/scorer.h"
 #include "self_awareness/core/verdict/detector.h"
 #include "self_awareness/core/verdict/roc.h"
 
@@ -146,7 +147,7 @@ TEST_F(Vectors, WindowsAndVerdicts) {
     const std::int64_t length = test_case["window_ms"].get<std::int64_t>() * kMillisecond;
     std::vector<std::int64_t> abnormal;
     std::size_t i = 0;
-    Detector detector(std::make_unique<Judge>(model, value(test_case["threshold"]), true), length,
+    Detector detector(makeJudge(model, value(test_case["threshold"]), true), length,
                       Detector::Parameters(), [&](const Verdict& verdict) {
                         ASSERT_LT(i, test_case["windows"].size());
                         const json& expected = test_case["windows"][i++];

@@ -20,12 +20,16 @@ class ToldJudge : public Judge {
  public:
   explicit ToldJudge(std::shared_ptr<Judgement> told) : told_(std::move(told)) {}
 
-  ScoredEvent add(const Event& event) override {
-    return {event, 0, event.id == kUnknownId, std::nullopt};
+  ObservedEvent add(const Event& event) override {
+    return {event, event.id == kUnknownId, std::nullopt};
   }
-  Judgement judge(const Window& /*window*/, std::int64_t /*end*/) override { return *told_; }
-  std::vector<Suspect> suspects(const Window& /*window*/, std::int64_t /*end*/) const override {
-    return {Suspect{}};
+  Judgement judge(const Window& /*window*/, std::int64_t /*end*/, NameSuspects suspects) override {
+    Judgement judgement = *told_;
+    if (suspects == NameSuspects::kAlways ||
+        (suspects == NameSuspects::kIfUnusual && (judgement.abnormal || judgement.suspicious))) {
+      judgement.suspects = {Suspect{}};
+    }
+    return judgement;
   }
   void restart() override {}
 
@@ -237,15 +241,15 @@ TEST_F(DetectorLevelsTest, ClearingTheAlarmForgetsTheSuspicion) {
   EXPECT_FALSE(window().suspicion);
 }
 
-// What would have come in the rest of the window, nobody knows.
+// What would have come in the rest of the window is not known.
 TEST(Detector, TheLastWindowIsJudgedAtTheRecordingsEnd) {
   class EndsJudge : public ToldJudge {
    public:
     explicit EndsJudge(std::vector<std::int64_t>& ends)
         : ToldJudge(std::make_shared<Judgement>()), ends_(ends) {}
-    Judgement judge(const Window& window, std::int64_t end) override {
+    Judgement judge(const Window& window, std::int64_t end, NameSuspects suspects) override {
       ends_.push_back(end);
-      return ToldJudge::judge(window, end);
+      return ToldJudge::judge(window, end, suspects);
     }
 
    private:

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "self_awareness/core/paper/blame.h"
+#include "core/paper/delay_trainer.h"
 #include "self_awareness/core/paper/judge.h"
 #include "self_awareness/core/stream/clock.h"
 
@@ -64,12 +64,11 @@ class DetectorTest : public testing::Test {
  protected:
   Detector makeDetector(std::optional<double> threshold,
                         const Detector::Parameters& parameters = {}) {
-    return Detector(
-        std::make_unique<paper::Judge>(model_, threshold, parameters.silence_is_abnormal),
-        100 * kMillisecond, parameters, [this](const Verdict& verdict) {
-          seen_.push_back({verdict.window->start, verdict.abnormal, verdict.settling,
-                           verdict.alarm, verdict.changed, verdict.suspects});
-        });
+    return Detector(paper::makeJudge(model_, threshold, parameters.silence_is_abnormal),
+                    100 * kMillisecond, parameters, [this](const Verdict& verdict) {
+                      seen_.push_back({verdict.window->start, verdict.abnormal, verdict.settling,
+                                       verdict.alarm, verdict.changed, verdict.suspects});
+                    });
   }
   static void feed(Detector& detector, const std::vector<Event>& events) {
     for (const Event& event : events) {
@@ -206,71 +205,6 @@ TEST_F(DetectorTest, SettlingHoldsAlarmsOffAndLetsAStandingOneStand) {
 TEST_F(DetectorTest, RefusesAThresholdThatIsNoNumber) {
   EXPECT_THROW(makeDetector(std::nan("")), std::invalid_argument);
   EXPECT_THROW(makeDetector(std::numeric_limits<double>::infinity()), std::invalid_argument);
-}
-
-TEST(Windows, LieOnTheAbsoluteGridAlsoBeforeTheEpoch) {
-  std::vector<std::int64_t> starts;
-  Windows windows(100, [&](const Window& window) { starts.push_back(window.start); });
-  ScoredEvent event;
-  event.event.stamp = -101;
-  windows.add(event);
-  event.event.stamp = -1;
-  windows.add(event);
-  windows.finish();
-  EXPECT_EQ(starts, (std::vector<std::int64_t>{-200, -100}));
-  EXPECT_THROW(Windows(0, nullptr), std::invalid_argument);
-}
-
-TEST(Persistence, RaisesAtKOfNAndClearsAfterTheHoldTime) {
-  Persistence persistence({3, 5, 200});
-  std::int64_t end = 0;
-  const auto add = [&](bool abnormal) { return persistence.add(abnormal, end += 100); };
-  for (const bool abnormal : {true, false, true, false, false}) {
-    EXPECT_FALSE(add(abnormal));
-  }
-  EXPECT_FALSE(add(true));  // 2 of the last 5
-  EXPECT_FALSE(add(false));
-  EXPECT_FALSE(add(true));
-  EXPECT_TRUE(add(true));  // 3 of 5
-  EXPECT_TRUE(add(false));
-  EXPECT_FALSE(add(false));
-}
-
-TEST(Persistence, HoldsWhileAbnormalWindowsKeepComing) {
-  Persistence persistence({1, 1, 250});
-  EXPECT_TRUE(persistence.add(true, 100));
-  EXPECT_TRUE(persistence.add(false, 200));
-  EXPECT_TRUE(persistence.add(true, 300));
-  EXPECT_TRUE(persistence.add(false, 400));
-  EXPECT_TRUE(persistence.add(false, 500));
-  EXPECT_FALSE(persistence.add(false, 600));
-}
-
-TEST(Persistence, RefusesImpossibleValues) {
-  EXPECT_THROW(Persistence({0, 5, 0}), std::invalid_argument);
-  EXPECT_THROW(Persistence({6, 5, 0}), std::invalid_argument);
-  EXPECT_THROW(Persistence({1, 5, -1}), std::invalid_argument);
-}
-
-TEST(PaperBlame, ATypeWithFewGapsHasNoOpinion) {
-  paper::DelayStatistics statistics(paper::Binning{10 * kMillisecond, 0});
-  const EventId rare = statistics.intern(kLaser);
-  const EventId common = statistics.intern(kPose);
-  paper::DelayTrainer trainer(statistics);
-  for (std::uint64_t i = 0; i <= kFewestGaps; ++i) {
-    trainer.add({static_cast<std::int64_t>(i) * kSecond, common});
-    if (i < kFewestGaps) {
-      trainer.add({static_cast<std::int64_t>(i) * kSecond, rare});
-    }
-  }
-  const paper::Blame blame(std::make_shared<const paper::Model>(statistics));
-  EXPECT_FALSE(blame.judged(rare));
-  EXPECT_TRUE(blame.judged(common));
-  EXPECT_EQ(blame.logSurvival(rare, 3600 * kSecond), 0);
-  // One virtual gap of the tail on 30 of 1 s: 1.01 s is the upper edge of the longest one's bin.
-  EXPECT_NEAR(blame.logSurvival(common, 2 * kSecond), -2 / 1.01 - std::log(31), 1e-12);
-  EXPECT_NEAR(blame.logSurvival(common, kSecond),
-              std::log(30 + std::exp(-1 / 1.01)) - std::log(31), 1e-12);
 }
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "core/paper/delay_trainer.h"
 #include "self_awareness/DelayHistograms.h"
 #include "self_awareness/core/evidence/model.h"
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/paper/delay_trainer.h"
 #include "self_awareness/ros/model/model_bytes.h"
 
 namespace self_awareness::ros1 {

@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "self_awareness/core/evidence/block_maxima.h"
-#include "self_awareness/core/evidence/misleading_pairs.h"
-#include "self_awareness/core/evidence/scorer.h"
+#include "self_awareness/core/evidence/model.h"
 #include "self_awareness/core/stream/windows.h"
 
 namespace self_awareness::core::evidence {
@@ -26,13 +25,16 @@ double gumbelLimit(const BlockMaxima& maxima, double probability);
 double overdueAge(const std::vector<std::int64_t>& longest_gaps, std::int64_t duration,
                   double rate);
 
+class MisleadingPairs;
+class Scorer;
+
 /// Finds the limits of a model's evidence on normal operation that was not trained on, so that
 /// those of the tracks together are exceeded less often than a number of times an hour; and in a
 /// second pass over the same recordings that of the linker, for the same number of its own.
-class LimitFinder {
+class LimitFinder : private WindowObserver {
  public:
   struct Parameters {
-    std::int64_t window = 100000000;        ///< length of a window [ns]
+    std::int64_t window = kDefaultWindow;   ///< length of a window [ns]
     std::int64_t settle_time = 5000000000;  ///< left out at a recording's start [ns]
     double false_alarms_per_hour = 0.5;     ///< all together, > 0
 
@@ -53,6 +55,7 @@ class LimitFinder {
   };
 
   LimitFinder(std::shared_ptr<const Model> model, const Parameters& parameters);
+  ~LimitFinder() override;
 
   /// The next events belong to another recording, which is judged by a model: that of the
   /// constructor, or one learned from the other half of the training, with the same tracks.
@@ -77,6 +80,8 @@ class LimitFinder {
   /// @throw std::logic_error before the second pass
   Limits limits() const;
 
+  const Parameters& parameters() const { return parameters_; }
+  bool inSecondPass() const { return second_pass_; }
   /// Windows that were looked at, of one pass.
   std::uint64_t windows() const { return windows_seen_; }
 
@@ -85,7 +90,11 @@ class LimitFinder {
   static constexpr std::uint64_t kFewestBlocks = 5;
 
  private:
-  void judge(std::int64_t end);
+  ObservedEvent observe(const Event& event) override;
+  void close(const Window& window, std::int64_t end) override;
+  void onClockStep() override;
+  void endRecording();
+  void startScoring();
   void closeBlock();
   double meanGap(EventId id) const;  // of training [ns]
   /// @param rate false alarms an hour that the track may raise
@@ -94,10 +103,10 @@ class LimitFinder {
   std::shared_ptr<const Model> model_;
   Parameters parameters_;
   std::shared_ptr<const Model> judging_;
-  std::optional<Scorer> scorer_;
+  std::unique_ptr<Scorer> scorer_;
   Windows windows_;
   std::optional<std::int64_t> first_stamp_;  // of the recording [ns]
-  std::optional<std::int64_t> last_stamp_;   // [ns]
+  std::int64_t last_stamp_ = 0;              // [ns], once there was a first
   std::uint64_t windows_seen_ = 0;
 
   std::vector<double> block_;  // largest evidence, by track
@@ -106,7 +115,7 @@ class LimitFinder {
   std::vector<BlockMaxima> maxima_;     // by track, none for overdue
   std::vector<Statistics::Type> gaps_;  // longest gaps, by id
   std::int64_t duration_ = 0;           // [ns]
-  MisleadingPairs misleading_;
+  std::unique_ptr<MisleadingPairs> misleading_;
 
   bool second_pass_ = false;
   Limits limits_;

@@ -59,7 +59,7 @@ class Model {
   /// How many spreads more events than on the average came in kRateSpan.
   double rate(EventId id, std::uint32_t count) const;
   /// How surprising the delays of each bin are, in standard deviations from what is usual.
-  using Surprises = std::array<double, log_bins::kBins>;
+  using Surprises = std::array<double, kDelayBins>;
   /// Those of a delay track; the same object for the two tracks of a pair.
   const Surprises& surprises(std::size_t track) const { return surprises_[surprises_of_[track]]; }
   /// What an answer that came, and one that did not, add to the evidence of an answer track: the

@@ -1,16 +1,20 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
-#include "self_awareness/core/evidence/log_bins.h"
 #include "self_awareness/core/stream/event.h"
 #include "self_awareness/core/stream/recent_counts.h"
 #include "self_awareness/core/stream/vocabulary.h"
 
 namespace self_awareness::core::evidence {
+
+/// Number of bins that delays are counted in: four an octave from 2.5 ms to 10.24 s, one for all
+/// below and one for all beyond (docs/method.md, section 3.1).
+constexpr std::size_t kDelayBins = 50;
 
 /// The rate of an event type is its number of events in this time [ns].
 constexpr std::int64_t kRateSpan = 2 * kNanosecondsPerSecond;
@@ -25,9 +29,9 @@ class Statistics {
   /// So many of the longest gaps of a type are kept: the tail beyond them is extrapolated.
   static constexpr std::size_t kLongestGaps = 32;
 
-  /// Counts of delays, by log_bins.
-  using Delays = std::array<std::uint32_t, log_bins::kBins>;
-  using SumOfDelays = std::array<std::uint64_t, log_bins::kBins>;
+  /// Counts of delays, by bin.
+  using Delays = std::array<std::uint32_t, kDelayBins>;
+  using SumOfDelays = std::array<std::uint64_t, kDelayBins>;
 
   /// Gaps between two events of a type, and its events.
   struct Type {

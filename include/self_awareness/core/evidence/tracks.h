@@ -32,7 +32,7 @@ struct Track {
 };
 
 /// log P by bin.
-using LogProbabilities = std::array<double, log_bins::kBins>;
+using LogProbabilities = std::array<double, kDelayBins>;
 /// log P of a delay's bin, with one more count in every bin (Laplace).
 LogProbabilities logProbabilities(const Statistics::Delays& counts);
 LogProbabilities logProbabilities(const Statistics::SumOfDelays& counts);

@@ -1,10 +1,9 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
-#include "self_awareness/core/paper/delay_bins.h"
+#include "self_awareness/core/paper/binning.h"
 #include "self_awareness/core/paper/histogram.h"
 #include "self_awareness/core/stream/event.h"
 #include "self_awareness/core/stream/vocabulary.h"
@@ -48,26 +47,5 @@ class DelayStatistics {
 };
 
 bool operator==(const DelayStatistics& a, const DelayStatistics& b);
-
-/// Counts the delays of one recording after the other into a DelayStatistics, all pairs in one
-/// pass: listing 1 of the paper with the mends of METHOD.md. Nothing is counted for (i, j) before
-/// e_i was seen in the recording, an event is counted before it is tracked, and no delay crosses
-/// from one recording into the next. A step of the clock ends a recording, too (clock.h).
-class DelayTrainer {
- public:
-  /// @param statistics counted into; must outlive the trainer.
-  explicit DelayTrainer(DelayStatistics& statistics);
-
-  /// Forgets what was seen: the next event belongs to another recording.
-  void startRecording();
-  /// @param event with an id of the statistics' vocabulary; in the order of the recording.
-  void add(const Event& event);
-
- private:
-  DelayStatistics& statistics_;
-  DelayBins bins_;
-  SeenTypes seen_;
-  std::optional<std::int64_t> last_stamp_;  // [ns]
-};
 
 }  // namespace self_awareness::core::paper

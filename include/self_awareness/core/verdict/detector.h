@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -31,9 +30,9 @@ struct Verdict {
 /// What is thought of events never seen in training: somebody may have plugged in a joystick.
 enum class UnknownEvents { kIgnore, kWarn, kError };
 
-/// The way of an event to an alarm, the same live and from a bag: window, judgement, persistence,
-/// blame.
-class Detector {
+/// The way of an event to an alarm, the same live and from a bag: window, judgement, persistence
+/// (docs/method.md, section 4).
+class Detector : private WindowObserver {
  public:
   struct Parameters {
     Persistence::Parameters persistence;
@@ -48,6 +47,7 @@ class Detector {
 
   /// @param window length [ns]
   /// @param handler called with the verdict of every window in turn; must not call back
+  /// @throw std::invalid_argument if a parameter is out of range
   Detector(std::unique_ptr<Judge> judge, std::int64_t window, const Parameters& parameters,
            Handler handler);
 
@@ -67,10 +67,12 @@ class Detector {
   void clearAlarm();
 
   /// Whether an event has come since the start.
-  bool started() const { return last_stamp_.has_value(); }
+  bool started() const { return windows_.lastStamp().has_value(); }
 
  private:
-  void judge(const Window& window);
+  ObservedEvent observe(const Event& event) override { return judge_->add(event); }
+  void close(const Window& window, std::int64_t end) override;
+  void onClockStep() override;
 
   std::unique_ptr<Judge> judge_;
   Parameters parameters_;
@@ -79,9 +81,7 @@ class Detector {
   Persistence persistence_;
   bool suspicion_ = false;          // stands
   std::int64_t suspicious_at_ = 0;  // end of the last window that was [ns], while it stands
-  std::optional<std::int64_t> last_stamp_;                       // of an event [ns]
-  std::int64_t now_ = std::numeric_limits<std::int64_t>::min();  // latest time known [ns]
-  std::int64_t settled_at_ = 0;                                  // [ns], valid once started
+  std::int64_t settled_at_ = 0;     // [ns], valid once started
 };
 
 }  // namespace self_awareness::core

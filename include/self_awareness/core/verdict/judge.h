@@ -18,6 +18,14 @@ struct Judgement {
   bool certain = false;             ///< an alarm at once: what was found has lasted already
   bool suspicious = false;          ///< not abnormal, but on the way to it
   std::string evidence;             ///< what made the window abnormal or suspicious, in words
+  std::vector<Suspect> suspects;    ///< if they were asked for; the first is the most likely
+};
+
+/// When a judge names those who may have made a window abnormal. Naming takes time.
+enum class NameSuspects {
+  kNever,
+  kIfUnusual,  ///< of a window that is abnormal or suspicious
+  kAlways      ///< whoever asks knows more than the judge
 };
 
 /// Judges the windows of one recording after its events came in: the method behind the detector.
@@ -26,11 +34,11 @@ class Judge {
   virtual ~Judge() = default;
 
   /// Takes in the next event; ids the model does not know are unknown events.
-  virtual ScoredEvent add(const Event& event) = 0;
-  /// Judges a window that is over. @param end of the window [ns]
-  virtual Judgement judge(const Window& window, std::int64_t end) = 0;
-  /// Who may have made the window judged last abnormal, the first the most likely.
-  virtual std::vector<Suspect> suspects(const Window& window, std::int64_t end) const = 0;
+  virtual ObservedEvent add(const Event& event) = 0;
+  /// Judges a window that is over: all events taken in since the window before. Without
+  /// calibration it names no suspects.
+  /// @param end of what is known of the window [ns], as of WindowObserver::close()
+  virtual Judgement judge(const Window& window, std::int64_t end, NameSuspects suspects) = 0;
   /// Forgets what was seen: another recording, or the clock was set.
   virtual void restart() = 0;
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -16,6 +17,9 @@ constexpr std::uint64_t kFewestGaps = 30;
 constexpr double kUsualFrom = 0.01;
 /// to the one that this share does not exceed.
 constexpr double kUsualTo = 0.99;
+/// Logarithm of the probability below which a silence is worth naming once a window is abnormal:
+/// one gap in a hundred is as long.
+inline const double kRareSilence = std::log(0.01);
 /// No more suspects than this are named.
 constexpr std::size_t kMostSuspects = 5;
 

@@ -14,6 +14,7 @@
 #include "self_awareness/Recording.h"
 #include "self_awareness/core/evidence/model.h"
 #include "self_awareness/core/paper/delay_statistics.h"
+#include "self_awareness/core/stream/windows.h"
 #include "self_awareness/core/verdict/source_graph.h"
 #include "self_awareness/ros/encoding.h"
 
@@ -28,7 +29,7 @@ class ModelFileError : public std::runtime_error {
 /// What a model file holds.
 struct TrainedModel {
   EncodingRules encoding;
-  std::int64_t window = 100000000;  ///< length of a window [ns]
+  std::int64_t window = core::kDefaultWindow;  ///< length of a window [ns]
   /// Counts of the paper's detector; the event types only where they were not loaded.
   core::paper::DelayStatistics statistics{core::paper::Binning{}};
   /// All counts of the evidence detector, of the two halves of the training; none where they were

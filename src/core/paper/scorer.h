@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/paper/delay_bins.h"
 #include "self_awareness/core/paper/model.h"
 #include "self_awareness/core/stream/windows.h"
 
@@ -16,8 +17,14 @@ class Scorer {
  public:
   explicit Scorer(std::shared_ptr<const Model> model);
 
+  /// What was seen of an event, and its score.
+  struct Scored {
+    ObservedEvent event;
+    double score = 0;  ///< s_j of eq. 3, 0 or more; 0 if the event is unknown
+  };
+
   /// @param event ids the model does not know are unknown events: scored 0 and not tracked.
-  ScoredEvent score(const Event& event);
+  Scored score(const Event& event);
   /// Forgets what was seen: another recording, or the clock was set.
   void restart();
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/evidence/log_bins.h"
 #include "self_awareness/core/evidence/model.h"
 
 namespace self_awareness::core::evidence {

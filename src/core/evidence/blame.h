@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "self_awareness/core/evidence/scorer.h"
+#include "core/evidence/scorer.h"
 #include "self_awareness/core/stream/windows.h"
 #include "self_awareness/core/verdict/source_graph.h"
 #include "self_awareness/core/verdict/suspect.h"

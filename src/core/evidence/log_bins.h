@@ -6,6 +6,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "self_awareness/core/evidence/statistics.h"
+
 namespace self_awareness::core::evidence {
 
 /// How the evidence puts delays into bins (METHOD.md, section 3): four bins an octave from 2.5 ms
@@ -13,7 +15,7 @@ namespace self_awareness::core::evidence {
 /// millisecond and of seconds have in common, and few bins are what counts of many pairs need.
 namespace log_bins {
 
-constexpr std::size_t kBins = 50;
+constexpr std::size_t kBins = kDelayBins;
 
 namespace detail {
 

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "self_awareness/core/paper/delay_bins.h"
+#include "core/paper/delay_bins.h"
 #include "self_awareness/core/paper/histogram.h"
 #include "self_awareness/core/stream/event.h"
 

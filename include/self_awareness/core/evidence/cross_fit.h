@@ -1,0 +1,34 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <optional>
+
+#include "self_awareness/core/evidence/model.h"
+#include "self_awareness/core/evidence/tracks.h"
+
+namespace self_awareness::core::evidence {
+
+/// Who judges a recording when limits are sought (docs/method.md, section 5.6). What a model
+/// learned from a recording would find it too normal: a recording that was trained on is judged by
+/// what the other half of the training says.
+class CrossFit {
+ public:
+  /// @throw std::invalid_argument as Model
+  explicit CrossFit(const Watched& watched);
+
+  /// Of the whole training.
+  const std::shared_ptr<const Model>& model() const { return model_; }
+  /// Who judges a recording; all have the same tracks.
+  /// @param half of the training that the recording belongs to, 0 or 1; none: it was not trained
+  /// on
+  /// @throw std::out_of_range
+  const std::shared_ptr<const Model>& judging(std::optional<std::size_t> half) const;
+
+ private:
+  std::shared_ptr<const Model> model_;
+  std::array<std::shared_ptr<const Model>, 2> others_;  // learned from the other half
+};
+
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,81 @@
+#include "self_awareness/core/paper/judge.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/paper/delay_trainer.h"
+#include "core/paper/scorer.h"
+
+namespace self_awareness::core::paper {
+namespace {
+
+constexpr std::int64_t kPeriod = 50000000;  // [ns]
+constexpr EventId kUnknownId = 9;
+
+class PaperJudgeTest : public testing::Test {
+ protected:
+  static std::shared_ptr<const Model> trained() {
+    DelayStatistics statistics(Binning{});
+    statistics.intern({"/a", "/x", "t"});
+    statistics.intern({"/b", "/y", "t"});
+    DelayTrainer trainer(statistics);
+    for (std::int64_t i = 0; i < 100; ++i) {
+      trainer.add({i * kPeriod, 0});
+      trainer.add({i * kPeriod + 20000000, 1});
+    }
+    return std::make_shared<const Model>(statistics);
+  }
+  // What the windows would hand to the judge.
+  void add(const Event& event) { window_.events.push_back(judge_->add(event)); }
+  Judgement judge(std::int64_t end, NameSuspects suspects = NameSuspects::kIfUnusual) {
+    Judgement judgement = judge_->judge(window_, end, suspects);
+    window_.events.clear();
+    return judgement;
+  }
+
+  std::shared_ptr<const Model> model_ = trained();
+  std::unique_ptr<core::Judge> judge_ = makeJudge(model_, 0.1, true);
+  Window window_;
+};
+
+TEST_F(PaperJudgeTest, TheScoreOfAWindowIsTheMeanOverItsEvents) {
+  Scorer scorer(model_);
+  std::vector<double> scores;
+  for (const Event& event : std::vector<Event>{{0, 0}, {20000000, 1}, {kPeriod, 0}}) {
+    scores.push_back(scorer.score(event).score);
+    add(event);
+  }
+  EXPECT_EQ(judge(kPeriod + 1).score, (scores[0] + scores[1] + scores[2]) / 3);
+  const Event next{kPeriod + 20000000, 1};
+  add(next);  // the next window has its own mean
+  EXPECT_EQ(judge(2 * kPeriod).score, scorer.score(next).score);
+  EXPECT_FALSE(judge(3 * kPeriod).score);
+}
+
+TEST_F(PaperJudgeTest, ARestartForgetsTheScoresOfTheOpenWindow) {
+  add({0, 0});
+  judge_->restart();
+  window_.events.clear();
+  EXPECT_FALSE(judge(kPeriod).score);
+}
+
+TEST_F(PaperJudgeTest, NamesSuspectsOnlyWhereTheyAreAskedFor) {
+  const auto unknownWindow = [this](NameSuspects suspects) {
+    add({kPeriod, kUnknownId});
+    return judge(2 * kPeriod, suspects).suspects.size();
+  };
+  EXPECT_EQ(unknownWindow(NameSuspects::kIfUnusual), 1U);  // it scores 0, and is abnormal
+  EXPECT_EQ(unknownWindow(NameSuspects::kNever), 0U);
+  judge_ = makeJudge(model_, -1, true);  // nothing is abnormal
+  EXPECT_EQ(unknownWindow(NameSuspects::kIfUnusual), 0U);
+  EXPECT_EQ(unknownWindow(NameSuspects::kAlways), 1U);
+  judge_ = makeJudge(model_, std::nullopt, true);
+  EXPECT_EQ(unknownWindow(NameSuspects::kAlways), 0U);
+}
+
+}  // namespace
+}  // namespace self_awareness::core::paper
