@@ -19,8 +19,8 @@ constexpr double kEulerMascheroni = 0.57721566490153286;
 constexpr double kHour = 3600e9;  // [ns]
 constexpr double kKinds = 4;      // of evidence: overdue, rate, pairs, answers
 
-// What was seen once in normal operation is normal, and so is a little more (METHOD.md, section
-// 4).
+// What was seen once in normal operation is normal, and so is a little more (docs/method.md,
+// section 5.3).
 constexpr double kMargin = 1.25;
 constexpr double kGapMargin = 1.1;
 // It depends on what the robot is at, and that changes from hour to hour.

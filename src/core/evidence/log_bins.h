@@ -10,9 +10,10 @@
 
 namespace self_awareness::core::evidence {
 
-/// How the evidence puts delays into bins (METHOD.md, section 3): four bins an octave from 2.5 ms
-/// to 10.24 s, one for all below and one for all beyond. Relative precision is what delays of a
-/// millisecond and of seconds have in common, and few bins are what counts of many pairs need.
+/// How the evidence puts delays into bins (docs/method.md, section 3.1): four bins an octave
+/// from 2.5 ms to 10.24 s, one for all below and one for all beyond. Relative precision is what
+/// delays of a millisecond and of seconds have in common, and few bins are what counts of many
+/// pairs need.
 namespace log_bins {
 
 constexpr std::size_t kBins = kDelayBins;

@@ -12,8 +12,8 @@
 
 namespace self_awareness::core::evidence {
 
-/// Gathers the evidence of every track from the events of one recording (METHOD.md, section 3).
-/// Delays and answers are summed up as in Page's CUSUM test: what is usual takes from the sum,
+/// Gathers the evidence of every track from the events of one recording (docs/method.md, section
+/// 3). Delays and answers are summed up as in Page's CUSUM test: what is usual takes from the sum,
 /// what is not adds to it, and below 0 it does not fall. A fault that lasts is found soon, one
 /// that comes and goes later, and chance alone hardly gets anywhere.
 class Scorer {

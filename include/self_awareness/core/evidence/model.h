@@ -41,7 +41,7 @@ class Model {
   const std::vector<Track>& tracks() const { return tracks_; }
 
   /// Evidence of channel overdue [nat]: -log of the probability, at a random moment of normal
-  /// operation, of an age of at least `age` [ns] (METHOD.md, section 3).
+  /// operation, of an age of at least `age` [ns] (docs/method.md, section 3.2).
   double overdue(EventId id, std::int64_t age) const;
   /// Natural logarithm of the probability of a gap of at least this age [ns] between two events of
   /// the type: the share of such gaps in training, beyond the longest one b with the tail

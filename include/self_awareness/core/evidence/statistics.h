@@ -22,8 +22,8 @@ constexpr std::int64_t kRateSpan = 2 * kNanosecondsPerSecond;
 /// Number of windows of a length [ns] in kRateSpan, at least 1.
 std::size_t rateWindows(std::int64_t window);
 
-/// What the evidence learns (METHOD.md, section 3), as counts: those of two trainings add up to
-/// those of a training on both.
+/// What the evidence learns (docs/method.md, section 3.1), as counts: those of two trainings add
+/// up to those of a training on both.
 class Statistics {
  public:
   /// So many of the longest gaps of a type are kept: the tail beyond them is extrapolated.

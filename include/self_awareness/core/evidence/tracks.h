@@ -39,8 +39,8 @@ LogProbabilities logProbabilities(const Statistics::SumOfDelays& counts);
 
 /// How much the delay since the last e_i says of e_j beyond what it says of any event: the mean of
 /// log P_ij - log Q_i [nat], Q_i: the delay since e_i at any event, learned from one half of the
-/// training and measured on the other (METHOD.md, section 3). What holds within a recording only,
-/// such as the phase between two independent timers, is no information.
+/// training and measured on the other (docs/method.md, section 3.4). What holds within a recording
+/// only, such as the phase between two independent timers, is no information.
 class InformationGain {
  public:
   /// Fewer delays than this are not measured on.

@@ -9,7 +9,7 @@
 namespace self_awareness::core {
 
 /// How many events of every type came in the last windows, the sliding count of the rate evidence
-/// (METHOD.md, section 3).
+/// (docs/method.md, section 1.4).
 class RecentCounts {
  public:
   /// @param windows how many windows are counted together, > 0

@@ -6,7 +6,7 @@
 namespace self_awareness::core {
 
 /// When abnormal windows are an alarm: k abnormal ones among the last n windows raise it, and it
-/// clears after a hold time without any (METHOD.md, section 4).
+/// clears after a hold time without any (docs/method.md, section 4.2).
 class Persistence {
  public:
   struct Parameters {
