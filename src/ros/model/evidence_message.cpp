@@ -56,9 +56,8 @@ evidence::Statistics::Type typeOf(const self_awareness::Evidence& message, std::
   for (std::size_t k = message.longest_offsets[id]; k < message.longest_offsets[id + 1]; ++k) {
     type.addGap(message.longest_gaps[k]);
   }
-  std::copy_n(
-      message.left_out.begin() + static_cast<std::ptrdiff_t>(id * evidence::kDelayBins),
-      evidence::kDelayBins, type.left_out.begin());
+  std::copy_n(message.left_out.begin() + static_cast<std::ptrdiff_t>(id * evidence::kDelayBins),
+              evidence::kDelayBins, type.left_out.begin());
   check(type.gap_sum >= 0 && (type.gaps > 0) == !type.longest_gaps.empty(),
         "its evidence has impossible gaps");
   return type;
