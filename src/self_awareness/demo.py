@@ -9,8 +9,8 @@ from typing import Dict, Optional
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
-from self_awareness import follow_me
 from self_awareness.commands import induce
+from self_awareness.follow_me.scenario import load_scenario
 from self_awareness.progress import waiting
 
 _MONITOR = 'self_awareness'
@@ -62,7 +62,7 @@ class _Operator:
 
 def main() -> int:
     """Kill `player` in the running robot; return 0 if the alarm came after that, and only then."""
-    component = follow_me.load().faults.cc1
+    component = load_scenario().faults.cc1
     rospy.init_node('demo', anonymous=True, disable_signals=True)
     operator = _Operator()
     if not operator.await_message('normal communication', _SETTLED_WITHIN_S):

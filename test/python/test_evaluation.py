@@ -9,12 +9,14 @@ import pytest
 from evaluation_robot import BATTERY, LASER, START, robot
 
 from self_awareness import (DetectorParameters, EncodingRules, EventType, Model, Persistence,
-                            Training, follow_me, follow_me_faults, read_events)
+                            Training, read_events)
 from self_awareness.evaluation import measures, simulated_records, summary, tradeoff
 from self_awareness.evaluation.detectors import Paper
 from self_awareness.evaluation.recording import WINDOW, Recording, counts, known_ids
 from self_awareness.evaluation.systems import Alarm, Judged, persistent, settling
-from self_awareness.simulation import START_S, events, simulate
+from self_awareness.follow_me.faults import effect_of
+from self_awareness.follow_me.scenario import load_scenario
+from self_awareness.follow_me.simulation import START_S, events, simulate
 from self_awareness.stamps import SECOND_NS
 
 
@@ -93,7 +95,7 @@ def test_persistence_forgets_when_cleared() -> None:
 
 
 def test_events_of_the_simulation_are_encoded_as_from_its_bag(tmp_path: Path) -> None:
-    scenario = follow_me.load()
+    scenario = load_scenario()
     bag = str(tmp_path / 'run.bag')
     simulate(bag, 30.0, 5, None, scenario)
     rules = EncodingRules()
@@ -107,7 +109,7 @@ def test_events_of_the_simulation_are_encoded_as_from_its_bag(tmp_path: Path) ->
 
 
 def test_every_record_differs_and_can_be_repeated() -> None:
-    scenario = follow_me.load()
+    scenario = load_scenario()
     first = simulated_records.normal_record(scenario, 1, 'training 1', 5.0)
     again = simulated_records.normal_record(scenario, 1, 'training 1', 5.0)
     assert np.array_equal(first.stamps, again.stamps)
@@ -117,7 +119,7 @@ def test_every_record_differs_and_can_be_repeated() -> None:
 
 
 def test_a_fault_record_begins_its_fault_at_the_onset() -> None:
-    record = simulated_records.fault_record(follow_me.load(), 3, 'cc1')
+    record = simulated_records.fault_record(load_scenario(), 3, 'cc1')
     assert record.culprits == ('/player',)
     onset_s = record.onset / SECOND_NS - START_S
     assert 50.0 <= onset_s < 52.0
@@ -127,11 +129,11 @@ def test_a_fault_record_begins_its_fault_at_the_onset() -> None:
 
 
 def test_all_default_faults_exist() -> None:
-    scenario = follow_me.load()
+    scenario = load_scenario()
     kinds = simulated_records.default_faults(scenario)
     assert sum(kind.startswith('crash:') for kind in kinds) == 12
     for kind in kinds:
-        follow_me_faults.effect_of(scenario, kind)
+        effect_of(scenario, kind)
 
 
 def test_beginning_of_a_recording() -> None:

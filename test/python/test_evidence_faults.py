@@ -6,7 +6,7 @@ from typing import Callable, Dict, Optional, Tuple
 import numpy as np
 import pytest
 
-from self_awareness import DetectorParameters, UnknownEvents, follow_me
+from self_awareness import DetectorParameters, UnknownEvents
 from self_awareness.evaluation.detectors import Evidence, Paper
 from self_awareness.evaluation.measures import first_alarm
 from self_awareness.evaluation.recording import WINDOW
@@ -14,6 +14,7 @@ from self_awareness.evaluation.simulated_records import (CALIBRATION_NAME, RECOR
                                                          TRAINING_NAMES, FaultRecord, fault_record,
                                                          normal_record)
 from self_awareness.evaluation.systems import Judged
+from self_awareness.follow_me.scenario import load_scenario
 from self_awareness.stamps import SECOND_NS
 
 SEED = 1
@@ -29,7 +30,7 @@ Record = Callable[[str], FaultRecord]
 
 @pytest.fixture(name='systems', scope='session')
 def _systems() -> Systems:
-    scenario = follow_me.load()
+    scenario = load_scenario()
     training = [normal_record(scenario, SEED, name, RECORD_S) for name in TRAINING_NAMES]
     calibration = [normal_record(scenario, SEED, CALIBRATION_NAME, CALIBRATION_S)]
     systems = (Evidence(knows_graph=True), Paper())
@@ -41,7 +42,7 @@ def _systems() -> Systems:
 
 @pytest.fixture(name='record_of', scope='session')
 def _record_of() -> Record:
-    scenario = follow_me.load()
+    scenario = load_scenario()
     records: Dict[str, FaultRecord] = {}
 
     def record_of(kind: str) -> FaultRecord:

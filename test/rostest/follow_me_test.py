@@ -20,8 +20,9 @@ import rostest
 from actionlib_msgs.msg import GoalStatus
 from std_msgs.msg import Header
 
-from self_awareness import follow_me, follow_me_faults
 from self_awareness.commands import induce
+from self_awareness.follow_me.faults import Starvation
+from self_awareness.follow_me.scenario import Scenario, load_scenario
 
 _RATE_HZ = 163.0
 _WINDOW_S = 5.0
@@ -51,7 +52,7 @@ def wait_for(condition: Callable[[], bool], what: str) -> None:
 class Listener:
     """Remembers when messages came: all of the last seconds, and the last one of each topic."""
 
-    def __init__(self, prefix: str, scenario: follow_me.Scenario) -> None:
+    def __init__(self, prefix: str, scenario: Scenario) -> None:
         self._lock = threading.Lock()
         self._recent: Deque[Tuple[float, str]] = deque()  # Guarded by _lock.
         self._last: Dict[str, float] = {}  # Guarded by _lock.
@@ -107,12 +108,12 @@ class FollowMeTest(unittest.TestCase):
     """The tests run in the order of their names: the last ones break the robot."""
 
     namespace = ''
-    scenario: follow_me.Scenario
+    scenario: Scenario
     listener: Listener
 
     @classmethod
     def setUpClass(cls) -> None:
-        cls.scenario = follow_me.load()
+        cls.scenario = load_scenario()
         cls.listener = Listener(f'/{cls.namespace}/', cls.scenario)
 
     def _node(self, name: str) -> str:
@@ -169,7 +170,7 @@ class FollowMeTest(unittest.TestCase):
         wait_for(lambda: abs(self.listener.rate('cmd_vel') - 5.0) < 0.5, 'one who publishes')
 
     def test_4_busy_workers_end(self) -> None:
-        starvation = follow_me_faults.Starvation(ramp=0.2, slowdown=2.0, workers_per_core=1)
+        starvation = Starvation(ramp=0.2, slowdown=2.0, workers_per_core=1)
         with induce.starved(starvation):
             self.assertEqual(len(multiprocessing.active_children()), len(os.sched_getaffinity(0)))
         self.assertEqual(multiprocessing.active_children(), [])

@@ -11,12 +11,12 @@ import tempfile
 from pathlib import Path
 from typing import Iterator, Optional, Sequence
 
-from self_awareness import follow_me
 from self_awareness.commands import cli, induce
 from self_awareness.evaluation import (catalogue, experiment, real_recordings,
                                        real_recordings_report, report, simulated_records)
 from self_awareness.evaluation.experiment import Plan
-from self_awareness.follow_me_faults import effect_of
+from self_awareness.follow_me.faults import effect_of
+from self_awareness.follow_me.scenario import load_scenario
 
 _EPILOG = """\
 scikit-learn and hmmlearn, which three of the peers need, are no part of the package:
@@ -37,7 +37,7 @@ def _simulated(arguments: argparse.Namespace, command: str) -> None:
     if not systems:
         raise ValueError('--without: no system is left to evaluate')
     catalogue.check_libraries(systems)
-    scenario = follow_me.load()
+    scenario = load_scenario()
     faults = tuple(arguments.faults or simulated_records.default_faults(scenario))
     for kind in faults:
         effect_of(scenario, kind)

@@ -21,9 +21,9 @@ from xmlrpc.client import ServerProxy
 import rosgraph
 import rosgraph.network
 
-from self_awareness import follow_me
-from self_awareness.follow_me_faults import (INDUCED_FAULT, Crash, Effect, Intruder, Silence,
+from self_awareness.follow_me.faults import (INDUCED_FAULT, Crash, Effect, Intruder, Silence,
                                              Starvation, described, effect_of)
+from self_awareness.follow_me.scenario import Scenario, load_scenario
 
 _CALLER_ID = '/induce'
 
@@ -49,7 +49,7 @@ def main(argv: Optional[List[str]] = None) -> int:
     # A termination must clean up like Ctrl-C.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
     try:
-        scenario = follow_me.load(arguments.scenario)
+        scenario = load_scenario(arguments.scenario)
         effect = effect_of(scenario, arguments.kind)
         if isinstance(effect, (Crash, Silence)):
             if arguments.duration is not None:
@@ -90,7 +90,7 @@ def crash(effect: Crash, namespace: str = '') -> int:
     return pid
 
 
-def silence(scenario: follow_me.Scenario, namespace: str = '') -> Dict[str, int]:
+def silence(scenario: Scenario, namespace: str = '') -> Dict[str, int]:
     """Kill the nodes of all components and return the process ids of those that were alive.
 
     Raises:

@@ -8,12 +8,13 @@ from typing import List, Optional, Tuple
 
 from tqdm import tqdm
 
-from self_awareness import follow_me, follow_me_faults
-from self_awareness.simulation import Fault, simulate
+from self_awareness.follow_me.faults import described
+from self_awareness.follow_me.scenario import load_scenario
+from self_awareness.follow_me.simulation import Fault, simulate
 
 _EPILOG = f"""\
 faults:
-{follow_me_faults.described()}
+{described()}
 
 examples:
   simulate -o normal.bag                     one recording of 100 s
@@ -32,7 +33,7 @@ def main(argv: Optional[List[str]] = None) -> int:
     parser = _parser()
     arguments = parser.parse_args(argv)
     try:
-        scenario = follow_me.load(arguments.scenario)
+        scenario = load_scenario(arguments.scenario)
         fault = _fault(arguments.fault, arguments.duration)
         bags = _bags(arguments.output, arguments.runs, arguments.seed, fault)
         seconds = int(arguments.duration) * arguments.runs

@@ -5,12 +5,13 @@ from typing import Dict, List, Optional, Sequence, Set
 
 import numpy as np
 
-from self_awareness import (EVIDENCE_THRESHOLD, PREDECESSORS, DetectorParameters, EncodingRules, EvidenceModel,
-                            EventType, Model, TrainedModel, Training, Verdicts, evidence_limits,
-                            follow_me, judge_by_evidence)
+from self_awareness import (EVIDENCE_THRESHOLD, PREDECESSORS, DetectorParameters, EncodingRules,
+                            EventType, EvidenceModel, Model, TrainedModel, Training, Verdicts,
+                            evidence_limits, judge_by_evidence)
 from self_awareness.evaluation.recording import WINDOW, Recording
 from self_awareness.evaluation.systems import Alarm, Judged, common_threshold, distinct
 from self_awareness.evidence_limits import HeldOut
+from self_awareness.follow_me.scenario import load_scenario
 
 
 class Paper:
@@ -108,7 +109,7 @@ def _judged(encoded: Recording, verdicts: Verdicts, threshold: float) -> Judged:
 
 def _scenario_graph() -> Dict[str, Set[str]]:
     """Return who listens to whom in the robot that comes with the package."""
-    scenario = follow_me.load()
+    scenario = load_scenario()
     graph: Dict[str, Set[str]] = {}
     for publisher in scenario.components:
         for listener in scenario.components:

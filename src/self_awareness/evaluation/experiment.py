@@ -14,7 +14,7 @@ from self_awareness.evaluation.measures import NORMAL, Row, fault_row, normal_ro
 from self_awareness.evaluation.recording import Recording
 from self_awareness.evaluation.simulated_records import FaultRecord
 from self_awareness.evaluation.tradeoff import JudgedFault, TradeOff
-from self_awareness.follow_me import Scenario
+from self_awareness.follow_me.scenario import Scenario
 from self_awareness.stamps import SECOND_NS
 
 PAPER_SYSTEM = 'paper'

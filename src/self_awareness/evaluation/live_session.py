@@ -11,14 +11,15 @@ from typing import Callable, Dict, Iterator, List, Optional, Sequence, Tuple
 
 import rospy
 
-from self_awareness import follow_me, progress
+from self_awareness import progress
 from self_awareness.commands import induce
 from self_awareness.evaluation.live_listeners import MonitorListener, RobotListener
 from self_awareness.evaluation.live_processes import (LiveError, Processes, await_condition,
                                                       free_port)
 from self_awareness.evaluation.live_samples import Status, Stretch
 from self_awareness.evaluation.measures import NORMAL
-from self_awareness.follow_me_faults import Crash, Effect, Intruder, Silence, Starvation, effect_of
+from self_awareness.follow_me.faults import Crash, Effect, Intruder, Silence, Starvation, effect_of
+from self_awareness.follow_me.scenario import load_scenario
 
 FAULTS_S: Dict[str, float] = {
     'lat': 8.0, 'half:player': 8.0, 'double:gaze_control': 8.0, 'order': 8.0, 'unknown': 5.0,
@@ -109,7 +110,7 @@ class _Session:
         self._folder = folder
         self._processes = processes
         self._told = told
-        self._scenario = follow_me.load()
+        self._scenario = load_scenario()
         self._robot = RobotListener([*_REGULAR, _SHARED])
         self._monitor: Optional[MonitorListener] = None
         self._robot_process: Optional[subprocess.Popen] = None

@@ -15,9 +15,9 @@ import numpy as np
 from self_awareness import EventType
 from self_awareness.evaluation.measures import NORMAL
 from self_awareness.evaluation.recording import Recording
-from self_awareness.follow_me import Scenario
-from self_awareness.follow_me_faults import effect_of
-from self_awareness.simulation import START_S, Event, Fault, events
+from self_awareness.follow_me.faults import effect_of
+from self_awareness.follow_me.scenario import Scenario
+from self_awareness.follow_me.simulation import START_S, Event, Fault, events
 from self_awareness.stamps import SECOND_NS
 
 RECORD_S = 100.0

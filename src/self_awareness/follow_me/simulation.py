@@ -1,8 +1,8 @@
 """The follow-me robot in simulated time: its components exchange messages, a recorder listens.
 
-A discrete-event simulation of the scenario of `follow_me`: timers fire late by a little, work
+A discrete-event simulation of the scenario: timers fire late by a little, work
 takes its time, messages travel, and what arrives at the recorder is a recording of normal
-operation or of a fault (`follow_me_faults`). Nothing waits: 100 s of robot take
+operation or of a fault (`faults`). Nothing waits: 100 s of robot take
 some seconds to write. The same seed gives the same recording.
 """
 from __future__ import annotations
@@ -19,11 +19,11 @@ from typing import (Any, Callable, Dict, FrozenSet, Iterator, List, NamedTuple, 
 import genpy
 import rosbag
 
-from self_awareness.follow_me import ComponentSpec, Scenario, Value, load
-from self_awareness.follow_me_component import Component, Message, Publish, Request, Wake
-from self_awareness.follow_me_faults import (Change, ClockDrift, Crash, Intruder, Silence,
+from self_awareness.follow_me.component import Component, Message, Publish, Request, Wake
+from self_awareness.follow_me.faults import (Change, ClockDrift, Crash, Intruder, Silence,
                                              Starvation, check_form, effect_of)
-from self_awareness.follow_me_messages import MessageType
+from self_awareness.follow_me.messages import MessageType
+from self_awareness.follow_me.scenario import ComponentSpec, Scenario, Value, load_scenario
 from self_awareness.output_files import replacing
 from self_awareness.stamps import SECOND_NS, nanoseconds
 
@@ -49,7 +49,7 @@ class Fault:
     """A fault to induce.
 
     Args:
-        kind: its name as in `follow_me_faults`: `cc1`, `crash:slam` and so on.
+        kind: its name as in `faults`: `cc1`, `crash:slam` and so on.
         onset_s: seconds after the start of the recording, >= 0; the fault then stays.
 
     Raises:
@@ -70,20 +70,20 @@ class Fault:
         """Names of the nodes to blame, like `/player`, in the robot that comes with the package.
 
         Empty where it is no single component's fault: rs, ac, silence. For another robot, ask
-        `follow_me_faults.effect_of(scenario, kind).culprits`.
+        `effect_of(scenario, kind).culprits`.
         """
         return effect_of(_packaged_robot(), self.kind).culprits
 
 
 @functools.lru_cache(maxsize=1)
 def _packaged_robot() -> Scenario:
-    return load()
+    return load_scenario()
 
 
 def events(duration_s: float, seed: int, fault: Optional[Fault] = None,
            scenario: Optional[Scenario] = None, start_s: float = START_S) -> Iterator[Event]:
     """Return what a recorder would see, in the order of arrival; arguments as for `simulate`."""
-    scenario = load() if scenario is None else scenario
+    scenario = load_scenario() if scenario is None else scenario
     return (Event(arrival, source, '/' + message.topic, scenario.datatypes[message.topic],
                   message.value)
             for arrival, source, message, _ in _record(scenario, duration_s, seed, fault, start_s))
@@ -110,7 +110,7 @@ def simulate(path: Union[str, Path], duration_s: float, seed: int, fault: Option
         SectionError: the default scenario cannot be used, or a message type is unknown.
         OSError: the file cannot be written.
     """
-    scenario = load() if scenario is None else scenario
+    scenario = load_scenario() if scenario is None else scenario
     recording = _record(scenario, duration_s, seed, fault, start_s)
     types = {topic: MessageType(datatype) for topic, datatype in scenario.datatypes.items()}
     told = 0

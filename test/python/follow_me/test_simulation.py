@@ -10,11 +10,11 @@ from typing import Any, Dict, List
 import pytest
 import rosbag
 
-from self_awareness import follow_me
 from self_awareness.commands.simulate import main
-from self_awareness.simulation import START_S, Event, Fault, events, simulate
+from self_awareness.follow_me.scenario import Scenario, load_scenario
+from self_awareness.follow_me.simulation import START_S, Event, Fault, events, simulate
 
-SCENARIO = Path(__file__).resolve().parents[2] / 'config' / 'follow_me.yaml'
+SCENARIO = Path(__file__).resolve().parents[3] / 'config' / 'follow_me.yaml'
 KINDS = ('cc1', 'cc2', 'rs', 'ac', 'lat', 'lat:motors', 'crash:camera', 'silence', 'half:player',
          'half:slam', 'double:player', 'double:slam', 'double:face_detection', 'extra', 'order',
          'unknown')
@@ -23,12 +23,12 @@ ONSET_S = 50.0
 
 
 @pytest.fixture(name='scenario', scope='module')
-def _scenario() -> follow_me.Scenario:
-    return follow_me.load(SCENARIO)
+def _scenario() -> Scenario:
+    return load_scenario(SCENARIO)
 
 
 @pytest.fixture(name='runs', scope='module')
-def _runs(scenario: follow_me.Scenario) -> Dict[str, List[Event]]:
+def _runs(scenario: Scenario) -> Dict[str, List[Event]]:
     kinds: Dict[str, Any] = {kind: Fault(kind, ONSET_S) for kind in KINDS}
     kinds['normal'] = None
     return {kind: list(events(DURATION_S, 5, fault, scenario)) for kind, fault in kinds.items()}
@@ -46,7 +46,7 @@ def gaps(stamps: List[float], begin: float, end: float) -> List[float]:
 
 
 @pytest.mark.parametrize('seed', [1, 2, 3])
-def test_normal_operation_has_the_rates_of_the_paper(scenario: follow_me.Scenario,
+def test_normal_operation_has_the_rates_of_the_paper(scenario: Scenario,
                                                      seed: int) -> None:
     run = list(events(200.0, seed, scenario=scenario))
     assert len(run) / 200.0 == pytest.approx(163.0, rel=0.03)
@@ -65,7 +65,7 @@ def test_recording_is_sorted_and_within_its_time(runs: Dict[str, List[Event]]) -
     assert START_S * 1e9 <= stamps[0] and stamps[-1] < (START_S + DURATION_S) * 1e9
 
 
-def test_seed_decides(scenario: follow_me.Scenario, runs: Dict[str, List[Event]]) -> None:
+def test_seed_decides(scenario: Scenario, runs: Dict[str, List[Event]]) -> None:
     assert list(events(DURATION_S, 5, scenario=scenario)) == runs['normal']
     assert list(events(DURATION_S, 6, scenario=scenario)) != runs['normal']
 
@@ -116,7 +116,7 @@ def test_rs_stretches_gaps_slowly(runs: Dict[str, List[Event]]) -> None:
 
 
 @pytest.mark.parametrize('seed', [1, 2, 3, 4])
-def test_ac_drops_the_update_event_in_sporadic_intervals(scenario: follow_me.Scenario,
+def test_ac_drops_the_update_event_in_sporadic_intervals(scenario: Scenario,
                                                          seed: int) -> None:
     run = list(events(DURATION_S, seed, Fault('ac', ONSET_S), scenario))
     absent = [gap for gap in gaps(times(run, '/person_hypotheses', 1), ONSET_S, DURATION_S)
@@ -130,7 +130,7 @@ def test_ac_drops_the_update_event_in_sporadic_intervals(scenario: follow_me.Sce
             rate * (DURATION_S - ONSET_S), rel=0.02)
 
 
-def test_bag_is_like_a_recorded_one(scenario: follow_me.Scenario, tmp_path: Path,
+def test_bag_is_like_a_recorded_one(scenario: Scenario, tmp_path: Path,
                                     runs: Dict[str, List[Event]]) -> None:
     path = tmp_path / 'run.bag'
     seconds: List[int] = []
@@ -160,7 +160,7 @@ def test_bag_is_like_a_recorded_one(scenario: follow_me.Scenario, tmp_path: Path
             assert {'md5sum', 'message_definition', 'topic'} <= set(header)
 
 
-def test_clock_drift_shows_in_the_stamps_of_one_host(scenario: follow_me.Scenario,
+def test_clock_drift_shows_in_the_stamps_of_one_host(scenario: Scenario,
                                                      tmp_path: Path) -> None:
     path = tmp_path / 'ac.bag'
     simulate(path, 30.0, 5, Fault('ac', 10.0), scenario)
@@ -172,12 +172,12 @@ def test_clock_drift_shows_in_the_stamps_of_one_host(scenario: follow_me.Scenari
     assert min(late['/camera/image']) < -0.1 and max(late['/camera/image']) > 0.1
 
 
-def test_latched_message_from_before_is_recorded_first(scenario: follow_me.Scenario) -> None:
+def test_latched_message_from_before_is_recorded_first(scenario: Scenario) -> None:
     first = next(events(1.0, 1, scenario=scenario))
     assert (first.topic, first.stamp_ns) == ('/map_metadata', int(START_S * 1e9))
 
 
-def test_failure_leaves_nothing_behind(scenario: follow_me.Scenario, tmp_path: Path) -> None:
+def test_failure_leaves_nothing_behind(scenario: Scenario, tmp_path: Path) -> None:
     def interrupt(_: int) -> None:
         raise KeyboardInterrupt
     with pytest.raises(KeyboardInterrupt):
@@ -192,7 +192,7 @@ def test_failure_leaves_nothing_behind(scenario: follow_me.Scenario, tmp_path: P
     ({'duration_s': 1.0, 'start_s': 0.0}, 'start'),
     ({'duration_s': 1.0, 'start_s': 5e9}, 'start'),
 ])
-def test_arguments_out_of_range(scenario: follow_me.Scenario, arguments: Dict[str, float],
+def test_arguments_out_of_range(scenario: Scenario, arguments: Dict[str, float],
                                 message: str) -> None:
     with pytest.raises(ValueError, match=message):
         events(seed=1, scenario=scenario, **arguments)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Callable, Dict, Optional, Tuple
 from self_awareness.stamps import SECOND_NS, nanoseconds
 
 if TYPE_CHECKING:
-    from self_awareness.follow_me import ComponentSpec, Scenario, Task
+    from self_awareness.follow_me.scenario import ComponentSpec, Scenario, Task
 
 INDUCED_FAULT = 'induced_fault'
 """Parameter of the running robot: KIND@ONSET (s since 1970) of the fault it has, empty if none."""

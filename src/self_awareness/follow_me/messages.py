@@ -10,8 +10,8 @@ from typing import Any, Callable, Dict, Optional
 import genpy
 import roslib.message
 
-from self_awareness.follow_me import Value
-from self_awareness.follow_me_component import Message
+from self_awareness.follow_me.component import Message
+from self_awareness.follow_me.scenario import Value
 from self_awareness.stamps import SECOND_NS
 from self_awareness.yaml_section import SectionError
 

@@ -9,12 +9,13 @@ from typing import Any, Callable, List
 import pytest
 import yaml
 
-from self_awareness import follow_me, follow_me_faults
-from self_awareness.follow_me import ComponentSpec, Duration, Hypothesis, Need, Output, Task
-from self_awareness.follow_me_component import Component, Message, Publish, Wake, Work
+from self_awareness.follow_me.component import Component, Message, Publish, Wake, Work
+from self_awareness.follow_me.faults import ClockDrift, Starvation
+from self_awareness.follow_me.scenario import (ComponentSpec, Duration, Hypothesis, Need, Output,
+                                               Scenario, Task, load_scenario)
 from self_awareness.yaml_section import SectionError
 
-SCENARIO = Path(__file__).resolve().parents[2] / 'config' / 'follow_me.yaml'
+SCENARIO = Path(__file__).resolve().parents[3] / 'config' / 'follow_me.yaml'
 MS = 1_000_000
 S = 1000 * MS
 
@@ -25,30 +26,30 @@ def _data() -> Any:
 
 
 @pytest.fixture(name='scenario', scope='module')
-def _scenario() -> follow_me.Scenario:
-    return follow_me.load(SCENARIO)
+def _scenario() -> Scenario:
+    return load_scenario(SCENARIO)
 
 
-def test_fifteen_components_on_two_hosts(scenario: follow_me.Scenario) -> None:
+def test_fifteen_components_on_two_hosts(scenario: Scenario) -> None:
     assert len(scenario.components) == 15
     assert {spec.host for spec in scenario.components} == {'a', 'b'}
     assert {'player', 'slam', 'person_tracking', 'anchoring'} <= {
         spec.name for spec in scenario.components}
 
 
-def test_somebody_listens_to_every_topic(scenario: follow_me.Scenario) -> None:
+def test_somebody_listens_to_every_topic(scenario: Scenario) -> None:
     # A monitor that only listens where somebody else does would miss the others.
     heard = {topic for spec in scenario.components for topic in spec.inputs()}
     assert heard == set(scenario.datatypes)
 
 
-def test_actions_can_be_told_apart_by_the_named_field(scenario: follow_me.Scenario) -> None:
+def test_actions_can_be_told_apart_by_the_named_field(scenario: Scenario) -> None:
     hypotheses = [task.hypothesis for task in scenario.component('anchoring').tasks]
     assert len({hypotheses[0].insert, hypotheses[0].update, hypotheses[0].delete}) == 3
     assert scenario.type_fields == {scenario.datatypes['person_hypotheses']: 'status'}
 
 
-def test_unknown_component_lists_those_that_exist(scenario: follow_me.Scenario) -> None:
+def test_unknown_component_lists_those_that_exist(scenario: Scenario) -> None:
     with pytest.raises(SectionError, match=r"'plaer'.*motors, player"):
         scenario.component('plaer')
 
@@ -104,7 +105,7 @@ def test_error_names_file_and_key(tmp_path: Path, data: Any, where: List[Any],
     path = tmp_path / 'robot.yaml'
     path.write_text(yaml.safe_dump(changed), encoding='utf-8')
     with pytest.raises(SectionError, match=rf'robot\.yaml: .*{message}'):
-        follow_me.load(path)
+        load_scenario(path)
 
 
 @pytest.mark.parametrize('text, message', [
@@ -116,12 +117,12 @@ def test_no_mapping(tmp_path: Path, text: str, message: str) -> None:
     path = tmp_path / 'robot.yaml'
     path.write_text(text, encoding='utf-8')
     with pytest.raises(SectionError, match=rf'robot\.yaml: {message}'):
-        follow_me.load(path)
+        load_scenario(path)
 
 
 def test_no_file(tmp_path: Path) -> None:
     with pytest.raises(SectionError, match=r'missing\.yaml: cannot be read'):
-        follow_me.load(tmp_path / 'missing.yaml')
+        load_scenario(tmp_path / 'missing.yaml')
 
 
 def _output(topic: str, takes_s: float = 0.01, **options: Any) -> Output:
@@ -217,7 +218,7 @@ def test_hypothesis_is_inserted_updated_and_deleted() -> None:
 
 
 def test_clock_is_right_before_the_onset_and_drifts_smoothly_after() -> None:
-    drift = follow_me_faults.ClockDrift('b', -0.05, 10.0, 0.3, (7.0, 11.0))
+    drift = ClockDrift('b', -0.05, 10.0, 0.3, (7.0, 11.0))
     offsets = [drift.offset_ns(t * 10 * MS) for t in range(-100, 5000)]
     assert set(offsets[:101]) == {0}
     assert max(abs(b - a) for a, b in zip(offsets, offsets[1:])) < 5 * MS
@@ -225,5 +226,5 @@ def test_clock_is_right_before_the_onset_and_drifts_smoothly_after() -> None:
 
 
 def test_starvation_grows_over_the_ramp_and_stays() -> None:
-    starvation = follow_me_faults.Starvation(ramp=20.0, slowdown=8.0, workers_per_core=1)
+    starvation = Starvation(ramp=20.0, slowdown=8.0, workers_per_core=1)
     assert [starvation.factor(t * S) for t in (-5, 0, 10, 20, 50)] == [1.0, 1.0, 4.5, 8.0, 8.0]

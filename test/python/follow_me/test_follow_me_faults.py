@@ -12,14 +12,14 @@ import pytest
 import rosbag
 import yaml
 
-from self_awareness import follow_me
-from self_awareness.follow_me import ComponentSpec, Duration, Output, Scenario, Task
-from self_awareness.follow_me_component import Component, Message, Publish, Wake
-from self_awareness.follow_me_faults import DoubleRate, HalfRate, Latency, Novelty, effect_of
-from self_awareness.simulation import START_S, Event, Fault, events, simulate
+from self_awareness.follow_me.component import Component, Message, Publish, Wake
+from self_awareness.follow_me.faults import DoubleRate, HalfRate, Latency, Novelty, effect_of
+from self_awareness.follow_me.scenario import (ComponentSpec, Duration, Output, Scenario, Task,
+                                               load_scenario)
+from self_awareness.follow_me.simulation import START_S, Event, Fault, events, simulate
 from self_awareness.yaml_section import SectionError
 
-SCENARIO = Path(__file__).resolve().parents[2] / 'config' / 'follow_me.yaml'
+SCENARIO = Path(__file__).resolve().parents[3] / 'config' / 'follow_me.yaml'
 DURATION_S = 60.0
 ONSET_S = 20.0
 MS = 1_000_000
@@ -30,7 +30,7 @@ Run = List[Event]
 
 @pytest.fixture(name='scenario', scope='module')
 def _scenario() -> Scenario:
-    return follow_me.load(SCENARIO)
+    return load_scenario(SCENARIO)
 
 
 @pytest.fixture(name='normal', scope='module')
@@ -270,4 +270,4 @@ def test_error_in_the_file_names_the_key(tmp_path: Path, where: List[Any], value
     path = tmp_path / 'robot.yaml'
     path.write_text(yaml.safe_dump(data), encoding='utf-8')
     with pytest.raises(SectionError, match=rf'robot\.yaml: faults\..*{message}'):
-        follow_me.load(path)
+        load_scenario(path)

@@ -3,7 +3,7 @@
 The paper evaluates its model on a robot of 15 components that follows a person (section V-A) and
 on four errors induced in it (section V-B). `config/follow_me.yaml` describes both and explains
 every key; this module turns the file into immutable data and rejects what makes no sense. How a
-component behaves is in `follow_me_component`, what can befall it in `follow_me_faults`. Times in
+component behaves is in `component`, what can befall it in `faults`. Times in
 the data are seconds, as in the file; whatever is drawn or computed from them is int nanoseconds.
 """
 from __future__ import annotations
@@ -17,7 +17,7 @@ from typing import Dict, Mapping, Optional, Tuple, Union
 import rospkg
 import yaml
 
-from self_awareness.follow_me_faults import (ClockDrift, Crash, Disorder, Faults, Intruder,
+from self_awareness.follow_me.faults import (ClockDrift, Crash, Disorder, Faults, Intruder,
                                              Latency, Novelty, Starvation)
 from self_awareness.stamps import nanoseconds
 from self_awareness.yaml_section import Section, SectionError
@@ -182,7 +182,7 @@ def default_path() -> Path:
     return Path(package) / 'config' / 'follow_me.yaml'
 
 
-def load(path: Union[str, Path, None] = None) -> Scenario:
+def load_scenario(path: Union[str, Path, None] = None) -> Scenario:
     """Read and check a scenario file, by default the one that comes with the package.
 
     Raises:

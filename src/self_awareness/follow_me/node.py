@@ -1,6 +1,6 @@
 """One component of the simulated robot as a ROS node.
 
-Drives a `follow_me_component.Component` in real time: `takes` of its work is partly spent
+Drives a `component.Component` in real time: `takes` of its work is partly spent
 computing, so that a busy CPU slows the node down as it would a real one, `waits` is slept.
 
 Publishes and subscribes to the component's topics (relative names). Reads the parameter
@@ -18,10 +18,10 @@ from typing import Any, Callable, List, NamedTuple, Optional, Tuple
 
 import rospy
 
-from self_awareness.follow_me import ComponentSpec, Scenario, load
-from self_awareness.follow_me_component import Component, Message, Publish, Request, Wake, Work
-from self_awareness.follow_me_faults import INDUCED_FAULT, Change, ClockDrift, effect_of
-from self_awareness.follow_me_messages import MessageType
+from self_awareness.follow_me.component import Component, Message, Publish, Request, Wake, Work
+from self_awareness.follow_me.faults import INDUCED_FAULT, Change, ClockDrift, effect_of
+from self_awareness.follow_me.messages import MessageType
+from self_awareness.follow_me.scenario import ComponentSpec, Scenario, load_scenario
 from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness.yaml_section import SectionError
 
@@ -194,7 +194,7 @@ def main(argv: Optional[List[str]] = None) -> int:
     parser.add_argument('--seed', type=int, default=0, help='of what is random (default: 0)')
     arguments = parser.parse_args(rospy.myargv(argv)[1:])
     try:
-        scenario = load(arguments.scenario or None)
+        scenario = load_scenario(arguments.scenario or None)
         intruder = scenario.faults.extra.spec
         spec = intruder if arguments.name == intruder.name else scenario.component(arguments.name)
         rospy.init_node(spec.name)
