@@ -14,10 +14,10 @@ from pathlib import Path
 from typing import Any, Dict, List, Sequence
 
 import page
-from self_awareness.evaluation import experiment, summary
 from self_awareness.evaluation.detectors import Evidence
-from self_awareness.evaluation.experiment import Plan
-from self_awareness.evaluation.measures import Row, fault_row, normal_row
+from self_awareness.evaluation.simulated import experiment, summary
+from self_awareness.evaluation.simulated.experiment import Plan
+from self_awareness.evaluation.simulated.measures import Row, fault_row, normal_row
 from self_awareness.follow_me.scenario import load_scenario
 
 _DOCS = Path(__file__).resolve().parents[1] / 'docs'

@@ -7,8 +7,8 @@ from typing import Optional, Sequence
 from self_awareness import TrainedModel
 from self_awareness.commands import cli
 from self_awareness.output_files import check_outputs, check_replaces_model
-from self_awareness.training import DistinctRecordings
-from self_awareness.training_report import print_summary
+from self_awareness.reporting.training_report import print_summary
+from self_awareness.training.many_bags import DistinctRecordings
 
 _EPILOG = """\
 The models must agree in encoding, windows, bins and horizon. What they learned adds up, as if one

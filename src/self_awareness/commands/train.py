@@ -6,15 +6,15 @@ import os
 from contextlib import closing
 from typing import Dict, Optional, Sequence
 
-from self_awareness import (PREDECESSORS, BagError, TrainedModel, encoding_file, live_graph,
-                            progress, training)
+from self_awareness import PREDECESSORS, BagError, TrainedModel, encoding_file, progress
+from self_awareness.calibration.limits import TooLittleError
 from self_awareness.commands import cli
-from self_awareness.evidence_limits import TooLittleError
 from self_awareness.output_files import check_outputs, check_replaces_model
 from self_awareness.recordings import BagPart
+from self_awareness.reporting.training_report import print_summary
 from self_awareness.stamps import SECOND_NS
-from self_awareness.training import Counting, Trained
-from self_awareness.training_report import print_summary
+from self_awareness.training import live_graph, many_bags
+from self_awareness.training.many_bags import Counting, Trained
 from self_awareness.workers import Cluster, InProcess, Processes, Workers
 
 _BIN, _WINDOW, _HORIZON = '0.01', '0.1', 0
@@ -48,7 +48,7 @@ def _train(arguments: argparse.Namespace) -> None:
     paths = map(os.path.abspath, arguments.bags) if arguments.scheduler else arguments.bags
     parts = [BagPart(path, arguments.start, arguments.end) for path in paths]
     with closing(_workers(arguments)) as workers:
-        trained = training.train(parts, counting, workers, base, arguments.skip_bad, progress.say)
+        trained = many_bags.train(parts, counting, workers, base, arguments.skip_bad, progress.say)
         model = trained.model
         if counting.encoding is None and model.encoding.source == 'none':
             print('no bag names the senders of its messages: sources are not told apart '
@@ -72,7 +72,7 @@ def _train(arguments: argparse.Namespace) -> None:
 def _limits(trained: Trained, workers: Workers) -> str:
     """Give the model preliminary limits where there is enough to find them; say how."""
     try:
-        training.preliminary_limits(trained, workers)
+        many_bags.preliminary_limits(trained, workers)
     except TooLittleError as error:
         return f'limits       none: {error}'
     return ('limits       preliminary, by what one half of the training says of the other '

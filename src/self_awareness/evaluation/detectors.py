@@ -7,10 +7,11 @@ import numpy as np
 
 from self_awareness import (EVIDENCE_THRESHOLD, PREDECESSORS, DetectorParameters, EncodingRules,
                             EventType, EvidenceModel, Model, TrainedModel, Training, Verdicts,
-                            evidence_limits, judge_by_evidence)
+                            judge_by_evidence)
+from self_awareness.calibration import limits
+from self_awareness.calibration.limits import HeldOut
 from self_awareness.evaluation.recording import WINDOW, Recording
 from self_awareness.evaluation.systems import Alarm, Judged, common_threshold, distinct
-from self_awareness.evidence_limits import HeldOut
 from self_awareness.follow_me.scenario import load_scenario
 
 
@@ -73,8 +74,8 @@ class Evidence:
     def calibrate(self, recordings: Sequence[Recording]) -> None:
         """Find the limits."""
         encoded = [recording.encoded(self._trained.event_types) for recording in recordings]
-        self._trained.evidence_calibration = evidence_limits.find(
-            self._trained, DetectorParameters().settle_time, evidence_limits.BUDGET,
+        self._trained.evidence_calibration = limits.find(
+            self._trained, DetectorParameters().settle_time, limits.BUDGET,
             [HeldOut(recording.stamps, recording.ids) for recording in encoded])
 
     def judge(self, recording: Recording) -> Judged:

@@ -1,0 +1,1 @@
+"""Detectors on the running follow-me robot, with the monitor beside it."""
