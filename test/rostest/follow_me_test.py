@@ -21,7 +21,7 @@ from actionlib_msgs.msg import GoalStatus
 from std_msgs.msg import Header
 
 from self_awareness.commands import induce
-from self_awareness.follow_me.faults import Starvation
+from self_awareness.follow_me.effects import Starvation
 from self_awareness.follow_me.scenario import Scenario, load_scenario
 
 _RATE_HZ = 163.0

@@ -21,8 +21,8 @@ from xmlrpc.client import ServerProxy
 import rosgraph
 import rosgraph.network
 
-from self_awareness.follow_me.faults import (INDUCED_FAULT, Crash, Effect, Intruder, Silence,
-                                             Starvation, described, effect_of)
+from self_awareness.follow_me.effects import Crash, Effect, Intruder, Silence, Starvation
+from self_awareness.follow_me.faults import INDUCED_FAULT, described, effect_of
 from self_awareness.follow_me.scenario import Scenario, load_scenario
 
 _CALLER_ID = '/induce'

@@ -11,8 +11,8 @@ from collections import defaultdict, deque
 from dataclasses import dataclass
 from typing import Callable, Deque, Dict, List, Optional, Union
 
-from self_awareness.follow_me.scenario import (ComponentSpec, Hypothesis, InView, Need, Output,
-                                               Value)
+from self_awareness.follow_me.component_spec import (ComponentSpec, Hypothesis, InView, Need,
+                                                     Output, Value)
 from self_awareness.stamps import nanoseconds
 
 

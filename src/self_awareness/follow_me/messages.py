@@ -11,7 +11,7 @@ import genpy
 import roslib.message
 
 from self_awareness.follow_me.component import Message
-from self_awareness.follow_me.scenario import Value
+from self_awareness.follow_me.component_spec import Value
 from self_awareness.stamps import SECOND_NS
 from self_awareness.yaml_section import SectionError
 

@@ -19,9 +19,11 @@ from typing import Any, Callable, List, NamedTuple, Optional, Tuple
 import rospy
 
 from self_awareness.follow_me.component import Component, Message, Publish, Request, Wake, Work
-from self_awareness.follow_me.faults import INDUCED_FAULT, Change, ClockDrift, effect_of
+from self_awareness.follow_me.component_spec import ComponentSpec
+from self_awareness.follow_me.effects import Change, ClockDrift
+from self_awareness.follow_me.faults import INDUCED_FAULT, effect_of
 from self_awareness.follow_me.messages import MessageType
-from self_awareness.follow_me.scenario import ComponentSpec, Scenario, load_scenario
+from self_awareness.follow_me.scenario import Scenario, load_scenario
 from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness.yaml_section import SectionError
 

@@ -20,10 +20,12 @@ import genpy
 import rosbag
 
 from self_awareness.follow_me.component import Component, Message, Publish, Request, Wake
-from self_awareness.follow_me.faults import (Change, ClockDrift, Crash, Intruder, Silence,
-                                             Starvation, check_form, effect_of)
+from self_awareness.follow_me.component_spec import ComponentSpec, Value
+from self_awareness.follow_me.effects import (Change, ClockDrift, Crash, Intruder, Silence,
+                                              Starvation)
+from self_awareness.follow_me.faults import check_form, effect_of
 from self_awareness.follow_me.messages import MessageType
-from self_awareness.follow_me.scenario import ComponentSpec, Scenario, Value, load_scenario
+from self_awareness.follow_me.scenario import Scenario, load_scenario
 from self_awareness.output_files import replacing
 from self_awareness.stamps import SECOND_NS, nanoseconds
 

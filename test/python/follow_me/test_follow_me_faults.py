@@ -13,9 +13,10 @@ import rosbag
 import yaml
 
 from self_awareness.follow_me.component import Component, Message, Publish, Wake
-from self_awareness.follow_me.faults import DoubleRate, HalfRate, Latency, Novelty, effect_of
-from self_awareness.follow_me.scenario import (ComponentSpec, Duration, Output, Scenario, Task,
-                                               load_scenario)
+from self_awareness.follow_me.component_spec import ComponentSpec, Duration, Output, Task
+from self_awareness.follow_me.effects import DoubleRate, HalfRate, Latency, Novelty
+from self_awareness.follow_me.faults import effect_of
+from self_awareness.follow_me.scenario import Scenario, load_scenario
 from self_awareness.follow_me.simulation import START_S, Event, Fault, events, simulate
 from self_awareness.yaml_section import SectionError
 

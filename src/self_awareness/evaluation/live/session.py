@@ -18,7 +18,8 @@ from self_awareness.evaluation.live.processes import (LiveError, Processes, awai
                                                       free_port)
 from self_awareness.evaluation.live.samples import Status, Stretch
 from self_awareness.evaluation.simulated.measures import NORMAL
-from self_awareness.follow_me.faults import Crash, Effect, Intruder, Silence, Starvation, effect_of
+from self_awareness.follow_me.effects import Crash, Effect, Intruder, Silence, Starvation
+from self_awareness.follow_me.faults import effect_of
 from self_awareness.follow_me.scenario import load_scenario
 
 FAULTS_S: Dict[str, float] = {
