@@ -1,6 +1,7 @@
 """Progress bars of long work, on standard error; silent where that is no terminal."""
 from __future__ import annotations
 
+import sys
 import time
 from contextlib import contextmanager
 from typing import Callable, Iterable, Iterator, Sequence, TypeVar
@@ -37,15 +38,16 @@ def each(items: Sequence[_Item], description: str) -> Iterable[_Item]:
 
 
 @contextmanager
-def items(total: int, description: str) -> Iterator[Callable[[], object]]:
-    """Show how many of several things are done; hands out what is called after each."""
+def items(total: int, description: str) -> Iterator[Callable[..., object]]:
+    """Show how many of several things are done; hands out what is called after one, or N."""
     with tqdm(desc=description, total=total, leave=False, disable=None) as bar:
         yield bar.update
 
 
 def say(text: str) -> None:
-    """Print a line on standard output, above the bars that are shown."""
+    """Print a line on standard output at once, above the bars that are shown."""
     tqdm.write(text)
+    sys.stdout.flush()
 
 
 def waiting(seconds: float, description: str) -> Iterator[float]:

@@ -21,6 +21,7 @@ from actionlib_msgs.msg import GoalStatus
 from std_msgs.msg import Header
 
 from self_awareness.commands import induce
+from self_awareness.follow_me import induction
 from self_awareness.follow_me.effects import Starvation
 from self_awareness.follow_me.scenario import Scenario, load_scenario
 
@@ -138,14 +139,14 @@ class FollowMeTest(unittest.TestCase):
             wait_for(lambda topic=topic: self.listener.heard(topic), f'a message on {topic}')
 
     def test_3_clock_drifts_and_is_set_right(self) -> None:
-        with induce.disturbed('ac', self.namespace):
+        with induction.disturbed('ac', self.namespace):
             wait_for(lambda: self.listener.age('camera/image') < -0.1, 'stamps ahead of the time')
         wait_for(lambda: 0.0 < self.listener.age('camera/image') < 0.1,
                  'stamps that are right again')
 
     def test_3_latency_grows_at_an_unchanged_rate(self) -> None:
         wait_for(lambda: 0.0 < self.listener.age('legs') < 0.04, 'legs soon after the scan')
-        with induce.disturbed('lat', self.namespace):
+        with induction.disturbed('lat', self.namespace):
             wait_for(lambda: 0.06 < self.listener.age('legs') < 0.1, 'legs 60 ms later')
             since = time.monotonic()
             wait_for(lambda: time.monotonic() - since > _WINDOW_S
@@ -154,24 +155,24 @@ class FollowMeTest(unittest.TestCase):
         wait_for(lambda: self.listener.age('legs') < 0.04, 'legs soon after the scan again')
 
     def test_3_rate_doubles(self) -> None:
-        with induce.disturbed('double:power_monitor', self.namespace):
+        with induction.disturbed('double:power_monitor', self.namespace):
             wait_for(lambda: self.listener.rate('battery') >= 0.8, 'battery at 1 Hz')
 
     def test_3_unknown_message_appears(self) -> None:
         self.assertFalse(self.listener.told(GoalStatus.REJECTED))
-        with induce.disturbed('unknown', self.namespace):
+        with induction.disturbed('unknown', self.namespace):
             wait_for(lambda: self.listener.told(GoalStatus.REJECTED), 'a status never seen before')
 
     def test_3_intruder_comes_and_goes(self) -> None:
         intruder = self.scenario.faults.extra
-        with induce.intruding(intruder, self.namespace):
+        with induction.intruding(intruder, self.namespace):
             wait_for(lambda: abs(self.listener.rate('cmd_vel') - 15.0) < 1.0, 'two who publish')
         wait_for(lambda: self._node(intruder.spec.name) not in self._registered(), 'one leaves')
         wait_for(lambda: abs(self.listener.rate('cmd_vel') - 5.0) < 0.5, 'one who publishes')
 
     def test_4_busy_workers_end(self) -> None:
         starvation = Starvation(ramp=0.2, slowdown=2.0, workers_per_core=1)
-        with induce.starved(starvation):
+        with induction.starved(starvation):
             self.assertEqual(len(multiprocessing.active_children()), len(os.sched_getaffinity(0)))
         self.assertEqual(multiprocessing.active_children(), [])
 

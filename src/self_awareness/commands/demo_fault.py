@@ -9,7 +9,7 @@ from typing import Dict, Optional
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
-from self_awareness.commands import induce
+from self_awareness.follow_me import induction
 from self_awareness.follow_me.scenario import load_scenario
 from self_awareness.progress import waiting
 
@@ -71,7 +71,7 @@ def main() -> int:
         if operator.error_since(_STATUS) is not None:
             return _fail('an alarm came before the fault: ' + operator.status(_STATUS).message)
     killed_at = time.time()
-    pid = induce.crash(component)
+    pid = induction.crash(component)
     print(f'killed {component.component} (kill -9 {pid})')
     if not operator.await_error(_STATUS, _ALARM_WITHIN_S):
         return _fail(f'no alarm within {_ALARM_WITHIN_S} s')

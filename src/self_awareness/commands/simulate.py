@@ -2,12 +2,11 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
-from typing import List, Optional, Tuple
+from typing import List, Optional, Sequence, Tuple
 
-from tqdm import tqdm
-
+from self_awareness import progress
+from self_awareness.commands import cli
 from self_awareness.follow_me.faults import described
 from self_awareness.follow_me.scenario import load_scenario
 from self_awareness.follow_me.simulation import Fault, simulate
@@ -24,31 +23,20 @@ examples:
 """
 
 
-def main(argv: Optional[List[str]] = None) -> int:
-    """Run the program; return 0 on success, 1 if a bag could not be written, 130 after Ctrl-C.
+def main(argv: Optional[Sequence[str]] = None) -> int:
+    """Run the program; return its exit code (see cli.run)."""
+    return cli.run(_parser(), _simulate, argv)
 
-    Args:
-        argv: the arguments without the program's name, by default those of the process.
-    """
-    parser = _parser()
-    arguments = parser.parse_args(argv)
-    try:
-        scenario = load_scenario(arguments.scenario)
-        fault = _fault(arguments.fault, arguments.duration)
-        bags = _bags(arguments.output, arguments.runs, arguments.seed, fault)
-        seconds = int(arguments.duration) * arguments.runs
-        with tqdm(total=seconds, unit='s', leave=False, disable=None) as bar:
-            for seed, bag in bags:
-                bar.set_description(bag.name)
-                bag.parent.mkdir(parents=True, exist_ok=True)
-                simulate(bag, arguments.duration, seed, fault, scenario, progress=bar.update)
-                tqdm.write(str(bag))
-    except (ValueError, OSError) as error:
-        print(f'simulate: error: {error}', file=sys.stderr)
-        return 1
-    except KeyboardInterrupt:
-        return 130
-    return 0
+
+def _simulate(arguments: argparse.Namespace) -> None:
+    scenario = load_scenario(arguments.scenario)
+    fault = _fault(arguments.fault, arguments.duration)
+    bags = _bags(arguments.output, arguments.runs, arguments.seed, fault)
+    with progress.items(int(arguments.duration) * arguments.runs, 'simulating') as seconds_done:
+        for seed, bag in bags:
+            bag.parent.mkdir(parents=True, exist_ok=True)
+            simulate(bag, arguments.duration, seed, fault, scenario, progress=seconds_done)
+            progress.say(str(bag))
 
 
 def _parser() -> argparse.ArgumentParser:

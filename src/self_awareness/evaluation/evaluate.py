@@ -11,7 +11,7 @@ import tempfile
 from pathlib import Path
 from typing import Iterator, Optional, Sequence
 
-from self_awareness.commands import cli, induce
+from self_awareness.commands import cli
 from self_awareness.evaluation import catalogue
 from self_awareness.evaluation.recordings import outages, report as recordings_report
 from self_awareness.evaluation.simulated import experiment, report
@@ -66,13 +66,10 @@ def _live(arguments: argparse.Namespace, command: str) -> None:
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, signal.default_int_handler)
     plan = session.Plan(arguments.rounds, arguments.training, arguments.calibration,
-                             arguments.normal)
+                        arguments.normal)
     arguments.output.mkdir(parents=True, exist_ok=True)
     with _folder(arguments.recordings) as folder:
-        try:
-            paths = evaluation.evaluate(plan, folder, arguments.output, command)
-        except induce.InduceError as error:
-            raise ValueError(str(error)) from error
+        paths = evaluation.evaluate(plan, folder, arguments.output, command)
     for path in paths:
         print(f'written: {path}')
 

@@ -9,7 +9,6 @@ since 1970), empty if it has none. Only faults that a component has to know of w
 """
 from __future__ import annotations
 
-import argparse
 import heapq
 import queue
 import random
@@ -23,9 +22,8 @@ from self_awareness.follow_me.component_spec import ComponentSpec
 from self_awareness.follow_me.effects import Change, ClockDrift
 from self_awareness.follow_me.faults import INDUCED_FAULT, effect_of
 from self_awareness.follow_me.messages import MessageType
-from self_awareness.follow_me.scenario import Scenario, load_scenario
+from self_awareness.follow_me.scenario import Scenario
 from self_awareness.stamps import SECOND_NS, nanoseconds
-from self_awareness.yaml_section import SectionError
 
 # How long a shutdown may go unnoticed while nothing else happens.
 _PATIENCE_S = 0.5
@@ -185,22 +183,3 @@ class _InducedFault:
         if isinstance(effect, ClockDrift) and effect.host == self._spec.host:
             return disturbance._replace(drift=effect)
         return normal
-
-
-def main(argv: Optional[List[str]] = None) -> int:
-    """Run a component under its own name; return 0 on success, 2 if it cannot run."""
-    parser = argparse.ArgumentParser(
-        prog='component', description='Runs one component of the simulated follow-me robot.')
-    parser.add_argument('name', help='name of the component, or of the intruder, in the scenario')
-    parser.add_argument('--scenario', help='scenario file (default: config/follow_me.yaml)')
-    parser.add_argument('--seed', type=int, default=0, help='of what is random (default: 0)')
-    arguments = parser.parse_args(rospy.myargv(argv)[1:])
-    try:
-        scenario = load_scenario(arguments.scenario or None)
-        intruder = scenario.faults.extra.spec
-        spec = intruder if arguments.name == intruder.name else scenario.component(arguments.name)
-        rospy.init_node(spec.name)
-        ComponentNode(scenario, spec, arguments.seed).spin()
-    except SectionError as error:
-        parser.exit(2, f'component: {error}\n')
-    return 0

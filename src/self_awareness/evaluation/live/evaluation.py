@@ -4,6 +4,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import List, Sequence
 
+from self_awareness import progress
 from self_awareness.evaluation.live import offline, report, session
 from self_awareness.evaluation.live.samples import Sample, Status, Stretch, measure
 from self_awareness.evaluation.live.session import Plan
@@ -29,7 +30,7 @@ def evaluate(plan: Plan, folder: Path, output: Path, command: str) -> List[Path]
     def told(stretch: Stretch, statuses: Sequence[Status]) -> None:
         samples.append(measure(report.LIVE, stretch, statuses))
         report.save_csv(output / 'live.csv', samples)
-        print(f'  {_brief(samples[-1])}', flush=True)
+        progress.say(f'  {_brief(samples[-1])}')
 
     found = session.run(plan, folder, told)
     return report.write(output, plan, samples + offline.judge(found), command)

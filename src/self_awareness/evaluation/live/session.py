@@ -12,12 +12,12 @@ from typing import Callable, Dict, Iterator, List, Optional, Sequence, Tuple
 import rospy
 
 from self_awareness import progress
-from self_awareness.commands import induce
 from self_awareness.evaluation.live.listeners import MonitorListener, RobotListener
 from self_awareness.evaluation.live.processes import (LiveError, Processes, await_condition,
                                                       free_port)
 from self_awareness.evaluation.live.samples import Status, Stretch
 from self_awareness.evaluation.simulated.measures import NORMAL
+from self_awareness.follow_me import induction
 from self_awareness.follow_me.effects import Crash, Effect, Intruder, Silence, Starvation
 from self_awareness.follow_me.faults import effect_of
 from self_awareness.follow_me.scenario import load_scenario
@@ -160,17 +160,17 @@ class _Session:
     def _induced(self, kind: str, effect: Effect) -> Iterator[float]:
         """Induce a fault and tell its onset; lasting ones end with the with statement."""
         if isinstance(effect, Crash):
-            induce.crash(effect)
+            induction.crash(effect)
             yield time.time()
         elif isinstance(effect, Silence):
-            induce.silence(self._scenario)
+            induction.silence(self._scenario)
             yield time.time()
         elif isinstance(effect, Starvation):
-            with induce.starved(effect):
+            with induction.starved(effect):
                 yield time.time()
         elif isinstance(effect, Intruder):
             begin = time.time()
-            with induce.intruding(effect):
+            with induction.intruding(effect):
                 # It takes seconds to start: the fault begins with its first message.
                 source, = effect.culprits
                 await_condition(f'{source} publishes',
@@ -178,7 +178,7 @@ class _Session:
                                 _STARTED_WITHIN_S)
                 yield self._robot.last(source, _SHARED)
         else:
-            with induce.disturbed(kind):
+            with induction.disturbed(kind):
                 yield time.time()
 
     @contextlib.contextmanager
@@ -272,4 +272,4 @@ def _wait(seconds: float, what: str) -> None:
 
 
 def _say(text: str) -> None:
-    print(f'{time.strftime("%H:%M:%S")} {text}', flush=True)
+    progress.say(f'{time.strftime("%H:%M:%S")} {text}')

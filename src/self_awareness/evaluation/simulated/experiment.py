@@ -7,8 +7,8 @@ from functools import partial
 from typing import Dict, List, Tuple
 
 import numpy as np
-from tqdm import tqdm
 
+from self_awareness import progress
 from self_awareness.evaluation import catalogue
 from self_awareness.evaluation.recording import Recording
 from self_awareness.evaluation.simulated import tradeoff
@@ -82,14 +82,14 @@ def run(plan: Plan, scenario: Scenario, jobs: int) -> Results:
     """
     catalogue.check_libraries(plan.systems)
     results = Results()
-    with multiprocessing.Pool(jobs) as pool:
+    with multiprocessing.Pool(jobs) as pool, \
+            progress.items(len(plan.seeds), 'evaluating') as one_done:
         # In the order of the seeds, so that the same command writes the same files.
-        for part in tqdm(pool.imap(partial(run_seed, plan, scenario), plan.seeds),
-                         desc='evaluating', total=len(plan.seeds), unit='seed', leave=False,
-                         disable=None):
+        for part in pool.imap(partial(run_seed, plan, scenario), plan.seeds):
             results.rows += part.rows
             results.trade_offs += part.trade_offs
             results.traces = results.traces or part.traces
+            one_done()
     return results
 
 
