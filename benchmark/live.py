@@ -72,7 +72,7 @@ class _Benchmark:
                 many = self._folder / 'many.model'
                 write_synthetic_model(many, _MANY_TYPES)
                 result['latency']['loaded_s'] = {TOPICS[rate]: self._loads(model),
-                                                _MANY_TYPES: self._loads(many)}
+                                                 _MANY_TYPES: self._loads(many)}
         return result
 
     def _costs(self, robot: Robot, model: Path) -> List[Dict[str, Any]]:

@@ -37,7 +37,7 @@ class BagPart:
             return self.path
         return f'{self.path}@{self.start:g}' + ('' if self.end is None else f'-{self.end:g}')
 
-    def limits(self, first: int, last: int) -> Tuple[int, int]:
+    def span(self, first: int, last: int) -> Tuple[int, int]:
         """Return start and end [ns] within a recording from `first` to `last` [ns]."""
         start = first + round((self.start or 0.0) * SECOND_NS)
         end = last if self.end is None else first + round(self.end * SECOND_NS)
@@ -69,13 +69,13 @@ class RecordingEvents:
     @property
     def middle(self) -> int:
         """Where a training cuts it into halves if it is alone [ns]."""
-        start, end = self.part.limits(self.origin, self.end)
+        start, end = self.part.span(self.origin, self.end)
         return start + (end - start) // 2
 
     @property
     def recording(self) -> Recording:
         """What a model file says of the part."""
-        start, end = self.part.limits(self.origin, self.end)
+        start, end = self.part.span(self.origin, self.end)
         recording = Recording()
         recording.bag = os.path.basename(self.part.path)
         recording.start = start
@@ -100,7 +100,7 @@ def read(model: TrainedModel, part: BagPart) -> RecordingEvents:
         except ValueError as error:
             raise ValueError(f'{part}: {error}') from error
     _check(model, part, events)
-    _, end = part.limits(events.summary.start, events.summary.end)
+    _, end = part.span(events.summary.start, events.summary.end)
     return RecordingEvents(part, events.event_types, events.stamps, events.ids,
                            events.summary.start, end, events.summary.fingerprint)
 

@@ -28,10 +28,10 @@ _Result = TypeVar('_Result')
 
 _AHEAD = 2
 """So many tasks a worker are under way or done, and wait for their turn."""
-_RUNS = 3
-"""So many runs of tasks a worker has to do, that all be ready at about the same time."""
-_LONGEST_RUN = 8
-"""So many tasks make a run at most, or as many as there are workers."""
+_BATCHES = 3
+"""So many batches of tasks a worker has to do, that all be ready at about the same time."""
+_LARGEST_BATCH = 8
+"""So many tasks make a batch at most, or as many as there are workers."""
 _RETRIES = 2
 _CONNECT_S = 10.0
 
@@ -60,8 +60,8 @@ class Workers(ABC):
             Exception: what the function raises.
         """
 
-    def runs(self, tasks: int) -> int:
-        """Return into how many runs tasks are best cut, where results of a run can be added up.
+    def batches(self, tasks: int) -> int:
+        """Return into how many batches tasks are best cut, where their results can be added up.
 
         Args:
             tasks: how many there are, more than 0.
@@ -112,9 +112,9 @@ class Processes(Workers):
                     child.kill()
                 raise
 
-    def runs(self, tasks: int) -> int:
+    def batches(self, tasks: int) -> int:
         """See Workers."""
-        return _runs(tasks, self._number)
+        return _batches(tasks, self._number)
 
 
 class Cluster(Workers):
@@ -169,13 +169,14 @@ class Cluster(Workers):
                 futures.add(there)
                 yield from _in_order(tasks, submit, result, self._threads, description)
         finally:
-            with suppress(OSError, asyncio.TimeoutError):  # without a connection there is nothing to cancel
+            # Without a connection there is nothing to cancel.
+            with suppress(OSError, asyncio.TimeoutError):
                 self._client.cancel(list(futures))
 
-    def runs(self, tasks: int) -> int:
+    def batches(self, tasks: int) -> int:
         """See Workers; by the workers that are there now."""
         with self._connected():
-            return _runs(tasks, self._threads())
+            return _batches(tasks, self._threads())
 
     def close(self) -> None:
         """Disconnect; the cluster goes on."""
@@ -210,12 +211,12 @@ class Cluster(Workers):
                              ) from error
 
 
-def _runs(tasks: int, workers: int) -> int:
-    # While one worker is busy with a run, the results of the others arrive: where a run has as
-    # many tasks as there are workers, to add those up does not take longer than that. Longer ones
+def _batches(tasks: int, workers: int) -> int:
+    # While one worker is busy with a batch, the results of the others arrive: where a batch has as
+    # many tasks as there are workers, to add those up does not take longer than that. Larger ones
     # would only be more to do again when a worker dies.
-    longest = max(workers, _LONGEST_RUN)
-    return min(tasks, max(_RUNS * workers, math.ceil(tasks / longest), 1))
+    largest = max(workers, _LARGEST_BATCH)
+    return min(tasks, max(_BATCHES * workers, math.ceil(tasks / largest), 1))
 
 
 def _in_order(tasks: Sequence[_Task], submit: Callable[[_Task], Any],

@@ -88,7 +88,7 @@ def learned(model: TrainedModel, calibrations: bool = False) -> bytes:
         limits.stamp = 0
         model.evidence_calibration = limits
     state = model.__getstate__()
-    stamp = 2 * 32 + 4  # behind the md5 of two messages and the length of the first, which begins it
+    stamp = 2 * 32 + 4  # after the md5 of two messages and the length of the first
     return state[:stamp] + state[stamp + 8:]
 
 

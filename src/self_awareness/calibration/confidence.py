@@ -41,7 +41,7 @@ def auc(area: float, normal: int, abnormal: int) -> Interval:
     def inside(candidate: float) -> bool:
         return abs(candidate - area) <= _Z * _standard_error(candidate, normal, abnormal)
 
-    return _limit(area, 0.0, inside), _limit(area, 1.0, inside)
+    return _boundary(area, 0.0, inside), _boundary(area, 1.0, inside)
 
 
 def _standard_error(area: float, normal: int, abnormal: int) -> float:
@@ -52,7 +52,7 @@ def _standard_error(area: float, normal: int, abnormal: int) -> float:
     return math.sqrt(max(0.0, variance))
 
 
-def _limit(within: float, beyond: float, inside: Callable[[float], bool]) -> float:
+def _boundary(within: float, beyond: float, inside: Callable[[float], bool]) -> float:
     """Return the last point on the way from `within` to `beyond` that is inside."""
     for _ in range(_HALVINGS):
         middle = (within + beyond) / 2.0

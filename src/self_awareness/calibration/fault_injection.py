@@ -28,7 +28,7 @@ _FORM = re.compile(r'(?P<crash>crash):(?P<crash_source>[^:]+)'
 
 
 @dataclass(frozen=True)
-class Fault:
+class InjectedFault:
     """A fault to inject.
 
     Args:
@@ -46,7 +46,7 @@ class Fault:
     amount: float = 0.0
 
     @classmethod
-    def parse(cls, text: str) -> Fault:
+    def parse(cls, text: str) -> InjectedFault:
         """Read one of FORMS.
 
         Raises:
@@ -75,7 +75,7 @@ class Fault:
         return f'{self.kind}:{self.source}' + (f':{self.amount:g}' if self.amount else '')
 
 
-def of_each_source(fault: Fault, event_types: Sequence[EventType]) -> List[Fault]:
+def of_each_source(fault: InjectedFault, event_types: Sequence[EventType]) -> List[InjectedFault]:
     """Return the fault, or where its source is EACH the same of every source in turn."""
     if fault.source != EACH:
         return [fault]
@@ -83,7 +83,7 @@ def of_each_source(fault: Fault, event_types: Sequence[EventType]) -> List[Fault
             for source in sorted({event_type.source for event_type in event_types} - {''})]
 
 
-def check_source(fault: Fault, event_types: Sequence[EventType]) -> None:
+def check_source(fault: InjectedFault, event_types: Sequence[EventType]) -> None:
     """Check that a fault befalls a source there is.
 
     Raises:
@@ -98,8 +98,8 @@ def check_source(fault: Fault, event_types: Sequence[EventType]) -> None:
     raise ValueError(f'{fault}: no such source in the model; it has: {", ".join(sources)}')
 
 
-def inject(fault: Fault, event_types: Sequence[EventType], stamps: np.ndarray, ids: np.ndarray,
-           onset: int, end: int) -> Tuple[np.ndarray, np.ndarray]:
+def inject(fault: InjectedFault, event_types: Sequence[EventType], stamps: np.ndarray,
+           ids: np.ndarray, onset: int, end: int) -> Tuple[np.ndarray, np.ndarray]:
     """Return stamps and ids of a recording that the fault befalls at `onset`, up to `end` [ns].
 
     Raises:
@@ -123,7 +123,7 @@ def inject(fault: Fault, event_types: Sequence[EventType], stamps: np.ndarray, i
     return moved[order], ids[order]
 
 
-def _moved(fault: Fault, since_onset: np.ndarray, left: int) -> np.ndarray:
+def _moved(fault: InjectedFault, since_onset: np.ndarray, left: int) -> np.ndarray:
     """Return when, after the onset [ns], the events come; `left`: rest of the recording [ns]."""
     if fault.kind == 'slow':
         return (since_onset * fault.amount).astype(np.int64)

@@ -14,13 +14,16 @@ import numpy as np
 from self_awareness import (EVIDENCE_THRESHOLD, Calibration, DetectorParameters, Model, Roc,
                             RocPoint, TrainedModel, recordings)
 from self_awareness.calibration import confidence, limits
-from self_awareness.calibration.fault_injection import FORMS, Fault, check_source, of_each_source
-from self_awareness.calibration.runs import (ABNORMAL, LEFT_OUT, NORMAL, RECORDED, Cutoff,
-                                             FalseAlarms, FaultResult, JudgedRun, Run,
-                                             check_unseen, evidence_judge, false_alarms,
-                                             fault_results, injected_fault, judge, labelled,
-                                             normal_run, paper_judge, recorded_fault)
+from self_awareness.calibration.fault_injection import (FORMS, InjectedFault, check_source,
+                                                        of_each_source)
+from self_awareness.calibration.results import (FalseAlarms, FaultResult, false_alarms,
+                                                fault_results, labelled)
+from self_awareness.calibration.runs import (ABNORMAL, LEFT_OUT, NORMAL, RECORDED, JudgedRun, Run,
+                                             check_unseen, injected_fault, judge_runs, normal_run,
+                                             recorded_fault)
+from self_awareness.calibration.threshold_rule import ThresholdRule
 from self_awareness.commands import cli
+from self_awareness.judging import evidence_judge, paper_judge
 from self_awareness.output_files import check_outputs, replacing
 from self_awareness.recordings import BagPart, RecordingEvents
 from self_awareness.reporting import evidence_report
@@ -114,7 +117,7 @@ def _check_options(arguments: argparse.Namespace) -> None:
         raise ValueError("--budget is for --detector evidence; the threshold of the paper's score "
                          'is chosen by --cutoff')
     if arguments.cutoff is None:
-        arguments.cutoff = Cutoff('youden')
+        arguments.cutoff = ThresholdRule('youden')
     if arguments.budget is None:
         arguments.budget = limits.BUDGET
 
@@ -131,12 +134,12 @@ def _find_limits(arguments: argparse.Namespace, trained: TrainedModel,
                  faulty_runs: Sequence[Run]) -> _Measured:
     try:
         found = limits.held_out(trained, [run.source for run in normal_runs],
-                                         parameters.settle_time, arguments.budget)
+                                parameters.settle_time, arguments.budget)
     except ValueError as error:
         raise ValueError(f'--normal: {error}; name longer recordings, or more of them') from error
     trained.evidence_calibration = found
-    judged = judge(evidence_judge(trained, parameters), trained.window,
-                               [*normal_runs, *faulty_runs])
+    judged = judge_runs(evidence_judge(trained, parameters), trained.window,
+                        [*normal_runs, *faulty_runs])
     normal, faulty = judged[:len(normal_runs)], judged[len(normal_runs):]
     normal_scores = _normal_scores(normal, faulty, parameters)
     roc = Roc(normal_scores, labelled(faulty, ABNORMAL))
@@ -148,18 +151,18 @@ def _find_limits(arguments: argparse.Namespace, trained: TrainedModel,
     return measured
 
 
-def _find_threshold(trained: TrainedModel, parameters: DetectorParameters, cutoff: Cutoff,
+def _find_threshold(trained: TrainedModel, parameters: DetectorParameters, cutoff: ThresholdRule,
                     normal_runs: Sequence[Run], faulty_runs: Sequence[Run]) -> _Measured:
     model = Model(trained)
     runs = [*normal_runs, *faulty_runs]
-    scored = judge(paper_judge(trained, model, None, parameters),
-                               trained.window, runs)
+    scored = judge_runs(paper_judge(trained, model, None, parameters),
+                        trained.window, runs)
     normal_scores = _normal_scores(scored[:len(normal_runs)], scored[len(normal_runs):],
                                    parameters)
     roc = Roc(normal_scores, labelled(scored[len(normal_runs):], ABNORMAL))
     point = cutoff.choose(roc)
-    judged = judge(paper_judge(trained, model, point.cutoff, parameters),
-                               trained.window, runs)
+    judged = judge_runs(paper_judge(trained, model, point.cutoff, parameters),
+                        trained.window, runs)
     normal, faulty = judged[:len(normal_runs)], judged[len(normal_runs):]
     return _Measured(point, roc, normal, faulty,
                      fault_results(normal_scores, faulty, point.cutoff),
@@ -207,7 +210,7 @@ def _calibration(arguments: argparse.Namespace, measured: _Measured) -> Calibrat
     return result
 
 
-def _print(cutoff: Cutoff, measured: _Measured) -> None:
+def _print(cutoff: ThresholdRule, measured: _Measured) -> None:
     windows = len(labelled(measured.normal, NORMAL))
     rate = measured.point.false_positive_rate
     false = round(rate * windows)
@@ -288,15 +291,15 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('--faulty', type=BagPart.parse, nargs='+', action='extend', default=[],
                         metavar='BAG', help='recording with a fault, from its beginning to its '
                         'end or, as BAG@START or BAG@START-END, in this part')
-    parser.add_argument('--inject', type=cli.checked(Fault.parse), nargs='+', action='extend',
-                        default=[], metavar='FAULT',
+    parser.add_argument('--inject', type=cli.checked(InjectedFault.parse), nargs='+',
+                        action='extend', default=[], metavar='FAULT',
                         help='fault to make out of the normal recordings, see below')
     parser.add_argument('-o', '--output', required=True, metavar='MODEL',
                         help='file to write; may be the same model')
     cli.add_detector_argument(parser)
     parser.add_argument('--budget', type=_budget, metavar='N', help='evidence: false alarms an '
                         f'hour that the limits allow (default: {limits.BUDGET:g})')
-    parser.add_argument('--cutoff', type=cli.checked(Cutoff.parse),
+    parser.add_argument('--cutoff', type=cli.checked(ThresholdRule.parse),
                         metavar='HOW', help='paper: youden: most found less most false; closest: '
                         'closest to all found and none false; fpr=RATE: this share of normal '
                         'windows false (default: youden)')

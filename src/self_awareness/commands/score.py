@@ -9,8 +9,8 @@ from typing import List, Optional, Sequence, Tuple
 import numpy as np
 
 from self_awareness import EVIDENCE_THRESHOLD, Model, TrainedModel, Verdicts, recordings
-from self_awareness.calibration.runs import evidence_judge, paper_judge
 from self_awareness.commands import cli
+from self_awareness.judging import evidence_judge, paper_judge
 from self_awareness.output_files import check_outputs, replacing
 from self_awareness.recordings import BagPart, RecordingEvents
 from self_awareness.reporting.plots import ScorePlot, save_scores

@@ -9,7 +9,7 @@ from self_awareness import progress
 from self_awareness.commands import cli
 from self_awareness.follow_me.faults import described
 from self_awareness.follow_me.scenario import load_scenario
-from self_awareness.follow_me.simulation import Fault, simulate
+from self_awareness.follow_me.simulation import InducedFault, simulate
 
 _EPILOG = f"""\
 faults:
@@ -58,7 +58,7 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _fault(text: Optional[str], duration_s: float) -> Optional[Fault]:
+def _fault(text: Optional[str], duration_s: float) -> Optional[InducedFault]:
     """Read KIND or KIND@SECONDS.
 
     Raises:
@@ -68,7 +68,7 @@ def _fault(text: Optional[str], duration_s: float) -> Optional[Fault]:
         return None
     kind, at, onset = text.partition('@')
     try:
-        fault = Fault(kind, float(onset) if at else duration_s / 2.0)
+        fault = InducedFault(kind, float(onset) if at else duration_s / 2.0)
     except ValueError as error:
         raise ValueError(f'--fault {text}: {error}') from error
     if fault.onset_s >= duration_s:
@@ -77,7 +77,8 @@ def _fault(text: Optional[str], duration_s: float) -> Optional[Fault]:
     return fault
 
 
-def _bags(output: Path, runs: int, seed: int, fault: Optional[Fault]) -> List[Tuple[int, Path]]:
+def _bags(output: Path, runs: int, seed: int,
+          fault: Optional[InducedFault]) -> List[Tuple[int, Path]]:
     """Return the seeds with their bags.
 
     Raises:

@@ -10,8 +10,8 @@ from self_awareness import (EVIDENCE_THRESHOLD, PREDECESSORS, DetectorParameters
                             judge_by_evidence)
 from self_awareness.calibration import limits
 from self_awareness.calibration.limits import HeldOut
-from self_awareness.evaluation.recording import WINDOW, Recording
-from self_awareness.evaluation.systems import Alarm, Judged, common_threshold, distinct
+from self_awareness.evaluation.systems import Judged, SystemAlarm, common_threshold, distinct
+from self_awareness.evaluation.windowed_events import WINDOW, WindowedEvents
 from self_awareness.follow_me.scenario import load_scenario
 
 
@@ -25,25 +25,25 @@ class Paper:
         self._model: Optional[Model] = None
         self._threshold: Optional[float] = None
 
-    def train(self, recordings: Sequence[Recording]) -> None:
+    def train(self, recordings: Sequence[WindowedEvents]) -> None:
         """Count the delays."""
         trained = _trained(recordings)
         self._types = trained.event_types
         self._model = Model(trained)
 
-    def calibrate(self, recordings: Sequence[Recording]) -> None:
+    def calibrate(self, recordings: Sequence[WindowedEvents]) -> None:
         """Choose s* by the common rule."""
         verdicts = [self._verdicts(recording.encoded(self._types)) for recording in recordings]
         self._threshold = common_threshold(
             [np.nan_to_num(verdict.score[~verdict.settling]) for verdict in verdicts])
 
-    def judge(self, recording: Recording) -> Judged:
+    def judge(self, recording: WindowedEvents) -> Judged:
         """Judge a recording."""
         encoded = recording.encoded(self._types)
         verdicts = self._verdicts(encoded)
         return _judged(encoded, verdicts, self._threshold)
 
-    def _verdicts(self, encoded: Recording) -> Verdicts:
+    def _verdicts(self, encoded: WindowedEvents) -> Verdicts:
         # The window in which the recording ends is the last one, hence - 1.
         return self._model.judge(WINDOW, self._threshold, DetectorParameters(), encoded.stamps,
                                  encoded.ids, encoded.end - 1)
@@ -65,25 +65,25 @@ class Evidence:
         self._trained: Optional[TrainedModel] = None
         self._model: Optional[EvidenceModel] = None
 
-    def train(self, recordings: Sequence[Recording]) -> None:
+    def train(self, recordings: Sequence[WindowedEvents]) -> None:
         """Count what there is to count."""
         self._trained = _trained(recordings, self._predecessors)
         self._trained.graph = self._graph
         self._model = EvidenceModel(self._trained)
 
-    def calibrate(self, recordings: Sequence[Recording]) -> None:
+    def calibrate(self, recordings: Sequence[WindowedEvents]) -> None:
         """Find the limits."""
         encoded = [recording.encoded(self._trained.event_types) for recording in recordings]
         self._trained.evidence_calibration = limits.find(
             self._trained, DetectorParameters().settle_time, limits.BUDGET,
             [HeldOut(recording.stamps, recording.ids) for recording in encoded])
 
-    def judge(self, recording: Recording) -> Judged:
+    def judge(self, recording: WindowedEvents) -> Judged:
         """Judge a recording."""
         return _judged(recording.encoded(self._trained.event_types),
                        self.verdicts(recording, DetectorParameters()), EVIDENCE_THRESHOLD)
 
-    def verdicts(self, recording: Recording, parameters: DetectorParameters) -> Verdicts:
+    def verdicts(self, recording: WindowedEvents, parameters: DetectorParameters) -> Verdicts:
         """Return what the detector says of a recording, suspicions included."""
         encoded = recording.encoded(self._trained.event_types)
         # The window in which the recording ends is the last one, hence - 1.
@@ -91,7 +91,7 @@ class Evidence:
                                  encoded.ids, encoded.end - 1)
 
 
-def _trained(recordings: Sequence[Recording],
+def _trained(recordings: Sequence[WindowedEvents],
              predecessors: int = PREDECESSORS) -> TrainedModel:
     training = Training(EncodingRules(), window=WINDOW, predecessors=predecessors)
     for recording in recordings:
@@ -99,10 +99,10 @@ def _trained(recordings: Sequence[Recording],
     return training.model()
 
 
-def _judged(encoded: Recording, verdicts: Verdicts, threshold: float) -> Judged:
-    alarms = [Alarm(alarm.start, alarm.end, alarm.cleared,
-                    distinct([encoded.event_types[suspect.id].source
-                              for suspect in alarm.suspects]))
+def _judged(encoded: WindowedEvents, verdicts: Verdicts, threshold: float) -> Judged:
+    alarms = [SystemAlarm(alarm.start, alarm.end, alarm.cleared,
+                          distinct([encoded.event_types[suspect.id].source
+                                    for suspect in alarm.suspects]))
               for alarm in verdicts.alarms]
     return Judged(verdicts.start, verdicts.abnormal, np.nan_to_num(verdicts.score),
                   verdicts.settling, alarms, threshold, verdicts.suspicion)

@@ -65,8 +65,8 @@ def _live(arguments: argparse.Namespace, command: str) -> None:
     # A termination must clean up like Ctrl-C, which shells let be ignored in the background.
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, signal.default_int_handler)
-    plan = session.Plan(arguments.rounds, arguments.training, arguments.calibration,
-                        arguments.normal)
+    plan = session.SessionPlan(arguments.rounds, arguments.training, arguments.calibration,
+                               arguments.normal)
     arguments.output.mkdir(parents=True, exist_ok=True)
     with _folder(arguments.recordings) as folder:
         paths = evaluation.evaluate(plan, folder, arguments.output, command)

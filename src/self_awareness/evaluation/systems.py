@@ -7,14 +7,14 @@ from typing import List, Optional, Protocol, Sequence
 import numpy as np
 
 from self_awareness import DetectorParameters, Persistence, Roc
-from self_awareness.evaluation.recording import WINDOW, Recording
+from self_awareness.evaluation.windowed_events import WINDOW, WindowedEvents
 
 FALSE_POSITIVE_RATE = 0.001
 """The share of normal windows of the calibration that may score below the threshold."""
 
 
 @dataclass(frozen=True)
-class Alarm:
+class SystemAlarm:
     """A stretch of time in which the alarm stood.
 
     Args:
@@ -49,7 +49,7 @@ class Judged:
     abnormal: np.ndarray
     score: np.ndarray
     settling: np.ndarray
-    alarms: List[Alarm]
+    alarms: List[SystemAlarm]
     threshold: float
     suspicion: Optional[np.ndarray] = None
 
@@ -73,26 +73,26 @@ class System(Protocol):
 
     name: str
 
-    def train(self, recordings: Sequence[Recording]) -> None:
+    def train(self, recordings: Sequence[WindowedEvents]) -> None:
         """Learn from normal operation."""
 
-    def calibrate(self, recordings: Sequence[Recording]) -> None:
+    def calibrate(self, recordings: Sequence[WindowedEvents]) -> None:
         """Choose the threshold by normal operation that was not trained on."""
 
-    def judge(self, recording: Recording) -> Judged:
+    def judge(self, recording: WindowedEvents) -> Judged:
         """Judge a recording."""
 
 
 class Scorer(Protocol):
     """The part of a peer that is its own: the score of a window."""
 
-    def train(self, recordings: Sequence[Recording]) -> None:
+    def train(self, recordings: Sequence[WindowedEvents]) -> None:
         """Learn from normal operation."""
 
-    def scores(self, recording: Recording) -> np.ndarray:
+    def scores(self, recording: WindowedEvents) -> np.ndarray:
         """Return the finite scores of the windows, low is abnormal."""
 
-    def suspects(self, recording: Recording, window: int) -> Optional[List[str]]:
+    def suspects(self, recording: WindowedEvents, window: int) -> Optional[List[str]]:
         """Return the sources to blame for a window, best first; None: it cannot tell."""
 
 
@@ -111,17 +111,17 @@ class ScoringSystem:
         self._own_threshold = threshold
         self._threshold = threshold
 
-    def train(self, recordings: Sequence[Recording]) -> None:
+    def train(self, recordings: Sequence[WindowedEvents]) -> None:
         """Learn from normal operation."""
         self._scorer.train(recordings)
 
-    def calibrate(self, recordings: Sequence[Recording]) -> None:
+    def calibrate(self, recordings: Sequence[WindowedEvents]) -> None:
         """Choose the threshold by the common rule, unless the system has its own."""
         if self._own_threshold is None:
             self._threshold = common_threshold(
                 [self._scorer.scores(recording)[~settling(recording)] for recording in recordings])
 
-    def judge(self, recording: Recording) -> Judged:
+    def judge(self, recording: WindowedEvents) -> Judged:
         """Judge a recording.
 
         Raises:
@@ -133,9 +133,9 @@ class ScoringSystem:
         score = self._scorer.scores(recording)
         abnormal = score < self._threshold
         unsettled = settling(recording)
-        alarms = [Alarm(alarm.start, alarm.end, alarm.cleared,
-                        self._scorer.suspects(recording,
-                                              int((alarm.start - start[0]) // WINDOW) - 1))
+        alarms = [SystemAlarm(alarm.start, alarm.end, alarm.cleared,
+                              self._scorer.suspects(recording,
+                                                    int((alarm.start - start[0]) // WINDOW) - 1))
                   for alarm in persistent(start, abnormal & ~unsettled)]
         return Judged(start, abnormal, score, unsettled, alarms, self._threshold)
 
@@ -145,13 +145,13 @@ def common_threshold(scores: Sequence[np.ndarray]) -> float:
     return Roc(np.concatenate(scores), []).level(FALSE_POSITIVE_RATE).cutoff
 
 
-def settling(recording: Recording) -> np.ndarray:
+def settling(recording: WindowedEvents) -> np.ndarray:
     """Return for every window whether it is too early for an alarm, as the detector does."""
     settled = int(recording.stamps[0]) + DetectorParameters().settle_time
     return recording.starts() < settled
 
 
-def persistent(start: np.ndarray, abnormal: np.ndarray) -> List[Alarm]:
+def persistent(start: np.ndarray, abnormal: np.ndarray) -> List[SystemAlarm]:
     """Return the alarms of windows by the detector's own persistence, with nobody blamed.
 
     Args:
@@ -159,7 +159,7 @@ def persistent(start: np.ndarray, abnormal: np.ndarray) -> List[Alarm]:
         abnormal: those that count, one a window.
     """
     persistence = Persistence(DetectorParameters())
-    alarms: List[Alarm] = []
+    alarms: List[SystemAlarm] = []
     raised_at: Optional[int] = None
     end = 0
     for end, counts in zip((start + WINDOW).tolist(), abnormal.tolist()):
@@ -167,10 +167,10 @@ def persistent(start: np.ndarray, abnormal: np.ndarray) -> List[Alarm]:
         if raised and raised_at is None:
             raised_at = end
         elif not raised and raised_at is not None:
-            alarms.append(Alarm(raised_at, end, True, None))
+            alarms.append(SystemAlarm(raised_at, end, True, None))
             raised_at = None
     if raised_at is not None:
-        alarms.append(Alarm(raised_at, end, False, None))
+        alarms.append(SystemAlarm(raised_at, end, False, None))
     return alarms
 
 

@@ -36,8 +36,8 @@ class MessageType:
         if message_class is None:
             package = datatype.split('/')[0]
             raise SectionError(f'message type {datatype} not found: install the Python messages '
-                                f'of {package} (ros-noetic-{package.replace("_", "-")} or '
-                                f'python3-{package.replace("_", "-")}), or correct the scenario')
+                               f'of {package} (ros-noetic-{package.replace("_", "-")} or '
+                               f'python3-{package.replace("_", "-")}), or correct the scenario')
         self.message_class: Any = message_class
         self._value_field = _VALUE_FIELDS.get(datatype)
         # One message is filled again and again: it is serialized before the next one is asked for.

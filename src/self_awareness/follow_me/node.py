@@ -45,7 +45,7 @@ class ComponentNode:
         # One clock for everything: its steps must not disturb the timers.
         self._epoch = time.time_ns() - time.monotonic_ns()
         self._cpu_share = scenario.cpu_share
-        self._fault = _InducedFault(scenario, spec)
+        self._fault = _FaultWatch(scenario, spec)
         self._component = Component(spec, random.Random(f'{seed}/{spec.name}'), self._fault.clock,
                                     self._fault.spec_at)
         self._inbox: queue.Queue[Message] = queue.Queue()
@@ -115,7 +115,7 @@ class ComponentNode:
 
     def _received(self, ros_message: Any, topic: str) -> None:
         self._inbox.put(self._types[topic].from_ros(topic, ros_message,
-                                                self._fault.clock(self._now())))
+                                                    self._fault.clock(self._now())))
 
     def _push(self, at: int, act: Callable[[int], List[Request]]) -> None:
         self._pushed += 1
@@ -134,7 +134,7 @@ class _Disturbance(NamedTuple):
     onset: int = 0
 
 
-class _InducedFault:
+class _FaultWatch:
     """The fault that the parameter INDUCED_FAULT tells of, as far as it concerns one component."""
 
     def __init__(self, scenario: Scenario, spec: ComponentSpec) -> None:

@@ -57,7 +57,7 @@ def default_path() -> Path:
         package = rospkg.RosPack().get_path('self_awareness')
     except rospkg.ResourceNotFound as error:
         raise SectionError('package self_awareness not found: source the setup.bash of its '
-                            'workspace, or name the scenario file') from error
+                           'workspace, or name the scenario file') from error
     return Path(package) / 'config' / 'follow_me.yaml'
 
 

@@ -47,7 +47,7 @@ class Event(NamedTuple):
 
 
 @dataclass(frozen=True)
-class Fault:
+class InducedFault:
     """A fault to induce.
 
     Args:
@@ -82,7 +82,7 @@ def _packaged_robot() -> Scenario:
     return load_scenario()
 
 
-def events(duration_s: float, seed: int, fault: Optional[Fault] = None,
+def events(duration_s: float, seed: int, fault: Optional[InducedFault] = None,
            scenario: Optional[Scenario] = None, start_s: float = START_S) -> Iterator[Event]:
     """Return what a recorder would see, in the order of arrival; arguments as for `simulate`."""
     scenario = load_scenario() if scenario is None else scenario
@@ -91,8 +91,9 @@ def events(duration_s: float, seed: int, fault: Optional[Fault] = None,
             for arrival, source, message, _ in _record(scenario, duration_s, seed, fault, start_s))
 
 
-def simulate(path: Union[str, Path], duration_s: float, seed: int, fault: Optional[Fault] = None,
-             scenario: Optional[Scenario] = None, start_s: float = START_S,
+def simulate(path: Union[str, Path], duration_s: float, seed: int,
+             fault: Optional[InducedFault] = None, scenario: Optional[Scenario] = None,
+             start_s: float = START_S,
              progress: Callable[[int], Any] = lambda seconds: None) -> None:
     """Write a recording of the robot to a bag, as `rosbag record` would.
 
@@ -165,7 +166,7 @@ class _Writer:
 _Record = Tuple[int, str, Message, int]
 
 
-def _record(scenario: Scenario, duration_s: float, seed: int, fault: Optional[Fault],
+def _record(scenario: Scenario, duration_s: float, seed: int, fault: Optional[InducedFault],
             start_s: float) -> Iterator[_Record]:
     """Check the arguments and return the recording: (arrival, source, message, sequence)."""
     if not 0.0 < duration_s < float('inf'):
@@ -201,7 +202,7 @@ def _attach_recorder(recording: Iterator[_Record], scenario: Scenario,
 class _Effects:
     """What a fault does to the components, by time (ns)."""
 
-    def __init__(self, scenario: Scenario, fault: Optional[Fault], start: int) -> None:
+    def __init__(self, scenario: Scenario, fault: Optional[InducedFault], start: int) -> None:
         effect = None if fault is None else effect_of(scenario, fault.kind)
         self.onset = start + nanoseconds(0.0 if fault is None else fault.onset_s)
         self.intruder = effect.spec if isinstance(effect, Intruder) else None

@@ -5,7 +5,9 @@ from statistics import median
 from typing import Dict, List, Optional, Sequence, Tuple
 
 from self_awareness import FEWEST_GAPS, TrainedModel
-from self_awareness.calibration.runs import RECORDED, FalseAlarms, JudgedRun, confidence
+from self_awareness.calibration import confidence
+from self_awareness.calibration.results import FalseAlarms
+from self_awareness.calibration.runs import RECORDED, JudgedRun
 from self_awareness.reporting.model_summary import summarise_evidence
 from self_awareness.stamps import SECOND_NS
 

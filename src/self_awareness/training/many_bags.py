@@ -1,8 +1,8 @@
 """Trains one model on many bags, in whatever processes.
 
 Every bag is counted for itself, and the counts are added in the order in which the bags are named,
-those of a run of neighbouring bags where they were counted: so the model is the same whoever
-counted, and only the sums of runs are handed over.
+those of a batch of neighbouring bags where they were counted: so the model is the same whoever
+counted, and only the sums of batches are handed over.
 """
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from self_awareness.recordings import BagPart, RecordingEvents, overlap
 from self_awareness.stamps import SECOND_NS
 from self_awareness.workers import InProcess, Workers
 
-_MOST_EVENTS_OF_RUN = 5_000_000
+_MOST_EVENTS_OF_BATCH = 5_000_000
 _MOST_EVENTS = 20_000_000
 """So many events, of 12 bytes each, are kept for the limits; other bags are read once more."""
 
@@ -85,16 +85,16 @@ def train(parts: Sequence[BagPart], counting: Counting, workers: Optional[Worker
     """
     workers = workers or InProcess()
     alone = base is None and len(parts) == 1
-    how = _How(counting, alone, skip_bad, _MOST_EVENTS_OF_RUN if workers.near else 0)
-    number = workers.runs(len(parts))
-    cuts = [len(parts) * run // number for run in range(number + 1)]
-    runs = [_Run(parts[begin:end]) for begin, end in zip(cuts, cuts[1:])]
+    how = _How(counting, alone, skip_bad, _MOST_EVENTS_OF_BATCH if workers.near else 0)
+    number = workers.batches(len(parts))
+    cuts = [len(parts) * batch // number for batch in range(number + 1)]
+    batches = [_Batch(parts[begin:end]) for begin, end in zip(cuts, cuts[1:])]
     distinct = DistinctRecordings()
     for recording in [] if base is None else base.recordings:
         distinct.add(f'{recording.bag}, which the model was trained on', recording)
     total = _Sum(_MOST_EVENTS, base)
-    unit = 'bags' if number == len(parts) else 'runs of bags'
-    with closing(workers.map(_count_run, how, runs, unit)) as counts:
+    unit = 'bags' if number == len(parts) else 'batches of bags'
+    with closing(workers.map(_count_batch, how, batches, unit)) as counts:
         for counted in counts:
             for line in counted.lines:
                 tell(line)
@@ -146,13 +146,13 @@ class DistinctRecordings:
 
 @dataclass(frozen=True)
 class _How:
-    """How runs are counted.
+    """How batches are counted.
 
     Args:
         counting: of each bag.
         alone: the bag is the only one, and both halves of the training come from it.
         skip_bad: go on behind bags that cannot be used.
-        most_events: kept of a run.
+        most_events: kept of a batch.
     """
 
     counting: Counting
@@ -162,7 +162,7 @@ class _How:
 
 
 @dataclass(frozen=True)
-class _Run:
+class _Batch:
     """Neighbouring bags."""
 
     parts: Sequence[BagPart]
@@ -225,7 +225,7 @@ class _Sum:
             try:
                 self.model.merge(other.model)
             except ValueError as error:
-                raise ValueError(f'{_Run([each.part for each in other.trained_on])}: {error}'
+                raise ValueError(f'{_Batch([each.part for each in other.trained_on])}: {error}'
                                  ) from error
         for each in other.trained_on:
             half = 1 - each.half if swapped and each.half is not None else each.half
@@ -237,7 +237,7 @@ class _Sum:
     def _check_sources(self, other: _Sum) -> None:
         if self.model.encoding.source == other.model.encoding.source:
             return
-        # The two bags where one names senders and the other does not: the same in any runs.
+        # The two bags where one names senders and the other does not: the same in any batches.
         before, behind = self.trained_on[-1], other.trained_on[0]
         nameless = behind if other.model.encoding.source == 'none' else before
         raise ValueError(f'{nameless.part.path}: {_NAMELESS}')
@@ -251,9 +251,9 @@ class _BadBag(ValueError):
     """Something is wrong with a bag by itself."""
 
 
-def _count_run(how: _How, run: _Run) -> _Sum:
+def _count_batch(how: _How, batch: _Batch) -> _Sum:
     total = _Sum(how.most_events)
-    for part in run.parts:
+    for part in batch.parts:
         try:
             total.add(_count(how, part))
         except ValueError as error:
@@ -296,7 +296,7 @@ def _read(counting: Counting, part: BagPart) -> Tuple[RecordingEvents, EncodingR
         if counting.encoding is not None:
             raise ValueError(_NAMELESS)
         encoding.source = 'none'  # what was read is the same
-    _, end = part.limits(read.summary.start, read.summary.end)
+    _, end = part.span(read.summary.start, read.summary.end)
     events = RecordingEvents(part, read.event_types, read.stamps, read.ids, read.summary.start,
                              end, read.summary.fingerprint)
     if len(events.stamps) == 0:

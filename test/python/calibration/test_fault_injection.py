@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from self_awareness import EventType
-from self_awareness.calibration.fault_injection import Fault, check_source, inject
+from self_awareness.calibration.fault_injection import InjectedFault, check_source, inject
 
 S = 1_000_000_000
 TYPES = [EventType('/laser', '/scan', 'T'), EventType('/slam', '/map', 'T'),
@@ -21,7 +21,7 @@ ONSET, END = 20 * S, 39 * S + S // 2
 
 
 def faulty(text: str) -> Tuple[np.ndarray, np.ndarray]:
-    stamps, ids = inject(Fault.parse(text), TYPES, STAMPS, IDS, ONSET, END)
+    stamps, ids = inject(InjectedFault.parse(text), TYPES, STAMPS, IDS, ONSET, END)
     assert stamps.dtype == np.int64 and len(stamps) == len(ids)
     assert (np.diff(stamps) >= 0).all() and stamps[-1] <= END
     before = STAMPS < ONSET
@@ -79,24 +79,24 @@ def test_the_recording_given_is_left_alone() -> None:
     'slow:/a:-2', 'slow:/a:inf', 'clock:/a:0', 'clock:/a:nan', 'clock:/a:soon', 'melt:/a', ''])
 def test_what_is_no_fault_is_refused(text: str) -> None:
     with pytest.raises(ValueError):
-        Fault.parse(text)
+        InjectedFault.parse(text)
 
 
 @pytest.mark.parametrize('text', ['crash:/a', 'slow:/a:2.5', 'starve', 'clock:/a:-0.5'])
 def test_a_fault_is_written_as_it_is_read(text: str) -> None:
-    assert str(Fault.parse(text)) == text
+    assert str(InjectedFault.parse(text)) == text
 
 
 def test_an_unknown_source_lists_those_there_are() -> None:
-    check_source(Fault.parse('crash:/slam'), TYPES)
+    check_source(InjectedFault.parse('crash:/slam'), TYPES)
     with pytest.raises(ValueError, match='/laser, /slam$'):
-        check_source(Fault.parse('crash:/motor'), TYPES)
+        check_source(InjectedFault.parse('crash:/motor'), TYPES)
     with pytest.raises(ValueError, match='does not tell sources apart'):
-        check_source(Fault.parse('crash:/motor'), [EventType('', '/scan', 'T')])
+        check_source(InjectedFault.parse('crash:/motor'), [EventType('', '/scan', 'T')])
 
 
 def test_a_fault_that_would_change_nothing_is_refused() -> None:
     with pytest.raises(ValueError, match='nothing would change'):
-        inject(Fault.parse('crash:/slam'), TYPES, STAMPS, IDS * 0, ONSET, END)
+        inject(InjectedFault.parse('crash:/slam'), TYPES, STAMPS, IDS * 0, ONSET, END)
     with pytest.raises(ValueError, match='shift by less'):
-        inject(Fault.parse('clock:/slam:19.5'), TYPES, STAMPS, IDS, ONSET, END)
+        inject(InjectedFault.parse('clock:/slam:19.5'), TYPES, STAMPS, IDS, ONSET, END)

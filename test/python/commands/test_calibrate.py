@@ -12,7 +12,8 @@ import pytest
 from conftest import robot
 
 from self_awareness import Roc, TrainedModel
-from self_awareness.calibration.runs import Cutoff, confidence
+from self_awareness.calibration import confidence
+from self_awareness.calibration.threshold_rule import ThresholdRule
 from self_awareness.commands import calibrate, train
 from self_awareness.recordings import BagPart
 
@@ -172,14 +173,14 @@ def test_a_fault_that_is_over_before_the_detector_settled_is_refused(
 def test_faults_that_score_no_lower_find_no_threshold() -> None:
     for normal, abnormal in (([1.0, 2.0], [3.0, 4.0]), ([1.0, 1.0], [1.0])):
         with pytest.raises(ValueError, match='finds no threshold.*fpr=RATE'):
-            Cutoff('youden').choose(Roc(normal, abnormal))
+            ThresholdRule('youden').choose(Roc(normal, abnormal))
 
 
 def test_a_threshold_that_no_window_could_ever_miss_is_refused() -> None:
     normal = [0.0, 0.0] + [1.0] * 98
     with pytest.raises(ValueError, match='allow a higher rate'):
-        Cutoff('fpr', 0.01).choose(Roc(normal, []))
-    assert Cutoff('fpr', 0.02).choose(Roc(normal, [])).cutoff == 0.5
+        ThresholdRule('fpr', 0.01).choose(Roc(normal, []))
+    assert ThresholdRule('fpr', 0.02).choose(Roc(normal, [])).cutoff == 0.5
 
 
 def test_faults_that_score_higher_get_a_warning(run, make_bag: Callable[..., str], tmp_path,
@@ -196,14 +197,14 @@ def test_faults_that_score_higher_get_a_warning(run, make_bag: Callable[..., str
     ('youden', 'youden', 0.0), ('closest', 'closest', 0.0), ('fpr=0.001', 'fpr', 0.001),
     ('fpr=0', 'fpr', 0.0), ('fpr=1e-3', 'fpr', 0.001)])
 def test_a_cutoff_is_read_and_written(text: str, method: str, rate: float) -> None:
-    assert Cutoff.parse(text) == Cutoff(method, rate)
-    assert Cutoff.parse(str(Cutoff.parse(text))) == Cutoff(method, rate)
+    assert ThresholdRule.parse(text) == ThresholdRule(method, rate)
+    assert ThresholdRule.parse(str(ThresholdRule.parse(text))) == ThresholdRule(method, rate)
 
 
 @pytest.mark.parametrize('text', ['best', 'fpr', 'fpr=', 'fpr=-1', 'fpr=1', 'fpr=nan', 'fpr=2'])
 def test_another_cutoff_is_refused(text: str) -> None:
     with pytest.raises(ValueError):
-        Cutoff.parse(text)
+        ThresholdRule.parse(text)
 
 
 def test_parts_of_bags_are_read(tmp_path) -> None:

@@ -17,7 +17,7 @@ from self_awareness.commands import score
 def without_laser(start: float) -> List[Message]:
     """Its laser falls silent from 12 s to 20 s."""
     return [m for m in jittery_robot(start, 30.0, 3) if not (start + 12.0 <= m[0] < start + 20.0
-                                            and m[1] == '/laser')]
+                                                             and m[1] == '/laser')]
 
 
 def alarms(out: str) -> List[Tuple[float, float, str]]:

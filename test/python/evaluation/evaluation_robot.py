@@ -7,7 +7,7 @@ from typing import List, Tuple
 import numpy as np
 
 from self_awareness import EventType
-from self_awareness.evaluation.recording import Recording
+from self_awareness.evaluation.windowed_events import WindowedEvents
 from self_awareness.stamps import SECOND_NS
 
 LASER = EventType('/player', '/scan', 'sensor_msgs/LaserScan')
@@ -16,7 +16,8 @@ BATTERY = EventType('/power', '/battery', 'sensor_msgs/BatteryState')
 START = 1_000 * SECOND_NS
 
 
-def robot(seconds: float, seed: int, silent: Tuple[Tuple[float, float], ...] = ()) -> Recording:
+def robot(seconds: float, seed: int,
+          silent: Tuple[Tuple[float, float], ...] = ()) -> WindowedEvents:
     """Return a recording with /scan at 50 Hz and /battery at 4 Hz, both with a little jitter.
 
     Args:
@@ -33,5 +34,5 @@ def robot(seconds: float, seed: int, silent: Tuple[Tuple[float, float], ...] = (
                 found.append((START + round(at * SECOND_NS), id_))
     found.sort()
     stamps, ids = zip(*found)
-    return Recording([LASER, BATTERY], np.array(stamps, dtype=np.int64),
-                     np.array(ids, dtype=np.uint32), START + round(seconds * SECOND_NS))
+    return WindowedEvents([LASER, BATTERY], np.array(stamps, dtype=np.int64),
+                          np.array(ids, dtype=np.uint32), START + round(seconds * SECOND_NS))

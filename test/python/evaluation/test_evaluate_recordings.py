@@ -9,11 +9,12 @@ import pytest
 
 from self_awareness.evaluation import evaluate
 from self_awareness.evaluation.recordings import outages
-from self_awareness.evaluation.recordings.outages import Case, Judged, Row, Span
+from self_awareness.evaluation.recordings.outages import Case, JudgedCase, OutageRow, Span
 from self_awareness.recordings import BagPart
 
 
-def rows_of(alarms: List[Span], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> List[Row]:
+def rows_of(alarms: List[Span], tmp_path: Path,
+            monkeypatch: pytest.MonkeyPatch) -> List[OutageRow]:
     """Let a system that raises these alarms judge a recording of 100 s, with an outage or not."""
     (tmp_path / 'a.bag').touch()
     normal = BagPart('a.bag')
@@ -21,15 +22,17 @@ def rows_of(alarms: List[Span], tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
         Case('faulty', normal, normal, 'a.bag', (50.0, 60.0), ((10.0, 50.0), (70.0, 1e9))),
         Case('healthy', normal, normal, 'a.bag', None, ((0.0, 1e9),))))
     monkeypatch.setattr(outages, 'SYSTEMS',
-                        {'oracle': lambda *_: Judged(alarms, 100.0, 3)})
+                        {'oracle': lambda *_: JudgedCase(alarms, 100.0, 3)})
     return outages.evaluate(tmp_path)
 
 
 def test_an_alarm_in_the_outage_finds_it(tmp_path: Path, monkeypatch) -> None:
     faulty, healthy = rows_of([(5.0, 12.0), (50.5, 72.0)], tmp_path, monkeypatch)
     # Start-up and the time after the outage are nobody's, but there the alarm may not stay.
-    assert faulty == Row('faulty', 'oracle', 3, True, False, 0.5, 0, pytest.approx(4.0), 70.0)
-    assert healthy == Row('healthy', 'oracle', 3, None, False, None, 2, pytest.approx(28.5), 100.0)
+    assert faulty == OutageRow('faulty', 'oracle', 3, True, False, 0.5, 0, pytest.approx(4.0),
+                               70.0)
+    assert healthy == OutageRow('healthy', 'oracle', 3, None, False, None, 2, pytest.approx(28.5),
+                                100.0)
 
 
 def test_an_alarm_that_stood_before_is_false(tmp_path: Path, monkeypatch) -> None:

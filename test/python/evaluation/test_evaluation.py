@@ -11,11 +11,11 @@ from evaluation_robot import BATTERY, LASER, START, robot
 from self_awareness import (DetectorParameters, EncodingRules, EventType, Model, Persistence,
                             Training, read_events)
 from self_awareness.evaluation.detectors import Paper
-from self_awareness.evaluation.recording import WINDOW, Recording, counts, known_ids
 from self_awareness.evaluation.simulated import measures, summary, tradeoff
 from self_awareness.evaluation.simulated.records import (default_faults, encode, fault_record,
                                                          normal_record)
-from self_awareness.evaluation.systems import Alarm, Judged, persistent, settling
+from self_awareness.evaluation.systems import Judged, SystemAlarm, persistent, settling
+from self_awareness.evaluation.windowed_events import WINDOW, WindowedEvents, counts, known_ids
 from self_awareness.follow_me.faults import effect_of
 from self_awareness.follow_me.scenario import load_scenario
 from self_awareness.follow_me.simulation import START_S, events, simulate
@@ -70,8 +70,8 @@ def test_an_unknown_source_is_blamed() -> None:
     ids = np.concatenate([recording.ids, np.full(len(flood), 2, dtype=np.uint32)])
     order = np.argsort(stamps, kind='stable')
     intruder = EventType('/intruder', '/flood', 'std_msgs/String')
-    result = system.judge(Recording([LASER, BATTERY, intruder], stamps[order], ids[order],
-                                    recording.end))
+    result = system.judge(WindowedEvents([LASER, BATTERY, intruder], stamps[order], ids[order],
+                                         recording.end))
     assert result.alarms[0].suspects[0] == '/intruder'
 
 
@@ -104,7 +104,7 @@ def test_events_of_the_simulation_are_encoded_as_from_its_bag(tmp_path: Path) ->
     rules.type_fields = dict(scenario.type_fields)
     expected = read_events(bag, rules)
     recording = encode(list(events(30.0, 5, None, scenario)), scenario,
-                                         round((START_S + 30.0) * SECOND_NS))
+                       round((START_S + 30.0) * SECOND_NS))
     assert np.array_equal(recording.stamps, expected.stamps)
     assert ([recording.event_types[id_] for id_ in recording.ids]
             == [expected.event_types[id_] for id_ in expected.ids])
@@ -148,8 +148,8 @@ def test_beginning_of_a_recording() -> None:
 def test_measures_of_a_fault() -> None:
     # 20 windows, 2 settle, the fault begins within window 9: 10 windows begin after it.
     scores = [9, 0, 9, 9, 0, 9, 9, 9, 9, 9, 9, 0, 0, 0, 9, 9, 0, 9, 9, 9]
-    alarms = [Alarm(at(5), at(8), True, ['/slam']),
-              Alarm(at(14), at(18), True, ['/slam', '/power', '/player'])]
+    alarms = [SystemAlarm(at(5), at(8), True, ['/slam']),
+              SystemAlarm(at(14), at(18), True, ['/slam', '/power', '/player'])]
     row = measures.fault_row('x', 1.0, 1, 'cc1', judged(scores, alarms, 2), at(9) + 5, ['/player'],
                              judged([9] * 20, []))
     assert (row.normal_windows, row.false_windows, row.false_alarms) == (7, 1, 1)
@@ -164,15 +164,15 @@ def test_measures_of_a_fault() -> None:
 
 def test_an_alarm_that_stands_at_the_onset_is_a_false_one() -> None:
     row = measures.fault_row('x', 1.0, 1, 'cc1', judged([9.0] * 5 + [0.0] * 15,
-                                                        [Alarm(at(8), at(20), False, None)]),
+                                                        [SystemAlarm(at(8), at(20), False, None)]),
                              at(10), ['/player'], judged([9] * 20, []))
     assert (row.false_alarms, row.stood_before, row.latency_s) == (1, True, None)
     assert (row.missed, row.windows_after_alarm, row.top1) == (0, 0, None)
 
 
 def test_measures_of_normal_operation() -> None:
-    row = measures.normal_row('x', 1.0, 1, judged([0, 0, 9, 0, 9], [Alarm(at(3), at(4), True,
-                                                                          None)], 2))
+    row = measures.normal_row('x', 1.0, 1, judged([0, 0, 9, 0, 9], [SystemAlarm(at(3), at(4), True,
+                                                                                None)], 2))
     assert (row.normal_windows, row.false_windows, row.false_alarms) == (3, 1, 1)
     assert summary.false_positive_rate([row]) == pytest.approx(1 / 3)
     assert summary.false_alarms([row]).per_hour == pytest.approx(3600 / 0.3)

@@ -13,9 +13,9 @@ from self_awareness.evaluation.live import report
 from self_awareness.evaluation.live.processes import LiveError, Processes, await_condition
 from self_awareness.evaluation.live.samples import (ERROR, WARN, Sample, Status, Stretch, measure,
                                                     measure_alarms)
-from self_awareness.evaluation.live.session import Plan
+from self_awareness.evaluation.live.session import SessionPlan
 from self_awareness.evaluation.simulated.measures import NORMAL
-from self_awareness.evaluation.systems import Alarm
+from self_awareness.evaluation.systems import SystemAlarm
 from self_awareness.stamps import SECOND_NS
 
 ONSET = 1000.0
@@ -76,9 +76,9 @@ def test_alarms_of_normal_operation_are_counted_where_it_is_judged() -> None:
 
 
 def test_alarms_of_other_systems() -> None:
-    def alarm(start: float, end: float, cleared: bool = True) -> Alarm:
-        return Alarm(round((ONSET + start) * SECOND_NS), round((ONSET + end) * SECOND_NS), cleared,
-                     ['/player'])
+    def alarm(start: float, end: float, cleared: bool = True) -> SystemAlarm:
+        return SystemAlarm(round((ONSET + start) * SECOND_NS), round((ONSET + end) * SECOND_NS),
+                           cleared, ['/player'])
 
     sample = measure_alarms('paper', CRASH, [alarm(-5, -1), alarm(0.5, 3), alarm(4, 5)])
     assert sample.latency_s == pytest.approx(0.5)
@@ -98,7 +98,8 @@ def test_page_csv_and_plot(tmp_path: Path) -> None:
                replace(crash, round=4, latency_s=None, void='the alarm stood at the onset'),
                replace(crash, system='paper', latency_s=None, top1=None, top3=None),
                Sample('evidence', 1, NORMAL, ONSET, 360.0, false_alarms=1)]
-    paths = report.write(tmp_path, Plan(4, (60.0, 60.0), 240.0, 60.0), samples, 'the command')
+    plan = SessionPlan(4, (60.0, 60.0), 240.0, 60.0)
+    paths = report.write(tmp_path, plan, samples, 'the command')
     assert [path.name for path in paths] == ['live.csv', 'live.md', 'live.png']
     with open(paths[0], encoding='utf-8', newline='') as file:
         rows = list(csv.DictReader(file))

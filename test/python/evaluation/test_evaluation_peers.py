@@ -9,8 +9,8 @@ from self_awareness import EventType
 from self_awareness.evaluation import catalogue
 from self_awareness.evaluation.peers.frequency import (SPAN, FrequencyMonitor,
                                                        LearnedFrequencyMonitor, messages_in_span)
-from self_awareness.evaluation.recording import Recording
 from self_awareness.evaluation.systems import ScoringSystem, System
+from self_awareness.evaluation.windowed_events import WindowedEvents
 from self_awareness.stamps import SECOND_NS
 
 CRASH_S = 30.0
@@ -31,12 +31,12 @@ def trained(name: str) -> System:
     return system
 
 
-def steady(seconds: float, rate: float) -> Recording:
+def steady(seconds: float, rate: float) -> WindowedEvents:
     """Return a recording of one topic without any jitter, from half a period on."""
     stamps = START + np.round((np.arange(seconds * rate) + 0.5) / rate * SECOND_NS)
-    return Recording([EventType('/camera', '/image', 'sensor_msgs/Image')],
-                     stamps.astype(np.int64), np.zeros(len(stamps), dtype=np.uint32),
-                     START + round(seconds * SECOND_NS))
+    return WindowedEvents([EventType('/camera', '/image', 'sensor_msgs/Image')],
+                          stamps.astype(np.int64), np.zeros(len(stamps), dtype=np.uint32),
+                          START + round(seconds * SECOND_NS))
 
 
 @pytest.mark.parametrize('name', [name for name in catalogue.NAMES if name not in BLIND])
@@ -74,7 +74,7 @@ def test_messages_in_the_span() -> None:
 def test_frequency_monitor_has_the_limits_of_frequency_status() -> None:
     monitor = FrequencyMonitor()
     monitor.train([steady(30.0, 10.0)])
-    fewest, most = monitor.limits['/image']
+    fewest, most = monitor.bounds['/image']
     assert (fewest, most) == (pytest.approx(50.0), pytest.approx(50.0))
     # At 9 Hz, 45 messages in 5 s are 10 % less; at 8.8 Hz it is more than the tolerance.
     assert monitor.scores(steady(30.0, 9.0))[-1] == pytest.approx(-0.1)
@@ -90,15 +90,15 @@ def test_frequency_monitor_leaves_out_topics_too_slow_for_its_tolerance() -> Non
     monitor, learned = FrequencyMonitor(), LearnedFrequencyMonitor()
     for watch in (monitor, learned):
         watch.train([steady(60.0, 1.0)])
-    assert monitor.limits == {}
+    assert monitor.bounds == {}
     assert monitor.scores(steady(10.0, 1.0)).tolist() == [0.0] * 95
-    assert learned.limits['/image'] == (4, 6)
+    assert learned.bounds['/image'] == (4, 6)
 
 
 def test_learned_frequency_monitor_takes_its_limits_from_the_recordings() -> None:
     monitor = LearnedFrequencyMonitor()
     monitor.train([steady(30.0, 10.0), steady(30.0, 11.0)])
-    assert monitor.limits['/image'] == (49, 56)
+    assert monitor.bounds['/image'] == (49, 56)
     assert monitor.scores(steady(30.0, 9.0))[-1] == pytest.approx(-(49 - 45) / 49)
     assert monitor.scores(steady(30.0, 12.6))[-1] == pytest.approx(-(63 - 56) / 56)
 
@@ -106,11 +106,11 @@ def test_learned_frequency_monitor_takes_its_limits_from_the_recordings() -> Non
 def test_irregular_topics_have_no_frequency() -> None:
     gaps = np.resize([0.05, 0.3], 200)
     stamps = START + np.round(np.cumsum(gaps) * SECOND_NS).astype(np.int64)
-    recording = Recording([EventType('/human', '/speech', 'std_msgs/String')], stamps,
-                          np.zeros(200, dtype=np.uint32), int(stamps[-1]) + 1)
+    recording = WindowedEvents([EventType('/human', '/speech', 'std_msgs/String')], stamps,
+                               np.zeros(200, dtype=np.uint32), int(stamps[-1]) + 1)
     for monitor in (FrequencyMonitor(), LearnedFrequencyMonitor()):
         monitor.train([recording])
-        assert monitor.limits == {}
+        assert monitor.bounds == {}
 
 
 def test_a_system_that_was_not_calibrated_says_so() -> None:

@@ -8,12 +8,12 @@ import pytest
 
 from self_awareness import DetectorParameters, UnknownEvents
 from self_awareness.evaluation.detectors import Evidence, Paper
-from self_awareness.evaluation.recording import WINDOW
 from self_awareness.evaluation.simulated.measures import first_alarm
 from self_awareness.evaluation.simulated.records import (CALIBRATION_NAME, RECORD_S,
                                                          TRAINING_NAMES, FaultRecord, fault_record,
                                                          normal_record)
 from self_awareness.evaluation.systems import Judged
+from self_awareness.evaluation.windowed_events import WINDOW
 from self_awareness.follow_me.scenario import load_scenario
 from self_awareness.stamps import SECOND_NS
 

@@ -17,7 +17,7 @@ from self_awareness.follow_me.component_spec import ComponentSpec, Duration, Out
 from self_awareness.follow_me.effects import DoubleRate, HalfRate, Latency, Novelty
 from self_awareness.follow_me.faults import effect_of
 from self_awareness.follow_me.scenario import Scenario, load_scenario
-from self_awareness.follow_me.simulation import START_S, Event, Fault, events, simulate
+from self_awareness.follow_me.simulation import START_S, Event, InducedFault, events, simulate
 from self_awareness.yaml_section import SectionError
 
 SCENARIO = Path(__file__).resolve().parents[3] / 'config' / 'follow_me.yaml'
@@ -41,7 +41,7 @@ def _normal(scenario: Scenario) -> Run:
 
 @pytest.fixture(name='run_with', scope='module')
 def _run_with(scenario: Scenario) -> Callable[[str], Run]:
-    return lambda kind: list(events(DURATION_S, 7, Fault(kind, ONSET_S), scenario))
+    return lambda kind: list(events(DURATION_S, 7, InducedFault(kind, ONSET_S), scenario))
 
 
 def times(run: Run, topic: str, source: str = '') -> List[float]:
@@ -70,7 +70,7 @@ def typical_delay(run: Run, first: str, second: str) -> float:
 ])
 def test_culprits(scenario: Scenario, kind: str, culprits: Tuple[str, ...]) -> None:
     assert effect_of(scenario, kind).culprits == culprits
-    assert Fault(kind, 1.0).culprits == culprits
+    assert InducedFault(kind, 1.0).culprits == culprits
 
 
 @pytest.mark.parametrize('kind, message', [
@@ -83,13 +83,13 @@ def test_culprits(scenario: Scenario, kind: str, culprits: Tuple[str, ...]) -> N
 ])
 def test_name_of_another_form(kind: str, message: str) -> None:
     with pytest.raises(ValueError, match=message):
-        Fault(kind, 1.0)
+        InducedFault(kind, 1.0)
 
 
 @pytest.mark.parametrize('kind', ['crash:plaer', 'lat:plaer', 'half:plaer', 'double:intruder'])
 def test_fault_of_a_component_there_is_not(scenario: Scenario, kind: str) -> None:
     with pytest.raises(ValueError, match=f'fault {kind}: no component .*motors, player'):
-        events(1.0, 1, Fault(kind, 0.5), scenario)
+        events(1.0, 1, InducedFault(kind, 0.5), scenario)
 
 
 def test_busy_component_cannot_be_doubled(scenario: Scenario) -> None:
@@ -151,14 +151,14 @@ def test_intruder_publishes_besides(normal: Run, run_with: Callable[[str], Run])
 
 def test_intruder_is_a_connection_of_its_own_in_a_bag(scenario: Scenario, tmp_path: Path) -> None:
     path = tmp_path / 'extra.bag'
-    simulate(path, 4.0, 7, Fault('extra', 2.0), scenario)
+    simulate(path, 4.0, 7, InducedFault('extra', 2.0), scenario)
     with rosbag.Bag(str(path)) as bag:
         found = [(m.connection_header['callerid'].decode(), m.timestamp.to_sec() - START_S)
                  for m in bag.read_messages(topics=['/cmd_vel'], return_connection_header=True)]
     assert {source for source, t in found if t < 2.0} == {'/navigation'}
     assert Counter(source for source, t in found if t > 2.0) == pytest.approx(
         {'/navigation': 10, '/intruder': 20}, abs=1)
-    written = [e.source for e in events(4.0, 7, Fault('extra', 2.0), scenario)
+    written = [e.source for e in events(4.0, 7, InducedFault('extra', 2.0), scenario)
                if e.topic == '/cmd_vel']
     assert [source for source, _ in found] == written
 

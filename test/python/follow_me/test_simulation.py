@@ -12,7 +12,7 @@ import rosbag
 
 from self_awareness.commands.simulate import main
 from self_awareness.follow_me.scenario import Scenario, load_scenario
-from self_awareness.follow_me.simulation import START_S, Event, Fault, events, simulate
+from self_awareness.follow_me.simulation import START_S, Event, InducedFault, events, simulate
 
 SCENARIO = Path(__file__).resolve().parents[3] / 'config' / 'follow_me.yaml'
 KINDS = ('cc1', 'cc2', 'rs', 'ac', 'lat', 'lat:motors', 'crash:camera', 'silence', 'half:player',
@@ -29,7 +29,7 @@ def _scenario() -> Scenario:
 
 @pytest.fixture(name='runs', scope='module')
 def _runs(scenario: Scenario) -> Dict[str, List[Event]]:
-    kinds: Dict[str, Any] = {kind: Fault(kind, ONSET_S) for kind in KINDS}
+    kinds: Dict[str, Any] = {kind: InducedFault(kind, ONSET_S) for kind in KINDS}
     kinds['normal'] = None
     return {kind: list(events(DURATION_S, 5, fault, scenario)) for kind, fault in kinds.items()}
 
@@ -118,7 +118,7 @@ def test_rs_stretches_gaps_slowly(runs: Dict[str, List[Event]]) -> None:
 @pytest.mark.parametrize('seed', [1, 2, 3, 4])
 def test_ac_drops_the_update_event_in_sporadic_intervals(scenario: Scenario,
                                                          seed: int) -> None:
-    run = list(events(DURATION_S, seed, Fault('ac', ONSET_S), scenario))
+    run = list(events(DURATION_S, seed, InducedFault('ac', ONSET_S), scenario))
     absent = [gap for gap in gaps(times(run, '/person_hypotheses', 1), ONSET_S, DURATION_S)
               if gap > 1.0]
     assert len(absent) >= 3
@@ -163,7 +163,7 @@ def test_bag_is_like_a_recorded_one(scenario: Scenario, tmp_path: Path,
 def test_clock_drift_shows_in_the_stamps_of_one_host(scenario: Scenario,
                                                      tmp_path: Path) -> None:
     path = tmp_path / 'ac.bag'
-    simulate(path, 30.0, 5, Fault('ac', 10.0), scenario)
+    simulate(path, 30.0, 5, InducedFault('ac', 10.0), scenario)
     late: Dict[str, List[float]] = {'/scan': [], '/camera/image': []}
     with rosbag.Bag(str(path)) as bag:
         for topic, message, stamp in bag.read_messages(topics=list(late)):
@@ -201,7 +201,7 @@ def test_arguments_out_of_range(scenario: Scenario, arguments: Dict[str, float],
 @pytest.mark.parametrize('kind, onset_s', [('cc3', 1.0), ('cc1', -1.0), ('rs', float('nan'))])
 def test_no_such_fault(kind: str, onset_s: float) -> None:
     with pytest.raises(ValueError, match=kind):
-        Fault(kind, onset_s)
+        InducedFault(kind, onset_s)
 
 
 def test_program_writes_numbered_bags(tmp_path: Path, capsys: pytest.CaptureFixture) -> None:

@@ -35,7 +35,8 @@ class Cluster:
         self.workers: Dict[str, subprocess.Popen] = {}
         self._processes: List[subprocess.Popen] = []
         self._file = folder / 'scheduler.json'
-        self.scheduler = self._start('scheduler', '--port', '0', '--scheduler-file', str(self._file))
+        self.scheduler = self._start('scheduler', '--port', '0', '--scheduler-file',
+                                     str(self._file))
         wait_until(self._written, 'the scheduler starts')
         self.address = json.loads(self._file.read_text())['address']
         self.client = distributed.Client(self.address, set_as_default=False)

@@ -1,4 +1,4 @@
-"""Training on many bags: in this process and in several, without bad bags, and on top of a model."""
+"""Training on many bags: in this process, in several, without bad bags, and on top of a model."""
 from __future__ import annotations
 
 import pickle

@@ -7,10 +7,10 @@ from typing import List, Sequence
 from self_awareness import progress
 from self_awareness.evaluation.live import offline, report, session
 from self_awareness.evaluation.live.samples import Sample, Status, Stretch, measure
-from self_awareness.evaluation.live.session import Plan
+from self_awareness.evaluation.live.session import SessionPlan
 
 
-def evaluate(plan: Plan, folder: Path, output: Path, command: str) -> List[Path]:
+def evaluate(plan: SessionPlan, folder: Path, output: Path, command: str) -> List[Path]:
     """Run a session, judge it and write the results; return the files.
 
     What the monitor said is saved after every fault, so that little is lost if the session fails.

@@ -8,7 +8,7 @@ from self_awareness import TrainedModel, recordings
 from self_awareness.evaluation import catalogue
 from self_awareness.evaluation.live.samples import Sample, measure_alarms
 from self_awareness.evaluation.live.session import Session
-from self_awareness.evaluation.recording import Recording
+from self_awareness.evaluation.windowed_events import WindowedEvents
 from self_awareness.recordings import BagPart
 
 SYSTEMS = ('paper', 'frequency_learned')
@@ -35,6 +35,6 @@ def judge(session: Session) -> List[Sample]:
     return samples
 
 
-def _read(model: TrainedModel, path: Path) -> Recording:
+def _read(model: TrainedModel, path: Path) -> WindowedEvents:
     events = recordings.read(model, BagPart(str(path)))
-    return Recording(events.event_types, events.stamps, events.ids, events.end + 1)
+    return WindowedEvents(events.event_types, events.stamps, events.ids, events.end + 1)

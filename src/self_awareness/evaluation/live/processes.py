@@ -24,16 +24,16 @@ def free_port() -> int:
         return int(free.getsockname()[1])
 
 
-def await_condition(what: str, condition: Callable[[], bool], limit_s: float) -> None:
+def await_condition(what: str, condition: Callable[[], bool], within_s: float) -> None:
     """Wait until a condition holds.
 
     Raises:
         LiveError: it still does not after the limit [s].
     """
-    deadline = time.monotonic() + limit_s
+    deadline = time.monotonic() + within_s
     while not condition():
         if time.monotonic() > deadline:
-            raise LiveError(f'not within {limit_s:g} s: {what}')
+            raise LiveError(f'not within {within_s:g} s: {what}')
         time.sleep(_POLL_S)
 
 
@@ -62,7 +62,7 @@ class Processes:
         self._running.append(process)
         return process
 
-    def run(self, log: str, limit_s: float, *command: str) -> None:
+    def run(self, log: str, within_s: float, *command: str) -> None:
         """Run a program to its end.
 
         Raises:
@@ -70,7 +70,7 @@ class Processes:
         """
         process = self.start(log, *command)
         try:
-            code = process.wait(limit_s)
+            code = process.wait(within_s)
         except subprocess.TimeoutExpired:
             code = 'not yet'
         self.end(process)

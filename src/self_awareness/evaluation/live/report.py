@@ -8,10 +8,10 @@ from dataclasses import astuple, fields
 from pathlib import Path
 from typing import List, Optional, Sequence
 
-from self_awareness.calibration.runs import confidence
+from self_awareness.calibration import confidence
 from self_awareness.evaluation.live import offline
 from self_awareness.evaluation.live.samples import Sample, of_system
-from self_awareness.evaluation.live.session import FAULTS_S, QUIET_S, Plan
+from self_awareness.evaluation.live.session import FAULTS_S, QUIET_S, SessionPlan
 from self_awareness.evaluation.simulated import summary
 from self_awareness.evaluation.simulated.measures import NORMAL
 from self_awareness.evaluation.simulated.tables import percent, seconds, table
@@ -66,7 +66,7 @@ All samples: [live.csv](live.csv).
 """
 
 
-def write(folder: Path, plan: Plan, samples: Sequence[Sample], command: str) -> List[Path]:
+def write(folder: Path, plan: SessionPlan, samples: Sequence[Sample], command: str) -> List[Path]:
     """Write all files, each whole or not at all; return their names.
 
     Args:
@@ -99,7 +99,7 @@ def save_csv(path: Path, samples: Sequence[Sample]) -> None:
             writer.writerows(astuple(sample) for sample in samples)
 
 
-def page(plan: Plan, samples: Sequence[Sample], command: str) -> str:
+def page(plan: SessionPlan, samples: Sequence[Sample], command: str) -> str:
     """Return the page of tables."""
     systems = [name for name in SYSTEMS if any(sample.system == name for sample in samples)]
     kinds = [kind for kind in FAULTS_S if any(sample.fault == kind for sample in samples)]

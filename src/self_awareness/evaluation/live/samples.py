@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import List, Optional, Sequence, Tuple
 
 from self_awareness.evaluation.simulated.measures import NORMAL
-from self_awareness.evaluation.systems import Alarm
+from self_awareness.evaluation.systems import SystemAlarm
 from self_awareness.stamps import SECOND_NS
 
 ERROR, WARN = 2, 1
@@ -134,7 +134,7 @@ def measure(system: str, stretch: Stretch, statuses: Sequence[Status]) -> Sample
                    received_s=alarm.received - stretch.onset, evidence=alarm.evidence)
 
 
-def measure_alarms(system: str, stretch: Stretch, alarms: Sequence[Alarm]) -> Sample:
+def measure_alarms(system: str, stretch: Stretch, alarms: Sequence[SystemAlarm]) -> Sample:
     """Measure what a system says of a stretch in the recording of the session.
 
     Args:

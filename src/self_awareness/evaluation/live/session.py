@@ -43,7 +43,7 @@ _WARM_UP_S = 10.0  # after the robot's start, which is no normal operation
 
 
 @dataclass(frozen=True)
-class Plan:
+class SessionPlan:
     """What a session does.
 
     Args:
@@ -71,7 +71,8 @@ class Session:
     statuses: List[Status]
 
 
-def run(plan: Plan, folder: Path, told: Callable[[Stretch, Sequence[Status]], None]) -> Session:
+def run(plan: SessionPlan, folder: Path,
+        told: Callable[[Stretch, Sequence[Status]], None]) -> Session:
     """Run a session under a master of its own; nothing of it runs on afterwards.
 
     Args:
@@ -105,7 +106,7 @@ def _master_answers() -> bool:
 
 
 class _Session:
-    def __init__(self, plan: Plan, folder: Path, processes: Processes,
+    def __init__(self, plan: SessionPlan, folder: Path, processes: Processes,
                  told: Callable[[Stretch, Sequence[Status]], None]) -> None:
         self._plan = plan
         self._folder = folder

@@ -14,10 +14,10 @@ import numpy as np
 
 from self_awareness import (DetectorParameters, EncodingRules, EvidenceModel, Model, Roc,
                             TrainedModel, recordings)
-from self_awareness.calibration.runs import Judge, evidence_judge, paper_judge
 from self_awareness.evaluation.peers.frequency import LearnedFrequencyMonitor
-from self_awareness.evaluation.recording import Recording
 from self_awareness.evaluation.systems import ScoringSystem, settling
+from self_awareness.evaluation.windowed_events import WindowedEvents
+from self_awareness.judging import Judge, evidence_judge, paper_judge
 from self_awareness.recordings import BagPart, RecordingEvents
 from self_awareness.stamps import SECOND_NS
 from self_awareness.training import many_bags
@@ -61,7 +61,7 @@ class Case:
 
 
 @dataclass(frozen=True)
-class Row:
+class OutageRow:
     """What a system says of a recording.
 
     Args:
@@ -111,7 +111,7 @@ CASES = (
 """All cases."""
 
 
-def evaluate(data: Path) -> List[Row]:
+def evaluate(data: Path) -> List[OutageRow]:
     """Let every system judge every case.
 
     Raises:
@@ -128,15 +128,15 @@ def evaluate(data: Path) -> List[Row]:
 
 
 @dataclass(frozen=True)
-class Judged:
-    """Alarms of a system, the length of the recording [s], and how much was watched (Row)."""
+class JudgedCase:
+    """Alarms of a system, length of the recording [s], and how much was watched (OutageRow)."""
 
     alarms: Sequence[Span]
     length: float
     watched: int
 
 
-def _evidence(case: Case, data: Path) -> Judged:
+def _evidence(case: Case, data: Path) -> JudgedCase:
     parts = [_below(data, case.training), _below(data, case.calibration)]
     trained_on = _trained(parts)
     many_bags.preliminary_limits(trained_on)
@@ -148,18 +148,18 @@ def _evidence(case: Case, data: Path) -> Judged:
                   len(watched))
 
 
-def _paper(case: Case, data: Path) -> Judged:
+def _paper(case: Case, data: Path) -> JudgedCase:
     trained = _trained([_below(data, case.training)]).model
     model, parameters = Model(trained), DetectorParameters()
     normal = recordings.read(trained, _below(data, case.calibration))
     scores = paper_judge(trained, model, None, parameters)(normal.stamps, normal.ids,
-                                                                      normal.end)
+                                                           normal.end)
     threshold = _paper_threshold(np.nan_to_num(scores.score[~scores.settling]))
     return _judge(trained, paper_judge(trained, model, threshold, parameters),
                   data / case.judged, len(trained.event_types) if threshold > 0.0 else 0)
 
 
-def _frequency_learned(case: Case, data: Path) -> Judged:
+def _frequency_learned(case: Case, data: Path) -> JudgedCase:
     trained = _trained([_below(data, case.training)]).model  # for the encoding only
     scorer = LearnedFrequencyMonitor()
     scorer.train([_events(recordings.read(trained, _below(data, case.training)))])
@@ -167,11 +167,11 @@ def _frequency_learned(case: Case, data: Path) -> Judged:
     threshold = Roc(scorer.scores(normal)[~settling(normal)], []).level(RATE).cutoff
     recording = recordings.read(trained, BagPart(str(data / case.judged)))
     judged = ScoringSystem('frequency_learned', scorer, threshold).judge(_events(recording))
-    return Judged([_span(recording, alarm.start, alarm.end) for alarm in judged.alarms],
-                   _span(recording, recording.origin, recording.end)[1], len(scorer.limits))
+    return JudgedCase([_span(recording, alarm.start, alarm.end) for alarm in judged.alarms],
+                      _span(recording, recording.origin, recording.end)[1], len(scorer.bounds))
 
 
-SYSTEMS: Dict[str, Callable[[Case, Path], Judged]] = {
+SYSTEMS: Dict[str, Callable[[Case, Path], JudgedCase]] = {
     'evidence': _evidence,
     'paper': _paper,
     'frequency_learned': _frequency_learned,
@@ -199,22 +199,23 @@ def _paper_threshold(scores: np.ndarray) -> float:
     return threshold
 
 
-def _judge(trained: TrainedModel, judge: Judge, path: Path, watched: int) -> Judged:
+def _judge(trained: TrainedModel, judge: Judge, path: Path, watched: int) -> JudgedCase:
     recording = recordings.read(trained, BagPart(str(path)))
     verdicts = judge(recording.stamps, recording.ids, recording.end)
-    return Judged([_span(recording, alarm.start, alarm.end) for alarm in verdicts.alarms],
-                   _span(recording, recording.origin, recording.end)[1], watched)
+    return JudgedCase([_span(recording, alarm.start, alarm.end) for alarm in verdicts.alarms],
+                      _span(recording, recording.origin, recording.end)[1], watched)
 
 
-def _events(recording: RecordingEvents) -> Recording:
-    return Recording(recording.event_types, recording.stamps, recording.ids, recording.end + 1)
+def _events(recording: RecordingEvents) -> WindowedEvents:
+    return WindowedEvents(recording.event_types, recording.stamps, recording.ids,
+                          recording.end + 1)
 
 
 def _span(recording: RecordingEvents, start: int, end: int) -> Span:
     return (start - recording.origin) / SECOND_NS, (end - recording.origin) / SECOND_NS
 
 
-def _row(case: Case, name: str, judged: Judged) -> Row:
+def _row(case: Case, name: str, judged: JudgedCase) -> OutageRow:
     normal = [(start, min(end, judged.length)) for start, end in case.normal]
     false = [alarm for alarm in judged.alarms
              if any(start <= alarm[0] < end for start, end in normal)]
@@ -226,9 +227,9 @@ def _row(case: Case, name: str, judged: Judged) -> Row:
         before = any(start <= onset < end for start, end in judged.alarms)
         latency = next((start - onset for start, _ in judged.alarms if onset < start < relief),
                        None)
-    return Row(case.name, name, judged.watched, found, before, latency, len(false),
-               sum(_overlap(alarm, span) for alarm in judged.alarms for span in normal),
-               sum(end - start for start, end in normal))
+    return OutageRow(case.name, name, judged.watched, found, before, latency, len(false),
+                     sum(_overlap(alarm, span) for alarm in judged.alarms for span in normal),
+                     sum(end - start for start, end in normal))
 
 
 def _overlap(a: Span, b: Span) -> float:

@@ -6,8 +6,8 @@ from dataclasses import astuple, fields
 from pathlib import Path
 from typing import List, Sequence
 
-from self_awareness.evaluation.recordings.outages import (CASES, END, MOST_SILENT, RATE, Case, Row,
-                                                          Span)
+from self_awareness.evaluation.recordings.outages import (CASES, END, MOST_SILENT, RATE, Case,
+                                                          OutageRow, Span)
 from self_awareness.evaluation.simulated.tables import seconds, table
 from self_awareness.output_files import replacing
 
@@ -41,7 +41,7 @@ All numbers: [{name}.csv]({name}.csv).
 """
 
 
-def write(folder: Path, rows: Sequence[Row], command: str) -> List[Path]:
+def write(folder: Path, rows: Sequence[OutageRow], command: str) -> List[Path]:
     """Write all files, each whole or not at all; return their names.
 
     Args:
@@ -56,14 +56,14 @@ def write(folder: Path, rows: Sequence[Row], command: str) -> List[Path]:
     with replacing(str(paths[0])) as temporary:
         with open(temporary, 'w', encoding='utf-8', newline='') as file:
             writer = csv.writer(file, lineterminator='\n')
-            writer.writerow([field.name for field in fields(Row)])
+            writer.writerow([field.name for field in fields(OutageRow)])
             writer.writerows(astuple(row) for row in rows)
     with replacing(str(paths[1])) as temporary:
         Path(temporary).write_text(page(rows, command), encoding='utf-8')
     return paths
 
 
-def page(rows: Sequence[Row], command: str) -> str:
+def page(rows: Sequence[OutageRow], command: str) -> str:
     """Return the page."""
     head = ['recording', 'system', 'watched', 'outage', 'latency', 'false alarms',
             'alarm stood in normal operation']
@@ -84,7 +84,7 @@ def _spans(spans: Sequence[Span]) -> str:
                         for start, end in spans)
 
 
-def _cells(row: Row) -> List[str]:
+def _cells(row: OutageRow) -> List[str]:
     found = {None: '–', True: 'found', False: 'missed'}[row.outage_found]
     if row.stood_before:
         found += ', stood before'

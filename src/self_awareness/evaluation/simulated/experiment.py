@@ -10,13 +10,13 @@ import numpy as np
 
 from self_awareness import progress
 from self_awareness.evaluation import catalogue
-from self_awareness.evaluation.recording import Recording
 from self_awareness.evaluation.simulated import tradeoff
 from self_awareness.evaluation.simulated.measures import NORMAL, Row, fault_row, normal_row
 from self_awareness.evaluation.simulated.records import (CALIBRATION_NAME, NORMAL_TEST_S, RECORD_S,
                                                          TRAINING_NAMES, FaultRecord, fault_record,
                                                          normal_record)
 from self_awareness.evaluation.simulated.tradeoff import JudgedFault, TradeOff
+from self_awareness.evaluation.windowed_events import WindowedEvents
 from self_awareness.follow_me.scenario import Scenario
 from self_awareness.stamps import SECOND_NS
 
@@ -31,7 +31,7 @@ class Plan:
 
     Args:
         systems: names, of catalogue.NAMES.
-        faults: kinds of simulation.Fault.
+        faults: kinds of simulation.InducedFault.
         seeds: one repetition each.
         calibration_s: length of the record of normal operation for the threshold [s].
         training_share: besides all of the training records, their first share is learned from,
@@ -68,9 +68,9 @@ class Results:
 class Records:
     """What is judged in one seed."""
 
-    training: List[Recording]
-    calibration: Recording
-    normal: Recording
+    training: List[WindowedEvents]
+    calibration: WindowedEvents
+    normal: WindowedEvents
     faults: List[FaultRecord]
 
 

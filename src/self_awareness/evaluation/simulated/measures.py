@@ -7,8 +7,8 @@ from typing import List, Optional, Sequence
 import numpy as np
 
 from self_awareness import Roc
-from self_awareness.evaluation.recording import WINDOW
-from self_awareness.evaluation.systems import Alarm, Judged
+from self_awareness.evaluation.systems import Judged, SystemAlarm
+from self_awareness.evaluation.windowed_events import WINDOW
 from self_awareness.stamps import SECOND_NS
 
 NORMAL = 'normal'
@@ -122,6 +122,6 @@ def _noticed_s(judged: Judged, onset: int) -> Optional[float]:
     return (int(first[0]) - onset) / SECOND_NS if len(first) else None
 
 
-def first_alarm(alarms: List[Alarm], onset: int) -> Optional[Alarm]:
+def first_alarm(alarms: List[SystemAlarm], onset: int) -> Optional[SystemAlarm]:
     """Return the first alarm that is raised after the onset [ns]."""
     return next((alarm for alarm in alarms if alarm.start > onset), None)

@@ -13,11 +13,11 @@ from typing import Dict, List, Optional, Set, Tuple
 import numpy as np
 
 from self_awareness import EventType
-from self_awareness.evaluation.recording import Recording
 from self_awareness.evaluation.simulated.measures import NORMAL
+from self_awareness.evaluation.windowed_events import WindowedEvents
 from self_awareness.follow_me.faults import effect_of
 from self_awareness.follow_me.scenario import Scenario
-from self_awareness.follow_me.simulation import START_S, Event, Fault, events
+from self_awareness.follow_me.simulation import START_S, Event, InducedFault, events
 from self_awareness.stamps import SECOND_NS
 
 RECORD_S = 100.0
@@ -49,7 +49,7 @@ class FaultRecord:
     """
 
     kind: str
-    recording: Recording
+    recording: WindowedEvents
     onset: int
     culprits: Tuple[str, ...]
 
@@ -62,7 +62,7 @@ def default_faults(scenario: Scenario) -> List[str]:
             'double:gaze_control', 'order', 'unknown', *crashes]
 
 
-def normal_record(scenario: Scenario, seed: int, name: str, duration_s: float) -> Recording:
+def normal_record(scenario: Scenario, seed: int, name: str, duration_s: float) -> WindowedEvents:
     """Return a record of normal operation; its name decides, with the seed, what is random."""
     return _recorded(scenario, _derived_seed(seed, name), duration_s, None)
 
@@ -74,13 +74,13 @@ def fault_record(scenario: Scenario, seed: int, kind: str) -> FaultRecord:
         ValueError: no such fault.
     """
     spread = random.Random(f'{seed}/{kind}/onset').uniform(0.0, _ONSET_SPREAD_S)
-    fault = Fault(kind, _ONSET_S + spread)
+    fault = InducedFault(kind, _ONSET_S + spread)
     recording = _recorded(scenario, _derived_seed(seed, kind), RECORD_S, fault)
     onset = round((START_S + fault.onset_s) * SECOND_NS)
     return FaultRecord(kind, recording, onset, effect_of(scenario, kind).culprits)
 
 
-def encode(recorded: List[Event], scenario: Scenario, end: int) -> Recording:
+def encode(recorded: List[Event], scenario: Scenario, end: int) -> WindowedEvents:
     """Encode messages as the bag reader does; `end`: of the recording [ns], exclusive.
 
     The first message of a latched topic is left out: it may be a repeated one.
@@ -104,12 +104,12 @@ def encode(recorded: List[Event], scenario: Scenario, end: int) -> Recording:
             known[key] = ids.setdefault(event_type, len(ids))
         stamps.append(event.stamp_ns)
         event_ids.append(known[key])
-    return Recording(list(ids), np.array(stamps, dtype=np.int64),
-                     np.array(event_ids, dtype=np.uint32), end)
+    return WindowedEvents(list(ids), np.array(stamps, dtype=np.int64),
+                          np.array(event_ids, dtype=np.uint32), end)
 
 
 def _recorded(scenario: Scenario, seed: int, duration_s: float,
-              fault: Optional[Fault]) -> Recording:
+              fault: Optional[InducedFault]) -> WindowedEvents:
     end = round((START_S + duration_s) * SECOND_NS)
     return encode(list(events(duration_s, seed, fault, scenario)), scenario, end)
 

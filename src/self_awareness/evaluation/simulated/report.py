@@ -6,12 +6,14 @@ from dataclasses import astuple, fields
 from pathlib import Path
 from typing import Any, Dict, List, Sequence
 
+from self_awareness.calibration import limits
 from self_awareness.evaluation.simulated import figures, tables
 from self_awareness.evaluation.simulated.experiment import Plan, Results
 from self_awareness.evaluation.simulated.measures import Row
 from self_awareness.evaluation.simulated.records import (NORMAL_NAMES, NORMAL_TEST_S, RECORD_S,
                                                          TRAINING_NAMES)
 from self_awareness.evaluation.systems import FALSE_POSITIVE_RATE
+from self_awareness.evaluation.windowed_events import WINDOW
 from self_awareness.output_files import replacing
 
 NAME = 'simulated'
@@ -23,19 +25,20 @@ Written by `{command}`; do not edit.
 
 Seeds {seeds}.
 
-For each seed, records of the simulated follow-me robot: {training} of {record_s:g} s to learn from,
-one of {calibration_s:g} s to choose the threshold by, one of {normal_s:g} s of normal operation to
-count false alarms on, and one of {record_s:g} s for each fault, which begins between 50 and 52 s.
-Each record has a seed of its own, the first four bytes of the SHA-256 of `SEED/RECORD`; the records
-are called {names} and as the faults.
-All systems learn from, and judge, the same records.
+For each seed, records of the simulated follow-me robot: {training} of {record_s:g} s to learn
+from, one of {calibration_s:g} s to choose the threshold by, one of {normal_s:g} s of normal
+operation to count false alarms on, and one of {record_s:g} s for each fault, which begins between
+50 and 52 s. Each record has a seed of its own, the first four bytes of the SHA-256 of
+`SEED/RECORD`; the records are called {names} and as the faults. All systems learn from, and judge,
+the same records.
 
-Each system gives every window of 100 ms a score. The threshold is the one that a share of {rate:g}
-of the calibration's windows falls below; `frequency` has limits of its own, those of
-diagnostic_updater's FrequencyStatus, and `evidence` those that `calibrate` finds on the same record
-for a budget of 0.5 false alarms an hour. Three abnormal windows of five raise the alarm, 2 s
-without one clear it, and none is raised in the first 5 s, by the same code for all; `evidence`
-raises it at once for a silence that has lasted 0.1 s beyond its limit, and for the linker.
+Each system gives every window of {window_ms:g} ms a score. The threshold is the one that a share
+of {rate:g} of the calibration's windows falls below; `frequency` has bounds of its own, those of
+diagnostic_updater's FrequencyStatus, and `evidence` the limits that `calibrate` finds on the same
+record for a budget of {budget:g} false alarms an hour. Three abnormal windows of five raise the
+alarm, 2 s without one clear it, and none is raised in the first 5 s, by the same code for all;
+`evidence` raises it at once for a silence that has lasted 0.1 s beyond its limit, and for the
+linker.
 `evidence` knows who subscribes to what, as after `train --graph`; `evidence_no_graph` was trained
 on bags alone. Events never seen in training are a suspicion, not an alarm (`~unknown: warn`).
 
@@ -83,12 +86,13 @@ def page(plan: Plan, results: Results, command: str) -> str:
         seeds=', '.join(str(seed) for seed in plan.seeds),
         names=', '.join(f'`{name}`' for name in NORMAL_NAMES),
         training=len(TRAINING_NAMES), record_s=RECORD_S,
-        calibration_s=plan.calibration_s, normal_s=NORMAL_TEST_S),
+        calibration_s=plan.calibration_s, normal_s=NORMAL_TEST_S, window_ms=WINDOW / 1e6,
+        budget=limits.BUDGET),
         '## Targets', '', *tables.targets(rows), '']
     if results.trade_offs:
         lines += ['## False alarms an hour at equal latency', '',
-                  'For cc1, with thresholds from lax to strict, in all normal operation; – where none '
-                  'is so fast.', '',
+                  'For cc1, with thresholds from lax to strict, in all normal operation; – where '
+                  'none is so fast.', '',
                   *tables.trade_offs(_by_system(results.trade_offs)), '']
     lines += ['## Every fault', '', *tables.faults(rows), '']
     few = [row for row in results.rows if row.training_share < 1.0]

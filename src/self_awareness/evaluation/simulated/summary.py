@@ -4,16 +4,16 @@ from __future__ import annotations
 import math
 from typing import Callable, List, NamedTuple, Optional, Sequence, Tuple
 
-from self_awareness.calibration.runs import confidence
-from self_awareness.evaluation.recording import WINDOW
+from self_awareness.calibration import confidence
 from self_awareness.evaluation.simulated.measures import NORMAL, Row
 from self_awareness.evaluation.simulated.tradeoff import TradeOff
+from self_awareness.evaluation.windowed_events import WINDOW
 from self_awareness.stamps import SECOND_NS
 
 _HOUR_S = 3600.0
 
 
-class FalseAlarms(NamedTuple):
+class AlarmRate(NamedTuple):
     """Alarms in normal operation, an hour, with their 95 % confidence interval."""
 
     count: int
@@ -22,18 +22,18 @@ class FalseAlarms(NamedTuple):
     interval: Tuple[float, float]
 
 
-def false_alarms(rows: Sequence[Row]) -> FalseAlarms:
+def false_alarms(rows: Sequence[Row]) -> AlarmRate:
     """Return the false alarms of rows; settling windows are no part of the time."""
     count = sum(row.false_alarms for row in rows)
     hours = sum(row.normal_windows for row in rows) * WINDOW / SECOND_NS / _HOUR_S
-    return FalseAlarms(count, hours, count / hours, confidence.poisson_rate(count, hours))
+    return AlarmRate(count, hours, count / hours, confidence.poisson_rate(count, hours))
 
 
-def false_suspicions(rows: Sequence[Row]) -> FalseAlarms:
+def false_suspicions(rows: Sequence[Row]) -> AlarmRate:
     """Return the times that a suspicion or an alarm began, as the false alarms."""
     count = sum(row.false_suspicions for row in rows)
     hours = sum(row.normal_windows for row in rows) * WINDOW / SECOND_NS / _HOUR_S
-    return FalseAlarms(count, hours, count / hours, confidence.poisson_rate(count, hours))
+    return AlarmRate(count, hours, count / hours, confidence.poisson_rate(count, hours))
 
 
 def noticed(rows: Sequence[Row], within_s: float) -> float:

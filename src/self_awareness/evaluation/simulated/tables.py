@@ -51,8 +51,8 @@ def _median(rows: Sequence[Row]) -> float:
     return summary.latency(rows, 0.5)
 
 
-def _within(limit_s: float) -> Measure:
-    return lambda rows: summary.found(rows, limit_s)
+def _within(within_s: float) -> Measure:
+    return lambda rows: summary.found(rows, within_s)
 
 
 _TARGETS = (
@@ -68,9 +68,9 @@ _TARGETS = (
       for kind, target in (('cc1', '0.3 s'), ('cc2', '0.5 s'), ('rs', '2 s'), ('ac', '30 s'),
                            ('lat', '2 s'))),
     _Target('windows missed, lat', '<= 3 %', _of('lat', summary.missed, percent)),
-    *(_Target(f'crashes found within {limit_s:g} s', target,
-              _of('crash', _within(limit_s), percent))
-      for limit_s, target in ((1.0, '70 %'), (5.0, '95 %'), (50.0, '100 %'))),
+    *(_Target(f'crashes found within {within_s:g} s', target,
+              _of('crash', _within(within_s), percent))
+      for within_s, target in ((1.0, '70 %'), (5.0, '95 %'), (50.0, '100 %'))),
     _Target('guilty first, crashes', '>= 95 %', _of('crash', summary.guilty_first, percent)),
     _Target('guilty among three, crashes', '100 %',
             _of('crash', summary.guilty_among_three, percent)),
@@ -143,9 +143,9 @@ def trade_offs(by_system: Dict[str, List[TradeOff]]) -> List[str]:
     """Return the lines of the table of false alarms at equal latency."""
     points = {name: summary.operating_points(part) for name, part in by_system.items()}
     return table(['median latency at most', *points],
-                 [[seconds(limit_s),
-                   *(_rate(summary.false_alarms_at(of_system, limit_s))
-                     for of_system in points.values())] for limit_s in _LATENCIES_S])
+                 [[seconds(within_s),
+                   *(_rate(summary.false_alarms_at(of_system, within_s))
+                     for of_system in points.values())] for within_s in _LATENCIES_S])
 
 
 def table(head: Sequence[str], body: Sequence[Sequence[str]]) -> List[str]:

@@ -11,9 +11,9 @@ from typing import List, Mapping, Optional
 import numpy as np
 
 from self_awareness import Roc
-from self_awareness.evaluation.recording import WINDOW
 from self_awareness.evaluation.simulated.measures import first_alarm
-from self_awareness.evaluation.systems import Alarm, Judged, persistent
+from self_awareness.evaluation.systems import Judged, SystemAlarm, persistent
+from self_awareness.evaluation.windowed_events import WINDOW
 from self_awareness.stamps import SECOND_NS
 
 FAULT = 'cc1'
@@ -78,7 +78,7 @@ def trade_offs(system: str, seed: int, calibration: Judged, normal: Judged,
     return result
 
 
-def _alarms(judged: Judged, threshold: float, counted: np.ndarray) -> List[Alarm]:
+def _alarms(judged: Judged, threshold: float, counted: np.ndarray) -> List[SystemAlarm]:
     """Return the alarms of the windows that count."""
     return persistent(judged.start, (judged.score < threshold) & counted)
 

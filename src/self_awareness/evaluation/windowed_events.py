@@ -13,7 +13,7 @@ WINDOW = 100_000_000
 
 
 @dataclass(frozen=True)
-class Recording:
+class WindowedEvents:
     """The events of a recording, in their order.
 
     Args:
@@ -28,7 +28,7 @@ class Recording:
     ids: np.ndarray
     end: int
 
-    def encoded(self, vocabulary: Sequence[EventType]) -> Recording:
+    def encoded(self, vocabulary: Sequence[EventType]) -> WindowedEvents:
         """Return the same recording with the types of a vocabulary first, as the bag reader does.
 
         The ids behind stand for the types that are not in the vocabulary.
@@ -36,7 +36,7 @@ class Recording:
         ids = {event_type: index for index, event_type in enumerate(vocabulary)}
         translation = np.array([ids.setdefault(event_type, len(ids))
                                 for event_type in self.event_types], dtype=np.uint32)
-        return Recording(list(ids), self.stamps, translation[self.ids], self.end)
+        return WindowedEvents(list(ids), self.stamps, translation[self.ids], self.end)
 
     def starts(self) -> np.ndarray:
         """Return the starts of the windows [ns], from the one with the first event on."""
@@ -47,15 +47,15 @@ class Recording:
         """Return the index of every event's window."""
         return (self.stamps - int(self.starts()[0])) // WINDOW
 
-    def beginning(self, share: float) -> Recording:
+    def beginning(self, share: float) -> WindowedEvents:
         """Return the first share of the recording, 0 < share <= 1."""
         first = int(self.stamps[0])
         end = first + round((self.end - first) * share)
         inside = self.stamps < end
-        return Recording(self.event_types, self.stamps[inside], self.ids[inside], end)
+        return WindowedEvents(self.event_types, self.stamps[inside], self.ids[inside], end)
 
 
-def vocabulary(recordings: Sequence[Recording]) -> List[EventType]:
+def vocabulary(recordings: Sequence[WindowedEvents]) -> List[EventType]:
     """Return all event types of recordings, in the order of their first occurrence."""
     types: Dict[EventType, None] = {}
     for recording in recordings:
@@ -64,12 +64,12 @@ def vocabulary(recordings: Sequence[Recording]) -> List[EventType]:
     return list(types)
 
 
-def known_ids(recording: Recording, types: Sequence[EventType]) -> np.ndarray:
+def known_ids(recording: WindowedEvents, types: Sequence[EventType]) -> np.ndarray:
     """Return the ids of the events among types, int64; len(types) stands for all others."""
     return np.minimum(recording.encoded(types).ids, len(types)).astype(np.int64)
 
 
-def counts(recording: Recording, types: Sequence[EventType]) -> np.ndarray:
+def counts(recording: WindowedEvents, types: Sequence[EventType]) -> np.ndarray:
     """Return the events of every window by type, [window, id]; the last column: all others."""
     table = np.zeros((len(recording.starts()), len(types) + 1))
     np.add.at(table, (recording.window_of_events(), known_ids(recording, types)), 1.0)
