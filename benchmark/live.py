@@ -26,7 +26,9 @@ import live_report
 import page
 from live_robot import Configuration, Robot, master, train, write_synthetic_model
 from live_subjects import Bare, Monitor, Record, Subject, usage
+from self_awareness import DEFAULT_WINDOW
 from self_awareness.evaluation.live.processes import Processes
+from self_awareness.stamps import SECOND_NS
 
 TOPICS = {163: 15, 1000: 60, 5000: 300, 20000: 500}
 """By messages a second."""
@@ -37,7 +39,7 @@ _MODEL_S = {163: 40.0, 1000: 40.0, 5000: 90.0, 20000: 20.0}
 _DETECTION_RATE = 5000
 _SETTLED_S = 8.0
 _LONG_S = 600.0
-_WINDOW_S = 0.1
+_WINDOW_S = DEFAULT_WINDOW / SECOND_NS
 _STARTS = 5
 _MANY_TYPES = 1000
 _CRASHES = 5

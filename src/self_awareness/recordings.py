@@ -10,7 +10,7 @@ import numpy as np
 
 from self_awareness import (EventType, RecordedEvents, Recording, TrainedModel, progress,
                             read_events)
-from self_awareness.stamps import SECOND_NS
+from self_awareness.stamps import nanoseconds
 
 _PART = re.compile(r'(?P<path>.+)@(?P<start>\d+(\.\d+)?)(-(?P<end>\d+(\.\d+)?))?')
 
@@ -39,8 +39,8 @@ class BagPart:
 
     def span(self, first: int, last: int) -> Tuple[int, int]:
         """Return start and end [ns] within a recording from `first` to `last` [ns]."""
-        start = first + round((self.start or 0.0) * SECOND_NS)
-        end = last if self.end is None else first + round(self.end * SECOND_NS)
+        start = first + nanoseconds(self.start or 0.0)
+        end = last if self.end is None else first + nanoseconds(self.end)
         return start, min(end, last)
 
 

@@ -13,7 +13,7 @@ from typing import List, Optional, Sequence, Tuple
 import numpy as np
 
 from self_awareness import EventType
-from self_awareness.stamps import SECOND_NS
+from self_awareness.stamps import SECOND_NS, nanoseconds
 
 STARVATION_DOUBLING_S = 20.0
 """After this time of the undisturbed recording, starved components take twice as long [s]."""
@@ -131,7 +131,7 @@ def _moved(fault: InjectedFault, since_onset: np.ndarray, left: int) -> np.ndarr
         # The integral of the stretch 1 + t / doubling time.
         t = since_onset / SECOND_NS
         return ((t + t * t / (2.0 * STARVATION_DOUBLING_S)) * SECOND_NS).astype(np.int64)
-    shift = round(fault.amount * SECOND_NS)
+    shift = nanoseconds(fault.amount)
     if abs(shift) >= left:
         raise ValueError(f'{fault}: only {left / SECOND_NS:.1f} s of the recording are left '
                          'after the onset in its middle; shift by less')

@@ -2,8 +2,8 @@
 
 The windows of normal recordings are normal; those of a faulty one are abnormal while the fault
 lasts. Those before and after count as neither: nobody knows whether they are normal. Windows while
-the detector settles are left out everywhere. A window without events scores 0 (METHOD.md,
-section 1).
+the detector settles are left out everywhere. A window without events scores 0 (docs/method.md,
+section 2.3).
 """
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ import sys
 from typing import Callable, Optional, Sequence, TypeVar
 
 from self_awareness import BagError, DetectorParameters, ModelFileError, UnknownEvents
-from self_awareness.stamps import SECOND_NS
+from self_awareness.stamps import SECOND_NS, nanoseconds
 
 _Value = TypeVar('_Value')
 
@@ -59,7 +59,7 @@ def seconds(text: str, low: float = 0.0) -> int:
     if not low <= value <= _LONGEST_S:  # false for NaN as well
         raise argparse.ArgumentTypeError(f'expected seconds from {low:g} to {_LONGEST_S:g}, '
                                          f'not {text!r}')
-    return round(value * SECOND_NS)
+    return nanoseconds(value)
 
 
 def duration(text: str) -> int:

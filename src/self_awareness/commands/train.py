@@ -17,7 +17,6 @@ from self_awareness.training import live_graph, many_bags
 from self_awareness.training.many_bags import Counting, Trained
 from self_awareness.workers import Cluster, InProcess, Processes, Workers
 
-_BIN, _WINDOW, _HORIZON = '0.01', '0.1', 0
 _OF_THE_MODEL = ('bin', 'window', 'horizon', 'encoding', 'predecessors')
 
 _EPILOG = """\
@@ -86,9 +85,9 @@ def _counting(arguments: argparse.Namespace, base: Optional[TrainedModel]) -> Co
                 raise ValueError(f'--{option}: is that of {arguments.add_to} (--add-to); leave it '
                                  'out')
         return Counting.of(base)
-    bin_size = cli.duration(_BIN) if arguments.bin is None else arguments.bin
-    window = cli.duration(_WINDOW) if arguments.window is None else arguments.window
-    horizon = _HORIZON if arguments.horizon is None else arguments.horizon
+    bin_size = Counting.bin_size if arguments.bin is None else arguments.bin
+    window = Counting.window if arguments.window is None else arguments.window
+    horizon = 0 if arguments.horizon is None else arguments.horizon
     if horizon % bin_size:
         raise ValueError(f'--horizon {horizon / SECOND_NS:g} is no multiple of the bin size '
                          f'{bin_size / SECOND_NS:g}; choose one')
@@ -135,9 +134,11 @@ def _parser() -> argparse.ArgumentParser:
                              'next')
     parser.add_argument('-o', '--output', required=True, metavar='MODEL', help='file to write')
     parser.add_argument('--bin', type=cli.duration, metavar='S',
-                        help=f'size of the bins of delays in s (default: {_BIN})')
-    parser.add_argument('--window', type=cli.duration, metavar='S', help='length of the windows '
-                        f'that are scored, in s (default: {_WINDOW})')
+                        help='size of the bins of delays in s (default: '
+                             f'{Counting.bin_size / SECOND_NS:g})')
+    parser.add_argument('--window', type=cli.duration, metavar='S',
+                        help='length of the windows that are scored, in s (default: '
+                             f'{Counting.window / SECOND_NS:g})')
     parser.add_argument('--horizon', type=cli.seconds, metavar='S',
                         help='delays of this many s or more share one bin (default: no horizon)')
     parser.add_argument('--predecessors', type=cli.count, metavar='N',

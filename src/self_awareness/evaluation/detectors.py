@@ -5,13 +5,13 @@ from typing import Dict, List, Optional, Sequence, Set
 
 import numpy as np
 
-from self_awareness import (EVIDENCE_THRESHOLD, PREDECESSORS, DetectorParameters, EncodingRules,
-                            EventType, EvidenceModel, Model, TrainedModel, Training, Verdicts,
-                            judge_by_evidence)
+from self_awareness import (DEFAULT_WINDOW, EVIDENCE_THRESHOLD, PREDECESSORS, DetectorParameters,
+                            EncodingRules, EventType, EvidenceModel, Model, TrainedModel, Training,
+                            Verdicts, judge_by_evidence)
 from self_awareness.calibration import limits
 from self_awareness.calibration.limits import HeldOut
 from self_awareness.evaluation.systems import Judged, SystemAlarm, common_threshold, distinct
-from self_awareness.evaluation.windowed_events import WINDOW, WindowedEvents
+from self_awareness.evaluation.windowed_events import WindowedEvents
 from self_awareness.follow_me.scenario import load_scenario
 
 
@@ -45,8 +45,8 @@ class Paper:
 
     def _verdicts(self, encoded: WindowedEvents) -> Verdicts:
         # The window in which the recording ends is the last one, hence - 1.
-        return self._model.judge(WINDOW, self._threshold, DetectorParameters(), encoded.stamps,
-                                 encoded.ids, encoded.end - 1)
+        return self._model.judge(DEFAULT_WINDOW, self._threshold, DetectorParameters(),
+                                 encoded.stamps, encoded.ids, encoded.end - 1)
 
 
 class Evidence:
@@ -93,7 +93,7 @@ class Evidence:
 
 def _trained(recordings: Sequence[WindowedEvents],
              predecessors: int = PREDECESSORS) -> TrainedModel:
-    training = Training(EncodingRules(), window=WINDOW, predecessors=predecessors)
+    training = Training(EncodingRules(), window=DEFAULT_WINDOW, predecessors=predecessors)
     for recording in recordings:
         training.add_events(recording.event_types, recording.stamps, recording.ids)
     return training.model()

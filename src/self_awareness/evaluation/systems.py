@@ -1,13 +1,13 @@
 """What is evaluated: a system learns from recordings, and judges the windows of others."""
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import List, Optional, Protocol, Sequence
 
 import numpy as np
 
-from self_awareness import DetectorParameters, Persistence, Roc
-from self_awareness.evaluation.windowed_events import WINDOW, WindowedEvents
+from self_awareness import DEFAULT_WINDOW, DetectorParameters, Persistence, Roc
+from self_awareness.evaluation.windowed_events import WindowedEvents
 
 FALSE_POSITIVE_RATE = 0.001
 """The share of normal windows of the calibration that may score below the threshold."""
@@ -61,7 +61,7 @@ class Judged:
     @property
     def standing(self) -> np.ndarray:
         """Whether the alarm stands when the window is over."""
-        ends = self.start + WINDOW
+        ends = self.start + DEFAULT_WINDOW
         stands = np.zeros(len(ends), dtype=bool)
         for alarm in self.alarms:
             stands |= (ends >= alarm.start) & ((ends < alarm.end) | (not alarm.cleared))
@@ -133,10 +133,10 @@ class ScoringSystem:
         score = self._scorer.scores(recording)
         abnormal = score < self._threshold
         unsettled = settling(recording)
-        alarms = [SystemAlarm(alarm.start, alarm.end, alarm.cleared,
-                              self._scorer.suspects(recording,
-                                                    int((alarm.start - start[0]) // WINDOW) - 1))
-                  for alarm in persistent(start, abnormal & ~unsettled)]
+        alarms = []
+        for alarm in persistent(start, abnormal & ~unsettled):
+            raised_in = int((alarm.start - start[0]) // DEFAULT_WINDOW) - 1
+            alarms.append(replace(alarm, suspects=self._scorer.suspects(recording, raised_in)))
         return Judged(start, abnormal, score, unsettled, alarms, self._threshold)
 
 
@@ -162,7 +162,7 @@ def persistent(start: np.ndarray, abnormal: np.ndarray) -> List[SystemAlarm]:
     alarms: List[SystemAlarm] = []
     raised_at: Optional[int] = None
     end = 0
-    for end, counts in zip((start + WINDOW).tolist(), abnormal.tolist()):
+    for end, counts in zip((start + DEFAULT_WINDOW).tolist(), abnormal.tolist()):
         raised = persistence.add(counts, end)
         if raised and raised_at is None:
             raised_at = end

@@ -1,4 +1,7 @@
-"""Recordings of the evaluation: events in memory, cut into the windows that all systems judge."""
+"""Recordings of the evaluation: events in memory, cut into the windows that all systems judge.
+
+The windows of all systems are DEFAULT_WINDOW long and lie on the absolute time grid.
+"""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -6,10 +9,7 @@ from typing import Dict, List, Sequence
 
 import numpy as np
 
-from self_awareness import EventType
-
-WINDOW = 100_000_000
-"""Length of the windows [ns], of all systems; they lie on the absolute time grid."""
+from self_awareness import DEFAULT_WINDOW, EventType
 
 
 @dataclass(frozen=True)
@@ -40,12 +40,12 @@ class WindowedEvents:
 
     def starts(self) -> np.ndarray:
         """Return the starts of the windows [ns], from the one with the first event on."""
-        first = int(self.stamps[0]) // WINDOW * WINDOW
-        return np.arange(first, self.end, WINDOW, dtype=np.int64)
+        first = int(self.stamps[0]) // DEFAULT_WINDOW * DEFAULT_WINDOW
+        return np.arange(first, self.end, DEFAULT_WINDOW, dtype=np.int64)
 
     def window_of_events(self) -> np.ndarray:
         """Return the index of every event's window."""
-        return (self.stamps - int(self.starts()[0])) // WINDOW
+        return (self.stamps - int(self.starts()[0])) // DEFAULT_WINDOW
 
     def beginning(self, share: float) -> WindowedEvents:
         """Return the first share of the recording, 0 < share <= 1."""

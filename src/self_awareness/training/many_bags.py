@@ -12,8 +12,9 @@ from contextlib import closing
 from dataclasses import dataclass, field, replace
 from typing import Callable, Dict, Iterable, List, Optional, Sequence, Tuple
 
-from self_awareness import (PREDECESSORS, BagError, DetectorParameters, EncodingRules, Recording,
-                            TrainedModel, Training, progress, read_events)
+from self_awareness import (DEFAULT_WINDOW, PREDECESSORS, BagError, DetectorParameters,
+                            EncodingRules, Recording, TrainedModel, Training, progress,
+                            read_events)
 from self_awareness.calibration import limits
 from self_awareness.calibration.limits import TrainedOn
 from self_awareness.recordings import BagPart, RecordingEvents, overlap
@@ -40,7 +41,7 @@ class Counting:
 
     encoding: Optional[EncodingRules] = None
     bin_size: int = 10_000_000
-    window: int = 100_000_000
+    window: int = DEFAULT_WINDOW
     horizon_bins: int = 0
     predecessors: int = PREDECESSORS
 

@@ -1,4 +1,4 @@
-"""The paper's model, literally and slowly, with the mends of METHOD.md, section 1.
+"""The paper's model, literally and slowly, with the mends of docs/method.md, section 2.3.
 
 Nothing here is shared with the package: it is what the core is compared with. Stamps in ns.
 """

@@ -1,4 +1,4 @@
-"""The evidence detector, literally and slowly: METHOD.md, sections 3 and 4, and the headers.
+"""The evidence detector, literally and slowly: docs/method.md, sections 3 and 4, and the headers.
 
 Nothing here is shared with the package: it is what the core is compared with. Stamps in ns. An
 event type is a letter, a track a triple (channel, to, from).

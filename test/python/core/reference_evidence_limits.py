@@ -1,4 +1,4 @@
-"""The limits of the evidence, literally and slowly: METHOD.md, section 4, evidence_limits.h."""
+"""The limits of the evidence, literally and slowly: docs/method.md, section 5."""
 from __future__ import annotations
 
 import math

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from evaluation_robot import BATTERY, LASER, START, robot
 
-from self_awareness import (DetectorParameters, EncodingRules, EventType, Model, Persistence,
-                            Training, read_events)
+from self_awareness import (DEFAULT_WINDOW, DetectorParameters, EncodingRules, EventType, Model,
+                            Persistence, Training, read_events)
 from self_awareness.evaluation.detectors import Paper
 from self_awareness.evaluation.simulated import measures, summary, tradeoff
 from self_awareness.evaluation.simulated.records import (default_faults, encode, fault_record,
                                                          normal_record)
 from self_awareness.evaluation.systems import Judged, SystemAlarm, persistent, settling
-from self_awareness.evaluation.windowed_events import WINDOW, WindowedEvents, counts, known_ids
+from self_awareness.evaluation.windowed_events import WindowedEvents, counts, known_ids
 from self_awareness.follow_me.faults import effect_of
 from self_awareness.follow_me.scenario import load_scenario
 from self_awareness.follow_me.simulation import START_S, events, simulate
@@ -23,7 +23,7 @@ from self_awareness.stamps import SECOND_NS
 
 
 def judged(scores: list, alarms: list, settling: int = 0, threshold: float = 1.0) -> Judged:
-    start = START + WINDOW * np.arange(len(scores), dtype=np.int64)
+    start = START + DEFAULT_WINDOW * np.arange(len(scores), dtype=np.int64)
     score = np.array(scores, dtype=float)
     return Judged(start, score < threshold, score, np.arange(len(scores)) < settling, alarms,
                   threshold)
@@ -31,15 +31,15 @@ def judged(scores: list, alarms: list, settling: int = 0, threshold: float = 1.0
 
 def at(window: int) -> int:
     """Return the start of a window [ns]."""
-    return START + window * WINDOW
+    return START + window * DEFAULT_WINDOW
 
 
 def test_windows_and_counts_are_those_of_the_detector() -> None:
     recording = robot(20.0, 1, silent=((8.0, 12.0),))
-    training = Training(EncodingRules(), window=WINDOW)
+    training = Training(EncodingRules(), window=DEFAULT_WINDOW)
     training.add_events(recording.event_types, recording.stamps, recording.ids)
     trained = training.model()
-    verdicts = Model(trained).judge(WINDOW, None, DetectorParameters(), recording.stamps,
+    verdicts = Model(trained).judge(DEFAULT_WINDOW, None, DetectorParameters(), recording.stamps,
                                     recording.encoded(trained.event_types).ids, recording.end - 1)
     assert np.array_equal(recording.starts(), verdicts.start)
     assert len(verdicts.start) == 200

@@ -6,14 +6,13 @@ from typing import Callable, Dict, Optional, Tuple
 import numpy as np
 import pytest
 
-from self_awareness import DetectorParameters, UnknownEvents
+from self_awareness import DEFAULT_WINDOW, DetectorParameters, UnknownEvents
 from self_awareness.evaluation.detectors import Evidence, Paper
 from self_awareness.evaluation.simulated.measures import first_alarm
 from self_awareness.evaluation.simulated.records import (CALIBRATION_NAME, RECORD_S,
                                                          TRAINING_NAMES, FaultRecord, fault_record,
                                                          normal_record)
 from self_awareness.evaluation.systems import Judged
-from self_awareness.evaluation.windowed_events import WINDOW
 from self_awareness.follow_me.scenario import load_scenario
 from self_awareness.stamps import SECOND_NS
 
@@ -97,7 +96,7 @@ def test_what_was_never_seen_is_at_least_a_suspicion(systems: Systems, record_of
     evidence, by_paper = systems
     record = record_of(kind)
     verdicts = evidence.verdicts(record.recording, DetectorParameters())
-    after = (verdicts.start + WINDOW - record.onset) / SECOND_NS
+    after = (verdicts.start + DEFAULT_WINDOW - record.onset) / SECOND_NS
     assert not verdicts.suspicion[after <= 0.0].any()
     assert all(alarm.start > record.onset for alarm in verdicts.alarms)
     assert verdicts.suspicion[(after > 0.0) & (after <= within_s)].any()
@@ -114,7 +113,7 @@ def test_what_was_never_seen_is_an_alarm_at_once_where_it_is_an_error(systems: S
     parameters.unknown = UnknownEvents.ERROR
     verdicts = systems[0].verdicts(record_of(kind).recording, parameters)
     first = int(verdicts.start[np.flatnonzero(verdicts.unknown)[0]])
-    assert verdicts.alarms[0].start == first + WINDOW
+    assert verdicts.alarms[0].start == first + DEFAULT_WINDOW
     assert 'unknown events' in verdicts.alarms[0].evidence
 
 

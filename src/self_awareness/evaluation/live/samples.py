@@ -6,7 +6,7 @@ from typing import List, Optional, Sequence, Tuple
 
 from self_awareness.evaluation.simulated.measures import NORMAL
 from self_awareness.evaluation.systems import SystemAlarm
-from self_awareness.stamps import SECOND_NS
+from self_awareness.stamps import SECOND_NS, nanoseconds
 
 ERROR, WARN = 2, 1
 """Levels of the monitor's status that are an alarm, and a suspicion."""
@@ -142,7 +142,7 @@ def measure_alarms(system: str, stretch: Stretch, alarms: Sequence[SystemAlarm])
         stretch: what was wrong, and when.
         alarms: of the whole session.
     """
-    onset, end = round(stretch.onset * SECOND_NS), round(stretch.end * SECOND_NS)
+    onset, end = nanoseconds(stretch.onset), nanoseconds(stretch.end)
     raised = [alarm for alarm in alarms if onset < alarm.start <= end]
     if stretch.kind == NORMAL:
         return _normal(system, stretch, judged_share=1.0, alarms=len(raised))

@@ -11,7 +11,8 @@ from typing import Dict, List, NamedTuple, Sequence
 
 import numpy as np
 
-from self_awareness.evaluation.windowed_events import WINDOW, WindowedEvents
+from self_awareness import DEFAULT_WINDOW
+from self_awareness.evaluation.windowed_events import WindowedEvents
 from self_awareness.stamps import SECOND_NS
 
 TOLERANCE = 0.1
@@ -78,7 +79,7 @@ class _FrequencyMonitor:
 
     def _deviations(self, recording: WindowedEvents) -> np.ndarray:
         """Return by how much topics are beyond their bounds, [topic, window], 0 within them."""
-        ends = recording.starts() + WINDOW
+        ends = recording.starts() + DEFAULT_WINDOW
         rows = []
         for topic, (fewest, most) in self._bounds.items():
             count = messages_in_span(_stamps(recording, topic), ends)
@@ -121,7 +122,7 @@ def messages_in_span(stamps: np.ndarray, ends: np.ndarray) -> np.ndarray:
 
 
 def _settled_counts(recording: WindowedEvents, stamps: np.ndarray) -> np.ndarray:
-    ends = recording.starts() + WINDOW
+    ends = recording.starts() + DEFAULT_WINDOW
     full = (ends - SPAN >= recording.stamps[0]) & (ends <= recording.end)
     return messages_in_span(stamps, ends[full])
 

@@ -6,9 +6,8 @@ from typing import List, Optional, Sequence
 
 import numpy as np
 
-from self_awareness import Roc
+from self_awareness import DEFAULT_WINDOW, Roc
 from self_awareness.evaluation.systems import Judged, SystemAlarm
-from self_awareness.evaluation.windowed_events import WINDOW
 from self_awareness.stamps import SECOND_NS
 
 NORMAL = 'normal'
@@ -83,7 +82,7 @@ def fault_row(system: str, training_share: float, seed: int, kind: str, judged: 
         culprits: sources to blame.
         normal: the normal record of the same seed and system.
     """
-    before = ~judged.settling & (judged.start + WINDOW <= onset)
+    before = ~judged.settling & (judged.start + DEFAULT_WINDOW <= onset)
     after = judged.start >= onset
     standing = judged.standing
     alarm = first_alarm(judged.alarms, onset)
@@ -94,7 +93,7 @@ def fault_row(system: str, training_share: float, seed: int, kind: str, judged: 
         normal_windows=int(before.sum()),
         false_windows=int((judged.abnormal & before).sum()),
         false_alarms=sum(alarm.start <= onset for alarm in judged.alarms),
-        false_suspicions=_beginnings(judged.noticed & (judged.start + WINDOW <= onset)),
+        false_suspicions=_beginnings(judged.noticed & (judged.start + DEFAULT_WINDOW <= onset)),
         windows=int(after.sum()),
         missed_raw=int((after & ~judged.abnormal).sum()),
         missed=int((after & ~judged.abnormal & ~standing).sum()),
@@ -114,7 +113,7 @@ def _beginnings(noticed: np.ndarray) -> int:
 
 
 def _noticed_s(judged: Judged, onset: int) -> Optional[float]:
-    ends = judged.start + WINDOW
+    ends = judged.start + DEFAULT_WINDOW
     noticed = judged.noticed
     if not noticed.any() or noticed[ends <= onset][-1:].any():
         return None

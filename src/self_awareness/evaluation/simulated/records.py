@@ -18,7 +18,7 @@ from self_awareness.evaluation.windowed_events import WindowedEvents
 from self_awareness.follow_me.faults import effect_of
 from self_awareness.follow_me.scenario import Scenario
 from self_awareness.follow_me.simulation import START_S, Event, InducedFault, events
-from self_awareness.stamps import SECOND_NS
+from self_awareness.stamps import nanoseconds
 
 RECORD_S = 100.0
 """Length of the records of training and of faults [s], as in the paper."""
@@ -76,7 +76,7 @@ def fault_record(scenario: Scenario, seed: int, kind: str) -> FaultRecord:
     spread = random.Random(f'{seed}/{kind}/onset').uniform(0.0, _ONSET_SPREAD_S)
     fault = InducedFault(kind, _ONSET_S + spread)
     recording = _recorded(scenario, _derived_seed(seed, kind), RECORD_S, fault)
-    onset = round((START_S + fault.onset_s) * SECOND_NS)
+    onset = nanoseconds(START_S + fault.onset_s)
     return FaultRecord(kind, recording, onset, effect_of(scenario, kind).culprits)
 
 
@@ -110,7 +110,7 @@ def encode(recorded: List[Event], scenario: Scenario, end: int) -> WindowedEvent
 
 def _recorded(scenario: Scenario, seed: int, duration_s: float,
               fault: Optional[InducedFault]) -> WindowedEvents:
-    end = round((START_S + duration_s) * SECOND_NS)
+    end = nanoseconds(START_S + duration_s)
     return encode(list(events(duration_s, seed, fault, scenario)), scenario, end)
 
 

@@ -6,6 +6,7 @@ from dataclasses import astuple, fields
 from pathlib import Path
 from typing import Any, Dict, List, Sequence
 
+from self_awareness import DEFAULT_WINDOW
 from self_awareness.calibration import limits
 from self_awareness.evaluation.simulated import figures, tables
 from self_awareness.evaluation.simulated.experiment import Plan, Results
@@ -13,7 +14,6 @@ from self_awareness.evaluation.simulated.measures import Row
 from self_awareness.evaluation.simulated.records import (NORMAL_NAMES, NORMAL_TEST_S, RECORD_S,
                                                          TRAINING_NAMES)
 from self_awareness.evaluation.systems import FALSE_POSITIVE_RATE
-from self_awareness.evaluation.windowed_events import WINDOW
 from self_awareness.output_files import replacing
 
 NAME = 'simulated'
@@ -86,7 +86,7 @@ def page(plan: Plan, results: Results, command: str) -> str:
         seeds=', '.join(str(seed) for seed in plan.seeds),
         names=', '.join(f'`{name}`' for name in NORMAL_NAMES),
         training=len(TRAINING_NAMES), record_s=RECORD_S,
-        calibration_s=plan.calibration_s, normal_s=NORMAL_TEST_S, window_ms=WINDOW / 1e6,
+        calibration_s=plan.calibration_s, normal_s=NORMAL_TEST_S, window_ms=DEFAULT_WINDOW / 1e6,
         budget=limits.BUDGET),
         '## Targets', '', *tables.targets(rows), '']
     if results.trade_offs:

@@ -4,10 +4,10 @@ from __future__ import annotations
 import math
 from typing import Callable, List, NamedTuple, Optional, Sequence, Tuple
 
+from self_awareness import DEFAULT_WINDOW
 from self_awareness.calibration import confidence
 from self_awareness.evaluation.simulated.measures import NORMAL, Row
 from self_awareness.evaluation.simulated.tradeoff import TradeOff
-from self_awareness.evaluation.windowed_events import WINDOW
 from self_awareness.stamps import SECOND_NS
 
 _HOUR_S = 3600.0
@@ -25,14 +25,14 @@ class AlarmRate(NamedTuple):
 def false_alarms(rows: Sequence[Row]) -> AlarmRate:
     """Return the false alarms of rows; settling windows are no part of the time."""
     count = sum(row.false_alarms for row in rows)
-    hours = sum(row.normal_windows for row in rows) * WINDOW / SECOND_NS / _HOUR_S
+    hours = sum(row.normal_windows for row in rows) * DEFAULT_WINDOW / SECOND_NS / _HOUR_S
     return AlarmRate(count, hours, count / hours, confidence.poisson_rate(count, hours))
 
 
 def false_suspicions(rows: Sequence[Row]) -> AlarmRate:
     """Return the times that a suspicion or an alarm began, as the false alarms."""
     count = sum(row.false_suspicions for row in rows)
-    hours = sum(row.normal_windows for row in rows) * WINDOW / SECOND_NS / _HOUR_S
+    hours = sum(row.normal_windows for row in rows) * DEFAULT_WINDOW / SECOND_NS / _HOUR_S
     return AlarmRate(count, hours, count / hours, confidence.poisson_rate(count, hours))
 
 

@@ -10,10 +10,9 @@ from typing import List, Mapping, Optional
 
 import numpy as np
 
-from self_awareness import Roc
+from self_awareness import DEFAULT_WINDOW, Roc
 from self_awareness.evaluation.simulated.measures import first_alarm
 from self_awareness.evaluation.systems import Judged, SystemAlarm, persistent
-from self_awareness.evaluation.windowed_events import WINDOW
 from self_awareness.stamps import SECOND_NS
 
 FAULT = 'cc1'
@@ -65,9 +64,10 @@ def trade_offs(system: str, seed: int, calibration: Judged, normal: Judged,
     """
     fault = faults[FAULT]
     parts = [(normal, ~normal.settling)]
-    parts += [(other.judged, ~other.judged.settling & (other.judged.start + WINDOW <= other.onset))
-              for other in faults.values()]
-    hours = sum(int(counted.sum()) for _, counted in parts) * WINDOW / SECOND_NS / 3600.0
+    for other in faults.values():
+        before = other.judged.start + DEFAULT_WINDOW <= other.onset
+        parts.append((other.judged, ~other.judged.settling & before))
+    hours = sum(int(counted.sum()) for _, counted in parts) * DEFAULT_WINDOW / SECOND_NS / 3600.0
     result = []
     for step, threshold in enumerate(_thresholds(calibration.score[~calibration.settling])):
         alarm = first_alarm(_alarms(fault.judged, threshold, ~fault.judged.settling), fault.onset)
