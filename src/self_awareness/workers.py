@@ -18,7 +18,7 @@ import warnings
 from abc import ABC, abstractmethod
 from collections import deque
 from contextlib import contextmanager, suppress
-from typing import Any, Callable, Deque, Iterator, Sequence, TypeVar
+from typing import Any, Callable, Deque, Generator, Iterator, Sequence, TypeVar
 
 from self_awareness import progress
 
@@ -44,7 +44,7 @@ class Workers(ABC):
 
     @abstractmethod
     def map(self, function: Callable[[_Shared, _Task], _Result], shared: _Shared,
-            tasks: Sequence[_Task], description: str) -> Iterator[_Result]:
+            tasks: Sequence[_Task], description: str) -> Generator[_Result, None, None]:
         """Yield function(shared, task) of every task, in their order.
 
         Only a few results exist at a time. A caller that may stop early closes the iterator.
@@ -79,7 +79,7 @@ class InProcess(Workers):
     """One task after the other, in this process: arguments and results are handed over as such."""
 
     def map(self, function: Callable[[_Shared, _Task], _Result], shared: _Shared,
-            tasks: Sequence[_Task], description: str) -> Iterator[_Result]:
+            tasks: Sequence[_Task], description: str) -> Generator[_Result, None, None]:
         """See Workers."""
         for task in tasks:
             yield function(shared, task)
@@ -96,7 +96,7 @@ class Processes(Workers):
         self._number = number
 
     def map(self, function: Callable[[_Shared, _Task], _Result], shared: _Shared,
-            tasks: Sequence[_Task], description: str) -> Iterator[_Result]:
+            tasks: Sequence[_Task], description: str) -> Generator[_Result, None, None]:
         """See Workers. What is shared is inherited by fork, and not copied."""
         others = set(multiprocessing.active_children())
         # Not spawned: that would run the program's main module, which is a script, once more.
@@ -147,9 +147,10 @@ class Cluster(Workers):
                              f'there ({error})') from error
 
     def map(self, function: Callable[[_Shared, _Task], _Result], shared: _Shared,
-            tasks: Sequence[_Task], description: str) -> Iterator[_Result]:
+            tasks: Sequence[_Task], description: str) -> Generator[_Result, None, None]:
         """See Workers. What a worker had to do that dies is done by another one."""
         futures = set()
+        there: Any = None
 
         def submit(task: _Task) -> Any:
             future = self._submit(_call, function, there, task)
@@ -221,7 +222,7 @@ def _batches(tasks: int, workers: int) -> int:
 
 def _in_order(tasks: Sequence[_Task], submit: Callable[[_Task], Any],
               result: Callable[[Any, _Task], _Result], workers: Callable[[], int],
-              description: str) -> Iterator[_Result]:
+              description: str) -> Generator[_Result, None, None]:
     waiting: Deque[Any] = deque()
     with progress.items(len(tasks), description) as one_done:
         for task in tasks:
@@ -251,7 +252,7 @@ _inherited: Any = None
 """In a process of Processes: what all of its tasks need."""
 
 
-def _call_with_inherited(function: Callable[[Any, _Task], _Result], task: _Task) -> bytes:
+def _call_with_inherited(function: Callable[[Any, Any], Any], task: Any) -> bytes:
     return _call(function, _inherited, task)
 
 
@@ -266,5 +267,7 @@ def _start_worker(shared: object) -> None:
 
 def _end_with_parent() -> None:
     # Idle workers hold both ends of their pipes, and would wait for ever.
-    multiprocessing.connection.wait([multiprocessing.parent_process().sentinel])
+    parent = multiprocessing.parent_process()
+    if parent is not None:  # as a worker always has one
+        multiprocessing.connection.wait([parent.sentinel])
     os._exit(1)

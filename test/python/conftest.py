@@ -6,7 +6,7 @@ import os
 import random
 import time
 from pathlib import Path
-from typing import Callable, Iterable, Optional, Tuple
+from typing import Any, Callable, Iterable, Optional, Tuple
 
 import pytest
 import rosbag
@@ -95,7 +95,7 @@ def learned(model: TrainedModel, calibrations: bool = False) -> bytes:
 @pytest.fixture
 def make_bag(tmp_path: Path) -> Callable[..., str]:
     """Return a function (name, messages, **options of write_bag) that writes a bag."""
-    def make(name: str, messages: Iterable[Message], **options: object) -> str:
+    def make(name: str, messages: Iterable[Message], **options: Any) -> str:
         return write_bag(tmp_path / name, messages, **options)
     return make
 

@@ -10,8 +10,9 @@ import threading
 import time
 import unittest
 from collections import deque
+from functools import partial
 from statistics import median
-from typing import Callable, Deque, Dict, Optional, Set, Tuple
+from typing import Any, Callable, Deque, Dict, Optional, Set, Tuple
 from xmlrpc.client import ServerProxy
 
 import rosgraph
@@ -38,7 +39,8 @@ _DEADLINE_S = 90.0
 def pid_of(node: str) -> int:
     """Ask a node for its process id, as `induce` does."""
     uri = rosgraph.Master(rospy.get_name()).lookupNode(node)
-    return ServerProxy(uri).getPid(rospy.get_name())[2]
+    answer: Any = ServerProxy(uri).getPid(rospy.get_name())
+    return int(answer[2])
 
 
 def wait_for(condition: Callable[[], bool], what: str) -> None:
@@ -136,7 +138,7 @@ class FollowMeTest(unittest.TestCase):
                  f'about {_RATE_HZ:g} messages a second')
         for topic in ('odom', 'scan', 'pose', 'cmd_vel', 'tracks', 'person_hypotheses', 'battery',
                       'speech/command', 'map_metadata'):
-            wait_for(lambda topic=topic: self.listener.heard(topic), f'a message on {topic}')
+            wait_for(partial(self.listener.heard, topic), f'a message on {topic}')
 
     def test_3_clock_drifts_and_is_set_right(self) -> None:
         with induction.disturbed('ac', self.namespace):
@@ -190,7 +192,7 @@ class FollowMeTest(unittest.TestCase):
         player, slam = (pid_of(self._node(name)) for name in ('player', 'slam'))
         self.assertEqual(induce.main(['cc1', '--namespace', self.namespace]), 0)
         for topic in ('scan', 'pose', 'cmd_vel'):
-            wait_for(lambda topic=topic: self.listener.silent_for(topic, 2.0), f'{topic} silent')
+            wait_for(partial(self.listener.silent_for, topic, 2.0), f'{topic} silent')
         wait_for(lambda: not os.path.exists(f'/proc/{player}'), 'player dead')
         # The others live on.
         self.assertEqual(pid_of(self._node('slam')), slam)

@@ -29,26 +29,34 @@ def _merge(arguments: argparse.Namespace) -> None:
     check_outputs([arguments.output], arguments.models)
     check_replaces_model(arguments.output)
     known = DistinctRecordings()
-    merged: Optional[TrainedModel] = None
-    for path in arguments.models:
-        model = TrainedModel.load(path)
-        for recording in model.recordings:
-            other = known.add(path, recording)
-            if other is not None:
-                raise ValueError(f'{path}: was trained on a recording ({recording.bag}) that '
-                                 f'{other} was trained on, too; it would count twice')
-        if merged is None:
-            merged = model
-            continue
+    first, *others = arguments.models
+    merged = _load(first, known)
+    for path in others:
+        model = _load(path, known)
         try:
             merged.merge(model)
         except ValueError as error:
-            raise ValueError(f'{path}: does not fit {arguments.models[0]}: {error}') from error
+            raise ValueError(f'{path}: does not fit {first}: {error}') from error
     merged.watch()
     merged.save(arguments.output)
     print_summary(merged)
     print(f'written: {arguments.output}, without limits and threshold; calibrate it again (rosrun '
           'self_awareness calibrate)')
+
+
+def _load(path: str, known: DistinctRecordings) -> TrainedModel:
+    """Load a model whose recordings are in none of those before.
+
+    Raises:
+        ValueError: one of them is.
+    """
+    model = TrainedModel.load(path)
+    for recording in model.recordings:
+        other = known.add(path, recording)
+        if other is not None:
+            raise ValueError(f'{path}: was trained on a recording ({recording.bag}) that '
+                             f'{other} was trained on, too; it would count twice')
+    return model
 
 
 def _parser() -> argparse.ArgumentParser:

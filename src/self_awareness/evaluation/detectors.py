@@ -10,7 +10,8 @@ from self_awareness import (DEFAULT_WINDOW, EVIDENCE_THRESHOLD, PREDECESSORS, De
                             Verdicts, judge_by_evidence)
 from self_awareness.calibration import limits
 from self_awareness.calibration.limits import HeldOut
-from self_awareness.evaluation.systems import Judged, SystemAlarm, common_threshold, distinct
+from self_awareness.evaluation.systems import (Judged, SystemAlarm, common_threshold, distinct,
+                                               required)
 from self_awareness.evaluation.windowed_events import WindowedEvents
 from self_awareness.follow_me.scenario import load_scenario
 
@@ -41,12 +42,13 @@ class Paper:
         """Judge a recording."""
         encoded = recording.encoded(self._types)
         verdicts = self._verdicts(encoded)
-        return _judged(encoded, verdicts, self._threshold)
+        return _judged(encoded, verdicts, required(self._threshold, self.name, 'calibrate'))
 
     def _verdicts(self, encoded: WindowedEvents) -> Verdicts:
         # The window in which the recording ends is the last one, hence - 1.
-        return self._model.judge(DEFAULT_WINDOW, self._threshold, DetectorParameters(),
-                                 encoded.stamps, encoded.ids, encoded.end - 1)
+        model: Model = required(self._model, self.name, 'train')
+        return model.judge(DEFAULT_WINDOW, self._threshold, DetectorParameters(),
+                           encoded.stamps, encoded.ids, encoded.end - 1)
 
 
 class Evidence:
@@ -73,21 +75,24 @@ class Evidence:
 
     def calibrate(self, recordings: Sequence[WindowedEvents]) -> None:
         """Find the limits."""
-        encoded = [recording.encoded(self._trained.event_types) for recording in recordings]
-        self._trained.evidence_calibration = limits.find(
-            self._trained, DetectorParameters().settle_time, limits.BUDGET,
+        trained: TrainedModel = required(self._trained, self.name, 'train')
+        encoded = [recording.encoded(trained.event_types) for recording in recordings]
+        trained.evidence_calibration = limits.find(
+            trained, DetectorParameters().settle_time, limits.BUDGET,
             [HeldOut(recording.stamps, recording.ids) for recording in encoded])
 
     def judge(self, recording: WindowedEvents) -> Judged:
         """Judge a recording."""
-        return _judged(recording.encoded(self._trained.event_types),
+        trained: TrainedModel = required(self._trained, self.name, 'train')
+        return _judged(recording.encoded(trained.event_types),
                        self.verdicts(recording, DetectorParameters()), EVIDENCE_THRESHOLD)
 
     def verdicts(self, recording: WindowedEvents, parameters: DetectorParameters) -> Verdicts:
         """Return what the detector says of a recording, suspicions included."""
-        encoded = recording.encoded(self._trained.event_types)
+        trained: TrainedModel = required(self._trained, self.name, 'train')
+        encoded = recording.encoded(trained.event_types)
         # The window in which the recording ends is the last one, hence - 1.
-        return judge_by_evidence(self._trained, self._model, parameters, encoded.stamps,
+        return judge_by_evidence(trained, self._model, parameters, encoded.stamps,
                                  encoded.ids, encoded.end - 1)
 
 

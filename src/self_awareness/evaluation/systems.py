@@ -2,12 +2,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import List, Optional, Protocol, Sequence
+from typing import List, Optional, Protocol, Sequence, TypeVar
 
 import numpy as np
 
 from self_awareness import DEFAULT_WINDOW, DetectorParameters, Persistence, Roc
 from self_awareness.evaluation.windowed_events import WindowedEvents
+
+_Value = TypeVar('_Value')
 
 FALSE_POSITIVE_RATE = 0.001
 """The share of normal windows of the calibration that may score below the threshold."""
@@ -127,17 +129,32 @@ class ScoringSystem:
         Raises:
             ValueError: the system is not calibrated.
         """
-        if self._threshold is None:
-            raise ValueError(f'{self.name}: calibrate first')
+        threshold = required(self._threshold, self.name, 'calibrate')
         start = recording.starts()
         score = self._scorer.scores(recording)
-        abnormal = score < self._threshold
+        abnormal = score < threshold
         unsettled = settling(recording)
         alarms = []
         for alarm in persistent(start, abnormal & ~unsettled):
             raised_in = int((alarm.start - start[0]) // DEFAULT_WINDOW) - 1
             alarms.append(replace(alarm, suspects=self._scorer.suspects(recording, raised_in)))
-        return Judged(start, abnormal, score, unsettled, alarms, self._threshold)
+        return Judged(start, abnormal, score, unsettled, alarms, threshold)
+
+
+def required(value: Optional[_Value], name: str, step: str) -> _Value:
+    """Return what a step of a system has left.
+
+    Args:
+        value: that; None: the step was not taken.
+        name: of the system.
+        step: what the step is called.
+
+    Raises:
+        ValueError: the step was not taken.
+    """
+    if value is None:
+        raise ValueError(f'{name}: {step} first')
+    return value
 
 
 def common_threshold(scores: Sequence[np.ndarray]) -> float:

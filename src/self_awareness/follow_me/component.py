@@ -108,9 +108,9 @@ class Component:
             return requests
         task = self._spec.tasks[timer]
         # Once at least: jitter may let a tick come before its time.
-        tick = self._ticks[timer] + task.every.draw(self._rng)
+        tick = self._ticks[timer] + task.period().draw(self._rng)
         while tick <= now:
-            tick += task.every.draw(self._rng)
+            tick += task.period().draw(self._rng)
         self._ticks[timer] = tick
         noise = nanoseconds(self._rng.gauss(0.0, task.jitter)) if task.jitter else 0
         requests.append(Wake(max(now + 1, tick + noise), timer))
@@ -188,7 +188,7 @@ class Component:
             return now - self._received_at[need.topic] <= nanoseconds(need.within)
         if need.stamps_within is not None:
             return abs(newest.stamp - stamp) <= nanoseconds(need.stamps_within)
-        return newest.value in need.one_of
+        return newest.value in (need.one_of or ())
 
     def _value(self, step: _Step) -> Optional[Value]:
         if step.action is not None:
@@ -197,7 +197,9 @@ class Component:
             newest = self._received.get(step.output.value_of)
             return None if newest is None else newest.value
         values = step.output.values
-        return self._rng.choice(values) if len(values) > 1 else next(iter(values), None)
+        if len(values) > 1:
+            return self._rng.choice(values)
+        return values[0] if values else None
 
 
 class _View:

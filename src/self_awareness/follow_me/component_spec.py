@@ -103,6 +103,16 @@ class Task:
     in_view: Optional[InView] = None
     hypothesis: Optional[Hypothesis] = None
 
+    def period(self) -> Duration:
+        """Return the period of the task's timer.
+
+        Raises:
+            ValueError: it has none; a message starts it.
+        """
+        if self.every is None:
+            raise ValueError('the task has no timer')
+        return self.every
+
     def inputs(self) -> Tuple[str, ...]:
         """Return the topics that this task depends on."""
         topics = [self.upon] + [need.topic for need in self.needs]

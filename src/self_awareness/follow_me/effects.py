@@ -170,13 +170,13 @@ class Faults:
 
 def _halved(task: Task) -> Task:
     if task.upon is None:
-        return replace(task, every=task.every.times(2.0))
+        return replace(task, every=task.period().times(2.0))
     return replace(task, each=2 * task.each)
 
 
 def _doubled(task: Task) -> Task:
     if task.upon is None:
-        return replace(task, every=task.every.times(0.5))
+        return replace(task, every=task.period().times(0.5))
     if task.each % 2 == 0:
         return replace(task, each=task.each // 2)
     return replace(task, publish=tuple(replace(output, copies=2) for output in task.publish),

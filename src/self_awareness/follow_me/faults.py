@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from typing import Callable, Dict, Optional, Tuple
 
 from self_awareness.follow_me.component_spec import ComponentSpec
-from self_awareness.follow_me.effects import Crash, DoubleRate, Effect, HalfRate, Latency, Silence
+from self_awareness.follow_me.effects import Crash, DoubleRate, Effect, HalfRate, Silence
 from self_awareness.follow_me.scenario import Scenario
 
 INDUCED_FAULT = 'induced_fault'
@@ -20,13 +20,13 @@ def effect_of(scenario: Scenario, kind: str) -> Effect:
     """Return what the fault of that name does to a robot.
 
     Raises:
-        ValueError: there is no such fault, or it cannot befall that component.
+        ValueError: there is no such fault, or it cannot hit that component.
     """
-    name, component = _split(kind)
-    if component is None:
-        return _KINDS[name].effect(scenario, None)
+    found, component = _split(kind)
+    if found.of is None or not component:
+        return found.alone(scenario)
     try:
-        return _KINDS[name].effect(scenario, scenario.component(component))
+        return found.of(scenario, scenario.component(component))
     except ValueError as error:
         raise ValueError(f'fault {kind}: {error}') from error
 
@@ -47,22 +47,33 @@ def described() -> str:
 
 def forms() -> Tuple[str, ...]:
     """Return how faults are named: `cc1`, `lat[:COMPONENT]`, `crash:COMPONENT` and so on."""
-    return tuple(name + kind.component for name, kind in _KINDS.items())
+    return tuple(name + kind.form for name, kind in _KINDS.items())
 
 
-_NONE, _OPTIONAL, _REQUIRED = '', '[:COMPONENT]', ':COMPONENT'
+def _needs_component(_: Scenario) -> Effect:
+    raise ValueError('name the component that the fault hits')
 
 
 @dataclass(frozen=True)
 class _Kind:
-    component: str
+    """What a kind of fault does.
+
+    Args:
+        text: for people.
+        alone: named without a component.
+        of: named with one; None: it cannot be.
+    """
+
     text: str
-    effect: Callable[[Scenario, Optional[ComponentSpec]], Effect]
+    alone: Callable[[Scenario], Effect] = _needs_component
+    of: Optional[Callable[[Scenario, ComponentSpec], Effect]] = None
 
-
-def _latency(scenario: Scenario, spec: Optional[ComponentSpec]) -> Latency:
-    lat = scenario.faults.lat
-    return lat if spec is None else replace(lat, components=(spec.name,))
+    @property
+    def form(self) -> str:
+        """What follows the name."""
+        if self.of is None:
+            return ''
+        return ':COMPONENT' if self.alone is _needs_component else '[:COMPONENT]'
 
 
 def _double_rate(_: Scenario, spec: ComponentSpec) -> DoubleRate:
@@ -70,39 +81,38 @@ def _double_rate(_: Scenario, spec: ComponentSpec) -> DoubleRate:
         if task.upon is not None:
             continue
         busy = sum(output.takes.median + output.waits.median for output in task.publish)
-        if busy > task.every.median / 2.0:
-            raise ValueError(f'{spec.name!r} is busy for {busy:g} s every {task.every.median:g} s '
+        period = task.period().median
+        if busy > period / 2.0:
+            raise ValueError(f'{spec.name!r} is busy for {busy:g} s every {period:g} s '
                              'and cannot do that twice as often; choose another component')
     return DoubleRate((spec.name,))
 
 
 _KINDS: Dict[str, _Kind] = {
-    'cc1': _Kind(_NONE, "the laser's driver dies (paper)", lambda robot, _: robot.faults.cc1),
-    'cc2': _Kind(_NONE, 'slam dies (paper)', lambda robot, _: robot.faults.cc2),
-    'rs': _Kind(_NONE, 'busy workers starve the CPU (paper)', lambda robot, _: robot.faults.rs),
-    'ac': _Kind(_NONE, 'the clock of one host drifts away (paper)',
-                lambda robot, _: robot.faults.ac),
-    'crash': _Kind(_REQUIRED, 'a component dies', lambda _, spec: Crash(spec.name)),
-    'silence': _Kind(_NONE, 'all components die at once', lambda *_: Silence()),
-    'lat': _Kind(_OPTIONAL, 'components answer later, at an unchanged rate', _latency),
-    'half': _Kind(_REQUIRED, 'a component works at half its rate',
-                  lambda _, spec: HalfRate((spec.name,))),
-    'double': _Kind(_REQUIRED, 'a component publishes twice as often', _double_rate),
-    'extra': _Kind(_NONE, "a foreign node publishes on a component's topic",
-                   lambda robot, _: robot.faults.extra),
-    'order': _Kind(_NONE, 'a component publishes in reversed order',
-                   lambda robot, _: robot.faults.order),
-    'unknown': _Kind(_NONE, 'a component publishes what was never seen before',
-                     lambda robot, _: robot.faults.unknown),
+    'cc1': _Kind("the laser's driver dies (paper)", lambda robot: robot.faults.cc1),
+    'cc2': _Kind('slam dies (paper)', lambda robot: robot.faults.cc2),
+    'rs': _Kind('busy workers starve the CPU (paper)', lambda robot: robot.faults.rs),
+    'ac': _Kind('the clock of one host drifts away (paper)', lambda robot: robot.faults.ac),
+    'crash': _Kind('a component dies', of=lambda _, spec: Crash(spec.name)),
+    'silence': _Kind('all components die at once', lambda _: Silence()),
+    'lat': _Kind('components answer later, at an unchanged rate', lambda robot: robot.faults.lat,
+                 lambda robot, spec: replace(robot.faults.lat, components=(spec.name,))),
+    'half': _Kind('a component works at half its rate', of=lambda _, spec: HalfRate((spec.name,))),
+    'double': _Kind('a component publishes twice as often', of=_double_rate),
+    'extra': _Kind("a foreign node publishes on a component's topic",
+                   lambda robot: robot.faults.extra),
+    'order': _Kind('a component publishes in reversed order', lambda robot: robot.faults.order),
+    'unknown': _Kind('a component publishes what was never seen before',
+                     lambda robot: robot.faults.unknown),
 }
 
 
-def _split(kind: str) -> Tuple[str, Optional[str]]:
+def _split(kind: str) -> Tuple[_Kind, str]:
     name, colon, component = kind.partition(':')
     if name not in _KINDS:
         raise ValueError(f'fault {kind!r}: choose one of {", ".join(forms())}')
-    form = _KINDS[name].component
-    if bool(component) != bool(colon) or (colon and form == _NONE) or (
-            not colon and form == _REQUIRED):
-        raise ValueError(f'fault {kind!r}: expected {name}{form}')
-    return name, component or None
+    found = _KINDS[name]
+    named = found.of is not None if colon else found.alone is not _needs_component
+    if not named or bool(component) != bool(colon):
+        raise ValueError(f'fault {kind!r}: expected {name}{found.form}')
+    return found, component

@@ -10,7 +10,7 @@ import subprocess
 import time
 from http.client import HTTPException
 from pathlib import Path
-from typing import ContextManager, Dict, Iterator, Optional
+from typing import Any, ContextManager, Dict, Iterator, Optional
 from urllib.parse import urlparse
 from xmlrpc.client import Fault as XmlRpcFault
 from xmlrpc.client import ServerProxy
@@ -99,7 +99,8 @@ def _pid(node: str) -> int:
         raise InduceError(f'{node} runs on another machine ({uri}): induce the fault there')
     try:
         with _timeout(5.0):
-            code, text, pid = ServerProxy(uri).getPid(_CALLER_ID)
+            answer: Any = ServerProxy(uri).getPid(_CALLER_ID)
+            code, text, pid = answer
     except (OSError, HTTPException, XmlRpcFault) as error:
         raise _DeadError(f'{node} does not answer at {uri}: it is dead already') from error
     if code != 1 or pid <= 1:

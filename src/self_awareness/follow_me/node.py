@@ -13,6 +13,7 @@ import heapq
 import queue
 import random
 import time
+from functools import partial
 from typing import Any, Callable, List, NamedTuple, Optional, Tuple
 
 import rospy
@@ -84,8 +85,7 @@ class ComponentNode:
             if isinstance(request, Publish):
                 self._publish(request)
             elif isinstance(request, Wake):
-                timer = request.timer
-                self._push(request.at, lambda now, timer=timer: self._component.wake(now, timer))
+                self._push(request.at, partial(self._component.wake, timer=request.timer))
             else:
                 self._push(self._begin(request), self._component.work_done)
 
@@ -100,11 +100,11 @@ class ComponentNode:
     def _publish(self, request: Publish) -> None:
         if request.delay > 0:
             self._push(self._now() + request.delay,
-                       lambda _, message=request.message: self._send(message))
+                       partial(self._send, message=request.message))
         else:
-            self._send(request.message)
+            self._send(self._now(), request.message)
 
-    def _send(self, message: Message) -> List[Request]:
+    def _send(self, _: int, message: Message) -> List[Request]:
         try:
             self._publishers[message.topic].publish(self._types[message.topic].to_ros(message))
         except rospy.ROSException:

@@ -228,7 +228,8 @@ class _Effects:
         drift = self._drift
         if drift is None or drift.host != host:
             return lambda now: now
-        return lambda now: now + drift.offset_ns(now - self.onset)
+        offset_ns = drift.offset_ns
+        return lambda now: now + offset_ns(now - self.onset)
 
     def spec_at(self, spec: ComponentSpec) -> Optional[Callable[[int], ComponentSpec]]:
         """Return what a component does at a given time; None if that never changes."""
@@ -290,8 +291,8 @@ class _Robot:
             self._transmit(name, request.message, now + request.delay)
         elif isinstance(request, Wake):
             late = round(self._scenario.lateness.draw(self._rng) * slowdown)
-            timer = request.timer
-            self._push(request.at + late, _Act(name, lambda at: component.wake(at, timer)))
+            self._push(request.at + late,
+                       _Act(name, functools.partial(component.wake, timer=request.timer)))
         else:
             done = now + round(request.takes * slowdown) + request.waits
             self._push(done, _Act(name, component.work_done))
@@ -304,7 +305,7 @@ class _Robot:
         for subscriber in self._subscribers[topic]:
             receive = self._components[subscriber].receive
             self._push(self._arrival(name, topic, subscriber, now),
-                       _Act(subscriber, lambda at, receive=receive: receive(at, message)))
+                       _Act(subscriber, functools.partial(receive, message=message)))
 
     def _arrival(self, publisher: str, topic: str, subscriber: str, now: int) -> int:
         # Messages do not overtake each other on one connection.

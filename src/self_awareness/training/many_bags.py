@@ -206,7 +206,7 @@ class _Sum:
             ValueError: they do not fit; nothing was added.
         """
         if other.model is not None:
-            self._add_counts(other)
+            self._add_counts(other, other.model)
         self.lines += other.lines
         self.bad += other.bad
 
@@ -215,16 +215,16 @@ class _Sum:
         self.bad.append(error)
         self.lines.append(f'skipped: {error}')
 
-    def _add_counts(self, other: _Sum) -> None:
+    def _add_counts(self, other: _Sum, model: TrainedModel) -> None:
         swapped = self.model is not None and len(self.model.recordings) % 2 == 1
         if swapped:
-            other.model.swap_halves()
+            model.swap_halves()
         if self.model is None:
-            self.model = other.model
+            self.model = model
         else:
-            self._check_sources(other)
+            self._check_sources(other, self.model, model)
             try:
-                self.model.merge(other.model)
+                self.model.merge(model)
             except ValueError as error:
                 raise ValueError(f'{_Batch([each.part for each in other.trained_on])}: {error}'
                                  ) from error
@@ -235,12 +235,12 @@ class _Sum:
             self._kept += events if keep else 0
             self.trained_on.append(replace(each, half=half, events=each.events if keep else None))
 
-    def _check_sources(self, other: _Sum) -> None:
-        if self.model.encoding.source == other.model.encoding.source:
+    def _check_sources(self, other: _Sum, mine: TrainedModel, model: TrainedModel) -> None:
+        if mine.encoding.source == model.encoding.source:
             return
         # The two bags where one names senders and the other does not: the same in any batches.
         before, behind = self.trained_on[-1], other.trained_on[0]
-        nameless = behind if other.model.encoding.source == 'none' else before
+        nameless = behind if model.encoding.source == 'none' else before
         raise ValueError(f'{nameless.part.path}: {_NAMELESS}')
 
 

@@ -7,6 +7,7 @@ import re
 import sys
 from pathlib import Path
 from types import ModuleType
+from typing import Iterator
 
 import pytest
 
@@ -17,7 +18,7 @@ REPORTS = {'core': 'core_report', 'models': 'models', 'bags': 'bags_report',
 
 
 @pytest.fixture(autouse=True)
-def benchmark_folder(monkeypatch: pytest.MonkeyPatch) -> None:
+def benchmark_folder(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """Let the programs of the benchmarks be found, and leave nothing of them behind."""
     monkeypatch.syspath_prepend(str(ROOT / 'benchmark'))
     before = set(sys.modules)

@@ -105,7 +105,8 @@ def test_a_model_with_another_encoding_is_told(make_bag, model_file: str, robot_
     assert nameless in error and 'another encoding' in error and 'source: none' in error
     other_robot = make_bag('other.bag', [(t, '/x', '/y') for t, _, _ in robot(10.0)])
     for bag in (nameless, other_robot):
-        for options in ([], ['--detector', 'paper', '--cutoff', 'fpr=0.1']):
+        by_detector: List[List[str]] = [[], ['--detector', 'paper', '--cutoff', 'fpr=0.1']]
+        for options in by_detector:
             error = error_of('calibrate', ['--model', model_file, '--normal', bag, *options, '-o',
                                            str(tmp_path / 'm')], capsys)
             assert bag in error and 'another encoding' in error

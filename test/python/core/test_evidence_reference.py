@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import math
 import random
-from typing import Dict, List, Tuple
+from typing import Dict, List, Optional, Tuple
 
 import numpy as np
 import pytest
@@ -128,6 +128,7 @@ def test_the_evidence_of_all_channels(learned: Robot, fault_s: float) -> None:
 
 @pytest.mark.parametrize('held_out', [True, False])
 def test_the_limits(learned: Robot, held_out: bool) -> None:
+    parts: List[Tuple[List[Event], Optional[int]]]
     if held_out:
         # In the last one the answers come later from the start: such pairs mislead.
         parts = [(robot(random.Random(7), 130.0), None), (robot(random.Random(8), 42.0), None),

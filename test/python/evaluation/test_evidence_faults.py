@@ -32,11 +32,12 @@ def _systems() -> Systems:
     scenario = load_scenario()
     training = [normal_record(scenario, SEED, name, RECORD_S) for name in TRAINING_NAMES]
     calibration = [normal_record(scenario, SEED, CALIBRATION_NAME, CALIBRATION_S)]
-    systems = (Evidence(knows_graph=True), Paper())
-    for system in systems:
-        system.train(training)
-        system.calibrate(calibration)
-    return systems
+    evidence, paper = Evidence(knows_graph=True), Paper()
+    evidence.train(training)
+    evidence.calibrate(calibration)
+    paper.train(training)
+    paper.calibrate(calibration)
+    return evidence, paper
 
 
 @pytest.fixture(name='record_of', scope='session')
@@ -73,7 +74,9 @@ def latency(judged: Judged, onset: int) -> Optional[float]:
 def test_evidence_raises_the_alarm(systems: Systems, record_of: Record, kind: str,
                                    within_s: float, paper: str) -> None:
     record = record_of(kind)
-    by_evidence, by_paper = (system.judge(record.recording) for system in systems)
+    evidence, paper_system = systems
+    by_evidence = evidence.judge(record.recording)
+    by_paper = paper_system.judge(record.recording)
     assert all(alarm.start > record.onset for alarm in by_evidence.alarms)
     found = latency(by_evidence, record.onset)
     assert found is not None and found <= within_s

@@ -14,7 +14,7 @@ import yaml
 
 from self_awareness.follow_me.component import Component, Message, Publish, Wake
 from self_awareness.follow_me.component_spec import ComponentSpec, Duration, Output, Task
-from self_awareness.follow_me.effects import DoubleRate, HalfRate, Latency, Novelty
+from self_awareness.follow_me.effects import Change, DoubleRate, HalfRate, Latency, Novelty
 from self_awareness.follow_me.faults import effect_of
 from self_awareness.follow_me.scenario import Scenario, load_scenario
 from self_awareness.follow_me.simulation import START_S, Event, InducedFault, events, simulate
@@ -246,6 +246,7 @@ def test_rate_of_what_is_done_upon_a_topic(each: int, effect: Any, copies: int) 
 
 def test_other_components_are_left_alone(scenario: Scenario) -> None:
     effect = effect_of(scenario, 'lat')
+    assert isinstance(effect, Change)
     changed = [spec.name for spec in scenario.components if effect.changed(spec) is not spec]
     assert changed == ['leg_detection', 'face_detection']
 

@@ -192,7 +192,7 @@ def test_failure_leaves_nothing_behind(scenario: Scenario, tmp_path: Path) -> No
     ({'duration_s': 1.0, 'start_s': 0.0}, 'start'),
     ({'duration_s': 1.0, 'start_s': 5e9}, 'start'),
 ])
-def test_arguments_out_of_range(scenario: Scenario, arguments: Dict[str, float],
+def test_arguments_out_of_range(scenario: Scenario, arguments: Dict[str, Any],
                                 message: str) -> None:
     with pytest.raises(ValueError, match=message):
         events(seed=1, scenario=scenario, **arguments)

@@ -70,7 +70,7 @@ class Processes:
         """
         process = self.start(log, *command)
         try:
-            code = process.wait(within_s)
+            code: object = process.wait(within_s)
         except subprocess.TimeoutExpired:
             code = 'not yet'
         self.end(process)

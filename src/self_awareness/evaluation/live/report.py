@@ -141,7 +141,7 @@ def _blame(samples: Sequence[Sample]) -> str:
     blamed = [sample for sample in samples if sample.top1 is not None]
     if not blamed:
         return '–'
-    return (f'{percent(sum(sample.top1 for sample in blamed) / len(blamed))} / '
+    return (f'{percent(sum(bool(sample.top1) for sample in blamed) / len(blamed))} / '
             f'{percent(sum(bool(sample.top3) for sample in blamed) / len(blamed))}')
 
 

@@ -114,7 +114,7 @@ class _Session:
         self._told = told
         self._scenario = load_scenario()
         self._robot = RobotListener([*_REGULAR, _SHARED])
-        self._monitor: Optional[MonitorListener] = None
+        self._monitor = MonitorListener()
         self._robot_process: Optional[subprocess.Popen] = None
         self._stretches: List[Stretch] = []
 
@@ -133,7 +133,6 @@ class _Session:
                             '-o', str(model))
         recording = self._folder / 'session.bag'
         recorder = self._start_recorder(recording)
-        self._monitor = MonitorListener()
         self._processes.start('monitor', 'roslaunch', '--wait', 'self_awareness', 'monitor.launch',
                               f'model:={model}', f'config:={self._config()}')
         for number in range(1, self._plan.rounds + 1):

@@ -2,7 +2,8 @@
 from __future__ import annotations
 
 import math
-from typing import Callable, List, NamedTuple, Optional, Sequence, Tuple
+from dataclasses import dataclass
+from typing import Callable, Iterable, List, NamedTuple, Optional, Sequence, Tuple
 
 from self_awareness import DEFAULT_WINDOW
 from self_awareness.calibration import confidence
@@ -13,7 +14,8 @@ from self_awareness.stamps import SECOND_NS
 _HOUR_S = 3600.0
 
 
-class AlarmRate(NamedTuple):
+@dataclass(frozen=True)
+class AlarmRate:
     """Alarms in normal operation, an hour, with their 95 % confidence interval."""
 
     count: int
@@ -68,12 +70,12 @@ def found(rows: Sequence[Row], within_s: float = math.inf) -> float:
 
 def missed_raw(rows: Sequence[Row]) -> float:
     """Return the mean share of the windows after the onset that the bare verdict misses."""
-    return _mean([row.missed_raw / row.windows for row in rows])
+    return _mean_share((row.missed_raw, row.windows) for row in rows)
 
 
 def missed(rows: Sequence[Row]) -> float:
     """Return the same of windows without standing alarm, the false negative rate."""
-    return _mean([row.missed / row.windows for row in rows])
+    return _mean_share((row.missed, row.windows) for row in rows)
 
 
 def missed_after_alarm(rows: Sequence[Row]) -> float:
@@ -81,13 +83,12 @@ def missed_after_alarm(rows: Sequence[Row]) -> float:
 
     NaN if no alarm was raised.
     """
-    return _mean([row.missed_after_alarm / row.windows_after_alarm
-                  for row in rows if row.windows_after_alarm])
+    return _mean_share((row.missed_after_alarm, row.windows_after_alarm) for row in rows)
 
 
 def auc(rows: Sequence[Row]) -> float:
     """Return the mean area under the ROC."""
-    return _mean([row.auc for row in rows])
+    return _mean([row.auc for row in rows if row.auc is not None])
 
 
 def guilty_first(rows: Sequence[Row]) -> float:
@@ -129,6 +130,11 @@ def quantile(values: Sequence[Optional[float]], fraction: float) -> float:
     """Return a quantile by nearest rank; None counts as infinite."""
     ordered = sorted(math.inf if value is None else value for value in values)
     return ordered[max(0, math.ceil(fraction * len(ordered)) - 1)] if ordered else math.nan
+
+
+def _mean_share(parts: Iterable[Tuple[Optional[int], Optional[int]]]) -> float:
+    """Return the mean of parts of a whole, where there are both."""
+    return _mean([part / whole for part, whole in parts if part is not None and whole])
 
 
 def _mean(values: Sequence[float]) -> float:
