@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Benchmark of whole processes: what the live monitor costs beside others that hear the same.
+"""Benchmark of whole processes: what the monitor costs, and others that hear the same.
 
 Ten nodes publish at exact rates; in turn, the monitor, a bare ShapeShifter subscriber that only
 counts, and `rosbag record` listen to them on a core of their own. Needs `catkin_make

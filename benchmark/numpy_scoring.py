@@ -15,7 +15,7 @@ from self_awareness import DEFAULT_WINDOW, EncodingRules, EventType, Model, Trai
 
 SIZES = (15, 60, 150, 300, 1000)
 BIN_SIZE = 10_000_000  # [ns]
-BINS = 256  # the last one for all beyond
+BINS = 256  # the last one for all longer delays
 TRAINING = 30.0  # [s]
 SCORED = 2000  # events
 ROUNDS = 5

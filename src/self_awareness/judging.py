@@ -1,4 +1,4 @@
-"""The two detectors on whole recordings, behind one signature."""
+"""Judges whole recordings with either detector: both are called in the same way."""
 from __future__ import annotations
 
 from typing import Callable, Optional

@@ -25,7 +25,7 @@ class BagPart:
 
     @classmethod
     def parse(cls, text: str) -> BagPart:
-        """Read BAG, BAG@START or BAG@START-END; a file whose very name is the text comes first."""
+        """Read BAG, BAG@START or BAG@START-END; a file with this name comes first."""
         match = None if os.path.exists(text) else _PART.fullmatch(text)
         if match is None:
             return cls(text)
@@ -46,7 +46,7 @@ class BagPart:
 
 @dataclass(frozen=True)
 class RecordingEvents:
-    """The events of a recording as a model encodes them; ids behind the model's are unknown.
+    """The events of a recording as a model encodes them; ids after the model's are unknown.
 
     Args:
         part: what was asked for.
@@ -68,13 +68,13 @@ class RecordingEvents:
 
     @property
     def middle(self) -> int:
-        """Where a training cuts it into halves if it is alone [ns]."""
+        """Where a training cuts it into halves if it is the only recording [ns]."""
         start, end = self.part.span(self.origin, self.end)
         return start + (end - start) // 2
 
     @property
     def recording(self) -> Recording:
-        """What a model file says of the part."""
+        """What a model file says about the part."""
         start, end = self.part.span(self.origin, self.end)
         recording = Recording()
         recording.bag = os.path.basename(self.part.path)
@@ -90,7 +90,7 @@ def read(model: TrainedModel, part: BagPart) -> RecordingEvents:
 
     Raises:
         BagError: the bag cannot be read.
-        ValueError: the time range is none, the bag does not name the senders that the model tells
+        ValueError: the time range is empty, the bag does not name the senders that the model tells
             apart, or no message of it is an event.
     """
     with progress.messages(os.path.basename(part.path)) as update:
@@ -106,7 +106,7 @@ def read(model: TrainedModel, part: BagPart) -> RecordingEvents:
 
 
 def overlap(a: Recording, b: Recording) -> bool:
-    """Return whether two recordings are, even in part, the same under whatever name."""
+    """Return whether two recordings are the same, at least in part; names do not matter."""
     return a.fingerprint == b.fingerprint and a.start <= b.end and b.start <= a.end
 
 

@@ -1,6 +1,6 @@
 """Who does the work: this process, several of this machine, or those of an existing cluster.
 
-All give the same results in the same order, so that nobody else need know who did it.
+All give the same results in the same order: nothing else depends on who did the work.
 """
 from __future__ import annotations
 
@@ -27,20 +27,20 @@ _Task = TypeVar('_Task')
 _Result = TypeVar('_Result')
 
 _AHEAD = 2
-"""So many tasks a worker are under way or done, and wait for their turn."""
+"""Tasks for each worker that may be under way, or done and waiting for their turn."""
 _BATCHES = 3
-"""So many batches of tasks a worker has to do, that all be ready at about the same time."""
+"""Batches for each worker: with several, all workers end at about the same time."""
 _LARGEST_BATCH = 8
-"""So many tasks make a batch at most, or as many as there are workers."""
+"""The most tasks of a batch, unless there are more workers than this."""
 _RETRIES = 2
 _CONNECT_S = 10.0
 
 
 class Workers(ABC):
-    """Apply a function to many tasks. To be closed at the end."""
+    """Applies a function to many tasks. Close it at the end."""
 
     near = True
-    """Whether it costs little to hand over arguments and results."""
+    """Whether arguments and results are handed over at little cost."""
 
     @abstractmethod
     def map(self, function: Callable[[_Shared, _Task], _Result], shared: _Shared,
@@ -50,7 +50,7 @@ class Workers(ABC):
         Only a few results exist at a time. A caller that may stop early closes the iterator.
 
         Args:
-            function: of a module, not within a function.
+            function: defined in a module, not within a function.
             shared: what all tasks need; handed over once.
             tasks: each says by str() what it is.
             description: of the progress bar.
@@ -69,14 +69,14 @@ class Workers(ABC):
         Raises:
             ValueError: the work cannot be done there.
         """
-        return tasks  # results are handed over as such
+        return tasks  # nothing is copied: summing up early saves nothing
 
     def close(self) -> None:
-        """Let go of what does the work."""
+        """Give back what does the work."""
 
 
 class InProcess(Workers):
-    """One task after the other, in this process: arguments and results are handed over as such."""
+    """One task after the other, in this process: arguments and results are not copied."""
 
     def map(self, function: Callable[[_Shared, _Task], _Result], shared: _Shared,
             tasks: Sequence[_Task], description: str) -> Generator[_Result, None, None]:
@@ -99,7 +99,7 @@ class Processes(Workers):
             tasks: Sequence[_Task], description: str) -> Generator[_Result, None, None]:
         """See Workers. What is shared is inherited by fork, and not copied."""
         others = set(multiprocessing.active_children())
-        # Not spawned: that would run the program's main module, which is a script, once more.
+        # Not spawned: that would run the program's script again in every process.
         with concurrent.futures.ProcessPoolExecutor(
                 min(self._number, len(tasks)), multiprocessing.get_context('fork'), _start_worker,
                 (shared,)) as pool:
@@ -131,16 +131,16 @@ class Cluster(Workers):
 
     def __init__(self, address: str) -> None:
         try:
-            import distributed.scheduler  # optional: who has no cluster does without it
+            import distributed.scheduler  # optional: only needed with a cluster
         except ImportError as error:
             raise ValueError('--scheduler needs dask.distributed, which is not installed '
                              f'({error}); its package is python3-distributed') from error
         self._address = address
         self._killed = distributed.scheduler.KilledWorker
-        for name in ('asyncio', 'distributed', 'distributed.client'):  # exceptions tell it all
+        for name in ('asyncio', 'distributed', 'distributed.client'):  # exceptions say it
             logging.getLogger(name).setLevel(logging.CRITICAL)
         try:
-            distributed.comm.resolve_address(address)  # of a nonsense, a client is slow to recover
+            distributed.comm.resolve_address(address)  # fails at once, a client late
             self._client = distributed.Client(address, timeout=_CONNECT_S, set_as_default=False)
         except (OSError, ValueError, asyncio.TimeoutError) as error:
             raise ValueError(f'--scheduler {address}: no scheduler of dask.distributed answers '
@@ -148,7 +148,7 @@ class Cluster(Workers):
 
     def map(self, function: Callable[[_Shared, _Task], _Result], shared: _Shared,
             tasks: Sequence[_Task], description: str) -> Generator[_Result, None, None]:
-        """See Workers. What a worker had to do that dies is done by another one."""
+        """See Workers. If a worker dies, another one does its work."""
         futures = set()
         there: Any = None
 
@@ -165,7 +165,7 @@ class Cluster(Workers):
 
         try:
             with self._connected():
-                # As the result of a task, it is made again when workers die that hold it.
+                # As the result of a task, it is made again when the workers that hold it die.
                 there = self._submit(pickle.loads, pickle.dumps(shared))
                 futures.add(there)
                 yield from _in_order(tasks, submit, result, self._threads, description)
@@ -213,9 +213,9 @@ class Cluster(Workers):
 
 
 def _batches(tasks: int, workers: int) -> int:
-    # While one worker is busy with a batch, the results of the others arrive: where a batch has as
-    # many tasks as there are workers, to add those up does not take longer than that. Larger ones
-    # would only be more to do again when a worker dies.
+    # The results of the others arrive while a worker is busy with a batch. Where a batch has as
+    # many tasks as there are workers, adding them up takes no longer than that. Larger batches
+    # only lose more work when a worker dies.
     largest = max(workers, _LARGEST_BATCH)
     return min(tasks, max(_BATCHES * workers, math.ceil(tasks / largest), 1))
 
@@ -236,7 +236,7 @@ def _in_order(tasks: Sequence[_Task], submit: Callable[[_Task], Any],
 
 
 def _call(function: Callable[[_Shared, _Task], _Result], shared: _Shared, task: _Task) -> bytes:
-    # Results wait for their turn as bytes, in which histograms are smaller than in the memory.
+    # Results wait for their turn as bytes: histograms are smaller so.
     return pickle.dumps(function(shared, task))
 
 
@@ -260,13 +260,13 @@ def _start_worker(shared: object) -> None:
     global _inherited
     _inherited = shared
     progress.silence()
-    for number in (signal.SIGINT, signal.SIGTERM):  # Ctrl-C is explained by the parent
+    for number in (signal.SIGINT, signal.SIGTERM):  # the parent says what happened
         signal.signal(number, signal.SIG_DFL)
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
 
 def _end_with_parent() -> None:
-    # Idle workers hold both ends of their pipes, and would wait for ever.
+    # Idle workers hold both ends of their pipes, and would never see that the parent is gone.
     parent = multiprocessing.parent_process()
     if parent is not None:  # as a worker always has one
         multiprocessing.connection.wait([parent.sentinel])

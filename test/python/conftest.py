@@ -21,7 +21,7 @@ Message = Tuple[float, str, str]
 
 @pytest.fixture(scope='session')
 def shared() -> Path:
-    """The folder of vectors and real recordings that nobody here made."""
+    """The folder of vectors and real recordings, which are not part of the package."""
     folder = Path(os.environ.get('SELF_AWARENESS_SHARED',
                                  str(Path(__file__).resolve().parents[3] / 'shared')))
     if not folder.is_dir():

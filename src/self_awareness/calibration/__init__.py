@@ -1,1 +1,1 @@
-"""From when on a model calls windows abnormal: limits, thresholds, and how well they do."""
+"""When a model calls windows abnormal: limits, the threshold, and how well they do."""

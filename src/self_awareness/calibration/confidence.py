@@ -1,4 +1,4 @@
-"""95 % confidence intervals of what a calibration measures. All take windows for independent."""
+"""95 % confidence intervals of what a calibration measures. All assume independent windows."""
 from __future__ import annotations
 
 import math
@@ -29,7 +29,7 @@ def poisson_rate(count: int, time: float) -> Interval:
 def auc(area: float, normal: int, abnormal: int) -> Interval:
     """Return an interval of the area under a ROC by Hanley and McNeil's variance (1982).
 
-    The limits are the areas from which the measured one is as far as their own standard error
+    Its ends are the areas from which the measured one is as far as their own standard error
     says (Newcombe 2006): with the standard error of the measured area, an area of 1 would have
     the interval [1, 1] after a handful of windows.
 
@@ -53,7 +53,7 @@ def _standard_error(area: float, normal: int, abnormal: int) -> float:
 
 
 def _boundary(within: float, beyond: float, inside: Callable[[float], bool]) -> float:
-    """Return the last point on the way from `within` to `beyond` that is inside."""
+    """Return the last point on the way from `within` to `beyond` that is still inside."""
     for _ in range(_HALVINGS):
         middle = (within + beyond) / 2.0
         if inside(middle):

@@ -1,4 +1,4 @@
-"""Makes faulty recordings out of normal ones, so that nobody has to break a robot to calibrate.
+"""Makes faulty recordings out of normal ones, so that a calibration needs no broken robot.
 
 A recording is two arrays, stamps (int64 [ns], in order) and ids of event types; what is returned
 is of the same kind and ends when the recording does. Nothing here is random.
@@ -16,7 +16,7 @@ from self_awareness import EventType
 from self_awareness.stamps import SECOND_NS, nanoseconds
 
 STARVATION_DOUBLING_S = 20.0
-"""After this time of the undisturbed recording, starved components take twice as long [s]."""
+"""Sources that starve take twice as long at this time of the undisturbed recording [s]."""
 
 EACH = '*'
 """Stands for each source in turn."""
@@ -34,10 +34,10 @@ class InjectedFault:
     Args:
         kind: crash: the source falls silent. slow: its delays stretch by a factor. starve: the
             delays of all sources stretch, growing from 1 to twice as long after
-            STARVATION_DOUBLING_S. clock: its events come by some seconds later (negative: earlier)
-            in relation to all others; what is pushed over the end comes back at the onset, so that
-            order and delays are wrong and nothing else: no silence, and the usual rate.
-        source: whom it befalls; None for starve, which befalls all.
+            STARVATION_DOUBLING_S. clock: its events come some seconds later (negative: earlier)
+            in relation to all others; what would come after the end comes at the onset instead,
+            so that only order and delays are wrong: no silence, and the usual rate.
+        source: that it hits; None for starve, which hits all.
         amount: the factor of slow, > 1; the seconds of clock, not 0; else 0.
     """
 
@@ -84,10 +84,10 @@ def of_each_source(fault: InjectedFault, event_types: Sequence[EventType]) -> Li
 
 
 def check_source(fault: InjectedFault, event_types: Sequence[EventType]) -> None:
-    """Check that a fault befalls a source there is.
+    """Check that the model has the source that a fault hits.
 
     Raises:
-        ValueError: there is none of that name; the message lists those there are.
+        ValueError: there is none of that name; the message lists all sources.
     """
     sources = sorted({event_type.source for event_type in event_types})
     if fault.source is None or fault.source in sources:
@@ -100,24 +100,24 @@ def check_source(fault: InjectedFault, event_types: Sequence[EventType]) -> None
 
 def inject(fault: InjectedFault, event_types: Sequence[EventType], stamps: np.ndarray,
            ids: np.ndarray, onset: int, end: int) -> Tuple[np.ndarray, np.ndarray]:
-    """Return stamps and ids of a recording that the fault befalls at `onset`, up to `end` [ns].
+    """Return stamps and ids of a recording that the fault hits at `onset`, up to `end` [ns].
 
     Raises:
         ValueError: the fault changes nothing, because its source does nothing after the onset or
             because its clock is shifted by more than is left of the recording.
     """
     if fault.source is None:
-        befallen = stamps >= onset
+        hit = stamps >= onset
     else:
         of_source = [i for i, kind in enumerate(event_types) if kind.source == fault.source]
-        befallen = (stamps >= onset) & np.isin(ids, of_source)
-    if not befallen.any():
+        hit = (stamps >= onset) & np.isin(ids, of_source)
+    if not hit.any():
         raise ValueError(f'{fault}: {fault.source or "the recording"} has no event after the '
                          'onset in the middle of the recording; nothing would change')
     if fault.kind == 'crash':
-        return stamps[~befallen], ids[~befallen]
+        return stamps[~hit], ids[~hit]
     moved = stamps.copy()
-    moved[befallen] = onset + _moved(fault, stamps[befallen] - onset, end - onset)
+    moved[hit] = onset + _moved(fault, stamps[hit] - onset, end - onset)
     order = np.argsort(moved, kind='stable')
     order = order[moved[order] <= end]
     return moved[order], ids[order]

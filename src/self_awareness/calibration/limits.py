@@ -1,8 +1,8 @@
-"""Finds from where on evidence is abnormal: on normal operation that was not trained on.
+"""Finds the limits above which evidence is abnormal, on normal operation not trained on.
 
-Recordings come twice, first for the limits of what is watched, then for that of the linker
-(core/evidence_limits.h). Each says what it has to say for itself, in whatever process; that is
-added up.
+Every recording is judged twice: first for the limits of the tracks, then for that of the linker
+(docs/method.md, section 5). Each recording is judged by itself, in any process, and the findings
+are added up.
 """
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from self_awareness.stamps import SECOND_NS
 from self_awareness.workers import InProcess, Workers
 
 BUDGET = 0.5
-"""False alarms an hour that limits are made for, if nothing else is asked for."""
+"""False alarms an hour that limits are made for, by default."""
 
 Part = Tuple[np.ndarray, np.ndarray, Optional[int]]
 """Stamps [ns] and ids of a recording; the half of the training it belongs to, None: neither."""
@@ -35,7 +35,7 @@ class HeldOut:
     ids: np.ndarray
 
     def parts(self, _: TrainedModel) -> Iterable[Part]:
-        """Return what there is to judge."""
+        """Return what is to be judged."""
         return [(self.stamps, self.ids, None)]
 
 
@@ -46,8 +46,8 @@ class TrainedOn:
     Args:
         part: the bag, or the part of it.
         half: of the training, 0 or 1; None: the recording was alone, and both come from it.
-        events: of the part, by ids of their own; None: read when they are needed, as those of all
-            recordings may not fit the memory.
+        events: of the part, by ids of their own; None: read when they are needed, as the memory
+            may not hold those of all recordings.
     """
 
     part: BagPart
@@ -58,7 +58,7 @@ class TrainedOn:
         return str(self.part)
 
     def parts(self, trained: TrainedModel) -> Iterable[Part]:
-        """Return what there is to judge, each by the half it does not belong to."""
+        """Return what is to be judged, and the half of the training that it belongs to."""
         events = self.events
         if events is None:
             events = recordings.read(trained, self.part)
@@ -116,7 +116,7 @@ def cross_fit(trained: TrainedModel, trained_on: Sequence[TrainedOn], settle_tim
 
 def find(trained: TrainedModel, settle_time: int, budget: float, tasks: Sequence[Any],
          workers: Optional[Workers] = None) -> EvidenceCalibration:
-    """Return limits by recordings; how they were found is not said yet.
+    """Return limits by recordings; without the method and the recordings, which the caller adds.
 
     Args:
         trained: the model.
@@ -150,7 +150,7 @@ class TooLittleError(ValueError):
 
 
 class _Judging:
-    """What every recording is judged by; what is found stays behind when it goes elsewhere."""
+    """What every recording is judged by. Another process gets it without what was found."""
 
     def __init__(self, trained: TrainedModel, settle_time: int, budget: float,
                  limits: Optional[EvidenceLimits] = None) -> None:

@@ -66,7 +66,7 @@ class JudgedRun:
 
     @property
     def stood_before(self) -> bool:
-        """Whether the alarm stood when the fault began: a false one that hides the fault's."""
+        """Whether a false alarm stood when the fault began, and hides that of the fault."""
         return any(alarm.start <= self.run.onset < alarm.end for alarm in self.verdicts.alarms)
 
 
@@ -83,13 +83,13 @@ def recorded_fault(whole: RecordingEvents, window: int) -> Run:
         window: length of the windows [ns].
 
     Raises:
-        ValueError: the part is none of the recording.
+        ValueError: the recording has no such part.
     """
     onset, relief = whole.part.span(whole.origin, whole.end)
     if not onset < relief:
         raise ValueError(f'{whole.part}: no part of the recording, which lasts '
                          f'{(whole.end - whole.origin) / SECOND_NS:.1f} s')
-    # The window in which the recording ends is as faulty as those before.
+    # The window in which the recording ends is as faulty as those before it.
     return Run(whole, RECORDED, whole.stamps, whole.ids, onset,
                relief + window if relief == whole.end else relief)
 

@@ -38,8 +38,8 @@ class ThresholdRule:
 
         Raises:
             ValueError: the method needs abnormal windows and there are none, or no finite cut-off
-                is better than calling everything normal, or everything abnormal, or more normal
-                windows are silent than may be called abnormal.
+                is better than to call every window normal, or every window abnormal, or more
+                normal windows are silent than may be called abnormal.
         """
         if self.method != 'fpr' and math.isnan(roc.auc):
             raise ValueError(f'--cutoff {self} needs abnormal windows: name recordings of faults '
@@ -57,7 +57,7 @@ class ThresholdRule:
 
     def _level(self, roc: Roc) -> RocPoint:
         point = roc.level(self.rate)
-        # No score is below that of silence, 0: such a threshold would never be reached.
+        # Silence scores 0, and no score is lower: nothing would ever be below such a threshold.
         if point.cutoff <= 0.0:
             raise ValueError(f'--cutoff {self} finds no threshold: a larger share of the normal '
                              'windows than this scores 0, as silence does, and none scores less; '

@@ -1,4 +1,4 @@
-"""`rosrun self_awareness calibrate`: finds from where on a model calls windows abnormal."""
+"""`rosrun self_awareness calibrate`: finds the limits, or the threshold, of a model."""
 from __future__ import annotations
 
 import argparse
@@ -36,8 +36,8 @@ _LABELS = {NORMAL: 'normal', ABNORMAL: 'abnormal', LEFT_OUT: ''}
 _EPILOG = f"""\
 BAG@START-END stands for a part of a recording, in s from its first message.
 FAULT is one of {FORMS}.
-SOURCE may be *: each source in turn. The fault befalls a copy of every normal recording in its
-middle, and its source alone: what depends on it goes on, other than in reality.
+SOURCE may be *: each source in turn. The fault hits a copy of every normal recording in its
+middle, and only its source: unlike in reality, what depends on the source goes on.
 examples:
   calibrate --model robot.model --normal wednesday.bag -o robot.model
   calibrate --model robot.model --normal wednesday.bag --inject 'crash:*' starve -o robot.model
@@ -300,9 +300,9 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('--budget', type=_budget, metavar='N', help='evidence: false alarms an '
                         f'hour that the limits allow (default: {limits.BUDGET:g})')
     parser.add_argument('--cutoff', type=cli.checked(ThresholdRule.parse),
-                        metavar='HOW', help='paper: youden: most found less most false; closest: '
-                        'closest to all found and none false; fpr=RATE: this share of normal '
-                        'windows false (default: youden)')
+                        metavar='HOW', help='paper: youden: largest true less false positive '
+                        'rate; closest: closest to all found and none false; fpr=RATE: this share '
+                        'of normal windows false (default: youden)')
     parser.add_argument('--roc', type=cli.png_file, metavar='FILE.png', help='draw the ROC')
     parser.add_argument('--csv', metavar='FILE', help='write score and label of every window')
     cli.add_detector_arguments(parser)

@@ -1,4 +1,4 @@
-"""What the command lines have in common: arguments, and how an error is told and exited with."""
+"""What the command lines have in common: arguments, error messages and exit codes."""
 from __future__ import annotations
 
 import argparse
@@ -34,7 +34,7 @@ def run(parser: argparse.ArgumentParser, work: Callable[[argparse.Namespace], No
         return int(stop.code or 0)
     except KeyboardInterrupt:
         return 130
-    except BrokenPipeError:  # whoever read the output has seen enough, as `head` does
+    except BrokenPipeError:  # the reader has seen enough, as `head` has
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
     except (BagError, ModelFileError, ValueError) as error:

@@ -1,4 +1,4 @@
-"""The last act of scripts/demo.sh: kills a component and reports the alarm as operators get it."""
+"""The end of scripts/demo.sh: kills a component and reports the alarm as operators get it."""
 from __future__ import annotations
 
 import sys

@@ -20,9 +20,8 @@ from self_awareness.workers import Cluster, InProcess, Processes, Workers
 _OF_THE_MODEL = ('bin', 'window', 'horizon', 'encoding', 'predecessors')
 
 _EPILOG = """\
-The recordings should show all that is normal, start-up aside: leave it out with --start.
-The model is the same with any --jobs, and with --scheduler: every process counts one bag at a
-time, and adds some neighbouring ones; their sums are added in the order of the bags.
+The recordings should show all that is normal, but not the start-up: leave it out with --start.
+The model is the same with any --jobs, and with --scheduler.
 examples:
   train monday.bag tuesday.bag -o robot.model
   train run.bag --start 20 -o robot.model      from 20 s after the recording's first message on
@@ -56,7 +55,7 @@ def _train(arguments: argparse.Namespace) -> None:
             model.graph = graph
         try:
             limits = _limits(trained, workers)
-        except (BagError, ValueError) as error:  # what was counted is not lost by that
+        except (BagError, ValueError) as error:  # the counts are not lost
             model.save(arguments.output)
             raise ValueError(f'{error}; {arguments.output} is written, without limits') from error
     model.save(arguments.output)
@@ -106,7 +105,7 @@ def _workers(arguments: argparse.Namespace) -> Workers:
 
 
 def _check_exist(paths: Sequence[str]) -> None:
-    """Check before hours of work what a slip of the keyboard leads to."""
+    """Find mistyped names before hours of work."""
     for path in paths:
         if not os.path.exists(path):
             raise ValueError(f'{path}: no such file')
@@ -142,11 +141,11 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('--horizon', type=cli.seconds, metavar='S',
                         help='delays of this many s or more share one bin (default: no horizon)')
     parser.add_argument('--predecessors', type=cli.count, metavar='N',
-                        help='delays since so many event types are watched of every one, the most '
-                             f'informative ones (default: {PREDECESSORS})')
+                        help='of each event type, watch the delays since at most so many others, '
+                             f'the most informative ones (default: {PREDECESSORS})')
     parser.add_argument('--graph', action='store_true',
                         help='ask the master of the running robot who subscribes to what, and '
-                             'keep it: the root of a fault is told from its victims by it')
+                             'keep it: it tells the root of a fault from its victims')
     parser.add_argument('--encoding', metavar='FILE',
                         help='how messages become events (example: config/encoding.yaml)')
     parser.add_argument('--start', type=cli.offset, metavar='S',
@@ -156,8 +155,8 @@ def _parser() -> argparse.ArgumentParser:
                         help='add to what this model learned, in its encoding, bins and windows; '
                              'it may be the file to write. Its calibrations are dropped')
     parser.add_argument('--skip-bad', action='store_true',
-                        help='name bags that cannot be used, and go on without them; else they '
-                             'end the program')
+                        help='leave out bags that cannot be used, and name them; without this '
+                             'option they end the program')
     where = parser.add_argument_group('many bags').add_mutually_exclusive_group()
     where.add_argument('--jobs', type=cli.count, metavar='N',
                        help='processes to work in (default: one for each core, and never more '

@@ -45,18 +45,18 @@ class Paper:
         return _judged(encoded, verdicts, required(self._threshold, self.name, 'calibrate'))
 
     def _verdicts(self, encoded: WindowedEvents) -> Verdicts:
-        # The window in which the recording ends is the last one, hence - 1.
+        # - 1, because the window in which the recording ends is the last one.
         model: Model = required(self._model, self.name, 'train')
         return model.judge(DEFAULT_WINDOW, self._threshold, DetectorParameters(),
                            encoded.stamps, encoded.ids, encoded.end - 1)
 
 
 class Evidence:
-    """The evidence detector (`detector: evidence`), its limits for the budget that is the default.
+    """The evidence detector (`detector: evidence`), with limits for the default budget.
 
     Args:
-        knows_graph: whether the model holds who listens to whom, as after a training beside the
-            running robot; without, it was trained on bags alone.
+        knows_graph: whether the model holds who listens to whom, as after a training
+            while the robot runs; if not, it was trained on bags alone.
         predecessors: of an event type that are watched at most.
     """
 
@@ -68,7 +68,7 @@ class Evidence:
         self._model: Optional[EvidenceModel] = None
 
     def train(self, recordings: Sequence[WindowedEvents]) -> None:
-        """Count what there is to count."""
+        """Count the delays and gaps."""
         self._trained = _trained(recordings, self._predecessors)
         self._trained.graph = self._graph
         self._model = EvidenceModel(self._trained)
@@ -91,7 +91,7 @@ class Evidence:
         """Return what the detector says of a recording, suspicions included."""
         trained: TrainedModel = required(self._trained, self.name, 'train')
         encoded = recording.encoded(trained.event_types)
-        # The window in which the recording ends is the last one, hence - 1.
+        # - 1, because the window in which the recording ends is the last one.
         return judge_by_evidence(trained, self._model, parameters, encoded.stamps,
                                  encoded.ids, encoded.end - 1)
 

@@ -60,7 +60,7 @@ def _recordings(arguments: argparse.Namespace, command: str) -> None:
 
 
 def _live(arguments: argparse.Namespace, command: str) -> None:
-    # ROS is imported where it is needed: the other part does without.
+    # ROS is imported only here: the other parts do not need it.
     from self_awareness.evaluation.live import evaluation, session
     # A termination must clean up like Ctrl-C, which shells let be ignored in the background.
     for number in (signal.SIGINT, signal.SIGTERM):
@@ -76,7 +76,7 @@ def _live(arguments: argparse.Namespace, command: str) -> None:
 
 @contextlib.contextmanager
 def _folder(given: Optional[Path]) -> Iterator[Path]:
-    """Return the folder for recordings and logs; one that nobody named is removed at the end."""
+    """Return the folder for recordings and logs; a temporary one is removed at the end."""
     if given is None:
         with tempfile.TemporaryDirectory() as temporary:
             yield Path(temporary)
@@ -100,7 +100,7 @@ def _parser() -> argparse.ArgumentParser:
         'recordings', help='recordings of real robots that others made',
         description='The outages in recordings of real robots, and false alarms on them.'))
     _add_live(parts.add_parser(
-        'live', help='the follow-me robot as 15 processes, with the monitor beside them',
+        'live', help='the follow-me robot as 15 processes, and the monitor',
         description='Starts master and robot, records, trains and calibrates, starts the monitor, '
         'and induces fault after fault in rounds; a round takes about 5 minutes. Other systems '
         'judge the recording of it afterwards.'))
@@ -149,8 +149,8 @@ def _add_simulated(parser: argparse.ArgumentParser) -> None:
                         metavar='S', help='length of the record that the threshold is chosen by '
                         '[s]; the paper has 100 (default: 600)')
     parser.add_argument('--training-share', type=cli.checked(_share), default=0.1, metavar='SHARE',
-                        help='besides all of the training records, learn from their first share, '
-                        'too; 0: do not (default: 0.1)')
+                        help='learn once from all of the training records, and once from this '
+                        'first share of them; 0: only from all (default: 0.1)')
     parser.add_argument('--systems', nargs='+', choices=catalogue.NAMES, default=catalogue.NAMES,
                         metavar='SYSTEM', help='evaluate these only: '
                         f'{", ".join(catalogue.NAMES)} (default: all)')

@@ -24,7 +24,7 @@ class SystemAlarm:
         end: end of the window that cleared it, or of the last one [ns].
         cleared: False if it stood to the end of the recording.
         suspects: sources that the alarm is blamed on when it is raised, best first, each once;
-            None if the system blames nobody.
+            None if the system names no suspects.
     """
 
     start: int
@@ -169,7 +169,7 @@ def settling(recording: WindowedEvents) -> np.ndarray:
 
 
 def persistent(start: np.ndarray, abnormal: np.ndarray) -> List[SystemAlarm]:
-    """Return the alarms of windows by the detector's own persistence, with nobody blamed.
+    """Return the alarms of windows by the detector's own persistence, without suspects.
 
     Args:
         start: of the windows [ns].

@@ -31,7 +31,7 @@ class WindowedEvents:
     def encoded(self, vocabulary: Sequence[EventType]) -> WindowedEvents:
         """Return the same recording with the types of a vocabulary first, as the bag reader does.
 
-        The ids behind stand for the types that are not in the vocabulary.
+        The ids after those stand for the types that are not in the vocabulary.
         """
         ids = {event_type: index for index, event_type in enumerate(vocabulary)}
         translation = np.array([ids.setdefault(event_type, len(ids))

@@ -1,6 +1,6 @@
 """How one component of the simulated robot behaves, as a state machine without ROS and clock.
 
-Whoever drives a `Component` passes in the time (int ns) and gets back a list of requests: publish
+The caller of a `Component` passes in the time (int ns) and gets back a list of requests: publish
 this now, wake me at that time, or let my worker be busy for so long. The live node and the
 discrete-event simulation drive the same code; they differ only in how time passes.
 """

@@ -127,7 +127,7 @@ class HalfRate(Change):
 
 
 class DoubleRate(Change):
-    """Timers run at twice their rate; what is done upon a topic is done twice as often.
+    """Timers run at twice their rate; what messages start is done twice as often.
 
     A task that starts on every Nth message starts on every N/2th one. If N is odd, each of its
     messages is published twice in a row instead.
@@ -146,7 +146,7 @@ class Disorder(Change):
 
 @dataclass(frozen=True)
 class Novelty(Change):
-    """A component publishes, besides what it always does, messages that were never seen before."""
+    """A component publishes what it always does, and messages that were never seen before."""
 
     task: Task
 

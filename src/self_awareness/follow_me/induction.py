@@ -38,7 +38,7 @@ def lasting(effect: Effect, kind: str, namespace: str = '', scenario: Optional[P
     """Return what makes a fault last as long as a with statement.
 
     Args:
-        effect: of the fault; nobody dies of it.
+        effect: of the fault; one that kills no node.
         kind: name of the fault.
         namespace: of the robot.
         scenario: its file; None: the one that comes with the package.
@@ -69,7 +69,7 @@ def silence(scenario: Scenario, namespace: str = '') -> Dict[str, int]:
         InduceError: a node is unknown to the master or runs elsewhere, or all are dead already.
     """
     pids: Dict[str, int] = {}
-    # At once: first all are found, which takes its time, and then they are killed.
+    # All at the same time: finding them takes long, so all are found before the first is killed.
     for spec in scenario.components:
         with contextlib.suppress(_DeadError):
             pids[spec.name] = _pid(_resolved(namespace, spec.name))

@@ -1,9 +1,9 @@
 """The follow-me robot in simulated time: its components exchange messages, a recorder listens.
 
-A discrete-event simulation of the scenario: timers fire late by a little, work
-takes its time, messages travel, and what arrives at the recorder is a recording of normal
-operation or of a fault (`faults`). Nothing waits: 100 s of robot take
-some seconds to write. The same seed gives the same recording.
+A discrete-event simulation of the scenario: timers fire a little late, work takes its time,
+messages travel, and what arrives at the recorder is a recording of normal operation or of a fault
+(`faults`). Nothing waits: 100 s of robot take some seconds to write. The same seed gives the same
+recording.
 """
 from __future__ import annotations
 
@@ -103,7 +103,7 @@ def simulate(path: Union[str, Path], duration_s: float, seed: int,
         path: the bag; one that exists is replaced.
         duration_s: length of the recording (s), > 0.
         seed: any int; decides everything that is random.
-        fault: the error to induce, if any.
+        fault: the fault to induce, if any.
         scenario: the robot, by default the one that comes with the package.
         start_s: start of the recording (s since 1970), at least 15.
         progress: called now and then with the number of simulated seconds since the last call.
@@ -241,7 +241,7 @@ class _Effects:
 
 @dataclass(frozen=True)
 class _Act:
-    """Something that a component does when its time has come."""
+    """Something that a component will do at some time."""
 
     name: str
     call: Callable[[int], List[Request]]
@@ -253,7 +253,7 @@ class _Robot:
     def __init__(self, scenario: Scenario, seed: int, begin: int, effects: _Effects) -> None:
         self._scenario = scenario
         self._effects = effects
-        # Streams of their own: what one component draws does not change the others.
+        # One random stream each: what one component draws does not change the others.
         self._rng = random.Random(f'{seed}/transport')
         self._components: Dict[str, Component] = {}
         self._subscribers: Dict[str, List[str]] = {topic: [] for topic in scenario.datatypes}

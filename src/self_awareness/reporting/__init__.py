@@ -1,1 +1,1 @@
-"""How models and results are shown: as text, as plain values, and as plots."""
+"""Shows models and results: as text, as plain values, and as plots."""

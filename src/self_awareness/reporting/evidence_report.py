@@ -1,4 +1,4 @@
-"""Tells what `calibrate` found for the evidence detector."""
+"""Prints what `calibrate` found for the evidence detector."""
 from __future__ import annotations
 
 from statistics import median
@@ -15,7 +15,7 @@ _COLUMNS = ('fault', 'source', 'found', 'median [s]', 'guilty first', 'among thr
 
 
 def counts(tracks: Dict[str, int]) -> str:
-    """Return numbers of tracks by channel as people read them."""
+    """Return numbers of tracks by channel, as text."""
     return ', '.join(f'{channel} {count}' for channel, count in tracks.items() if count) or 'none'
 
 

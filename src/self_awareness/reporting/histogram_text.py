@@ -17,7 +17,7 @@ def draw(counts: Dict[int, int], bin_size: int, horizon_bins: int, last: int,
         counts: by bin; at least one.
         bin_size: [ns].
         horizon_bins: index of the bin that all longer delays share; 0: there is none.
-        last: the last bin that has rows of its own; what lies beyond is one row.
+        last: the last bin that has rows of its own; longer delays share one row.
         width: of the longest bar, in characters.
     """
     first = min(counts)
@@ -28,7 +28,7 @@ def draw(counts: Dict[int, int], bin_size: int, horizon_bins: int, last: int,
     by_row: Counter = Counter()
     for index, count in counts.items():
         by_row[(min(index, last + merged) - start) // merged] += count
-    rows: List[Tuple[int, Optional[int], int]] = []  # first bin, the one behind, count
+    rows: List[Tuple[int, Optional[int], int]] = []  # first bin, the one after the last, count
     for row in range((last - start) // merged + 1):
         low = start + row * merged
         rows.append((low, low + merged, by_row.pop(row, 0)))

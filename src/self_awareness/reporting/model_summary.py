@@ -13,7 +13,7 @@ from self_awareness.stamps import SECOND_NS
 def summarise(model: TrainedModel) -> Dict[str, Any]:
     """Return all of a model but its counts.
 
-    Times are in seconds and rates in Hz, unless a key says otherwise. What is not there, or not a
+    Times are in seconds and rates in Hz, unless a key says otherwise. What is missing, or not a
     number, is None.
     """
     rules = model.encoding
@@ -94,7 +94,7 @@ def _recording(recording: Recording) -> Dict[str, Any]:
         'end_ns': recording.end,
         'duration': _duration(recording),
         'events': recording.events,
-        # As text: readers of JSON that know floats only would round it.
+        # As text: a JSON reader that knows only floats would round it.
         'fingerprint': f'{recording.fingerprint:016x}',
     }
 

@@ -1,4 +1,4 @@
-"""Plots as PNG files. matplotlib is imported when the first is drawn: it takes its time."""
+"""Plots as PNG files. matplotlib takes long to import: only a program that draws imports it."""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -52,7 +52,7 @@ def save_scores(path: str, plots: Sequence[ScorePlot]) -> None:
 
 
 def save_roc(path: str, title: str, curves: Sequence[Tuple[str, Roc]], chosen: RocPoint) -> None:
-    """Draw ROCs, the last one, of all faults, with the chosen cut-off.
+    """Draw ROCs, and the chosen threshold. The last one is that of all faults together.
 
     Args:
         curves: name and ROC; at least one.

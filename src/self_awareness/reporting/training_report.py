@@ -1,4 +1,4 @@
-"""What a training or a merge says of the model that came out."""
+"""Prints the model that a training or a merge has made."""
 from __future__ import annotations
 
 from typing import List, Tuple

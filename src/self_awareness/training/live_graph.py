@@ -1,4 +1,4 @@
-"""Who listens to whom in the running robot, for the blame (core/source_graph.h)."""
+"""Asks the running robot who listens to whom; the blame needs it to tell roots from victims."""
 from __future__ import annotations
 
 from typing import Dict, Set
@@ -16,7 +16,7 @@ def fetch() -> Dict[str, Set[str]]:
     Raises:
         ValueError: no master answers.
     """
-    # Here, because it takes long, and few trainings ask for the graph.
+    # Imported here: it takes long, and few trainings ask for the graph.
     import rosgraph
 
     try:

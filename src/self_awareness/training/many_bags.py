@@ -1,8 +1,8 @@
-"""Trains one model on many bags, in whatever processes.
+"""Trains one model on many bags, in this process, in several, or on a cluster.
 
-Every bag is counted for itself, and the counts are added in the order in which the bags are named,
-those of a batch of neighbouring bags where they were counted: so the model is the same whoever
-counted, and only the sums of batches are handed over.
+Every bag is counted by itself. Counts are added in the order in which the bags are named: first
+those of a batch of neighbouring bags, where they were counted, then the sums of the batches. So
+the model does not depend on who counts, and little is handed over.
 """
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from self_awareness.workers import InProcess, Workers
 
 _MOST_EVENTS_OF_BATCH = 5_000_000
 _MOST_EVENTS = 20_000_000
-"""So many events, of 12 bytes each, are kept for the limits; other bags are read once more."""
+"""At most so many events, of 12 bytes each, are kept for the limits; other bags are read twice."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class Trained:
 
     Args:
         model: of all good bags.
-        trained_on: those.
+        trained_on: the good bags.
         bad: what is wrong with the others.
     """
 
@@ -110,7 +110,7 @@ def train(parts: Sequence[BagPart], counting: Counting, workers: Optional[Worker
     if total.model is None or not total.trained_on:
         raise ValueError(f'no bag can be trained on: {total.bad[-1]}')
     if base is None and len(total.trained_on) == 1 and not alone:
-        # Without the bad ones it is alone, and both halves come from it.
+        # All others were bad: it is alone, and both halves come from it.
         again = train([total.trained_on[0].part], counting, workers)
         return Trained(again.model, again.trained_on, total.bad)
     total.model.watch()
@@ -152,7 +152,7 @@ class _How:
     Args:
         counting: of each bag.
         alone: the bag is the only one, and both halves of the training come from it.
-        skip_bad: go on behind bags that cannot be used.
+        skip_bad: leave out bags that cannot be used, and go on.
         most_events: kept of a batch.
     """
 
@@ -179,8 +179,8 @@ class _Sum:
 
     Args:
         most_events: that are kept.
-        model: the sum, behind what it was before; None: no bag was good. Its recordings belong to
-            the two halves in turn: what holds in one of them only is not taken for information.
+        model: the sum, after what was there before; None: no bag was good. Its recordings belong
+            to the two halves in turn: what only one half shows is not taken for information.
         trained_on: the good bags.
         lines: about each bag that is done.
         bad: what is wrong with those that were skipped.
@@ -200,7 +200,7 @@ class _Sum:
         return zip(self.trained_on, [] if self.model is None else self.model.recordings)
 
     def add(self, other: _Sum) -> None:
-        """Add the bags behind these; the other sum is used up.
+        """Add the bags that come after these; the other sum is used up.
 
         Raises:
             ValueError: they do not fit; nothing was added.
@@ -211,7 +211,7 @@ class _Sum:
         self.bad += other.bad
 
     def skip(self, error: str) -> None:
-        """Leave out the bag behind these."""
+        """Leave out the bag that comes after these."""
         self.bad.append(error)
         self.lines.append(f'skipped: {error}')
 
@@ -239,8 +239,8 @@ class _Sum:
         if mine.encoding.source == model.encoding.source:
             return
         # The two bags where one names senders and the other does not: the same in any batches.
-        before, behind = self.trained_on[-1], other.trained_on[0]
-        nameless = behind if model.encoding.source == 'none' else before
+        before, after = self.trained_on[-1], other.trained_on[0]
+        nameless = after if model.encoding.source == 'none' else before
         raise ValueError(f'{nameless.part.path}: {_NAMELESS}')
 
 
@@ -296,7 +296,7 @@ def _read(counting: Counting, part: BagPart) -> Tuple[RecordingEvents, EncodingR
     if encoding.source == 'callerid' and not read.summary.has_sources:
         if counting.encoding is not None:
             raise ValueError(_NAMELESS)
-        encoding.source = 'none'  # what was read is the same
+        encoding.source = 'none'  # what was read stays the same
     _, end = part.span(read.summary.start, read.summary.end)
     events = RecordingEvents(part, read.event_types, read.stamps, read.ids, read.summary.start,
                              end, read.summary.fingerprint)

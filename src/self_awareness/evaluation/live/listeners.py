@@ -38,7 +38,7 @@ class MonitorListener:
         """Return for how long [s] there has been no alarm, and no settling, until now.
 
         Raises:
-            LiveError: the monitor does not say anything any more.
+            LiveError: the monitor has gone silent.
         """
         now = time.monotonic()
         with self._lock:
@@ -47,7 +47,7 @@ class MonitorListener:
             return now - self._quiet_since if self._statuses else 0.0
 
     def reset(self) -> None:
-        """Let the monitor start afresh; what it said before does not count as quiet.
+        """Reset the monitor; what it said before does not count as quiet.
 
         Raises:
             LiveError: it does not answer.

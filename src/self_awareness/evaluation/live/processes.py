@@ -18,7 +18,7 @@ class LiveError(ValueError):
 
 
 def free_port() -> int:
-    """Return a port of the loopback interface that nobody listens to."""
+    """Return a free port of the loopback interface."""
     with socket.socket() as free:
         free.bind(('127.0.0.1', 0))
         return int(free.getsockname()[1])
@@ -38,7 +38,7 @@ def await_condition(what: str, condition: Callable[[], bool], within_s: float) -
 
 
 class Processes:
-    """Programs that run beside this one, their output in files of a folder.
+    """Programs that run at the same time as this one; their output goes to files of a folder.
 
     As a context manager it ends all that still run.
     """

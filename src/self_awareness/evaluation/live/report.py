@@ -39,16 +39,16 @@ because here time passes as slowly as it does.
 
 Each of the {rounds} rounds: {normal:g} s of normal operation; the faults of the table in its
 order, in the same running robot, each as `induce` does it. Nodes that were killed are started
-again; `silence` ends the round, and the robot is started anew. The monitor runs on. Before each
+again; `silence` ends the round, and the robot is started again. The monitor runs on. Before each
 fault its ~reset is called, and it has settled and not alarmed for {quiet:g} s: without, the alarm
 of one fault may stand at the next one's onset. How long it stands is not measured here.
 
 The latency of `{live}` is from the onset to the end of the window whose status was ERROR, by ROS
 time; that of WARN (a suspicion) likewise, an ERROR being one. Median (smallest to largest); a
-fault whose alarm was not raised while it lasted counts as for ever (–). The onset is when the
+fault without an alarm while it lasted counts as infinite (–). The onset is when the
 node was killed, the parameter was set or, for `extra`, its first message came. A sample is void
 if an alarm stood at the onset, if the monitor was settling, or if the machine's clock was set
-meanwhile.
+during the fault.
 
 By default (`~unknown`: `warn`) events never seen in training, those of `unknown` and `extra`, are
 a suspicion and no alarm; a new publisher, as that of `extra`, lets the monitor settle for 5 s.
@@ -57,7 +57,7 @@ The other systems were not running: they judge the recording of the same session
 from the same training, with thresholds that a share of 0.001 of the calibration's windows falls
 below. They blame and alarm as in [simulated.md](simulated.md).
 
-The machine did other work besides: its load average at the beginning of normal operation was
+The machine did other work, too: its load average at the beginning of normal operation was
 {low:.1f} to {high:.1f}, the robot's own included.
 
 All samples: [live.csv](live.csv).
@@ -118,7 +118,7 @@ def page(plan: SessionPlan, samples: Sequence[Sample], command: str) -> str:
                      *(_latencies([sample.latency_s for sample in of_system(samples, name, kind)])
                        for name in systems)] for kind in kinds])
     lines += ['', '## Blame', '', 'Alarms that blame a guilty source first / among the first '
-              'three; – where nobody is guilty, or no alarm was raised.', '']
+              'three; – where no source is guilty, or no alarm was raised.', '']
     lines += table(['fault', *systems, f'first evidence of {LIVE}'],
                    [[kind, *(_blame(of_system(samples, name, kind)) for name in systems),
                      '; '.join(distinct([sample.evidence

@@ -12,7 +12,7 @@ ERROR, WARN = 2, 1
 """Levels of the monitor's status that are an alarm, and a suspicion."""
 
 CLOCK_STEP_S = 0.05
-"""A clock that goes this much ahead or behind meanwhile was set [s]."""
+"""A clock that moved by more than this during a stretch was set [s]."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class Stretch:
         kind: of the fault, or NORMAL.
         onset, end: [s since 1970].
         culprits: sources to blame.
-        clock_set_s: by how much the machine's clock was set meanwhile [s].
+        clock_set_s: by how much the machine's clock was set in this time [s].
         note: what went otherwise than planned.
         load: the machine's load average of the last minute at the onset.
     """
@@ -75,7 +75,7 @@ class Sample:
             while the fault lasted.
         received_s: the same to when the status was heard.
         top1, top3: whether a guilty source is the first, or among the first three, at that alarm;
-            None: no alarm, nobody guilty, or the system blames nobody.
+            None: no alarm, no guilty source, or the system names no suspects.
         suspects: at that alarm, the most likely first.
         evidence: at that alarm, in the monitor's words.
         false_alarms: of normal operation: alarms raised.

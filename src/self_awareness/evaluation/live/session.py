@@ -184,7 +184,7 @@ class _Session:
     @contextlib.contextmanager
     def _stretch(self, number: int, kind: str, culprits: Tuple[str, ...],
                  note: str, onset: float) -> Iterator[None]:
-        """Note what happens meanwhile, and whether the clock was set."""
+        """Note the stretch when it is over, and by how much the clock was set in it."""
         ahead, load = time.time() - time.monotonic(), os.getloadavg()[0]
         yield
         end = time.time()
@@ -194,7 +194,7 @@ class _Session:
         self._told(stretch, self._monitor.statuses)
 
     def _reset(self) -> str:
-        """Let the monitor start afresh and wait until it is quiet; return a note if it hardly is.
+        """Reset the monitor and wait until it is quiet; return a note if that took long or failed.
 
         The alarm of one fault must not stand at the onset of the next one.
         """

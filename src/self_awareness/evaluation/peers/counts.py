@@ -28,7 +28,7 @@ class CountScorer:
         return self._score(counts(recording, self._types))
 
     def suspects(self, recording: WindowedEvents, window: int) -> Optional[List[str]]:
-        """Return None: counts blame nobody."""
+        """Return None: counts cannot tell whom to blame."""
         return None
 
     def _fit(self, tables: Sequence[np.ndarray]) -> None:

@@ -52,7 +52,7 @@ class MarkovScorer:
         return np.where(count > 0, total / np.maximum(count, 1), least)
 
     def suspects(self, recording: WindowedEvents, window: int) -> Optional[List[str]]:
-        """Return None: the chain blames nobody."""
+        """Return None: the chain cannot tell whom to blame."""
         return None
 
     def _steps(self, recording: WindowedEvents) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -34,8 +34,8 @@ class Plan:
         faults: kinds of simulation.InducedFault.
         seeds: one repetition each.
         calibration_s: length of the record of normal operation for the threshold [s].
-        training_share: besides all of the training records, their first share is learned from,
-            above 0 and below 1; 0: not.
+        training_share: systems learn once from all of the training records, and once from this
+            first share of them, above 0 and below 1; 0: only from all.
     """
 
     systems: Tuple[str, ...]

@@ -38,7 +38,8 @@ class Row:
         noticed_s: from the onset to the first suspicion or alarm; None: none was, or there was one
             at the onset.
         top1, top3: whether a guilty source is the first, or among the first three, at the moment
-            of that alarm; None: no such alarm, nobody guilty, or the system blames nobody.
+            of that alarm; None: no such alarm, no guilty source, or the system names no
+            suspects.
     """
 
     system: str

@@ -45,7 +45,7 @@ class FaultRecord:
         kind: of the fault.
         recording: the events.
         onset: of the fault [ns].
-        culprits: the sources to blame; empty if it is nobody's.
+        culprits: the sources to blame; empty if no single source is.
     """
 
     kind: str

@@ -43,10 +43,10 @@ linker.
 on bags alone. Events never seen in training are a suspicion, not an alarm (`~unknown: warn`).
 
 Figures are means over the seeds, intervals of 95 %. A latency is that of the first alarm raised
-after the onset; where none was raised, it took for ever (–). An alarm that stood at the onset is a
+after the onset; where none was raised, it is infinite (–). An alarm that stood at the onset is a
 false one. Blame is counted where an alarm was raised and a source is guilty, and is – for systems
-that name nobody. A system with many false alarms finds faults by chance: read the latencies beside
-the false alarms.
+that name no suspects. A system with many false alarms finds faults by chance: read the latencies
+together with the false alarms.
 
 All numbers: [{name}.csv]({name}.csv), a row for each system, seed and record.
 

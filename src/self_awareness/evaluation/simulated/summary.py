@@ -59,7 +59,7 @@ def of_fault(rows: Sequence[Row], kind: str) -> List[Row]:
 
 
 def latency(rows: Sequence[Row], fraction: float) -> float:
-    """Return a quantile of the latency [s] by nearest rank; what was not found took for ever."""
+    """Return a quantile of the latency [s] by nearest rank; what was not found is infinite."""
     return quantile([row.latency_s for row in rows], fraction)
 
 
