@@ -87,7 +87,8 @@ def markdown(measured: Measured) -> str:
                          'the look-ups alone [ns]', 'ratio', 'numpy [ns]', 'a window\'s end [ns]'),
                         scoring),
                   table(('event types', 'training [events/s]', 'counts [MB]',
-                         'of twice the time [MB]', 'choosing [ms]', 'model [MB]', 'computing it [ms]'), training)]
+                         'of twice the time [MB]', 'choosing [ms]', 'model [MB]',
+                         'computing it [ms]'), training)]
     return '\n\n'.join(parts)
 
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Benchmark of whole processes: what the live monitor costs beside others that hear the same.
+"""Benchmark of whole processes: what the monitor costs, and others that hear the same.
 
 Ten nodes publish at exact rates; in turn, the monitor, a bare ShapeShifter subscriber that only
 counts, and `rosbag record` listen to them on a core of their own. Needs `catkin_make
@@ -26,7 +26,9 @@ import live_report
 import page
 from live_robot import Configuration, Robot, master, train, write_synthetic_model
 from live_subjects import Bare, Monitor, Record, Subject, usage
-from self_awareness.evaluation.live_processes import Processes
+from self_awareness import DEFAULT_WINDOW
+from self_awareness.evaluation.live.processes import Processes
+from self_awareness.stamps import SECOND_NS
 
 TOPICS = {163: 15, 1000: 60, 5000: 300, 20000: 500}
 """By messages a second."""
@@ -37,7 +39,7 @@ _MODEL_S = {163: 40.0, 1000: 40.0, 5000: 90.0, 20000: 20.0}
 _DETECTION_RATE = 5000
 _SETTLED_S = 8.0
 _LONG_S = 600.0
-_WINDOW_S = 0.1
+_WINDOW_S = DEFAULT_WINDOW / SECOND_NS
 _STARTS = 5
 _MANY_TYPES = 1000
 _CRASHES = 5
@@ -72,7 +74,7 @@ class _Benchmark:
                 many = self._folder / 'many.model'
                 write_synthetic_model(many, _MANY_TYPES)
                 result['latency']['loaded_s'] = {TOPICS[rate]: self._loads(model),
-                                                _MANY_TYPES: self._loads(many)}
+                                                 _MANY_TYPES: self._loads(many)}
         return result
 
     def _costs(self, robot: Robot, model: Path) -> List[Dict[str, Any]]:

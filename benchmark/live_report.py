@@ -4,6 +4,7 @@ from __future__ import annotations
 import statistics
 from typing import Any, Dict, Iterator, List, Tuple
 
+
 def markdown(result: Dict[str, Any]) -> str:
     """Return the tables."""
     return '\n'.join([*_costs(result), '', *_latency(result['latency'])])

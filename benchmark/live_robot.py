@@ -13,7 +13,7 @@ import numpy as np
 
 from self_awareness import (EncodingRules, EventType, EvidenceCalibration, EvidenceModel,
                             TrainedModel, Training)
-from self_awareness.evaluation.live_processes import Processes, await_condition, free_port
+from self_awareness.evaluation.live.processes import Processes, await_condition, free_port
 from self_awareness.stamps import SECOND_NS
 
 NODES = 10
@@ -40,7 +40,7 @@ class Configuration(NamedTuple):
     """Messages a second, without the images."""
     topics: int
     image: bool
-    """Whether images of full HD are published besides, 30 a second."""
+    """Whether full HD images are published, too, 30 a second."""
 
 
 def pin(core: int, *command: str) -> List[str]:
@@ -50,7 +50,7 @@ def pin(core: int, *command: str) -> List[str]:
 
 @contextlib.contextmanager
 def master(folder: Path) -> Iterator[Processes]:
-    """Run a master on a free port of the loopback interface; whoever is started later finds it."""
+    """Run a master on a free port of the loopback interface; programs started later find it."""
     port = free_port()
     os.environ.update(ROS_MASTER_URI=f'http://127.0.0.1:{port}', ROS_IP='127.0.0.1',
                       ROS_LOG_DIR=str(folder / 'log'))

@@ -14,7 +14,7 @@ import rospy
 from diagnostic_msgs.msg import DiagnosticArray
 
 from live_robot import SUBJECT_CORE, pin, record_command
-from self_awareness.evaluation.live_processes import Processes, await_condition
+from self_awareness.evaluation.live.processes import Processes, await_condition
 from self_awareness.msg import SelfAwareness
 
 _LIBRARIES = Path('lib/self_awareness')
@@ -140,9 +140,9 @@ class Monitor(Subject):
         for subscriber in self._subscribers:
             subscriber.unregister()
 
-    def await_level(self, what: str, holds: Callable[[int], bool], limit_s: float) -> float:
+    def await_level(self, what: str, holds: Callable[[int], bool], within_s: float) -> float:
         """Wait for a level on /diagnostics; return when it came [s since 1970]."""
-        await_condition(what, lambda: self.level >= 0 and holds(self.level), limit_s)
+        await_condition(what, lambda: self.level >= 0 and holds(self.level), within_s)
         with self._lock:
             return self._changed_at
 
@@ -168,4 +168,3 @@ def executable(name: str) -> str:
         if path.exists():
             return str(path)
     raise FileNotFoundError(f'{name} is not built; catkin_make live_benchmark')
-

@@ -11,12 +11,11 @@ from typing import Tuple, Union
 
 import numpy as np
 
-from self_awareness import EncodingRules, EventType, Model, Training
+from self_awareness import DEFAULT_WINDOW, EncodingRules, EventType, Model, Training
 
 SIZES = (15, 60, 150, 300, 1000)
 BIN_SIZE = 10_000_000  # [ns]
-BINS = 256  # the last one for all beyond
-WINDOW = 100_000_000  # [ns]
+BINS = 256  # the last one for all longer delays
 TRAINING = 30.0  # [s]
 SCORED = 2000  # events
 ROUNDS = 5
@@ -131,7 +130,7 @@ class NumpyEvidence:
 
 def check(detector: NumpyDetector, types: int, stamps: np.ndarray, ids: np.ndarray) -> None:
     """Raise AssertionError unless the sums are those of the package."""
-    training = Training(EncodingRules(), BIN_SIZE, WINDOW, BINS - 1)
+    training = Training(EncodingRules(), BIN_SIZE, DEFAULT_WINDOW, BINS - 1)
     kinds = [EventType('', f'/topic_{kind}', 'T') for kind in range(types)]
     training.add_events(kinds, stamps, ids)
     trained = training.model()

@@ -14,11 +14,11 @@ from pathlib import Path
 from typing import Any, Dict, List, Sequence
 
 import page
-from self_awareness import follow_me
-from self_awareness.evaluation import experiment, summary
 from self_awareness.evaluation.detectors import Evidence
-from self_awareness.evaluation.experiment import Plan
-from self_awareness.evaluation.measures import Row, fault_row, normal_row
+from self_awareness.evaluation.simulated import experiment, summary
+from self_awareness.evaluation.simulated.experiment import Plan
+from self_awareness.evaluation.simulated.measures import Row, fault_row, normal_row
+from self_awareness.follow_me.scenario import load_scenario
 
 _DOCS = Path(__file__).resolve().parents[1] / 'docs'
 ALL = 1000
@@ -37,7 +37,7 @@ def measure(seeds: Sequence[int], jobs: int) -> List[Dict[str, Any]]:
 
 
 def _measure_seed(plan: Plan, seed: int) -> List[Row]:
-    records = experiment.make_records(plan, follow_me.load(), seed)
+    records = experiment.make_records(plan, load_scenario(), seed)
     rows = []
     for bound in BOUNDS:
         system = Evidence(True, bound)

@@ -27,7 +27,7 @@ packages_debian=(
   pybind11-dev libboost-filesystem-dev
   python3-numpy python3-matplotlib python3-tqdm python3-yaml
   catkin-lint clang-format libgtest-dev libgmock-dev nlohmann-json3-dev procps python3-pytest
-  python3-distributed
+  python3-distributed python3-flake8 python3-mypy
 )
 packages_noetic=(
   g++ make cmake python3-dev python3-setuptools
@@ -39,7 +39,7 @@ packages_noetic=(
   pybind11-dev libboost-filesystem-dev
   python3-numpy python3-matplotlib python3-tqdm python3-yaml
   ros-noetic-rostest ros-noetic-roslaunch libgtest-dev libgmock-dev nlohmann-json3-dev procps
-  python3-pytest python3-catkin-lint clang-format python3-distributed
+  python3-pytest python3-catkin-lint clang-format python3-distributed python3-flake8 python3-mypy
 )
 
 say() { printf '\n== %s\n' "$*"; }

@@ -39,3 +39,6 @@ from self_awareness._core import (  # noqa: F401
     stable_name,
     summarise_bag,
 )
+
+DEFAULT_WINDOW = 100_000_000
+"""Length of the windows that are judged, if nothing else is asked for [ns]."""

@@ -17,7 +17,7 @@ def load(path: str) -> EncodingRules:
         ValueError: it is no YAML, has an unknown key, a value of the wrong kind, or a pattern that
             is no regular expression; the message names the file and the key.
     """
-    # Here, because it takes long, and most trainings do without a file.
+    # Imported here: it takes long, and most trainings have no such file.
     import yaml
 
     with open(path, encoding='utf-8') as file:
@@ -26,7 +26,7 @@ def load(path: str) -> EncodingRules:
         except (yaml.YAMLError, UnicodeDecodeError) as error:
             raise ValueError(f'{path}: not YAML: {error}') from error
     rules = EncodingRules.defaults()
-    # A file of comments alone is None, and leaves every key out.
+    # A file with nothing but comments is None: no key is there.
     with Section({} if data is None else data, path) as section:
         if 'source' in section:
             rules.source = section.text('source', 'callerid|none')

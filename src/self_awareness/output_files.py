@@ -10,9 +10,9 @@ from self_awareness import ModelFileError, TrainedModel
 
 @contextmanager
 def replacing(path: str) -> Iterator[str]:
-    """Hand out the name of a temporary file beside `path`, which takes its place at the end.
+    """Hand out the name of a temporary file in the same folder, which replaces `path` at the end.
 
-    The temporary name ends like `path`, so that a writer that goes by the extension is right. If
+    The temporary name ends like `path`, for writers that choose the format by the extension. If
     the block raises, the temporary file is removed and `path` stays as it was.
     """
     folder, name = os.path.split(path)

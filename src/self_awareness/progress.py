@@ -1,6 +1,7 @@
 """Progress bars of long work, on standard error; silent where that is no terminal."""
 from __future__ import annotations
 
+import sys
 import time
 from contextlib import contextmanager
 from typing import Callable, Iterable, Iterator, Sequence, TypeVar
@@ -13,14 +14,14 @@ _silent = False
 
 
 def silence() -> None:
-    """Show nothing from here on: another process shows how far the whole is."""
+    """Show nothing from now on: another process shows the progress of the whole."""
     global _silent
     _silent = True
 
 
 @contextmanager
 def messages(description: str) -> Iterator[Callable[[int, int], None]]:
-    """Show how far a bag is read; hands out the callback progress(done, all) of the readers."""
+    """Show how much of a bag is read; hands out the callback progress(done, all) for readers."""
     if _silent:
         yield lambda done, total: None
         return
@@ -37,21 +38,22 @@ def each(items: Sequence[_Item], description: str) -> Iterable[_Item]:
 
 
 @contextmanager
-def items(total: int, description: str) -> Iterator[Callable[[], object]]:
-    """Show how many of several things are done; hands out what is called after each."""
+def items(total: int, description: str) -> Iterator[Callable[..., object]]:
+    """Show how many things are done; hands out what is called when one, or N, are done."""
     with tqdm(desc=description, total=total, leave=False, disable=None) as bar:
         yield bar.update
 
 
 def say(text: str) -> None:
-    """Print a line on standard output, above the bars that are shown."""
+    """Print a line on standard output at once, above the bars that are shown."""
     tqdm.write(text)
+    sys.stdout.flush()
 
 
 def waiting(seconds: float, description: str) -> Iterator[float]:
     """Let time pass and show how much; hands out the seconds passed, ten times a second."""
     begin = time.monotonic()
-    passed = 0.0  # a bar that is not shown does not count
+    passed = 0.0  # the bar itself counts only while it is shown
     with tqdm(desc=description, total=seconds, unit='s', leave=False, disable=None,
               bar_format='{desc} {bar} {n:.0f}/{total:.0f} s') as bar:
         while passed < seconds:

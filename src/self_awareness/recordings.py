@@ -10,7 +10,7 @@ import numpy as np
 
 from self_awareness import (EventType, RecordedEvents, Recording, TrainedModel, progress,
                             read_events)
-from self_awareness.stamps import SECOND_NS
+from self_awareness.stamps import nanoseconds
 
 _PART = re.compile(r'(?P<path>.+)@(?P<start>\d+(\.\d+)?)(-(?P<end>\d+(\.\d+)?))?')
 
@@ -25,7 +25,7 @@ class BagPart:
 
     @classmethod
     def parse(cls, text: str) -> BagPart:
-        """Read BAG, BAG@START or BAG@START-END; a file whose very name is the text comes first."""
+        """Read BAG, BAG@START or BAG@START-END; a file with this name comes first."""
         match = None if os.path.exists(text) else _PART.fullmatch(text)
         if match is None:
             return cls(text)
@@ -37,16 +37,16 @@ class BagPart:
             return self.path
         return f'{self.path}@{self.start:g}' + ('' if self.end is None else f'-{self.end:g}')
 
-    def limits(self, first: int, last: int) -> Tuple[int, int]:
+    def span(self, first: int, last: int) -> Tuple[int, int]:
         """Return start and end [ns] within a recording from `first` to `last` [ns]."""
-        start = first + round((self.start or 0.0) * SECOND_NS)
-        end = last if self.end is None else first + round(self.end * SECOND_NS)
+        start = first + nanoseconds(self.start or 0.0)
+        end = last if self.end is None else first + nanoseconds(self.end)
         return start, min(end, last)
 
 
 @dataclass(frozen=True)
 class RecordingEvents:
-    """The events of a recording as a model encodes them; ids behind the model's are unknown.
+    """The events of a recording as a model encodes them; ids after the model's are unknown.
 
     Args:
         part: what was asked for.
@@ -68,14 +68,14 @@ class RecordingEvents:
 
     @property
     def middle(self) -> int:
-        """Where a training cuts it into halves if it is alone [ns]."""
-        start, end = self.part.limits(self.origin, self.end)
+        """Where a training cuts it into halves if it is the only recording [ns]."""
+        start, end = self.part.span(self.origin, self.end)
         return start + (end - start) // 2
 
     @property
     def recording(self) -> Recording:
-        """What a model file says of the part."""
-        start, end = self.part.limits(self.origin, self.end)
+        """What a model file says about the part."""
+        start, end = self.part.span(self.origin, self.end)
         recording = Recording()
         recording.bag = os.path.basename(self.part.path)
         recording.start = start
@@ -90,7 +90,7 @@ def read(model: TrainedModel, part: BagPart) -> RecordingEvents:
 
     Raises:
         BagError: the bag cannot be read.
-        ValueError: the time range is none, the bag does not name the senders that the model tells
+        ValueError: the time range is empty, the bag does not name the senders that the model tells
             apart, or no message of it is an event.
     """
     with progress.messages(os.path.basename(part.path)) as update:
@@ -100,13 +100,13 @@ def read(model: TrainedModel, part: BagPart) -> RecordingEvents:
         except ValueError as error:
             raise ValueError(f'{part}: {error}') from error
     _check(model, part, events)
-    _, end = part.limits(events.summary.start, events.summary.end)
+    _, end = part.span(events.summary.start, events.summary.end)
     return RecordingEvents(part, events.event_types, events.stamps, events.ids,
                            events.summary.start, end, events.summary.fingerprint)
 
 
 def overlap(a: Recording, b: Recording) -> bool:
-    """Return whether two recordings are, even in part, the same under whatever name."""
+    """Return whether two recordings are the same, at least in part; names do not matter."""
     return a.fingerprint == b.fingerprint and a.start <= b.end and b.start <= a.end
 
 

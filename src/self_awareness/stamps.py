@@ -1,4 +1,4 @@
-"""Stamps are integers of nanoseconds since 1970; this is how they are made, and shown."""
+"""Stamps are integers of nanoseconds since 1970: makes them from seconds, and shows them."""
 from __future__ import annotations
 
 from datetime import datetime, timezone
@@ -13,7 +13,7 @@ def nanoseconds(seconds: float) -> int:
 
 def utc(stamp: int) -> str:
     """Return a stamp [ns] as date and time with milliseconds, in UTC."""
-    # Whole seconds and milliseconds apart: a float of seconds since 1970 rounds.
+    # Whole seconds and milliseconds are kept apart: a float of seconds since 1970 rounds.
     seconds, rest = divmod(stamp, SECOND_NS)
     time = datetime.fromtimestamp(seconds, timezone.utc)
     return f'{time:%Y-%m-%d %H:%M:%S}.{rest // 1_000_000:03d}'

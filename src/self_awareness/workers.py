@@ -1,6 +1,6 @@
 """Who does the work: this process, several of this machine, or those of an existing cluster.
 
-All give the same results in the same order, so that nobody else need know who did it.
+All give the same results in the same order: nothing else depends on who did the work.
 """
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ import warnings
 from abc import ABC, abstractmethod
 from collections import deque
 from contextlib import contextmanager, suppress
-from typing import Any, Callable, Deque, Iterator, Sequence, TypeVar
+from typing import Any, Callable, Deque, Generator, Iterator, Sequence, TypeVar
 
 from self_awareness import progress
 
@@ -27,30 +27,30 @@ _Task = TypeVar('_Task')
 _Result = TypeVar('_Result')
 
 _AHEAD = 2
-"""So many tasks a worker are under way or done, and wait for their turn."""
-_RUNS = 3
-"""So many runs of tasks a worker has to do, that all be ready at about the same time."""
-_LONGEST_RUN = 8
-"""So many tasks make a run at most, or as many as there are workers."""
+"""Tasks for each worker that may be under way, or done and waiting for their turn."""
+_BATCHES = 3
+"""Batches for each worker: with several, all workers end at about the same time."""
+_LARGEST_BATCH = 8
+"""The most tasks of a batch, unless there are more workers than this."""
 _RETRIES = 2
 _CONNECT_S = 10.0
 
 
 class Workers(ABC):
-    """Apply a function to many tasks. To be closed at the end."""
+    """Applies a function to many tasks. Close it at the end."""
 
     near = True
-    """Whether it costs little to hand over arguments and results."""
+    """Whether arguments and results are handed over at little cost."""
 
     @abstractmethod
     def map(self, function: Callable[[_Shared, _Task], _Result], shared: _Shared,
-            tasks: Sequence[_Task], description: str) -> Iterator[_Result]:
+            tasks: Sequence[_Task], description: str) -> Generator[_Result, None, None]:
         """Yield function(shared, task) of every task, in their order.
 
         Only a few results exist at a time. A caller that may stop early closes the iterator.
 
         Args:
-            function: of a module, not within a function.
+            function: defined in a module, not within a function.
             shared: what all tasks need; handed over once.
             tasks: each says by str() what it is.
             description: of the progress bar.
@@ -60,8 +60,8 @@ class Workers(ABC):
             Exception: what the function raises.
         """
 
-    def runs(self, tasks: int) -> int:
-        """Return into how many runs tasks are best cut, where results of a run can be added up.
+    def batches(self, tasks: int) -> int:
+        """Return into how many batches tasks are best cut, where their results can be added up.
 
         Args:
             tasks: how many there are, more than 0.
@@ -69,17 +69,17 @@ class Workers(ABC):
         Raises:
             ValueError: the work cannot be done there.
         """
-        return tasks  # results are handed over as such
+        return tasks  # nothing is copied: summing up early saves nothing
 
     def close(self) -> None:
-        """Let go of what does the work."""
+        """Give back what does the work."""
 
 
 class InProcess(Workers):
-    """One task after the other, in this process: arguments and results are handed over as such."""
+    """One task after the other, in this process: arguments and results are not copied."""
 
     def map(self, function: Callable[[_Shared, _Task], _Result], shared: _Shared,
-            tasks: Sequence[_Task], description: str) -> Iterator[_Result]:
+            tasks: Sequence[_Task], description: str) -> Generator[_Result, None, None]:
         """See Workers."""
         for task in tasks:
             yield function(shared, task)
@@ -96,10 +96,10 @@ class Processes(Workers):
         self._number = number
 
     def map(self, function: Callable[[_Shared, _Task], _Result], shared: _Shared,
-            tasks: Sequence[_Task], description: str) -> Iterator[_Result]:
+            tasks: Sequence[_Task], description: str) -> Generator[_Result, None, None]:
         """See Workers. What is shared is inherited by fork, and not copied."""
         others = set(multiprocessing.active_children())
-        # Not spawned: that would run the program's main module, which is a script, once more.
+        # Not spawned: that would run the program's script again in every process.
         with concurrent.futures.ProcessPoolExecutor(
                 min(self._number, len(tasks)), multiprocessing.get_context('fork'), _start_worker,
                 (shared,)) as pool:
@@ -112,9 +112,9 @@ class Processes(Workers):
                     child.kill()
                 raise
 
-    def runs(self, tasks: int) -> int:
+    def batches(self, tasks: int) -> int:
         """See Workers."""
-        return _runs(tasks, self._number)
+        return _batches(tasks, self._number)
 
 
 class Cluster(Workers):
@@ -131,25 +131,26 @@ class Cluster(Workers):
 
     def __init__(self, address: str) -> None:
         try:
-            import distributed.scheduler  # optional: who has no cluster does without it
+            import distributed.scheduler  # optional: only needed with a cluster
         except ImportError as error:
             raise ValueError('--scheduler needs dask.distributed, which is not installed '
                              f'({error}); its package is python3-distributed') from error
         self._address = address
         self._killed = distributed.scheduler.KilledWorker
-        for name in ('asyncio', 'distributed', 'distributed.client'):  # exceptions tell it all
+        for name in ('asyncio', 'distributed', 'distributed.client'):  # exceptions say it
             logging.getLogger(name).setLevel(logging.CRITICAL)
         try:
-            distributed.comm.resolve_address(address)  # of a nonsense, a client is slow to recover
+            distributed.comm.resolve_address(address)  # fails at once, a client late
             self._client = distributed.Client(address, timeout=_CONNECT_S, set_as_default=False)
         except (OSError, ValueError, asyncio.TimeoutError) as error:
             raise ValueError(f'--scheduler {address}: no scheduler of dask.distributed answers '
                              f'there ({error})') from error
 
     def map(self, function: Callable[[_Shared, _Task], _Result], shared: _Shared,
-            tasks: Sequence[_Task], description: str) -> Iterator[_Result]:
-        """See Workers. What a worker had to do that dies is done by another one."""
+            tasks: Sequence[_Task], description: str) -> Generator[_Result, None, None]:
+        """See Workers. If a worker dies, another one does its work."""
         futures = set()
+        there: Any = None
 
         def submit(task: _Task) -> Any:
             future = self._submit(_call, function, there, task)
@@ -164,18 +165,19 @@ class Cluster(Workers):
 
         try:
             with self._connected():
-                # As the result of a task, it is made again when workers die that hold it.
+                # As the result of a task, it is made again when the workers that hold it die.
                 there = self._submit(pickle.loads, pickle.dumps(shared))
                 futures.add(there)
                 yield from _in_order(tasks, submit, result, self._threads, description)
         finally:
-            with suppress(OSError, asyncio.TimeoutError):  # without a connection there is nothing to cancel
+            # Without a connection there is nothing to cancel.
+            with suppress(OSError, asyncio.TimeoutError):
                 self._client.cancel(list(futures))
 
-    def runs(self, tasks: int) -> int:
+    def batches(self, tasks: int) -> int:
         """See Workers; by the workers that are there now."""
         with self._connected():
-            return _runs(tasks, self._threads())
+            return _batches(tasks, self._threads())
 
     def close(self) -> None:
         """Disconnect; the cluster goes on."""
@@ -210,17 +212,17 @@ class Cluster(Workers):
                              ) from error
 
 
-def _runs(tasks: int, workers: int) -> int:
-    # While one worker is busy with a run, the results of the others arrive: where a run has as
-    # many tasks as there are workers, to add those up does not take longer than that. Longer ones
-    # would only be more to do again when a worker dies.
-    longest = max(workers, _LONGEST_RUN)
-    return min(tasks, max(_RUNS * workers, math.ceil(tasks / longest), 1))
+def _batches(tasks: int, workers: int) -> int:
+    # The results of the others arrive while a worker is busy with a batch. Where a batch has as
+    # many tasks as there are workers, adding them up takes no longer than that. Larger batches
+    # only lose more work when a worker dies.
+    largest = max(workers, _LARGEST_BATCH)
+    return min(tasks, max(_BATCHES * workers, math.ceil(tasks / largest), 1))
 
 
 def _in_order(tasks: Sequence[_Task], submit: Callable[[_Task], Any],
               result: Callable[[Any, _Task], _Result], workers: Callable[[], int],
-              description: str) -> Iterator[_Result]:
+              description: str) -> Generator[_Result, None, None]:
     waiting: Deque[Any] = deque()
     with progress.items(len(tasks), description) as one_done:
         for task in tasks:
@@ -234,7 +236,7 @@ def _in_order(tasks: Sequence[_Task], submit: Callable[[_Task], Any],
 
 
 def _call(function: Callable[[_Shared, _Task], _Result], shared: _Shared, task: _Task) -> bytes:
-    # Results wait for their turn as bytes, in which histograms are smaller than in the memory.
+    # Results wait for their turn as bytes: histograms are smaller so.
     return pickle.dumps(function(shared, task))
 
 
@@ -250,7 +252,7 @@ _inherited: Any = None
 """In a process of Processes: what all of its tasks need."""
 
 
-def _call_with_inherited(function: Callable[[Any, _Task], _Result], task: _Task) -> bytes:
+def _call_with_inherited(function: Callable[[Any, Any], Any], task: Any) -> bytes:
     return _call(function, _inherited, task)
 
 
@@ -258,12 +260,14 @@ def _start_worker(shared: object) -> None:
     global _inherited
     _inherited = shared
     progress.silence()
-    for number in (signal.SIGINT, signal.SIGTERM):  # Ctrl-C is explained by the parent
+    for number in (signal.SIGINT, signal.SIGTERM):  # the parent says what happened
         signal.signal(number, signal.SIG_DFL)
     threading.Thread(target=_end_with_parent, daemon=True).start()
 
 
 def _end_with_parent() -> None:
-    # Idle workers hold both ends of their pipes, and would wait for ever.
-    multiprocessing.connection.wait([multiprocessing.parent_process().sentinel])
+    # Idle workers hold both ends of their pipes, and would never see that the parent is gone.
+    parent = multiprocessing.parent_process()
+    if parent is not None:  # as a worker always has one
+        multiprocessing.connection.wait([parent.sentinel])
     os._exit(1)

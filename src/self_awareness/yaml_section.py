@@ -143,8 +143,8 @@ class Section:
         # Comparisons with NaN are false, so that it fails here as well.
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not (
                 low <= value <= high and abs(value) != float('inf')):
-            limits = _limits(low, high)
-            self.fail(key, f'expected a finite number{limits}, found {_shown(value)}')
+            allowed = _range(low, high)
+            self.fail(key, f'expected a finite number{allowed}, found {_shown(value)}')
         return value
 
     def _list(self, key: str) -> List[Any]:
@@ -157,7 +157,7 @@ class Section:
         return f'{self._where}.{key}' if self._where else key
 
 
-def _limits(low: float, high: float) -> str:
+def _range(low: float, high: float) -> str:
     if low > float('-inf') and high < float('inf'):
         return f' from {low:g} to {high:g}'
     return f' of at least {low:g}' if low > float('-inf') else ''

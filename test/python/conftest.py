@@ -6,7 +6,7 @@ import os
 import random
 import time
 from pathlib import Path
-from typing import Callable, Iterable, Optional, Tuple
+from typing import Any, Callable, Iterable, Optional, Tuple
 
 import pytest
 import rosbag
@@ -21,7 +21,7 @@ Message = Tuple[float, str, str]
 
 @pytest.fixture(scope='session')
 def shared() -> Path:
-    """The folder of vectors and real recordings that nobody here made."""
+    """The folder of vectors and real recordings, which are not part of the package."""
     folder = Path(os.environ.get('SELF_AWARENESS_SHARED',
                                  str(Path(__file__).resolve().parents[3] / 'shared')))
     if not folder.is_dir():
@@ -88,14 +88,14 @@ def learned(model: TrainedModel, calibrations: bool = False) -> bytes:
         limits.stamp = 0
         model.evidence_calibration = limits
     state = model.__getstate__()
-    stamp = 2 * 32 + 4  # behind the md5 of two messages and the length of the first, which begins it
+    stamp = 2 * 32 + 4  # after the md5 of two messages and the length of the first
     return state[:stamp] + state[stamp + 8:]
 
 
 @pytest.fixture
 def make_bag(tmp_path: Path) -> Callable[..., str]:
     """Return a function (name, messages, **options of write_bag) that writes a bag."""
-    def make(name: str, messages: Iterable[Message], **options: object) -> str:
+    def make(name: str, messages: Iterable[Message], **options: Any) -> str:
         return write_bag(tmp_path / name, messages, **options)
     return make
 

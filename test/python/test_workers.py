@@ -67,12 +67,12 @@ def test_work_begins_only_a_little_ahead(tmp_path: Path) -> None:
     results.close()
 
 
-@pytest.mark.parametrize('tasks, processes, runs', [
+@pytest.mark.parametrize('tasks, processes, batches', [
     (1, 1, 1), (2, 2, 2), (6, 2, 6), (9, 2, 6), (48, 2, 6), (49, 2, 7), (1000, 2, 125),
     (1000, 20, 60), (10000, 20, 500)])
-def test_runs_are_few_and_not_long(tasks: int, processes: int, runs: int) -> None:
-    assert Processes(processes).runs(tasks) == runs
-    assert InProcess().runs(tasks) == tasks
+def test_batches_are_few_and_not_long(tasks: int, processes: int, batches: int) -> None:
+    assert Processes(processes).batches(tasks) == batches
+    assert InProcess().batches(tasks) == tasks
 
 
 def test_a_process_that_is_killed_is_told(tmp_path: Path) -> None:

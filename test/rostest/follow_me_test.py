@@ -10,8 +10,9 @@ import threading
 import time
 import unittest
 from collections import deque
+from functools import partial
 from statistics import median
-from typing import Callable, Deque, Dict, Optional, Set, Tuple
+from typing import Any, Callable, Deque, Dict, Optional, Set, Tuple
 from xmlrpc.client import ServerProxy
 
 import rosgraph
@@ -20,8 +21,10 @@ import rostest
 from actionlib_msgs.msg import GoalStatus
 from std_msgs.msg import Header
 
-from self_awareness import follow_me, follow_me_faults
 from self_awareness.commands import induce
+from self_awareness.follow_me import induction
+from self_awareness.follow_me.effects import Starvation
+from self_awareness.follow_me.scenario import Scenario, load_scenario
 
 _RATE_HZ = 163.0
 _WINDOW_S = 5.0
@@ -36,7 +39,8 @@ _DEADLINE_S = 90.0
 def pid_of(node: str) -> int:
     """Ask a node for its process id, as `induce` does."""
     uri = rosgraph.Master(rospy.get_name()).lookupNode(node)
-    return ServerProxy(uri).getPid(rospy.get_name())[2]
+    answer: Any = ServerProxy(uri).getPid(rospy.get_name())
+    return int(answer[2])
 
 
 def wait_for(condition: Callable[[], bool], what: str) -> None:
@@ -51,7 +55,7 @@ def wait_for(condition: Callable[[], bool], what: str) -> None:
 class Listener:
     """Remembers when messages came: all of the last seconds, and the last one of each topic."""
 
-    def __init__(self, prefix: str, scenario: follow_me.Scenario) -> None:
+    def __init__(self, prefix: str, scenario: Scenario) -> None:
         self._lock = threading.Lock()
         self._recent: Deque[Tuple[float, str]] = deque()  # Guarded by _lock.
         self._last: Dict[str, float] = {}  # Guarded by _lock.
@@ -107,12 +111,12 @@ class FollowMeTest(unittest.TestCase):
     """The tests run in the order of their names: the last ones break the robot."""
 
     namespace = ''
-    scenario: follow_me.Scenario
+    scenario: Scenario
     listener: Listener
 
     @classmethod
     def setUpClass(cls) -> None:
-        cls.scenario = follow_me.load()
+        cls.scenario = load_scenario()
         cls.listener = Listener(f'/{cls.namespace}/', cls.scenario)
 
     def _node(self, name: str) -> str:
@@ -134,17 +138,17 @@ class FollowMeTest(unittest.TestCase):
                  f'about {_RATE_HZ:g} messages a second')
         for topic in ('odom', 'scan', 'pose', 'cmd_vel', 'tracks', 'person_hypotheses', 'battery',
                       'speech/command', 'map_metadata'):
-            wait_for(lambda topic=topic: self.listener.heard(topic), f'a message on {topic}')
+            wait_for(partial(self.listener.heard, topic), f'a message on {topic}')
 
     def test_3_clock_drifts_and_is_set_right(self) -> None:
-        with induce.disturbed('ac', self.namespace):
+        with induction.disturbed('ac', self.namespace):
             wait_for(lambda: self.listener.age('camera/image') < -0.1, 'stamps ahead of the time')
         wait_for(lambda: 0.0 < self.listener.age('camera/image') < 0.1,
                  'stamps that are right again')
 
     def test_3_latency_grows_at_an_unchanged_rate(self) -> None:
         wait_for(lambda: 0.0 < self.listener.age('legs') < 0.04, 'legs soon after the scan')
-        with induce.disturbed('lat', self.namespace):
+        with induction.disturbed('lat', self.namespace):
             wait_for(lambda: 0.06 < self.listener.age('legs') < 0.1, 'legs 60 ms later')
             since = time.monotonic()
             wait_for(lambda: time.monotonic() - since > _WINDOW_S
@@ -153,24 +157,24 @@ class FollowMeTest(unittest.TestCase):
         wait_for(lambda: self.listener.age('legs') < 0.04, 'legs soon after the scan again')
 
     def test_3_rate_doubles(self) -> None:
-        with induce.disturbed('double:power_monitor', self.namespace):
+        with induction.disturbed('double:power_monitor', self.namespace):
             wait_for(lambda: self.listener.rate('battery') >= 0.8, 'battery at 1 Hz')
 
     def test_3_unknown_message_appears(self) -> None:
         self.assertFalse(self.listener.told(GoalStatus.REJECTED))
-        with induce.disturbed('unknown', self.namespace):
+        with induction.disturbed('unknown', self.namespace):
             wait_for(lambda: self.listener.told(GoalStatus.REJECTED), 'a status never seen before')
 
     def test_3_intruder_comes_and_goes(self) -> None:
         intruder = self.scenario.faults.extra
-        with induce.intruding(intruder, self.namespace):
+        with induction.intruding(intruder, self.namespace):
             wait_for(lambda: abs(self.listener.rate('cmd_vel') - 15.0) < 1.0, 'two who publish')
         wait_for(lambda: self._node(intruder.spec.name) not in self._registered(), 'one leaves')
         wait_for(lambda: abs(self.listener.rate('cmd_vel') - 5.0) < 0.5, 'one who publishes')
 
     def test_4_busy_workers_end(self) -> None:
-        starvation = follow_me_faults.Starvation(ramp=0.2, slowdown=2.0, workers_per_core=1)
-        with induce.starved(starvation):
+        starvation = Starvation(ramp=0.2, slowdown=2.0, workers_per_core=1)
+        with induction.starved(starvation):
             self.assertEqual(len(multiprocessing.active_children()), len(os.sched_getaffinity(0)))
         self.assertEqual(multiprocessing.active_children(), [])
 
@@ -188,7 +192,7 @@ class FollowMeTest(unittest.TestCase):
         player, slam = (pid_of(self._node(name)) for name in ('player', 'slam'))
         self.assertEqual(induce.main(['cc1', '--namespace', self.namespace]), 0)
         for topic in ('scan', 'pose', 'cmd_vel'):
-            wait_for(lambda topic=topic: self.listener.silent_for(topic, 2.0), f'{topic} silent')
+            wait_for(partial(self.listener.silent_for, topic, 2.0), f'{topic} silent')
         wait_for(lambda: not os.path.exists(f'/proc/{player}'), 'player dead')
         # The others live on.
         self.assertEqual(pid_of(self._node('slam')), slam)

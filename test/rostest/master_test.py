@@ -10,7 +10,7 @@ import sys
 import tempfile
 import time
 import unittest
-from typing import Any, Dict, List
+from typing import Any, Dict, List, TypeVar
 from urllib.parse import urlsplit
 
 import rosgraph
@@ -20,6 +20,8 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from live_system import (Process, again_if_clock_was_set, await_condition, make_model, operation,
                          write_bag)
 from self_awareness.msg import SelfAwareness
+
+_Kept = TypeVar('_Kept', bound=Process)
 
 COMPONENTS = (('/talker', '/from/talker', 0.05), ('/beside', '/from/beside', 0.5))
 """Source, topic and mean period [s]."""
@@ -68,6 +70,8 @@ class Listener(Process):
 
 
 class MasterTest(unittest.TestCase):
+    folder: str
+    model: str
 
     @classmethod
     def setUpClass(cls) -> None:
@@ -86,7 +90,7 @@ class MasterTest(unittest.TestCase):
         """Starts a process that is killed when the test ends: with no master, none ends well."""
         return self.keep(Process(*command, env=self.environment))
 
-    def keep(self, process: Process) -> Process:
+    def keep(self, process: _Kept) -> _Kept:
         self.addCleanup(process.stop)
         self.addCleanup(process.send, signal.SIGKILL)
         return process

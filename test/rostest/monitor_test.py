@@ -8,6 +8,7 @@ import signal
 import tempfile
 import unittest
 import xmlrpc.client
+from typing import Any
 
 import rosgraph
 import rospy
@@ -23,8 +24,8 @@ RECORDING_S = 60
 def kill(node: str) -> None:
     """kill -9 of a node, found by asking it for its pid."""
     master = rosgraph.Master('/monitor_test')
-    pid = xmlrpc.client.ServerProxy(master.lookupNode(node)).getPid('/monitor_test')[2]
-    os.kill(pid, signal.SIGKILL)
+    answer: Any = xmlrpc.client.ServerProxy(master.lookupNode(node)).getPid('/monitor_test')
+    os.kill(answer[2], signal.SIGKILL)
 
 
 def recording_odometry() -> bool:

@@ -82,6 +82,8 @@ class SimulatedRobot:
 
 
 class SimTimeTest(unittest.TestCase):
+    folder: str
+    model: str
 
     @classmethod
     def setUpClass(cls) -> None:
@@ -109,8 +111,8 @@ class SimTimeTest(unittest.TestCase):
         """Waits for heartbeats, which come at their rate of steady time."""
         began = time.monotonic()
         beats = await_condition('{} heartbeats'.format(number), lambda: (
-            len([t for t in listener.heartbeats if t > began]) >= number
-            and listener.heartbeats), number * LONGEST_HEARTBEAT_S)
+            listener.heartbeats if len([t for t in listener.heartbeats if t > began]) >= number
+            else None), number * LONGEST_HEARTBEAT_S)
         self.assertLess(beats[-1] - began, number * HEARTBEAT_S + LONGEST_HEARTBEAT_S)
         self.check_heartbeats(listener)
 

@@ -1,4 +1,4 @@
-"""`rosrun self_awareness calibrate`: finds from where on a model calls windows abnormal."""
+"""`rosrun self_awareness calibrate`: finds the limits, or the threshold, of a model."""
 from __future__ import annotations
 
 import argparse
@@ -12,15 +12,22 @@ from typing import List, NamedTuple, Optional, Sequence, Tuple
 import numpy as np
 
 from self_awareness import (EVIDENCE_THRESHOLD, Calibration, DetectorParameters, Model, Roc,
-                            RocPoint, TrainedModel, calibration, confidence, evidence_limits,
-                            evidence_report, recordings)
-from self_awareness.calibration import (ABNORMAL, LEFT_OUT, NORMAL, Cutoff, FalseAlarms,
-                                        FaultResult, JudgedRun, Run)
+                            RocPoint, TrainedModel, recordings)
+from self_awareness.calibration import confidence, limits
+from self_awareness.calibration.fault_injection import (FORMS, InjectedFault, check_source,
+                                                        of_each_source)
+from self_awareness.calibration.results import (FalseAlarms, FaultResult, false_alarms,
+                                                fault_results, labelled)
+from self_awareness.calibration.runs import (ABNORMAL, LEFT_OUT, NORMAL, RECORDED, JudgedRun, Run,
+                                             check_unseen, injected_fault, judge_runs, normal_run,
+                                             recorded_fault)
+from self_awareness.calibration.threshold_rule import ThresholdRule
 from self_awareness.commands import cli
-from self_awareness.fault_injection import FORMS, Fault, check_source, of_each_source
+from self_awareness.judging import evidence_judge, paper_judge
 from self_awareness.output_files import check_outputs, replacing
-from self_awareness.plots import save_roc
 from self_awareness.recordings import BagPart, RecordingEvents
+from self_awareness.reporting import evidence_report
+from self_awareness.reporting.plots import save_roc
 from self_awareness.stamps import SECOND_NS
 
 _COLUMNS = ('bag', 'fault', 'window_start_ns', 'events', 'unknown', 'score', 'label')
@@ -29,8 +36,8 @@ _LABELS = {NORMAL: 'normal', ABNORMAL: 'abnormal', LEFT_OUT: ''}
 _EPILOG = f"""\
 BAG@START-END stands for a part of a recording, in s from its first message.
 FAULT is one of {FORMS}.
-SOURCE may be *: each source in turn. The fault befalls a copy of every normal recording in its
-middle, and its source alone: what depends on it goes on, other than in reality.
+SOURCE may be *: each source in turn. The fault hits a copy of every normal recording in its
+middle, and only its source: unlike in reality, what depends on the source goes on.
 examples:
   calibrate --model robot.model --normal wednesday.bag -o robot.model
   calibrate --model robot.model --normal wednesday.bag --inject 'crash:*' starve -o robot.model
@@ -74,11 +81,11 @@ def _calibrate(arguments: argparse.Namespace) -> None:
     normal = [recordings.read(trained, part) for part in arguments.normal]
     faulty = [dataclasses.replace(recordings.read(trained, BagPart(part.path)), part=part)
               for part in arguments.faulty]
-    calibration.check_unseen(trained, normal + faulty)
+    check_unseen(trained, normal + faulty)
     _check_known(trained, normal)
-    normal_runs = [calibration.normal_run(recording) for recording in normal]
-    faulty_runs = ([calibration.recorded_fault(recording, trained.window) for recording in faulty]
-                   + [calibration.injected_fault(recording, fault, trained.window)
+    normal_runs = [normal_run(recording) for recording in normal]
+    faulty_runs = ([recorded_fault(recording, trained.window) for recording in faulty]
+                   + [injected_fault(recording, fault, trained.window)
                       for fault in dict.fromkeys(arguments.inject) for recording in normal])
 
     if arguments.detector == 'evidence':
@@ -110,9 +117,9 @@ def _check_options(arguments: argparse.Namespace) -> None:
         raise ValueError("--budget is for --detector evidence; the threshold of the paper's score "
                          'is chosen by --cutoff')
     if arguments.cutoff is None:
-        arguments.cutoff = Cutoff('youden')
+        arguments.cutoff = ThresholdRule('youden')
     if arguments.budget is None:
-        arguments.budget = evidence_limits.BUDGET
+        arguments.budget = limits.BUDGET
 
 
 def _check_known(trained: TrainedModel, normal: Sequence[RecordingEvents]) -> None:
@@ -126,40 +133,40 @@ def _find_limits(arguments: argparse.Namespace, trained: TrainedModel,
                  parameters: DetectorParameters, normal_runs: Sequence[Run],
                  faulty_runs: Sequence[Run]) -> _Measured:
     try:
-        found = evidence_limits.held_out(trained, [run.source for run in normal_runs],
-                                         parameters.settle_time, arguments.budget)
+        found = limits.held_out(trained, [run.source for run in normal_runs],
+                                parameters.settle_time, arguments.budget)
     except ValueError as error:
         raise ValueError(f'--normal: {error}; name longer recordings, or more of them') from error
     trained.evidence_calibration = found
-    judged = calibration.judge(calibration.evidence_judge(trained, parameters), trained.window,
-                               [*normal_runs, *faulty_runs])
+    judged = judge_runs(evidence_judge(trained, parameters), trained.window,
+                        [*normal_runs, *faulty_runs])
     normal, faulty = judged[:len(normal_runs)], judged[len(normal_runs):]
     normal_scores = _normal_scores(normal, faulty, parameters)
-    roc = Roc(normal_scores, calibration.labelled(faulty, ABNORMAL))
+    roc = Roc(normal_scores, labelled(faulty, ABNORMAL))
     measured = _Measured(roc.at(EVIDENCE_THRESHOLD), roc, normal, faulty,
-                         calibration.fault_results(normal_scores, faulty, EVIDENCE_THRESHOLD),
-                         calibration.false_alarms(normal, trained.window))
+                         fault_results(normal_scores, faulty, EVIDENCE_THRESHOLD),
+                         false_alarms(normal, trained.window))
     found.false_alarms_per_hour = measured.false_alarms.per_hour
     trained.evidence_calibration = found
     return measured
 
 
-def _find_threshold(trained: TrainedModel, parameters: DetectorParameters, cutoff: Cutoff,
+def _find_threshold(trained: TrainedModel, parameters: DetectorParameters, cutoff: ThresholdRule,
                     normal_runs: Sequence[Run], faulty_runs: Sequence[Run]) -> _Measured:
     model = Model(trained)
     runs = [*normal_runs, *faulty_runs]
-    scored = calibration.judge(calibration.paper_judge(trained, model, None, parameters),
-                               trained.window, runs)
+    scored = judge_runs(paper_judge(trained, model, None, parameters),
+                        trained.window, runs)
     normal_scores = _normal_scores(scored[:len(normal_runs)], scored[len(normal_runs):],
                                    parameters)
-    roc = Roc(normal_scores, calibration.labelled(scored[len(normal_runs):], ABNORMAL))
+    roc = Roc(normal_scores, labelled(scored[len(normal_runs):], ABNORMAL))
     point = cutoff.choose(roc)
-    judged = calibration.judge(calibration.paper_judge(trained, model, point.cutoff, parameters),
-                               trained.window, runs)
+    judged = judge_runs(paper_judge(trained, model, point.cutoff, parameters),
+                        trained.window, runs)
     normal, faulty = judged[:len(normal_runs)], judged[len(normal_runs):]
     return _Measured(point, roc, normal, faulty,
-                     calibration.fault_results(normal_scores, faulty, point.cutoff),
-                     calibration.false_alarms(normal, trained.window))
+                     fault_results(normal_scores, faulty, point.cutoff),
+                     false_alarms(normal, trained.window))
 
 
 def _normal_scores(normal: Sequence[JudgedRun], faulty: Sequence[JudgedRun],
@@ -169,7 +176,7 @@ def _normal_scores(normal: Sequence[JudgedRun], faulty: Sequence[JudgedRun],
     Raises:
         ValueError: there is none, or none of a fault.
     """
-    normal_scores = calibration.labelled(normal, NORMAL)
+    normal_scores = labelled(normal, NORMAL)
     if len(normal_scores) == 0:
         raise ValueError(f'--normal: no window is left after the first {_settle(parameters)} s '
                          '(--settle-time) of the recordings; name longer ones')
@@ -192,19 +199,19 @@ def _calibration(arguments: argparse.Namespace, measured: _Measured) -> Calibrat
     result.auc = measured.roc.auc
     result.true_positive_rate = measured.point.true_positive_rate
     result.false_positive_rate = measured.point.false_positive_rate
-    result.normal_windows = len(calibration.labelled(measured.normal, NORMAL))
-    result.faulty_windows = len(calibration.labelled(measured.faulty, ABNORMAL))
+    result.normal_windows = len(labelled(measured.normal, NORMAL))
+    result.faulty_windows = len(labelled(measured.faulty, ABNORMAL))
     result.false_alarms_per_hour = measured.false_alarms.per_hour
     result.normal = [judged.run.source.recording for judged in measured.normal]
     result.faulty = [judged.run.source.recording for judged in measured.faulty
-                     if judged.run.fault == calibration.RECORDED]
+                     if judged.run.fault == RECORDED]
     result.injected = [str(fault) for fault in dict.fromkeys(arguments.inject)]
     result.stamp = int(time.time()) * SECOND_NS
     return result
 
 
-def _print(cutoff: Cutoff, measured: _Measured) -> None:
-    windows = len(calibration.labelled(measured.normal, NORMAL))
+def _print(cutoff: ThresholdRule, measured: _Measured) -> None:
+    windows = len(labelled(measured.normal, NORMAL))
     rate = measured.point.false_positive_rate
     false = round(rate * windows)
     for result in measured.faults:
@@ -284,18 +291,18 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('--faulty', type=BagPart.parse, nargs='+', action='extend', default=[],
                         metavar='BAG', help='recording with a fault, from its beginning to its '
                         'end or, as BAG@START or BAG@START-END, in this part')
-    parser.add_argument('--inject', type=cli.checked(Fault.parse), nargs='+', action='extend',
-                        default=[], metavar='FAULT',
+    parser.add_argument('--inject', type=cli.checked(InjectedFault.parse), nargs='+',
+                        action='extend', default=[], metavar='FAULT',
                         help='fault to make out of the normal recordings, see below')
     parser.add_argument('-o', '--output', required=True, metavar='MODEL',
                         help='file to write; may be the same model')
     cli.add_detector_argument(parser)
     parser.add_argument('--budget', type=_budget, metavar='N', help='evidence: false alarms an '
-                        f'hour that the limits allow (default: {evidence_limits.BUDGET:g})')
-    parser.add_argument('--cutoff', type=cli.checked(Cutoff.parse),
-                        metavar='HOW', help='paper: youden: most found less most false; closest: '
-                        'closest to all found and none false; fpr=RATE: this share of normal '
-                        'windows false (default: youden)')
+                        f'hour that the limits allow (default: {limits.BUDGET:g})')
+    parser.add_argument('--cutoff', type=cli.checked(ThresholdRule.parse),
+                        metavar='HOW', help='paper: youden: largest true less false positive '
+                        'rate; closest: closest to all found and none false; fpr=RATE: this share '
+                        'of normal windows false (default: youden)')
     parser.add_argument('--roc', type=cli.png_file, metavar='FILE.png', help='draw the ROC')
     parser.add_argument('--csv', metavar='FILE', help='write score and label of every window')
     cli.add_detector_arguments(parser)

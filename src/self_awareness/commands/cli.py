@@ -1,4 +1,4 @@
-"""What the command lines have in common: arguments, and how an error is told and exited with."""
+"""What the command lines have in common: arguments, error messages and exit codes."""
 from __future__ import annotations
 
 import argparse
@@ -9,7 +9,7 @@ import sys
 from typing import Callable, Optional, Sequence, TypeVar
 
 from self_awareness import BagError, DetectorParameters, ModelFileError, UnknownEvents
-from self_awareness.stamps import SECOND_NS
+from self_awareness.stamps import SECOND_NS, nanoseconds
 
 _Value = TypeVar('_Value')
 
@@ -34,7 +34,7 @@ def run(parser: argparse.ArgumentParser, work: Callable[[argparse.Namespace], No
         return int(stop.code or 0)
     except KeyboardInterrupt:
         return 130
-    except BrokenPipeError:  # whoever read the output has seen enough, as `head` does
+    except BrokenPipeError:  # the reader has seen enough, as `head` has
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
     except (BagError, ModelFileError, ValueError) as error:
@@ -59,7 +59,7 @@ def seconds(text: str, low: float = 0.0) -> int:
     if not low <= value <= _LONGEST_S:  # false for NaN as well
         raise argparse.ArgumentTypeError(f'expected seconds from {low:g} to {_LONGEST_S:g}, '
                                          f'not {text!r}')
-    return round(value * SECOND_NS)
+    return nanoseconds(value)
 
 
 def duration(text: str) -> int:

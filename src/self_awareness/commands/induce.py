@@ -3,260 +3,55 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import math
-import multiprocessing
-import os
 import signal
-import socket
-import subprocess
-import sys
 import time
-from http.client import HTTPException
+from functools import partial
 from pathlib import Path
-from typing import ContextManager, Dict, Iterator, List, Optional
-from urllib.parse import urlparse
-from xmlrpc.client import Fault as XmlRpcFault
-from xmlrpc.client import ServerProxy
+from typing import Optional, Sequence
 
-import rosgraph
-import rosgraph.network
-
-from self_awareness import follow_me
-from self_awareness.follow_me_faults import (INDUCED_FAULT, Crash, Effect, Intruder, Silence,
-                                             Starvation, described, effect_of)
-
-_CALLER_ID = '/induce'
+from self_awareness import progress
+from self_awareness.commands import cli
+from self_awareness.follow_me import induction
+from self_awareness.follow_me.effects import Crash, Silence
+from self_awareness.follow_me.faults import described, effect_of
+from self_awareness.follow_me.scenario import load_scenario
 
 
-class InduceError(RuntimeError):
-    """A fault cannot be induced; the message says why and what to do."""
-
-
-class _DeadError(InduceError):
-    """A node is dead already."""
-
-
-def main(argv: Optional[List[str]] = None) -> int:
-    """Run the program; return 0 when the fault was induced (and ended), 1 if it could not be.
-
-    Args:
-        argv: the arguments without the program's name, by default those of the process.
-    """
+def main(argv: Optional[Sequence[str]] = None) -> int:
+    """Run the program; return its exit code (see cli.run)."""
     parser = _parser()
-    arguments = parser.parse_args(argv)
-    if arguments.duration is not None and not 0.0 < arguments.duration < math.inf:
-        parser.error(f'--duration must be more than 0 s, not {arguments.duration}')
+    return cli.run(parser, partial(_induce, parser), argv)
+
+
+def _induce(parser: argparse.ArgumentParser, arguments: argparse.Namespace) -> None:
     # A termination must clean up like Ctrl-C.
     signal.signal(signal.SIGTERM, signal.default_int_handler)
-    try:
-        scenario = follow_me.load(arguments.scenario)
-        effect = effect_of(scenario, arguments.kind)
-        if isinstance(effect, (Crash, Silence)):
-            if arguments.duration is not None:
-                parser.error('--duration: the dead do not come back')
-            if isinstance(effect, Crash):
-                pids = {effect.component: crash(effect, arguments.namespace)}
-            else:
-                pids = silence(scenario, arguments.namespace)
-            for name, pid in pids.items():
-                print(f'{time.time():.3f} {name} killed (pid {pid})', flush=True)
-        else:
-            with _lasting(effect, arguments):
-                _last(f'fault {arguments.kind}', arguments.duration)
-    except (InduceError, ValueError) as error:
-        print(f'induce: error: {error}', file=sys.stderr)
-        return 1
-    return 0
-
-
-def _lasting(effect: Effect, arguments: argparse.Namespace) -> ContextManager[None]:
-    """Return what makes a fault last as long as a with statement."""
-    if isinstance(effect, Starvation):
-        return starved(effect)
-    if isinstance(effect, Intruder):
-        return intruding(effect, arguments.namespace, arguments.scenario)
-    return disturbed(arguments.kind, arguments.namespace)
-
-
-def crash(effect: Crash, namespace: str = '') -> int:
-    """Kill the node of a component with SIGKILL and return its process id.
-
-    Raises:
-        InduceError: the node is unknown to the master, does not answer, or runs elsewhere.
-    """
-    node = _resolved(namespace, effect.component)
-    pid = _pid(node)
-    _kill(node, pid)
-    return pid
-
-
-def silence(scenario: follow_me.Scenario, namespace: str = '') -> Dict[str, int]:
-    """Kill the nodes of all components and return the process ids of those that were alive.
-
-    Raises:
-        InduceError: a node is unknown to the master or runs elsewhere, or all are dead already.
-    """
-    pids: Dict[str, int] = {}
-    # At once: first all are found, which takes its time, and then they are killed.
-    for spec in scenario.components:
-        with contextlib.suppress(_DeadError):
-            pids[spec.name] = _pid(_resolved(namespace, spec.name))
-    if not pids:
-        raise InduceError('all components are dead already')
+    scenario = load_scenario(arguments.scenario)
+    effect = effect_of(scenario, arguments.kind)
+    if not isinstance(effect, (Crash, Silence)):
+        with induction.lasting(effect, arguments.kind, arguments.namespace, arguments.scenario):
+            _last(f'fault {arguments.kind}', arguments.duration)
+        return
+    if arguments.duration is not None:
+        parser.error('--duration: the dead do not come back')
+    if isinstance(effect, Crash):
+        pids = {effect.component: induction.crash(effect, arguments.namespace)}
+    else:
+        pids = induction.silence(scenario, arguments.namespace)
     for name, pid in pids.items():
-        _kill(_resolved(namespace, name), pid)
-    return pids
-
-
-def _kill(node: str, pid: int) -> None:
-    try:
-        os.kill(pid, signal.SIGKILL)
-    except OSError as error:
-        raise InduceError(f'{node}: process {pid} cannot be killed: {error.strerror}') from error
-
-
-def _pid(node: str) -> int:
-    try:
-        uri = rosgraph.Master(_CALLER_ID).lookupNode(node)
-    except rosgraph.MasterError as error:
-        raise InduceError(f'{node} is not known to the master: is the robot running, and is '
-                          '--namespace right?') from error
-    except (OSError, rosgraph.MasterException) as error:
-        raise _no_master() from error
-    if not rosgraph.network.is_local_address(urlparse(uri).hostname):
-        raise InduceError(f'{node} runs on another machine ({uri}): induce the fault there')
-    try:
-        with _timeout(5.0):
-            code, text, pid = ServerProxy(uri).getPid(_CALLER_ID)
-    except (OSError, HTTPException, XmlRpcFault) as error:
-        raise _DeadError(f'{node} does not answer at {uri}: it is dead already') from error
-    if code != 1 or pid <= 1:
-        raise InduceError(f'{node} does not tell its process id: {text}')
-    return pid
-
-
-@contextlib.contextmanager
-def disturbed(kind: str, namespace: str = '') -> Iterator[None]:
-    """Tell the components to misbehave for the time of a with statement.
-
-    Args:
-        kind: name of a fault that components know of: a clock that drifts, latency, and so on.
-        namespace: of the robot.
-
-    Raises:
-        InduceError: no robot is running there.
-    """
-    parameter = _resolved(namespace, INDUCED_FAULT)
-    master = rosgraph.Master(_CALLER_ID)
-    _check_running(master, parameter)
-    try:
-        _set_parameter(master, parameter, f'{kind}@{time.time():.6f}')
-        yield
-    finally:
-        _set_parameter(master, parameter, '')
-
-
-@contextlib.contextmanager
-def intruding(effect: Intruder, namespace: str = '', scenario: Optional[Path] = None
-              ) -> Iterator[None]:
-    """Let a foreign node publish for the time of a with statement.
-
-    Raises:
-        InduceError: no robot is running there, or the node ended by itself.
-    """
-    _check_running(rosgraph.Master(_CALLER_ID), _resolved(namespace, INDUCED_FAULT))
-    command = ['rosrun', 'self_awareness', 'component', effect.spec.name]
-    command += [] if scenario is None else ['--scenario', str(scenario)]
-    try:
-        process = subprocess.Popen(command + [f'__ns:={_resolved(namespace) or "/"}'])
-    except OSError as error:
-        raise InduceError(f'rosrun cannot be started: {error.strerror}') from error
-    try:
-        yield
-        if process.poll():
-            raise InduceError(f'the node {effect.spec.name} ended by itself, see above')
-    finally:
-        process.terminate()
-        process.wait()
-
-
-@contextlib.contextmanager
-def starved(effect: Starvation) -> Iterator[None]:
-    """Let a growing number of busy workers take the CPU for the time of a with statement."""
-    number = effect.workers_per_core * len(os.sched_getaffinity(0))
-    workers = [multiprocessing.Process(target=_work, args=(effect.ramp * i / number, os.getpid()),
-                                       daemon=True) for i in range(number)]
-    try:
-        for worker in workers:
-            worker.start()
-        yield
-    finally:
-        for worker in workers:
-            if worker.pid is not None:
-                worker.kill()
-                worker.join()
-
-
-def _work(delay_s: float, parent: int) -> None:
-    """Keep a core busy after a delay, until the parent kills the process or dies itself."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-    # The kernel may share the CPU among sessions (autogroup): one session would weigh no more than
-    # the whole robot, however many workers it has.
-    os.setsid()
-    busy_from = time.monotonic() + delay_s
-    while os.getppid() == parent:
-        if time.monotonic() < busy_from:
-            time.sleep(0.05)
-        else:
-            for _ in range(100_000):
-                pass
+        progress.say(f'{time.time():.3f} {name} killed (pid {pid})')
 
 
 def _last(what: str, duration_s: Optional[float]) -> None:
     """Wait for the duration (s), without one until Ctrl-C."""
-    print(f'{time.time():.3f} {what} begins', flush=True)
-    try:
-        time.sleep(duration_s) if duration_s is not None else signal.pause()
-    except KeyboardInterrupt:
-        pass
-    print(f'{time.time():.3f} {what} ends', flush=True)
-
-
-def _check_running(master: rosgraph.Master, parameter: str) -> None:
-    """Check that a robot has set its parameter."""
-    try:
-        known = master.hasParam(parameter)
-    except (OSError, rosgraph.MasterException) as error:
-        raise _no_master() from error
-    if not known:
-        raise InduceError(f'parameter {parameter} is not set: is the robot running, and is '
-                          '--namespace right?')
-
-
-def _set_parameter(master: rosgraph.Master, parameter: str, value: str) -> None:
-    try:
-        master.setParam(parameter, value)
-    except (OSError, rosgraph.MasterException) as error:
-        raise _no_master() from error
-
-
-def _resolved(namespace: str, *names: str) -> str:
-    return '/'.join(['', *filter(None, namespace.split('/')), *names])
-
-
-def _no_master() -> InduceError:
-    return InduceError(f'no master at {rosgraph.get_master_uri()}: is the robot running, and is '
-                       'ROS_MASTER_URI right?')
-
-
-@contextlib.contextmanager
-def _timeout(seconds: float) -> Iterator[None]:
-    before = socket.getdefaulttimeout()
-    socket.setdefaulttimeout(seconds)
-    try:
-        yield
-    finally:
-        socket.setdefaulttimeout(before)
+    progress.say(f'{time.time():.3f} {what} begins')
+    with contextlib.suppress(KeyboardInterrupt):
+        if duration_s is None:
+            signal.pause()
+        else:
+            for _ in progress.waiting(duration_s, what):
+                pass
+    progress.say(f'{time.time():.3f} {what} ends')
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -264,7 +59,7 @@ def _parser() -> argparse.ArgumentParser:
         prog='induce', description=__doc__.split(': ', 1)[1], epilog=f'faults:\n{described()}',
         formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('kind', metavar='KIND', help='one of the faults below')
-    parser.add_argument('--duration', type=float, metavar='S',
+    parser.add_argument('--duration', type=cli.checked(_duration_s), metavar='S',
                         help='how long it lasts in s, unless somebody dies (default: until '
                              'Ctrl-C)')
     parser.add_argument('--namespace', default='', metavar='NS',
@@ -272,3 +67,10 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('--scenario', type=Path, metavar='FILE',
                         help='the robot (default: config/follow_me.yaml of the package)')
     return parser
+
+
+def _duration_s(text: str) -> float:
+    value = float(text)
+    if not 0.0 < value < float('inf'):
+        raise ValueError(f'must be more than 0 s, not {text}')
+    return value

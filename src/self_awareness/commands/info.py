@@ -6,10 +6,11 @@ import json
 import shutil
 from typing import Any, Dict, List, Optional, Sequence
 
-from self_awareness import FEWEST_GAPS, EventType, Model, TrainedModel, histogram_text
+from self_awareness import FEWEST_GAPS, EventType, Model, TrainedModel
 from self_awareness.commands import cli
-from self_awareness.evidence_report import counts
-from self_awareness.model_summary import summarise
+from self_awareness.reporting import histogram_text
+from self_awareness.reporting.evidence_report import counts
+from self_awareness.reporting.model_summary import summarise
 from self_awareness.stamps import utc
 
 _DRAWN = 0.99  # share of the delays that have rows of their own

@@ -7,8 +7,8 @@ from typing import Optional, Sequence
 from self_awareness import TrainedModel
 from self_awareness.commands import cli
 from self_awareness.output_files import check_outputs, check_replaces_model
-from self_awareness.training import DistinctRecordings
-from self_awareness.training_report import print_summary
+from self_awareness.reporting.training_report import print_summary
+from self_awareness.training.many_bags import DistinctRecordings
 
 _EPILOG = """\
 The models must agree in encoding, windows, bins and horizon. What they learned adds up, as if one
@@ -29,26 +29,34 @@ def _merge(arguments: argparse.Namespace) -> None:
     check_outputs([arguments.output], arguments.models)
     check_replaces_model(arguments.output)
     known = DistinctRecordings()
-    merged: Optional[TrainedModel] = None
-    for path in arguments.models:
-        model = TrainedModel.load(path)
-        for recording in model.recordings:
-            other = known.add(path, recording)
-            if other is not None:
-                raise ValueError(f'{path}: was trained on a recording ({recording.bag}) that '
-                                 f'{other} was trained on, too; it would count twice')
-        if merged is None:
-            merged = model
-            continue
+    first, *others = arguments.models
+    merged = _load(first, known)
+    for path in others:
+        model = _load(path, known)
         try:
             merged.merge(model)
         except ValueError as error:
-            raise ValueError(f'{path}: does not fit {arguments.models[0]}: {error}') from error
+            raise ValueError(f'{path}: does not fit {first}: {error}') from error
     merged.watch()
     merged.save(arguments.output)
     print_summary(merged)
     print(f'written: {arguments.output}, without limits and threshold; calibrate it again (rosrun '
           'self_awareness calibrate)')
+
+
+def _load(path: str, known: DistinctRecordings) -> TrainedModel:
+    """Load a model whose recordings are in none of those before.
+
+    Raises:
+        ValueError: one of them is.
+    """
+    model = TrainedModel.load(path)
+    for recording in model.recordings:
+        other = known.add(path, recording)
+        if other is not None:
+            raise ValueError(f'{path}: was trained on a recording ({recording.bag}) that '
+                             f'{other} was trained on, too; it would count twice')
+    return model
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -8,12 +8,12 @@ from typing import List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from self_awareness import (EVIDENCE_THRESHOLD, Model, TrainedModel, Verdicts, calibration,
-                            recordings)
+from self_awareness import EVIDENCE_THRESHOLD, Model, TrainedModel, Verdicts, recordings
 from self_awareness.commands import cli
+from self_awareness.judging import evidence_judge, paper_judge
 from self_awareness.output_files import check_outputs, replacing
-from self_awareness.plots import ScorePlot, save_scores
 from self_awareness.recordings import BagPart, RecordingEvents
+from self_awareness.reporting.plots import ScorePlot, save_scores
 from self_awareness.stamps import SECOND_NS, utc
 
 _COLUMNS = ('bag', 'window_start_ns', 'events', 'unknown', 'score', 'threshold', 'abnormal')
@@ -36,10 +36,10 @@ def _score(arguments: argparse.Namespace) -> None:
     paper = arguments.detector == 'paper'
     trained = TrainedModel.load(arguments.model, watched_only=not paper)
     if paper:
-        judge = calibration.paper_judge(trained, Model(trained), trained.threshold, parameters)
+        judge = paper_judge(trained, Model(trained), trained.threshold, parameters)
         threshold = trained.threshold
     else:
-        judge = calibration.evidence_judge(trained, parameters)
+        judge = evidence_judge(trained, parameters)
         threshold = None if trained.evidence_calibration is None else EVIDENCE_THRESHOLD
     if threshold is None:
         print(f'{arguments.model}: not calibrated: windows are scored, none is called abnormal '

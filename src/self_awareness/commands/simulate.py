@@ -2,18 +2,18 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
-from typing import List, Optional, Tuple
+from typing import List, Optional, Sequence, Tuple
 
-from tqdm import tqdm
-
-from self_awareness import follow_me, follow_me_faults
-from self_awareness.simulation import Fault, simulate
+from self_awareness import progress
+from self_awareness.commands import cli
+from self_awareness.follow_me.faults import described
+from self_awareness.follow_me.scenario import load_scenario
+from self_awareness.follow_me.simulation import InducedFault, simulate
 
 _EPILOG = f"""\
 faults:
-{follow_me_faults.described()}
+{described()}
 
 examples:
   simulate -o normal.bag                     one recording of 100 s
@@ -23,31 +23,20 @@ examples:
 """
 
 
-def main(argv: Optional[List[str]] = None) -> int:
-    """Run the program; return 0 on success, 1 if a bag could not be written, 130 after Ctrl-C.
+def main(argv: Optional[Sequence[str]] = None) -> int:
+    """Run the program; return its exit code (see cli.run)."""
+    return cli.run(_parser(), _simulate, argv)
 
-    Args:
-        argv: the arguments without the program's name, by default those of the process.
-    """
-    parser = _parser()
-    arguments = parser.parse_args(argv)
-    try:
-        scenario = follow_me.load(arguments.scenario)
-        fault = _fault(arguments.fault, arguments.duration)
-        bags = _bags(arguments.output, arguments.runs, arguments.seed, fault)
-        seconds = int(arguments.duration) * arguments.runs
-        with tqdm(total=seconds, unit='s', leave=False, disable=None) as bar:
-            for seed, bag in bags:
-                bar.set_description(bag.name)
-                bag.parent.mkdir(parents=True, exist_ok=True)
-                simulate(bag, arguments.duration, seed, fault, scenario, progress=bar.update)
-                tqdm.write(str(bag))
-    except (ValueError, OSError) as error:
-        print(f'simulate: error: {error}', file=sys.stderr)
-        return 1
-    except KeyboardInterrupt:
-        return 130
-    return 0
+
+def _simulate(arguments: argparse.Namespace) -> None:
+    scenario = load_scenario(arguments.scenario)
+    fault = _fault(arguments.fault, arguments.duration)
+    bags = _bags(arguments.output, arguments.runs, arguments.seed, fault)
+    with progress.items(int(arguments.duration) * arguments.runs, 'simulating') as seconds_done:
+        for seed, bag in bags:
+            bag.parent.mkdir(parents=True, exist_ok=True)
+            simulate(bag, arguments.duration, seed, fault, scenario, progress=seconds_done)
+            progress.say(str(bag))
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -69,7 +58,7 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _fault(text: Optional[str], duration_s: float) -> Optional[Fault]:
+def _fault(text: Optional[str], duration_s: float) -> Optional[InducedFault]:
     """Read KIND or KIND@SECONDS.
 
     Raises:
@@ -79,7 +68,7 @@ def _fault(text: Optional[str], duration_s: float) -> Optional[Fault]:
         return None
     kind, at, onset = text.partition('@')
     try:
-        fault = Fault(kind, float(onset) if at else duration_s / 2.0)
+        fault = InducedFault(kind, float(onset) if at else duration_s / 2.0)
     except ValueError as error:
         raise ValueError(f'--fault {text}: {error}') from error
     if fault.onset_s >= duration_s:
@@ -88,7 +77,8 @@ def _fault(text: Optional[str], duration_s: float) -> Optional[Fault]:
     return fault
 
 
-def _bags(output: Path, runs: int, seed: int, fault: Optional[Fault]) -> List[Tuple[int, Path]]:
+def _bags(output: Path, runs: int, seed: int,
+          fault: Optional[InducedFault]) -> List[Tuple[int, Path]]:
     """Return the seeds with their bags.
 
     Raises:

@@ -6,24 +6,22 @@ import os
 from contextlib import closing
 from typing import Dict, Optional, Sequence
 
-from self_awareness import (PREDECESSORS, BagError, TrainedModel, encoding_file, live_graph,
-                            progress, training)
+from self_awareness import PREDECESSORS, BagError, TrainedModel, encoding_file, progress
+from self_awareness.calibration.limits import TooLittleError
 from self_awareness.commands import cli
-from self_awareness.evidence_limits import TooLittleError
 from self_awareness.output_files import check_outputs, check_replaces_model
 from self_awareness.recordings import BagPart
+from self_awareness.reporting.training_report import print_summary
 from self_awareness.stamps import SECOND_NS
-from self_awareness.training import Counting, Trained
-from self_awareness.training_report import print_summary
+from self_awareness.training import live_graph, many_bags
+from self_awareness.training.many_bags import Counting, Trained
 from self_awareness.workers import Cluster, InProcess, Processes, Workers
 
-_BIN, _WINDOW, _HORIZON = '0.01', '0.1', 0
 _OF_THE_MODEL = ('bin', 'window', 'horizon', 'encoding', 'predecessors')
 
 _EPILOG = """\
-The recordings should show all that is normal, start-up aside: leave it out with --start.
-The model is the same with any --jobs, and with --scheduler: every process counts one bag at a
-time, and adds some neighbouring ones; their sums are added in the order of the bags.
+The recordings should show all that is normal, but not the start-up: leave it out with --start.
+The model is the same with any --jobs, and with --scheduler.
 examples:
   train monday.bag tuesday.bag -o robot.model
   train run.bag --start 20 -o robot.model      from 20 s after the recording's first message on
@@ -48,7 +46,7 @@ def _train(arguments: argparse.Namespace) -> None:
     paths = map(os.path.abspath, arguments.bags) if arguments.scheduler else arguments.bags
     parts = [BagPart(path, arguments.start, arguments.end) for path in paths]
     with closing(_workers(arguments)) as workers:
-        trained = training.train(parts, counting, workers, base, arguments.skip_bad, progress.say)
+        trained = many_bags.train(parts, counting, workers, base, arguments.skip_bad, progress.say)
         model = trained.model
         if counting.encoding is None and model.encoding.source == 'none':
             print('no bag names the senders of its messages: sources are not told apart '
@@ -57,7 +55,7 @@ def _train(arguments: argparse.Namespace) -> None:
             model.graph = graph
         try:
             limits = _limits(trained, workers)
-        except (BagError, ValueError) as error:  # what was counted is not lost by that
+        except (BagError, ValueError) as error:  # the counts are not lost
             model.save(arguments.output)
             raise ValueError(f'{error}; {arguments.output} is written, without limits') from error
     model.save(arguments.output)
@@ -72,7 +70,7 @@ def _train(arguments: argparse.Namespace) -> None:
 def _limits(trained: Trained, workers: Workers) -> str:
     """Give the model preliminary limits where there is enough to find them; say how."""
     try:
-        training.preliminary_limits(trained, workers)
+        many_bags.preliminary_limits(trained, workers)
     except TooLittleError as error:
         return f'limits       none: {error}'
     return ('limits       preliminary, by what one half of the training says of the other '
@@ -86,9 +84,9 @@ def _counting(arguments: argparse.Namespace, base: Optional[TrainedModel]) -> Co
                 raise ValueError(f'--{option}: is that of {arguments.add_to} (--add-to); leave it '
                                  'out')
         return Counting.of(base)
-    bin_size = cli.duration(_BIN) if arguments.bin is None else arguments.bin
-    window = cli.duration(_WINDOW) if arguments.window is None else arguments.window
-    horizon = _HORIZON if arguments.horizon is None else arguments.horizon
+    bin_size = Counting.bin_size if arguments.bin is None else arguments.bin
+    window = Counting.window if arguments.window is None else arguments.window
+    horizon = 0 if arguments.horizon is None else arguments.horizon
     if horizon % bin_size:
         raise ValueError(f'--horizon {horizon / SECOND_NS:g} is no multiple of the bin size '
                          f'{bin_size / SECOND_NS:g}; choose one')
@@ -107,7 +105,7 @@ def _workers(arguments: argparse.Namespace) -> Workers:
 
 
 def _check_exist(paths: Sequence[str]) -> None:
-    """Check before hours of work what a slip of the keyboard leads to."""
+    """Find mistyped names before hours of work."""
     for path in paths:
         if not os.path.exists(path):
             raise ValueError(f'{path}: no such file')
@@ -135,17 +133,19 @@ def _parser() -> argparse.ArgumentParser:
                              'next')
     parser.add_argument('-o', '--output', required=True, metavar='MODEL', help='file to write')
     parser.add_argument('--bin', type=cli.duration, metavar='S',
-                        help=f'size of the bins of delays in s (default: {_BIN})')
-    parser.add_argument('--window', type=cli.duration, metavar='S', help='length of the windows '
-                        f'that are scored, in s (default: {_WINDOW})')
+                        help='size of the bins of delays in s (default: '
+                             f'{Counting.bin_size / SECOND_NS:g})')
+    parser.add_argument('--window', type=cli.duration, metavar='S',
+                        help='length of the windows that are scored, in s (default: '
+                             f'{Counting.window / SECOND_NS:g})')
     parser.add_argument('--horizon', type=cli.seconds, metavar='S',
                         help='delays of this many s or more share one bin (default: no horizon)')
     parser.add_argument('--predecessors', type=cli.count, metavar='N',
-                        help='delays since so many event types are watched of every one, the most '
-                             f'informative ones (default: {PREDECESSORS})')
+                        help='of each event type, watch the delays since at most so many others, '
+                             f'the most informative ones (default: {PREDECESSORS})')
     parser.add_argument('--graph', action='store_true',
                         help='ask the master of the running robot who subscribes to what, and '
-                             'keep it: the root of a fault is told from its victims by it')
+                             'keep it: it tells the root of a fault from its victims')
     parser.add_argument('--encoding', metavar='FILE',
                         help='how messages become events (example: config/encoding.yaml)')
     parser.add_argument('--start', type=cli.offset, metavar='S',
@@ -155,8 +155,8 @@ def _parser() -> argparse.ArgumentParser:
                         help='add to what this model learned, in its encoding, bins and windows; '
                              'it may be the file to write. Its calibrations are dropped')
     parser.add_argument('--skip-bad', action='store_true',
-                        help='name bags that cannot be used, and go on without them; else they '
-                             'end the program')
+                        help='leave out bags that cannot be used, and name them; without this '
+                             'option they end the program')
     where = parser.add_argument_group('many bags').add_mutually_exclusive_group()
     where.add_argument('--jobs', type=cli.count, metavar='N',
                        help='processes to work in (default: one for each core, and never more '

@@ -41,10 +41,10 @@ _PEERS: Dict[str, Callable[[], Scorer]] = {
     'markov': MarkovScorer,
 }
 
-# Peers that are judged by limits of their own.
+# Peers that have a threshold of their own.
 _THRESHOLDS = {'frequency': -TOLERANCE}
 
-# Imported when the peer is made: nothing else of the package needs them.
+# Imported when the peer is made: nothing else needs them.
 _LIBRARIES = {'isolation_forest': 'sklearn', 'one_class_svm': 'sklearn', 'hmm': 'hmmlearn'}
 
 NAMES = (*_DETECTORS, *_PEERS)

@@ -5,12 +5,15 @@ from typing import Dict, List, Optional, Sequence, Set
 
 import numpy as np
 
-from self_awareness import (EVIDENCE_THRESHOLD, PREDECESSORS, DetectorParameters, EncodingRules, EvidenceModel,
-                            EventType, Model, TrainedModel, Training, Verdicts, evidence_limits,
-                            follow_me, judge_by_evidence)
-from self_awareness.evaluation.recording import WINDOW, Recording
-from self_awareness.evaluation.systems import Alarm, Judged, common_threshold, distinct
-from self_awareness.evidence_limits import HeldOut
+from self_awareness import (DEFAULT_WINDOW, EVIDENCE_THRESHOLD, PREDECESSORS, DetectorParameters,
+                            EncodingRules, EventType, EvidenceModel, Model, TrainedModel, Training,
+                            Verdicts, judge_by_evidence)
+from self_awareness.calibration import limits
+from self_awareness.calibration.limits import HeldOut
+from self_awareness.evaluation.systems import (Judged, SystemAlarm, common_threshold, distinct,
+                                               required)
+from self_awareness.evaluation.windowed_events import WindowedEvents
+from self_awareness.follow_me.scenario import load_scenario
 
 
 class Paper:
@@ -23,36 +26,37 @@ class Paper:
         self._model: Optional[Model] = None
         self._threshold: Optional[float] = None
 
-    def train(self, recordings: Sequence[Recording]) -> None:
+    def train(self, recordings: Sequence[WindowedEvents]) -> None:
         """Count the delays."""
         trained = _trained(recordings)
         self._types = trained.event_types
         self._model = Model(trained)
 
-    def calibrate(self, recordings: Sequence[Recording]) -> None:
+    def calibrate(self, recordings: Sequence[WindowedEvents]) -> None:
         """Choose s* by the common rule."""
         verdicts = [self._verdicts(recording.encoded(self._types)) for recording in recordings]
         self._threshold = common_threshold(
             [np.nan_to_num(verdict.score[~verdict.settling]) for verdict in verdicts])
 
-    def judge(self, recording: Recording) -> Judged:
+    def judge(self, recording: WindowedEvents) -> Judged:
         """Judge a recording."""
         encoded = recording.encoded(self._types)
         verdicts = self._verdicts(encoded)
-        return _judged(encoded, verdicts, self._threshold)
+        return _judged(encoded, verdicts, required(self._threshold, self.name, 'calibrate'))
 
-    def _verdicts(self, encoded: Recording) -> Verdicts:
-        # The window in which the recording ends is the last one, hence - 1.
-        return self._model.judge(WINDOW, self._threshold, DetectorParameters(), encoded.stamps,
-                                 encoded.ids, encoded.end - 1)
+    def _verdicts(self, encoded: WindowedEvents) -> Verdicts:
+        # - 1, because the window in which the recording ends is the last one.
+        model: Model = required(self._model, self.name, 'train')
+        return model.judge(DEFAULT_WINDOW, self._threshold, DetectorParameters(),
+                           encoded.stamps, encoded.ids, encoded.end - 1)
 
 
 class Evidence:
-    """The evidence detector (`detector: evidence`), its limits for the budget that is the default.
+    """The evidence detector (`detector: evidence`), with limits for the default budget.
 
     Args:
-        knows_graph: whether the model holds who listens to whom, as after a training beside the
-            running robot; without, it was trained on bags alone.
+        knows_graph: whether the model holds who listens to whom, as after a training
+            while the robot runs; if not, it was trained on bags alone.
         predecessors: of an event type that are watched at most.
     """
 
@@ -63,44 +67,47 @@ class Evidence:
         self._trained: Optional[TrainedModel] = None
         self._model: Optional[EvidenceModel] = None
 
-    def train(self, recordings: Sequence[Recording]) -> None:
-        """Count what there is to count."""
+    def train(self, recordings: Sequence[WindowedEvents]) -> None:
+        """Count the delays and gaps."""
         self._trained = _trained(recordings, self._predecessors)
         self._trained.graph = self._graph
         self._model = EvidenceModel(self._trained)
 
-    def calibrate(self, recordings: Sequence[Recording]) -> None:
+    def calibrate(self, recordings: Sequence[WindowedEvents]) -> None:
         """Find the limits."""
-        encoded = [recording.encoded(self._trained.event_types) for recording in recordings]
-        self._trained.evidence_calibration = evidence_limits.find(
-            self._trained, DetectorParameters().settle_time, evidence_limits.BUDGET,
+        trained: TrainedModel = required(self._trained, self.name, 'train')
+        encoded = [recording.encoded(trained.event_types) for recording in recordings]
+        trained.evidence_calibration = limits.find(
+            trained, DetectorParameters().settle_time, limits.BUDGET,
             [HeldOut(recording.stamps, recording.ids) for recording in encoded])
 
-    def judge(self, recording: Recording) -> Judged:
+    def judge(self, recording: WindowedEvents) -> Judged:
         """Judge a recording."""
-        return _judged(recording.encoded(self._trained.event_types),
+        trained: TrainedModel = required(self._trained, self.name, 'train')
+        return _judged(recording.encoded(trained.event_types),
                        self.verdicts(recording, DetectorParameters()), EVIDENCE_THRESHOLD)
 
-    def verdicts(self, recording: Recording, parameters: DetectorParameters) -> Verdicts:
+    def verdicts(self, recording: WindowedEvents, parameters: DetectorParameters) -> Verdicts:
         """Return what the detector says of a recording, suspicions included."""
-        encoded = recording.encoded(self._trained.event_types)
-        # The window in which the recording ends is the last one, hence - 1.
-        return judge_by_evidence(self._trained, self._model, parameters, encoded.stamps,
+        trained: TrainedModel = required(self._trained, self.name, 'train')
+        encoded = recording.encoded(trained.event_types)
+        # - 1, because the window in which the recording ends is the last one.
+        return judge_by_evidence(trained, self._model, parameters, encoded.stamps,
                                  encoded.ids, encoded.end - 1)
 
 
-def _trained(recordings: Sequence[Recording],
+def _trained(recordings: Sequence[WindowedEvents],
              predecessors: int = PREDECESSORS) -> TrainedModel:
-    training = Training(EncodingRules(), window=WINDOW, predecessors=predecessors)
+    training = Training(EncodingRules(), window=DEFAULT_WINDOW, predecessors=predecessors)
     for recording in recordings:
         training.add_events(recording.event_types, recording.stamps, recording.ids)
     return training.model()
 
 
-def _judged(encoded: Recording, verdicts: Verdicts, threshold: float) -> Judged:
-    alarms = [Alarm(alarm.start, alarm.end, alarm.cleared,
-                    distinct([encoded.event_types[suspect.id].source
-                              for suspect in alarm.suspects]))
+def _judged(encoded: WindowedEvents, verdicts: Verdicts, threshold: float) -> Judged:
+    alarms = [SystemAlarm(alarm.start, alarm.end, alarm.cleared,
+                          distinct([encoded.event_types[suspect.id].source
+                                    for suspect in alarm.suspects]))
               for alarm in verdicts.alarms]
     return Judged(verdicts.start, verdicts.abnormal, np.nan_to_num(verdicts.score),
                   verdicts.settling, alarms, threshold, verdicts.suspicion)
@@ -108,7 +115,7 @@ def _judged(encoded: Recording, verdicts: Verdicts, threshold: float) -> Judged:
 
 def _scenario_graph() -> Dict[str, Set[str]]:
     """Return who listens to whom in the robot that comes with the package."""
-    scenario = follow_me.load()
+    scenario = load_scenario()
     graph: Dict[str, Set[str]] = {}
     for publisher in scenario.components:
         for listener in scenario.components:

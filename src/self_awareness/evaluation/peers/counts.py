@@ -6,7 +6,7 @@ from typing import List, Optional, Sequence
 import numpy as np
 
 from self_awareness import EventType
-from self_awareness.evaluation.recording import Recording, counts, vocabulary
+from self_awareness.evaluation.windowed_events import WindowedEvents, counts, vocabulary
 
 
 class CountScorer:
@@ -18,17 +18,17 @@ class CountScorer:
     def __init__(self) -> None:
         self._types: List[EventType] = []
 
-    def train(self, recordings: Sequence[Recording]) -> None:
+    def train(self, recordings: Sequence[WindowedEvents]) -> None:
         """Learn the counts of normal operation."""
         self._types = vocabulary(recordings)
         self._fit([counts(recording, self._types) for recording in recordings])
 
-    def scores(self, recording: Recording) -> np.ndarray:
+    def scores(self, recording: WindowedEvents) -> np.ndarray:
         """Return the scores of the windows."""
         return self._score(counts(recording, self._types))
 
-    def suspects(self, recording: Recording, window: int) -> Optional[List[str]]:
-        """Return None: counts blame nobody."""
+    def suspects(self, recording: WindowedEvents, window: int) -> Optional[List[str]]:
+        """Return None: counts cannot tell whom to blame."""
         return None
 
     def _fit(self, tables: Sequence[np.ndarray]) -> None:

@@ -1,7 +1,7 @@
 """Frequency monitors, as diagnostic_updater's FrequencyStatus does it.
 
 The messages of every periodic topic are counted over the last 5 s; the score of a window is the
-largest relative deviation beyond the limits, negated: 0 within them, -0.1 where a topic has 10 %
+largest relative deviation beyond the bounds, negated: 0 within them, -0.1 where a topic has 10 %
 less than its minimum, or 10 % more than its maximum. It is computed at the end of every window;
 diagnostic_updater looks once a second.
 """
@@ -11,7 +11,8 @@ from typing import Dict, List, NamedTuple, Sequence
 
 import numpy as np
 
-from self_awareness.evaluation.recording import WINDOW, Recording
+from self_awareness import DEFAULT_WINDOW
+from self_awareness.evaluation.windowed_events import WindowedEvents
 from self_awareness.stamps import SECOND_NS
 
 TOLERANCE = 0.1
@@ -24,7 +25,7 @@ _PERIODIC = 0.2  # largest coefficient of variation of the gaps of a periodic to
 _FEWEST_GAPS = 10
 
 
-class Limits(NamedTuple):
+class Bounds(NamedTuple):
     """The fewest and the most messages of a topic in SPAN that are normal; fewest > 0."""
 
     fewest: float
@@ -32,20 +33,20 @@ class Limits(NamedTuple):
 
 
 class _FrequencyMonitor:
-    """What both monitors share: counting, and the deviation from the limits."""
+    """What both monitors share: counting, and the deviation from the bounds."""
 
     def __init__(self) -> None:
-        self._limits: Dict[str, Limits] = {}
+        self._bounds: Dict[str, Bounds] = {}
         self._sources: Dict[str, List[str]] = {}
 
     @property
-    def limits(self) -> Dict[str, Limits]:
-        """The limits by topic; a topic without is not watched."""
-        return self._limits
+    def bounds(self) -> Dict[str, Bounds]:
+        """The bounds by topic; a topic without is not watched."""
+        return self._bounds
 
-    def train(self, recordings: Sequence[Recording]) -> None:
-        """Find the periodic topics and their limits."""
-        self._limits, self._sources = {}, {}
+    def train(self, recordings: Sequence[WindowedEvents]) -> None:
+        """Find the periodic topics and their bounds."""
+        self._bounds, self._sources = {}, {}
         for recording in recordings:
             for event_type in recording.event_types:
                 sources = self._sources.setdefault(event_type.scope, [])
@@ -55,32 +56,32 @@ class _FrequencyMonitor:
             stamps = [_stamps(recording, topic) for recording in recordings]
             gaps = np.concatenate([np.diff(part) for part in stamps])
             if len(gaps) >= _FEWEST_GAPS and gaps.std() <= _PERIODIC * gaps.mean():
-                limits = self._limits_of(recordings, stamps, gaps)
-                if limits.fewest > 0:
-                    self._limits[topic] = limits
+                bounds = self._bounds_of(recordings, stamps, gaps)
+                if bounds.fewest > 0:
+                    self._bounds[topic] = bounds
 
-    def scores(self, recording: Recording) -> np.ndarray:
+    def scores(self, recording: WindowedEvents) -> np.ndarray:
         """Return the scores of the windows."""
         deviations = self._deviations(recording)
         return -deviations.max(axis=0) if len(deviations) else np.zeros(len(recording.starts()))
 
-    def suspects(self, recording: Recording, window: int) -> List[str]:
-        """Return the publishers of the topics beyond their limits, the furthest first."""
+    def suspects(self, recording: WindowedEvents, window: int) -> List[str]:
+        """Return the publishers of the topics beyond their bounds, the furthest first."""
         deviations = self._deviations(recording)[:, window]
-        topics = list(self._limits)
+        topics = list(self._bounds)
         return list(dict.fromkeys(source for index in np.argsort(-deviations, kind='stable')
                                   if deviations[index] > 0
                                   for source in self._sources[topics[index]]))
 
-    def _limits_of(self, recordings: Sequence[Recording], stamps: Sequence[np.ndarray],
-                   gaps: np.ndarray) -> Limits:
+    def _bounds_of(self, recordings: Sequence[WindowedEvents], stamps: Sequence[np.ndarray],
+                   gaps: np.ndarray) -> Bounds:
         raise NotImplementedError
 
-    def _deviations(self, recording: Recording) -> np.ndarray:
-        """Return by how much topics are beyond their limits, [topic, window], 0 within them."""
-        ends = recording.starts() + WINDOW
+    def _deviations(self, recording: WindowedEvents) -> np.ndarray:
+        """Return by how much topics are beyond their bounds, [topic, window], 0 within them."""
+        ends = recording.starts() + DEFAULT_WINDOW
         rows = []
-        for topic, (fewest, most) in self._limits.items():
+        for topic, (fewest, most) in self._bounds.items():
             count = messages_in_span(_stamps(recording, topic), ends)
             rows.append(np.maximum((fewest - count) / fewest, (count - most) / most).clip(0.0))
         return np.array(rows).reshape(len(rows), len(ends))
@@ -94,25 +95,25 @@ class FrequencyMonitor(_FrequencyMonitor):
     it.
     """
 
-    def _limits_of(self, recordings: Sequence[Recording], stamps: Sequence[np.ndarray],
-                   gaps: np.ndarray) -> Limits:
+    def _bounds_of(self, recordings: Sequence[WindowedEvents], stamps: Sequence[np.ndarray],
+                   gaps: np.ndarray) -> Bounds:
         nominal = SPAN / gaps.mean()
-        return Limits(nominal, nominal) if nominal >= 2 / TOLERANCE else Limits(0, 0)
+        return Bounds(nominal, nominal) if nominal >= 2 / TOLERANCE else Bounds(0, 0)
 
 
 class LearnedFrequencyMonitor(_FrequencyMonitor):
-    """The limits are the fewest and the most messages in SPAN of the training recordings.
+    """The bounds are the fewest and the most messages in SPAN of the training recordings.
 
     They are wider by one message, which may fall to either side of the end of SPAN by its phase
     alone: without that, the slowest topics decide on the threshold, and the fast ones are found a
     second later. Periodic topics of any frequency are watched, if the fewest are 2 or more.
     """
 
-    def _limits_of(self, recordings: Sequence[Recording], stamps: Sequence[np.ndarray],
-                   gaps: np.ndarray) -> Limits:
+    def _bounds_of(self, recordings: Sequence[WindowedEvents], stamps: Sequence[np.ndarray],
+                   gaps: np.ndarray) -> Bounds:
         counts = np.concatenate([_settled_counts(recording, part)
                                  for recording, part in zip(recordings, stamps)])
-        return Limits(counts.min() - 1, counts.max() + 1) if len(counts) else Limits(0, 0)
+        return Bounds(counts.min() - 1, counts.max() + 1) if len(counts) else Bounds(0, 0)
 
 
 def messages_in_span(stamps: np.ndarray, ends: np.ndarray) -> np.ndarray:
@@ -120,12 +121,12 @@ def messages_in_span(stamps: np.ndarray, ends: np.ndarray) -> np.ndarray:
     return np.searchsorted(stamps, ends) - np.searchsorted(stamps, ends - SPAN)
 
 
-def _settled_counts(recording: Recording, stamps: np.ndarray) -> np.ndarray:
-    ends = recording.starts() + WINDOW
+def _settled_counts(recording: WindowedEvents, stamps: np.ndarray) -> np.ndarray:
+    ends = recording.starts() + DEFAULT_WINDOW
     full = (ends - SPAN >= recording.stamps[0]) & (ends <= recording.end)
     return messages_in_span(stamps, ends[full])
 
 
-def _stamps(recording: Recording, topic: str) -> np.ndarray:
+def _stamps(recording: WindowedEvents, topic: str) -> np.ndarray:
     of_topic = np.array([event_type.scope == topic for event_type in recording.event_types])
     return recording.stamps[of_topic[recording.ids]]

@@ -50,7 +50,7 @@ class HmmScorer(CountScorer):
             if total > 0.0:
                 scores[window] = largest + np.log(total)
                 state = joint / total @ self._transitions
-            else:  # no state that is possible now explains the window: start afresh
+            else:  # no state that is possible now explains the window: start again
                 scores[window] = likelihoods.min()
                 state = self._start
         return scores

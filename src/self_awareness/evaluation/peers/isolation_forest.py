@@ -5,7 +5,7 @@ with a multiple of 10 Hz and little jitter, is not looked at, and silence there 
 """
 from __future__ import annotations
 
-from typing import Optional, Sequence
+from typing import Sequence
 
 import numpy as np
 from sklearn.ensemble import IsolationForest
@@ -18,10 +18,10 @@ class IsolationForestScorer(CountScorer):
 
     def __init__(self) -> None:
         super().__init__()
-        self._forest: Optional[IsolationForest] = None
+        self._forest = IsolationForest(random_state=0)
 
     def _fit(self, tables: Sequence[np.ndarray]) -> None:
-        self._forest = IsolationForest(random_state=0).fit(np.concatenate(tables))
+        self._forest.fit(np.concatenate(tables))
 
     def _score(self, table: np.ndarray) -> np.ndarray:
         return self._forest.score_samples(table)

@@ -12,7 +12,7 @@ from typing import List, Optional, Sequence, Tuple
 import numpy as np
 
 from self_awareness import EventType
-from self_awareness.evaluation.recording import Recording, known_ids, vocabulary
+from self_awareness.evaluation.windowed_events import WindowedEvents, known_ids, vocabulary
 
 _SHORTEST_NS = 100_000  # delays up to it share the first bin
 _BINS_AN_OCTAVE = 2
@@ -29,7 +29,7 @@ class MarkovScorer:
         self._transitions = np.empty((0, 0))  # log-likelihood, [before, current]
         self._delays = np.empty((0, 0, 0))  # log-likelihood, [before, current, bin]
 
-    def train(self, recordings: Sequence[Recording]) -> None:
+    def train(self, recordings: Sequence[WindowedEvents]) -> None:
         """Count transitions and delays."""
         self._types = vocabulary(recordings)
         size = len(self._types) + 1  # and one for the types not trained on
@@ -40,7 +40,7 @@ class MarkovScorer:
         self._transitions = _log_likelihood(transitions)
         self._delays = _log_likelihood(counts)
 
-    def scores(self, recording: Recording) -> np.ndarray:
+    def scores(self, recording: WindowedEvents) -> np.ndarray:
         """Return the scores of the windows."""
         before, current, bins = self._steps(recording)
         events = self._transitions[before, current] + self._delays[before, current, bins]
@@ -51,11 +51,11 @@ class MarkovScorer:
         least = self._transitions.min() + self._delays.min()
         return np.where(count > 0, total / np.maximum(count, 1), least)
 
-    def suspects(self, recording: Recording, window: int) -> Optional[List[str]]:
-        """Return None: the chain blames nobody."""
+    def suspects(self, recording: WindowedEvents, window: int) -> Optional[List[str]]:
+        """Return None: the chain cannot tell whom to blame."""
         return None
 
-    def _steps(self, recording: Recording) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def _steps(self, recording: WindowedEvents) -> Tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Return the types before, the current types, and the bins of the delays between."""
         ids = known_ids(recording, self._types)
         delays = np.maximum(np.diff(recording.stamps), _SHORTEST_NS)

@@ -1,10 +1,10 @@
 """scikit-learn's one-class SVM on the counts of a window's events."""
 from __future__ import annotations
 
-from typing import Optional, Sequence
+from typing import Sequence
 
 import numpy as np
-from sklearn.pipeline import Pipeline, make_pipeline
+from sklearn.pipeline import make_pipeline
 from sklearn.preprocessing import StandardScaler
 from sklearn.svm import OneClassSVM
 
@@ -18,10 +18,9 @@ class OneClassSvmScorer(CountScorer):
 
     def __init__(self) -> None:
         super().__init__()
-        self._svm: Optional[Pipeline] = None
+        self._svm = make_pipeline(StandardScaler(), OneClassSVM(nu=_OUTLIERS))
 
     def _fit(self, tables: Sequence[np.ndarray]) -> None:
-        self._svm = make_pipeline(StandardScaler(), OneClassSVM(nu=_OUTLIERS))
         self._svm.fit(np.concatenate(tables))
 
     def _score(self, table: np.ndarray) -> np.ndarray:

@@ -1,0 +1,1 @@
+"""When a model calls windows abnormal: limits, the threshold, and how well they do."""

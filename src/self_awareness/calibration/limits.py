@@ -1,0 +1,189 @@
+"""Finds the limits above which evidence is abnormal, on normal operation not trained on.
+
+Every recording is judged twice: first for the limits of the tracks, then for that of the linker
+(docs/method.md, section 5). Each recording is judged by itself, in any process, and the findings
+are added up.
+"""
+from __future__ import annotations
+
+import math
+import time
+from contextlib import closing
+from dataclasses import dataclass
+from typing import Any, Iterable, Optional, Sequence, Tuple
+
+import numpy as np
+
+from self_awareness import (EvidenceCalibration, EvidenceLimits, LimitFinder, LimitFindings,
+                            TrainedModel, recordings)
+from self_awareness.recordings import BagPart, RecordingEvents
+from self_awareness.stamps import SECOND_NS
+from self_awareness.workers import InProcess, Workers
+
+BUDGET = 0.5
+"""False alarms an hour that limits are made for, by default."""
+
+Part = Tuple[np.ndarray, np.ndarray, Optional[int]]
+"""Stamps [ns] and ids of a recording; the half of the training it belongs to, None: neither."""
+
+
+@dataclass(frozen=True)
+class HeldOut:
+    """A recording that was not trained on: stamps [ns] and ids."""
+
+    stamps: np.ndarray
+    ids: np.ndarray
+
+    def parts(self, _: TrainedModel) -> Iterable[Part]:
+        """Return what is to be judged."""
+        return [(self.stamps, self.ids, None)]
+
+
+@dataclass(frozen=True)
+class TrainedOn:
+    """A recording of the training.
+
+    Args:
+        part: the bag, or the part of it.
+        half: of the training, 0 or 1; None: the recording was alone, and both come from it.
+        events: of the part, by ids of their own; None: read when they are needed, as the memory
+            may not hold those of all recordings.
+    """
+
+    part: BagPart
+    half: Optional[int]
+    events: Optional[RecordingEvents] = None
+
+    def __str__(self) -> str:
+        return str(self.part)
+
+    def parts(self, trained: TrainedModel) -> Iterable[Part]:
+        """Return what is to be judged, and the half of the training that it belongs to."""
+        events = self.events
+        if events is None:
+            events = recordings.read(trained, self.part)
+            ids = events.ids
+        else:
+            known = {kind: index for index, kind in enumerate(trained.event_types)}
+            ids = np.array([known[kind] for kind in events.event_types], np.uint32)[events.ids]
+        if self.half is not None:
+            return [(events.stamps, ids, self.half)]
+        second = events.stamps >= events.middle
+        return [(events.stamps[~second], ids[~second], 0), (events.stamps[second], ids[second], 1)]
+
+
+def held_out(trained: TrainedModel, found_in: Iterable[RecordingEvents], settle_time: int,
+             budget: float) -> EvidenceCalibration:
+    """Return limits by recordings that were not trained on.
+
+    Args:
+        trained: the model.
+        found_in: recordings of normal operation.
+        settle_time: left out at the start of every recording [ns].
+        budget: false alarms an hour that the limits allow.
+
+    Raises:
+        TooLittleError: the recordings are too short.
+    """
+    found_in = list(found_in)
+    calibration = find(trained, settle_time, budget,
+                       [HeldOut(recording.stamps, recording.ids) for recording in found_in])
+    calibration.method = 'held-out'
+    calibration.recordings = [recording.recording for recording in found_in]
+    return calibration
+
+
+def cross_fit(trained: TrainedModel, trained_on: Sequence[TrainedOn], settle_time: int,
+              budget: float, workers: Optional[Workers] = None) -> EvidenceCalibration:
+    """Return limits by recordings of the training, each judged by the half it does not belong to.
+
+    Args:
+        trained: the model; its last recordings are those of trained_on.
+        trained_on: all recordings of the training, or the last.
+        settle_time: left out at the start of every recording [ns].
+        budget: false alarms an hour that the limits allow.
+        workers: who does the work; None: this process.
+
+    Raises:
+        BagError: a recording cannot be read any more.
+        TooLittleError: the recordings are too short.
+    """
+    calibration = find(trained, settle_time, budget, trained_on, workers)
+    calibration.method = 'cross-fit'
+    calibration.recordings = trained.recordings[-len(trained_on):]
+    return calibration
+
+
+def find(trained: TrainedModel, settle_time: int, budget: float, tasks: Sequence[Any],
+         workers: Optional[Workers] = None) -> EvidenceCalibration:
+    """Return limits by recordings; without the method and the recordings, which the caller adds.
+
+    Args:
+        trained: the model.
+        settle_time: left out at the start of every part of a recording [ns].
+        budget: false alarms an hour that the limits allow.
+        tasks: HeldOut or TrainedOn recordings.
+        workers: who does the work; None: this process.
+
+    Raises:
+        BagError: a recording cannot be read.
+        TooLittleError: the recordings are too short.
+    """
+    workers = workers or InProcess()
+    judging = _Judging(trained, settle_time, budget)
+    judging.add_all(tasks, workers, 'limits, first pass')
+    judging.start_second_pass()
+    judging.add_all(tasks, workers, 'limits, second pass')
+    limits = judging.finder.limits()
+    calibration = EvidenceCalibration()
+    calibration.limits = limits.tracks
+    calibration.linker_limit = limits.linker
+    calibration.budget = budget
+    calibration.false_alarms_per_hour = math.nan
+    calibration.windows = judging.finder.windows
+    calibration.stamp = int(time.time()) * SECOND_NS
+    return calibration
+
+
+class TooLittleError(ValueError):
+    """There is too little normal operation to find limits on."""
+
+
+class _Judging:
+    """What every recording is judged by. Another process gets it without what was found."""
+
+    def __init__(self, trained: TrainedModel, settle_time: int, budget: float,
+                 limits: Optional[EvidenceLimits] = None) -> None:
+        self._state = (trained.watched_only(), settle_time, budget)
+        self._limits = limits  # of the first pass
+        self.trained = trained
+        self.finder = LimitFinder(trained, settle_time, budget)
+        if limits is not None:
+            self.finder.start_second_pass(limits)
+
+    def __reduce__(self) -> Tuple[Any, ...]:
+        return _Judging, (*self._state, self._limits)
+
+    def add_all(self, tasks: Sequence[Any], workers: Workers, description: str) -> None:
+        """Judge recordings, and add up what they say."""
+        with closing(workers.map(_judge, self, tasks, description)) as findings:
+            for found in findings:
+                self.finder.merge(found)
+
+    def start_second_pass(self) -> None:
+        """Find the limits of the tracks.
+
+        Raises:
+            TooLittleError: the recordings are too short.
+        """
+        try:
+            self._limits = self.finder.start_second_pass()
+        except ValueError as error:
+            raise TooLittleError(str(error)) from error
+
+
+def _judge(judging: _Judging, task: Any) -> LimitFindings:
+    finder = judging.finder.part()
+    for stamps, ids, half in task.parts(judging.trained):
+        finder.add_events(stamps, ids, half)
+    return finder.findings()

@@ -1,0 +1,85 @@
+"""How well a calibrated model tells faults from normal operation, and how often it is wrong."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Dict, List, Sequence
+
+import numpy as np
+
+from self_awareness import Roc
+from self_awareness.calibration import confidence
+from self_awareness.calibration.confidence import Interval
+from self_awareness.calibration.runs import ABNORMAL, NORMAL, RECORDED, JudgedRun
+from self_awareness.stamps import SECOND_NS
+
+_HOUR = 3600 * SECOND_NS
+
+
+@dataclass(frozen=True)
+class FaultResult:
+    """How well one fault, or all of them, is told from normal operation."""
+
+    fault: str
+    windows: int
+    roc: Roc
+    auc_interval: Interval
+    true_positive_rate: float
+    true_positive_interval: Interval
+    recordings: int
+    latencies: List[float]  # [s], of the recordings in which the alarm was raised
+    stood_before: int  # recordings in which it stood already
+
+
+@dataclass(frozen=True)
+class FalseAlarms:
+    """Alarms after persistence on the normal recordings."""
+
+    count: int
+    hours: float
+
+    @property
+    def per_hour(self) -> float:
+        """Alarms an hour."""
+        return self.count / self.hours
+
+    @property
+    def interval(self) -> Interval:
+        """Its 95 % confidence interval."""
+        return confidence.poisson_rate(self.count, self.hours)
+
+
+def labelled(runs: Sequence[JudgedRun], label: int) -> np.ndarray:
+    """Return the scores of all windows with a label."""
+    return np.concatenate([run.scores[run.labels == label] for run in runs] or [np.empty(0)])
+
+
+def fault_results(normal: np.ndarray, faulty: Sequence[JudgedRun],
+                  threshold: float) -> List[FaultResult]:
+    """Return the result of every fault, and of all together at the end if they are several."""
+    groups: Dict[str, List[JudgedRun]] = {}
+    for judged in faulty:
+        run = judged.run
+        groups.setdefault(str(run.source.part) if run.fault == RECORDED else run.fault,
+                          []).append(judged)
+    results = [_fault_result(name, normal, runs, threshold) for name, runs in groups.items()]
+    if len(groups) > 1:
+        results.append(_fault_result('all together', normal, faulty, threshold))
+    return results
+
+
+def false_alarms(normal: Sequence[JudgedRun], window: int) -> FalseAlarms:
+    """Count the alarms on the normal recordings; `window` [ns]."""
+    windows = sum(int((run.labels == NORMAL).sum()) for run in normal)
+    return FalseAlarms(sum(len(run.verdicts.alarms) for run in normal), windows * window / _HOUR)
+
+
+def _fault_result(name: str, normal: np.ndarray, runs: Sequence[JudgedRun],
+                  threshold: float) -> FaultResult:
+    abnormal = labelled(runs, ABNORMAL)
+    roc = Roc(normal, abnormal)
+    rate = roc.at(threshold).true_positive_rate
+    return FaultResult(
+        name, len(abnormal), roc, confidence.auc(roc.auc, len(normal), len(abnormal)), rate,
+        confidence.wilson(round(rate * len(abnormal)), len(abnormal)),
+        len(runs), [run.latency for run in runs if run.latency is not None],
+        sum(run.stood_before for run in runs))

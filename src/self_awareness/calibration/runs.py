@@ -1,0 +1,148 @@
+"""Recordings as a calibration judges them: as they were, or with a fault.
+
+The windows of normal recordings are normal; those of a faulty one are abnormal while the fault
+lasts. Those before and after count as neither: nobody knows whether they are normal. Windows while
+the detector settles are left out everywhere. A window without events scores 0 (docs/method.md,
+section 2.3).
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import List, Optional, Sequence
+
+import numpy as np
+
+from self_awareness import TrainedModel, Verdicts, progress
+from self_awareness.calibration import fault_injection
+from self_awareness.calibration.fault_injection import InjectedFault
+from self_awareness.judging import Judge
+from self_awareness.recordings import RecordingEvents, overlap
+from self_awareness.stamps import SECOND_NS
+
+NORMAL, ABNORMAL, LEFT_OUT = 0, 1, -1
+"""Labels of windows."""
+
+RECORDED = 'recorded'
+"""What a fault is called that was recorded, not injected."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """A recording, as it was or with a fault injected, to be judged.
+
+    Args:
+        source: the recording.
+        fault: empty for normal operation, RECORDED, or the fault injected.
+        stamps: int64 [ns]; those of the source unless a fault was injected.
+        ids: uint32, one for each stamp.
+        onset: when the fault begins [ns]; not for normal operation.
+        relief: when it ends [ns]; not for normal operation.
+    """
+
+    source: RecordingEvents
+    fault: str
+    stamps: np.ndarray
+    ids: np.ndarray
+    onset: int = 0
+    relief: int = 0
+
+
+@dataclass(frozen=True)
+class JudgedRun:
+    """A run with what the detector says of its windows; arrays with one entry a window."""
+
+    run: Run
+    verdicts: Verdicts
+    scores: np.ndarray
+    labels: np.ndarray
+
+    @property
+    def latency(self) -> Optional[float]:
+        """Seconds from a fault's onset to the alarm; None if none was raised while it lasted."""
+        for alarm in self.verdicts.alarms:
+            if self.run.onset < alarm.start <= self.run.relief:
+                return (alarm.start - self.run.onset) / SECOND_NS
+        return None
+
+    @property
+    def stood_before(self) -> bool:
+        """Whether a false alarm stood when the fault began, and hides that of the fault."""
+        return any(alarm.start <= self.run.onset < alarm.end for alarm in self.verdicts.alarms)
+
+
+def normal_run(recording: RecordingEvents) -> Run:
+    """Return a run of normal operation."""
+    return Run(recording, '', recording.stamps, recording.ids)
+
+
+def recorded_fault(whole: RecordingEvents, window: int) -> Run:
+    """Return a run with the fault of a recording, in the part that was asked for.
+
+    Args:
+        whole: the events of the whole recording, for the detector to settle before the fault.
+        window: length of the windows [ns].
+
+    Raises:
+        ValueError: the recording has no such part.
+    """
+    onset, relief = whole.part.span(whole.origin, whole.end)
+    if not onset < relief:
+        raise ValueError(f'{whole.part}: no part of the recording, which lasts '
+                         f'{(whole.end - whole.origin) / SECOND_NS:.1f} s')
+    # The window in which the recording ends is as faulty as those before it.
+    return Run(whole, RECORDED, whole.stamps, whole.ids, onset,
+               relief + window if relief == whole.end else relief)
+
+
+def injected_fault(recording: RecordingEvents, fault: InjectedFault, window: int) -> Run:
+    """Return a run with the fault injected in the middle of a normal recording.
+
+    The onset is put on the grid of windows [ns], so that none is half faulty.
+    """
+    middle = int(recording.stamps[0]) + (recording.end - int(recording.stamps[0])) // 2
+    onset = -(-middle // window) * window
+    try:
+        stamps, ids = fault_injection.inject(fault, recording.event_types, recording.stamps,
+                                             recording.ids, onset, recording.end)
+    except ValueError as error:
+        raise ValueError(f'{recording.part}: {error}') from error
+    return Run(recording, str(fault), stamps, ids, onset, recording.end + window)
+
+
+def judge_runs(judge: Judge, window: int, runs: Sequence[Run]) -> List[JudgedRun]:
+    """Let a detector judge runs in windows of a length [ns]."""
+    judged = []
+    for run in progress.each(runs, 'scoring'):
+        verdicts = judge(run.stamps, run.ids, run.source.end)
+        judged.append(JudgedRun(run, verdicts, np.nan_to_num(verdicts.score),
+                                _labels(run, verdicts, window)))
+    return judged
+
+
+def check_unseen(trained: TrainedModel, recordings: Sequence[RecordingEvents]) -> None:
+    """Check that recordings were not trained on, and that none is there twice.
+
+    Raises:
+        ValueError: names the recording.
+    """
+    for index, recording in enumerate(recordings):
+        for other in trained.recordings:
+            if overlap(recording.recording, other):
+                raise ValueError(f'{recording.part}: the model was trained on it (as '
+                                 f'{other.bag}), so that it looks better than it is; name '
+                                 'another recording, or a part that was not trained on '
+                                 '(BAG@START-END)')
+        for before in recordings[:index]:
+            if overlap(recording.recording, before.recording):
+                raise ValueError(f'{recording.part}: the same recording as {before.part}; name it '
+                                 'once')
+
+
+def _labels(run: Run, verdicts: Verdicts, window: int) -> np.ndarray:
+    labels = np.full(len(verdicts.start), LEFT_OUT, dtype=np.int8)
+    if run.fault:
+        labels[(verdicts.start >= run.onset) & (verdicts.start + window <= run.relief)] = ABNORMAL
+    else:
+        labels[:] = NORMAL
+    labels[verdicts.settling] = LEFT_OUT
+    return labels

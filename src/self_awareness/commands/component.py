@@ -1,0 +1,34 @@
+"""`rosrun self_awareness component`: runs one component of the simulated follow-me robot."""
+from __future__ import annotations
+
+import argparse
+from typing import Optional, Sequence
+
+import rospy
+
+from self_awareness.follow_me.node import ComponentNode
+from self_awareness.follow_me.scenario import load_scenario
+from self_awareness.yaml_section import SectionError
+
+
+def main(argv: Optional[Sequence[str]] = None) -> int:
+    """Run a component under its own name; return 0 on success, 2 if it cannot run."""
+    parser = _parser()
+    arguments = parser.parse_args(rospy.myargv(argv)[1:])
+    try:
+        scenario = load_scenario(arguments.scenario or None)
+        intruder = scenario.faults.extra.spec
+        spec = intruder if arguments.name == intruder.name else scenario.component(arguments.name)
+        rospy.init_node(spec.name)
+        ComponentNode(scenario, spec, arguments.seed).spin()
+    except SectionError as error:
+        parser.exit(2, f'component: {error}\n')
+    return 0
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog='component', description=__doc__.split(': ', 1)[1])
+    parser.add_argument('name', help='name of the component, or of the intruder, in the scenario')
+    parser.add_argument('--scenario', help='scenario file (default: config/follow_me.yaml)')
+    parser.add_argument('--seed', type=int, default=0, help='of what is random (default: 0)')
+    return parser

@@ -1,0 +1,177 @@
+"""`rosrun self_awareness evaluate`: measures detectors on faults that are known, side by side."""
+from __future__ import annotations
+
+import argparse
+import contextlib
+import os
+import shlex
+import signal
+import sys
+import tempfile
+from pathlib import Path
+from typing import Iterator, Optional, Sequence
+
+from self_awareness.commands import cli
+from self_awareness.evaluation import catalogue
+from self_awareness.evaluation.recordings import outages, report as recordings_report
+from self_awareness.evaluation.simulated import experiment, report
+from self_awareness.evaluation.simulated.experiment import Plan
+from self_awareness.evaluation.simulated.records import default_faults
+from self_awareness.follow_me.faults import effect_of
+from self_awareness.follow_me.scenario import load_scenario
+
+_EPILOG = """\
+scikit-learn and hmmlearn, which three of the peers need, are no part of the package:
+  scripts/evaluation_env.sh rosrun self_awareness evaluate simulated
+installs them where they are missing, and runs this.
+"""
+
+
+def main(argv: Optional[Sequence[str]] = None) -> int:
+    """Run the program; return its exit code (see cli.run)."""
+    given = sys.argv[1:] if argv is None else argv
+    command = f'rosrun self_awareness evaluate {shlex.join(given)}'
+    return cli.run(_parser(), lambda arguments: arguments.work(arguments, command), argv)
+
+
+def _simulated(arguments: argparse.Namespace, command: str) -> None:
+    systems = tuple(name for name in arguments.systems if name not in arguments.without)
+    if not systems:
+        raise ValueError('--without: no system is left to evaluate')
+    catalogue.check_libraries(systems)
+    scenario = load_scenario()
+    faults = tuple(arguments.faults or default_faults(scenario))
+    for kind in faults:
+        effect_of(scenario, kind)
+    plan = Plan(systems, faults,
+                tuple(range(arguments.seed, arguments.seed + arguments.seeds)),
+                arguments.calibration, arguments.training_share)
+    arguments.output.mkdir(parents=True, exist_ok=True)
+    results = experiment.run(plan, scenario, arguments.jobs)
+    for path in report.write(arguments.output, plan, results, command):
+        print(f'written: {path}')
+
+
+def _recordings(arguments: argparse.Namespace, command: str) -> None:
+    rows = outages.evaluate(arguments.data)
+    arguments.output.mkdir(parents=True, exist_ok=True)
+    for path in recordings_report.write(arguments.output, rows, command):
+        print(f'written: {path}')
+
+
+def _live(arguments: argparse.Namespace, command: str) -> None:
+    # ROS is imported only here: the other parts do not need it.
+    from self_awareness.evaluation.live import evaluation, session
+    # A termination must clean up like Ctrl-C, which shells let be ignored in the background.
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.default_int_handler)
+    plan = session.SessionPlan(arguments.rounds, arguments.training, arguments.calibration,
+                               arguments.normal)
+    arguments.output.mkdir(parents=True, exist_ok=True)
+    with _folder(arguments.recordings) as folder:
+        paths = evaluation.evaluate(plan, folder, arguments.output, command)
+    for path in paths:
+        print(f'written: {path}')
+
+
+@contextlib.contextmanager
+def _folder(given: Optional[Path]) -> Iterator[Path]:
+    """Return the folder for recordings and logs; a temporary one is removed at the end."""
+    if given is None:
+        with tempfile.TemporaryDirectory() as temporary:
+            yield Path(temporary)
+        return
+    given.mkdir(parents=True, exist_ok=True)
+    if any(given.glob('session.*')):
+        raise ValueError(f'--recordings {given}: holds a session already; name another folder')
+    yield given.resolve()
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog='evaluate', description=__doc__.split(': ', 1)[1], epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parts = parser.add_subparsers(metavar='PART', required=True)
+    _add_simulated(parts.add_parser(
+        'simulated', help='the simulated follow-me robot, in simulated time',
+        description='Every system learns from the same records of the simulated robot, and judges '
+        'the same normal operation and the same faults, once for every seed.'))
+    _add_recordings(parts.add_parser(
+        'recordings', help='recordings of real robots that others made',
+        description='The outages in recordings of real robots, and false alarms on them.'))
+    _add_live(parts.add_parser(
+        'live', help='the follow-me robot as 15 processes, and the monitor',
+        description='Starts master and robot, records, trains and calibrates, starts the monitor, '
+        'and induces fault after fault in rounds; a round takes about 5 minutes. Other systems '
+        'judge the recording of it afterwards.'))
+    return parser
+
+
+def _add_output(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('-o', '--output', type=Path, default=Path('docs/evaluation'),
+                        metavar='DIR', help='where the page, the CSV file and the plots go '
+                        '(default: docs/evaluation)')
+
+
+def _add_recordings(parser: argparse.ArgumentParser) -> None:
+    parser.set_defaults(work=_recordings)
+    _add_output(parser)
+    parser.add_argument('--data', type=Path, required=True, metavar='DIR',
+                        help='the folder of the recordings')
+
+
+def _add_live(parser: argparse.ArgumentParser) -> None:
+    parser.set_defaults(work=_live)
+    _add_output(parser)
+    parser.add_argument('--rounds', type=cli.count, default=5, metavar='N',
+                        help='how often each fault is induced (default: 5)')
+    parser.add_argument('--training', type=cli.checked(_calibration_s), nargs='+',
+                        default=(60.0, 60.0), metavar='S',
+                        help='lengths of the recordings to learn from [s] (default: 60 60)')
+    parser.add_argument('--calibration', type=cli.checked(_calibration_s), default=240.0,
+                        metavar='S', help='length of the recording that the limits are found by '
+                        '[s] (default: 240)')
+    parser.add_argument('--normal', type=cli.checked(_calibration_s), default=20.0, metavar='S',
+                        help='normal operation in each round [s] (default: 20)')
+    parser.add_argument('--recordings', type=Path, metavar='DIR',
+                        help='folder to keep recordings, model and logs in; recordings of normal '
+                        'operation that it holds already are used again (default: all are removed '
+                        'at the end)')
+
+
+def _add_simulated(parser: argparse.ArgumentParser) -> None:
+    parser.set_defaults(work=_simulated)
+    _add_output(parser)
+    parser.add_argument('--seeds', type=cli.count, default=20, metavar='N',
+                        help='number of repetitions, each with the next seed (default: 20)')
+    parser.add_argument('--seed', type=int, default=1, help='the first seed (default: 1)')
+    parser.add_argument('--calibration', type=cli.checked(_calibration_s), default=600.0,
+                        metavar='S', help='length of the record that the threshold is chosen by '
+                        '[s]; the paper has 100 (default: 600)')
+    parser.add_argument('--training-share', type=cli.checked(_share), default=0.1, metavar='SHARE',
+                        help='learn once from all of the training records, and once from this '
+                        'first share of them; 0: only from all (default: 0.1)')
+    parser.add_argument('--systems', nargs='+', choices=catalogue.NAMES, default=catalogue.NAMES,
+                        metavar='SYSTEM', help='evaluate these only: '
+                        f'{", ".join(catalogue.NAMES)} (default: all)')
+    parser.add_argument('--without', nargs='+', choices=catalogue.NAMES, default=[],
+                        metavar='SYSTEM', help='leave these out')
+    parser.add_argument('--faults', nargs='+', metavar='FAULT',
+                        help='kinds of faults (default: all, and every regular component crashed '
+                        'in turn)')
+    parser.add_argument('--jobs', type=cli.count, default=os.cpu_count(), metavar='N',
+                        help='seeds at a time (default: as many as there are cores)')
+
+
+def _calibration_s(text: str) -> float:
+    value = float(text)
+    if not 10.0 <= value <= 86400.0:
+        raise ValueError(f'expected seconds from 10 to 86400, not {text}')
+    return value
+
+
+def _share(text: str) -> float:
+    value = float(text)
+    if not 0.0 <= value < 1.0:
+        raise ValueError(f'expected a share from 0 to less than 1, not {text}')
+    return value

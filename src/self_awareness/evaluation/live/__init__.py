@@ -1,0 +1,1 @@
+"""Detectors on the running follow-me robot: the monitor live, others on its recording."""

@@ -1,0 +1,91 @@
+"""What the live evaluation listens to: the monitor's statuses, and the robot's topics."""
+from __future__ import annotations
+
+import threading
+import time
+from typing import Dict, List, Sequence, Tuple
+
+import rospy
+from std_srvs.srv import Trigger
+
+from self_awareness.evaluation.live.processes import LiveError
+from self_awareness.evaluation.live.samples import ERROR, Status
+from self_awareness.evaluation.systems import distinct
+from self_awareness.msg import SelfAwareness
+
+_MONITOR = '/self_awareness'
+_NO_STATUS_S = 15.0  # a starved CPU takes its time
+_SERVICE_WITHIN_S = 10.0
+
+
+class MonitorListener:
+    """Keeps all statuses of the monitor; `rospy.init_node` has been called."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._statuses: List[Status] = []  # Guarded by _lock.
+        self._heard_at = time.monotonic()
+        self._quiet_since = time.monotonic()
+        rospy.Subscriber(f'{_MONITOR}/status', SelfAwareness, self._on_status, queue_size=1000)
+
+    @property
+    def statuses(self) -> List[Status]:
+        """All so far."""
+        with self._lock:
+            return list(self._statuses)
+
+    def quiet_for(self) -> float:
+        """Return for how long [s] there has been no alarm, and no settling, until now.
+
+        Raises:
+            LiveError: the monitor has gone silent.
+        """
+        now = time.monotonic()
+        with self._lock:
+            if now - self._heard_at > _NO_STATUS_S and self._statuses:
+                raise LiveError(f'the monitor has said nothing for {_NO_STATUS_S:g} s')
+            return now - self._quiet_since if self._statuses else 0.0
+
+    def reset(self) -> None:
+        """Reset the monitor; what it said before does not count as quiet.
+
+        Raises:
+            LiveError: it does not answer.
+        """
+        try:
+            rospy.wait_for_service(f'{_MONITOR}/reset', _SERVICE_WITHIN_S)
+            rospy.ServiceProxy(f'{_MONITOR}/reset', Trigger)()
+        except (rospy.ROSException, rospy.ServiceException) as error:
+            raise LiveError(f'{_MONITOR}/reset: {error}') from error
+        with self._lock:
+            self._quiet_since = time.monotonic()
+
+    def _on_status(self, message: SelfAwareness) -> None:
+        status = Status(message.header.stamp.to_sec(), time.time(), message.level,
+                        message.settling, message.evidence,
+                        tuple(distinct([suspect.source for suspect in message.suspects])))
+        with self._lock:
+            self._statuses.append(status)
+            self._heard_at = time.monotonic()
+            if status.level >= ERROR or status.settling:
+                self._quiet_since = self._heard_at
+
+
+class RobotListener:
+    """Remembers when each node was first and last heard on each topic [s since 1970]."""
+
+    def __init__(self, topics: Sequence[str]) -> None:
+        self._lock = threading.Lock()
+        self._last: Dict[Tuple[str, str], float] = {}  # Guarded by _lock.
+        for topic in topics:
+            rospy.Subscriber(f'/{topic}', rospy.AnyMsg, self._on_message, topic, queue_size=100)
+
+    def last(self, source: str, topic: str) -> float:
+        """Return when a node was last heard on a topic; 0: never."""
+        with self._lock:
+            return self._last.get((source, topic), 0.0)
+
+    def _on_message(self, message: rospy.AnyMsg, topic: str) -> None:
+        source = message._connection_header['callerid']
+        with self._lock:
+            self._last[source, topic] = time.time()

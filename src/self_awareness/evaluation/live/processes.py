@@ -1,0 +1,109 @@
+"""The processes of the live evaluation: each with its log, all ended together."""
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import subprocess
+import time
+from pathlib import Path
+from typing import Callable, List
+
+_END_WITHIN_S = 30.0  # roslaunch takes half of it before it kills its nodes, which only it can
+_POLL_S = 0.05
+
+
+class LiveError(ValueError):
+    """The running robot or the monitor does not do what it should; the message says what."""
+
+
+def free_port() -> int:
+    """Return a free port of the loopback interface."""
+    with socket.socket() as free:
+        free.bind(('127.0.0.1', 0))
+        return int(free.getsockname()[1])
+
+
+def await_condition(what: str, condition: Callable[[], bool], within_s: float) -> None:
+    """Wait until a condition holds.
+
+    Raises:
+        LiveError: it still does not after the limit [s].
+    """
+    deadline = time.monotonic() + within_s
+    while not condition():
+        if time.monotonic() > deadline:
+            raise LiveError(f'not within {within_s:g} s: {what}')
+        time.sleep(_POLL_S)
+
+
+class Processes:
+    """Programs that run at the same time as this one; their output goes to files of a folder.
+
+    As a context manager it ends all that still run.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._running: List[subprocess.Popen] = []
+
+    def __enter__(self) -> Processes:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        for process in reversed(self._running):
+            self._end(process)
+
+    def start(self, log: str, *command: str) -> subprocess.Popen:
+        """Start a program; its output is appended to a log of that name."""
+        with open(self._folder / f'{log}.log', 'ab') as output:
+            process = subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=output,
+                                       stderr=subprocess.STDOUT, start_new_session=True)
+        self._running.append(process)
+        return process
+
+    def run(self, log: str, within_s: float, *command: str) -> None:
+        """Run a program to its end.
+
+        Raises:
+            LiveError: it fails, or still runs after the limit [s].
+        """
+        process = self.start(log, *command)
+        try:
+            code: object = process.wait(within_s)
+        except subprocess.TimeoutExpired:
+            code = 'not yet'
+        self.end(process)
+        if code != 0:
+            raise LiveError(f'{" ".join(command)}: exit code {code}, see '
+                            f'{self._folder / log}.log')
+
+    def end(self, process: subprocess.Popen) -> None:
+        """Interrupt a program and all that it started, and kill what does not end."""
+        self._end(process)
+        self._running.remove(process)
+
+    @staticmethod
+    def _end(process: subprocess.Popen) -> None:
+        deadline = time.monotonic() + _END_WITHIN_S
+        _signal(process, signal.SIGINT)
+        while _group_runs(process) and time.monotonic() < deadline:
+            time.sleep(_POLL_S)
+        _signal(process, signal.SIGKILL)
+        process.wait()
+
+
+def _signal(process: subprocess.Popen, number: int) -> None:
+    try:
+        os.killpg(process.pid, number)
+    except ProcessLookupError:
+        pass
+
+
+def _group_runs(process: subprocess.Popen) -> bool:
+    process.poll()  # reaps the leader, which would count otherwise
+    try:
+        os.killpg(process.pid, 0)
+    except ProcessLookupError:
+        return False
+    return True

@@ -1,0 +1,1 @@
+"""Detectors on recordings of real robots."""

@@ -1,0 +1,1 @@
+"""Detectors on the simulated follow-me robot, in simulated time."""

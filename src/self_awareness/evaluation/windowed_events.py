@@ -1,0 +1,76 @@
+"""Recordings of the evaluation: events in memory, cut into the windows that all systems judge.
+
+The windows of all systems are DEFAULT_WINDOW long and lie on the absolute time grid.
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Dict, List, Sequence
+
+import numpy as np
+
+from self_awareness import DEFAULT_WINDOW, EventType
+
+
+@dataclass(frozen=True)
+class WindowedEvents:
+    """The events of a recording, in their order.
+
+    Args:
+        event_types: by id.
+        stamps: int64 [ns], at least one.
+        ids: uint32, one for each stamp.
+        end: the recording lasts until then [ns], exclusive, whether something comes or not.
+    """
+
+    event_types: Sequence[EventType]
+    stamps: np.ndarray
+    ids: np.ndarray
+    end: int
+
+    def encoded(self, vocabulary: Sequence[EventType]) -> WindowedEvents:
+        """Return the same recording with the types of a vocabulary first, as the bag reader does.
+
+        The ids after those stand for the types that are not in the vocabulary.
+        """
+        ids = {event_type: index for index, event_type in enumerate(vocabulary)}
+        translation = np.array([ids.setdefault(event_type, len(ids))
+                                for event_type in self.event_types], dtype=np.uint32)
+        return WindowedEvents(list(ids), self.stamps, translation[self.ids], self.end)
+
+    def starts(self) -> np.ndarray:
+        """Return the starts of the windows [ns], from the one with the first event on."""
+        first = int(self.stamps[0]) // DEFAULT_WINDOW * DEFAULT_WINDOW
+        return np.arange(first, self.end, DEFAULT_WINDOW, dtype=np.int64)
+
+    def window_of_events(self) -> np.ndarray:
+        """Return the index of every event's window."""
+        return (self.stamps - int(self.starts()[0])) // DEFAULT_WINDOW
+
+    def beginning(self, share: float) -> WindowedEvents:
+        """Return the first share of the recording, 0 < share <= 1."""
+        first = int(self.stamps[0])
+        end = first + round((self.end - first) * share)
+        inside = self.stamps < end
+        return WindowedEvents(self.event_types, self.stamps[inside], self.ids[inside], end)
+
+
+def vocabulary(recordings: Sequence[WindowedEvents]) -> List[EventType]:
+    """Return all event types of recordings, in the order of their first occurrence."""
+    types: Dict[EventType, None] = {}
+    for recording in recordings:
+        types.update(dict.fromkeys(recording.event_types[id_]
+                                   for id_ in dict.fromkeys(recording.ids.tolist())))
+    return list(types)
+
+
+def known_ids(recording: WindowedEvents, types: Sequence[EventType]) -> np.ndarray:
+    """Return the ids of the events among types, int64; len(types) stands for all others."""
+    return np.minimum(recording.encoded(types).ids, len(types)).astype(np.int64)
+
+
+def counts(recording: WindowedEvents, types: Sequence[EventType]) -> np.ndarray:
+    """Return the events of every window by type, [window, id]; the last column: all others."""
+    table = np.zeros((len(recording.starts()), len(types) + 1))
+    np.add.at(table, (recording.window_of_events(), known_ids(recording, types)), 1.0)
+    return table

@@ -1,0 +1,29 @@
+"""Judges whole recordings with either detector: both are called in the same way."""
+from __future__ import annotations
+
+from typing import Callable, Optional
+
+import numpy as np
+
+from self_awareness import (DetectorParameters, EvidenceModel, Model, TrainedModel, Verdicts,
+                            judge_by_evidence)
+
+Judge = Callable[[np.ndarray, np.ndarray, int], Verdicts]
+"""Judges stamps and ids of a recording, and the silence up to its end [ns]."""
+
+
+def paper_judge(trained: TrainedModel, model: Model, threshold: Optional[float],
+                parameters: DetectorParameters) -> Judge:
+    """Return what judges by the paper's score; threshold None: scores only, no alarms."""
+    return lambda stamps, ids, end: model.judge(trained.window, threshold, parameters, stamps, ids,
+                                                end)
+
+
+def evidence_judge(trained: TrainedModel, parameters: DetectorParameters) -> Judge:
+    """Return what judges by evidence and the model's limits.
+
+    Raises:
+        ValueError: the limits are not those of the model.
+    """
+    model = EvidenceModel(trained)
+    return lambda stamps, ids, end: judge_by_evidence(trained, model, parameters, stamps, ids, end)

@@ -1,0 +1,1 @@
+"""Shows models and results: as text, as plain values, and as plots."""

@@ -1,0 +1,96 @@
+"""Prints what `calibrate` found for the evidence detector."""
+from __future__ import annotations
+
+from statistics import median
+from typing import Dict, List, Optional, Sequence, Tuple
+
+from self_awareness import FEWEST_GAPS, TrainedModel
+from self_awareness.calibration import confidence
+from self_awareness.calibration.results import FalseAlarms
+from self_awareness.calibration.runs import RECORDED, JudgedRun
+from self_awareness.reporting.model_summary import summarise_evidence
+from self_awareness.stamps import SECOND_NS
+
+_COLUMNS = ('fault', 'source', 'found', 'median [s]', 'guilty first', 'among three')
+
+
+def counts(tracks: Dict[str, int]) -> str:
+    """Return numbers of tracks by channel, as text."""
+    return ', '.join(f'{channel} {count}' for channel, count in tracks.items() if count) or 'none'
+
+
+def print_limits(trained: TrainedModel, path: str) -> None:
+    """Print what is watched, and what is not."""
+    evidence = summarise_evidence(trained)
+    judged = evidence['calibration']['judged_tracks']
+    dropped = {channel: count - judged.get(channel, 0)
+               for channel, count in evidence['tracks'].items()}
+    print(f'{path}: watched: {counts(judged)}')
+    if any(dropped.values()):
+        print(f'  left out, since they say nothing or too little: {counts(dropped)}')
+    if evidence['not_judged']:
+        print(f'  not judged, fewer than {FEWEST_GAPS} gaps in training: '
+              f'{"; ".join(evidence["not_judged"])}')
+
+
+def print_measured(normal: Sequence[JudgedRun], alarms: FalseAlarms) -> None:
+    """Print what the limits do on the recordings that they were found on."""
+    low, high = alarms.interval
+    print(f'normal operation: {alarms.hours:.3f} h (recordings: {len(normal)}), alarms: '
+          f'{alarms.count}, {alarms.per_hour:.3g} an hour (95 %: {low:.3g} to {high:.3g}); the '
+          'limits were found on the same recordings, other ones will have more')
+    for run in normal:
+        for alarm in run.verdicts.alarms:
+            kinds = run.run.source.event_types
+            suspects = ', '.join(str(kinds[suspect.id]) for suspect in alarm.suspects)
+            print(f'  {run.run.source.part}: {_seconds(run, alarm.start)} s: {alarm.evidence}: '
+                  f'{suspects or "no suspect stands out"}')
+
+
+def print_faults(faulty: Sequence[JudgedRun]) -> None:
+    """Print a table of fault and source: found, how soon, and the rank of the guilty one."""
+    if not faulty:
+        return
+    rows = [_COLUMNS]
+    groups: Dict[Tuple[str, str], List[JudgedRun]] = {}
+    for run in faulty:
+        groups.setdefault(_names(run), []).append(run)
+    for (fault, source), runs in groups.items():
+        latencies = [run.latency for run in runs if run.latency is not None]
+        ranks = [_rank(run, source) for run in runs if run.latency is not None]
+        rows.append((fault, source, f'{len(latencies)} of {len(runs)}',
+                     f'{median(latencies):.2f}' if latencies else '-',
+                     _share(ranks, 1) if source else '-', _share(ranks, 3) if source else '-'))
+    widths = [max(len(row[column]) for row in rows) for column in range(len(_COLUMNS))]
+    for row in rows:
+        print('  '.join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip())
+    found = sum(run.latency is not None for run in faulty)
+    low, high = confidence.wilson(found, len(faulty))
+    print(f'found {found} of {len(faulty)} (95 %: {low:.1%} to {high:.1%})')
+
+
+def _names(run: JudgedRun) -> Tuple[str, str]:
+    if run.run.fault == RECORDED:
+        return str(run.run.source.part), ''
+    parts = run.run.fault.split(':')
+    return ':'.join(parts[:1] + parts[2:]), parts[1] if len(parts) > 1 else ''
+
+
+def _rank(run: JudgedRun, source: str) -> Optional[int]:
+    """Return the place of a source among those blamed by the first alarm after the onset."""
+    for alarm in run.verdicts.alarms:
+        if alarm.start > run.run.onset:
+            kinds = run.run.source.event_types
+            blamed = list(dict.fromkeys(kinds[suspect.id].source for suspect in alarm.suspects))
+            return blamed.index(source) + 1 if source in blamed else None
+    return None
+
+
+def _share(ranks: Sequence[Optional[int]], worst: int) -> str:
+    if not ranks:
+        return '-'
+    return f'{sum(rank is not None and rank <= worst for rank in ranks)} of {len(ranks)}'
+
+
+def _seconds(run: JudgedRun, stamp: int) -> str:
+    return f'{(stamp - run.run.source.origin) / SECOND_NS:.1f}'

@@ -1,0 +1,47 @@
+"""Draws a histogram of delays with characters."""
+from __future__ import annotations
+
+from collections import Counter
+from typing import Dict, List, Optional, Tuple
+
+from self_awareness.stamps import SECOND_NS
+
+_MOST_ROWS = 40
+
+
+def draw(counts: Dict[int, int], bin_size: int, horizon_bins: int, last: int,
+         width: int) -> List[str]:
+    """Return the lines of a drawing.
+
+    Args:
+        counts: by bin; at least one.
+        bin_size: [ns].
+        horizon_bins: index of the bin that all longer delays share; 0: there is none.
+        last: the last bin that has rows of its own; longer delays share one row.
+        width: of the longest bar, in characters.
+    """
+    first = min(counts)
+    # As many bins to a row as make the drawing fit a screen: 1, 2, 5, 10, 20, 50 and so on.
+    merged = next(step * 10 ** power for power in range(19) for step in (1, 2, 5)
+                  if (last - first) // (step * 10 ** power) < _MOST_ROWS)
+    start = first // merged * merged
+    by_row: Counter = Counter()
+    for index, count in counts.items():
+        by_row[(min(index, last + merged) - start) // merged] += count
+    rows: List[Tuple[int, Optional[int], int]] = []  # first bin, the one after the last, count
+    for row in range((last - start) // merged + 1):
+        low = start + row * merged
+        rows.append((low, low + merged, by_row.pop(row, 0)))
+    if by_row:
+        rows.append((start + len(rows) * merged, None, sum(by_row.values())))
+    most = max(count for _, _, count in rows)
+    unit = bin_size / SECOND_NS
+    total = sum(counts.values())
+    lines = []
+    for low, high, count in rows:
+        is_horizon = horizon_bins and low <= horizon_bins and (high is None or horizon_bins < high)
+        end = '...' if high is None or is_horizon else f'- {high * unit:8.3f}'
+        bar = '#' * max(1 if count else 0, round(count / most * width))
+        line = f'{low * unit:10.3f} {end:<10} {count:8d} {count / total:6.1%} {bar}'
+        lines.append(line.rstrip())
+    return lines

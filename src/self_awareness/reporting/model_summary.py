@@ -1,0 +1,140 @@
+"""What is in a model, as plain values: for reading, and for JSON."""
+from __future__ import annotations
+
+import math
+from collections import Counter
+from typing import Any, Dict, List, Optional
+
+from self_awareness import (FEWEST_GAPS, USUAL_SHARES, Calibration, EvidenceCalibration,
+                            EvidenceModel, Recording, TrainedModel)
+from self_awareness.stamps import SECOND_NS
+
+
+def summarise(model: TrainedModel) -> Dict[str, Any]:
+    """Return all of a model but its counts.
+
+    Times are in seconds and rates in Hz, unless a key says otherwise. What is missing, or not a
+    number, is None.
+    """
+    rules = model.encoding
+    duration = sum(_duration(recording) for recording in model.recordings)
+    types = [_event_type(model, index, duration) for index in range(len(model.event_types))]
+    rates = [entry['rate'] for entry in types if entry['rate'] is not None]
+    return {
+        'trained_ns': model.stamp,
+        'window': model.window / SECOND_NS,
+        'bin_size': model.bin_size / SECOND_NS,
+        'horizon': (model.horizon_bins * model.bin_size / SECOND_NS if model.horizon_bins
+                    else None),
+        'encoding': {
+            'source': rules.source,
+            'include_topics': list(rules.include_topics),
+            'exclude_topics': list(rules.exclude_topics),
+            'include_sources': list(rules.include_sources),
+            'exclude_sources': list(rules.exclude_sources),
+            'type_fields': dict(rules.type_fields),
+        },
+        'recordings': [_recording(recording) for recording in model.recordings],
+        'duration': duration,
+        'events': model.events,
+        'lowest_rate': min(rates, default=None),
+        'highest_rate': max(rates, default=None),
+        'sources': sorted({kind.source for kind in model.event_types} - {''}),
+        'event_types': types,
+        'pairs': model.pairs,
+        'graph': {source: sorted(listeners) for source, listeners in sorted(model.graph.items())},
+        'evidence': summarise_evidence(model),
+        'calibration': None if model.calibration is None else _calibration(model.calibration),
+    }
+
+
+def summarise_evidence(model: TrainedModel) -> Dict[str, Any]:
+    """Return what the evidence detector watches, as the key `evidence` of summarise().
+
+    Tracks are counted by channel: overdue, rate, pairs and answers.
+    """
+    tracks = EvidenceModel(model).tracks
+    watched = {track.to_id for track in tracks if track.channel == 'overdue'}
+    summary: Dict[str, Any] = {
+        'tracks': dict(Counter(track.channel for track in tracks)),
+        'not_judged': [str(kind) for index, kind in enumerate(model.event_types)
+                       if index not in watched],
+        'calibration': None,
+    }
+    if model.evidence_calibration is not None:
+        judged = [track for track, limit in zip(tracks, model.evidence_calibration.limits)
+                  if not math.isnan(limit)]
+        summary['calibration'] = _evidence_calibration(model.evidence_calibration)
+        summary['calibration']['judged_tracks'] = dict(Counter(each.channel for each in judged))
+    return summary
+
+
+def _event_type(model: TrainedModel, index: int, duration: float) -> Dict[str, Any]:
+    kind = model.event_types[index]
+    count = model.event_count(index)
+    gaps = sum(model.histogram(index, index).values())
+    first, last = (model.quantile(index, index, share) for share in USUAL_SHARES)
+    return {
+        'source': kind.source,
+        'scope': kind.scope,
+        'type': kind.type,
+        'count': count,
+        'rate': count / duration if duration > 0 else None,
+        'gaps': gaps,
+        'judged': gaps >= FEWEST_GAPS,
+        'usual_shortest': first * model.bin_size / SECOND_NS if gaps else None,
+        'usual_longest': (last + 1) * model.bin_size / SECOND_NS if gaps else None,
+    }
+
+
+def _recording(recording: Recording) -> Dict[str, Any]:
+    return {
+        'bag': recording.bag,
+        'start_ns': recording.start,
+        'end_ns': recording.end,
+        'duration': _duration(recording),
+        'events': recording.events,
+        # As text: a JSON reader that knows only floats would round it.
+        'fingerprint': f'{recording.fingerprint:016x}',
+    }
+
+
+def _calibration(calibration: Calibration) -> Dict[str, Any]:
+    return {
+        'calibrated_ns': calibration.stamp,
+        'threshold': calibration.threshold,
+        'method': calibration.method,
+        'auc': _number(calibration.auc),
+        'true_positive_rate': _number(calibration.true_positive_rate),
+        'false_positive_rate': _number(calibration.false_positive_rate),
+        'normal_windows': calibration.normal_windows,
+        'faulty_windows': calibration.faulty_windows,
+        'false_alarms_per_hour': _number(calibration.false_alarms_per_hour),
+        'normal': _recordings(calibration.normal),
+        'faulty': _recordings(calibration.faulty),
+        'injected': list(calibration.injected),
+    }
+
+
+def _evidence_calibration(calibration: EvidenceCalibration) -> Dict[str, Any]:
+    return {
+        'calibrated_ns': calibration.stamp,
+        'method': calibration.method,
+        'budget': calibration.budget,
+        'linker_limit': calibration.linker_limit,
+        'windows': calibration.windows,
+        'false_alarms_per_hour': _number(calibration.false_alarms_per_hour),
+        'normal': _recordings(calibration.recordings),
+    }
+
+
+def _recordings(recordings: List[Recording]) -> List[Dict[str, Any]]:
+    return [_recording(recording) for recording in recordings]
+
+
+def _duration(recording: Recording) -> float:
+    return (recording.end - recording.start) / SECOND_NS
+
+
+def _number(value: float) -> Optional[float]:
+    return value if math.isfinite(value) else None

@@ -1,0 +1,30 @@
+"""Prints the model that a training or a merge has made."""
+from __future__ import annotations
+
+from typing import List, Tuple
+
+from self_awareness import FEWEST_GAPS, TrainedModel
+from self_awareness.stamps import SECOND_NS
+
+
+def print_summary(model: TrainedModel) -> None:
+    """Print how much a model was trained on, and what it knows."""
+    types = model.event_types
+    seconds = sum(recording.end - recording.start for recording in model.recordings) / SECOND_NS
+    sources = {event_type.source for event_type in types} - {''}
+    print(f'recordings   {len(model.recordings)}')
+    print(f'duration     {seconds:.1f} s')
+    print(f'events       {model.events}')
+    print(f'event types  {len(types)}')
+    print(f'sources      {len(sources) if sources else "not told apart"}')
+    print(f'pairs        {model.pairs} of {len(types) ** 2} with delays')
+    rare = _too_rare(model)
+    print(f'too rare to judge (fewer than {FEWEST_GAPS} gaps between two of a kind)  {len(rare)}')
+    for name, gaps in rare:
+        print(f'  {name}: {gaps} {"gap" if gaps == 1 else "gaps"}')
+
+
+def _too_rare(model: TrainedModel) -> List[Tuple[str, int]]:
+    gaps = [sum(model.histogram(i, i).values()) for i in range(len(model.event_types))]
+    return [(str(event_type), count) for event_type, count in zip(model.event_types, gaps)
+            if count < FEWEST_GAPS]

@@ -1,0 +1,310 @@
+"""Trains one model on many bags, in this process, in several, or on a cluster.
+
+Every bag is counted by itself. Counts are added in the order in which the bags are named: first
+those of a batch of neighbouring bags, where they were counted, then the sums of the batches. So
+the model does not depend on who counts, and little is handed over.
+"""
+from __future__ import annotations
+
+import copy
+import os
+from contextlib import closing
+from dataclasses import dataclass, field, replace
+from typing import Callable, Dict, Iterable, List, Optional, Sequence, Tuple
+
+from self_awareness import (DEFAULT_WINDOW, PREDECESSORS, BagError, DetectorParameters,
+                            EncodingRules, Recording, TrainedModel, Training, progress,
+                            read_events)
+from self_awareness.calibration import limits
+from self_awareness.calibration.limits import TrainedOn
+from self_awareness.recordings import BagPart, RecordingEvents, overlap
+from self_awareness.stamps import SECOND_NS
+from self_awareness.workers import InProcess, Workers
+
+_MOST_EVENTS_OF_BATCH = 5_000_000
+_MOST_EVENTS = 20_000_000
+"""At most so many events, of 12 bytes each, are kept for the limits; other bags are read twice."""
+
+
+@dataclass(frozen=True)
+class Counting:
+    """How bags are counted.
+
+    Args:
+        encoding: how messages become events; None: by the defaults, and without sources where no
+            bag names any.
+        bin_size: of delays [ns].
+        window: length of a window [ns].
+        horizon_bins: delays of so many bins or more share one; 0: unbounded.
+        predecessors: of an event type that are watched at most.
+    """
+
+    encoding: Optional[EncodingRules] = None
+    bin_size: int = 10_000_000
+    window: int = DEFAULT_WINDOW
+    horizon_bins: int = 0
+    predecessors: int = PREDECESSORS
+
+    @classmethod
+    def of(cls, model: TrainedModel) -> Counting:
+        """Return how the bags of a model were counted."""
+        return cls(copy.copy(model.encoding), model.bin_size, model.window, model.horizon_bins,
+                   model.predecessors)
+
+
+@dataclass
+class Trained:
+    """What came out of a training.
+
+    Args:
+        model: of all good bags.
+        trained_on: the good bags.
+        bad: what is wrong with the others.
+    """
+
+    model: TrainedModel
+    trained_on: List[TrainedOn]
+    bad: List[str]
+
+
+def train(parts: Sequence[BagPart], counting: Counting, workers: Optional[Workers] = None,
+          base: Optional[TrainedModel] = None, skip_bad: bool = False,
+          tell: Callable[[str], None] = lambda _: None) -> Trained:
+    """Train on recordings.
+
+    Args:
+        parts: bags, or parts of them.
+        counting: how they are counted.
+        workers: who counts; None: this process.
+        base: a model that what is counted is added to, and that is changed; counted the same way.
+        skip_bad: go on without bags that cannot be used.
+        tell: called with a line about each bag that is done.
+
+    Raises:
+        ValueError: a bag cannot be used, and is not to be skipped, or none can; a recording is
+            named twice, or is in the base already; some bags name senders, and some do not.
+    """
+    workers = workers or InProcess()
+    alone = base is None and len(parts) == 1
+    how = _How(counting, alone, skip_bad, _MOST_EVENTS_OF_BATCH if workers.near else 0)
+    number = workers.batches(len(parts))
+    cuts = [len(parts) * batch // number for batch in range(number + 1)]
+    batches = [_Batch(parts[begin:end]) for begin, end in zip(cuts, cuts[1:])]
+    distinct = DistinctRecordings()
+    for recording in [] if base is None else base.recordings:
+        distinct.add(f'{recording.bag}, which the model was trained on', recording)
+    total = _Sum(_MOST_EVENTS, base)
+    unit = 'bags' if number == len(parts) else 'batches of bags'
+    with closing(workers.map(_count_batch, how, batches, unit)) as counts:
+        for counted in counts:
+            for line in counted.lines:
+                tell(line)
+            for trained_on, recording in counted.recordings():
+                path = trained_on.part.path
+                same = distinct.add(path, recording)
+                if same is not None:
+                    raise ValueError(f'{path}: the same recording as {same}; name it once')
+            total.add(counted)
+            if counted.error is not None:
+                raise ValueError(counted.error)
+    if total.model is None or not total.trained_on:
+        raise ValueError(f'no bag can be trained on: {total.bad[-1]}')
+    if base is None and len(total.trained_on) == 1 and not alone:
+        # All others were bad: it is alone, and both halves come from it.
+        again = train([total.trained_on[0].part], counting, workers)
+        return Trained(again.model, again.trained_on, total.bad)
+    total.model.watch()
+    return Trained(total.model, total.trained_on, total.bad)
+
+
+def preliminary_limits(trained: Trained, workers: Optional[Workers] = None) -> None:
+    """Give a model limits by what one half of the training says of the other.
+
+    Raises:
+        BagError: a recording cannot be read any more.
+        TooLittleError: the recordings are too short.
+    """
+    trained.model.evidence_calibration = limits.cross_fit(
+        trained.model, trained.trained_on, DetectorParameters().settle_time,
+        limits.BUDGET, workers)
+
+
+class DistinctRecordings:
+    """Recordings that are not the same, even in part."""
+
+    def __init__(self) -> None:
+        self._known: Dict[int, List[Tuple[str, Recording]]] = {}
+
+    def add(self, name: str, recording: Recording) -> Optional[str]:
+        """Add a recording, or return the name of one that is the same, at least in part."""
+        same = self._known.setdefault(recording.fingerprint, [])
+        for other_name, other in same:
+            if overlap(other, recording):
+                return other_name
+        same.append((name, recording))
+        return None
+
+
+@dataclass(frozen=True)
+class _How:
+    """How batches are counted.
+
+    Args:
+        counting: of each bag.
+        alone: the bag is the only one, and both halves of the training come from it.
+        skip_bad: leave out bags that cannot be used, and go on.
+        most_events: kept of a batch.
+    """
+
+    counting: Counting
+    alone: bool
+    skip_bad: bool
+    most_events: int
+
+
+@dataclass(frozen=True)
+class _Batch:
+    """Neighbouring bags."""
+
+    parts: Sequence[BagPart]
+
+    def __str__(self) -> str:
+        first, last = self.parts[0].path, self.parts[-1].path
+        return first if len(self.parts) == 1 else f'one of {first} to {last}'
+
+
+@dataclass
+class _Sum:
+    """What was counted in neighbouring bags.
+
+    Args:
+        most_events: that are kept.
+        model: the sum, after what was there before; None: no bag was good. Its recordings belong
+            to the two halves in turn: what only one half shows is not taken for information.
+        trained_on: the good bags.
+        lines: about each bag that is done.
+        bad: what is wrong with those that were skipped.
+        error: what is wrong with the bag that ended it; None: nothing.
+    """
+
+    most_events: int
+    model: Optional[TrainedModel] = None
+    trained_on: List[TrainedOn] = field(default_factory=list)
+    lines: List[str] = field(default_factory=list)
+    bad: List[str] = field(default_factory=list)
+    error: Optional[str] = None
+    _kept: int = field(default=0, init=False)
+
+    def recordings(self) -> Iterable[Tuple[TrainedOn, Recording]]:
+        """Return the good bags, and what the model says of them; of a sum without a base."""
+        return zip(self.trained_on, [] if self.model is None else self.model.recordings)
+
+    def add(self, other: _Sum) -> None:
+        """Add the bags that come after these; the other sum is used up.
+
+        Raises:
+            ValueError: they do not fit; nothing was added.
+        """
+        if other.model is not None:
+            self._add_counts(other, other.model)
+        self.lines += other.lines
+        self.bad += other.bad
+
+    def skip(self, error: str) -> None:
+        """Leave out the bag that comes after these."""
+        self.bad.append(error)
+        self.lines.append(f'skipped: {error}')
+
+    def _add_counts(self, other: _Sum, model: TrainedModel) -> None:
+        swapped = self.model is not None and len(self.model.recordings) % 2 == 1
+        if swapped:
+            model.swap_halves()
+        if self.model is None:
+            self.model = model
+        else:
+            self._check_sources(other, self.model, model)
+            try:
+                self.model.merge(model)
+            except ValueError as error:
+                raise ValueError(f'{_Batch([each.part for each in other.trained_on])}: {error}'
+                                 ) from error
+        for each in other.trained_on:
+            half = 1 - each.half if swapped and each.half is not None else each.half
+            events = 0 if each.events is None else len(each.events.stamps)
+            keep = self._kept + events <= self.most_events
+            self._kept += events if keep else 0
+            self.trained_on.append(replace(each, half=half, events=each.events if keep else None))
+
+    def _check_sources(self, other: _Sum, mine: TrainedModel, model: TrainedModel) -> None:
+        if mine.encoding.source == model.encoding.source:
+            return
+        # The two bags where one names senders and the other does not: the same in any batches.
+        before, after = self.trained_on[-1], other.trained_on[0]
+        nameless = after if model.encoding.source == 'none' else before
+        raise ValueError(f'{nameless.part.path}: {_NAMELESS}')
+
+
+_NAMELESS = ('no connection of this bag names its sender, and sources are to be told apart; leave '
+             'the bag out, or use "source: none" for all (--encoding)')
+
+
+class _BadBag(ValueError):
+    """Something is wrong with a bag by itself."""
+
+
+def _count_batch(how: _How, batch: _Batch) -> _Sum:
+    total = _Sum(how.most_events)
+    for part in batch.parts:
+        try:
+            total.add(_count(how, part))
+        except ValueError as error:
+            if not (how.skip_bad and isinstance(error, _BadBag)):
+                total.error = str(error)
+                break
+            total.skip(str(error))
+    return total
+
+
+def _count(how: _How, part: BagPart) -> _Sum:
+    counting = how.counting
+    try:
+        events, encoding = _read(counting, part)
+        recording = Recording()
+        recording.bag = os.path.basename(part.path)
+        recording.start = int(events.stamps[0])
+        recording.end = int(events.stamps[-1])
+        recording.events = len(events.stamps)
+        recording.fingerprint = events.fingerprint
+        training = Training(encoding, counting.bin_size, counting.window, counting.horizon_bins,
+                            counting.predecessors)
+        training.add_events(events.event_types, events.stamps, events.ids,
+                            events.middle if how.alone else None, recording)
+    except BagError as error:
+        raise _BadBag(str(error)) from error
+    except ValueError as error:
+        raise _BadBag(f'{part.path}: {error}') from error
+    seconds = (recording.end - recording.start) / SECOND_NS
+    line = f'{part.path}: {seconds:.1f} s, {recording.events} events'
+    trained_on = TrainedOn(part, None if how.alone else 0, events)
+    return _Sum(recording.events, training.model(watch=False), [trained_on], [line])
+
+
+def _read(counting: Counting, part: BagPart) -> Tuple[RecordingEvents, EncodingRules]:
+    encoding = counting.encoding or EncodingRules.defaults()
+    with progress.messages(os.path.basename(part.path)) as update:
+        read = read_events(part.path, encoding, [], part.start, part.end, update)
+    if encoding.source == 'callerid' and not read.summary.has_sources:
+        if counting.encoding is not None:
+            raise ValueError(_NAMELESS)
+        encoding.source = 'none'  # what was read stays the same
+    _, end = part.span(read.summary.start, read.summary.end)
+    events = RecordingEvents(part, read.event_types, read.stamps, read.ids, read.summary.start,
+                             end, read.summary.fingerprint)
+    if len(events.stamps) == 0:
+        raise ValueError('no message is an event by the encoding; a recording of "rosbag play" '
+                         'needs "source: none" (--encoding), and a part that is too short another '
+                         '--start or --end')
+    if len(events.stamps) == 1:
+        raise ValueError('one event only, there is no delay to learn; leave it out or record for '
+                         'longer')
+    return events, encoding

@@ -1,0 +1,66 @@
+"""docs/performance.md says what the measurements found, and how it is written."""
+from __future__ import annotations
+
+import importlib
+import json
+import re
+import sys
+from pathlib import Path
+from types import ModuleType
+from typing import Iterator
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[3]
+DOCS = ROOT / 'docs'
+REPORTS = {'core': 'core_report', 'models': 'models', 'bags': 'bags_report',
+           'live': 'live_report', 'predecessors': 'predecessors'}
+
+
+@pytest.fixture(autouse=True)
+def benchmark_folder(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Let the programs of the benchmarks be found, and leave nothing of them behind."""
+    monkeypatch.syspath_prepend(str(ROOT / 'benchmark'))
+    before = set(sys.modules)
+    yield
+    for name in set(sys.modules) - before:
+        if str(ROOT / 'benchmark') in str(getattr(sys.modules[name], '__file__', '')):
+            del sys.modules[name]
+
+
+def module(name: str) -> ModuleType:
+    return importlib.import_module(name)
+
+
+@pytest.mark.parametrize('section', sorted(REPORTS))
+def test_tables_are_those_of_the_committed_numbers(section: str) -> None:
+    result = json.loads((DOCS / 'performance' / f'{section}.json').read_text())
+    page = (DOCS / 'performance.md').read_text()
+    written = re.search(f'<!-- {section} -->\n(.*)\n<!-- /{section} -->', page, re.DOTALL)
+    assert written and written[1] == module(REPORTS[section]).markdown(result)
+
+
+def test_jobs_are_compared_with_one_process_where_they_were_measured() -> None:
+    result = json.loads((DOCS / 'performance' / 'bags.json').read_text())
+    result.pop('jobs', None)
+    images = module('bags_report').markdown(result)
+    result['jobs'] = {'rounds': 3, 'seconds': 60.0, 'bags': 8, 'types': 300, 'messages': 1000,
+                      'cores': 2, 'jobs': {'1': {'wall_s': 12.0, 'cpu_s': 12.5},
+                                           '2': {'wall_s': 8.0, 'cpu_s': 14.0}}}
+    text = module('bags_report').markdown(result)
+    assert text.startswith(f'{images}\n\n`train` on 8 bags of 300 event types, 1,000 messages')
+    assert text.splitlines()[-2:] == ['| `--jobs 1` | 12.00 s | 12.50 s | 1.00 |',
+                                      '| `--jobs 2` | 8.00 s | 14.00 s | 1.50 |']
+
+
+def test_publishing_replaces_a_section_and_nothing_else(tmp_path: Path) -> None:
+    (tmp_path / 'performance.md').write_text('a\n<!-- x -->\nold\n<!-- /x -->\nb\n')
+    module('page').publish('x', {'cores': 2}, 'new', tmp_path)
+    assert (tmp_path / 'performance.md').read_text() == 'a\n<!-- x -->\nnew\n<!-- /x -->\nb\n'
+    assert json.loads((tmp_path / 'performance' / 'x.json').read_text()) == {'cores': 2}
+
+
+def test_a_page_without_the_section_is_an_error(tmp_path: Path) -> None:
+    (tmp_path / 'performance.md').write_text('a\n<!-- x -->\n')
+    with pytest.raises(ValueError, match='no section x'):
+        module('page').publish('x', {}, 'new', tmp_path)

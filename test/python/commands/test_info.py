@@ -1,0 +1,152 @@
+"""`info`: what is in a model, for people and for programs."""
+from __future__ import annotations
+
+import json
+import math
+import os
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any, Dict
+
+import pytest
+from conftest import robot
+
+from self_awareness import EvidenceModel, TrainedModel
+from self_awareness.commands import calibrate, info, train
+from self_awareness.reporting.histogram_text import draw
+
+LASER, SLAM = '/laser /scan std_msgs/String', '/slam /map std_msgs/String'
+
+
+def as_json(capsys: pytest.CaptureFixture, path: str) -> Dict[str, Any]:
+    assert info.main([path, '--json']) == 0
+    return json.loads(capsys.readouterr().out)
+
+
+def test_json_holds_all_but_the_histograms(model_file: str, capsys) -> None:
+    summary = as_json(capsys, model_file)
+    assert summary['window'] == 0.1 and summary['bin_size'] == 0.01
+    assert summary['horizon'] is None and summary['calibration'] is None
+    assert summary['graph'] == {} and summary['evidence']['calibration'] is None
+    assert summary['sources'] == ['/battery', '/laser', '/slam']
+    assert summary['events'] == 1282 and summary['pairs'] == 9
+    assert summary['encoding']['type_fields']['rosgraph_msgs/Log'] == 'level'
+    assert [recording['bag'] for recording in summary['recordings']] == ['first.bag']
+    laser = next(kind for kind in summary['event_types'] if kind['scope'] == '/scan')
+    assert laser['count'] == 600 and laser['gaps'] == 599 and laser['judged']
+    assert laser['rate'] == pytest.approx(20.0, rel=0.01)
+    assert laser['usual_shortest'] <= 0.05 <= laser['usual_longest'] <= 0.07
+    assert summary['highest_rate'] == pytest.approx(20.0, rel=0.01)
+    assert summary['lowest_rate'] == pytest.approx(1 / 0.37, rel=0.02)
+
+
+def test_json_holds_the_calibration(model_file: str, robot_bags, tmp_path, capsys) -> None:
+    output = str(tmp_path / 'm')
+    assert calibrate.main(['--model', model_file, '--normal', robot_bags[1], '--detector', 'paper',
+                           '--cutoff', 'fpr=0.01', '-o', output]) == 0
+    capsys.readouterr()
+    found = as_json(capsys, output)['calibration']
+    stored = TrainedModel.load(output).calibration
+    assert found['threshold'] == stored.threshold and found['method'] == 'fpr=0.01'
+    assert found['auc'] is None and found['true_positive_rate'] is None  # no faulty windows
+    assert found['normal'][0]['fingerprint'] == f'{stored.normal[0].fingerprint:016x}'
+
+
+def test_json_holds_the_evidence(evidence_model: str, capsys) -> None:
+    found = as_json(capsys, evidence_model)['evidence']
+    model = TrainedModel.load(evidence_model)
+    stored = model.evidence_calibration
+    assert set(found['tracks']) <= {'overdue', 'rate', 'pairs', 'answers'}
+    assert found['tracks']['overdue'] == 3 and found['tracks']['rate'] == 6
+    assert sum(found['tracks'].values()) == len(EvidenceModel(model).tracks)
+    assert found['not_judged'] == []
+    calibration = found['calibration']
+    assert (calibration['method'], calibration['budget']) == ('held-out', 0.5)
+    assert calibration['windows'] == stored.windows
+    assert calibration['linker_limit'] == stored.linker_limit
+    assert calibration['calibrated_ns'] == stored.stamp
+    assert calibration['false_alarms_per_hour'] == 0.0
+    assert [recording['bag'] for recording in calibration['normal']] == ['tuesday.bag']
+    judged = sum(not math.isnan(limit) for limit in stored.limits)
+    assert sum(calibration['judged_tracks'].values()) == judged
+
+
+def test_json_holds_preliminary_limits_and_the_graph(long_bags, tmp_path, capsys,
+                                                     monkeypatch) -> None:
+    monkeypatch.setattr('rosgraph.Master.getSystemState', lambda _: [
+        [['/scan', ['/laser']]], [['/scan', ['/slam', '/map_saver']]], []])
+    output = str(tmp_path / 'm')
+    assert train.main([long_bags[0], '--graph', '-o', output]) == 0
+    capsys.readouterr()
+    summary = as_json(capsys, output)
+    assert summary['graph'] == {'/laser': ['/map_saver', '/slam']}
+    calibration = summary['evidence']['calibration']
+    assert calibration['method'] == 'cross-fit' and calibration['false_alarms_per_hour'] is None
+    assert info.main([output]) == 0
+    assert 'sources that somebody listens to: 1, connections: 2' in capsys.readouterr().out
+
+
+def test_types_that_are_not_judged_are_named(make_bag, tmp_path, capsys) -> None:
+    output = str(tmp_path / 'm')
+    bag = make_bag('rare.bag', sorted([*robot(10.0), (15.0, '/door', '/open')]))
+    assert train.main([bag, '-o', output]) == 0
+    capsys.readouterr()
+    evidence = as_json(capsys, output)['evidence']
+    assert evidence['not_judged'] == ['/door /open std_msgs/String']
+    assert evidence['calibration'] is None
+    assert info.main([output]) == 0
+    assert '  not judged: /door /open std_msgs/String\n' in capsys.readouterr().out
+
+
+def test_people_read_the_evidence(evidence_model: str, capsys) -> None:
+    assert info.main([evidence_model]) == 0
+    text = capsys.readouterr().out
+    for part in ('evidence     tracks: overdue 3, rate 6', 'limits       held-out, for 0.5 false',
+                 'graph        none', 'tuesday.bag', 'linker '):
+        assert part in text
+
+
+def test_people_read_the_same(model_file: str, capsys) -> None:
+    assert info.main([model_file]) == 0
+    text = capsys.readouterr().out
+    for part in ('not calibrated', 'first.bag', '1282', LASER, SLAM, '/rosout_agg', 'no horizon'):
+        assert part in text
+
+
+def test_a_pair_is_drawn(model_file: str, capsys) -> None:
+    assert info.main([model_file, '--pair', LASER, 'slam']) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[0].endswith(LASER) and lines[1].endswith(SLAM)
+    assert 'count 600' in lines[2] and 'entropy' in lines[2] and 'weight' in lines[2]
+    # The follower's delay is 31 to 37 ms: one bin of 10 ms.
+    assert lines[3].split()[:5] == ['0.030', '-', '0.040', '600', '100.0%']
+    assert len(lines) == 4
+
+
+@pytest.mark.parametrize('text', ['std_msgs', '/nothing'])
+def test_an_ambiguous_or_unknown_event_type_lists_the_candidates(model_file: str, text: str,
+                                                                 capsys) -> None:
+    assert info.main([model_file, '--pair', text, 'slam']) == 1
+    error = capsys.readouterr().err
+    assert text in error and LASER in error and SLAM in error and error.count('\n') == 1
+
+
+def test_a_wide_histogram_is_merged_into_rows_that_fit_a_screen() -> None:
+    counts = {3: 10, 500: 80, 999: 9, 10 ** 12: 1}
+    lines = draw(counts, 10_000_000, 0, 999, 20)
+    assert len(lines) == 21
+    shown = [int(line.split()[3]) if '-' in line else int(line.split()[2]) for line in lines]
+    assert sum(shown) == 100 and shown[0] == 10 and shown[-1] == 1 and max(shown) == 80
+    assert max(line.count('#') for line in lines) == 20
+    assert '...' in lines[-1]
+
+
+def test_a_reader_that_has_seen_enough_is_told_nothing(model_file: str) -> None:
+    script = Path(__file__).resolve().parents[3] / 'scripts' / 'info'
+    reading, writing = os.pipe()
+    os.close(reading)
+    process = subprocess.run([sys.executable, str(script), model_file], stdout=writing,
+                             stderr=subprocess.PIPE, text=True)
+    os.close(writing)
+    assert process.stderr == '' and process.returncode == 1

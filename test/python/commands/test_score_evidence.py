@@ -1,0 +1,85 @@
+"""`score` by evidence: the alarm names its evidence; what was never seen; the table of windows."""
+from __future__ import annotations
+
+import csv
+import re
+from typing import Callable, List, Tuple
+
+import numpy as np
+import pytest
+from conftest import Message, jittery_robot
+
+from self_awareness import (EVIDENCE_THRESHOLD, DetectorParameters, EvidenceModel, TrainedModel,
+                            judge_by_evidence, read_events)
+from self_awareness.commands import score
+
+
+def without_laser(start: float) -> List[Message]:
+    """Its laser falls silent from 12 s to 20 s."""
+    return [m for m in jittery_robot(start, 30.0, 3) if not (start + 12.0 <= m[0] < start + 20.0
+                                                             and m[1] == '/laser')]
+
+
+def alarms(out: str) -> List[Tuple[float, float, str]]:
+    """Return start [s], end [s] and evidence of the alarms that were printed."""
+    found = re.findall(r'^  ([\d.]+) - ([\d.]+) s.*: lowest score \S+, threshold -1, (.+)$', out,
+                       re.MULTILINE)
+    return [(float(start), float(end), evidence) for start, end, evidence in found]
+
+
+def test_the_alarm_names_its_evidence_and_its_suspect(
+        evidence_model: str, make_bag: Callable[..., str], capsys) -> None:
+    bag = make_bag('dead.bag', without_laser(3000.0))
+    assert score.main([bag, '--model', evidence_model]) == 0
+    out = capsys.readouterr().out
+    (start, end, evidence), = alarms(out)
+    assert 12.0 < start < 13.0 and 19.5 < end < 26.0
+    assert 'overdue' in evidence.split(', ')
+    assert re.search(r'^    1\. /laser /scan std_msgs/String: silent for ', out, re.MULTILINE)
+
+
+def test_normal_operation_is_no_alarm(evidence_model: str, make_bag: Callable[..., str],
+                                      capsys) -> None:
+    bag = make_bag('normal.bag', jittery_robot(7000.0, 60.0, 4))
+    assert score.main([bag, '--model', evidence_model]) == 0
+    assert ', 0 abnormal (0.0%; settling left out), alarms: 0' in capsys.readouterr().out
+
+
+def test_the_table_has_every_window_with_all_digits(
+        evidence_model: str, make_bag: Callable[..., str], tmp_path, capsys) -> None:
+    bag, table = make_bag('dead.bag', without_laser(3000.0)), tmp_path / 'w.csv'
+    assert score.main([bag, '--model', evidence_model, '--csv', str(table)]) == 0
+    with open(table, newline='') as file:
+        rows = list(csv.DictReader(file))
+    trained = TrainedModel.load(evidence_model)
+    events = read_events(bag, trained.encoding, trained.event_types)
+    verdicts = judge_by_evidence(trained, EvidenceModel(trained), DetectorParameters(),
+                                 events.stamps, events.ids)
+    assert [float(row['score']) for row in rows] == verdicts.score.tolist()
+    assert [row['abnormal'] == '1' for row in rows] == verdicts.abnormal.tolist()
+    assert {float(row['threshold']) for row in rows} == {EVIDENCE_THRESHOLD}
+    # A window of silence has a score, too: silence is evidence.
+    assert np.isfinite(verdicts.score).all() and verdicts.score.min() < EVIDENCE_THRESHOLD
+
+
+@pytest.mark.parametrize('option, raised', [('error', True), ('warn', False), ('ignore', False)])
+def test_what_was_never_seen_is_an_alarm_where_that_is_asked_for(
+        evidence_model: str, make_bag: Callable[..., str], option: str, raised: bool,
+        capsys) -> None:
+    bag = make_bag('new.bag', sorted([*jittery_robot(3000.0, 30.0, 5), (3010.02, '/new', '/a')]))
+    assert score.main([bag, '--model', evidence_model, '--unknown', option]) == 0
+    out = capsys.readouterr().out
+    assert '    /new /a std_msgs/String: 1\n' in out
+    assert ([start for start, _, _ in alarms(out)] == [pytest.approx(10.1, abs=0.11)]) == raised
+    assert raised or alarms(out) == []
+
+
+def test_a_model_without_limits_scores_nothing_abnormal_and_says_so(
+        model_file: str, make_bag: Callable[..., str], tmp_path, capsys) -> None:
+    """Its recording was too short for preliminary limits."""
+    bag, table = make_bag('dead.bag', without_laser(3000.0)), tmp_path / 'w.csv'
+    assert score.main([bag, '--model', model_file, '--csv', str(table)]) == 0
+    out = capsys.readouterr().out
+    assert f'{model_file}: not calibrated' in out and 'calibrate' in out and 'alarm' not in out
+    with open(table, newline='') as file:
+        assert {(row['threshold'], row['abnormal']) for row in csv.DictReader(file)} == {('', '0')}

@@ -1,0 +1,154 @@
+"""The evidence detector against a literal, slow implementation, on random recordings."""
+from __future__ import annotations
+
+import math
+import random
+from typing import Dict, List, Optional, Tuple
+
+import numpy as np
+import pytest
+from reference_evidence import (KINDS, Counts, Event, ReferenceModel, ReferenceScorer)
+from reference_evidence_limits import ReferenceLimits
+
+from self_awareness import (EncodingRules, EventType, EvidenceModel, LimitFinder, TrainedModel,
+                            Training)
+from self_awareness.stamps import SECOND_NS
+
+MS = 1_000_000
+WINDOW = 100 * MS
+SETTLE = 5 * SECOND_NS
+BUDGET = 0.5
+LETTERS = 'ABCDEFG'
+SEEDS = (1, 2)
+
+
+def robot(chance: random.Random, seconds: float, fault_s: float = math.inf) -> List[Event]:
+    """A timer, two that answer it, a slow and an irregular one, and one that is rare.
+
+    From the fault on, the answers come later and often not at all, the slow one comes often, the
+    irregular one is gone for a while, and something unknown comes. Some stamps are equal, some
+    late.
+    """
+    start = chance.randrange(10 ** 12)
+    found: List[Tuple[float, int, str]] = []
+
+    def put(at: float, kind: str, late: float = 0.0) -> None:
+        stamp = start + round((at - late) * 1000) * MS
+        found.append((at, stamp, kind))
+
+    at = chance.uniform(0.0, 0.2)
+    while at < seconds:
+        faulty = at >= fault_s
+        put(at, 'A', chance.choice([0.0, 0.0, 0.0, 0.003]))
+        if not faulty or chance.random() < 0.4:
+            answer = at + chance.choice([0.02, 0.025, 0.03]) + 0.045 * faulty
+            put(answer, 'B')
+            if chance.random() < 0.7:
+                put(answer + chance.choice([0.0, 0.006]), 'C')
+        at += chance.uniform(0.19, 0.23)
+    for kind, gap in (('D', 0.7), ('E', 0.25), ('F', 9.0), ('G', 2.0)):
+        at = chance.uniform(0.0, gap)
+        while at < seconds:
+            gone = kind == 'E' and fault_s <= at < fault_s + 10.0
+            if not gone and (kind != 'G' or at >= fault_s):
+                put(at, kind)
+            often = 4.0 if kind == 'D' and at >= fault_s else 1.0
+            spread = 0.1 if kind == 'D' else 0.8
+            at += gap / often * chance.uniform(1.0 - spread, 1.0 + spread)
+    return [(stamp, kind) for _, stamp, kind in sorted(found)]
+
+
+class Robot:
+    """A robot that both the core and the reference have learned from."""
+
+    def __init__(self, seed: int) -> None:
+        self.chance = random.Random(seed)
+        self.halves = [[robot(self.chance, 90.0)], [robot(self.chance, 80.0)]]
+        everything = self.halves[0] + self.halves[1]
+        types = list(dict.fromkeys(kind for events in everything for _, kind in events))
+        first, second, both = (Counts(recordings, types, WINDOW)
+                               for recordings in (*self.halves, everything))
+        self.reference = ReferenceModel(first, second, both, both)
+        self.reference_of_half = [ReferenceModel(first, second, both, other)
+                                  for other in (second, first)]
+        self.trained = self._trained(everything)
+        self.model = EvidenceModel(self.trained)
+        self.ids: Dict[str, int] = {
+            kind.scope: index for index, kind in enumerate(self.trained.event_types)}
+        assert list(self.ids) == types
+
+    @staticmethod
+    def _trained(recordings: List[List[Event]]) -> TrainedModel:
+        training = Training(EncodingRules(), window=WINDOW)
+        every_type = [EventType('', letter, '') for letter in LETTERS]
+        for events in recordings:
+            training.add_events(every_type, np.array([t for t, _ in events]),
+                                np.array([LETTERS.index(kind) for _, kind in events]))
+        return training.model()
+
+    def arrays(self, events: List[Event]) -> Tuple[np.ndarray, np.ndarray]:
+        """Return stamps and ids."""
+        return (np.array([t for t, _ in events]),
+                np.array([self.ids.get(kind, len(self.ids)) for _, kind in events]))
+
+
+@pytest.fixture(name='learned', scope='module', params=SEEDS)
+def _learned(request: pytest.FixtureRequest) -> Robot:
+    return Robot(request.param)
+
+
+def test_the_same_is_watched(learned: Robot) -> None:
+    expected = [(KINDS[channel], learned.ids[to], learned.ids[other])
+                for channel, to, other in learned.reference.tracks]
+    assert [(track.channel, track.to_id, track.from_id)
+            for track in learned.model.tracks] == expected
+    assert {channel for channel, _, _ in learned.reference.tracks} == set(KINDS)
+
+
+def test_overdue_is_the_literal_sum(learned: Robot) -> None:
+    for kind, id_ in learned.ids.items():
+        for age in (0, 1, 30 * MS, 210 * MS, SECOND_NS, 20 * SECOND_NS, 3000 * SECOND_NS):
+            assert learned.model.overdue(id_, age) == pytest.approx(
+                learned.reference.overdue(kind, age), abs=1e-9)
+
+
+@pytest.mark.parametrize('fault_s', [math.inf, 25.0])
+def test_the_evidence_of_all_channels(learned: Robot, fault_s: float) -> None:
+    events = robot(random.Random(str(fault_s)), 60.0, fault_s)
+    expected = ReferenceScorer(learned.reference, events, WINDOW).rows
+    found = learned.model.evidence(WINDOW, *learned.arrays(events))
+    assert found.shape == (len(expected), len(learned.reference.tracks))
+    np.testing.assert_allclose(found, np.array(expected), rtol=0.0, atol=1e-9)
+    if fault_s < math.inf:
+        largest = found.max(axis=0)
+        for kind in KINDS:
+            assert max(value for value, track in zip(largest, learned.reference.tracks)
+                       if track[0] == kind) > 3.0, kind
+
+
+@pytest.mark.parametrize('held_out', [True, False])
+def test_the_limits(learned: Robot, held_out: bool) -> None:
+    parts: List[Tuple[List[Event], Optional[int]]]
+    if held_out:
+        # In the last one the answers come later from the start: such pairs mislead.
+        parts = [(robot(random.Random(7), 130.0), None), (robot(random.Random(8), 42.0), None),
+                 (robot(random.Random(9), 40.0, 0.0), None)]
+    else:
+        parts = [(events, half) for half in (0, 1) for events in learned.halves[half]]
+    finder = LimitFinder(learned.trained, SETTLE, BUDGET)
+    for only_first_pass in (True, False):
+        for events, half in parts:
+            finder.add_events(*learned.arrays(events), half)
+        if only_first_pass:
+            finder.start_second_pass()
+    expected = ReferenceLimits(
+        learned.reference,
+        [(events, learned.reference if half is None else learned.reference_of_half[half])
+         for events, half in parts], WINDOW, SETTLE, BUDGET)
+    limits = finder.limits()
+    assert finder.windows == expected.windows
+    assert limits.tracks == pytest.approx(expected.tracks, abs=1e-9, nan_ok=True)
+    pairs = [limit for limit, track in zip(limits.tracks, learned.reference.tracks)
+             if KINDS[track[0]] == 'pairs']
+    assert any(map(math.isfinite, pairs)) and any(map(math.isnan, pairs)) == held_out
+    assert limits.linker == pytest.approx(expected.linker, abs=1e-9)

@@ -1,0 +1,109 @@
+"""The program evaluate: files written whole, and errors that name the way out."""
+from __future__ import annotations
+
+import csv
+import shutil
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from self_awareness.evaluation import catalogue, evaluate
+from self_awareness.evaluation.simulated import report
+from self_awareness.evaluation.simulated.experiment import Results
+
+ROOT = Path(__file__).resolve().parents[3]
+
+
+@pytest.fixture(name='written', scope='module')
+def _written(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp('evaluation') / 'new'
+    assert evaluate.main(['simulated', '--seeds', '2', '--seed', '5', '--systems', 'paper',
+                          'frequency', 'frequency_learned', '--without', 'frequency',
+                          '--faults', 'cc1', 'rs', '--calibration', '60', '--jobs', '2',
+                          '-o', str(folder)]) == 0
+    return folder
+
+
+def test_csv_has_a_row_for_everything(written: Path) -> None:
+    with open(written / 'simulated.csv', encoding='utf-8', newline='') as file:
+        rows = list(csv.DictReader(file))
+    assert ({(row['system'], row['training_share'], row['seed'], row['record']) for row in rows}
+            == {(system, share, seed, record) for system in ('paper', 'frequency_learned')
+                for share in ('1.0', '0.1') for seed in '56'
+                for record in ('normal', 'cc1', 'rs')})
+    assert len(rows) == 24
+    for row in rows:
+        assert (row['auc'] == '') == (row['record'] == 'normal')
+        if row['record'] == 'cc1' and row['training_share'] == '1.0':
+            assert 0.0 < float(row['latency_s']) < 3.0
+            assert row['top3'] == 'True'
+
+
+def test_page_has_all_tables_and_how_to_repeat_it(written: Path) -> None:
+    page = (written / 'simulated.md').read_text(encoding='utf-8')
+    assert 'rosrun self_awareness evaluate simulated --seeds 2 --seed 5' in page
+    assert 'Seeds 5, 6.' in page
+    lines = page.splitlines()
+    head = next(line for line in lines if 'target' in line and line.startswith('|'))
+    assert [cell.strip() for cell in head.split('|')][2:-1] == ['target', 'paper',
+                                                                'frequency_learned']
+    assert '## With 0.1 of the training data' in page
+    for title in ('Latency', 'AUC', 'FNR', 'equal latency', 'blame', 'bare verdict'):
+        assert title in page
+    for line in lines:  # every row of a table has a cell for every system
+        if line.startswith('| cc1'):
+            assert line.count('|') == 4
+    assert 'nan' not in page and 'inf' not in page.split('## Targets')[1]
+    for name in ('figure2.png', 'overview.png'):
+        assert (written / name).read_bytes().startswith(b'\x89PNG')
+
+
+def test_a_failure_leaves_the_old_page(written: Path, tmp_path: Path,
+                                       monkeypatch: pytest.MonkeyPatch) -> None:
+    page = tmp_path / 'simulated.md'
+    page.write_text('old', encoding='utf-8')
+
+    def fail(*_: Any) -> str:
+        raise OSError('no space left')
+
+    monkeypatch.setattr(report, 'page', fail)
+    monkeypatch.setattr(report, '_save_csv', lambda *_: None)
+    with pytest.raises(OSError, match='no space left'):
+        report.write(tmp_path, None, Results(), '')
+    assert page.read_text(encoding='utf-8') == 'old'
+    assert [path.name for path in tmp_path.iterdir()] == ['simulated.md']
+    assert not list(written.glob('.part*'))
+
+
+def test_a_missing_library_is_named_with_the_way_out(tmp_path: Path, capsys: Any,
+                                                     monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(catalogue.util, 'find_spec', lambda name: None)
+    arguments = ['simulated', '--faults', 'cc1', '-o', str(tmp_path / 'out')]
+    assert evaluate.main(arguments) == 1
+    error = capsys.readouterr().err
+    for word in ('sklearn', 'hmmlearn', 'scripts/evaluation_env.sh',
+                 '--without isolation_forest one_class_svm hmm'):
+        assert word in error
+    assert not (tmp_path / 'out').exists()
+    catalogue.check_libraries(['paper', 'frequency', 'markov'])
+
+
+@pytest.mark.parametrize('wrong', [['--faults', 'flood'], ['--seeds', '0'], ['--jobs', '0'],
+                                   ['--calibration', '5'], ['--calibration', 'x'],
+                                   ['--training-share', '1'], ['--systems', 'oracle'],
+                                   ['--systems', 'paper', '--without', 'paper']])
+def test_wrong_arguments_are_refused(wrong: list, tmp_path: Path, capsys: Any) -> None:
+    arguments = wrong if '--systems' in wrong else ['--systems', 'paper', *wrong]
+    assert evaluate.main(['simulated', '-o', str(tmp_path / 'out'), *arguments]) in (1, 2)
+    assert wrong[-1] in capsys.readouterr().err or wrong[-2] == '--without'
+    assert not (tmp_path / 'out').exists()
+
+
+def test_the_environment_script_is_sound() -> None:
+    if shutil.which('shellcheck') is None:
+        subprocess.run(('bash', '-n', str(ROOT / 'scripts' / 'evaluation_env.sh')), check=True)
+    else:
+        subprocess.run(('shellcheck', '-x', '-P', 'SCRIPTDIR',
+                        str(ROOT / 'scripts' / 'evaluation_env.sh')), check=True)

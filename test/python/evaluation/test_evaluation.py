@@ -1,0 +1,201 @@
+"""The evaluation: the same windows, alarms and records for all systems, and what is measured."""
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from evaluation_robot import BATTERY, LASER, START, robot
+
+from self_awareness import (DEFAULT_WINDOW, DetectorParameters, EncodingRules, EventType, Model,
+                            Persistence, Training, read_events)
+from self_awareness.evaluation.detectors import Paper
+from self_awareness.evaluation.simulated import measures, summary, tradeoff
+from self_awareness.evaluation.simulated.records import (default_faults, encode, fault_record,
+                                                         normal_record)
+from self_awareness.evaluation.systems import Judged, SystemAlarm, persistent, settling
+from self_awareness.evaluation.windowed_events import WindowedEvents, counts, known_ids
+from self_awareness.follow_me.faults import effect_of
+from self_awareness.follow_me.scenario import load_scenario
+from self_awareness.follow_me.simulation import START_S, events, simulate
+from self_awareness.stamps import SECOND_NS
+
+
+def judged(scores: list, alarms: list, settling: int = 0, threshold: float = 1.0) -> Judged:
+    start = START + DEFAULT_WINDOW * np.arange(len(scores), dtype=np.int64)
+    score = np.array(scores, dtype=float)
+    return Judged(start, score < threshold, score, np.arange(len(scores)) < settling, alarms,
+                  threshold)
+
+
+def at(window: int) -> int:
+    """Return the start of a window [ns]."""
+    return START + window * DEFAULT_WINDOW
+
+
+def test_windows_and_counts_are_those_of_the_detector() -> None:
+    recording = robot(20.0, 1, silent=((8.0, 12.0),))
+    training = Training(EncodingRules(), window=DEFAULT_WINDOW)
+    training.add_events(recording.event_types, recording.stamps, recording.ids)
+    trained = training.model()
+    verdicts = Model(trained).judge(DEFAULT_WINDOW, None, DetectorParameters(), recording.stamps,
+                                    recording.encoded(trained.event_types).ids, recording.end - 1)
+    assert np.array_equal(recording.starts(), verdicts.start)
+    assert len(verdicts.start) == 200
+    assert np.array_equal(settling(recording), verdicts.settling)
+    assert settling(recording).sum() == 51  # the first event comes after the window begins
+    table = counts(recording, [BATTERY])  # all but the battery: in the last column
+    assert np.array_equal(table.sum(axis=1), verdicts.events)
+    assert table[:, 0].sum() == (recording.ids == 1).sum()
+
+
+def test_types_not_in_the_vocabulary_are_told_apart_behind_it() -> None:
+    recording = robot(20.0, 1)
+    camera = EventType('/camera', '/image', 'sensor_msgs/Image')
+    encoded = recording.encoded([camera, BATTERY])
+    assert encoded.event_types == [camera, BATTERY, LASER]
+    assert ([encoded.event_types[id_] for id_ in encoded.ids]
+            == [recording.event_types[id_] for id_ in recording.ids])
+    assert set(known_ids(recording, [camera]).tolist()) == {1}
+
+
+def test_an_unknown_source_is_blamed() -> None:
+    system = Paper()
+    system.train([robot(60.0, 1), robot(60.0, 2)])
+    system.calibrate([robot(60.0, 3)])
+    recording = robot(60.0, 4)
+    flood = START + np.arange(30 * 200, dtype=np.int64) * 5_000_000 + 30 * SECOND_NS
+    stamps = np.concatenate([recording.stamps, flood])
+    ids = np.concatenate([recording.ids, np.full(len(flood), 2, dtype=np.uint32)])
+    order = np.argsort(stamps, kind='stable')
+    intruder = EventType('/intruder', '/flood', 'std_msgs/String')
+    result = system.judge(WindowedEvents([LASER, BATTERY, intruder], stamps[order], ids[order],
+                                         recording.end))
+    assert result.alarms[0].suspects[0] == '/intruder'
+
+
+def test_alarms_of_peers_are_those_that_the_detector_raises() -> None:
+    system = Paper()
+    system.train([robot(60.0, 1), robot(60.0, 2)])
+    system.calibrate([robot(60.0, 3)])
+    # The first silence ends, so that its alarm clears; the second lasts to the end.
+    result = system.judge(robot(60.0, 4, silent=((1.0, 2.0), (20.0, 24.0), (50.0, 60.0))))
+    assert [alarm.cleared for alarm in result.alarms] == [True, False]
+    assert result.abnormal[result.settling].any()
+    alarms = persistent(result.start, result.abnormal & ~result.settling)
+    assert ([(a.start, a.end, a.cleared) for a in alarms]
+            == [(a.start, a.end, a.cleared) for a in result.alarms])
+
+
+def test_persistence_forgets_when_cleared() -> None:
+    persistence = Persistence(DetectorParameters())
+    assert [persistence.add(True, at(window)) for window in range(3)] == [False, False, True]
+    persistence.clear()
+    assert not persistence.add(False, at(3))
+    assert [persistence.add(True, at(window)) for window in (4, 5, 6)] == [False, False, True]
+
+
+def test_events_of_the_simulation_are_encoded_as_from_its_bag(tmp_path: Path) -> None:
+    scenario = load_scenario()
+    bag = str(tmp_path / 'run.bag')
+    simulate(bag, 30.0, 5, None, scenario)
+    rules = EncodingRules()
+    rules.type_fields = dict(scenario.type_fields)
+    expected = read_events(bag, rules)
+    recording = encode(list(events(30.0, 5, None, scenario)), scenario,
+                       round((START_S + 30.0) * SECOND_NS))
+    assert np.array_equal(recording.stamps, expected.stamps)
+    assert ([recording.event_types[id_] for id_ in recording.ids]
+            == [expected.event_types[id_] for id_ in expected.ids])
+
+
+def test_every_record_differs_and_can_be_repeated() -> None:
+    scenario = load_scenario()
+    first = normal_record(scenario, 1, 'training 1', 5.0)
+    again = normal_record(scenario, 1, 'training 1', 5.0)
+    assert np.array_equal(first.stamps, again.stamps)
+    for seed, name in ((1, 'training 2'), (2, 'training 1')):
+        other = normal_record(scenario, seed, name, 5.0)
+        assert not np.array_equal(first.stamps, other.stamps)
+
+
+def test_a_fault_record_begins_its_fault_at_the_onset() -> None:
+    record = fault_record(load_scenario(), 3, 'cc1')
+    assert record.culprits == ('/player',)
+    onset_s = record.onset / SECOND_NS - START_S
+    assert 50.0 <= onset_s < 52.0
+    of_player = np.array([kind.source == '/player' for kind in record.recording.event_types])
+    last = int(record.recording.stamps[of_player[record.recording.ids]][-1])
+    assert -0.2 < (last - record.onset) / SECOND_NS < 0.05
+
+
+def test_all_default_faults_exist() -> None:
+    scenario = load_scenario()
+    kinds = default_faults(scenario)
+    assert sum(kind.startswith('crash:') for kind in kinds) == 12
+    for kind in kinds:
+        effect_of(scenario, kind)
+
+
+def test_beginning_of_a_recording() -> None:
+    part = robot(20.0, 1).beginning(0.25)
+    assert part.end - START == pytest.approx(5.0 * SECOND_NS, abs=0.01 * SECOND_NS)
+    assert part.stamps[-1] < part.end
+    assert (part.ids == 0).sum() == pytest.approx(250, abs=1)
+
+
+def test_measures_of_a_fault() -> None:
+    # 20 windows, 2 settle, the fault begins within window 9: 10 windows begin after it.
+    scores = [9, 0, 9, 9, 0, 9, 9, 9, 9, 9, 9, 0, 0, 0, 9, 9, 0, 9, 9, 9]
+    alarms = [SystemAlarm(at(5), at(8), True, ['/slam']),
+              SystemAlarm(at(14), at(18), True, ['/slam', '/power', '/player'])]
+    row = measures.fault_row('x', 1.0, 1, 'cc1', judged(scores, alarms, 2), at(9) + 5, ['/player'],
+                             judged([9] * 20, []))
+    assert (row.normal_windows, row.false_windows, row.false_alarms) == (7, 1, 1)
+    assert row.windows == 10
+    assert row.missed_raw == 6  # 10, 14, 15, 17, 18, 19
+    assert row.missed == 4  # 10, 17, 18, 19: window 17 clears the alarm
+    assert (row.windows_after_alarm, row.missed_after_alarm) == (6, 3)
+    assert row.auc == pytest.approx(1.0 - 6 / 10 / 2)
+    assert row.latency_s == pytest.approx(0.5, abs=1e-6)
+    assert (row.stood_before, row.top1, row.top3) == (False, False, True)
+
+
+def test_an_alarm_that_stands_at_the_onset_is_a_false_one() -> None:
+    row = measures.fault_row('x', 1.0, 1, 'cc1', judged([9.0] * 5 + [0.0] * 15,
+                                                        [SystemAlarm(at(8), at(20), False, None)]),
+                             at(10), ['/player'], judged([9] * 20, []))
+    assert (row.false_alarms, row.stood_before, row.latency_s) == (1, True, None)
+    assert (row.missed, row.windows_after_alarm, row.top1) == (0, 0, None)
+
+
+def test_measures_of_normal_operation() -> None:
+    row = measures.normal_row('x', 1.0, 1, judged([0, 0, 9, 0, 9], [SystemAlarm(at(3), at(4), True,
+                                                                                None)], 2))
+    assert (row.normal_windows, row.false_windows, row.false_alarms) == (3, 1, 1)
+    assert summary.false_positive_rate([row]) == pytest.approx(1 / 3)
+    assert summary.false_alarms([row]).per_hour == pytest.approx(3600 / 0.3)
+
+
+def test_what_was_not_found_took_for_ever() -> None:
+    assert summary.quantile([3.0, 1.0, None, 2.0], 0.5) == 2.0
+    assert summary.quantile([1.0, None, None], 0.5) == math.inf
+
+
+def test_trade_off_goes_from_lax_to_strict() -> None:
+    system = Paper()
+    system.train([robot(60.0, 1), robot(60.0, 2)])
+    calibration = robot(60.0, 3)
+    system.calibrate([calibration])
+    onset = START + 30 * SECOND_NS
+    fault = tradeoff.JudgedFault(system.judge(robot(60.0, 5, silent=((10.0, 12.0), (30.0, 60.0)))),
+                                 onset)
+    points = tradeoff.trade_offs('paper', 1, system.judge(calibration),
+                                 system.judge(robot(60.0, 4)), {'cc1': fault})
+    assert [point.step for point in points] == list(range(len(points)))
+    latencies = [math.inf if point.latency_s is None else point.latency_s for point in points]
+    assert latencies == sorted(latencies)
+    assert latencies[0] < latencies[8] < 1.0
+    assert points[8].false_alarms == 1  # before the onset
+    assert points[8].hours == pytest.approx((55.0 + 25.0) / 3600.0, rel=0.01)

@@ -1,0 +1,129 @@
+"""Which faults of the simulated robot the detectors see: `evidence` all of them, `paper` few."""
+from __future__ import annotations
+
+from typing import Callable, Dict, Optional, Tuple
+
+import numpy as np
+import pytest
+
+from self_awareness import DEFAULT_WINDOW, DetectorParameters, UnknownEvents
+from self_awareness.evaluation.detectors import Evidence, Paper
+from self_awareness.evaluation.simulated.measures import first_alarm
+from self_awareness.evaluation.simulated.records import (CALIBRATION_NAME, RECORD_S,
+                                                         TRAINING_NAMES, FaultRecord, fault_record,
+                                                         normal_record)
+from self_awareness.evaluation.systems import Judged
+from self_awareness.follow_me.scenario import load_scenario
+from self_awareness.stamps import SECOND_NS
+
+SEED = 1
+CALIBRATION_S = 300.0
+
+SEES, LATE, BLIND, VARIES = 'sees', 'late', 'blind', 'varies'
+"""What `paper` does: raises the alarm; raises it, but later than `evidence` must; does not raise
+it at all; one or the other, depending on the seed: nothing is asserted then."""
+
+Systems = Tuple[Evidence, Paper]
+Record = Callable[[str], FaultRecord]
+
+
+@pytest.fixture(name='systems', scope='session')
+def _systems() -> Systems:
+    scenario = load_scenario()
+    training = [normal_record(scenario, SEED, name, RECORD_S) for name in TRAINING_NAMES]
+    calibration = [normal_record(scenario, SEED, CALIBRATION_NAME, CALIBRATION_S)]
+    evidence, paper = Evidence(knows_graph=True), Paper()
+    evidence.train(training)
+    evidence.calibrate(calibration)
+    paper.train(training)
+    paper.calibrate(calibration)
+    return evidence, paper
+
+
+@pytest.fixture(name='record_of', scope='session')
+def _record_of() -> Record:
+    scenario = load_scenario()
+    records: Dict[str, FaultRecord] = {}
+
+    def record_of(kind: str) -> FaultRecord:
+        if kind not in records:
+            records[kind] = fault_record(scenario, SEED, kind)
+        return records[kind]
+
+    return record_of
+
+
+def latency(judged: Judged, onset: int) -> Optional[float]:
+    """Return the time from the onset to the first alarm after it [s]; None: there is none."""
+    alarm = first_alarm(judged.alarms, onset)
+    return None if alarm is None else (alarm.start - onset) / SECOND_NS
+
+
+@pytest.mark.parametrize('kind, within_s, paper', [
+    ('silence', 0.5, SEES),              # everything dies at once
+    ('cc1', 0.5, SEES),                  # the laser's driver dies, which much depends on
+    ('cc2', 1.0, LATE),                  # a slow component dies
+    ('rs', 4.0, SEES),                   # the CPU is taken away, more and more
+    ('half:player', 1.5, SEES),          # half the rate
+    ('double:player', 1.0, BLIND),       # twice the rate
+    ('double:gaze_control', 1.5, BLIND),
+    ('lat', 1.5, VARIES),                # components answer later, as often as before
+    ('order', 2.0, BLIND),               # events change places
+    ('ac', 30.0, BLIND),                 # a host's clock is out of step now and then
+])
+def test_evidence_raises_the_alarm(systems: Systems, record_of: Record, kind: str,
+                                   within_s: float, paper: str) -> None:
+    record = record_of(kind)
+    evidence, paper_system = systems
+    by_evidence = evidence.judge(record.recording)
+    by_paper = paper_system.judge(record.recording)
+    assert all(alarm.start > record.onset for alarm in by_evidence.alarms)
+    found = latency(by_evidence, record.onset)
+    assert found is not None and found <= within_s
+    of_paper = latency(by_paper, record.onset)
+    if paper == SEES:
+        assert of_paper is not None
+    elif paper == LATE:
+        assert of_paper is not None and of_paper > 2.0 * within_s
+    elif paper == BLIND:
+        assert of_paper is None
+
+
+@pytest.mark.parametrize('kind, within_s, paper', [
+    ('extra', 0.5, VARIES),  # another publisher, of what was never seen from it
+    ('unknown', 1.5, BLIND),  # a value that was never seen
+])
+def test_what_was_never_seen_is_at_least_a_suspicion(systems: Systems, record_of: Record,
+                                                     kind: str, within_s: float,
+                                                     paper: str) -> None:
+    evidence, by_paper = systems
+    record = record_of(kind)
+    verdicts = evidence.verdicts(record.recording, DetectorParameters())
+    after = (verdicts.start + DEFAULT_WINDOW - record.onset) / SECOND_NS
+    assert not verdicts.suspicion[after <= 0.0].any()
+    assert all(alarm.start > record.onset for alarm in verdicts.alarms)
+    assert verdicts.suspicion[(after > 0.0) & (after <= within_s)].any()
+    assert verdicts.suspicion[np.flatnonzero(verdicts.unknown)[0]]
+    if paper == BLIND:
+        assert latency(by_paper.judge(record.recording), record.onset) is None
+
+
+@pytest.mark.parametrize('kind', ['extra', 'unknown'])
+def test_what_was_never_seen_is_an_alarm_at_once_where_it_is_an_error(systems: Systems,
+                                                                      record_of: Record,
+                                                                      kind: str) -> None:
+    parameters = DetectorParameters()
+    parameters.unknown = UnknownEvents.ERROR
+    verdicts = systems[0].verdicts(record_of(kind).recording, parameters)
+    first = int(verdicts.start[np.flatnonzero(verdicts.unknown)[0]])
+    assert verdicts.alarms[0].start == first + DEFAULT_WINDOW
+    assert 'unknown events' in verdicts.alarms[0].evidence
+
+
+def test_what_was_never_seen_may_be_ignored(systems: Systems, record_of: Record) -> None:
+    parameters = DetectorParameters()
+    parameters.unknown = UnknownEvents.IGNORE
+    verdicts = systems[0].verdicts(record_of('extra').recording, parameters)
+    assert verdicts.unknown.any()
+    assert not verdicts.suspicion[np.flatnonzero(verdicts.unknown)[0]]
+    assert verdicts.alarms == []

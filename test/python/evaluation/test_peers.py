@@ -1,0 +1,120 @@
+"""The peers of the evaluation; those of scikit-learn and hmmlearn only where these are there."""
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from evaluation_robot import START, robot
+
+from self_awareness import EventType
+from self_awareness.evaluation import catalogue
+from self_awareness.evaluation.peers.frequency import (SPAN, FrequencyMonitor,
+                                                       LearnedFrequencyMonitor, messages_in_span)
+from self_awareness.evaluation.systems import ScoringSystem, System
+from self_awareness.evaluation.windowed_events import WindowedEvents
+from self_awareness.stamps import SECOND_NS
+
+CRASH_S = 30.0
+
+BLIND = ('isolation_forest',)
+"""Peers that do not see the crash of a topic with the same count in every window."""
+
+
+def trained(name: str) -> System:
+    """Return a system that knows the small robot."""
+    try:
+        catalogue.check_libraries([name])
+    except ValueError as error:
+        pytest.skip(str(error))
+    system = catalogue.make(name)
+    system.train([robot(100.0, 1), robot(100.0, 2)])
+    system.calibrate([robot(200.0, 3)])
+    return system
+
+
+def steady(seconds: float, rate: float) -> WindowedEvents:
+    """Return a recording of one topic without any jitter, from half a period on."""
+    stamps = START + np.round((np.arange(seconds * rate) + 0.5) / rate * SECOND_NS)
+    return WindowedEvents([EventType('/camera', '/image', 'sensor_msgs/Image')],
+                          stamps.astype(np.int64), np.zeros(len(stamps), dtype=np.uint32),
+                          START + round(seconds * SECOND_NS))
+
+
+@pytest.mark.parametrize('name', [name for name in catalogue.NAMES if name not in BLIND])
+def test_the_crash_of_the_only_fast_topic_is_seen(name: str) -> None:
+    system = trained(name)
+    judged = system.judge(robot(60.0, 4, silent=((CRASH_S, 60.0),)))
+    onset = START + round(CRASH_S * SECOND_NS)
+    latencies = [(alarm.start - onset) / SECOND_NS for alarm in judged.alarms]
+    assert len(latencies) == 1
+    assert 0.0 < latencies[0] < 2.0
+    assert judged.alarms[0].suspects is None or judged.alarms[0].suspects[0] == '/player'
+    assert not judged.alarms[0].cleared
+
+
+@pytest.mark.parametrize('name', BLIND)
+def test_a_count_that_never_varied_is_not_looked_at(name: str) -> None:
+    judged = trained(name).judge(robot(60.0, 4, silent=((CRASH_S, 60.0),)))
+    assert judged.alarms == []
+
+
+@pytest.mark.parametrize('name', catalogue.NAMES)
+def test_normal_operation_raises_no_alarm(name: str) -> None:
+    judged = trained(name).judge(robot(100.0, 5))
+    assert np.isfinite(judged.score).all()
+    assert judged.alarms == []
+    assert (judged.abnormal & ~judged.settling).mean() < 0.05
+
+
+def test_messages_in_the_span() -> None:
+    stamps = np.array([0, 1, 4, 5, 6]) * SECOND_NS
+    assert messages_in_span(stamps, np.array([SPAN, SPAN + SECOND_NS, 20 * SECOND_NS])).tolist() \
+        == [3, 3, 0]
+
+
+def test_frequency_monitor_has_the_limits_of_frequency_status() -> None:
+    monitor = FrequencyMonitor()
+    monitor.train([steady(30.0, 10.0)])
+    fewest, most = monitor.bounds['/image']
+    assert (fewest, most) == (pytest.approx(50.0), pytest.approx(50.0))
+    # At 9 Hz, 45 messages in 5 s are 10 % less; at 8.8 Hz it is more than the tolerance.
+    assert monitor.scores(steady(30.0, 9.0))[-1] == pytest.approx(-0.1)
+    assert monitor.scores(steady(30.0, 8.8))[-1] == pytest.approx(-0.12)
+    assert monitor.scores(steady(30.0, 12.0))[-1] == pytest.approx(-0.2)
+    system = catalogue.make('frequency')
+    system.train([steady(30.0, 10.0)])
+    for rate, abnormal in ((10.0, False), (9.4, False), (8.8, True), (10.8, False), (11.4, True)):
+        assert system.judge(steady(30.0, rate)).abnormal[-1] == abnormal
+
+
+def test_frequency_monitor_leaves_out_topics_too_slow_for_its_tolerance() -> None:
+    monitor, learned = FrequencyMonitor(), LearnedFrequencyMonitor()
+    for watch in (monitor, learned):
+        watch.train([steady(60.0, 1.0)])
+    assert monitor.bounds == {}
+    assert monitor.scores(steady(10.0, 1.0)).tolist() == [0.0] * 95
+    assert learned.bounds['/image'] == (4, 6)
+
+
+def test_learned_frequency_monitor_takes_its_limits_from_the_recordings() -> None:
+    monitor = LearnedFrequencyMonitor()
+    monitor.train([steady(30.0, 10.0), steady(30.0, 11.0)])
+    assert monitor.bounds['/image'] == (49, 56)
+    assert monitor.scores(steady(30.0, 9.0))[-1] == pytest.approx(-(49 - 45) / 49)
+    assert monitor.scores(steady(30.0, 12.6))[-1] == pytest.approx(-(63 - 56) / 56)
+
+
+def test_irregular_topics_have_no_frequency() -> None:
+    gaps = np.resize([0.05, 0.3], 200)
+    stamps = START + np.round(np.cumsum(gaps) * SECOND_NS).astype(np.int64)
+    recording = WindowedEvents([EventType('/human', '/speech', 'std_msgs/String')], stamps,
+                               np.zeros(200, dtype=np.uint32), int(stamps[-1]) + 1)
+    for monitor in (FrequencyMonitor(), LearnedFrequencyMonitor()):
+        monitor.train([recording])
+        assert monitor.bounds == {}
+
+
+def test_a_system_that_was_not_calibrated_says_so() -> None:
+    system = ScoringSystem('mine', LearnedFrequencyMonitor())
+    system.train([robot(30.0, 1)])
+    with pytest.raises(ValueError, match='mine: calibrate first'):
+        system.judge(robot(30.0, 2))

@@ -1,0 +1,207 @@
+"""Training on a real cluster of dask.distributed, on loopback."""
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+from contextlib import closing
+from pathlib import Path
+from typing import Any, Dict, Iterator, List, Optional
+
+import numpy as np
+import pytest
+from conftest import jittery_robot, learned, wait_until, write_bag
+
+from self_awareness import TrainedModel, workers
+from self_awareness.commands import train
+from self_awareness.recordings import BagPart
+from self_awareness.training import many_bags
+from self_awareness.training.many_bags import Counting
+
+distributed = pytest.importorskip(
+    'distributed', reason='dask.distributed (python3-distributed) is not installed')
+
+SCRIPT = Path(__file__).resolve().parents[3] / 'scripts' / 'train'
+DEADLINE_S = 60.0
+
+
+class Cluster:
+    """A scheduler and workers, each a process of its own."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.workers: Dict[str, subprocess.Popen] = {}
+        self._processes: List[subprocess.Popen] = []
+        self._file = folder / 'scheduler.json'
+        self.scheduler = self._start('scheduler', '--port', '0', '--scheduler-file',
+                                     str(self._file))
+        wait_until(self._written, 'the scheduler starts')
+        self.address = json.loads(self._file.read_text())['address']
+        self.client = distributed.Client(self.address, set_as_default=False)
+
+    def add_worker(self, name: str, path: Optional[str] = None) -> None:
+        """Start a worker, with one thread.
+
+        Args:
+            name: of the worker.
+            path: where it looks for Python modules; None: where this process does.
+        """
+        self.workers[name] = self._start(
+            'worker', self.address, '--name', name, '--nthreads', '1', '--no-nanny',
+            '--local-directory', str(self.folder / name), '--worker-port', '0', path=path)
+        wait_until(lambda: self.address_of(name), f'worker {name} starts')
+
+    def address_of(self, name: str) -> str:
+        """Return where a worker listens; '': it is not there."""
+        workers = self.client.scheduler_info()['workers']
+        return next((address for address, worker in workers.items() if worker['name'] == name),
+                    '')
+
+    def close(self) -> None:
+        """End all processes."""
+        self.client.close()
+        for process in self._processes:
+            process.kill()
+            process.wait()
+
+    def _start(self, kind: str, *arguments: str, path: Optional[str] = None) -> subprocess.Popen:
+        environment = dict(os.environ) if path is None else {**os.environ, 'PYTHONPATH': path}
+        process = subprocess.Popen(
+            [sys.executable, '-m', f'distributed.cli.dask_{kind}', *arguments, '--host',
+             '127.0.0.1', '--no-dashboard'], cwd=str(self.folder), env=environment,
+            stderr=subprocess.DEVNULL)
+        self._processes.append(process)
+        return process
+
+    def _written(self) -> bool:
+        try:
+            return bool(json.loads(self._file.read_text()))
+        except (FileNotFoundError, json.JSONDecodeError):
+            return False
+
+
+@pytest.fixture(name='cluster')
+def _cluster(tmp_path: Path) -> Iterator[Cluster]:
+    cluster = Cluster(tmp_path)
+    try:
+        yield cluster
+    finally:
+        cluster.close()
+
+
+@pytest.fixture(scope='module', name='bags')
+def _bags(tmp_path_factory: pytest.TempPathFactory) -> List[str]:
+    folder = tmp_path_factory.mktemp('bags')
+    return [write_bag(folder / f'{index}.bag', jittery_robot(1000.0 * index, 40.0, index))
+            for index in range(1, 10)]
+
+
+@pytest.fixture(scope='module', name='expected')
+def _expected(bags: List[str], tmp_path_factory: pytest.TempPathFactory) -> TrainedModel:
+    path = str(tmp_path_factory.mktemp('expected') / 'm')
+    assert train.main([*bags, '-o', path, '--jobs', '1']) == 0
+    return TrainedModel.load(path)
+
+
+def check_same(path: Path, expected: TrainedModel) -> None:
+    model = TrainedModel.load(str(path))
+    assert np.isfinite(model.evidence_calibration.limits).any()
+    assert learned(model, calibrations=True) == learned(expected, calibrations=True)
+
+
+def test_a_worker_is_killed_and_the_result_is_right(cluster: Cluster, bags: List[str],
+                                                    expected: TrainedModel,
+                                                    tmp_path: Path) -> None:
+    for name in ('one', 'other'):
+        cluster.add_worker(name)
+    victim, process = cluster.address_of('other'), cluster.workers['other']
+    training = subprocess.Popen([sys.executable, str(SCRIPT), *bags, '-o', str(tmp_path / 'm'),
+                                 '--scheduler', cluster.address], stdout=subprocess.PIPE,
+                                stderr=subprocess.PIPE, text=True)
+    wait_until(lambda: cluster.client.processing()[victim], 'the worker gets a task')
+    # What it has now it will never finish; the scheduler cannot know.
+    os.kill(process.pid, signal.SIGSTOP)
+    wait_until(lambda: len(cluster.client.processing()[victim]) > 0, 'tasks that are its own')
+    lost = cluster.client.processing()[victim]
+    os.kill(process.pid, signal.SIGKILL)
+    out, err = training.communicate(timeout=DEADLINE_S)
+    assert training.returncode == 0 and not err, err
+    assert lost and not cluster.address_of('other') and cluster.address_of('one')
+    assert [line.split(':')[0] for line in out.splitlines()[:len(bags)]] == bags
+    check_same(tmp_path / 'm', expected)
+
+
+def test_sums_are_made_on_the_cluster(cluster: Cluster, bags: List[str],
+                                      expected: TrainedModel) -> None:
+    results = []
+
+    class Watched(workers.Cluster):
+        def map(self, *arguments: Any) -> Iterator[Any]:
+            for result in super().map(*arguments):
+                results.append(result)
+                yield result
+
+    for name in ('one', 'other'):
+        cluster.add_worker(name)
+    with closing(Watched(cluster.address)) as watched:
+        trained = many_bags.train([BagPart(bag) for bag in bags], Counting(), watched)
+    assert [len(each.trained_on) for each in results] == [1, 2, 1, 2, 1, 2]
+    assert learned(trained.model) == learned(expected)
+
+
+def test_bad_bags_are_skipped_on_a_cluster(cluster: Cluster, bags: List[str],
+                                           expected: TrainedModel, tmp_path: Path,
+                                           monkeypatch, capsys) -> None:
+    cluster.add_worker('one')
+    monkeypatch.chdir(Path(bags[0]).parent)
+    bags = [Path(bag).name for bag in bags]
+    missing = str(tmp_path / 'missing.bag')
+    arguments = [missing, *bags, '-o', str(tmp_path / 'm'), '--scheduler', cluster.address]
+    assert train.main(arguments) == 1
+    assert f'train: error: {missing}: no such file' in capsys.readouterr().err
+    assert not (tmp_path / 'm').exists()
+    assert train.main([*arguments, '--skip-bad']) == 0
+    assert f'train: warning: skipped: {missing}: no such file' in capsys.readouterr().err
+    check_same(tmp_path / 'm', expected)
+
+
+def test_workers_without_the_package_are_told(cluster: Cluster, bags: List[str], tmp_path: Path,
+                                              capsys) -> None:
+    cluster.add_worker('one', path='')
+    arguments = [*bags, '-o', str(tmp_path / 'm'), '--scheduler', cluster.address]
+    assert train.main(arguments) == 1
+    error, = capsys.readouterr().err.splitlines()
+    assert error.startswith(f'train: error: --scheduler {cluster.address}: its workers lack')
+    assert "No module named 'self_awareness'" in error and 'setup.bash' in error
+
+
+def test_a_scheduler_that_dies_is_told(cluster: Cluster, bags: List[str], tmp_path: Path) -> None:
+    cluster.add_worker('one')
+    victim = cluster.address_of('one')
+    training = subprocess.Popen([sys.executable, str(SCRIPT), *bags, '-o', str(tmp_path / 'm'),
+                                 '--scheduler', cluster.address], stdout=subprocess.PIPE,
+                                stderr=subprocess.PIPE, text=True)
+    wait_until(lambda: cluster.client.processing()[victim], 'the worker gets a task')
+    cluster.scheduler.kill()
+    _, err = training.communicate(timeout=DEADLINE_S)
+    assert training.returncode == 1
+    assert err.startswith(f'train: error: --scheduler {cluster.address}: the connection was lost')
+    assert err.count('\n') == 1, err
+    assert not (tmp_path / 'm').exists()
+
+
+def test_nobody_at_the_address(bags: List[str], tmp_path: Path, monkeypatch, capsys) -> None:
+    monkeypatch.setattr('self_awareness.workers._CONNECT_S', 1.0)
+    for address in ('127.0.0.1:1', 'tcp://127.0.0.1:1', 'nonsense://x', 'none'):
+        assert train.main([*bags, '-o', str(tmp_path / 'm'), '--scheduler', address]) == 1
+        error, = capsys.readouterr().err.splitlines()
+        assert error.startswith(f'train: error: --scheduler {address}: no scheduler'), error
+
+
+def test_without_dask_its_package_is_named(bags: List[str], tmp_path: Path, monkeypatch,
+                                           capsys) -> None:
+    monkeypatch.setitem(sys.modules, 'distributed', None)
+    assert train.main([*bags, '-o', str(tmp_path / 'm'), '--scheduler', '127.0.0.1:1']) == 1
+    assert 'python3-distributed' in capsys.readouterr().err

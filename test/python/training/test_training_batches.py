@@ -1,0 +1,199 @@
+"""Training on batches of neighbouring bags: their sums are what the bags one by one add up to."""
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any, Callable, Iterator, List, Optional
+
+import pytest
+from conftest import jittery_robot, learned, write_bag
+
+from self_awareness import EncodingRules, TrainedModel, Training, read_events
+from self_awareness.commands import train
+from self_awareness.recordings import BagPart
+from self_awareness.training import many_bags
+from self_awareness.training.many_bags import Counting, Trained
+from self_awareness.workers import InProcess, Processes, Workers
+
+BAGS = 9
+
+
+class InBatches(InProcess):
+    """This process, with so many batches of bags."""
+
+    def __init__(self, number: int) -> None:
+        self._number = number
+
+    def batches(self, tasks: int) -> int:
+        """See Workers."""
+        return min(self._number, tasks)
+
+
+class TwoBatches(Processes):
+    """Processes, with two batches of bags."""
+
+    def batches(self, tasks: int) -> int:
+        """See Workers."""
+        return 2
+
+
+class Watched(Processes):
+    """Processes whose results are kept."""
+
+    def __init__(self, number: int) -> None:
+        super().__init__(number)
+        self.results: List[Any] = []
+
+    def map(self, *arguments: Any) -> Iterator[Any]:
+        """See Workers."""
+        for result in super().map(*arguments):
+            self.results.append(result)
+            yield result
+
+
+@pytest.fixture(scope='module', name='bags')
+def _bags(tmp_path_factory: pytest.TempPathFactory) -> List[str]:
+    """Nine recordings, with event types that appear late, and in another order than by name."""
+    folder = tmp_path_factory.mktemp('batches')
+    paths = []
+    for index in range(BAGS):
+        start = 10000.0 * (index + 1)
+        extra = [(start + index + 1.5 * i, f'/extra{(7 * index) % 5}', '/e') for i in range(20)]
+        paths.append(write_bag(folder / f'{index}.bag',
+                               sorted([*jittery_robot(start, 30.0, index), *extra])))
+    return paths
+
+
+def counted(bags: List[str], workers: Optional[Workers] = None, **options: Any) -> Trained:
+    return many_bags.train([BagPart(bag) for bag in bags], Counting(), workers, **options)
+
+
+def at_once(bags: List[str]) -> TrainedModel:
+    """Return what one training counts that takes all bags, without sums."""
+    whole = Training(EncodingRules.defaults())
+    for bag, recording in zip(bags, counted(bags).model.recordings):
+        events = read_events(bag, EncodingRules.defaults())
+        whole.add_events(events.event_types, events.stamps, events.ids, None, recording)
+    return whole.model()
+
+
+def failure(bags: List[str], workers: Workers, **options: Any) -> str:
+    with pytest.raises(ValueError) as error:
+        counted(bags, workers, **options)
+    return str(error.value)
+
+
+@pytest.mark.parametrize('bad', [[], [0], [3], [4, 5], [1, 8]])
+@pytest.mark.parametrize('base', [False, True])
+def test_a_file_is_the_same_however_it_was_counted(bags: List[str], bad: List[int], base: bool,
+                                                   tmp_path: Path) -> None:
+    named = list(bags)
+    for index in bad:
+        named[index] = str(tmp_path / f'missing{index}.bag')
+    options = ['--skip-bad']
+    if base:  # one recording: the next belongs to the second half
+        options += ['--add-to', str(tmp_path / 'base')]
+        first = write_bag(tmp_path / 'first.bag', jittery_robot(1000.0, 30.0, 77))
+        assert train.main([first, '-o', str(tmp_path / 'base')]) == 0
+    for jobs in ('1', '2'):
+        assert train.main([*named, '-o', str(tmp_path / jobs), '--jobs', jobs, *options]) == 0
+    one, two = (TrainedModel.load(str(tmp_path / jobs)) for jobs in ('1', '2'))
+    assert two.evidence_calibration is not None
+    assert len(two.recordings) == BAGS - len(bad) + base
+    assert learned(two, calibrations=True) == learned(one, calibrations=True)
+
+
+@pytest.mark.parametrize('batches', [1, 2, 4, 5])
+@pytest.mark.parametrize('bad', [[], [0], [1], [2, 3, 4], [0, 1, 5, 8]])
+def test_halves_are_taken_in_turn(bags: List[str], batches: int, bad: List[int]) -> None:
+    named = [f'/nowhere/{i}.bag' if i in bad else bag for i, bag in enumerate(bags)]
+    said: List[str] = []
+    said_one_by_one: List[str] = []
+    summed = counted(named, InBatches(batches), skip_bad=True, tell=said.append)
+    one_by_one = counted(named, skip_bad=True, tell=said_one_by_one.append)
+    good = [bag for bag in named if bag in bags]
+    assert learned(summed.model) == learned(at_once(good))
+    assert [each.half for each in summed.trained_on] == [i % 2 for i in range(BAGS - len(bad))]
+    assert [each.part.path for each in summed.trained_on] == good
+    assert said == said_one_by_one and len(said) == BAGS
+    assert summed.bad == one_by_one.bad and len(summed.bad) == len(bad)
+
+
+def test_only_sums_are_handed_over(bags: List[str]) -> None:
+    workers = Watched(2)
+    counted(bags, workers)
+    assert [len(result.trained_on) for result in workers.results] == [1, 2, 1, 2, 1, 2]
+    few = Watched(2)
+    counted(bags[:2], few)
+    assert len(few.results) == 2  # one for each process
+
+
+@pytest.mark.parametrize('batches', [1, 2, 5, 9])
+def test_the_first_bad_bag_ends_it(bags: List[str], batches: int) -> None:
+    said: List[str] = []
+    named = [*bags[:3], '/nowhere/a.bag', bags[3], '/nowhere/b.bag']
+    error = failure(named, InBatches(batches), tell=said.append)
+    assert error.startswith('/nowhere/a.bag: no such file')
+    assert [line.split(':')[0] for line in said] == bags[:3]
+
+
+@pytest.mark.parametrize('batches', [1, 2, 4, 9])
+def test_the_same_recording_is_found_in_batches(bags: List[str], batches: int,
+                                                tmp_path: Path) -> None:
+    again = tmp_path / 'again.bag'
+    again.symlink_to(bags[1])
+    error = failure([*bags[:3], str(again), bags[4]], InBatches(batches), skip_bad=True)
+    assert error == f'{again}: the same recording as {bags[1]}; name it once'
+
+
+@pytest.mark.parametrize('batches', [1, 2, 3, 9])
+@pytest.mark.parametrize('nameless, named', [([0], 0), ([2], 2), ([3], 3), ([1, 2, 3, 4], 1),
+                                             ([0, 1, 2], 2)])
+def test_the_bag_without_senders_is_named_in_batches(make_bag: Callable[..., str], batches: int,
+                                                     nameless: List[int], named: int) -> None:
+    bags = [make_bag(f'{i}.bag', jittery_robot(1000.0 * i, 3.0, i), sources=i not in nameless)
+            for i in range(5)]
+    error = failure(bags, InBatches(batches), skip_bad=True)
+    assert error.startswith(f'{bags[named]}: no connection of this bag names its sender')
+
+
+def test_too_many_values_are_told_of_a_bag_or_a_batch(make_bag: Callable[..., str]) -> None:
+    bags = [make_bag(f'{i}.bag', [(i + 0.001 * k, '/a', '/b') for k in range(400)],
+                     text=f'{i}-{{}}') for i in range(4)]
+    encoding = EncodingRules.defaults()
+    encoding.type_fields = {'std_msgs/Header': 'frame_id'}
+
+    def error(batches: int) -> str:
+        with pytest.raises(ValueError, match='more than 1000 values') as raised:
+            many_bags.train([BagPart(bag) for bag in bags], Counting(encoding), InBatches(batches))
+        return str(raised.value)
+
+    for batches in (1, 4):
+        assert error(batches).startswith(f'{bags[2]}: ')
+    for batches in (2, 3):
+        assert error(batches).startswith(f'one of {bags[2]} to {bags[3]}: ')
+
+
+@pytest.mark.parametrize('workers', [InProcess(), InBatches(3), Processes(2)])
+def test_so_many_events_are_kept_for_the_limits(bags: List[str], workers: Workers,
+                                                monkeypatch) -> None:
+    everything = counted(bags)
+    events = [each.events.stamps.size for each in everything.trained_on]
+    monkeypatch.setattr(many_bags, '_MOST_EVENTS_OF_BATCH', 2 * max(events))
+    monkeypatch.setattr(many_bags, '_MOST_EVENTS', 5 * max(events))
+    some = counted(bags, workers)
+    kept = [each.events is not None for each in some.trained_on]
+    if isinstance(workers, InBatches):
+        assert kept == [True, True, False, True, True, False, True, False, False]
+    else:
+        assert kept == [True] * 5 + [False] * 4
+    for trained in (everything, some):
+        many_bags.preliminary_limits(trained)
+    assert some.model.evidence_calibration is not None
+    assert learned(some.model, calibrations=True) == learned(everything.model, calibrations=True)
+
+
+def test_a_batch_that_takes_the_memory_is_named(bags: List[str], monkeypatch) -> None:
+    monkeypatch.setattr(many_bags, '_count', lambda *_: os.kill(os.getpid(), 9))
+    error = failure(bags, TwoBatches(2))
+    assert error.startswith(f'one of {bags[0]} to {bags[3]}: a process that worked on it')

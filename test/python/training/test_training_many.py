@@ -1,0 +1,213 @@
+"""Training on many bags: in this process, in several, without bad bags, and on top of a model."""
+from __future__ import annotations
+
+import pickle
+from pathlib import Path
+from typing import Callable, List, Tuple
+
+import numpy as np
+import pytest
+from conftest import jittery_robot, learned, robot, write_bag
+
+from self_awareness import EncodingRules, EventType, TrainedModel, Training, read_events
+from self_awareness.commands import train
+
+LENGTH_S = 40.0
+
+
+@pytest.fixture(scope='module', name='bags')
+def _bags(tmp_path_factory: pytest.TempPathFactory) -> List[str]:
+    """Five recordings; what each of them has that the others lack comes at different times."""
+    folder = tmp_path_factory.mktemp('many')
+    paths = []
+    for index in range(5):
+        start = 10000.0 * (index + 1)
+        extra = [(start + index + 1.5 * i, f'/extra{index % 3}', '/e') for i in range(20)]
+        paths.append(write_bag(folder / f'{index}.bag',
+                               sorted([*jittery_robot(start, LENGTH_S, index), *extra])))
+    return paths
+
+
+def trained(bags: List[str], output: Path, *options: str) -> TrainedModel:
+    assert train.main([*bags, '-o', str(output), *options]) == 0
+    return TrainedModel.load(str(output))
+
+
+def test_counts_and_limits_are_those_of_one_process(bags: List[str], tmp_path: Path) -> None:
+    alone = trained(bags, tmp_path / 'alone', '--jobs', '1')
+    together = trained(bags, tmp_path / 'together', '--jobs', '3')
+    assert learned(together) == learned(alone)
+    assert [each.bag for each in together.recordings] == [f'{i}.bag' for i in range(5)]
+    one, other = alone.evidence_calibration, together.evidence_calibration
+    assert np.array_equal(one.limits, other.limits, equal_nan=True)
+    assert np.isfinite(one.limits).any()
+    assert (one.linker_limit, one.windows) == (other.linker_limit, other.windows)
+
+
+def test_bags_counted_apart_are_what_one_training_counts(bags: List[str], tmp_path: Path) -> None:
+    training = Training(EncodingRules.defaults())
+    for bag, recording in zip(bags, trained(bags, tmp_path / 'm').recordings):
+        events = read_events(bag, EncodingRules.defaults())
+        training.add_events(events.event_types, events.stamps, events.ids, None, recording)
+    assert learned(TrainedModel.load(str(tmp_path / 'm'))) == learned(training.model())
+
+
+def test_a_training_ends_with_its_model() -> None:
+    training = Training(EncodingRules())
+    events = [EventType('', '/a', '')], np.arange(3), np.zeros(3)
+    training.add_events(*events)
+    training.model()
+    for more in (training.model, lambda: training.add_events(*events)):
+        with pytest.raises(ValueError, match='is over'):
+            more()
+
+
+@pytest.mark.parametrize('jobs', ['1', '2'])
+def test_a_single_bag_is_cut_into_halves(bags: List[str], jobs: str, tmp_path: Path) -> None:
+    events = read_events(bags[0], EncodingRules.defaults())
+    model = trained(bags[:1], tmp_path / 'm', '--jobs', jobs)
+    training = Training(EncodingRules.defaults())
+    middle = (events.summary.start + events.summary.end) // 2
+    training.add_events(events.event_types, events.stamps, events.ids, middle,
+                        model.recordings[0])
+    assert learned(model) == learned(training.model())
+
+
+@pytest.mark.parametrize('jobs', ['1', '3'])
+def test_bad_bags_are_named_and_skipped_if_asked_for(bags: List[str], make_bag, jobs: str,
+                                                     tmp_path: Path, capsys) -> None:
+    cut = tmp_path / 'cut.bag'
+    cut.write_bytes(Path(bags[0]).read_bytes()[:3000])
+    one_event = make_bag('one.bag', [(1.0, '/a', '/b')])
+    missing = str(tmp_path / 'missing.bag')
+    named = [str(cut), bags[0], missing, bags[1], bags[2], one_event, bags[3]]
+    expected = learned(trained(bags[:4], tmp_path / 'good'))
+    capsys.readouterr()
+    output = tmp_path / 'm'
+    model = trained(named, output, '--skip-bad', '--jobs', jobs)
+    assert learned(model) == expected  # halves and all
+    said = capsys.readouterr()
+    warnings = said.err.splitlines()
+    assert len(warnings) == 3
+    for bad, warning in zip((str(cut), missing, one_event), warnings):
+        assert warning.startswith(f'train: warning: skipped: {bad}: ')
+        assert warning.split('warning: ')[1] in said.out  # told when it happened, too
+
+    before = output.read_bytes()
+    assert train.main([*named, '-o', str(output), '--jobs', jobs]) == 1
+    error, = capsys.readouterr().err.splitlines()
+    assert error.startswith('train: error: ') and (str(cut) in error or missing in error)
+    assert output.read_bytes() == before
+
+
+def test_a_bag_that_is_left_alone_is_trained_on_as_such(bags: List[str], tmp_path: Path) -> None:
+    missing = str(tmp_path / 'missing.bag')
+    model = trained([missing, bags[1]], tmp_path / 'm', '--skip-bad', '--jobs', '2')
+    assert learned(model) == learned(trained([bags[1]], tmp_path / 'alone'))
+
+
+def test_nothing_but_bad_bags_is_an_error(tmp_path: Path, capsys) -> None:
+    missing = [str(tmp_path / f'{i}.bag') for i in range(2)]
+    assert train.main([*missing, '--skip-bad', '-o', str(tmp_path / 'm')]) == 1
+    assert f'no bag can be trained on: {missing[1]}' in capsys.readouterr().err
+    assert not (tmp_path / 'm').exists()
+
+
+def test_the_same_recording_is_found_whoever_counted_it(bags: List[str], tmp_path: Path,
+                                                        capsys) -> None:
+    again = tmp_path / 'again.bag'
+    again.symlink_to(bags[0])
+    assert train.main([*bags, str(again), '--jobs', '3', '-o', str(tmp_path / 'm')]) == 1
+    assert f'{again}: the same recording as {bags[0]}' in capsys.readouterr().err
+
+
+def test_values_of_a_type_field_are_too_many_together(make_bag: Callable[..., str],
+                                                      tmp_path: Path, capsys) -> None:
+    bags = [make_bag(f'{i}.bag', [(i + 0.001 * k, '/a', '/b') for k in range(600)],
+                     text=f'{i}-{{}}') for i in (1, 2)]
+    encoding = tmp_path / 'e.yaml'
+    encoding.write_text('type_fields: {std_msgs/Header: frame_id}\n')
+    arguments = ['--encoding', str(encoding), '-o', str(tmp_path / 'm')]
+    for jobs in ('1', '2'):
+        assert train.main([*bags, *arguments, '--jobs', jobs]) == 1
+        error = capsys.readouterr().err
+        assert bags[1] in error and 'more than 1000 values' in error
+
+
+def test_more_is_added_to_a_model(bags: List[str], tmp_path: Path, capsys) -> None:
+    whole = trained(bags, tmp_path / 'whole', '--bin', '0.02', '--window', '0.2', '--horizon', '5')
+    model = tmp_path / 'm'
+    trained(bags[:3], model, '--bin', '0.02', '--window', '0.2', '--horizon', '5')
+    continued = trained(bags[3:], model, '--add-to', str(model))
+    assert learned(continued) == learned(whole)  # the halves go on in turn
+    found = continued.evidence_calibration
+    assert [each.bag for each in found.recordings] == ['3.bag', '4.bag']
+    assert found.windows < whole.evidence_calibration.windows
+    assert [path.name for path in tmp_path.iterdir() if path.name.startswith('m')] == ['m']
+
+
+def test_limits_of_a_model_do_not_outlast_what_is_added(bags: List[str], robot_bags,
+                                                        evidence_model: str,
+                                                        tmp_path: Path) -> None:
+    model = trained([robot_bags[0]], tmp_path / 'm', '--add-to', evidence_model)
+    assert model.evidence_calibration is None  # 30 s are too little for others
+    assert len(model.recordings) == 2
+
+
+def test_the_graph_is_kept_unless_another_is_asked_for(bags: List[str], tmp_path: Path,
+                                                       monkeypatch) -> None:
+    output = tmp_path / 'm'
+    model = trained(bags[:1], output)
+    model.graph = {'/laser': {'/slam'}}
+    model.save(str(output))
+    assert trained(bags[1:2], output, '--add-to', str(output)).graph == {'/laser': {'/slam'}}
+    monkeypatch.setattr('self_awareness.training.live_graph.fetch', lambda: {'/a': {'/b'}})
+    again = trained(bags[2:3], output, '--add-to', str(output), '--graph')
+    assert again.graph == {'/a': {'/b'}}
+
+
+def test_what_is_in_the_model_already_is_not_added(bags: List[str], tmp_path: Path,
+                                                   capsys) -> None:
+    model = tmp_path / 'm'
+    trained(bags[:2], model, '--end', '20')
+    before = model.read_bytes()
+    assert train.main([bags[1], '--add-to', str(model), '-o', str(model)]) == 1
+    error = capsys.readouterr().err
+    assert bags[1] in error and '1.bag, which the model was trained on' in error
+    assert model.read_bytes() == before
+    assert len(trained([bags[1]], model, '--add-to', str(model), '--start', '21').recordings) == 3
+
+
+@pytest.mark.parametrize('option', [('--bin', '0.01'), ('--window', '0.1'), ('--horizon', '1'),
+                                    ('--encoding', 'e.yaml')])
+def test_how_a_model_counts_is_not_changed(option: Tuple[str, str], model_file: str,
+                                           bags: List[str], tmp_path: Path, capsys) -> None:
+    arguments = [bags[0], '--add-to', model_file, *option, '-o', str(tmp_path / 'm')]
+    assert train.main(arguments) == 1
+    error = capsys.readouterr().err
+    assert option[0] in error and model_file in error
+    assert not (tmp_path / 'm').exists()
+
+
+def test_bags_without_senders_are_not_added_to_a_model_with_sources(
+        make_bag, model_file: str, tmp_path: Path, capsys) -> None:
+    nameless = make_bag('nameless.bag', robot(10.0), sources=False)
+    arguments = [nameless, '--add-to', model_file, '-o', str(tmp_path / 'm')]
+    assert train.main(arguments) == 1
+    error = capsys.readouterr().err
+    assert nameless in error and 'names its sender' in error
+
+
+@pytest.mark.parametrize('value', ['0', '-1', 'many', '1.5', ''])
+def test_there_is_a_number_of_jobs(value: str, bags: List[str], tmp_path: Path, capsys) -> None:
+    assert train.main([bags[0], f'--jobs={value}', '-o', str(tmp_path / 'm')]) == 2
+    assert '--jobs' in capsys.readouterr().err
+
+
+def test_a_model_goes_to_another_process_as_it_is(evidence_model: str) -> None:
+    model = TrainedModel.load(evidence_model)
+    again = pickle.loads(pickle.dumps(model))
+    assert again.evidence_calibration.limits
+    assert learned(again, calibrations=True) == learned(model, calibrations=True)
+    with pytest.raises(ValueError, match='another version'):
+        TrainedModel.__new__(TrainedModel).__setstate__(b'x' * 100)
