@@ -24,7 +24,7 @@ packages_debian=(
   python3-actionlib-msgs python3-diagnostic-msgs python3-geometry-msgs python3-nav-msgs python3-sensor-msgs
   python3-std-srvs python3-visualization-msgs
   libvisualization-msgs-dev libsensor-msgs-dev libstd-srvs-dev
-  pybind11-dev libboost-filesystem-dev
+  pybind11-dev libboost-filesystem-dev libeigen3-dev
   python3-numpy python3-matplotlib python3-tqdm python3-yaml
   catkin-lint clang-format libgtest-dev libgmock-dev nlohmann-json3-dev procps python3-pytest
   python3-distributed python3-flake8 python3-mypy
@@ -36,7 +36,7 @@ packages_noetic=(
   ros-noetic-rosbag ros-noetic-rosbag-storage ros-noetic-std-srvs ros-noetic-rosbash
   ros-noetic-actionlib-msgs ros-noetic-visualization-msgs ros-noetic-sensor-msgs ros-noetic-nav-msgs
   ros-noetic-geometry-msgs
-  pybind11-dev libboost-filesystem-dev
+  pybind11-dev libboost-filesystem-dev libeigen3-dev
   python3-numpy python3-matplotlib python3-tqdm python3-yaml
   ros-noetic-rostest ros-noetic-roslaunch libgtest-dev libgmock-dev nlohmann-json3-dev procps
   python3-pytest python3-catkin-lint clang-format python3-distributed python3-flake8 python3-mypy
@@ -66,8 +66,8 @@ install_apt() {
   done
   [ ${#missing[@]} -gt 0 ] || return 0
   say "Installing ${#missing[@]} packages"
-  as_root apt-get update -qq
-  as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends \
+  as_root apt-get update -qq -o DPkg::Lock::Timeout=300
+  as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq -o DPkg::Lock::Timeout=300 --no-install-recommends \
     "${missing[@]}" > /dev/null
 }
 

@@ -1,5 +1,6 @@
 #include "self_awareness/core/evidence/limits.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -152,8 +153,8 @@ void LimitFinder::close(const Window& window, std::int64_t end) {
     linker_block_ = std::max(linker_block_, sumUp(evidence, *judging_, limits_).linker);
   } else {
     ++windows_seen_;
-    std::transform(evidence.begin(), evidence.end(), block_.begin(), block_.begin(),
-                   [](double a, double b) { return std::max(a, b); });
+    Eigen::Map<Eigen::ArrayXd> block(block_.data(), static_cast<Eigen::Index>(block_.size()));
+    block = block.max(Eigen::Map<const Eigen::ArrayXd>(evidence.data(), block.size()));
   }
   if (static_cast<std::int64_t>(block_windows_) * parameters_.window >= kBlock) {
     closeBlock();

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <functional>
 #include <limits>
-#include <numeric>
+
+#include "core/evidence/bin_arrays.h"
 
 namespace self_awareness::core::evidence {
 namespace {
@@ -29,8 +30,7 @@ MisleadingPairs::MisleadingPairs(const Model& model)
     pair.track = track;
     const LogProbabilities of_pair = logProbabilities(training.delays(from, to));
     const LogProbabilities of_any = logProbabilities(to_any[from]);
-    std::transform(of_pair.begin(), of_pair.end(), of_any.begin(), pair.log_ratios.begin(),
-                   std::minus<>());
+    asArray(pair.log_ratios) = asArray(of_pair) - asArray(of_any);
     pair.usual_gain = gain(from, to);
     pairs_[to].push_back(pair);
   }
@@ -79,14 +79,12 @@ void MisleadingPairs::startPart() {
 void MisleadingPairs::closePart() {
   for (const std::vector<Pair>& pairs : pairs_) {
     for (const Pair& pair : pairs) {
-      const auto number =
-          std::accumulate(pair.delays.begin(), pair.delays.end(), std::uint64_t{0});
+      const auto delays = asArray(pair.delays).cast<double>();
+      const double number = delays.sum();
       if (number < InformationGain::kFewestDelays) {
         continue;
       }
-      const double sum =
-          std::inner_product(pair.delays.begin(), pair.delays.end(), pair.log_ratios.begin(), 0.0);
-      if (sum / static_cast<double>(number) < kLeastGainLeft * pair.usual_gain) {
+      if ((delays * asArray(pair.log_ratios)).sum() / number < kLeastGainLeft * pair.usual_gain) {
         misleading_[pair.track] = misleading_[pair.track + 1] = true;
       }
     }

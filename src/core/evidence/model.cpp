@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/evidence/bin_arrays.h"
 #include "core/evidence/log_bins.h"
 #include "self_awareness/core/verdict/suspect.h"
 
@@ -32,16 +33,15 @@ constexpr double kLeastAnswerLimit = 5;  // [nat]
 class HeldOutSurprise {
  public:
   void add(const Statistics::Delays& learned, const Statistics::Delays& measured) {
-    const auto counted = [](std::uint32_t count) { return count > 0; };
-    if (std::none_of(learned.begin(), learned.end(), counted)) {
+    if ((asArray(learned) == 0).all()) {
       return;
     }
-    const LogProbabilities logs = logProbabilities(learned);
-    for (std::size_t bin = 0; bin < log_bins::kBins; ++bin) {
-      count_ += measured[bin];
-      sum_ -= measured[bin] * logs[bin];
-      squares_ += measured[bin] * logs[bin] * logs[bin];
-    }
+    const LogProbabilities log_probabilities = logProbabilities(learned);
+    const auto logs = asArray(log_probabilities);
+    const auto counts = asArray(measured).cast<double>();
+    count_ += counts.sum();
+    sum_ -= (counts * logs).sum();
+    squares_ += (counts * logs.square()).sum();
   }
   double mean() const { return count_ > 0 ? sum_ / count_ : 0; }
   double deviation() const {

@@ -22,6 +22,7 @@ constexpr double kUsualMisses = 0.15;   // share of the gaps above that of train
 constexpr std::int64_t kGoneGaps = 5;   // times the longest gap in training
 constexpr double kMostEvidence = 200;   // while limits are not known
 constexpr double kMostOfLimit = 1.5;    // in units of the limit
+constexpr double kMoreThanAnyStep = 1e6;
 
 }  // namespace
 
@@ -61,7 +62,8 @@ void Scorer::addTracks() {
     }
   }
   state_of_.resize(tracks.size());
-  const Sums none{{}, {kMostEvidence, kMostEvidence}};
+  Sums<2> none;
+  none.caps.setConstant(kMostEvidence);
   for (EventId id = 0; id < model_->size(); ++id) {
     OfType type;
     type.gone_after = kGoneGaps * model_->longestGap(id);
@@ -92,9 +94,9 @@ void Scorer::addAnswers(EventId from, const std::vector<std::size_t>& tracks) {
     miss_rates_[state_of_[track]] = model_->missRate(track);
     AnswerBlock& block = blocks_.back();
     block.to[answer] = model_->tracks()[track].to;
-    block.answered[answer / kLanes][answer % kLanes] = model_->answered(track);
-    block.missed[answer / kLanes][answer % kLanes] = model_->missed(track);
-    block.sums[answer / kLanes].caps[answer % kLanes] = kMostEvidence;
+    block.answered[static_cast<int>(answer)] = model_->answered(track);
+    block.missed[static_cast<int>(answer)] = model_->missed(track);
+    block.sums.caps[static_cast<int>(answer)] = kMostEvidence;
   }
 }
 
@@ -122,32 +124,31 @@ std::optional<std::int64_t> Scorer::add(const Event& event) {
   const std::int64_t* const stamps = stamps_.data();
   const double* const numbers = numbers_.data();
   const double last = numbers[event.id];
-  const Lanes since = {last, last};
+  const Eigen::Array2d drifts(kDrift, kSlowDrift);
   // Where the other one was never seen, its pairs and answers are not armed yet: what is added to
   // their sums is taken back there, which spares all the others the question.
   DelayPair* const pairs_end = pairs_.data() + type.pairs_end;
   for (DelayPair* pair = pairs_.data() + type.pairs_begin; pair != pairs_end; ++pair) {
     // Only the first event after another answers it: those that follow while the other pauses
     // would count one pause many times. Which one that is cannot be predicted, thus no branch.
-    const double number = numbers[pair->from];
-    const auto first = Lanes{number, number} >= since;  // all bits, or none
+    const bool first = numbers[pair->from] >= last;
     const std::int64_t delay = event.stamp - stamps[pair->from];
     const double surprise = pair->surprises[log_bins::bin(delay)];
-    pair->last_delay ^= (pair->last_delay ^ delay) & first[0];
-    const Lanes steps = Lanes{surprise, surprise} - Lanes{kDrift, kSlowDrift};
-    pair->sums.add(first ? steps : Lanes{});
+    pair->last_delay ^= (pair->last_delay ^ delay) & -static_cast<std::int64_t>(first);
+    pair->sums.add((surprise - drifts) * (first ? 1.0 : 0.0));
     if (!pair->armed) {
-      armPair(static_cast<std::size_t>(pair - pairs_.data()), first[0] != 0, surprise);
+      armPair(static_cast<std::size_t>(pair - pairs_.data()), first, surprise);
     }
   }
   std::optional<std::int64_t> gap;
   if (last > 0) {
     AnswerBlock* const blocks_end = blocks_.data() + type.blocks_end;
     for (AnswerBlock* block = blocks_.data() + type.blocks_begin; block != blocks_end; ++block) {
-      for (std::size_t k = 0; k < block->sums.size(); ++k) {
-        const Lanes others = {numbers[block->to[kLanes * k]], numbers[block->to[kLanes * k + 1]]};
-        block->sums[k].add(others <= since ? block->missed[k] : block->answered[k]);
-      }
+      const Eigen::Array4d others(numbers[block->to[0]], numbers[block->to[1]],
+                                  numbers[block->to[2]], numbers[block->to[3]]);
+      // Numbers are whole: of one that came, this is 1 or more. A select would not be vectorised.
+      const Eigen::Array4d came = (others - last).max(0.0);
+      block->sums.add((block->missed - kMoreThanAnyStep * came).max(block->answered));
       if (block->unarmed != 0) {
         armAnswers(static_cast<std::size_t>(block - blocks_.data()), last);
       }
@@ -165,7 +166,7 @@ std::optional<std::int64_t> Scorer::add(const Event& event) {
 void Scorer::armPair(std::size_t number, bool first, double surprise) {
   DelayPair& pair = pairs_[number];
   if (numbers_[pair.from] == 0) {
-    pair.sums.values = Lanes{};
+    pair.sums.values.setZero();
     pair.last_delay = 0;
   } else if (first) {
     pair.armed = arm(pairs_arming_[number], surprise, kUsualSurprise);
@@ -181,7 +182,7 @@ void Scorer::armAnswers(std::size_t block, double since) {
     const double other = numbers_[answers.to[k]];
     const std::size_t number = block * AnswerBlock::kAnswers + k;
     if (other == 0) {
-      answers.sums[k / kLanes].values[k % kLanes] = 0;
+      answers.sums.values[static_cast<int>(k)] = 0;
     } else if (arm(answers_arming_[number], (other <= since ? 1 : 0) - miss_rates_[number],
                    kUsualMisses)) {
       answers.unarmed &= ~(1U << k);
@@ -190,20 +191,20 @@ void Scorer::armAnswers(std::size_t block, double since) {
 }
 
 void Scorer::capAt(const Limits& limits) {
-  const auto cap = [&](std::size_t track, Sums& sums, std::size_t lane) {
+  const auto cap = [&](std::size_t track, double& of_sum) {
     if (limits.tracks[track] > 0) {  // never so where it is NaN
-      sums.caps[lane] = kMostOfLimit * limits.tracks[track];
+      of_sum = kMostOfLimit * limits.tracks[track];
     }
   };
   for (std::size_t track = 0; track < model_->tracks().size(); ++track) {
     const Channel channel = model_->tracks()[track].channel;
     const std::size_t number = state_of_[track];
     if (channel == Channel::kDelay) {
-      cap(track, pairs_[number].sums, 0);
-      cap(track + 1, pairs_[number].sums, 1);
+      cap(track, pairs_[number].sums.caps[0]);
+      cap(track + 1, pairs_[number].sums.caps[1]);
     } else if (channel == Channel::kAnswer) {
-      const std::size_t answer = number % AnswerBlock::kAnswers;
-      cap(track, blocks_[number / AnswerBlock::kAnswers].sums[answer / kLanes], answer % kLanes);
+      cap(track,
+          blocks_[number / AnswerBlock::kAnswers].sums.caps[number % AnswerBlock::kAnswers]);
     }
   }
 }
@@ -219,7 +220,7 @@ void Scorer::disarm(EventId id) {
 }
 
 void Scorer::disarmPair(std::size_t number) {
-  pairs_[number].sums.values = Lanes{};
+  pairs_[number].sums.values.setZero();
   pairs_[number].armed = false;
   pairs_arming_[number] = {};
 }
@@ -227,7 +228,7 @@ void Scorer::disarmPair(std::size_t number) {
 void Scorer::disarmAnswer(std::size_t number) {
   AnswerBlock& block = blocks_[number / AnswerBlock::kAnswers];
   const std::size_t answer = number % AnswerBlock::kAnswers;
-  block.sums[answer / kLanes].values[answer % kLanes] = 0;
+  block.sums.values[answer] = 0;
   block.unarmed |= 1U << answer;
   answers_arming_[number] = {};
 }
@@ -253,14 +254,13 @@ const std::vector<double>& Scorer::closeWindow(std::int64_t end) {
       case Channel::kDelay:
       case Channel::kSlowDelay: {
         const DelayPair& pair = pairs_[state_of_[track]];
-        const std::size_t lane = channel == Channel::kDelay ? 0 : 1;
-        evidence_[track] = pair.armed ? pair.sums.values[lane] : 0;
+        evidence_[track] = pair.armed ? pair.sums.values[channel == Channel::kDelay ? 0 : 1] : 0;
         break;
       }
       case Channel::kAnswer: {
         const AnswerBlock& block = blocks_[state_of_[track] / AnswerBlock::kAnswers];
         const std::size_t answer = state_of_[track] % AnswerBlock::kAnswers;
-        evidence_[track] = block.armed(answer) ? block.sum(answer) : 0;
+        evidence_[track] = block.armed(answer) ? block.sums.values[answer] : 0;
         break;
       }
     }

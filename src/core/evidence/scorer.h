@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -50,43 +51,39 @@ class Scorer {
     double excess = 0;  // over the mean in training, of the last events
     std::uint32_t events = 0;
   };
-  /// What is added up side by side, in vector registers where there are any.
-  static constexpr std::size_t kLanes = 2;
-  using Lanes = double __attribute__((vector_size(kLanes * sizeof(double))));
-
-  /// Never below 0, nor above a cap.
+  /// Sums that are never below 0, nor above a cap.
+  template <int kSize>
   struct Sums {
-    Lanes values{};
-    Lanes caps{};
-    void add(const Lanes& steps) {
-      const Lanes sums = values + steps;
-      const Lanes capped = sums < caps ? sums : caps;
-      values = capped > 0.0 ? capped : Lanes{};
+    using Array = Eigen::Array<double, kSize, 1>;
+    Array values = Array::Zero();
+    Array caps = Array::Zero();
+    template <typename Steps>
+    void add(const Steps& steps) {
+      values = (values + steps).min(caps).max(0.0);
     }
   };
   // All that an event needs of a pair or of some answers lies together, and those of an event type
-  // one behind the other: the time goes into fetching them.
+  // one after the other: the time goes into fetching them.
   /// Of the two delay tracks of a pair of event types.
   struct DelayPair {
     EventId from = 0;
     bool armed = false;
     std::int64_t last_delay = 0;        // [ns]
     const double* surprises = nullptr;  // by bin
-    Sums sums;                          // of the track, and of the slow one
+    Sums<2> sums;                       // of the track, and of the slow one
   };
   /// Of some answer tracks with the same `from`: the end of a loop over blocks is less often a
   /// surprise for the processor. Where there are fewer of them, a block is filled up with answers
   /// that add nothing.
   struct AnswerBlock {
-    static constexpr std::size_t kAnswers = 4;
+    static constexpr int kAnswers = 4;
     std::array<EventId, kAnswers> to{};
     std::uint32_t unarmed = 0;  // a bit for each
-    std::array<Lanes, kAnswers / kLanes> answered{};
-    std::array<Lanes, kAnswers / kLanes> missed{};
-    std::array<Sums, kAnswers / kLanes> sums;
+    Eigen::Array4d answered = Eigen::Array4d::Zero();
+    Eigen::Array4d missed = Eigen::Array4d::Zero();
+    Sums<kAnswers> sums;
 
     bool armed(std::size_t answer) const { return (unarmed >> answer & 1U) == 0; }
-    double sum(std::size_t answer) const { return sums[answer / kLanes].values[answer % kLanes]; }
   };
 
   /// Where its pairs and blocks of answers lie, and how long [ns] an event type must be away to be

@@ -4,12 +4,12 @@
 #include <functional>
 #include <iterator>
 #include <limits>
-#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <tuple>
 #include <utility>
 
+#include "core/evidence/bin_arrays.h"
 #include "core/evidence/log_bins.h"
 #include "self_awareness/core/stream/clock.h"
 #include "self_awareness/core/stream/windows.h"
@@ -28,17 +28,12 @@ bool lowerId(const Partner& partner, EventId id) {
 
 template <typename Counts>
 void addCounts(const Counts& counts, Statistics::SumOfDelays& sum) {
-  std::transform(counts.begin(), counts.end(), sum.begin(), sum.begin(), std::plus<>());
+  asArray(sum) += asArray(counts).template cast<std::uint64_t>();
 }
 
 // A fleet's years may be more than a count holds: the largest one stands for all that are larger.
 void addCounts(const Statistics::Delays& counts, Statistics::Delays& sum) {
-  std::transform(counts.begin(), counts.end(), sum.begin(), sum.begin(),
-                 [](std::uint32_t a, std::uint32_t b) {
-                   return a > std::numeric_limits<std::uint32_t>::max() - b
-                              ? std::numeric_limits<std::uint32_t>::max()
-                              : a + b;
-                 });
+  asArray(sum) += asArray(counts).min(std::numeric_limits<std::uint32_t>::max() - asArray(sum));
 }
 
 const Partner* find(const Partners& partners, EventId id) {
@@ -138,8 +133,7 @@ const Statistics::Delays& Statistics::delays(EventId from, EventId to) const {
 }
 
 std::uint64_t Statistics::total(EventId from, EventId to) const {
-  const Delays& counts = delays(from, to);
-  return std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
+  return asArray(delays(from, to)).cast<std::uint64_t>().sum();
 }
 
 std::uint64_t Statistics::answers(EventId from, EventId to) const {

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
 #include <utility>
 
+#include "core/evidence/bin_arrays.h"
 #include "core/evidence/log_bins.h"
 #include "self_awareness/core/verdict/suspect.h"
 
@@ -164,10 +164,8 @@ std::vector<Statistics::Pair> pairsOf(const std::vector<Track>& tracks, std::siz
 
 template <typename Counts>
 LogProbabilities logsOf(const Counts& counts) {
-  auto total = static_cast<double>(counts.size());
-  for (const std::uint64_t count : counts) {
-    total += static_cast<double>(count);
-  }
+  const double total =
+      static_cast<double>(counts.size()) + asArray(counts).template cast<double>().sum();
   LogProbabilities logs{};
   std::transform(counts.begin(), counts.end(), logs.begin(), [total](std::uint64_t count) {
     return std::log((static_cast<double>(count) + 1) / total);
@@ -208,9 +206,9 @@ double InformationGain::operator()(EventId from, EventId to) const {
     return 0;
   }
   const Statistics::Delays& measured = measured_on_.delays(*id_there_[from], *id_there_[to]);
-  const auto number = std::accumulate(measured.begin(), measured.end(), std::uint64_t{0});
+  const std::uint64_t number = asArray(measured).cast<std::uint64_t>().sum();
   const Statistics::Delays& learned = learned_from_.delays(from, to);
-  const auto learned_number = std::accumulate(learned.begin(), learned.end(), std::uint64_t{0});
+  const std::uint64_t learned_number = asArray(learned).cast<std::uint64_t>().sum();
   if (number < kFewestDelays || learned_number == 0) {
     return 0;
   }
