@@ -177,7 +177,7 @@ def write_synthetic_model(model: Path, types: int) -> None:
     stamps = ticks + rng.integers(0, period, types) + rng.integers(0, period // 50, (
         _SYNTHETIC_EVENTS, types))
     order = np.argsort(stamps, axis=None, kind='stable')
-    training = Training(EncodingRules.defaults())
+    training = Training(EncodingRules.defaults(), paper=True)
     training.add_events(
         [EventType(f'/{Robot.node_name(i % NODES)}', f'/topic_{i}', 'std_msgs/String')
          for i in range(types)],

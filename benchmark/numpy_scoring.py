@@ -130,7 +130,7 @@ class NumpyEvidence:
 
 def check(detector: NumpyDetector, types: int, stamps: np.ndarray, ids: np.ndarray) -> None:
     """Raise AssertionError unless the sums are those of the package."""
-    training = Training(EncodingRules(), BIN_SIZE, DEFAULT_WINDOW, BINS - 1)
+    training = Training(EncodingRules(), BIN_SIZE, DEFAULT_WINDOW, BINS - 1, paper=True)
     kinds = [EventType('', f'/topic_{kind}', 'T') for kind in range(types)]
     training.add_events(kinds, stamps, ids)
     trained = training.model()

@@ -60,9 +60,11 @@ Monitor::Session::Session(ros1::TrainedModel trained_model, const MonitorParamet
 std::unique_ptr<core::Judge> Monitor::Session::makeJudge(
     const MonitorParameters& parameters) const {
   if (parameters.method == MonitorParameters::Method::kPaper) {
+    trained.requireDelays();
     return core::paper::makeJudge(std::make_shared<core::paper::Model>(trained.statistics),
                                   trained.threshold(), parameters.detector.silence_is_abnormal);
   }
+  trained.requireWatched();
   return core::evidence::makeJudge(std::make_shared<core::evidence::Model>(trained.watched),
                                    trained.limits(), trained.window, graph);
 }

@@ -189,9 +189,7 @@ void bindVerdicts(py::module& m) {
   py::class_<core::paper::Model, std::shared_ptr<core::paper::Model>>(
       m, "Model", "Probabilities, entropies and weights, computed from a TrainedModel's counts.")
       .def(py::init([](const ros1::TrainedModel& trained) {
-             if (!trained.hasCounts()) {
-               throw std::invalid_argument("the model was loaded without its counts");
-             }
+             trained.requireDelays();
              return std::make_shared<core::paper::Model>(trained.statistics);
            }),
            py::arg("trained"))

@@ -164,10 +164,14 @@ void bindEvidence(py::module& m) {
   py::class_<evidence::Model, std::shared_ptr<evidence::Model>>(
       m, "EvidenceModel", "What normal operation lets expect, from a TrainedModel's counts.")
       .def(py::init([](const ros1::TrainedModel& trained) {
+             trained.requireWatched();
              return std::make_shared<evidence::Model>(trained.watched);
            }),
            py::arg("trained"))
       .def_property_readonly("tracks", &evidence::Model::tracks)
+      .def("usual_delay", &evidence::Model::usualDelay, py::arg("from_id"), py::arg("to_id"),
+           py::arg("share"),
+           "delay [s] that a share of those in training did not exceed, as exactly as bins are")
       .def("overdue", &evidence::Model::overdue, py::arg("id"), py::arg("age"), "age: [ns]")
       .def("log_survival", &evidence::Model::logSurvival, py::arg("id"), py::arg("age"))
       .def("evidence", &evidenceOf, py::arg("window"), py::arg("stamps"), py::arg("ids"),
@@ -195,6 +199,7 @@ void bindEvidence(py::module& m) {
       "Parts of a pass may be made by other finders, elsewhere, and merged.")
       .def(
           py::init([](const ros1::TrainedModel& trained, std::int64_t settle_time, double budget) {
+            trained.requireWatched();
             return std::make_unique<LimitSearch>(
                 std::make_shared<evidence::CrossFit>(trained.watched),
                 evidence::LimitFinder::Parameters{trained.window, settle_time, budget});

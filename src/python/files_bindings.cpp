@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bindings.h"
+#include "core/evidence/log_bins.h"
 #include "self_awareness/ros/bag/bag_reader.h"
 #include "self_awareness/ros/model/model_bytes.h"
 #include "self_awareness/ros/model/model_file.h"
@@ -197,6 +198,20 @@ void bindBags(py::module& m) {
       "recording's first message. progress(done, all) is called now and then. Raises BagError.");
 }
 
+std::vector<std::pair<std::int64_t, std::uint64_t>> delaysOf(const ros1::TrainedModel& model,
+                                                             core::EventId from,
+                                                             core::EventId to) {
+  std::vector<std::pair<std::int64_t, std::uint64_t>> delays;
+  for (std::size_t bin = 0; bin < core::evidence::kDelayBins; ++bin) {
+    std::uint64_t count = 0;
+    for (const core::evidence::Statistics& half : model.evidence) {
+      count += half.delays(from, to)[bin];
+    }
+    delays.emplace_back(core::evidence::log_bins::lowerEdge(bin), count);
+  }
+  return delays;
+}
+
 void bindModel(py::module& m) {
   py::register_exception<ros1::ModelFileError>(m, "ModelFileError", PyExc_RuntimeError);
 
@@ -313,9 +328,22 @@ void bindModel(py::module& m) {
           [](const TrainedModel& self) { return self.statistics.vocabulary().types(); }, "by id")
       .def_property_readonly("events",
                              [](const TrainedModel& self) { return self.statistics.events(); })
-      .def_property_readonly(
-          "pairs", [](const TrainedModel& self) { return self.statistics.pairs(); },
-          "number of ordered pairs with at least one delay")
+      .def_property_readonly("detectors", &TrainedModel::detectors,
+                             "what it was trained for: evidence, paper or both")
+      .def(
+          "require",
+          [](const TrainedModel& self, const std::string& detector) {
+            if (detector == "paper") {
+              self.requireDelays();
+            } else {
+              self.requireWatched();
+            }
+          },
+          py::arg("detector"),
+          "ValueError where it was not trained for this detector (evidence or paper)")
+      .def_property_readonly("pairs", &TrainedModel::pairs,
+                             "number of ordered pairs with at least one delay")
+      .def("gaps", &TrainedModel::gaps, py::arg("id"), "number of gaps between two of a type")
       .def("event_count", [](const TrainedModel& self,
                              core::EventId id) { return self.statistics.eventCount(id); })
       .def(
@@ -329,14 +357,19 @@ void bindModel(py::module& m) {
             return counts;
           },
           py::arg("from_id"), py::arg("to_id"),
-          "dict of bin: count, of the delay from the last from_id to the current to_id")
+          "dict of bin: count, of the delay from the last from_id to the current to_id; of the\n"
+          "paper's counts")
+      .def("delays", &delaysOf, py::arg("from_id"), py::arg("to_id"),
+           "list of (shortest delay [ns], count) by bin, of the evidence detector's counts")
       .def(
           "quantile",
           [](const TrainedModel& self, core::EventId from, core::EventId to, double fraction) {
             return self.statistics.pair(from, to).quantile(fraction);
           },
           py::arg("from_id"), py::arg("to_id"), py::arg("fraction"),
-          "the bin below or in which the fraction of the pair's delays lies; 0 if there is none");
+          "the bin below or in which the fraction of the pair's delays lies; 0 if there is none; "
+          "of\n"
+          "the paper's counts");
 }
 
 }  // namespace

@@ -96,16 +96,19 @@ class Training {
 void bindTraining(py::module& m) {
   py::class_<Training>(m, "Training", "Counts the delays of one recording after the other.")
       .def(py::init([](ros1::EncodingRules rules, std::int64_t bin_size, std::int64_t window,
-                       std::int64_t horizon_bins, std::size_t predecessors) {
+                       std::int64_t horizon_bins, std::size_t predecessors, bool evidence,
+                       bool paper) {
              core::Training::Parameters parameters;
-             parameters.paper = true;
+             parameters.evidence = evidence;
+             parameters.paper = paper;
              parameters.window = window;
              parameters.binning = {bin_size, horizon_bins};
              return std::make_unique<Training>(std::move(rules), parameters, predecessors);
            }),
            py::arg("encoding"), py::arg("bin_size") = core::paper::Binning{}.bin_size,
            py::arg("window") = core::kDefaultWindow, py::arg("horizon_bins") = 0,
-           py::arg("predecessors") = core::evidence::kPredecessors,
+           py::arg("predecessors") = core::evidence::kPredecessors, py::arg("evidence") = true,
+           py::arg("paper") = false,
            "bin_size, window: [ns]; horizon_bins 0: unbounded; predecessors: most of an event "
            "type\n"
            "that the evidence watches")

@@ -6,6 +6,7 @@ programs (`self_awareness.commands`).
 """
 
 from self_awareness._core import (  # noqa: F401
+    DEFAULT_WINDOW,
     EVIDENCE_THRESHOLD,
     FEWEST_GAPS,
     PREDECESSORS,
@@ -39,6 +40,3 @@ from self_awareness._core import (  # noqa: F401
     stable_name,
     summarise_bag,
 )
-
-DEFAULT_WINDOW = 100_000_000
-"""Length of the windows that are judged, if nothing else is asked for [ns]."""

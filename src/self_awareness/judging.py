@@ -8,6 +8,11 @@ import numpy as np
 from self_awareness import (DetectorParameters, EvidenceModel, Model, TrainedModel, Verdicts,
                             judge_by_evidence)
 
+EVIDENCE = 'evidence'
+PAPER = 'paper'
+BOTH = 'both'
+"""The detectors that a model may be trained for."""
+
 Judge = Callable[[np.ndarray, np.ndarray, int], Verdicts]
 """Judges stamps and ids of a recording, and the silence up to its end [ns]."""
 

@@ -113,7 +113,7 @@ def model_file(robot_bags: Tuple[str, str], tmp_path_factory: pytest.TempPathFac
     """A model trained on the first recording of the robot."""
     from self_awareness.commands import train
     path = str(tmp_path_factory.mktemp('model') / 'robot.model')
-    assert train.main([robot_bags[0], '-o', path]) == 0
+    assert train.main([robot_bags[0], '--detector', 'both', '-o', path]) == 0
     return path
 
 
@@ -130,6 +130,6 @@ def evidence_model(long_bags: Tuple[str, str], tmp_path_factory: pytest.TempPath
     """A model trained on the first of them, with limits found on the second."""
     from self_awareness.commands import calibrate, train
     path = str(tmp_path_factory.mktemp('evidence') / 'robot.model')
-    assert train.main([long_bags[0], '-o', path]) == 0
+    assert train.main([long_bags[0], '--detector', 'both', '-o', path]) == 0
     assert calibrate.main(['--model', path, '--normal', long_bags[1], '-o', path]) == 0
     return path

@@ -38,6 +38,10 @@ def wheeled_robot(shared: Path) -> Path:
     return shared / 'data' / 'wheeled_robot'
 
 
+def _train(model: str, *arguments: str) -> None:
+    assert train.main([*arguments, '--detector', 'both', '-o', model]) == 0
+
+
 def test_the_outage_of_the_wheeled_robot_is_found(wheeled_robot: Path, tmp_path: Path,
                                                   capsys) -> None:
     """Learn the first half of the normal recording, find the threshold by the second half.
@@ -46,7 +50,7 @@ def test_the_outage_of_the_wheeled_robot_is_found(wheeled_robot: Path, tmp_path:
     """
     normal, model = str(wheeled_robot / 'feb13_normal.bag'), str(tmp_path / 'm')
     # Until 24 s the robot starts up.
-    assert train.main([normal, '--start', '24', '--end', '65', '-o', model]) == 0
+    _train(model, normal, '--start', '24', '--end', '65')
     assert calibrate.main(['--model', model, '--normal', f'{normal}@65', *PAPER, '--cutoff',
                            'fpr=0.01', '-o', model]) == 0
     capsys.readouterr()
@@ -64,7 +68,7 @@ def test_the_laser_that_is_gone_is_named(wheeled_robot: Path, tmp_path: Path, ca
     """All nodes fall silent at 66 s, and the laser, /urg_node, for good at 67.9 s."""
     normal, model = str(wheeled_robot / 'jan17_normal.bag'), str(tmp_path / 'm')
     # Its stalls, at 12 to 15 s and at 51.5 to 54.5 s, are left out.
-    assert train.main([normal, '--start', '15', '--end', '51', '-o', model]) == 0
+    _train(model, normal, '--start', '15', '--end', '51')
     arguments = ['--model', model, '--normal', f'{normal}@55', '-o', model, *PAPER, '--cutoff']
     assert calibrate.main([*arguments, 'fpr=0.01']) == 1  # too many windows are silent
     assert calibrate.main([*arguments, 'fpr=0.02']) == 0
@@ -80,7 +84,7 @@ def test_evidence_finds_the_outage_and_the_rest_is_quiet(wheeled_robot: Path, tm
                                                          capsys) -> None:
     """With the preliminary limits of the training: its recordings are too short for others."""
     model = str(tmp_path / 'm')
-    assert train.main([str(wheeled_robot / 'feb13_normal.bag'), '--start', '24', '-o', model]) == 0
+    _train(model, str(wheeled_robot / 'feb13_normal.bag'), '--start', '24')
     assert 'preliminary' in capsys.readouterr().out
     assert score.main([str(wheeled_robot / 'feb13_outage.bag'), '--model', model]) == 0
     alarms = alarms_of(capsys.readouterr().out)
@@ -94,7 +98,7 @@ def test_evidence_finds_that_the_laser_is_gone(wheeled_robot: Path, tmp_path: Pa
                                                capsys) -> None:
     """From 42 s on all nodes stall now and then; until then, all is quiet."""
     model = str(tmp_path / 'm')
-    assert train.main([str(wheeled_robot / 'jan17_normal.bag'), '--start', '15', '-o', model]) == 0
+    _train(model, str(wheeled_robot / 'jan17_normal.bag'), '--start', '15')
     capsys.readouterr()
     assert score.main([str(wheeled_robot / 'jan17_outage.bag'), '--model', model]) == 0
     alarms = alarms_of(capsys.readouterr().out)
@@ -109,7 +113,7 @@ def test_evidence_leaves_a_sparse_robot_alone(shared: Path, tmp_path: Path, sess
     bags = sorted(str(path) for path in (shared / 'data' / 'social_robot').glob('*.bag'))
     judged, = [bag for bag in bags if session in bag]
     model = str(tmp_path / 'm')
-    assert train.main([*[bag for bag in bags if bag != judged], '-o', model]) == 0
+    _train(model, *[bag for bag in bags if bag != judged])
     capsys.readouterr()
     assert score.main([judged, '--model', model]) == 0
     out = capsys.readouterr().out
@@ -121,7 +125,7 @@ def test_a_robot_without_callerids_is_learned_without_sources(shared: Path, tmp_
     """The chunks of these recordings are compressed, too (bz2)."""
     folder, model = shared / 'data' / 'guardian', str(tmp_path / 'm')
     assert not summarise_bag(str(folder / 'facing_door.bag')).has_sources
-    assert train.main([str(folder / 'facing_door.bag'), '-o', model]) == 0
+    _train(model, str(folder / 'facing_door.bag'))
     assert 'source: none' in capsys.readouterr().out
     trained = TrainedModel.load(model)
     assert len(trained.event_types) == 17 and trained.events == 71213
@@ -137,7 +141,7 @@ def test_a_robot_without_callerids_is_learned_without_sources(shared: Path, tmp_
 def test_a_model_with_sources_refuses_a_robot_without(shared: Path, wheeled_robot: Path,
                                                       tmp_path: Path, capsys) -> None:
     model = str(tmp_path / 'm')
-    assert train.main([str(wheeled_robot / 'jan17_normal.bag'), '-o', model]) == 0
+    _train(model, str(wheeled_robot / 'jan17_normal.bag'))
     guardian = str(shared / 'data' / 'guardian' / 'facing_windows.bag')
     assert score.main([guardian, '--model', model]) == 1
     assert 'another encoding' in capsys.readouterr().err
@@ -158,7 +162,7 @@ def test_every_recording_can_be_trained_on_and_scored(shared: Path, tmp_path: Pa
     assert len(bags) >= 14
     for bag in bags:
         model = str(tmp_path / bag.stem)
-        assert train.main([str(bag), '-o', model]) == 0
+        _train(model, str(bag))
         assert score.main([str(bag), '--model', model]) == 0
         rules = TrainedModel.load(model).encoding
         assert TrainedModel.load(model).events == len(read_events(str(bag), rules).stamps)

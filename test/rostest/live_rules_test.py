@@ -105,7 +105,7 @@ class LiveRulesTest(MonitorCase):
     @again_if_clock_was_set
     def test_anonymous_names_are_one_source(self) -> None:
         """Two starts of an anonymous node are the same source of the model."""
-        training = self_awareness.Training(self_awareness.EncodingRules.defaults())
+        training = self_awareness.Training(self_awareness.EncodingRules.defaults(), paper=True)
         event = self_awareness.EventType('/talker', '/scan', 'std_msgs/String')
         training.add_events([event], [10**12 + i * 10**8 for i in range(500)], [0] * 500)
         training.model().save(self.path('anonymous'))

@@ -239,7 +239,7 @@ def make_model(path: str, bags: Sequence[str], threshold: Optional[float],
     """Trains a model on bags and writes it with this threshold, or not calibrated."""
     encoding = self_awareness.EncodingRules.defaults()
     encoding.source = source
-    training = self_awareness.Training(encoding)
+    training = self_awareness.Training(encoding, paper=True)
     for bag in bags:
         read = self_awareness.read_events(bag, encoding)
         training.add_events(read.event_types, read.stamps, read.ids)

@@ -71,7 +71,8 @@ class MonitorCase(unittest.TestCase):
         encoding.type_fields = type_fields or {}
         # What rospy has to say of nodes that come and go is not what is tested.
         encoding.exclude_topics += ['/rosout']
-        training = self_awareness.Training(encoding, bin_size=500 * 10**6, window=window)
+        training = self_awareness.Training(encoding, bin_size=500 * 10**6, window=window,
+                                           paper=True)
         types = [self_awareness.EventType(rospy.get_name(), topic, 'std_msgs/String')
                  for topic in topics]
         stamps, ids = [], []

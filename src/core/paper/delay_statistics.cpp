@@ -1,12 +1,11 @@
 #include "self_awareness/core/paper/delay_statistics.h"
 
-#include <array>
+#include <algorithm>
 #include <numeric>
 #include <stdexcept>
 
-#include "self_awareness/core/stream/clock.h"
-
 namespace self_awareness::core::paper {
+
 DelayStatistics::DelayStatistics(const Binning& binning) : binning_(binning) {
   binning_.validate();
 }
@@ -56,6 +55,11 @@ void DelayStatistics::merge(const DelayStatistics& other) {
 
 std::uint64_t DelayStatistics::events() const {
   return std::accumulate(event_counts_.begin(), event_counts_.end(), std::uint64_t{0});
+}
+
+bool DelayStatistics::hasDelays() const {
+  return std::any_of(pairs_.begin(), pairs_.end(),
+                     [](const std::vector<Histogram>& to) { return !to.empty(); });
 }
 
 std::size_t DelayStatistics::pairs() const {

@@ -16,6 +16,10 @@ namespace {
 namespace serialization = ros::serialization;
 using Length = std::uint32_t;
 
+// Which counts follow the model, in one byte.
+constexpr unsigned kDelays = 1;
+constexpr unsigned kEvidence = 2;
+
 std::string version() {
   return std::string(ros::message_traits::md5sum<self_awareness::Model>()) +
          ros::message_traits::md5sum<self_awareness::DelayHistograms>();
@@ -39,6 +43,11 @@ class Reader {
   Reader(const std::string& bytes, std::size_t begin) : bytes_(bytes), next_(begin) {}
 
   bool done() const { return next_ == bytes_.size(); }
+
+  unsigned takeByte() {
+    require(1);
+    return static_cast<unsigned char>(bytes_[next_++]);
+  }
 
   template <typename Message>
   Message take() {
@@ -76,9 +85,14 @@ class Reader {
 std::string toBytes(const TrainedModel& model) {
   std::string bytes = version();
   append(toMessage(model), bytes);
-  for (core::EventId id = 0; model.hasCounts() && id < model.vocabulary().size(); ++id) {
-    append(toMessage(model.statistics, id), bytes);
-    for (const core::evidence::Statistics& half : model.evidence) {
+  bytes.push_back(static_cast<char>((model.hasDelays() ? kDelays : 0U) |
+                                    (model.hasEvidence() ? kEvidence : 0U)));
+  for (core::EventId id = 0; id < model.vocabulary().size(); ++id) {
+    if (model.hasDelays()) {
+      append(toMessage(model.statistics, id), bytes);
+    }
+    for (std::size_t k = 0; model.hasEvidence() && k < model.evidence.size(); ++k) {
+      const core::evidence::Statistics& half = model.evidence[k];
       if (id == 0) {
         append(toMessage(half.withoutPairs()), bytes);
       }
@@ -95,9 +109,13 @@ TrainedModel fromBytes(const std::string& bytes) {
   }
   Reader reader(bytes, expected.size());
   TrainedModel model = fromMessage(reader.take<self_awareness::Model>());
-  for (core::EventId id = 0; !reader.done() && id < model.vocabulary().size(); ++id) {
-    addMessage(reader.take<self_awareness::DelayHistograms>(), model.statistics);
-    for (core::evidence::Statistics& half : model.evidence) {
+  const unsigned counts = reader.takeByte();
+  for (core::EventId id = 0; id < model.vocabulary().size(); ++id) {
+    if ((counts & kDelays) != 0) {
+      addMessage(reader.take<self_awareness::DelayHistograms>(), model.statistics);
+    }
+    for (std::size_t k = 0; (counts & kEvidence) != 0 && k < model.evidence.size(); ++k) {
+      core::evidence::Statistics& half = model.evidence[k];
       if (id == 0) {
         half = fromMessage(reader.take<self_awareness::Evidence>(), model.vocabulary());
       }

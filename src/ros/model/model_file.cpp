@@ -109,15 +109,16 @@ TrainedModel read(const rosbag::Bag& bag, const std::string& path, ModelCounts c
                          ": a bag, but it holds no model; train one from it "
                          "(rosrun self_awareness train)");
   }
-  check(model->isWatched(), "its evidence has not two halves");
-  if (counts != ModelCounts::kWatched) {
+  if (counts != ModelCounts::kWatched || !model->isWatched()) {
     const std::size_t number = forEach<self_awareness::DelayHistograms>(
         bag, kDelaysTopic, path, [&](const self_awareness::DelayHistograms& message) {
           addMessage(message, model->statistics);
         });
-    check(number == model->vocabulary().size(), "its histograms do not fit its event types");
+    check(number == model->vocabulary().size() || (number == 0 && model->isWatched()),
+          "its histograms do not fit its event types");
   }
-  for (std::size_t half = 0; counts == ModelCounts::kAll && half < 2; ++half) {
+  const std::size_t halves = counts == ModelCounts::kAll && model->isWatched() ? 2 : 0;
+  for (std::size_t half = 0; half < halves; ++half) {
     model->evidence.at(half) = model->watched.halves.at(half).withoutPairs();
     const std::size_t number = forEach<self_awareness::EvidencePairs>(
         bag, kEvidenceTopics.at(half), path, [&](const self_awareness::EvidencePairs& message) {
@@ -133,8 +134,10 @@ void write(const TrainedModel& model, rosbag::Bag& bag) {
   const ros::Time stamp = std::max(model.stamp, ros::TIME_MIN);
   bag.write(kTopic, stamp, toMessage(model));
   for (core::EventId id = 0; id < model.vocabulary().size(); ++id) {
-    bag.write(kDelaysTopic, stamp, toMessage(model.statistics, id));
-    for (std::size_t half = 0; half < model.evidence.size(); ++half) {
+    if (model.hasDelays()) {
+      bag.write(kDelaysTopic, stamp, toMessage(model.statistics, id));
+    }
+    for (std::size_t half = 0; model.hasEvidence() && half < model.evidence.size(); ++half) {
       bag.write(kEvidenceTopics.at(half), stamp, pairsMessage(model.evidence.at(half), id));
     }
   }
@@ -148,8 +151,49 @@ bool limitsFit(const TrainedModel& model) {
 
 }  // namespace
 
+void TrainedModel::requireDelays() const {
+  check(hasDelays(),
+        "it holds no counts for the paper's detector; train it again with --detector "
+        "paper or both");
+}
+
+void TrainedModel::requireWatched() const {
+  check(isWatched(),
+        "it holds no counts for the evidence detector; train it again with --detector "
+        "evidence or both");
+}
+
+std::string TrainedModel::detectors() const {
+  const bool for_evidence = hasEvidence() || isWatched();
+  return for_evidence ? (hasDelays() ? "both" : "evidence") : "paper";
+}
+
+std::uint64_t TrainedModel::gaps(core::EventId id) const {
+  if (hasDelays()) {
+    return statistics.pair(id, id).total();
+  }
+  std::uint64_t gaps = 0;
+  for (const core::evidence::Statistics& half : watched.halves) {
+    gaps += half.type(id).gaps;
+  }
+  return gaps;
+}
+
+std::size_t TrainedModel::pairs() const {
+  if (hasDelays()) {
+    return statistics.pairs();
+  }
+  std::size_t filled = 0;
+  for (core::EventId to = 0; to < evidence[0].size(); ++to) {
+    for (core::EventId from = 0; from < evidence[0].size(); ++from) {
+      filled += evidence[0].total(from, to) + evidence[1].total(from, to) > 0 ? 1 : 0;
+    }
+  }
+  return filled;
+}
+
 void TrainedModel::watch() {
-  check(hasCounts(), "loaded without its counts");
+  check(hasEvidence(), "loaded without its counts");
   watched = core::evidence::watch(evidence[0], evidence[1], predecessors);
 }
 
@@ -249,7 +293,7 @@ TrainedModel fromMessage(const self_awareness::Model& message) {
 }
 
 void saveModel(const TrainedModel& model, const std::string& path) {
-  if (!model.isWatched() || !model.hasCounts()) {
+  if (model.isWatched() != model.hasEvidence() || !(model.hasEvidence() || model.hasDelays())) {
     throw std::logic_error("a model is saved with all counts, and with what is watched");
   }
   const std::string temporary = path + ".part" + std::to_string(::getpid());

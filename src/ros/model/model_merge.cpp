@@ -45,8 +45,10 @@ void requireSameEncoding(const EncodingRules& one, const EncodingRules& other) {
 }  // namespace
 
 void merge(TrainedModel& model, const TrainedModel& other) {
-  if (!model.hasCounts() || !other.hasCounts()) {
-    throw std::invalid_argument("loaded without its counts");
+  for (const TrainedModel* each : {static_cast<const TrainedModel*>(&model), &other}) {
+    if (!each->hasEvidence() && (each->isWatched() || !each->hasDelays())) {
+      throw std::invalid_argument("loaded without its counts");
+    }
   }
   requireSameEncoding(model.encoding, other.encoding);
   const core::paper::Binning& binning = model.statistics.binning();
@@ -58,6 +60,10 @@ void merge(TrainedModel& model, const TrainedModel& other) {
     throw std::invalid_argument(
         "another number of watched predecessors: " + std::to_string(other.predecessors) +
         ", not " + std::to_string(model.predecessors));
+  }
+  if (model.hasEvidence() != other.hasEvidence() || model.hasDelays() != other.hasDelays()) {
+    throw std::invalid_argument("trained for another detector: " + other.detectors() + ", not " +
+                                model.detectors() + "; train both with the same --detector");
   }
   core::Vocabulary vocabulary = model.statistics.vocabulary();
   for (const core::EventType& type : other.statistics.vocabulary().types()) {

@@ -71,8 +71,8 @@ def _calibrate(arguments: argparse.Namespace) -> None:
         raise ValueError('--roc: there is no ROC without faults: name recordings of some '
                          '(--faulty) or let some be made (--inject)')
     parameters = cli.detector_parameters(arguments)
-    trained = TrainedModel.load(arguments.model)
     _check_options(arguments)
+    trained = cli.load_model(arguments.model, arguments.detector)
     arguments.inject = [each for fault in arguments.inject
                         for each in of_each_source(fault, trained.event_types)]
     for fault in arguments.inject:

@@ -8,7 +8,8 @@ import re
 import sys
 from typing import Callable, Optional, Sequence, TypeVar
 
-from self_awareness import BagError, DetectorParameters, ModelFileError, UnknownEvents
+from self_awareness import (BagError, DetectorParameters, ModelFileError, TrainedModel,
+                            UnknownEvents)
 from self_awareness.stamps import SECOND_NS, nanoseconds
 
 _Value = TypeVar('_Value')
@@ -105,6 +106,21 @@ def add_detector_argument(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--detector', choices=['evidence', 'paper'], default='evidence',
                         help='evidence: several pieces of evidence, each with its limit; paper: '
                              'the score of Golombek et al. (default: evidence)')
+
+
+def load_model(path: str, detector: str, watched_only: bool = False) -> TrainedModel:
+    """Return the model of a file, which a detector is to judge by.
+
+    Raises:
+        ModelFileError: it cannot be read.
+        ValueError: it was not trained for this detector.
+    """
+    model = TrainedModel.load(path, watched_only)
+    try:
+        model.require(detector)
+    except ValueError as error:
+        raise ValueError(f'{path}: {error}') from error
+    return model
 
 
 def add_detector_arguments(parser: argparse.ArgumentParser) -> None:

@@ -8,6 +8,7 @@ from typing import Any, Dict, List, Optional, Sequence
 
 from self_awareness import FEWEST_GAPS, EventType, Model, TrainedModel
 from self_awareness.commands import cli
+from self_awareness.judging import EVIDENCE
 from self_awareness.reporting import histogram_text
 from self_awareness.reporting.evidence_report import counts
 from self_awareness.reporting.model_summary import summarise
@@ -34,6 +35,7 @@ def _info(arguments: argparse.Namespace) -> None:
 def _print(summary: Dict[str, Any]) -> None:
     horizon = summary['horizon']
     print(f'trained      {utc(summary["trained_ns"])} UTC')
+    print(f'detector     {summary["detectors"]}')
     print(f'recordings   {len(summary["recordings"])}, {summary["duration"]:.1f} s')
     _print_recordings(summary['recordings'])
     print(f'window       {summary["window"]:g} s')
@@ -55,8 +57,10 @@ def _print(summary: Dict[str, Any]) -> None:
         print(f'  {_event_type(kind)}')
     print(f'pairs        {summary["pairs"]} of {len(summary["event_types"]) ** 2} with delays')
     print(f'graph        {_graph(summary["graph"])}')
-    _print_evidence(summary['evidence'])
-    _print_calibration(summary['calibration'])
+    if summary['evidence'] is not None:
+        _print_evidence(summary['evidence'])
+    if summary['detectors'] != EVIDENCE:
+        _print_calibration(summary['calibration'])
 
 
 def _rates(summary: Dict[str, Any]) -> str:
@@ -130,18 +134,23 @@ def _or_none(value: Optional[float]) -> str:
 
 
 def _print_pair(model: TrainedModel, first: int, second: int) -> None:
-    counts = model.histogram(first, second)
     print(f'delay from the last  {model.event_types[first]}')
     print(f'to the current       {model.event_types[second]}')
+    width = max(10, shutil.get_terminal_size().columns - 40)
+    if model.detectors == EVIDENCE:
+        _print_lines(histogram_text.draw_bins(model.delays(first, second), width))
+        return
+    counts = model.histogram(first, second)
     computed = Model(model)
     print(f'count {sum(counts.values())}, entropy {computed.entropies[first, second]:.4g} bit, '
           f'weight {computed.weight(first, second):.4g}')
-    if not counts:
-        print('no delay was seen in training')
-        return
-    width = max(10, shutil.get_terminal_size().columns - 40)
-    for line in histogram_text.draw(counts, model.bin_size, model.horizon_bins,
-                                    model.quantile(first, second, _DRAWN), width):
+    _print_lines(histogram_text.draw(counts, model.bin_size, model.horizon_bins,
+                                     model.quantile(first, second, _DRAWN), width)
+                 if counts else [])
+
+
+def _print_lines(lines: Sequence[str]) -> None:
+    for line in lines or ['no delay was seen in training']:
         print(line)
 
 

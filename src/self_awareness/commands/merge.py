@@ -6,6 +6,7 @@ from typing import Optional, Sequence
 
 from self_awareness import TrainedModel
 from self_awareness.commands import cli
+from self_awareness.judging import PAPER
 from self_awareness.output_files import check_outputs, check_replaces_model
 from self_awareness.reporting.training_report import print_summary
 from self_awareness.training.many_bags import DistinctRecordings
@@ -37,7 +38,8 @@ def _merge(arguments: argparse.Namespace) -> None:
             merged.merge(model)
         except ValueError as error:
             raise ValueError(f'{path}: does not fit {first}: {error}') from error
-    merged.watch()
+    if merged.detectors != PAPER:
+        merged.watch()
     merged.save(arguments.output)
     print_summary(merged)
     print(f'written: {arguments.output}, without limits and threshold; calibrate it again (rosrun '

@@ -8,7 +8,7 @@ from typing import List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from self_awareness import EVIDENCE_THRESHOLD, Model, TrainedModel, Verdicts, recordings
+from self_awareness import EVIDENCE_THRESHOLD, Model, Verdicts, recordings
 from self_awareness.commands import cli
 from self_awareness.judging import evidence_judge, paper_judge
 from self_awareness.output_files import check_outputs, replacing
@@ -34,7 +34,7 @@ def _score(arguments: argparse.Namespace) -> None:
     check_outputs([arguments.csv, arguments.plot], arguments.bags + [arguments.model])
     parameters = cli.detector_parameters(arguments)
     paper = arguments.detector == 'paper'
-    trained = TrainedModel.load(arguments.model, watched_only=not paper)
+    trained = cli.load_model(arguments.model, arguments.detector, watched_only=not paper)
     if paper:
         judge = paper_judge(trained, Model(trained), trained.threshold, parameters)
         threshold = trained.threshold

@@ -9,6 +9,7 @@ from typing import Dict, Optional, Sequence
 from self_awareness import PREDECESSORS, BagError, TrainedModel, encoding_file, progress
 from self_awareness.calibration.limits import TooLittleError
 from self_awareness.commands import cli
+from self_awareness.judging import BOTH, EVIDENCE, PAPER
 from self_awareness.output_files import check_outputs, check_replaces_model
 from self_awareness.recordings import BagPart
 from self_awareness.reporting.training_report import print_summary
@@ -17,7 +18,7 @@ from self_awareness.training import live_graph, many_bags
 from self_awareness.training.many_bags import Counting, Trained
 from self_awareness.workers import Cluster, InProcess, Processes, Workers
 
-_OF_THE_MODEL = ('bin', 'window', 'horizon', 'encoding', 'predecessors')
+_OF_THE_MODEL = ('detector', 'bin', 'window', 'horizon', 'encoding', 'predecessors')
 
 _EPILOG = """\
 The recordings should show all that is normal, but not the start-up: leave it out with --start.
@@ -69,6 +70,8 @@ def _train(arguments: argparse.Namespace) -> None:
 
 def _limits(trained: Trained, workers: Workers) -> str:
     """Give the model preliminary limits where there is enough to find them; say how."""
+    if trained.model.detectors == PAPER:
+        return 'limits       none: it was not trained for the evidence detector'
     try:
         many_bags.preliminary_limits(trained, workers)
     except TooLittleError as error:
@@ -92,7 +95,8 @@ def _counting(arguments: argparse.Namespace, base: Optional[TrainedModel]) -> Co
                          f'{bin_size / SECOND_NS:g}; choose one')
     encoding = None if arguments.encoding is None else encoding_file.load(arguments.encoding)
     return Counting(encoding, bin_size, window, horizon // bin_size,
-                    PREDECESSORS if arguments.predecessors is None else arguments.predecessors)
+                    PREDECESSORS if arguments.predecessors is None else arguments.predecessors,
+                    arguments.detector or Counting.detector)
 
 
 def _workers(arguments: argparse.Namespace) -> Workers:
@@ -132,8 +136,11 @@ def _parser() -> argparse.ArgumentParser:
                         help='a recording of normal operation; delays never cross from one to the '
                              'next')
     parser.add_argument('-o', '--output', required=True, metavar='MODEL', help='file to write')
+    parser.add_argument('--detector', choices=(EVIDENCE, PAPER, BOTH),
+                        help='who is trained: only that detector can judge by the model (default: '
+                             f'{Counting.detector})')
     parser.add_argument('--bin', type=cli.duration, metavar='S',
-                        help='size of the bins of delays in s (default: '
+                        help="size of the bins of the paper's delays in s (default: "
                              f'{Counting.bin_size / SECOND_NS:g})')
     parser.add_argument('--window', type=cli.duration, metavar='S',
                         help='length of the windows that are scored, in s (default: '

@@ -28,7 +28,7 @@ class Paper:
 
     def train(self, recordings: Sequence[WindowedEvents]) -> None:
         """Count the delays."""
-        trained = _trained(recordings)
+        trained = _trained(recordings, paper=True)
         self._types = trained.event_types
         self._model = Model(trained)
 
@@ -96,12 +96,13 @@ class Evidence:
                                  encoded.ids, encoded.end - 1)
 
 
-def _trained(recordings: Sequence[WindowedEvents],
-             predecessors: int = PREDECESSORS) -> TrainedModel:
-    training = Training(EncodingRules(), window=DEFAULT_WINDOW, predecessors=predecessors)
+def _trained(recordings: Sequence[WindowedEvents], predecessors: int = PREDECESSORS,
+             paper: bool = False) -> TrainedModel:
+    training = Training(EncodingRules(), window=DEFAULT_WINDOW, predecessors=predecessors,
+                        evidence=not paper, paper=paper)
     for recording in recordings:
         training.add_events(recording.event_types, recording.stamps, recording.ids)
-    return training.model()
+    return training.model(watch=not paper)
 
 
 def _judged(encoded: WindowedEvents, verdicts: Verdicts, threshold: float) -> Judged:

@@ -1,8 +1,9 @@
 """Draws a histogram of delays with characters."""
 from __future__ import annotations
 
+import math
 from collections import Counter
-from typing import Dict, List, Optional, Tuple
+from typing import Dict, List, Optional, Sequence, Tuple
 
 from self_awareness.stamps import SECOND_NS
 
@@ -34,14 +35,37 @@ def draw(counts: Dict[int, int], bin_size: int, horizon_bins: int, last: int,
         rows.append((low, low + merged, by_row.pop(row, 0)))
     if by_row:
         rows.append((start + len(rows) * merged, None, sum(by_row.values())))
-    most = max(count for _, _, count in rows)
     unit = bin_size / SECOND_NS
-    total = sum(counts.values())
+
+    def end_of(low: int, high: Optional[int]) -> float:
+        if high is None or (horizon_bins and low <= horizon_bins < high):
+            return math.inf
+        return high * unit
+
+    return _lines([(low * unit, end_of(low, high), count) for low, high, count in rows], width)
+
+
+def draw_bins(bins: Sequence[Tuple[int, int]], width: int) -> List[str]:
+    """Return the lines of a drawing of bins that are given by themselves; none without counts.
+
+    Args:
+        bins: shortest delay [ns] and count of each; the last one has no end.
+        width: of the longest bar, in characters.
+    """
+    ends = [low / SECOND_NS for low, _ in bins[1:]] + [math.inf]
+    rows = [(low / SECOND_NS, end, count) for (low, count), end in zip(bins, ends)]
+    filled = [index for index, (_, _, count) in enumerate(rows) if count]
+    return _lines(rows[filled[0]:filled[-1] + 1], width) if filled else []
+
+
+def _lines(rows: Sequence[Tuple[float, float, int]], width: int) -> List[str]:
+    """Return a line for each row: from and to [s], and count."""
+    most = max(count for _, _, count in rows)
+    total = sum(count for _, _, count in rows)
     lines = []
     for low, high, count in rows:
-        is_horizon = horizon_bins and low <= horizon_bins and (high is None or horizon_bins < high)
-        end = '...' if high is None or is_horizon else f'- {high * unit:8.3f}'
+        end = '...' if high == math.inf else f'- {high:8.3f}'
         bar = '#' * max(1 if count else 0, round(count / most * width))
-        line = f'{low * unit:10.3f} {end:<10} {count:8d} {count / total:6.1%} {bar}'
+        line = f'{low:10.3f} {end:<10} {count:8d} {count / total:6.1%} {bar}'
         lines.append(line.rstrip())
     return lines

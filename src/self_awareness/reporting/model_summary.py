@@ -3,10 +3,11 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from typing import Any, Dict, List, Optional
+from typing import Any, Dict, List, Optional, Tuple
 
 from self_awareness import (FEWEST_GAPS, USUAL_SHARES, Calibration, EvidenceCalibration,
                             EvidenceModel, Recording, TrainedModel)
+from self_awareness.judging import EVIDENCE, PAPER
 from self_awareness.stamps import SECOND_NS
 
 
@@ -18,10 +19,13 @@ def summarise(model: TrainedModel) -> Dict[str, Any]:
     """
     rules = model.encoding
     duration = sum(_duration(recording) for recording in model.recordings)
-    types = [_event_type(model, index, duration) for index in range(len(model.event_types))]
+    evidence = None if model.detectors == PAPER else EvidenceModel(model)
+    types = [_event_type(model, evidence, index, duration)
+             for index in range(len(model.event_types))]
     rates = [entry['rate'] for entry in types if entry['rate'] is not None]
     return {
         'trained_ns': model.stamp,
+        'detectors': model.detectors,
         'window': model.window / SECOND_NS,
         'bin_size': model.bin_size / SECOND_NS,
         'horizon': (model.horizon_bins * model.bin_size / SECOND_NS if model.horizon_bins
@@ -43,7 +47,7 @@ def summarise(model: TrainedModel) -> Dict[str, Any]:
         'event_types': types,
         'pairs': model.pairs,
         'graph': {source: sorted(listeners) for source, listeners in sorted(model.graph.items())},
-        'evidence': summarise_evidence(model),
+        'evidence': None if evidence is None else _evidence(model, evidence),
         'calibration': None if model.calibration is None else _calibration(model.calibration),
     }
 
@@ -52,8 +56,15 @@ def summarise_evidence(model: TrainedModel) -> Dict[str, Any]:
     """Return what the evidence detector watches, as the key `evidence` of summarise().
 
     Tracks are counted by channel: overdue, rate, pairs and answers.
+
+    Raises:
+        ValueError: the model was not trained for the evidence detector.
     """
-    tracks = EvidenceModel(model).tracks
+    return _evidence(model, EvidenceModel(model))
+
+
+def _evidence(model: TrainedModel, evidence: EvidenceModel) -> Dict[str, Any]:
+    tracks = evidence.tracks
     watched = {track.to_id for track in tracks if track.channel == 'overdue'}
     summary: Dict[str, Any] = {
         'tracks': dict(Counter(track.channel for track in tracks)),
@@ -69,11 +80,12 @@ def summarise_evidence(model: TrainedModel) -> Dict[str, Any]:
     return summary
 
 
-def _event_type(model: TrainedModel, index: int, duration: float) -> Dict[str, Any]:
+def _event_type(model: TrainedModel, evidence: Optional[EvidenceModel], index: int,
+                duration: float) -> Dict[str, Any]:
     kind = model.event_types[index]
     count = model.event_count(index)
-    gaps = sum(model.histogram(index, index).values())
-    first, last = (model.quantile(index, index, share) for share in USUAL_SHARES)
+    gaps = model.gaps(index)
+    shortest, longest = _usual_gap(model, evidence, index) if gaps else (None, None)
     return {
         'source': kind.source,
         'scope': kind.scope,
@@ -82,9 +94,19 @@ def _event_type(model: TrainedModel, index: int, duration: float) -> Dict[str, A
         'rate': count / duration if duration > 0 else None,
         'gaps': gaps,
         'judged': gaps >= FEWEST_GAPS,
-        'usual_shortest': first * model.bin_size / SECOND_NS if gaps else None,
-        'usual_longest': (last + 1) * model.bin_size / SECOND_NS if gaps else None,
+        'usual_shortest': shortest,
+        'usual_longest': longest,
     }
+
+
+def _usual_gap(model: TrainedModel, evidence: Optional[EvidenceModel],
+               index: int) -> Tuple[float, float]:
+    """Return the usual shortest and longest gap [s]; by the paper's finer bins, if there are."""
+    if evidence is not None and model.detectors == EVIDENCE:
+        shortest, longest = (evidence.usual_delay(index, index, share) for share in USUAL_SHARES)
+        return shortest, longest
+    first, last = (model.quantile(index, index, share) for share in USUAL_SHARES)
+    return first * model.bin_size / SECOND_NS, (last + 1) * model.bin_size / SECOND_NS
 
 
 def _recording(recording: Recording) -> Dict[str, Any]:

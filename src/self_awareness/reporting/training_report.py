@@ -12,6 +12,7 @@ def print_summary(model: TrainedModel) -> None:
     types = model.event_types
     seconds = sum(recording.end - recording.start for recording in model.recordings) / SECOND_NS
     sources = {event_type.source for event_type in types} - {''}
+    print(f'detector     {model.detectors}')
     print(f'recordings   {len(model.recordings)}')
     print(f'duration     {seconds:.1f} s')
     print(f'events       {model.events}')
@@ -25,6 +26,6 @@ def print_summary(model: TrainedModel) -> None:
 
 
 def _too_rare(model: TrainedModel) -> List[Tuple[str, int]]:
-    gaps = [sum(model.histogram(i, i).values()) for i in range(len(model.event_types))]
-    return [(str(event_type), count) for event_type, count in zip(model.event_types, gaps)
-            if count < FEWEST_GAPS]
+    return [(str(event_type), model.gaps(index))
+            for index, event_type in enumerate(model.event_types)
+            if model.gaps(index) < FEWEST_GAPS]

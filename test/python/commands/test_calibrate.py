@@ -152,7 +152,7 @@ def test_recordings_that_were_trained_on_are_refused(run, robot_bags: Bags, mode
 
 def test_the_part_that_was_not_trained_on_is_welcome(robot_bags: Bags, tmp_path, capsys) -> None:
     model = str(tmp_path / 'm')
-    assert train.main([robot_bags[0], '--end', '15', '-o', model]) == 0
+    assert train.main([robot_bags[0], '--end', '15', '--detector', 'both', '-o', model]) == 0
     arguments = ['--model', model, '--detector', 'paper', '--inject', 'starve', '-o', model,
                  '--normal']
     assert calibrate.main([*arguments, f'{robot_bags[0]}@14']) == 1

@@ -82,7 +82,7 @@ def test_what_does_not_fit_is_told(options: List[str], told: str, model_file: st
         (tmp_path / 'e').write_text({'source': 'source: none',
                                      'exclude_topics': 'exclude_topics: [/x]'}[options[1]])
         options = ['--encoding', str(tmp_path / 'e')]
-    other = trained('other', robot_bags[1], *options)
+    other = trained('other', robot_bags[1], '--detector', 'both', *options)
     error = error_of([model_file, other, '-o', str(tmp_path / 'm')], capsys)
     assert f'{other}: does not fit {model_file}: {told}' in error
     assert not (tmp_path / 'm').exists()

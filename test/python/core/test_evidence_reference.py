@@ -79,7 +79,7 @@ class Robot:
 
     @staticmethod
     def _trained(recordings: List[List[Event]]) -> TrainedModel:
-        training = Training(EncodingRules(), window=WINDOW)
+        training = Training(EncodingRules(), window=WINDOW, paper=True)
         every_type = [EventType('', letter, '') for letter in LETTERS]
         for events in recordings:
             training.add_events(every_type, np.array([t for t, _ in events]),

@@ -36,7 +36,7 @@ def test_the_core_does_what_the_paper_says(seed: int) -> None:
     window = chance.choice([20, 100]) * MS
     reference = Reference(recordings, bin_size, horizon_bins)
 
-    training = Training(EncodingRules(), bin_size, window, horizon_bins)
+    training = Training(EncodingRules(), bin_size, window, horizon_bins, paper=True)
     every_type = [EventType('', letter, '') for letter in 'ABCDEU']
     for recording in recordings:
         training.add_events(every_type, np.array([t for t, _ in recording]),
@@ -86,7 +86,7 @@ def test_the_roc_is_that_of_all_pairs(seed: int) -> None:
 
 
 def test_silence_to_the_end_of_the_recording_has_windows_only_where_it_is_asked_for() -> None:
-    training = Training(EncodingRules(), 10 * MS, 100 * MS)
+    training = Training(EncodingRules(), 10 * MS, 100 * MS, paper=True)
     types = [EventType('', 'A', '')]
     stamps = np.arange(50) * 20 * MS
     training.add_events(types, stamps, np.zeros(50))

@@ -36,7 +36,7 @@ def arrays(case: Dict[str, Any], events: List[Tuple[int, str]]) -> Tuple[np.ndar
 def test_a_case_is_reproduced(vectors: Dict[str, Any], name: str) -> None:
     case = next(case for case in vectors['cases'] if case['name'] == name)
     training = Training(EncodingRules(), case['bin_ms'] * MS, case['window_ms'] * MS,
-                        case.get('horizon_bins', 0))
+                        case.get('horizon_bins', 0), paper=True)
     for bag in case['train_bags']:
         training.add_events(types_of(case), *arrays(case, bag))
     trained = training.model()

@@ -36,7 +36,7 @@ def at(window: int) -> int:
 
 def test_windows_and_counts_are_those_of_the_detector() -> None:
     recording = robot(20.0, 1, silent=((8.0, 12.0),))
-    training = Training(EncodingRules(), window=DEFAULT_WINDOW)
+    training = Training(EncodingRules(), window=DEFAULT_WINDOW, paper=True)
     training.add_events(recording.event_types, recording.stamps, recording.ids)
     trained = training.model()
     verdicts = Model(trained).judge(DEFAULT_WINDOW, None, DetectorParameters(), recording.stamps,

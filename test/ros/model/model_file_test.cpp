@@ -138,6 +138,35 @@ TEST_F(ModelFileTest, AModelComesBackAsItWasSaved) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
 }
 
+TEST_F(ModelFileTest, AModelForOneDetectorComesBackWithoutTheOthersCounts) {
+  TrainedModel evidence = someModel();
+  evidence.statistics = core::paper::DelayStatistics(evidence.statistics.binning());
+  for (const core::EventType& type : someModel().vocabulary().types()) {
+    evidence.statistics.countEvent(evidence.statistics.intern(type));
+  }
+  TrainedModel paper = someModel();
+  paper.evidence = {};
+  paper.watched = {};
+  for (const TrainedModel& model : {evidence, paper}) {
+    saveModel(model, path("m"));
+    for (const TrainedModel& loaded : {loadModel(path("m")), fromBytes(toBytes(model))}) {
+      EXPECT_EQ(loaded.detectors(), model.detectors());
+      EXPECT_EQ(loaded.hasDelays(), model.hasDelays());
+      EXPECT_EQ(loaded.hasEvidence(), model.hasEvidence());
+      EXPECT_TRUE(loaded.statistics == model.statistics);
+      EXPECT_TRUE(loaded.evidence == model.evidence);
+    }
+  }
+  EXPECT_THROW(evidence.requireDelays(), std::invalid_argument);
+  EXPECT_THROW(paper.requireWatched(), std::invalid_argument);
+  EXPECT_NO_THROW(evidence.requireWatched());
+  EXPECT_NO_THROW(paper.requireDelays());
+  EXPECT_EQ(loadModel(path("m"), ModelCounts::kWatched).detectors(), "paper");
+  TrainedModel nothing = paper;
+  nothing.dropCounts();
+  EXPECT_THROW(saveModel(nothing, path("m")), std::logic_error);
+}
+
 TEST_F(ModelFileTest, AModelThatCannotBeWrittenLeavesNothingBehind) {
   EXPECT_THROW(saveModel(someModel(), path("no/such/folder/m")), ModelFileError);
   fs::create_directory(path("taken"));

@@ -35,6 +35,8 @@ class DelayStatistics {
   std::uint64_t eventCount(EventId id) const { return event_counts_.at(id); }
   /// Number of events counted, of all types.
   std::uint64_t events() const;
+  /// Whether delays were counted, or only events.
+  bool hasDelays() const;
   /// Number of ordered pairs with at least one delay.
   std::size_t pairs() const;
 

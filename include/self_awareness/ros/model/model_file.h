@@ -26,14 +26,14 @@ class ModelFileError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// What a model file holds.
+/// What a model file holds: counts for the evidence detector, for the paper's, or for both.
 struct TrainedModel {
   EncodingRules encoding;
   std::int64_t window = core::kDefaultWindow;  ///< length of a window [ns]
-  /// Counts of the paper's detector; the event types only where they were not loaded.
+  /// Counts of the paper's detector; without delays where there are none, or they were not loaded.
   core::paper::DelayStatistics statistics{core::paper::Binning{}};
-  /// All counts of the evidence detector, of the two halves of the training; none where they were
-  /// not loaded. Models are added, and trained on, by these.
+  /// All counts of the evidence detector, of the two halves of the training; without event types
+  /// where there are none, or they were not loaded. Models are added, and trained on, by these.
   std::array<core::evidence::Statistics, 2> evidence;
   /// What of them the evidence detector judges by.
   core::evidence::Watched watched;
@@ -46,13 +46,25 @@ struct TrainedModel {
   ros::Time stamp;  ///< when it was trained
 
   const core::Vocabulary& vocabulary() const { return statistics.vocabulary(); }
-  /// Whether it holds all counts.
-  bool hasCounts() const { return evidence[0].size() > 0; }
+  /// Whether it holds the counts of the paper's detector.
+  bool hasDelays() const { return statistics.hasDelays(); }
+  /// @throw std::invalid_argument if not; says how to get them
+  void requireDelays() const;
+  /// Whether it holds all counts of the evidence detector.
+  bool hasEvidence() const { return evidence[0].size() > 0; }
   /// Whether it was chosen what is watched.
   bool isWatched() const { return watched.halves[0].size() > 0; }
+  /// @throw std::invalid_argument if it was not, or not trained for the evidence detector
+  void requireWatched() const;
+  /// What it was trained for, as far as it was loaded: "evidence", "paper" or "both".
+  std::string detectors() const;
+  /// Number of gaps between two events of a type.
+  std::uint64_t gaps(core::EventId id) const;
+  /// Number of ordered pairs of event types with at least one delay.
+  std::size_t pairs() const;
   /// Forgets all counts but those that the evidence detector judges by.
   void dropCounts();
-  /// Chooses what is watched anew, by all counts.
+  /// Chooses what is watched, by all counts of the evidence detector.
   /// @throw std::invalid_argument if it does not hold them
   void watch();
   /// s* of eq. 5, if the model was calibrated.
@@ -64,7 +76,7 @@ struct TrainedModel {
 /// What of a model file's counts is read: they take time and memory where event types are many.
 enum class ModelCounts {
   kWatched,  ///< what the evidence detector judges by
-  kDelays,   ///< those of the paper's detector, too
+  kDelays,   ///< those of the paper's detector, too, where there are any
   kAll
 };
 
@@ -76,7 +88,7 @@ TrainedModel fromMessage(const self_awareness::Model& message);
 /// Writes a temporary file beside `path` and renames it, so that no half-written model is ever
 /// seen.
 /// @throw ModelFileError
-/// @throw std::logic_error if it was not chosen what is watched, or counts were dropped
+/// @throw std::logic_error if what is watched was not chosen, or counts were dropped
 void saveModel(const TrainedModel& model, const std::string& path);
 /// @throw ModelFileError if the file is missing, no model, of another version, or damaged
 TrainedModel loadModel(const std::string& path, ModelCounts counts = ModelCounts::kAll);

@@ -17,7 +17,7 @@ from self_awareness import (DetectorParameters, EncodingRules, EvidenceModel, Mo
 from self_awareness.evaluation.peers.frequency import LearnedFrequencyMonitor
 from self_awareness.evaluation.systems import ScoringSystem, settling
 from self_awareness.evaluation.windowed_events import WindowedEvents
-from self_awareness.judging import Judge, evidence_judge, paper_judge
+from self_awareness.judging import BOTH, Judge, evidence_judge, paper_judge
 from self_awareness.recordings import BagPart, RecordingEvents
 from self_awareness.stamps import SECOND_NS
 from self_awareness.training import many_bags
@@ -184,7 +184,7 @@ def _below(data: Path, part: BagPart) -> BagPart:
 
 
 def _trained(parts: Sequence[BagPart]) -> Trained:
-    return many_bags.train(parts, Counting(EncodingRules.defaults()))
+    return many_bags.train(parts, Counting(EncodingRules.defaults(), detector=BOTH))
 
 
 def _paper_threshold(scores: np.ndarray) -> float:
