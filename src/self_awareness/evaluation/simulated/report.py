@@ -19,7 +19,7 @@ from self_awareness.output_files import replacing
 NAME = 'simulated'
 
 FULL = 'full'
-"""Folder beside the page for all numbers: too long to be read, and not kept in the repository."""
+"""Folder below the page's for all numbers: too long to read, and not kept in the repository."""
 
 _WRITTEN = 'Written by `{command}`; do not edit.'
 
