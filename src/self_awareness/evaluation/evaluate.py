@@ -107,22 +107,21 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _add_output(parser: argparse.ArgumentParser) -> None:
+def _add_output(parser: argparse.ArgumentParser, written: str) -> None:
     parser.add_argument('-o', '--output', type=Path, default=Path('docs/evaluation'),
-                        metavar='DIR', help='where the page, the CSV file and the plots go '
-                        '(default: docs/evaluation)')
+                        metavar='DIR', help=f'where {written} go (default: docs/evaluation)')
 
 
 def _add_recordings(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(work=_recordings)
-    _add_output(parser)
+    _add_output(parser, 'the page and the CSV file')
     parser.add_argument('--data', type=Path, required=True, metavar='DIR',
                         help='the folder of the recordings')
 
 
 def _add_live(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(work=_live)
-    _add_output(parser)
+    _add_output(parser, 'the page, the CSV file and the plot')
     parser.add_argument('--rounds', type=cli.count, default=5, metavar='N',
                         help='how often each fault is induced (default: 5)')
     parser.add_argument('--training', type=cli.checked(_calibration_s), nargs='+',
@@ -141,7 +140,7 @@ def _add_live(parser: argparse.ArgumentParser) -> None:
 
 def _add_simulated(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(work=_simulated)
-    _add_output(parser)
+    _add_output(parser, f'the page, the plots and, in the folder {report.FULL}, all numbers')
     parser.add_argument('--seeds', type=cli.count, default=20, metavar='N',
                         help='number of repetitions, each with the next seed (default: 20)')
     parser.add_argument('--seed', type=int, default=1, help='the first seed (default: 1)')

@@ -5,13 +5,14 @@ import csv
 import shutil
 import subprocess
 from pathlib import Path
-from typing import Any
+from typing import Any, Optional
 
 import pytest
 
 from self_awareness.evaluation import catalogue, evaluate
-from self_awareness.evaluation.simulated import report
+from self_awareness.evaluation.simulated import report, tables
 from self_awareness.evaluation.simulated.experiment import Results
+from self_awareness.evaluation.simulated.measures import Row
 
 ROOT = Path(__file__).resolve().parents[3]
 
@@ -27,7 +28,7 @@ def _written(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def test_csv_has_a_row_for_everything(written: Path) -> None:
-    with open(written / 'simulated.csv', encoding='utf-8', newline='') as file:
+    with open(written / 'full' / 'simulated.csv', encoding='utf-8', newline='') as file:
         rows = list(csv.DictReader(file))
     assert ({(row['system'], row['training_share'], row['seed'], row['record']) for row in rows}
             == {(system, share, seed, record) for system in ('paper', 'frequency_learned')
@@ -41,23 +42,52 @@ def test_csv_has_a_row_for_everything(written: Path) -> None:
             assert row['top3'] == 'True'
 
 
-def test_page_has_all_tables_and_how_to_repeat_it(written: Path) -> None:
+def rows_have_a_cell_for_every_system(page: str) -> bool:
+    rows = [line for line in page.splitlines() if line.startswith('| cc1')]
+    return bool(rows) and all(line.count('|') == 4 for line in rows)
+
+
+def test_page_has_what_is_read_and_how_to_repeat_it(written: Path) -> None:
     page = (written / 'simulated.md').read_text(encoding='utf-8')
     assert 'rosrun self_awareness evaluate simulated --seeds 2 --seed 5' in page
     assert 'Seeds 5, 6.' in page
-    lines = page.splitlines()
-    head = next(line for line in lines if 'target' in line and line.startswith('|'))
+    head = next(line for line in page.splitlines() if 'target' in line and line.startswith('|'))
     assert [cell.strip() for cell in head.split('|')][2:-1] == ['target', 'paper',
                                                                 'frequency_learned']
-    assert '## With 0.1 of the training data' in page
-    for title in ('Latency', 'AUC', 'FNR', 'equal latency', 'blame', 'bare verdict'):
-        assert title in page
-    for line in lines:  # every row of a table has a cell for every system
-        if line.startswith('| cc1'):
-            assert line.count('|') == 4
+    for title in ('Targets', 'False alarms an hour at equal latency', 'Alarms', 'Blame',
+                  'With 0.1 of the training data'):
+        assert f'\n## {title}\n' in page
+    assert rows_have_a_cell_for_every_system(page)
+    assert 'full/simulated.csv' in page and 'full/simulated.md' in page
     assert 'nan' not in page and 'inf' not in page.split('## Targets')[1]
     for name in ('figure2.png', 'overview.png'):
         assert (written / name).read_bytes().startswith(b'\x89PNG')
+
+
+def test_full_page_has_a_table_of_every_quantity(written: Path) -> None:
+    page = (written / 'full' / 'simulated.md').read_text(encoding='utf-8')
+    assert 'rosrun self_awareness evaluate simulated --seeds 2 --seed 5' in page
+    assert '## With 0.1 of the training data' in page
+    for title in ('Latency', 'AUC', 'FNR', 'suspicion', 'blame', 'bare verdict'):
+        assert page.count(title) >= 2, title
+    assert rows_have_a_cell_for_every_system(page)
+    assert 'nan' not in page and 'inf' not in page
+
+
+def fault(kind: str, seed: int, latency_s: Optional[float], first: Optional[bool]) -> Row:
+    return Row('oracle', 1.0, seed, kind, 500, 0, 0, 0, latency_s=latency_s, top1=first,
+               top3=None if first is None else True)
+
+
+def test_page_tells_alarms_and_blame() -> None:
+    rows = {'oracle': [fault('cc1', 1, 0.2, True), fault('cc1', 2, 0.4, False),
+                       fault('crash:slam', 1, None, None), fault('rs', 1, 2.0, None)],
+            'deaf': [fault('cc1', 1, None, None), fault('cc1', 2, None, None),
+                     fault('crash:slam', 1, None, None), fault('rs', 1, None, None)]}
+    assert tables.alarms(rows) == [
+        '| fault | oracle | deaf |', '| --- | --- | --- |', '| cc1 | 100 %, 0.20 s | – |',
+        '| crash:slam | – | – |', '| rs | 100 %, 2.00 s | – |', '| every crash | – | – |']
+    assert tables.blame(rows)[2:] == ['| cc1 | 50 % / 100 % | – / – |']
 
 
 def test_a_failure_leaves_the_old_page(written: Path, tmp_path: Path,
@@ -70,11 +100,12 @@ def test_a_failure_leaves_the_old_page(written: Path, tmp_path: Path,
 
     monkeypatch.setattr(report, 'page', fail)
     monkeypatch.setattr(report, '_save_csv', lambda *_: None)
+    monkeypatch.setattr(report, 'full_page', lambda *_: '')
     with pytest.raises(OSError, match='no space left'):
         report.write(tmp_path, None, Results(), '')
     assert page.read_text(encoding='utf-8') == 'old'
-    assert [path.name for path in tmp_path.iterdir()] == ['simulated.md']
-    assert not list(written.glob('.part*'))
+    assert [path.name for path in tmp_path.iterdir() if path.is_file()] == ['simulated.md']
+    assert not list(written.rglob('.part*')) and not list(tmp_path.rglob('.part*'))
 
 
 def test_a_missing_library_is_named_with_the_way_out(tmp_path: Path, capsys: Any,

@@ -28,7 +28,7 @@ def rows_of(alarms: List[Span], tmp_path: Path,
 
 def test_an_alarm_in_the_outage_finds_it(tmp_path: Path, monkeypatch) -> None:
     faulty, healthy = rows_of([(5.0, 12.0), (50.5, 72.0)], tmp_path, monkeypatch)
-    # Start-up and the time after the outage are nobody's, but there the alarm may not stay.
+    # Start-up and the time after the outage are not counted, but the alarm may not stay in them.
     assert faulty == OutageRow('faulty', 'oracle', 3, True, False, 0.5, 0, pytest.approx(4.0),
                                70.0)
     assert healthy == OutageRow('healthy', 'oracle', 3, None, False, None, 2, pytest.approx(28.5),

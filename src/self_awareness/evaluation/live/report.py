@@ -34,14 +34,14 @@ Faults induced in the 15 processes of `launch/follow_me.launch` under a real mas
 of {cores} cores, while the monitor of `launch/monitor.launch` listened with the evidence
 detector. The model: training on {training} s, limits by {calibration:g} s of other normal
 operation, with the graph of the running robot; where `--recordings` held both already, they are
-of an earlier start of the robot. That is less than in simulated time (2 x 100 s and 600 s),
-because here time passes as slowly as it does.
+of an earlier start of the robot. That is less than in simulated time (2 x 100 s and 600 s), since
+real time passes here.
 
 Each of the {rounds} rounds: {normal:g} s of normal operation; the faults of the table in its
 order, in the same running robot, each as `induce` does it. Nodes that were killed are started
 again; `silence` ends the round, and the robot is started again. The monitor runs on. Before each
-fault its ~reset is called, and it has settled and not alarmed for {quiet:g} s: without, the alarm
-of one fault may stand at the next one's onset. How long it stands is not measured here.
+fault its ~reset is called, and it has settled and not alarmed for {quiet:g} s; otherwise the alarm
+of one fault could stand at the next one's onset. How long it stands is not measured here.
 
 The latency of `{live}` is from the onset to the end of the window whose status was ERROR, by ROS
 time; that of WARN (a suspicion) likewise, an ERROR being one. Median (smallest to largest); a
@@ -167,7 +167,7 @@ def _remarks(samples: Sequence[Sample]) -> List[str]:
                + '; '.join(filter(None, (sample.void and f'void: {sample.void}', sample.note)))
                for sample in samples
                if sample.void or (sample.note and sample.system == LIVE)]
-    return ['## Void samples, and what went otherwise than planned', '',
+    return ['## Void samples, and what did not go as planned', '',
             *(remarks or ['Nothing.']), '']
 
 

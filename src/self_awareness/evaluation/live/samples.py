@@ -22,7 +22,7 @@ class Status:
     Args:
         stamp: end of the window [s since 1970].
         received: when it was heard [s since 1970].
-        level: as of the message SelfAwareness.
+        level: that of the message SelfAwareness.
         settling: whether it is too early for an alarm.
         evidence: what is abnormal.
         suspects: sources, the most likely first, each once.
@@ -46,7 +46,7 @@ class Stretch:
         onset, end: [s since 1970].
         culprits: sources to blame.
         clock_set_s: by how much the machine's clock was set in this time [s].
-        note: what went otherwise than planned.
+        note: what did not go as planned.
         load: the machine's load average of the last minute at the onset.
     """
 

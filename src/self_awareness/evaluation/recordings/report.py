@@ -29,13 +29,13 @@ at a time, before they fall silent: that is not counted either.
 `evidence` learns from both parts, and finds its limits by what each says of the other (cross-fit,
 as `train` does), without the graph of subscriptions. `paper` and `frequency_learned` learn from
 the first part; their threshold is the one that a share of {rate:g} of the second part's windows
-falls below; that of `paper` twice that, and so on, where as many windows are silent; where more
+falls below. `paper` takes twice that share, and so on, while as many windows are silent; if more
 than {silent:g} are, it watches nothing. From windows to an alarm, all are the same code.
 
 An alarm that stood at the onset of an outage is a false one, whatever followed: read `found`
-beside the false alarms. `watched` are the event types (of `frequency_learned`: topics) that a
-system watches at all: one that watches nothing raises no false alarm. The recordings are few and
-short; no rate can be told from them.
+together with the false alarms. `watched` is the number of event types (of `frequency_learned`:
+topics) that a system watches at all: one that watches nothing raises no false alarm. The
+recordings are few and short; no rate can be told from them.
 
 All numbers: [{name}.csv]({name}.csv).
 """

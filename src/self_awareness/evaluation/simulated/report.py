@@ -1,4 +1,4 @@
-"""Writes what the evaluation found: a CSV file of all rows, a page of tables, and plots."""
+"""Writes what the evaluation found: a page with plots, and in a folder below all numbers."""
 from __future__ import annotations
 
 import csv
@@ -18,29 +18,34 @@ from self_awareness.output_files import replacing
 
 NAME = 'simulated'
 
+FULL = 'full'
+"""Folder below the page's for all numbers: too long to read, and not kept in the repository."""
+
+_WRITTEN = 'Written by `{command}`; do not edit.'
+
 _INTRODUCTION = """\
 # Evaluation in simulated time
 
-Written by `{command}`; do not edit.
+{written}
 
 Seeds {seeds}.
 
-For each seed, records of the simulated follow-me robot: {training} of {record_s:g} s to learn
-from, one of {calibration_s:g} s to choose the threshold by, one of {normal_s:g} s of normal
+For each seed there are records of the simulated follow-me robot: {training} of {record_s:g} s to
+learn from, one of {calibration_s:g} s to choose the threshold by, one of {normal_s:g} s of normal
 operation to count false alarms on, and one of {record_s:g} s for each fault, which begins between
 50 and 52 s. Each record has a seed of its own, the first four bytes of the SHA-256 of
-`SEED/RECORD`; the records are called {names} and as the faults. All systems learn from, and judge,
-the same records.
+`SEED/RECORD`; the records are called {names},
+and as the faults. All systems learn from and judge the same records.
 
-Each system gives every window of {window_ms:g} ms a score. The threshold is the one that a share
-of {rate:g} of the calibration's windows falls below; `frequency` has bounds of its own, those of
-diagnostic_updater's FrequencyStatus, and `evidence` the limits that `calibrate` finds on the same
-record for a budget of {budget:g} false alarms an hour. Three abnormal windows of five raise the
-alarm, 2 s without one clear it, and none is raised in the first 5 s, by the same code for all;
-`evidence` raises it at once for a silence that has lasted 0.1 s beyond its limit, and for the
-linker.
-`evidence` knows who subscribes to what, as after `train --graph`; `evidence_no_graph` was trained
-on bags alone. Events never seen in training are a suspicion, not an alarm (`~unknown: warn`).
+Each system gives every window of {window_ms:g} ms a score. The threshold is chosen on the
+calibration record: a share of {rate:g} of its windows falls below. Two systems differ: `frequency`
+has bounds of its own, those of diagnostic_updater's FrequencyStatus, and `evidence` has the limits
+that `calibrate` finds on the same record for a budget of {budget:g} false alarms an hour. Three
+abnormal windows of five raise the alarm, 2 s without one clear it, and none is raised in the first
+5 s, by the same code for all; `evidence` raises it at once for a silence that has lasted 0.1 s
+beyond its limit, and for the linker. `evidence` knows who subscribes to what, as after
+`train --graph`; `evidence_no_graph` was trained on bags alone. Events never seen in training are a
+suspicion, not an alarm (`~unknown: warn`).
 
 Figures are means over the seeds, intervals of 95 %. A latency is that of the first alarm raised
 after the onset; where none was raised, it is infinite (–). An alarm that stood at the onset is a
@@ -48,7 +53,8 @@ false one. Blame is counted where an alarm was raised and a source is guilty, an
 that name no suspects. A system with many false alarms finds faults by chance: read the latencies
 together with the false alarms.
 
-All numbers: [{name}.csv]({name}.csv), a row for each system, seed and record.
+The command also writes `{full}/{name}.csv`, a row for each system, seed and record, and
+`{full}/{name}.md`, tables of every quantity for every fault.
 
 ![Scores of the paper's detector](figure2.png)
 ![False alarms and latency](overview.png)
@@ -59,30 +65,32 @@ def write(folder: Path, plan: Plan, results: Results, command: str) -> List[Path
     """Write all files, each whole or not at all; return their names.
 
     Args:
-        folder: exists.
+        folder: exists; gets the page and the plots, and a folder FULL for all numbers.
         plan: what was evaluated.
         results: what was found.
-        command: that the page says it was written by.
+        command: that the pages say they were written by.
 
     Raises:
         OSError: a file cannot be written.
     """
-    paths = [folder / f'{NAME}.csv', folder / f'{NAME}.md', folder / 'figure2.png',
-             folder / 'overview.png']
+    full = folder / FULL
+    full.mkdir(exist_ok=True)
+    paths = [full / f'{NAME}.csv', full / f'{NAME}.md', folder / f'{NAME}.md',
+             folder / 'figure2.png', folder / 'overview.png']
     _save_csv(paths[0], results.rows)
-    with replacing(str(paths[1])) as temporary:
-        Path(temporary).write_text(page(plan, results, command), encoding='utf-8')
-    figures.save_figure2(str(paths[2]), results.traces)
-    figures.save_overview(str(paths[3]), _by_system(_whole(results.rows)),
+    _save_text(paths[1], full_page(plan, results, command))
+    _save_text(paths[2], page(plan, results, command))
+    figures.save_figure2(str(paths[3]), results.traces)
+    figures.save_overview(str(paths[4]), _by_system(_whole(results.rows)),
                           _by_system(results.trade_offs))
     return paths
 
 
 def page(plan: Plan, results: Results, command: str) -> str:
-    """Return the page of tables."""
+    """Return the page that is read: targets, false alarms, latencies and blame."""
     rows = _by_system(_whole(results.rows))
     lines = [_INTRODUCTION.format(
-        command=command, name=NAME, rate=FALSE_POSITIVE_RATE,
+        written=_WRITTEN.format(command=command), name=NAME, full=FULL, rate=FALSE_POSITIVE_RATE,
         seeds=', '.join(str(seed) for seed in plan.seeds),
         names=', '.join(f'`{name}`' for name in NORMAL_NAMES),
         training=len(TRAINING_NAMES), record_s=RECORD_S,
@@ -94,13 +102,36 @@ def page(plan: Plan, results: Results, command: str) -> str:
                   'For cc1, with thresholds from lax to strict, in all normal operation; – where '
                   'none is so fast.', '',
                   *tables.trade_offs(_by_system(results.trade_offs)), '']
-    lines += ['## Every fault', '', *tables.faults(rows), '']
-    few = [row for row in results.rows if row.training_share < 1.0]
+    lines += ['## Alarms', '', 'Records in which the alarm was raised, and its median latency.',
+              '', *tables.alarms(rows), '']
+    lines += ['## Blame', '', 'Alarms that blame a guilty source first / among the first three.',
+              '', *tables.blame(rows), '']
+    few = _by_system(_part(results.rows))
     if few:
-        lines += [f'## With {plan.training_share:.3g} of the training data', '',
-                  'The first part of each record; the calibration is the same.', '',
-                  *tables.targets(_by_system(few)), '', *tables.faults(_by_system(few)), '']
+        lines += [*_few_heading(plan), *tables.targets(few), '']
     return '\n'.join(lines)
+
+
+def full_page(plan: Plan, results: Results, command: str) -> str:
+    """Return the page of a table of every quantity for every fault."""
+    lines = ['# Evaluation in simulated time: all tables', '', _WRITTEN.format(command=command),
+             '', f'What was done, and how to read it: [{NAME}.md](../{NAME}.md). All numbers: '
+             f'[{NAME}.csv]({NAME}.csv).', '',
+             '## With all of the training data', '',
+             *tables.faults(_by_system(_whole(results.rows))), '']
+    few = _by_system(_part(results.rows))
+    if few:
+        lines += [*_few_heading(plan), *tables.faults(few), '']
+    return '\n'.join(lines)
+
+
+def _few_heading(plan: Plan) -> List[str]:
+    return [f'## With {plan.training_share:.3g} of the training data', '',
+            'The first part of each record; the calibration is the same.', '']
+
+
+def _part(rows: Sequence[Row]) -> List[Row]:
+    return [row for row in rows if row.training_share < 1.0]
 
 
 def _whole(rows: Sequence[Row]) -> List[Row]:
@@ -120,3 +151,8 @@ def _save_csv(path: Path, rows: Sequence[Row]) -> None:
             writer = csv.writer(file, lineterminator='\n')
             writer.writerow([field.name for field in fields(Row)])
             writer.writerows(astuple(row) for row in rows)
+
+
+def _save_text(path: Path, text: str) -> None:
+    with replacing(str(path)) as temporary:
+        Path(temporary).write_text(text, encoding='utf-8')

@@ -11,6 +11,9 @@ from self_awareness.evaluation.simulated.tradeoff import TradeOff
 
 RowsBySystem = Dict[str, List[Row]]
 
+Cell = Callable[[Sequence[Row]], str]
+"""What a table says of one system and one fault, by its rows."""
+
 _NONE = '–'
 
 
@@ -27,7 +30,7 @@ def seconds(value: float) -> str:
 class _Target(NamedTuple):
     quantity: str
     target: str
-    measured: Callable[[Sequence[Row]], str]
+    measured: Cell
 
 
 def _of(kind: str, measure: Measure, form: Callable[[float], str]) -> Callable[..., str]:
@@ -51,6 +54,10 @@ def _median(rows: Sequence[Row]) -> float:
     return summary.latency(rows, 0.5)
 
 
+def _noticed_soon(rows: Sequence[Row]) -> float:
+    return summary.noticed(rows, 5.0)
+
+
 def _within(within_s: float) -> Measure:
     return lambda rows: summary.found(rows, within_s)
 
@@ -61,6 +68,8 @@ _TARGETS = (
     _Target('false alarms an hour', '< 1', lambda rows: _false_alarms(summary.normal(rows))),
     _Target('the same, with the time before the faults', '< 1', _false_alarms),
     _Target('suspicions (WARN) or alarms an hour, in all of it', '', _false_suspicions),
+    *(_Target(f'suspicion (WARN) or alarm within 5 s, {kind}', '',
+              _of(kind, _noticed_soon, percent)) for kind in ('extra', 'unknown')),
     *(_Target(f'windows missed after the alarm, {kind}', target,
               _of(kind, summary.missed_after_alarm, percent))
       for kind, target in (('cc1', '0 %'), ('cc2', '0 %'), ('rs', '<= 1 %'))),
@@ -78,9 +87,9 @@ _TARGETS = (
 )
 
 
-class _FaultTable(NamedTuple):
-    title: str
-    cell: Callable[[Sequence[Row]], str]
+def _alarm(rows: Sequence[Row]) -> str:
+    found = summary.found(rows)
+    return f'{percent(found)}, {seconds(_median(rows))}' if found else _NONE
 
 
 def _latencies(rows: Sequence[Row]) -> str:
@@ -95,11 +104,16 @@ def _auc(rows: Sequence[Row]) -> str:
     return f'{summary.auc(rows):.3f}'
 
 
+class _FaultTable(NamedTuple):
+    title: str
+    cell: Cell
+
+
 _FAULT_TABLES = (
     _FaultTable('Records in which the alarm was raised',
                 lambda rows: percent(summary.found(rows))),
     _FaultTable('Records with a suspicion (WARN) or the alarm within 5 s',
-                lambda rows: percent(summary.noticed(rows, 5.0))),
+                lambda rows: percent(_noticed_soon(rows))),
     _FaultTable('Latency: median / 95 %', _latencies),
     _FaultTable('Windows missed after the onset: no alarm stands, and the bare verdict is normal '
                 '(FNR)', lambda rows: percent(summary.missed(rows))),
@@ -122,20 +136,25 @@ def targets(rows: RowsBySystem) -> List[str]:
                   for target in _TARGETS])
 
 
+def alarms(rows: RowsBySystem) -> List[str]:
+    """Return the lines of a table of how many faults were found, and how fast."""
+    return _fault_table(rows, _kinds(rows), _alarm)
+
+
+def blame(rows: RowsBySystem) -> List[str]:
+    """Return the lines of a table of who was blamed; all crashes are one row."""
+    guilty = [kind for kind in _kinds(rows) if not kind.startswith('crash:')
+              and any(row.top1 is not None for of_system in rows.values()
+                      for row in summary.of_fault(of_system, kind))]
+    return _fault_table(rows, guilty, _blame)
+
+
 def faults(rows: RowsBySystem) -> List[str]:
     """Return the lines of a table for every quantity, with a row for every fault."""
-    kinds = list(dict.fromkeys(row.record for of_system in rows.values() for row in of_system
-                               if row.record != NORMAL))
-    if any(kind.startswith('crash:') for kind in kinds):
-        kinds.append('crash')
     lines: List[str] = []
     for fault_table in _FAULT_TABLES:
-        lines += [f'### {fault_table.title}', '']
-        lines += table(['fault', *rows],
-                       [['every crash' if kind == 'crash' else kind,
-                         *(fault_table.cell(summary.of_fault(of_system, kind))
-                           for of_system in rows.values())] for kind in kinds])
-        lines.append('')
+        lines += [f'### {fault_table.title}', '',
+                  *_fault_table(rows, _kinds(rows), fault_table.cell), '']
     return lines[:-1]
 
 
@@ -151,6 +170,22 @@ def trade_offs(by_system: Dict[str, List[TradeOff]]) -> List[str]:
 def table(head: Sequence[str], body: Sequence[Sequence[str]]) -> List[str]:
     """Return the lines of a Markdown table."""
     return [f'| {" | ".join(row)} |' for row in (head, ['---'] * len(head), *body)]
+
+
+def _kinds(rows: RowsBySystem) -> List[str]:
+    """Return the faults that there are rows of, and `crash` for all crashes."""
+    kinds = list(dict.fromkeys(row.record for of_system in rows.values() for row in of_system
+                               if row.record != NORMAL))
+    if any(kind.startswith('crash:') for kind in kinds):
+        kinds.append('crash')
+    return kinds
+
+
+def _fault_table(rows: RowsBySystem, kinds: Sequence[str], cell: Cell) -> List[str]:
+    return table(['fault', *rows],
+                 [['every crash' if kind == 'crash' else kind,
+                   *(cell(summary.of_fault(of_system, kind)) for of_system in rows.values())]
+                  for kind in kinds])
 
 
 def _rate(value: float) -> str:

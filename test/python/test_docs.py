@@ -1,0 +1,110 @@
+"""What the pages point to is there: files, headings, programs and launch files."""
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Iterator, List, Set
+from urllib.parse import unquote
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+PAGES = [ROOT / 'README.md', *sorted((ROOT / 'docs').rglob('*.md'))]
+
+# Written again when the costs are measured again; the test fails as soon as its links are right.
+STALE = ('docs/performance.md',)
+
+# [text](target), also of an image, with an optional "title".
+LINK = re.compile(r'\[[^\]]*\]\(<?([^)\s>]+)>?(?:\s+"[^"]*")?\)')
+HEADING = re.compile(r'^#{1,6}\s+(.*?)\s*#*$')
+
+
+def _name(page: Path) -> str:
+    return str(page.relative_to(ROOT))
+
+
+def _lines(page: Path) -> Iterator[str]:
+    """Return the lines of a page that are no code."""
+    code = False
+    for line in page.read_text(encoding='utf-8').splitlines():
+        if line.startswith('```'):
+            code = not code
+        elif not code:
+            yield line
+
+
+def _links(page: Path) -> List[str]:
+    """Return where the links of a page lead."""
+    return [target for line in _lines(page)
+            for target in LINK.findall(re.sub(r'`[^`]*`', '', line))]
+
+
+def _anchors(page: Path) -> Set[str]:
+    """Return the anchors of a page's headings, as GitHub and GitLab make them."""
+    anchors: Set[str] = set()
+    for line in _lines(page):
+        match = HEADING.match(line)
+        if match is None:
+            continue
+        text = re.sub(r'\[([^\]]*)\]\([^)]*\)', r'\1', match[1])
+        anchor = re.sub(r'[^\w\- ]', '', text.lower()).replace(' ', '-')
+        number = 0
+        while (f'{anchor}-{number}' if number else anchor) in anchors:
+            number += 1
+        anchors.add(f'{anchor}-{number}' if number else anchor)
+    return anchors
+
+
+def _broken(page: Path) -> List[str]:
+    """Return the relative links of a page that lead nowhere."""
+    broken = []
+    for target in _links(page):
+        if re.match(r'[a-z][a-z+.-]*:', target):
+            continue
+        name, _, anchor = unquote(target).partition('#')
+        path = (page.parent / name).resolve() if name else page
+        if not path.exists() or (anchor and anchor not in _anchors(path)):
+            broken.append(target)
+    return broken
+
+
+def _programs() -> Set[str]:
+    """Return what rosrun finds in this package."""
+    found = {path.name for folder in ('nodes', 'scripts') for path in (ROOT / folder).iterdir()
+             if path.read_bytes().startswith(b'#!/usr/bin/python3')}
+    return found | set(re.findall(r'add_executable\((\w+)', (ROOT / 'CMakeLists.txt').read_text()))
+
+
+@pytest.mark.parametrize('page', [
+    pytest.param(page, id=_name(page), marks=pytest.mark.xfail(
+        _name(page) in STALE, strict=True, reason='links to where headers lay before'))
+    for page in PAGES])
+def test_links_lead_somewhere(page: Path) -> None:
+    assert _broken(page) == []
+
+
+@pytest.mark.parametrize('page', PAGES, ids=_name)
+def test_commands_exist(page: Path) -> None:
+    text = page.read_text(encoding='utf-8')
+    assert set(re.findall(r'rosrun\s+self_awareness\s+(\w+)', text)) <= _programs()
+    for name in re.findall(r'roslaunch\s+self_awareness\s+([\w.]+)', text):
+        assert (ROOT / 'launch' / name).is_file(), name
+    for name in re.findall(r'(?<![\w/.])scripts/(\w+(?:\.sh)?)', text):
+        assert (ROOT / 'scripts' / name).is_file(), name
+
+
+def test_every_page_is_linked_to() -> None:
+    linked = {(page.parent / target.partition('#')[0]).resolve()
+              for page in PAGES for target in _links(page)}
+    assert [str(page) for page in PAGES[1:] if page not in linked] == []
+
+
+def test_the_search_finds_broken_links(tmp_path: Path) -> None:
+    (tmp_path / 'there.md').write_text(
+        '# One, `two`\n\n```\n# No heading\n```\n## Again\n## Again\n')
+    page = tmp_path / 'page.md'
+    page.write_text(
+        '# Here\n[a](there.md) [b](there.md#one-two) [c](there.md#again-1) [d](#here)\n'
+        '![e](gone.png) [f](there.md#no-heading) [g](#there) [h](https://a.example/b)\n'
+        '`[i](code.md)`\n```\n[j](code.md)\n```\n')
+    assert _broken(page) == ['gone.png', 'there.md#no-heading', '#there']
