@@ -19,6 +19,7 @@
 #include "core/paper/delay_trainer.h"
 #include "self_awareness/DelayHistograms.h"
 #include "self_awareness/core/evidence/model.h"
+#include "self_awareness/ros/model/model_bytes.h"
 
 namespace self_awareness::ros1 {
 namespace {
