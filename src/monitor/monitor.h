@@ -9,20 +9,21 @@
 #include <std_srvs/Trigger.h>
 
 #include <cstdint>
-#include <map>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "alarm_state.h"
 #include "diagnostics.h"
 #include "discovery.h"
+#include "heard_tally.h"
 #include "parameters.h"
-#include "self_awareness/SelfAwareness.h"
 #include "self_awareness/core/verdict/detector.h"
+#include "self_awareness/ros/graph.h"
 #include "self_awareness/ros/live/clock_watch.h"
 #include "self_awareness/ros/live/live_events.h"
 #include "self_awareness/ros/model/model_file.h"
+#include "session.h"
 
 namespace self_awareness {
 
@@ -49,27 +50,6 @@ class Monitor {
   Monitor& operator=(const Monitor&) = delete;
 
  private:
-  /// What belongs to one loaded model.
-  struct Session {
-    /// @throw std::invalid_argument if the calibration does not fit the model
-    Session(ros1::TrainedModel trained, const MonitorParameters& parameters,
-            core::Detector::Handler handler);
-
-    core::EventId intern(const core::EventType& type);
-    std::unique_ptr<core::Judge> makeJudge(const MonitorParameters& parameters) const;
-
-    ros1::TrainedModel trained;
-    bool calibrated;
-    std::shared_ptr<core::SourceGraph> graph;  // of training, and what the master adds
-    core::Vocabulary vocabulary;  // of the model, followed by unknown event types as they appear
-    std::shared_ptr<const ros1::Encoder> encoder;
-    core::Detector detector;
-  };
-  struct Heard {
-    std::optional<std::int64_t> last;  // [ns]
-    std::uint64_t events = 0;          // since the last report
-  };
-
   void load();
   /// @throw ros1::ModelFileError if the model's calibration does not fit it
   std::unique_ptr<Session> makeSession(ros1::TrainedModel trained);
@@ -100,22 +80,14 @@ class Monitor {
   ros::Publisher alarm_publisher_;
   std::vector<ros::ServiceServer> services_;
   ros::SteadyTimer timer_;
-  ros1::Diagnostics diagnostics_;
+  Diagnostics diagnostics_;
 
   std::string model_error_;
   std::unique_ptr<Session> session_;  // none: no model
   ros1::ClockWatch clock_watch_;
-  self_awareness::SelfAwareness last_;             // verdict on the last window
-  std::vector<self_awareness::Suspect> suspects_;  // of the standing alarm
-  std::int64_t level_since_ = 0;                   // when the level last changed [ns]
-  std::shared_ptr<const ros1::Graph> graph_;       // the newest that was taken over
-  std::map<std::string, Heard> components_;        // of the model
-  std::vector<Heard*> component_of_;               // by event id of the model
-  std::uint64_t events_ = 0;                       // since the last report
-  std::uint64_t clock_steps_ = 0;
-  std::uint64_t reported_drops_ = 0;
-  ros::SteadyTime last_report_;
-  ros::WallDuration processing_;  // since the last report
+  AlarmState alarm_;
+  HeardTally heard_;
+  std::shared_ptr<const ros1::Graph> graph_;  // the newest that was taken over
 
   std::unique_ptr<ros1::LiveEvents> live_events_;
   std::unique_ptr<Discovery> discovery_;
