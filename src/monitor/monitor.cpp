@@ -60,8 +60,9 @@ Monitor::Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& priv
       std::make_unique<ros1::LiveEvents>(node_handle_, parameters_.queue_size, handlers);
   timer_ = private_node_handle_.createSteadyTimer(tickFor(core::kDefaultWindow), &Monitor::onTick,
                                                   this);
-  discovery_ = std::make_unique<Discovery>(*live_events_, parameters_.subscribe,
-                                           parameters_.poll_interval, service_names);
+  discovery_ =
+      std::make_unique<Discovery>(node_handle_, live_events_->arrivals(), parameters_.subscribe,
+                                  parameters_.poll_interval, service_names);
   try {
     load();
   } catch (const ros1::ModelFileError& error) {
@@ -156,8 +157,7 @@ void Monitor::onTick(const ros::SteadyTimerEvent& /*tick*/) {
 std::int64_t Monitor::watchClock() {
   const std::int64_t now = rosNow();
   const bool set = clock_watch_.look(now, steadyNow(), ros::Time::isSimTime());
-  if (set && session_ &&
-      session_->detector().started()) {  // else there is nothing to start afresh
+  if (set && session_ && session_->detector().started()) {  // else there is nothing to forget
     restart();
   }
   return now;
