@@ -66,7 +66,7 @@ Monitor::Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& priv
   try {
     load();
   } catch (const ros1::ModelFileError& error) {
-    // Not fatal: the operator sees it in the diagnostics, and ~reload mends it.
+    // Not fatal: the operator sees it in the diagnostics, and ~reload tries again.
     model_error_ = error.what();
     ROS_ERROR("%s", error.what());
   }

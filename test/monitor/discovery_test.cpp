@@ -87,7 +87,7 @@ TEST_F(DiscoveryTest, TellsOfAPublisherThatRegistersLaterOnce) {
   EXPECT_TRUE(discovery->takeNewPublishers().empty());
 }
 
-TEST_F(DiscoveryTest, CountsAfreshAfterARestart) {
+TEST_F(DiscoveryTest, PublishersThatItFindsAfterARestartAreNotNew) {
   const auto discovery = discover();
   discovery->setWanted(wanted_);
   ASSERT_TRUE(await([&] { return discovery->state().subscriptions == 2; }));
