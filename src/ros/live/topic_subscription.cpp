@@ -45,14 +45,14 @@ TopicSubscription::TopicSubscription(const ros::NodeHandle& node_handle, Arrival
 TopicSubscription::~TopicSubscription() = default;
 
 void TopicSubscription::adaptReading() {
-  if (counting_ == newest_) {
+  if (handover_.complete()) {
     subscribers_.erase(subscribers_.begin(), std::prev(subscribers_.end()));
   }
   const bool wanted = topic_->content_wanted;
   if (wanted != reads_content_) {
     reads_content_ = wanted;
-    subscribers_.push_back(subscribe(newest_ + 1, wanted));
-    ++newest_;  // not before it is sure to get each message
+    subscribers_.push_back(subscribe(handover_.newest() + 1, wanted));
+    handover_.ready();
   }
 }
 
@@ -66,7 +66,7 @@ ros::Subscriber TopicSubscription::subscribe(int number) {
   ros::SubscribeOptions options;
   options.template initByFullCallbackType<const Event&>(
       topic_->name, 1, [this, number](const Event& event) {
-        if (counts(number)) {
+        if (handover_.counts(number)) {
           arrivals_.add({topic_, event.getConnectionHeaderPtr(),
                          static_cast<std::int64_t>(event.getReceiptTime().toNSec()),
                          contentOf(event)});
@@ -75,15 +75,6 @@ ros::Subscriber TopicSubscription::subscribe(int number) {
   options.callback_queue = queue_.get();
   options.transport_hints = ros::TransportHints().tcpNoDelay();
   return node_handle_.subscribe(options);
-}
-
-// A new subscription to a latching connection gets the last message again, the older one does not:
-// that one must not hand over.
-bool TopicSubscription::counts(int number) {
-  if (number == counting_) {
-    counting_ = newest_.load();
-  }
-  return number == counting_;
 }
 
 }  // namespace self_awareness::ros1

@@ -4,11 +4,11 @@
 #include <ros/node_handle.h>
 #include <ros/subscriber.h>
 
-#include <atomic>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "handover.h"
 #include "self_awareness/ros/live/arrivals.h"
 
 namespace self_awareness::ros1 {
@@ -22,8 +22,7 @@ namespace self_awareness::ros1 {
 ///
 /// When the other kind is wanted, a new subscription is made before the old one ends: roscpp keeps
 /// the connection, and no message is lost. While there are both, each message reaches first the
-/// older one, then the newer one, before the next message comes. So the older one hands over, and
-/// the newer one is the first to count that message.
+/// older one, then the newer one, before the next message comes (Handover).
 class TopicSubscription {
  public:
   /// Reads content at first: whether it is wanted is known when the first message has told the
@@ -46,18 +45,13 @@ class TopicSubscription {
   ros::Subscriber subscribe(int number, bool content);
   template <typename Message>
   ros::Subscriber subscribe(int number);
-  bool counts(int number);
 
   ros::NodeHandle node_handle_;
   Arrivals& arrivals_;
   const std::shared_ptr<Arrival::Topic> topic_;
   const std::unique_ptr<ImmediateQueue> queue_;
   bool reads_content_ = true;  // the newest subscription
-
-  // Subscriptions are numbered in turn.
-  std::atomic<int> counting_{0};  // whose messages count; changed by the receiving thread
-  std::atomic<int> newest_{0};
-
+  Handover handover_;
   std::vector<ros::Subscriber> subscribers_;  // the newest last
 };
 
