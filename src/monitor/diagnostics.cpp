@@ -4,8 +4,9 @@
 #include <cmath>
 
 #include "self_awareness/core/stream/event.h"
+#include "verdict_message.h"
 
-namespace self_awareness::ros1 {
+namespace self_awareness {
 namespace {
 
 using diagnostic_msgs::DiagnosticStatus;
@@ -20,11 +21,6 @@ std::string number(double value) {
 }
 
 }  // namespace
-
-std::string describe(const self_awareness::Suspect& suspect) {
-  return (suspect.source.empty() ? "" : suspect.source + " on ") + suspect.scope + ": " +
-         suspect.reason;
-}
 
 Diagnostics::Diagnostics(const ros::NodeHandle& node_handle,
                          const ros::NodeHandle& private_node_handle, const std::string& name,
@@ -45,7 +41,7 @@ void Diagnostics::publish(const MonitorState& state) {
 void Diagnostics::updateComponents() {
   std::vector<std::string> names;
   if (component_statuses_) {
-    for (const auto& [name, component] : state_.components) {
+    for (const auto& [name, component] : state_.heard.components) {
       names.push_back(name);
     }
   }
@@ -88,7 +84,7 @@ void Diagnostics::communication(Status& status) const {
 }
 
 void Diagnostics::component(const std::string& name, Status& status) const {
-  const MonitorState::Component& component = state_.components.at(name);
+  const HeardReport::Component& component = state_.heard.components.at(name);
   status.summary(DiagnosticStatus::OK, component.last_heard ? "heard" : "not heard yet");
   const std::vector<self_awareness::Suspect>& suspects = state_.last.suspects;
   for (std::size_t i = 0; i < suspects.size() && state_.last.level != DiagnosticStatus::OK; ++i) {
@@ -112,16 +108,16 @@ void Diagnostics::monitor(Status& status) const {
   if (!state_.master_answers) {
     status.mergeSummary(DiagnosticStatus::WARN, "the master does not answer");
   }
-  if (state_.newly_dropped > 0) {
+  if (state_.heard.newly_dropped > 0) {
     status.mergeSummary(DiagnosticStatus::WARN,
-                        std::to_string(state_.newly_dropped) + " messages were dropped");
+                        std::to_string(state_.heard.newly_dropped) + " messages were dropped");
   }
-  status.add("events a second", number(state_.rate));
-  status.add("dropped messages", state_.dropped);
+  status.add("events a second", number(state_.heard.rate));
+  status.add("dropped messages", state_.heard.dropped);
   status.add("subscriptions", state_.subscriptions);
   status.add("publishers heard", state_.connections);
-  status.add("share of a core spent", number(state_.processing_share));
-  status.add("times the clock was set", state_.clock_steps);
+  status.add("share of a core spent", number(state_.heard.processing_share));
+  status.add("times the clock was set", state_.heard.clock_steps);
 }
 
-}  // namespace self_awareness::ros1
+}  // namespace self_awareness

@@ -3,42 +3,26 @@
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/node_handle.h>
 
-#include <cstdint>
-#include <map>
-#include <memory>
-#include <optional>
+#include <cstddef>
 #include <string>
 #include <vector>
 
+#include "heard_tally.h"
 #include "self_awareness/SelfAwareness.h"
 
-namespace self_awareness::ros1 {
-
-/// "SOURCE on SCOPE: REASON", without the source where the encoding leaves it out.
-std::string describe(const self_awareness::Suspect& suspect);
+namespace self_awareness {
 
 /// What the diagnostics tell; filled in by the monitor, worded by Diagnostics.
 struct MonitorState {
-  struct Component {
-    std::optional<double> last_heard;  ///< seconds ago; none: not since the start
-    double rate = 0;                   ///< events a second, since the last report
-  };
-
   std::string model;        ///< path
   std::string model_error;  ///< why there is none; empty: it is loaded
   bool calibrated = false;
-  bool started = false;                         ///< an event has come
-  self_awareness::SelfAwareness last;           ///< the verdict on the last window, if started
-  double level_for = 0;                         ///< how long it has had its level [s]
-  std::map<std::string, Component> components;  ///< by core::componentOf()
-
-  double rate = 0;              ///< events a second, since the last report
-  double processing_share = 0;  ///< share of one core spent on events and windows, 0 to 1
+  bool started = false;                ///< something was said of a window
+  self_awareness::SelfAwareness last;  ///< the verdict on the last window, if started
+  double level_for = 0;                ///< how long it has had its level [s]
+  HeardReport heard;
   std::size_t subscriptions = 0;
   std::size_t connections = 0;
-  std::uint64_t dropped = 0;        ///< messages, since the start
-  std::uint64_t newly_dropped = 0;  ///< messages, since the last report
-  std::uint64_t clock_steps = 0;    ///< since the start
   bool master_answers = true;
 };
 
@@ -70,4 +54,4 @@ class Diagnostics {
   diagnostic_updater::Updater updater_;
 };
 
-}  // namespace self_awareness::ros1
+}  // namespace self_awareness

@@ -15,81 +15,80 @@ constexpr std::chrono::seconds kPatience(5);
 
 }  // namespace
 
-Discovery::Discovery(ros1::LiveEvents& live_events, ros1::SubscribePolicy policy, double interval,
+Discovery::Discovery(const ros::NodeHandle& node_handle, ros1::Arrivals& arrivals,
+                     ros1::SubscribePolicy policy, double interval,
                      std::vector<std::string> services)
-    : live_events_(live_events),
-      policy_(policy),
+    : policy_(policy),
       interval_(interval),
       registration_(std::move(services)),
+      subscriptions_(node_handle, arrivals),
       thread_([this] { run(); }) {}
 
 Discovery::~Discovery() {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    stopping_ = true;
-  }
+  shared_.lock()->stopping = true;
   wake_.notify_all();
   thread_.join();
 }
 
 void Discovery::setWanted(Wanted wanted) {
   {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    wanted_ = std::move(wanted);
-    restart_ = true;
-    poll_now_ = true;
+    const auto shared = shared_.lock();
+    shared->wanted = std::move(wanted);
+    shared->restart = true;
+    shared->poll_now = true;
   }
   wake_.notify_all();
 }
 
 void Discovery::restart() {
   {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    restart_ = true;
-    poll_now_ = true;
+    const auto shared = shared_.lock();
+    shared->restart = true;
+    shared->poll_now = true;
   }
   wake_.notify_all();
 }
 
 void Discovery::pollNow() {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    poll_now_ = true;
-  }
+  shared_.lock()->poll_now = true;
   wake_.notify_all();
 }
 
 Discovery::State Discovery::state() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  State state = state_;
-  if (asked_at_ && std::chrono::steady_clock::now() - *asked_at_ > kPatience) {
+  const auto shared = shared_.lock();
+  State state = shared->state;
+  if (shared->asked_at && std::chrono::steady_clock::now() - *shared->asked_at > kPatience) {
     state.master_answers = false;
   }
   return state;
 }
 
 std::vector<ros1::Publisher> Discovery::takeNewPublishers() {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return std::exchange(new_publishers_, {});
+  return std::exchange(shared_.lock()->new_publishers, {});
 }
 
 void Discovery::run() {
-  std::unique_lock<std::mutex> lock(mutex_);
-  while (!stopping_) {
-    poll_now_ = false;
-    const bool restart = std::exchange(restart_, false);
-    const Wanted wanted = wanted_;
-    asked_at_ = std::chrono::steady_clock::now();
-    lock.unlock();
-    poll(wanted, restart);
-    lock.lock();
-    asked_at_.reset();
-    wake_.wait_for(lock, interval_, [this] { return stopping_ || poll_now_; });
+  while (const std::optional<Poll> next = awaitPoll()) {
+    poll(*next);
+    shared_.lock()->asked_at.reset();
   }
 }
 
-void Discovery::poll(const Wanted& wanted, bool restart) {
-  if (restart) {
+std::optional<Discovery::Poll> Discovery::awaitPoll() {
+  auto shared = shared_.lock();
+  shared.waitFor(wake_, interval_, [](const Shared& now) { return now.stopping || now.poll_now; });
+  if (shared->stopping) {
+    return std::nullopt;
+  }
+  shared->poll_now = false;
+  shared->asked_at = std::chrono::steady_clock::now();
+  return Poll{shared->wanted, std::exchange(shared->restart, false)};
+}
+
+void Discovery::poll(const Poll& poll) {
+  const Wanted& wanted = poll.wanted;
+  subscriptions_.adaptReading();  // at once, whether the master answers or not
+  if (poll.restart) {
     publishers_.restart();
   }
   State state;
@@ -100,7 +99,7 @@ void Discovery::poll(const Wanted& wanted, bool restart) {
   if (state.master_answers) {
     if (master == ros1::MasterRegistration::Master::kRestarted) {
       ROS_WARN("the master was restarted: registered all topics and services again");
-      live_events_.renew(*graph);
+      subscriptions_.renew(*graph);
     }
     std::set<std::string> topics;
     if (wanted.encoder) {
@@ -109,7 +108,7 @@ void Discovery::poll(const Wanted& wanted, bool restart) {
           [&](const std::string& topic) { return wanted.encoder->includesTopic(topic); },
           ros::this_node::getName());
     }
-    live_events_.setTopics(topics, *graph);
+    subscriptions_.setTopics(topics, *graph);
     state.subscriptions = topics.size();
     if (wanted.encoder) {
       new_publishers =
@@ -120,15 +119,16 @@ void Discovery::poll(const Wanted& wanted, bool restart) {
     }
     state.graph = std::make_shared<const ros1::Graph>(std::move(*graph));
   }
-  const std::lock_guard<std::mutex> lock(mutex_);
+  const auto shared = shared_.lock();
   if (!state.master_answers) {
-    state.subscriptions = state_.subscriptions;
+    state.subscriptions = shared->state.subscriptions;
   }
-  if (!state.graph || (state_.graph && *state.graph == *state_.graph)) {
-    state.graph = state_.graph;  // whoever looks at it need not look again
+  if (!state.graph || (shared->state.graph && *state.graph == *shared->state.graph)) {
+    state.graph = shared->state.graph;  // its users see that nothing changed
   }
-  state_ = state;
-  new_publishers_.insert(new_publishers_.end(), new_publishers.begin(), new_publishers.end());
+  shared->state = state;
+  shared->new_publishers.insert(shared->new_publishers.end(), new_publishers.begin(),
+                                new_publishers.end());
 }
 
 }  // namespace self_awareness

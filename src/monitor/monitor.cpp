@@ -3,15 +3,11 @@
 #include <ros/console.h>
 #include <ros/this_node.h>
 
-#include <algorithm>
-#include <limits>
-#include <set>
 #include <stdexcept>
 #include <utility>
 
-#include "self_awareness/core/evidence/judge.h"
-#include "self_awareness/core/paper/judge.h"
-#include "verdict_message.h"
+#include "self_awareness/SelfAwareness.h"
+#include "self_awareness/core/stream/event.h"
 
 namespace self_awareness {
 namespace {
@@ -19,13 +15,6 @@ namespace {
 // Messages that came before a window's end may wait in the queue for this long when it is closed.
 constexpr std::int64_t kGrace = 20000000;  // [ns]
 constexpr int kTicksPerWindow = 4;
-constexpr std::size_t kMostUnknownTypes = 1000;
-
-ros::Time toRosTime(std::int64_t nanoseconds) {
-  ros::Time time;
-  time.fromNSec(static_cast<std::uint64_t>(std::max<std::int64_t>(nanoseconds, 0)));
-  return time;
-}
 
 ros::WallDuration tickFor(std::int64_t window) {
   return ros::WallDuration(core::toSeconds(window) / kTicksPerWindow);
@@ -41,43 +30,6 @@ std::int64_t steadyNow() {
 
 }  // namespace
 
-Monitor::Session::Session(ros1::TrainedModel trained_model, const MonitorParameters& parameters,
-                          core::Detector::Handler handler)
-    : trained(std::move(trained_model)),
-      calibrated(parameters.method == MonitorParameters::Method::kPaper
-                     ? trained.calibration.has_value()
-                     : trained.evidence_calibration.has_value()),
-      graph(std::make_shared<core::SourceGraph>(trained.graph)),
-      vocabulary(trained.vocabulary()),
-      encoder(std::make_shared<ros1::Encoder>(
-          trained.encoding, [this](const core::EventType& type) { return intern(type); })),
-      detector(makeJudge(parameters), trained.window, parameters.detector, std::move(handler)) {
-  // The judge has made of them what it needs.
-  trained.dropCounts();
-  trained.watched = {};
-}
-
-std::unique_ptr<core::Judge> Monitor::Session::makeJudge(
-    const MonitorParameters& parameters) const {
-  if (parameters.method == MonitorParameters::Method::kPaper) {
-    trained.requireDelays();
-    return core::paper::makeJudge(std::make_shared<core::paper::Model>(trained.statistics),
-                                  trained.threshold(), parameters.detector.silence_is_abnormal);
-  }
-  trained.requireWatched();
-  return core::evidence::makeJudge(std::make_shared<core::evidence::Model>(trained.watched),
-                                   trained.limits(), trained.window, graph);
-}
-
-// A type field with ever new values must not fill the memory of a robot that runs for months.
-core::EventId Monitor::Session::intern(const core::EventType& type) {
-  const std::size_t known = trained.vocabulary().size();
-  if (!vocabulary.find(type) && vocabulary.size() >= known + kMostUnknownTypes) {
-    return vocabulary.intern({"", "(further topics)", "(further unknown events)"});
-  }
-  return vocabulary.intern(type);
-}
-
 Monitor::Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& private_node_handle,
                  const std::string& name)
     : node_handle_(node_handle),
@@ -85,7 +37,7 @@ Monitor::Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& priv
       parameters_(MonitorParameters::load(private_node_handle)),
       diagnostics_(node_handle, private_node_handle, name, parameters_.hardware_id,
                    parameters_.source_diagnostics),
-      last_report_(ros::SteadyTime::now()),
+      heard_(steadyNow()),
       spinner_(1, &queue_) {
   node_handle_.setCallbackQueue(&queue_);
   private_node_handle_.setCallbackQueue(&queue_);
@@ -108,12 +60,13 @@ Monitor::Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& priv
       std::make_unique<ros1::LiveEvents>(node_handle_, parameters_.queue_size, handlers);
   timer_ = private_node_handle_.createSteadyTimer(tickFor(core::kDefaultWindow), &Monitor::onTick,
                                                   this);
-  discovery_ = std::make_unique<Discovery>(*live_events_, parameters_.subscribe,
-                                           parameters_.poll_interval, service_names);
+  discovery_ =
+      std::make_unique<Discovery>(node_handle_, live_events_->arrivals(), parameters_.subscribe,
+                                  parameters_.poll_interval, service_names);
   try {
     load();
   } catch (const ros1::ModelFileError& error) {
-    // Not fatal: the operator sees it in the diagnostics, and ~reload mends it.
+    // Not fatal: the operator sees it in the diagnostics, and ~reload tries again.
     model_error_ = error.what();
     ROS_ERROR("%s", error.what());
   }
@@ -137,7 +90,7 @@ void Monitor::load() {
                                              : ros1::ModelCounts::kWatched));
 }
 
-std::unique_ptr<Monitor::Session> Monitor::makeSession(ros1::TrainedModel trained) {
+std::unique_ptr<Session> Monitor::makeSession(ros1::TrainedModel trained) {
   try {
     return std::make_unique<Session>(std::move(trained), parameters_,
                                      [this](const core::Verdict& verdict) { onVerdict(verdict); });
@@ -149,69 +102,53 @@ std::unique_ptr<Monitor::Session> Monitor::makeSession(ros1::TrainedModel traine
 void Monitor::startSession(ros1::TrainedModel trained) {
   session_ = makeSession(std::move(trained));
   model_error_.clear();
-  // Whatever was said of a window was the old model's; an alarm stands until standDown() says that
-  // it does not.
-  const auto level = last_.level;
-  last_ = {};
-  last_.level = level;
+  alarm_.forgetWindow();
+  heard_.setTypes(session_->types());
   graph_.reset();
-  timer_.setPeriod(tickFor(session_->trained.window));
-  components_.clear();
-  component_of_.clear();
+  timer_.setPeriod(tickFor(session_->window()));
   Discovery::Wanted wanted;
-  wanted.encoder = session_->encoder;
-  std::set<std::string> own_topics;
-  for (const core::EventType& type : session_->trained.vocabulary().types()) {
-    wanted.model_topics.insert(type.scope);
-    if (type.source == ros::this_node::getName()) {
-      own_topics.insert(type.scope);
-    }
-    component_of_.push_back(&components_[core::componentOf(type.source, type.scope)]);
-  }
-  wanted.own_output = ros1::OwnOutput(ros::this_node::getName(), std::move(own_topics));
-  live_events_->setEncoder(session_->encoder, wanted.own_output, session_->trained.window);
+  wanted.model_topics = session_->topics();
+  wanted.encoder = session_->encoder();
+  wanted.own_output = session_->ownOutput(ros::this_node::getName());
+  live_events_->setEncoder(session_->encoder(), wanted.own_output, session_->window());
   discovery_->setWanted(std::move(wanted));
   ROS_INFO("model %s: %zu event types of %zu components, %s", parameters_.model.c_str(),
-           component_of_.size(), components_.size(),
-           session_->calibrated ? "calibrated" : "not calibrated, it will never alarm");
+           session_->types().size(), heard_.components(),
+           session_->calibrated() ? "calibrated" : "not calibrated, it will never alarm");
 }
 
 void Monitor::onArrivals() {
-  const ros::WallTime begin = ros::WallTime::now();
+  const std::int64_t begin = steadyNow();
   watchClock();
   live_events_->deliver();
-  processing_ += ros::WallTime::now() - begin;
+  heard_.addProcessing(steadyNow() - begin);
 }
 
 void Monitor::onEvent(const core::Event& event) {
   if (clock_watch_.isStale(event.stamp)) {
     return;
   }
-  if (event.id < component_of_.size()) {
-    component_of_[event.id]->last = event.stamp;
-    ++component_of_[event.id]->events;
-  }
-  ++events_;
-  if (!session_->detector.add(event)) {
+  heard_.add(event);
+  if (!session_->detector().add(event)) {
     restart();
-    session_->detector.add(event);
+    session_->detector().add(event);
   }
 }
 
 void Monitor::onTick(const ros::SteadyTimerEvent& /*tick*/) {
-  const ros::WallTime begin = ros::WallTime::now();
+  const std::int64_t begin = steadyNow();
   const std::int64_t now = watchClock();
   live_events_->deliver();
   if (session_) {
     for (const ros1::Publisher& publisher : discovery_->takeNewPublishers()) {
       ROS_INFO("settling: %s began to publish %s", publisher.source.c_str(),
                publisher.topic.c_str());
-      session_->detector.settle(now);
+      session_->detector().settle(now);
     }
-    session_->detector.advance(now - kGrace);
+    session_->detector().advance(now - kGrace);
   }
-  processing_ += ros::WallTime::now() - begin;
-  if ((ros::SteadyTime::now() - last_report_).toSec() >= diagnostics_.period()) {
+  heard_.addProcessing(steadyNow() - begin);
+  if (heard_.sinceReport(steadyNow()) >= diagnostics_.period()) {
     live_events_->forgetClosedConnections();
     publishDiagnostics();
   }
@@ -220,118 +157,68 @@ void Monitor::onTick(const ros::SteadyTimerEvent& /*tick*/) {
 std::int64_t Monitor::watchClock() {
   const std::int64_t now = rosNow();
   const bool set = clock_watch_.look(now, steadyNow(), ros::Time::isSimTime());
-  if (set && session_ && session_->detector.started()) {  // else there is nothing to start afresh
+  if (set && session_ && session_->detector().started()) {  // else there is nothing to forget
     restart();
   }
   return now;
 }
 
 void Monitor::restart() {
-  ++clock_steps_;
   ROS_WARN("ROS time was set: delays and windows start afresh");
-  session_->detector.restart();
-  for (auto& [name, heard] : components_) {
-    heard.last.reset();
-  }
+  session_->detector().restart();
+  heard_.onClockStep();
   standDown("settling: ROS time was set");
 }
 
 void Monitor::onVerdict(const core::Verdict& verdict) {
-  const std::int64_t end = verdict.window->start + session_->trained.window;
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  if (!verdict.suspects.empty() || !(verdict.alarm || verdict.suspicion)) {
-    suspects_ = toMessages(verdict.suspects, session_->vocabulary);
-  }
-  if (verdict.changed) {
-    level_since_ = end;
-  }
-  last_.header.stamp = toRosTime(end);
-  last_.level = levelOf(verdict);
-  if (!verdict.evidence.empty() || last_.level == self_awareness::SelfAwareness::OK) {
-    last_.evidence = verdict.evidence;
-  }
-  last_.message = wording(verdict, last_.evidence, suspects_);
-  last_.window_start = toRosTime(verdict.window->start);
-  last_.window.fromNSec(session_->trained.window);
-  last_.score = verdict.score.value_or(kNone);
-  last_.threshold = verdict.threshold.value_or(kNone);
-  last_.abnormal = verdict.abnormal && !verdict.settling;
-  last_.settling = verdict.settling;
-  last_.events = static_cast<std::uint32_t>(verdict.window->events.size());
-  last_.unknown_events = static_cast<std::uint32_t>(verdict.window->unknown());
-  last_.suspects = suspects_;
-  status_publisher_.publish(last_);
+  alarm_.add(verdict, session_->vocabulary(), session_->window());
+  const self_awareness::SelfAwareness& said = alarm_.message();
+  status_publisher_.publish(said);
   if (verdict.changed) {
     if (verdict.alarm) {
-      ROS_ERROR("%s", last_.message.c_str());
+      ROS_ERROR("%s", said.message.c_str());
     } else if (verdict.suspicion) {
-      ROS_WARN("%s", last_.message.c_str());
+      ROS_WARN("%s", said.message.c_str());
     } else {
-      ROS_INFO("%s", last_.message.c_str());
+      ROS_INFO("%s", said.message.c_str());
     }
-    alarm_publisher_.publish(last_);
+    alarm_publisher_.publish(said);
     publishDiagnostics();
   }
 }
 
 void Monitor::standDown(const std::string& message) {
-  const bool stood = last_.level != self_awareness::SelfAwareness::OK;
-  suspects_.clear();
-  last_.level = self_awareness::SelfAwareness::OK;
-  last_.message = message;
-  last_.abnormal = false;
-  last_.suspects.clear();
-  last_.evidence.clear();
-  last_.header.stamp = ros::Time::now();
-  if (stood) {
+  if (alarm_.standDown(message, rosNow())) {
     ROS_INFO("%s", message.c_str());
-    alarm_publisher_.publish(last_);
+    alarm_publisher_.publish(alarm_.message());
   }
   publishDiagnostics();
 }
 
-// Whoever was killed, or has gone since, is still upstream of its victims: edges are added only.
 void Monitor::refreshGraph(const std::shared_ptr<const ros1::Graph>& graph) {
   if (!session_ || !graph || graph == graph_) {
     return;
   }
   graph_ = graph;
-  ros1::addEdges(*graph, ros::this_node::getName(), *session_->graph);
+  session_->addEdges(*graph, ros::this_node::getName());
 }
 
 void Monitor::publishDiagnostics() {
-  const ros::SteadyTime now = ros::SteadyTime::now();
-  const double elapsed = std::max((now - last_report_).toSec(), 1e-3);
   const Discovery::State discovered = discovery_->state();
   refreshGraph(discovered.graph);
-  ros1::MonitorState state;
+  const std::int64_t now = rosNow();
+  MonitorState state;
   state.model = parameters_.model;
   state.model_error = model_error_;
-  state.calibrated = session_ && session_->calibrated;
-  state.started = session_ && !last_.message.empty();
-  state.last = last_;
-  state.level_for = core::toSeconds(rosNow() - level_since_);
-  for (auto& [name, heard] : components_) {
-    ros1::MonitorState::Component& component = state.components[name];
-    if (heard.last) {
-      component.last_heard = core::toSeconds(rosNow() - *heard.last);
-    }
-    component.rate = static_cast<double>(heard.events) / elapsed;
-    heard.events = 0;
-  }
-  state.rate = static_cast<double>(events_) / elapsed;
-  state.processing_share = processing_.toSec() / elapsed;
+  state.calibrated = session_ && session_->calibrated();
+  state.started = session_ && alarm_.spoken();
+  state.last = alarm_.message();
+  state.level_for = alarm_.standsFor(now);
+  state.heard = heard_.report(now, steadyNow(), live_events_->dropped());
   state.subscriptions = discovered.subscriptions;
   state.connections = live_events_->connections();
-  state.dropped = live_events_->dropped();
-  state.newly_dropped = state.dropped - reported_drops_;
-  state.clock_steps = clock_steps_;
   state.master_answers = discovered.master_answers;
   diagnostics_.publish(state);
-  events_ = 0;
-  processing_ = {};
-  reported_drops_ = state.dropped;
-  last_report_ = now;
 }
 
 bool Monitor::onReset(std_srvs::Trigger::Request& /*request*/,
@@ -339,7 +226,7 @@ bool Monitor::onReset(std_srvs::Trigger::Request& /*request*/,
   response.success = session_ != nullptr;
   response.message = session_ ? "delays, windows and the alarm start afresh" : model_error_;
   if (session_) {
-    session_->detector.restart();
+    session_->detector().restart();
     discovery_->restart();
     standDown("settling: reset");
   }
@@ -348,11 +235,11 @@ bool Monitor::onReset(std_srvs::Trigger::Request& /*request*/,
 
 bool Monitor::onClear(std_srvs::Trigger::Request& /*request*/,
                       std_srvs::Trigger::Response& response) {
-  const bool stood = last_.level != self_awareness::SelfAwareness::OK;
+  const bool stood = alarm_.stands();
   response.success = true;
   response.message = stood ? "the alarm is cleared" : "there is no alarm";
   if (stood) {
-    session_->detector.clearAlarm();
+    session_->detector().clearAlarm();
     standDown("cleared by hand");
   }
   return true;

@@ -9,35 +9,75 @@
 #include <std_srvs/Trigger.h>
 
 #include <cstdint>
-#include <map>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "alarm_state.h"
 #include "diagnostics.h"
 #include "discovery.h"
+#include "heard_tally.h"
 #include "parameters.h"
-#include "self_awareness/SelfAwareness.h"
 #include "self_awareness/core/verdict/detector.h"
+#include "self_awareness/ros/graph.h"
 #include "self_awareness/ros/live/clock_watch.h"
 #include "self_awareness/ros/live/live_events.h"
 #include "self_awareness/ros/model/model_file.h"
+#include "session.h"
 
 namespace self_awareness {
 
 /// Listens to a robot's communication and raises an alarm when it is not what training has seen.
 ///
-/// Subscribes: all topics of the model and others by ~subscribe, of any type.
-/// Publishes: ~status (SelfAwareness, one a window), ~alarm (SelfAwareness, latched, on every
-/// change
-///   of level), /diagnostics.
-/// Services (std_srvs/Trigger): ~reset (delays, windows and alarm start afresh), ~clear (the alarm
-///   only), ~reload (reads ~model again; keeps the old one where that fails).
-/// Parameters: MonitorParameters.
+/// **Parameters**, all private. They are read and checked at the start: one that is out of range
+/// ends the node (a nodelet is not loaded), one that is unknown is a warning.
+/// config/self_awareness.yaml explains more.
+/// - `~model` (string; default: none): path of the model file, by `train` and `calibrate`. It also
+///   holds what an event is, the length of the windows and the limits.
+/// - `~detector` (string; default: evidence; evidence or paper): what judges the windows: overdue
+///   events, rates, delays and answers, each with a limit of its own; or the score of the paper.
+/// - `~unknown` (string; default: warn; ignore, warn or error): what events are that training
+///   never saw: nothing, a suspicion, or an alarm at once.
+/// - `~settle_time` (double, s; default: 5.0; at least 0): time without alarms after the first
+///   message since the start, `~reset` or `~reload`, after a publisher registers for the first
+///   time since then, and after ROS time was set.
+/// - `~alarm_windows` (int; default: 3; 1 to `~alarm_of`): number of abnormal windows that raises
+///   an alarm; fewer are a suspicion.
+/// - `~alarm_of` (int; default: 5; at least 1): number of windows among which they are counted.
+/// - `~hold_time` (double, s; default: 2.0; at least 0): time without an abnormal window after
+///   which an alarm or a suspicion ends.
+/// - `~silence` (string; default: abnormal; abnormal or ignored): with `~detector` paper, what a
+///   window without events is.
+/// - `~subscribe` (string; default: used; used, all or model): topics to listen to besides those
+///   of the model: what another node listens to, what is published, or none. To listen may wake
+///   publishers that work only while somebody listens.
+/// - `~poll_interval` (double, s; default: 1.0; at least 0.01): time between two questions to the
+///   master about who publishes and who listens (steady time).
+/// - `~queue_size` (int, messages; default: 1000; at least 1): how many a topic may have waiting;
+///   what comes then is dropped, and counted in the diagnostics.
+/// - `~source_diagnostics` (bool; default: true): one status for every source of the model.
+/// - `~hardware_id` (string; default: none): of the diagnostics.
+/// - `~diagnostic_period` (double, s; default: 1.0): time between two reports on /diagnostics
+///   (steady time); a change of the level is reported at once.
 ///
-/// Threads: messages, windows, services and diagnostics are served by one thread through a queue
-/// of its own; what may block on the network is Discovery's. Nothing else is shared.
+/// **Subscribed topics**: those of the model and others by `~subscribe`, of any type.
+///
+/// **Published topics**
+/// - `~status` (self_awareness/SelfAwareness): the verdict on each window.
+/// - `~alarm` (self_awareness/SelfAwareness): latched; each change of the level.
+/// - `/diagnostics` (diagnostic_msgs/DiagnosticArray): one status for the whole, one for every
+///   source, one for the monitor itself.
+///
+/// **Services**
+/// - `~reset` (std_srvs/Trigger): delays, windows and the alarm start from the beginning.
+/// - `~clear` (std_srvs/Trigger): ends the alarm and forgets the windows that led to it; delays go
+///   on.
+/// - `~reload` (std_srvs/Trigger): reads the file `~model` again, and keeps the old model where
+///   that fails.
+///
+/// **Threads**: one thread serves messages, windows, services and diagnostics through a queue of
+/// its own. What may block on the network is done by the thread of Discovery. They share what has
+/// arrived (Arrivals) and what the master said (Discovery), each with a lock (Guarded).
 class Monitor {
  public:
   /// @param name full name of the node or nodelet, for the diagnostics
@@ -49,27 +89,6 @@ class Monitor {
   Monitor& operator=(const Monitor&) = delete;
 
  private:
-  /// What belongs to one loaded model.
-  struct Session {
-    /// @throw std::invalid_argument if the calibration does not fit the model
-    Session(ros1::TrainedModel trained, const MonitorParameters& parameters,
-            core::Detector::Handler handler);
-
-    core::EventId intern(const core::EventType& type);
-    std::unique_ptr<core::Judge> makeJudge(const MonitorParameters& parameters) const;
-
-    ros1::TrainedModel trained;
-    bool calibrated;
-    std::shared_ptr<core::SourceGraph> graph;  // of training, and what the master adds
-    core::Vocabulary vocabulary;  // of the model, followed by unknown event types as they appear
-    std::shared_ptr<const ros1::Encoder> encoder;
-    core::Detector detector;
-  };
-  struct Heard {
-    std::optional<std::int64_t> last;  // [ns]
-    std::uint64_t events = 0;          // since the last report
-  };
-
   void load();
   /// @throw ros1::ModelFileError if the model's calibration does not fit it
   std::unique_ptr<Session> makeSession(ros1::TrainedModel trained);
@@ -83,8 +102,8 @@ class Monitor {
   bool onClear(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool onReload(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
 
-  /// Starts afresh where ROS time was set. Returns the ROS time [ns] that it looked at: by another
-  /// look, the clock may have been set again.
+  /// Starts from the beginning where ROS time was set. Returns the ROS time [ns] that it looked
+  /// at: by another look, the clock may have been set again.
   std::int64_t watchClock();
   void restart();
   /// Publishes a change of level that no window brought about.
@@ -100,22 +119,14 @@ class Monitor {
   ros::Publisher alarm_publisher_;
   std::vector<ros::ServiceServer> services_;
   ros::SteadyTimer timer_;
-  ros1::Diagnostics diagnostics_;
+  Diagnostics diagnostics_;
 
   std::string model_error_;
   std::unique_ptr<Session> session_;  // none: no model
   ros1::ClockWatch clock_watch_;
-  self_awareness::SelfAwareness last_;             // verdict on the last window
-  std::vector<self_awareness::Suspect> suspects_;  // of the standing alarm
-  std::int64_t level_since_ = 0;                   // when the level last changed [ns]
-  std::shared_ptr<const ros1::Graph> graph_;       // the newest that was taken over
-  std::map<std::string, Heard> components_;        // of the model
-  std::vector<Heard*> component_of_;               // by event id of the model
-  std::uint64_t events_ = 0;                       // since the last report
-  std::uint64_t clock_steps_ = 0;
-  std::uint64_t reported_drops_ = 0;
-  ros::SteadyTime last_report_;
-  ros::WallDuration processing_;  // since the last report
+  AlarmState alarm_;
+  HeardTally heard_;
+  std::shared_ptr<const ros1::Graph> graph_;  // the newest that was taken over
 
   std::unique_ptr<ros1::LiveEvents> live_events_;
   std::unique_ptr<Discovery> discovery_;

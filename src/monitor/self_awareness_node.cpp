@@ -10,8 +10,8 @@ namespace {
 volatile std::sig_atomic_t monitoring = 0;
 volatile std::sig_atomic_t stopping = 0;
 
-// roscpp's own handler would take the connections away while the monitor's threads use them: the
-// monitor must end first. Only while the master is waited for there is none.
+// roscpp's own handler would close the connections while the monitor's threads use them: the
+// monitor must end first. While the process waits for the master, there is no monitor.
 void onSignal(int /*signal*/) {
   stopping = 1;
   if (monitoring == 0) {

@@ -8,8 +8,8 @@
 
 namespace self_awareness {
 
-/// The monitor as a nodelet. A manager of its own is the default: in the robot's manager its
-/// subscriptions would force publishers to serialize what they hand on by pointer otherwise.
+/// The monitor as a nodelet. A manager of its own is the default: in the robot's manager, its
+/// subscriptions force publishers to serialize messages that they could hand on by pointer.
 class SelfAwarenessNodelet : public nodelet::Nodelet {
  private:
   void onInit() override {

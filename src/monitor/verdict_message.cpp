@@ -1,6 +1,5 @@
 #include "verdict_message.h"
 
-#include "diagnostics.h"
 #include "self_awareness/SelfAwareness.h"
 
 namespace self_awareness {
@@ -31,6 +30,11 @@ std::vector<self_awareness::Suspect> toMessages(const std::vector<core::Suspect>
   return messages;
 }
 
+std::string describe(const self_awareness::Suspect& suspect) {
+  return (suspect.source.empty() ? "" : suspect.source + " on ") + suspect.scope + ": " +
+         suspect.reason;
+}
+
 std::string wording(const core::Verdict& verdict, const std::string& evidence,
                     const std::vector<self_awareness::Suspect>& suspects) {
   if (!verdict.threshold) {
@@ -40,7 +44,7 @@ std::string wording(const core::Verdict& verdict, const std::string& evidence,
     std::string message = verdict.alarm ? "abnormal communication" : "suspicion of a fault";
     message += " (" + evidence + ")";
     if (!suspects.empty()) {
-      message += ", " + ros1::describe(suspects.front());
+      message += ", " + describe(suspects.front());
     }
     if (suspects.size() > 1) {
       message += " (and " + std::to_string(suspects.size() - 1) + " more)";

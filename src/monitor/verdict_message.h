@@ -17,6 +17,9 @@ std::uint8_t levelOf(const core::Verdict& verdict);
 std::vector<self_awareness::Suspect> toMessages(const std::vector<core::Suspect>& suspects,
                                                 const core::Vocabulary& vocabulary);
 
+/// "SOURCE on SCOPE: REASON", without the source where the encoding leaves it out.
+std::string describe(const self_awareness::Suspect& suspect);
+
 /// The verdict in words.
 /// @param evidence, suspects those of the last window that had any, while the level is not OK
 std::string wording(const core::Verdict& verdict, const std::string& evidence,

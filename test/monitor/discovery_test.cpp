@@ -1,6 +1,6 @@
 // Needs a master: this process publishes, and discovers itself.
 
-#include "discovery.h"
+#include "monitor/discovery.h"
 
 #include <gtest/gtest.h>
 #include <ros/callback_queue.h>
@@ -27,16 +27,14 @@ class DiscoveryTest : public testing::Test {
  protected:
   DiscoveryTest() {
     node_handle_.setCallbackQueue(&never_served_);
-    live_events_ =
-        std::make_unique<ros1::LiveEvents>(node_handle_, 1, ros1::LiveEvents::Handlers());
     wanted_.model_topics = {"/a", "/b"};
     wanted_.encoder = std::make_shared<ros1::Encoder>(
         ros1::EncodingRules(), [](const core::EventType& /*type*/) { return 0; });
   }
   /// @param interval [s]; by default, so long that nothing is polled unless asked for
   std::unique_ptr<Discovery> discover(double interval = 3600) {
-    return std::make_unique<Discovery>(*live_events_, ros1::SubscribePolicy::kModel, interval,
-                                       std::vector<std::string>());
+    return std::make_unique<Discovery>(node_handle_, arrivals_, ros1::SubscribePolicy::kModel,
+                                       interval, std::vector<std::string>());
   }
   ros::Publisher publish(const std::string& topic) {
     return node_handle_.advertise<std_msgs::String>(topic, 1);
@@ -49,7 +47,7 @@ class DiscoveryTest : public testing::Test {
 
   ros::NodeHandle node_handle_;
   ros::CallbackQueue never_served_;
-  std::unique_ptr<ros1::LiveEvents> live_events_;
+  ros1::Arrivals arrivals_{1, [] {}};
   Discovery::Wanted wanted_;
 };
 
@@ -89,7 +87,7 @@ TEST_F(DiscoveryTest, TellsOfAPublisherThatRegistersLaterOnce) {
   EXPECT_TRUE(discovery->takeNewPublishers().empty());
 }
 
-TEST_F(DiscoveryTest, CountsAfreshAfterARestart) {
+TEST_F(DiscoveryTest, PublishersThatItFindsAfterARestartAreNotNew) {
   const auto discovery = discover();
   discovery->setWanted(wanted_);
   ASSERT_TRUE(await([&] { return discovery->state().subscriptions == 2; }));

@@ -1,10 +1,15 @@
 #!/usr/bin/python3
 """The monitor at its edges: what it listens to, what it ignores, and what it says of bad input."""
 
+import os
+import re
 from typing import Dict
 
+import rospkg
 import rospy
+import rosservice
 import rostest
+import yaml
 from diagnostic_msgs.msg import DiagnosticStatus
 from std_msgs.msg import Float64, String
 from visualization_msgs.msg import Marker
@@ -234,6 +239,21 @@ class LiveRulesTest(MonitorCase):
                      '__name:=self_awareness', '_settle_time:=-1') as manager:
             await_condition('the parameter is named', lambda: (
                 'settle_time is -1' in manager.output), 20)
+
+    def test_the_defaults_are_those_of_the_configuration_file(self) -> None:
+        path = os.path.join(rospkg.RosPack().get_path('self_awareness'),
+                            'config', 'self_awareness.yaml')
+        with open(path) as file:
+            configuration = yaml.safe_load(file)
+        del configuration['diagnostic_period']  # which diagnostic_updater reads
+        with Process('rosrun', 'self_awareness', 'self_awareness_node') as monitor:
+            await_condition('the monitor serves', lambda: rosservice.get_service_node(
+                '/self_awareness/reload'), 20)
+            monitor.stop()  # the log comes when the buffer is emptied
+            logged = dict(re.findall(r'/self_awareness/(\w+): (.*?)(?:\x1b.*)?$', monitor.output,
+                                     re.MULTILINE))
+        for name, default in configuration.items():
+            self.assertEqual(yaml.safe_load(logged[name]), default, name)
 
     def test_an_unknown_parameter_is_a_warning(self) -> None:
         with self.monitor(self.model(), treshold=1) as monitor:

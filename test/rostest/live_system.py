@@ -42,7 +42,8 @@ def await_condition(what: str, condition: Callable[[], Optional[T]], timeout: fl
 def again_if_clock_was_set(test: Callable) -> Callable:
     """Decorates a test: if it fails while the machine's clock is set, it has a second try.
 
-    Whoever sets it (NTP, the host of a virtual machine) makes the monitor start afresh.
+    When the clock is set (by NTP, by the host of a virtual machine), the monitor starts from the
+    beginning.
     """
     @functools.wraps(test)
     def run(self: unittest.TestCase) -> None:

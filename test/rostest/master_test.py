@@ -115,10 +115,10 @@ class MasterTest(unittest.TestCase):
                           '_output:=' + topic, '_rate:={}'.format(1 / period))
 
     def occupy(self, port: int) -> None:
-        """Lets nobody else listen on the port of a component that died, until the test ends.
+        """Keeps the port of a component that died from others, until the test ends.
 
-        By chance its successor would be given the same: roscpp takes a publisher with the same
-        URI for the one that it was connected to, and does not connect anew.
+        By chance its successor could be given the same port: roscpp takes a publisher with the
+        same URI for the one that it was connected to, and does not connect again.
         """
         listening = socket.socket()
         self.addCleanup(listening.close)

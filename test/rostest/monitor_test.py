@@ -123,7 +123,7 @@ class MonitorTest(unittest.TestCase):
         self.assertLess(alarm.score, alarm.threshold)
         self.assertIn('overdue', alarm.evidence)
         self.assertTrue(alarm.abnormal)
-        # The master still holds the dead node for alive.
+        # For the master, the dead node is still alive.
         self.assertIn('/scan', [topic for topic, nodes
                                 in rosgraph.Master('/monitor_test').getSystemState()[0]
                                 if '/player' in nodes])
@@ -143,7 +143,7 @@ class MonitorTest(unittest.TestCase):
                           if s.level == DiagnosticStatus.ERROR], [])
 
     def compare_with_bag(self, statuses: list) -> None:
-        """The bag that was recorded meanwhile has the same abnormal windows."""
+        """The bag that was recorded at the same time has the same abnormal windows."""
         self.run_program('score', self.path('live.bag'), '--model', self.path('model'),
                          '--csv', self.path('score.csv'))
         live = {s.window_start.to_nsec(): s for s in statuses if not s.settling}

@@ -12,7 +12,7 @@ using core::kNanosecondsPerSecond;
 
 // NTP slews what is less; a step this small is within what a busy robot's delays vary by.
 constexpr std::int64_t kSmallestWallStep = kNanosecondsPerSecond / 2;
-// A replay may run faster than life, but hardly a hundred times.
+// A replay may run faster than the robot did, but not a hundred times as fast.
 constexpr std::int64_t kFastestSimulation = 100;
 constexpr std::int64_t kSmallestSimulatedStep = 5 * kNanosecondsPerSecond;
 

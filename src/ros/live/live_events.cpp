@@ -1,6 +1,8 @@
 #include "self_awareness/ros/live/live_events.h"
 
 #include <ros/console.h>
+#include <ros/serialization.h>
+#include <topic_tools/shape_shifter.h>
 
 #include <algorithm>
 #include <boost/make_shared.hpp>
@@ -31,46 +33,7 @@ LiveEvents::LiveEvents(const ros::NodeHandle& node_handle, std::uint32_t queue_s
                 [this] { node_handle_.getCallbackQueue()->addCallback(wake_, wakeId()); }) {}
 
 LiveEvents::~LiveEvents() {
-  subscriptions_.clear();  // nothing arrives any more
   node_handle_.getCallbackQueue()->removeByID(wakeId());
-}
-
-void LiveEvents::setTopics(const std::set<std::string>& topics, const Graph& graph) {
-  for (auto subscription = subscriptions_.begin(); subscription != subscriptions_.end();) {
-    const auto published = graph.topics.find(subscription->first);
-    const std::string datatype = published == graph.topics.end() ? "" : published->second.datatype;
-    std::string& expected = subscription->second.datatype;
-    if (expected.empty() || expected == "*") {
-      expected = datatype;
-    }
-    const bool type_changed = !datatype.empty() && datatype != "*" && datatype != expected;
-    if (type_changed) {
-      ROS_WARN("%s: the type changed from %s to %s; subscribing anew", subscription->first.c_str(),
-               expected.c_str(), datatype.c_str());
-    }
-    if (type_changed || topics.count(subscription->first) == 0) {
-      subscription = subscriptions_.erase(subscription);
-    } else {
-      ++subscription;
-    }
-  }
-  for (const std::string& topic : topics) {
-    if (subscriptions_.count(topic) > 0) {
-      continue;
-    }
-    const auto published = graph.topics.find(topic);
-    Subscription& subscription = subscriptions_[topic];
-    subscription.datatype = published == graph.topics.end() ? "" : published->second.datatype;
-    subscription.subscriber = arrivals_.subscribe(node_handle_, topic);
-  }
-}
-
-void LiveEvents::renew(const Graph& graph) {
-  for (const auto& [name, topic] : graph.topics) {
-    if (!topic.publishers.empty()) {
-      subscriptions_.erase(name);
-    }
-  }
 }
 
 void LiveEvents::setEncoder(std::shared_ptr<const Encoder> encoder, OwnOutput own_output,
@@ -85,7 +48,7 @@ void LiveEvents::setEncoder(std::shared_ptr<const Encoder> encoder, OwnOutput ow
     }
   }
   for (auto& [key, live] : connections_) {
-    chooseReading(*live.topic);
+    chooseContent(*live.topic);
   }
 }
 
@@ -122,19 +85,27 @@ void LiveEvents::onArrival(const Arrival& arrival) {
     handlers_.on_event({arrival.stamp, encoder->id()});
     return;
   }
-  if (!arrival.content) {  // it came before anybody knew that this topic is read
+  if (!arrival.content) {  // it came before its content was wanted
     ++unread_;
     return;
   }
   core::Event event{arrival.stamp, 0};
   try {
-    event.id = encoder->id(arrival.content->data(), arrival.content->size());
+    event.id = read(*arrival.content, *encoder);
   } catch (const std::out_of_range& error) {
     ROS_ERROR_THROTTLE(10, "%s: %s; the message is left out", arrival.topic->name.c_str(),
                        error.what());
     return;
   }
   handlers_.on_event(event);
+}
+
+core::EventId LiveEvents::read(const topic_tools::ShapeShifter& content,
+                               ConnectionEncoder& encoder) {
+  content_.resize(content.size());
+  ros::serialization::OStream stream(content_.data(), content.size());
+  content.write(stream);
+  return encoder.id(content_.data(), content_.size());
 }
 
 LiveEvents::LiveConnection& LiveEvents::connectionOf(const Arrival& arrival) {
@@ -149,19 +120,20 @@ LiveEvents::LiveConnection& LiveEvents::connectionOf(const Arrival& arrival) {
   if (is_new) {
     live.header = arrival.header;
     live.encoder = connect(connectionFrom(*arrival.header, arrival.topic->name));
-    if (live.encoder) {
-      handlers_.on_connection();
-    }
   }
-  chooseReading(*live.topic);
+  chooseContent(*live.topic);
+  if (is_new && live.encoder) {
+    handlers_.on_connection();
+  }
   return live;
 }
 
-void LiveEvents::chooseReading(Arrival::Topic& topic) const {
-  topic.reads = std::any_of(connections_.begin(), connections_.end(), [&](const auto& connection) {
-    const LiveConnection& live = connection.second;
-    return live.topic.get() == &topic && live.encoder && live.encoder->needsContent();
-  });
+void LiveEvents::chooseContent(Arrival::Topic& topic) const {
+  topic.content_wanted =
+      std::any_of(connections_.begin(), connections_.end(), [&](const auto& connection) {
+        const LiveConnection& live = connection.second;
+        return live.topic.get() == &topic && live.encoder && live.encoder->needsContent();
+      });
 }
 
 std::optional<ConnectionEncoder> LiveEvents::connect(const Connection& connection) const {

@@ -8,14 +8,19 @@
 #include <std_msgs/String.h>
 #include <topic_tools/shape_shifter.h>
 
+#include <algorithm>
+#include <atomic>
 #include <fstream>
 #include <functional>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "self_awareness/core/stream/vocabulary.h"
+#include "self_awareness/ros/live/subscriptions.h"
 
 namespace self_awareness::ros1 {
 namespace {
@@ -48,9 +53,13 @@ class LiveEventsTest : public testing::Test {
     handlers.on_event = [this](const core::Event& event) {
       types_.push_back(vocabulary_.at(event.id).type);
     };
-    handlers.on_connection = [this] { ++connections_; };
+    handlers.on_connection = [this] {
+      ++connections_;
+      subscriptions_->adaptReading();  // as the poll does that the monitor asks for then
+    };
     handlers.on_arrivals = [this] { ++wakes_; };
     live_events_ = std::make_unique<LiveEvents>(node_handle_, kQueueSize, handlers);
+    subscriptions_ = std::make_unique<Subscriptions>(node_handle_, live_events_->arrivals());
     encode({});
   }
 
@@ -62,14 +71,16 @@ class LiveEventsTest : public testing::Test {
         std::make_shared<Encoder>(
             rules, [this](const core::EventType& type) { return vocabulary_.intern(type); }),
         {}, window);
+    subscriptions_->adaptReading();  // as the poll does that follows in the monitor
   }
   /// A publisher that is subscribed to.
-  ros::Publisher advertise(const std::string& topic) {
-    ros::Publisher publisher = node_handle_.advertise<std_msgs::String>(topic, kQueueSize);
-    live_events_->setTopics({topic}, {});
+  ros::Publisher advertise(const std::string& topic, bool latching = false) {
+    ros::Publisher publisher =
+        node_handle_.advertise<std_msgs::String>(topic, kQueueSize, latching);
+    subscriptions_->setTopics({topic}, {});
     const boost::function<void(const topic_tools::ShapeShifter::ConstPtr&)> count =
         [this](const topic_tools::ShapeShifter::ConstPtr& /*message*/) { ++arrived_; };
-    arrivals_ = node_handle_.subscribe<topic_tools::ShapeShifter>(topic, 1000, count);
+    arrivals_ = node_handle_.subscribe<topic_tools::ShapeShifter>(topic, 0, count);
     await([&] { return publisher.getNumSubscribers() > 0; });
     return publisher;
   }
@@ -80,8 +91,15 @@ class LiveEventsTest : public testing::Test {
     for (std::size_t i = 0; i < count; ++i) {
       publisher.publish(message);
     }
-    // The second subscription of a process gets each message after the first.
     await([&] { return arrived_ == count; });
+    awaitHandedOut(publisher.getTopic());
+  }
+  /// Waits until each subscription of this process has the last message that came.
+  void awaitHandedOut(const std::string& topic) {
+    // To subscribe takes the mutex that is held meanwhile.
+    const boost::function<void(const topic_tools::ShapeShifter::ConstPtr&)> nothing =
+        [](const topic_tools::ShapeShifter::ConstPtr& /*message*/) {};
+    node_handle_.subscribe<topic_tools::ShapeShifter>(topic, 1, nothing);
   }
   void await(const std::function<bool()>& condition) {
     const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(20);
@@ -106,6 +124,7 @@ class LiveEventsTest : public testing::Test {
   int connections_ = 0;
   int wakes_ = 0;
   std::unique_ptr<LiveEvents> live_events_;
+  std::unique_ptr<Subscriptions> subscriptions_;
 };
 
 TEST_F(LiveEventsTest, DropsAndCountsWhatDoesNotFit) {
@@ -152,13 +171,14 @@ TEST_F(LiveEventsTest, TwoOfOneProcessDoNotDisturbEachOther) {
   };
   handlers.on_connection = handlers.on_arrivals = [] {};
   LiveEvents other(node_handle_, kQueueSize, handlers);
+  Subscriptions others_subscriptions(node_handle_, other.arrivals());
   EncodingRules rules;
   rules.type_fields = {{"std_msgs/String", "data"}};
   other.setEncoder(
       std::make_shared<Encoder>(
           rules, [this](const core::EventType& type) { return vocabulary_.intern(type); }),
       {}, kWindow);
-  other.setTopics({"/a"}, {});
+  others_subscriptions.setTopics({"/a"}, {});
   const ros::Publisher publisher = advertise("/a");
   for (int i = 0; i < 2; ++i) {
     publish(publisher, message("on"));
@@ -179,6 +199,74 @@ TEST_F(LiveEventsTest, KeepsNoPayloadThatNobodyReads) {
   }
   EXPECT_LT(residentBytes(), before + 40 * kMegabyte);  // of 400 that were published
   EXPECT_EQ(delivered().size(), 100U);
+}
+
+TEST_F(LiveEventsTest, AChangeOfReadingLosesNothingAndCountsNothingTwice) {
+  for (const bool latching : {false, true}) {
+    ros::Publisher publisher = advertise(latching ? "/latched" : "/a", latching);
+    publish(publisher, message("first"));
+    std::size_t events = delivered().size();
+    EXPECT_EQ(events, latching ? 0U : 1U);  // the first of a latching connection is no event
+
+    constexpr std::size_t kMessages = 20000;
+    const std::size_t before = events + live_events_->dropped();
+    std::atomic<std::size_t> heard{0};
+    std::atomic<std::size_t> published{0};
+    arrived_ = 0;
+    const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(20);
+    std::thread publishing([&] {
+      for (; published < kMessages; ++published) {
+        while (published > heard + kQueueSize / 2 && ros::WallTime::now() < deadline) {
+          std::this_thread::yield();
+        }
+        publisher.publish(message("on"));
+      }
+    });
+    std::set<std::string> types;
+    std::size_t changes = 0;
+    const auto deliver = [&] {
+      const Types of_these = delivered();
+      events += of_these.size();
+      types.insert(of_these.begin(), of_these.end());
+      heard = events + live_events_->dropped() - before;
+    };
+    while (published < kMessages) {
+      encode(++changes % 2 == 1 ? std::map<std::string, std::string>{{"std_msgs/String", "data"}}
+                                : std::map<std::string, std::string>{});
+      const std::size_t at_change = published;
+      while (published < std::min(at_change + 20, kMessages)) {
+        deliver();
+      }
+    }
+    publishing.join();
+    await([&] { return arrived_ == kMessages; });
+    awaitHandedOut(publisher.getTopic());
+    deliver();
+    EXPECT_EQ(heard, kMessages);
+    EXPECT_GT(changes, 100U);
+    EXPECT_EQ(types, (std::set<std::string>{"std_msgs/String", "std_msgs/String[data=on]"}));
+    EXPECT_GT(events, kMessages / 2);
+  }
+}
+
+TEST_F(LiveEventsTest, AChangeOfReadingIsNoNewConnection) {
+  const ros::Publisher publisher = advertise("/latched", true);
+  publish(publisher, message("first"));
+  EXPECT_EQ(delivered(), Types());
+  for (int i = 0; i < 3; ++i) {
+    // What is latched comes again to each new subscription; it is no event for that.
+    encode({{"std_msgs/String", "data"}});
+    EXPECT_EQ(delivered(), Types());
+    publish(publisher, message("on"));
+    EXPECT_EQ(delivered(), Types{"std_msgs/String[data=on]"});
+    encode({});
+    EXPECT_EQ(delivered(), Types());
+    publish(publisher, message("on"));
+    EXPECT_EQ(delivered(), Types{"std_msgs/String"});
+  }
+  EXPECT_EQ(publisher.getNumSubscribers(), 1U);
+  EXPECT_EQ(connections_, 1);
+  EXPECT_EQ(live_events_->dropped(), 0U);
 }
 
 TEST_F(LiveEventsTest, WakesForANewWindow) {

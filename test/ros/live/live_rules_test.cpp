@@ -90,7 +90,7 @@ TEST_F(NewPublishersTest, LeavesOutWhatIsNotIncluded) {
   EXPECT_EQ(look({"/rviz"}), Names());
 }
 
-TEST_F(NewPublishersTest, StartsAfresh) {
+TEST_F(NewPublishersTest, PublishersThatItFindsAfterARestartAreNotNew) {
   look({});
   look({"/ghost"});
   new_publishers_.restart();

@@ -15,7 +15,7 @@ class ClockWatch {
   bool look(std::int64_t ros_now, std::int64_t steady_now, bool simulated);
 
   /// Whether an event with this stamp [ns] belongs to the time before the clock was set last: it
-  /// waited in a queue meanwhile, and its delays mean nothing.
+  /// waited in a queue while the clock was set, and its delays mean nothing.
   bool isStale(std::int64_t stamp) const;
 
  private:

@@ -2,31 +2,26 @@
 
 #include <ros/callback_queue_interface.h>
 #include <ros/node_handle.h>
-#include <ros/subscriber.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
-#include <set>
-#include <string>
 #include <unordered_map>
 #include <vector>
 
 #include "self_awareness/core/stream/event.h"
 #include "self_awareness/ros/encoding.h"
-#include "self_awareness/ros/graph.h"
 #include "self_awareness/ros/live/arrivals.h"
 #include "self_awareness/ros/live/own_output.h"
 
 namespace self_awareness::ros1 {
 
-/// Subscribes to topics of any type and turns every message into an event, stamped with the time
-/// of its receipt.
+/// Turns messages of any type into events, stamped with the time of their receipt.
 ///
-/// Threads: setTopics() and renew() belong to one thread, everything else to the one that serves
-/// the node handle's callback queue; the two share nothing but what has arrived.
+/// Threads: it belongs to the one that serves the node handle's callback queue. The thread that
+/// subscribes (Subscriptions) may be another one: the two share what has arrived, no more.
 class LiveEvents {
  public:
   struct Handlers {
@@ -42,17 +37,13 @@ class LiveEvents {
   /// @param node_handle whose callback queue is used
   /// @param queue_size messages a topic may have waiting; what comes then is dropped
   LiveEvents(const ros::NodeHandle& node_handle, std::uint32_t queue_size, Handlers handlers);
+  /// Nothing may arrive any more.
   ~LiveEvents();
   LiveEvents(const LiveEvents&) = delete;
   LiveEvents& operator=(const LiveEvents&) = delete;
 
-  /// Subscribes to these topics and to no others. A topic whose type changed is subscribed to
-  /// anew: roscpp holds on to the first type that it met.
-  void setTopics(const std::set<std::string>& topics, const Graph& graph);
-
-  /// Lets the next setTopics() subscribe anew where the master knows a publisher: after a restart
-  /// of the master, roscpp hears of those that came meanwhile in no other way.
-  void renew(const Graph& graph);
+  /// Where the messages must arrive.
+  Arrivals& arrivals() { return arrivals_; }
 
   /// Encodes from now on with this encoder. Connections that were heard are no new ones: the next
   /// message on a latching one is an event.
@@ -60,7 +51,7 @@ class LiveEvents {
   /// @param window length [ns]
   void setEncoder(std::shared_ptr<const Encoder> encoder, OwnOutput own_output,
                   std::int64_t window);
-  /// Turns what has arrived into events. It waits for this call, however long.
+  /// Turns what has arrived into events. Messages wait for this call.
   void deliver();
   /// Forgets connections that are closed.
   void forgetClosedConnections();
@@ -72,10 +63,6 @@ class LiveEvents {
 
  private:
   class Wake;
-  struct Subscription {
-    ros::Subscriber subscriber;
-    std::string datatype;
-  };
   struct LiveConnection {
     boost::shared_ptr<ros::M_string> header;  // keeps the key below alive
     std::shared_ptr<Arrival::Topic> topic;
@@ -83,9 +70,11 @@ class LiveEvents {
   };
 
   void onArrival(const Arrival& arrival);
+  /// @throw std::out_of_range if the message is shorter than its definition says
+  core::EventId read(const topic_tools::ShapeShifter& content, ConnectionEncoder& encoder);
   LiveConnection& connectionOf(const Arrival& arrival);
-  /// Has messages of the topic read if any of its connections needs that.
-  void chooseReading(Arrival::Topic& topic) const;
+  /// The content of the topic's messages is wanted if any of its connections needs it.
+  void chooseContent(Arrival::Topic& topic) const;
   std::optional<ConnectionEncoder> connect(const Connection& connection) const;
   std::uint64_t wakeId() const { return reinterpret_cast<std::uintptr_t>(this); }
 
@@ -93,13 +82,13 @@ class LiveEvents {
   const Handlers handlers_;
   const boost::shared_ptr<ros::CallbackInterface> wake_;
   Arrivals arrivals_;
-  std::map<std::string, Subscription> subscriptions_;  // of setTopics()'s thread
   std::shared_ptr<const Encoder> encoder_;
   OwnOutput own_output_;
   // All messages of a connection share one header object.
   std::unordered_map<const ros::M_string*, LiveConnection> connections_;
-  std::vector<Arrival> delivered_;  // kept for its memory
-  std::uint64_t unread_ = 0;        // messages that would have had to be read
+  std::vector<Arrival> delivered_;     // kept for its memory
+  std::vector<std::uint8_t> content_;  // kept for its memory
+  std::uint64_t unread_ = 0;           // messages that would have had to be read
 };
 
 }  // namespace self_awareness::ros1

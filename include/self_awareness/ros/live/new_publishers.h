@@ -24,13 +24,13 @@ inline bool operator<(const Publisher& a, const Publisher& b) {
 /// that crashes and is restarted again and again is not.
 class NewPublishers {
  public:
-  /// Those that the next look finds are there from the start.
+  /// Those that the next look finds are not new.
   void restart();
 
   /// @param graph what the master knows now
   /// @param topics that are subscribed to
   /// @param included whether messages of a node (full name) on a topic may be events
-  /// @return those that are new and heard; one that nobody hears yet is new when somebody does
+  /// @return those that are new and heard; one that is not subscribed to is new when it is
   std::vector<Publisher> look(
       const Graph& graph, const std::set<std::string>& topics,
       const std::function<bool(const std::string& node, const std::string& topic)>& included);

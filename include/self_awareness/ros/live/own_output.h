@@ -6,7 +6,7 @@
 
 namespace self_awareness::ros1 {
 
-/// What the monitor's own process publishes, which is none of the robot's business. In a manager
+/// What the monitor's own process publishes, which is no communication of the robot. In a manager
 /// that it shares with nodelets of the robot, the monitor has their node name: only what the model
 /// does not know from that process is its own.
 class OwnOutput {

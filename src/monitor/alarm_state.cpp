@@ -1,0 +1,69 @@
+#include "alarm_state.h"
+
+#include <ros/time.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "self_awareness/core/stream/event.h"
+#include "verdict_message.h"
+
+namespace self_awareness {
+namespace {
+
+ros::Time toRosTime(std::int64_t nanoseconds) {
+  ros::Time time;
+  time.fromNSec(static_cast<std::uint64_t>(std::max<std::int64_t>(nanoseconds, 0)));
+  return time;
+}
+
+}  // namespace
+
+void AlarmState::add(const core::Verdict& verdict, const core::Vocabulary& vocabulary,
+                     std::int64_t window) {
+  const std::int64_t end = verdict.window->start + window;
+  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+  if (verdict.changed) {
+    level_since_ = end;
+  }
+  message_.level = levelOf(verdict);
+  if (!verdict.suspects.empty() || !stands()) {
+    message_.suspects = toMessages(verdict.suspects, vocabulary);
+  }
+  if (!verdict.evidence.empty() || !stands()) {
+    message_.evidence = verdict.evidence;
+  }
+  message_.message = wording(verdict, message_.evidence, message_.suspects);
+  message_.header.stamp = toRosTime(end);
+  message_.window_start = toRosTime(verdict.window->start);
+  message_.window.fromNSec(window);
+  message_.score = verdict.score.value_or(kNone);
+  message_.threshold = verdict.threshold.value_or(kNone);
+  message_.abnormal = verdict.abnormal && !verdict.settling;
+  message_.settling = verdict.settling;
+  message_.events = static_cast<std::uint32_t>(verdict.window->events.size());
+  message_.unknown_events = static_cast<std::uint32_t>(verdict.window->unknown());
+}
+
+bool AlarmState::standDown(const std::string& message, std::int64_t now) {
+  const bool stood = stands();
+  message_.level = self_awareness::SelfAwareness::OK;
+  message_.message = message;
+  message_.abnormal = false;
+  message_.suspects.clear();
+  message_.evidence.clear();
+  message_.header.stamp = toRosTime(now);
+  return stood;
+}
+
+void AlarmState::forgetWindow() {
+  const auto level = message_.level;
+  message_ = {};
+  message_.level = level;
+}
+
+double AlarmState::standsFor(std::int64_t now) const {
+  return core::toSeconds(now - level_since_);
+}
+
+}  // namespace self_awareness

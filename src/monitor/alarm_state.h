@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "self_awareness/SelfAwareness.h"
+#include "self_awareness/core/stream/vocabulary.h"
+#include "self_awareness/core/verdict/detector.h"
+
+namespace self_awareness {
+
+/// What the monitor says now: the verdict on the last window, and the alarm or suspicion that
+/// stands, with its suspects, its evidence, and since when.
+///
+/// This is the one place where the level is kept. The detector decides with which window it
+/// changes; what was said stands until then, or until standDown() takes it back.
+class AlarmState {
+ public:
+  /// Takes in the verdict on the next window. An alarm keeps the suspects and the evidence of the
+  /// last window that had any.
+  /// @param vocabulary that the suspects' ids are of
+  /// @param window length [ns]
+  void add(const core::Verdict& verdict, const core::Vocabulary& vocabulary, std::int64_t window);
+  /// Takes back what stands, for another reason than a window: there is nothing abnormal any more.
+  /// @param message the reason
+  /// @param now ROS time [ns]
+  /// @return whether an alarm or a suspicion stood
+  bool standDown(const std::string& message, std::int64_t now);
+  /// Forgets what was said of the last window, since another model judges from now on; an alarm
+  /// stands until standDown().
+  void forgetWindow();
+
+  /// Whether there is an alarm or a suspicion.
+  bool stands() const { return message_.level != self_awareness::SelfAwareness::OK; }
+  /// Whether anything was said since the start, or since forgetWindow().
+  bool spoken() const { return !message_.message.empty(); }
+  /// How long an alarm or a suspicion has stood [s], at the ROS time `now` [ns].
+  double standsFor(std::int64_t now) const;
+  /// All of it, as it is published.
+  const self_awareness::SelfAwareness& message() const { return message_; }
+
+ private:
+  self_awareness::SelfAwareness message_;
+  std::int64_t level_since_ = 0;  // end of the window with which the level changed last [ns]
+};
+
+}  // namespace self_awareness

@@ -1,0 +1,68 @@
+#include "session.h"
+
+#include <utility>
+
+#include "self_awareness/core/evidence/judge.h"
+#include "self_awareness/core/paper/judge.h"
+
+namespace self_awareness {
+
+Session::Session(ros1::TrainedModel trained, const MonitorParameters& parameters,
+                 core::Detector::Handler handler)
+    : trained_(std::move(trained)),
+      calibrated_(parameters.method == MonitorParameters::Method::kPaper
+                      ? trained_.calibration.has_value()
+                      : trained_.evidence_calibration.has_value()),
+      graph_(std::make_shared<core::SourceGraph>(trained_.graph)),
+      vocabulary_(trained_.vocabulary()),
+      encoder_(std::make_shared<ros1::Encoder>(
+          trained_.encoding, [this](const core::EventType& type) { return intern(type); })),
+      detector_(makeJudge(parameters), trained_.window, parameters.detector, std::move(handler)) {
+  // The judge has made of them what it needs.
+  trained_.dropCounts();
+  trained_.watched = {};
+}
+
+std::unique_ptr<core::Judge> Session::makeJudge(const MonitorParameters& parameters) const {
+  if (parameters.method == MonitorParameters::Method::kPaper) {
+    trained_.requireDelays();
+    return core::paper::makeJudge(std::make_shared<core::paper::Model>(trained_.statistics),
+                                  trained_.threshold(), parameters.detector.silence_is_abnormal);
+  }
+  trained_.requireWatched();
+  return core::evidence::makeJudge(std::make_shared<core::evidence::Model>(trained_.watched),
+                                   trained_.limits(), trained_.window, graph_);
+}
+
+// A type field with ever new values must not fill the memory of a robot that runs for months.
+core::EventId Session::intern(const core::EventType& type) {
+  const std::size_t known = trained_.vocabulary().size();
+  if (!vocabulary_.find(type) && vocabulary_.size() >= known + kMostUnknownTypes) {
+    return vocabulary_.intern({"", "(further topics)", "(further unknown events)"});
+  }
+  return vocabulary_.intern(type);
+}
+
+std::set<std::string> Session::topics() const {
+  std::set<std::string> topics;
+  for (const core::EventType& type : types()) {
+    topics.insert(type.scope);
+  }
+  return topics;
+}
+
+ros1::OwnOutput Session::ownOutput(const std::string& node) const {
+  std::set<std::string> known;
+  for (const core::EventType& type : types()) {
+    if (type.source == node) {
+      known.insert(type.scope);
+    }
+  }
+  return {node, std::move(known)};
+}
+
+void Session::addEdges(const ros1::Graph& graph, const std::string& node) {
+  ros1::addEdges(graph, node, *graph_);
+}
+
+}  // namespace self_awareness

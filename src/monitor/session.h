@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "parameters.h"
+#include "self_awareness/core/stream/vocabulary.h"
+#include "self_awareness/core/verdict/detector.h"
+#include "self_awareness/core/verdict/judge.h"
+#include "self_awareness/core/verdict/source_graph.h"
+#include "self_awareness/ros/encoding.h"
+#include "self_awareness/ros/graph.h"
+#include "self_awareness/ros/live/own_output.h"
+#include "self_awareness/ros/model/model_file.h"
+
+namespace self_awareness {
+
+/// One loaded model at work: how messages become events by it, and who judges them.
+class Session {
+ public:
+  /// Event types that the model does not know and that are told apart; further ones share an id.
+  static constexpr std::size_t kMostUnknownTypes = 1000;
+
+  /// @param handler called with the verdict of every window in turn
+  /// @throw std::invalid_argument if the calibration does not fit the model
+  Session(ros1::TrainedModel trained, const MonitorParameters& parameters,
+          core::Detector::Handler handler);
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
+
+  /// Length of a window [ns].
+  std::int64_t window() const { return trained_.window; }
+  /// Whether there are limits, or a threshold, for the detector that was chosen.
+  bool calibrated() const { return calibrated_; }
+  /// Event types of the model, by their ids.
+  const std::vector<core::EventType>& types() const { return trained_.vocabulary().types(); }
+  /// Event types of the model, and after them the unknown ones as they appeared.
+  const core::Vocabulary& vocabulary() const { return vocabulary_; }
+  const std::shared_ptr<const ros1::Encoder>& encoder() const { return encoder_; }
+  core::Detector& detector() { return detector_; }
+
+  /// The topics of the model's events.
+  std::set<std::string> topics() const;
+  /// What the process `node` (full name) publishes and the model does not know.
+  ros1::OwnOutput ownOutput(const std::string& node) const;
+  /// Takes in who listens to whom now. Who was killed, or has gone since, is still upstream of its
+  /// victims: edges are added only.
+  /// @param node full name of the monitor's process, which is left out
+  void addEdges(const ros1::Graph& graph, const std::string& node);
+
+ private:
+  core::EventId intern(const core::EventType& type);
+  std::unique_ptr<core::Judge> makeJudge(const MonitorParameters& parameters) const;
+
+  ros1::TrainedModel trained_;
+  bool calibrated_;
+  std::shared_ptr<core::SourceGraph> graph_;  // of training, and what addEdges() added
+  core::Vocabulary vocabulary_;
+  std::shared_ptr<const ros1::Encoder> encoder_;
+  core::Detector detector_;
+};
+
+}  // namespace self_awareness

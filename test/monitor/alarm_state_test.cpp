@@ -1,0 +1,145 @@
+#include "monitor/alarm_state.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+namespace self_awareness {
+namespace {
+
+using self_awareness::SelfAwareness;
+
+constexpr std::int64_t kWindow = 100000000;                // [ns]
+constexpr std::int64_t kStart = 1600000000 * 1000000000L;  // [ns]
+
+class AlarmStateTest : public testing::Test {
+ protected:
+  AlarmStateTest() { vocabulary_.intern({"/player", "/scan", "std_msgs/String"}); }
+
+  enum class Level { kOk, kSuspicion, kAlarm };
+  core::Verdict verdict(Level level, bool changed, const std::string& evidence = "") {
+    core::Verdict verdict;
+    verdict.window = &window_;
+    verdict.score = -2;
+    verdict.threshold = -1;
+    verdict.alarm = level == Level::kAlarm;
+    verdict.suspicion = level == Level::kSuspicion;
+    verdict.changed = changed;
+    verdict.evidence = evidence;
+    if (!evidence.empty()) {
+      verdict.abnormal = true;
+      core::Suspect suspect;
+      suspect.id = 0;
+      verdict.suspects = {suspect};
+    }
+    return verdict;
+  }
+  void add(const core::Verdict& verdict) {
+    alarm_.add(verdict, vocabulary_, kWindow);
+    window_.start += kWindow;
+  }
+
+  core::Vocabulary vocabulary_;
+  core::Window window_{kStart, {}};
+  AlarmState alarm_;
+};
+
+TEST_F(AlarmStateTest, SaysNothingBeforeTheFirstWindow) {
+  EXPECT_FALSE(alarm_.spoken());
+  EXPECT_FALSE(alarm_.stands());
+  add(verdict(Level::kOk, false));
+  EXPECT_TRUE(alarm_.spoken());
+  EXPECT_FALSE(alarm_.stands());
+  EXPECT_EQ(alarm_.message().message, "normal communication");
+}
+
+TEST_F(AlarmStateTest, TellsTheWindow) {
+  window_.events = {{{kStart, 0}, false, {}}, {{kStart + 1, 7}, true, {}}};
+  add(verdict(Level::kAlarm, true, "overdue"));
+  const SelfAwareness& said = alarm_.message();
+  EXPECT_EQ(said.window_start.toNSec(), static_cast<std::uint64_t>(kStart));
+  EXPECT_EQ(said.window.toNSec(), kWindow);
+  EXPECT_EQ(said.header.stamp.toNSec(), static_cast<std::uint64_t>(kStart + kWindow));
+  EXPECT_EQ(said.level, SelfAwareness::ERROR);
+  EXPECT_EQ(said.score, -2);
+  EXPECT_EQ(said.threshold, -1);
+  EXPECT_TRUE(said.abnormal);
+  EXPECT_EQ(said.events, 2U);
+  EXPECT_EQ(said.unknown_events, 1U);
+}
+
+TEST_F(AlarmStateTest, AWindowOfWhichNothingIsSaidHasNoScore) {
+  core::Verdict silent = verdict(Level::kOk, false);
+  silent.score.reset();
+  silent.threshold.reset();
+  add(silent);
+  EXPECT_TRUE(std::isnan(alarm_.message().score));
+  EXPECT_TRUE(std::isnan(alarm_.message().threshold));
+}
+
+TEST_F(AlarmStateTest, AnAbnormalWindowWhileSettlingIsNotHeldAgainstAnyone) {
+  core::Verdict settling = verdict(Level::kOk, false);
+  settling.abnormal = settling.settling = true;
+  add(settling);
+  EXPECT_FALSE(alarm_.message().abnormal);
+  EXPECT_TRUE(alarm_.message().settling);
+  EXPECT_EQ(alarm_.message().message, "settling");
+}
+
+TEST_F(AlarmStateTest, AnAlarmKeepsItsLastSuspectsAndEvidence) {
+  add(verdict(Level::kAlarm, true, "overdue"));
+  add(verdict(Level::kAlarm, false));
+  EXPECT_TRUE(alarm_.stands());
+  EXPECT_FALSE(alarm_.message().abnormal);
+  EXPECT_EQ(alarm_.message().evidence, "overdue");
+  ASSERT_EQ(alarm_.message().suspects.size(), 1U);
+  EXPECT_EQ(alarm_.message().suspects[0].source, "/player");
+  EXPECT_EQ(
+      alarm_.message().message.rfind("abnormal communication (overdue), /player on /scan", 0), 0U)
+      << alarm_.message().message;
+  add(verdict(Level::kOk, true));
+  EXPECT_FALSE(alarm_.stands());
+  EXPECT_EQ(alarm_.message().evidence, "");
+  EXPECT_TRUE(alarm_.message().suspects.empty());
+}
+
+TEST_F(AlarmStateTest, CountsHowLongTheLevelHasStood) {
+  add(verdict(Level::kOk, false));
+  add(verdict(Level::kSuspicion, true, "rate"));
+  const std::int64_t changed = window_.start;  // the end of that window
+  add(verdict(Level::kSuspicion, false, "rate"));
+  EXPECT_DOUBLE_EQ(alarm_.standsFor(changed + 3 * kWindow), 0.3);
+  add(verdict(Level::kAlarm, true, "rate"));
+  EXPECT_DOUBLE_EQ(alarm_.standsFor(window_.start), 0);
+}
+
+TEST_F(AlarmStateTest, StandsDownWithAReason) {
+  add(verdict(Level::kAlarm, true, "overdue"));
+  EXPECT_TRUE(alarm_.standDown("cleared by hand", kStart + 42));
+  EXPECT_FALSE(alarm_.stands());
+  const SelfAwareness& said = alarm_.message();
+  EXPECT_EQ(said.level, SelfAwareness::OK);
+  EXPECT_EQ(said.message, "cleared by hand");
+  EXPECT_EQ(said.header.stamp.toNSec(), static_cast<std::uint64_t>(kStart + 42));
+  EXPECT_FALSE(said.abnormal);
+  EXPECT_EQ(said.evidence, "");
+  EXPECT_TRUE(said.suspects.empty());
+  EXPECT_EQ(said.score, -2) << "of the last window";
+  EXPECT_FALSE(alarm_.standDown("again", kStart + 43)) << "nothing stands any more";
+}
+
+TEST_F(AlarmStateTest, AnAlarmStandsThroughAChangeOfModelUntilItIsTakenBack) {
+  add(verdict(Level::kAlarm, true, "overdue"));
+  alarm_.forgetWindow();
+  EXPECT_FALSE(alarm_.spoken());
+  EXPECT_TRUE(alarm_.stands());
+  EXPECT_TRUE(alarm_.message().suspects.empty()) << "ids of another model";
+  EXPECT_TRUE(alarm_.standDown("settling: model loaded", kStart));
+  EXPECT_FALSE(alarm_.stands());
+  EXPECT_TRUE(alarm_.spoken());
+}
+
+}  // namespace
+}  // namespace self_awareness

@@ -1,0 +1,100 @@
+#include "monitor/heard_tally.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace self_awareness {
+namespace {
+
+constexpr std::int64_t kSecond = 1000000000;          // [ns]
+constexpr std::int64_t kSteady = 5000 * kSecond;      // steady time at the start
+constexpr std::int64_t kRos = 1600000000L * kSecond;  // ROS time at the start
+const std::vector<core::EventType> kTypes = {{"/player", "/scan", "T"},
+                                             {"/slam", "/pose", "T"},
+                                             {"/player", "/odom", "T"},
+                                             {"", "/replayed", "T"}};
+
+class HeardTallyTest : public testing::Test {
+ protected:
+  HeardTallyTest() { tally_.setTypes(kTypes); }
+
+  HeardReport report(double seconds, std::uint64_t dropped = 0) {
+    const auto later = static_cast<std::int64_t>(seconds * kSecond);
+    return tally_.report(kRos + later, kSteady + later, dropped);
+  }
+
+  HeardTally tally_{kSteady};
+};
+
+TEST_F(HeardTallyTest, CountsByComponent) {
+  for (int i = 0; i < 6; ++i) {
+    tally_.add({kRos + i * kSecond / 10, static_cast<core::EventId>(i % 3)});
+  }
+  const HeardReport heard = report(2);
+  ASSERT_EQ(heard.components.size(), 3U);
+  EXPECT_EQ(tally_.components(), 3U);
+  EXPECT_DOUBLE_EQ(heard.components.at("/player").rate, 2);
+  EXPECT_DOUBLE_EQ(heard.components.at("/player").last_heard.value(), 1.5);
+  EXPECT_DOUBLE_EQ(heard.components.at("/slam").rate, 1);
+  EXPECT_DOUBLE_EQ(heard.components.at("/slam").last_heard.value(), 1.6);
+  EXPECT_EQ(heard.components.at("/replayed").last_heard, std::nullopt);
+  EXPECT_DOUBLE_EQ(heard.rate, 3);
+}
+
+TEST_F(HeardTallyTest, AnUnknownEventCountsForNoComponent) {
+  tally_.add({kRos, 4});
+  const HeardReport heard = report(1);
+  EXPECT_DOUBLE_EQ(heard.rate, 1);
+  for (const auto& [name, component] : heard.components) {
+    EXPECT_EQ(component.rate, 0) << name;
+    EXPECT_EQ(component.last_heard, std::nullopt) << name;
+  }
+}
+
+TEST_F(HeardTallyTest, EachReportCountsFromTheOneBefore) {
+  tally_.add({kRos, 0});
+  tally_.addProcessing(kSecond / 4);
+  tally_.addProcessing(kSecond / 4);
+  const HeardReport first = report(1, 5);
+  EXPECT_DOUBLE_EQ(first.processing_share, 0.5);
+  EXPECT_EQ(first.dropped, 5U);
+  EXPECT_EQ(first.newly_dropped, 5U);
+  EXPECT_DOUBLE_EQ(tally_.sinceReport(kSteady + 4 * kSecond), 3);
+
+  const HeardReport second = report(3, 7);
+  EXPECT_EQ(second.rate, 0);
+  EXPECT_EQ(second.components.at("/player").rate, 0);
+  EXPECT_DOUBLE_EQ(second.components.at("/player").last_heard.value(), 3);
+  EXPECT_EQ(second.processing_share, 0);
+  EXPECT_EQ(second.dropped, 7U);
+  EXPECT_EQ(second.newly_dropped, 2U);
+}
+
+TEST_F(HeardTallyTest, TwoReportsAtOneMomentHaveFiniteRates) {
+  report(1);
+  tally_.add({kRos, 0});
+  EXPECT_DOUBLE_EQ(report(1).rate, 1000);  // within 1 ms at least
+}
+
+TEST_F(HeardTallyTest, AClockStepForgetsWhenEachWasHeard) {
+  tally_.add({kRos, 0});
+  tally_.onClockStep();
+  const HeardReport heard = report(1);
+  EXPECT_EQ(heard.components.at("/player").last_heard, std::nullopt);
+  EXPECT_DOUBLE_EQ(heard.components.at("/player").rate, 1) << "it was heard all the same";
+  EXPECT_EQ(heard.clock_steps, 1U);
+  EXPECT_EQ(report(2).clock_steps, 1U) << "since the start";
+}
+
+TEST_F(HeardTallyTest, AnotherModelHasOtherComponents) {
+  tally_.add({kRos, 0});
+  tally_.setTypes({{"/base", "/odom", "T"}});
+  const HeardReport heard = report(1);
+  ASSERT_EQ(heard.components.size(), 1U);
+  EXPECT_EQ(heard.components.at("/base").last_heard, std::nullopt);
+  EXPECT_DOUBLE_EQ(heard.rate, 1) << "of the monitor as a whole";
+}
+
+}  // namespace
+}  // namespace self_awareness

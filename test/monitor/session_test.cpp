@@ -1,0 +1,80 @@
+#include "monitor/session.h"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <set>
+#include <string>
+
+namespace self_awareness {
+namespace {
+
+ros1::TrainedModel model() {
+  ros1::TrainedModel model;
+  for (const core::EventType& type : {core::EventType{"/player", "/scan", "std_msgs/String"},
+                                      core::EventType{"/slam", "/pose", "std_msgs/String"},
+                                      core::EventType{"/manager", "/pose", "std_msgs/String"}}) {
+    model.statistics.countEvent(model.statistics.intern(type));
+  }
+  model.encoding.type_fields = {{"std_msgs/String", "data"}};
+  return model;
+}
+
+MonitorParameters byPaper() {
+  MonitorParameters parameters;
+  parameters.method = MonitorParameters::Method::kPaper;
+  return parameters;
+}
+
+ros1::ConnectionEncoder connect(const Session& session, const std::string& topic) {
+  return session.encoder()
+      ->connect({"/talker", topic, "std_msgs/String", "string data", false})
+      .value();
+}
+
+core::EventId encode(ros1::ConnectionEncoder& connection, const std::string& data) {
+  std::string serialized = std::string("\0\0\0\0", 4) + data;
+  serialized[0] = static_cast<char>(data.size());
+  return connection.id(reinterpret_cast<const std::uint8_t*>(serialized.data()),
+                       serialized.size());
+}
+
+TEST(Session, KnowsTheModelsTopicsAndWhatItsOwnProcessPublishes) {
+  const Session session(model(), byPaper(), [](const core::Verdict&) {});
+  EXPECT_EQ(session.topics(), (std::set<std::string>{"/pose", "/scan"}));
+  const ros1::OwnOutput own = session.ownOutput("/manager");
+  EXPECT_FALSE(own.covers("/manager", "/pose")) << "the robot's, by the model";
+  EXPECT_TRUE(own.covers("/manager", "/watch/status"));
+  EXPECT_FALSE(own.covers("/slam", "/watch/status"));
+}
+
+TEST(Session, IsCalibratedForTheDetectorThatWasChosen) {
+  ros1::TrainedModel trained = model();
+  EXPECT_FALSE(Session(trained, byPaper(), [](const core::Verdict&) {}).calibrated());
+  trained.calibration = self_awareness::Calibration();
+  trained.calibration->threshold = 0.1;
+  EXPECT_TRUE(Session(trained, byPaper(), [](const core::Verdict&) {}).calibrated());
+}
+
+TEST(Session, JudgesItsWindowsInTurn) {
+  std::vector<std::int64_t> starts;
+  Session session(model(), byPaper(),
+                  [&](const core::Verdict& verdict) { starts.push_back(verdict.window->start); });
+  session.detector().add({0, 0});
+  session.detector().advance(2 * session.window());
+  EXPECT_EQ(starts, (std::vector<std::int64_t>{0, session.window()}));
+}
+
+TEST(Session, EverNewEventTypesDoNotFillTheMemory) {
+  const Session session(model(), byPaper(), [](const core::Verdict&) {});
+  ros1::ConnectionEncoder connection = connect(session, "/joystick");
+  std::set<core::EventId> ids;
+  for (std::size_t i = 0; i < 2 * Session::kMostUnknownTypes; ++i) {
+    ids.insert(encode(connection, std::to_string(i)));
+  }
+  EXPECT_EQ(session.vocabulary().size(), session.types().size() + Session::kMostUnknownTypes + 1);
+  EXPECT_EQ(session.vocabulary().at(*ids.rbegin()).scope, "(further topics)");
+}
+
+}  // namespace
+}  // namespace self_awareness

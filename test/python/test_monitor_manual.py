@@ -1,0 +1,107 @@
+"""The comment of the class Monitor is its manual: complete, and as the code and the configuration.
+
+That the defaults of the configuration are those of the code, live_rules_test.py finds with a monitor
+that runs.
+"""
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any, Dict, List, NamedTuple
+
+import pytest
+import yaml
+
+ROOT = Path(__file__).resolve().parents[2]
+TYPES = {'string': str, 'double': float, 'int': int, 'bool': bool}
+READ_BY_OTHERS = {'diagnostic_period'}
+"""By diagnostic_updater, which takes any number."""
+NOT_IN_CONFIGURATION = {'model'}
+"""Has no default: the launch file sets it."""
+
+
+class Entry(NamedTuple):
+    """What the manual says of one parameter."""
+
+    type: str
+    unit: str
+    default: str
+    range: str
+
+
+class Reading(NamedTuple):
+    """How the code reads one parameter."""
+
+    how: str
+    arguments: str
+
+
+def _manual() -> str:
+    header = (ROOT / 'src/monitor/monitor.h').read_text()
+    comment = re.search(r'((?:///.*\n)+)class Monitor \{', header)
+    assert comment is not None
+    return re.sub(r'\s*\n///\s*', ' ', comment[1])
+
+
+def _entries(manual: str) -> Dict[str, Entry]:
+    found = re.findall(r'- `~(\w+)` \((\w+)(?:, ([^;)]+))?; default: ([^;)]+)(?:; ([^)]+))?\):',
+                       manual)
+    assert len({name for name, *_ in found}) == len(found)
+    return {name: Entry(*fields) for name, *fields in found}
+
+
+def _readings() -> Dict[str, Reading]:
+    code = (ROOT / 'src/monitor/parameters.cpp').read_text()
+    code = code[code.index('MonitorParameters::load'):]
+    found = re.findall(r'reader\.(\w+)(?:<[^>]*>)?\(\s*"(\w+)"(.*?)\);', code, re.DOTALL)
+    return {name: Reading(how, arguments) for how, name, arguments in found}
+
+
+def _configuration() -> Dict[str, Any]:
+    return yaml.safe_load((ROOT / 'config/self_awareness.yaml').read_text())
+
+
+def test_lists_every_parameter_that_is_read() -> None:
+    assert set(_entries(_manual())) == set(_readings())
+
+
+def test_the_configuration_has_every_parameter() -> None:
+    assert set(_configuration()) == set(_readings()) - NOT_IN_CONFIGURATION
+
+
+@pytest.mark.parametrize('name', sorted(_configuration()))
+def test_types_and_defaults_are_those_of_the_configuration(name: str) -> None:
+    entry = _entries(_manual())[name]
+    default = yaml.safe_load(entry.default)
+    assert default == _configuration()[name]
+    assert type(default) is TYPES[entry.type] is type(_configuration()[name])
+
+
+@pytest.mark.parametrize('name', sorted(set(_readings()) - READ_BY_OTHERS))
+def test_ranges_are_those_of_the_code(name: str) -> None:
+    entry, reading = _entries(_manual())[name], _readings()[name]
+    if reading.how == 'choice':
+        choices = re.findall(r'\{"(\w+)",', reading.arguments)
+        assert len(choices) > 1
+        assert re.split(', | or ', entry.range) == choices
+    elif reading.how in ('seconds', 'wholeNumber'):
+        least = re.search(r', ([\d.]+)\)*$', reading.arguments)
+        assert least is not None
+        assert re.findall(r'[\d.]+', entry.range) == [least[1]]
+        assert (entry.unit == 's') == (reading.how == 'seconds')
+    else:
+        assert reading.how == 'read'
+        assert entry.range == ''
+
+
+def _advertised(call: str) -> List[str]:
+    code = (ROOT / 'src/monitor/monitor.cpp').read_text()
+    return re.findall(rf'private_node_handle_\s*\.{call}\(\s*"(\w+)"', code)
+
+
+def test_lists_topics_and_services() -> None:
+    topics, services = _advertised('advertise<[^>]*>'), _advertised('advertiseService')
+    assert topics and services
+    listed = set(re.findall(r'- `~(\w+)` \([\w/]+\):', _manual()))
+    assert listed == {*topics, *services}
+    assert '- `/diagnostics` (diagnostic_msgs/DiagnosticArray):' in _manual()
