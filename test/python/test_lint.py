@@ -52,7 +52,7 @@ def test_clang_format() -> None:
     version = _version('clang-format')
     if ' 14.' not in version:
         pytest.skip(f'the tree is formatted by version 14, this is {version}')
-    files = [str(path) for folder in ('benchmark', 'include', 'src', 'test')
+    files = [str(path) for folder in ('benchmark', 'examples', 'include', 'src', 'test')
              for path in sorted((ROOT / folder).rglob('*')) if path.suffix in ('.h', '.cpp')]
     _check('clang-format', '--dry-run', '-Werror', *files)
 

@@ -1,0 +1,79 @@
+// Events in, who is to blame out, without ROS and without Python: docs/embedding.md explains it.
+
+#include <cstddef>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "self_awareness/core/evidence/cross_fit.h"
+#include "self_awareness/core/evidence/judge.h"
+#include "self_awareness/core/evidence/limits.h"
+#include "self_awareness/core/evidence/tracks.h"
+#include "self_awareness/core/training.h"
+#include "self_awareness/core/verdict/detector.h"
+#include "simulated_recording.h"
+
+namespace core = self_awareness::core;
+namespace evidence = self_awareness::core::evidence;
+
+int main() {
+  // Four recordings of normal operation, of 100 s each.
+  std::vector<std::vector<core::Event>> recordings;
+  for (const unsigned seed : {1U, 2U, 3U, 4U}) {
+    recordings.push_back(simulatedRecording(seed, 100, std::nullopt));
+  }
+
+  // 1. Training counts what the recordings show.
+  core::Training training({});
+  for (const core::EventType& type : kEventTypes) {
+    training.intern(type);
+  }
+  std::vector<std::size_t> halves;  // that the recordings belong to
+  for (const std::vector<core::Event>& recording : recordings) {
+    halves.push_back(training.startRecording());
+    for (const core::Event& event : recording) {
+      training.add(event);
+    }
+  }
+  const core::TrainingCounts counts = training.finish();
+
+  // 2. The counts say what is worth watching, and what is usual.
+  const evidence::CrossFit models(evidence::watch(counts.halves[0], counts.halves[1]));
+
+  // 3. Limits say what is too unusual. The recordings come twice; who judges one has not learned
+  // from it.
+  evidence::LimitFinder finder(models.model(), {});
+  for (const bool second_pass : {false, true}) {
+    if (second_pass) {
+      finder.startSecondPass();
+    }
+    for (std::size_t i = 0; i < recordings.size(); ++i) {
+      finder.startRecording(models.judging(halves[i]));
+      for (const core::Event& event : recordings[i]) {
+        finder.add(event);
+      }
+      finder.finish();
+    }
+  }
+
+  // 4. The detector judges another recording, in which the laser dies after 60 s.
+  const auto graph = std::make_shared<core::SourceGraph>();
+  graph->connect("/laser", "/slam");  // who hears whom tells the root from its victims
+  const auto print = [&models](const core::Verdict& verdict) {
+    if (verdict.changed && verdict.alarm) {
+      std::cout << "alarm at " << core::toSeconds(verdict.window->start) << " s\n";
+      for (const core::Suspect& suspect : verdict.suspects) {
+        std::cout << core::toString(models.model()->vocabulary().at(suspect.id)) << ": "
+                  << core::describe(suspect) << '\n';
+      }
+    }
+  };
+  core::Detector detector(
+      evidence::makeJudge(models.model(), finder.limits(), core::kDefaultWindow, graph),
+      core::kDefaultWindow, {}, print);
+  for (const core::Event& event : simulatedRecording(5, 100, 60)) {
+    detector.add(event);
+  }
+  detector.finish();
+}

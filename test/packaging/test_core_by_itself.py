@@ -1,0 +1,71 @@
+"""The core is a C++ library that needs neither ROS nor Python (docs/embedding.md)."""
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from conftest import ALARM, EMBEDDING, EXAMPLE, ROOT, run, run_project_of_embedding_page
+
+INCLUDE = ROOT / 'include'
+HEADERS = sorted(str(path.relative_to(INCLUDE))
+                 for path in (INCLUDE / 'self_awareness' / 'core').rglob('*.h'))
+
+
+QUICK = ('-DCMAKE_BUILD_TYPE=None', '-DCMAKE_CXX_FLAGS=-O1')
+"""Compiles in half the time of the default, for tests that take no longer."""
+
+
+@pytest.fixture(scope='module')
+def build(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The core, its tests and examples, built as a CMake project."""
+    folder = tmp_path_factory.mktemp('core')
+    run('cmake', '-S', ROOT / 'src' / 'core', '-B', folder / 'build', *QUICK,
+        f'-DCMAKE_INSTALL_PREFIX={folder / "installed"}')
+    printed = run('cmake', '--build', folder / 'build', '-j2')
+    assert 'warning:' not in printed, printed
+    return folder / 'build'
+
+
+def test_its_tests_and_examples_pass(build: Path) -> None:
+    printed = run('ctest', '--output-on-failure', cwd=build)
+    assert '100% tests passed, 0 tests failed out of 2' in printed
+
+
+def test_a_project_finds_it_installed(build: Path, tmp_path: Path) -> None:
+    run('cmake', '--install', build)
+    printed = run_project_of_embedding_page(
+        tmp_path, 'find_package(self_awareness_core',
+        f'-DCMAKE_PREFIX_PATH={build.parent / "installed"}')
+    assert ALARM.fullmatch(printed), printed
+
+
+def test_a_project_builds_it_as_a_part_of_itself(tmp_path: Path) -> None:
+    (tmp_path / 'self_awareness').symlink_to(ROOT)
+    printed = run_project_of_embedding_page(tmp_path, 'add_subdirectory(', *QUICK)
+    assert ALARM.fullmatch(printed), printed
+    assert f'```\n{printed}```' in EMBEDDING
+
+
+@pytest.mark.parametrize('header', HEADERS)
+def test_a_public_header_needs_no_other_before_it_and_no_private_one(header: str,
+                                                                     tmp_path: Path) -> None:
+    source = tmp_path / 'only.cpp'
+    source.write_text(f'#include "{header}"\n', encoding='utf-8')
+    run('g++', '-std=c++17', '-Wall', '-Wextra', '-Wpedantic', '-Werror', '-fsyntax-only',
+        '-I', INCLUDE, source)
+
+
+def test_the_page_names_headers_that_exist() -> None:
+    named = set(re.findall(r'`core/([\w/]+\.h)`', EMBEDDING))
+    assert named
+    assert {f'self_awareness/core/{name}' for name in named} <= set(HEADERS)
+
+
+def test_the_page_quotes_the_example() -> None:
+    lines = {line.strip() for line in EXAMPLE.read_text(encoding='utf-8').splitlines()}
+    quoted = [line.strip() for block in re.findall(r'```cpp\n(.*?)```', EMBEDDING, re.DOTALL)
+              for line in block.splitlines()]
+    assert quoted
+    assert [line for line in quoted if line not in lines] == []
