@@ -17,6 +17,7 @@ ros1::TrainedModel model() {
     model.statistics.countEvent(model.statistics.intern(type));
   }
   model.encoding.type_fields = {{"std_msgs/String", "data"}};
+  model.statistics.pair(0, 0).add(5);
   return model;
 }
 

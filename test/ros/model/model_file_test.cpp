@@ -140,12 +140,13 @@ TEST_F(ModelFileTest, AModelComesBackAsItWasSaved) {
 }
 
 TEST_F(ModelFileTest, AModelForOneDetectorComesBackWithoutTheOthersCounts) {
-  TrainedModel evidence = someModel();
-  evidence.statistics = core::paper::DelayStatistics(evidence.statistics.binning());
-  for (const core::EventType& type : someModel().vocabulary().types()) {
+  const TrainedModel both = someModel();
+  TrainedModel evidence = both;
+  evidence.statistics = core::paper::DelayStatistics(both.statistics.binning());
+  for (const core::EventType& type : both.vocabulary().types()) {
     evidence.statistics.countEvent(evidence.statistics.intern(type));
   }
-  TrainedModel paper = someModel();
+  TrainedModel paper = both;
   paper.evidence = {};
   paper.watched = {};
   for (const TrainedModel& model : {evidence, paper}) {
