@@ -28,8 +28,6 @@ _Result = TypeVar('_Result')
 
 _AHEAD = 2
 """Tasks for each worker that may be under way, or done and waiting for their turn."""
-_BATCHES = 3
-"""Batches for each worker: with several, all workers end at about the same time."""
 _LARGEST_BATCH = 8
 """The most tasks of a batch, unless there are more workers than this."""
 _RETRIES = 2
@@ -97,15 +95,15 @@ class Processes(Workers):
 
     def map(self, function: Callable[[_Shared, _Task], _Result], shared: _Shared,
             tasks: Sequence[_Task], description: str) -> Generator[_Result, None, None]:
-        """See Workers. What is shared is inherited by fork, and not copied."""
+        """See Workers. What is shared and the tasks are inherited by fork, and not copied."""
         others = set(multiprocessing.active_children())
         # Not spawned: that would run the program's script again in every process.
         with concurrent.futures.ProcessPoolExecutor(
                 min(self._number, len(tasks)), multiprocessing.get_context('fork'), _start_worker,
-                (shared,)) as pool:
+                (function, shared, tasks)) as pool:
             try:
                 yield from _in_order(
-                    tasks, lambda task: pool.submit(_call_with_inherited, function, task),
+                    tasks, lambda index: pool.submit(_call_inherited, index),
                     _result_of_process, lambda: self._number, description)
             except BaseException:  # GeneratorExit, too: the rest is not wanted any more
                 for child in set(multiprocessing.active_children()) - others:
@@ -152,8 +150,8 @@ class Cluster(Workers):
         futures = set()
         there: Any = None
 
-        def submit(task: _Task) -> Any:
-            future = self._submit(_call, function, there, task)
+        def submit(index: int) -> Any:
+            future = self._submit(_call, function, there, tasks[index])
             futures.add(future)
             return future
 
@@ -213,23 +211,23 @@ class Cluster(Workers):
 
 
 def _batches(tasks: int, workers: int) -> int:
-    # The results of the others arrive while a worker is busy with a batch. Where a batch has as
-    # many tasks as there are workers, adding them up takes no longer than that. Larger batches
-    # only lose more work when a worker dies.
+    # Handing over a sum takes as long as counting a short bag: so few of them, but one for each
+    # worker. Where a batch has as many tasks as there are workers, the results of the others
+    # arrive while a worker is busy with it. Larger batches only lose more work when a worker dies.
     largest = max(workers, _LARGEST_BATCH)
-    return min(tasks, max(_BATCHES * workers, math.ceil(tasks / largest), 1))
+    return min(tasks, max(workers, math.ceil(tasks / largest), 1))
 
 
-def _in_order(tasks: Sequence[_Task], submit: Callable[[_Task], Any],
+def _in_order(tasks: Sequence[_Task], submit: Callable[[int], Any],
               result: Callable[[Any, _Task], _Result], workers: Callable[[], int],
               description: str) -> Generator[_Result, None, None]:
     waiting: Deque[Any] = deque()
     with progress.items(len(tasks), description) as one_done:
-        for task in tasks:
+        for index, task in enumerate(tasks):
             while len(waiting) >= _AHEAD * max(workers(), 1):
                 yield result(*waiting.popleft())
                 one_done()
-            waiting.append((submit(task), task))
+            waiting.append((submit(index), task))
         while waiting:
             yield result(*waiting.popleft())
             one_done()
@@ -249,16 +247,17 @@ def _result_of_process(future: concurrent.futures.Future, task: object) -> Any:
 
 
 _inherited: Any = None
-"""In a process of Processes: what all of its tasks need."""
+"""In a process of Processes: the function, what is shared, and all tasks."""
 
 
-def _call_with_inherited(function: Callable[[Any, Any], Any], task: Any) -> bytes:
-    return _call(function, _inherited, task)
+def _call_inherited(index: int) -> bytes:
+    function, shared, tasks = _inherited
+    return _call(function, shared, tasks[index])
 
 
-def _start_worker(shared: object) -> None:
+def _start_worker(*inherited: object) -> None:
     global _inherited
-    _inherited = shared
+    _inherited = inherited
     progress.silence()
     for number in (signal.SIGINT, signal.SIGTERM):  # the parent says what happened
         signal.signal(number, signal.SIG_DFL)

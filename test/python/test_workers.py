@@ -68,8 +68,8 @@ def test_work_begins_only_a_little_ahead(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize('tasks, processes, batches', [
-    (1, 1, 1), (2, 2, 2), (6, 2, 6), (9, 2, 6), (48, 2, 6), (49, 2, 7), (1000, 2, 125),
-    (1000, 20, 60), (10000, 20, 500)])
+    (1, 1, 1), (2, 2, 2), (6, 2, 2), (16, 2, 2), (17, 2, 3), (49, 2, 7), (1000, 2, 125),
+    (30, 20, 20), (1000, 20, 50), (10000, 20, 500)])
 def test_batches_are_few_and_not_long(tasks: int, processes: int, batches: int) -> None:
     assert Processes(processes).batches(tasks) == batches
     assert InProcess().batches(tasks) == tasks

@@ -5,16 +5,12 @@
 #include <string>
 #include <utility>
 
+#include "check.h"
+
 namespace self_awareness::ros1 {
 namespace {
 
 namespace evidence = core::evidence;
-
-void check(bool holds, const std::string& otherwise) {
-  if (!holds) {
-    throw std::invalid_argument(otherwise);
-  }
-}
 
 bool areOffsets(const std::vector<std::uint64_t>& offsets, std::size_t groups,
                 std::size_t entries) {
@@ -82,6 +78,14 @@ self_awareness::EvidencePairs pairsMessage(const evidence::Statistics& statistic
   self_awareness::EvidencePairs message;
   message.id = id;
   message.offsets.push_back(0);
+  std::size_t filled = 0;
+  for (const evidence::Statistics::Partner& partner : statistics.partners(id)) {
+    filled +=
+        static_cast<std::size_t>(std::count_if(partner.delays.begin(), partner.delays.end(),
+                                               [](std::uint32_t count) { return count > 0; }));
+  }
+  message.bins.reserve(filled);
+  message.counts.reserve(filled);
   for (const evidence::Statistics::Partner& partner : statistics.partners(id)) {
     for (std::size_t bin = 0; bin < partner.delays.size(); ++bin) {
       if (partner.delays[bin] > 0) {

@@ -14,6 +14,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "check.h"
 #include "self_awareness/ros/model/delays_message.h"
 #include "self_awareness/ros/model/evidence_message.h"
 
@@ -23,12 +24,6 @@ namespace {
 constexpr char kTopic[] = "/model";
 constexpr char kDelaysTopic[] = "/delays";
 constexpr std::array<const char*, 2> kEvidenceTopics{"/evidence/first", "/evidence/second"};
-
-void check(bool holds, const std::string& otherwise) {
-  if (!holds) {
-    throw std::invalid_argument(otherwise);
-  }
-}
 
 self_awareness::Encoding encodingMessage(const EncodingRules& rules) {
   self_awareness::Encoding message;
@@ -51,8 +46,9 @@ self_awareness::Encoding encodingMessage(const EncodingRules& rules) {
 EncodingRules rulesOf(const self_awareness::Encoding& message) {
   EncodingRules rules;
   const bool none = message.source == self_awareness::Encoding::SOURCE_NONE;
-  check(none || message.source == self_awareness::Encoding::SOURCE_CALLERID,
-        "its encoding has the unknown source '" + message.source + "'");
+  if (!none && message.source != self_awareness::Encoding::SOURCE_CALLERID) {
+    throw std::invalid_argument("its encoding has the unknown source '" + message.source + "'");
+  }
   rules.source = none ? EncodingRules::Source::kNone : EncodingRules::Source::kCallerId;
   rules.include_topics = message.include_topics;
   rules.exclude_topics = message.exclude_topics;
