@@ -20,7 +20,7 @@ constexpr std::uint64_t kFewestDelaysOfPair = 200;
 constexpr double kLeastRate = 1.5;
 
 constexpr std::size_t kAsked = 8;
-constexpr std::uint64_t kFewestAnswers = 100;
+constexpr std::uint64_t kFewestGapsOfAnswers = 100;
 constexpr double kMostMisses = 0.6;
 
 using Halves = std::array<const Statistics*, 2>;
@@ -108,7 +108,8 @@ class Choice {
       Ranked best;  // by the time that some misses take
       for (EventId from = 0; from < types_.size(); ++from) {
         const Statistics::Type& asking = types_.type(from);
-        if (from == to || asking.gaps < kFewestAnswers || types_.type(to).gaps < kFewestAnswers ||
+        if (from == to || asking.gaps < kFewestGapsOfAnswers ||
+            types_.type(to).gaps < kFewestGapsOfAnswers ||
             gains_(to, from) > gains_(from, to) + kLeastGain) {
           continue;
         }
