@@ -15,14 +15,15 @@
 
 namespace self_awareness::core {
 
-/// What recordings of normal operation came to: counts, from which a model computes the rest.
-/// Those of two trainings add up to those of a training on both.
+/// What a training learns from recordings of normal operation: counts. A model computes the rest
+/// from them. The counts of two trainings add up to those of a training on both (docs/method.md,
+/// sections 2.1 and 3.1).
 struct TrainingCounts {
-  /// Of the paper's detector; without delays where they were not counted for it.
+  /// For the paper's detector; without delays if the training did not count for it.
   paper::DelayStatistics delays{paper::Binning{}};
-  /// Of the evidence detector, of the two halves of the training; without event types where they
-  /// were not counted for it. What one half says is tried on the other: that tells what holds in
-  /// all recordings from what held in some (docs/method.md, section 3.1).
+  /// For the evidence detector, of each half of the training; without event types if the training
+  /// did not count for it. What one half says is tried on the other: this separates what holds in
+  /// all recordings from what holds in some (docs/method.md, section 3.1).
   std::array<evidence::Statistics, 2> halves;
 };
 
@@ -40,23 +41,24 @@ class Training {
   explicit Training(const Parameters& parameters);
   ~Training();
 
-  /// The id of an event type, which is added if it is new.
+  /// Id of an event type; a new type is added.
   EventId intern(const EventType& type);
   const Vocabulary& vocabulary() const { return counts_.delays.vocabulary(); }
 
-  /// The next events belong to another recording. Recordings belong to the two halves in turn.
+  /// Starts a recording: the next events belong to it. Recordings belong to the two halves in
+  /// turn.
   /// @return the half that this one belongs to, 0 or 1
   std::size_t startRecording();
-  /// The only recording of a training is cut in two: what comes before `middle` [ns] belongs to
-  /// the first half, the rest to the second. What holds in a part of it only is at least not taken
-  /// for information.
-  /// @throw std::logic_error if there was a recording before
+  /// Starts the only recording of a training, which is cut in two: events before `middle` [ns]
+  /// belong to the first half, the others to the second. So what holds in one part only is not
+  /// taken for information.
+  /// @throw std::logic_error if a recording was started before
   void startOnlyRecording(std::int64_t middle);
   /// @param event with an id from intern(); in the order of the recording
   void add(const Event& event);
-  /// Hands out what was counted, and ends the training: with many event types, a copy may fill the
-  /// memory.
-  /// @throw std::logic_error if it has ended
+  /// Ends the training and gives its counts away: with many event types, a copy of them may fill
+  /// the memory.
+  /// @throw std::logic_error if the training has ended already
   TrainingCounts finish();
 
  private:
@@ -66,8 +68,8 @@ class Training {
   TrainingCounts counts_;
   std::unique_ptr<Trainers> trainers_;
   std::size_t recordings_ = 0;
-  std::size_t half_ = 0;                // that is trained
-  std::optional<std::int64_t> middle_;  // of the only recording [ns], while before it
+  std::size_t half_ = 0;                // the half that is trained
+  std::optional<std::int64_t> middle_;  // of the only recording [ns], until it is reached
 };
 
 }  // namespace self_awareness::core

@@ -6,7 +6,7 @@
 
 namespace self_awareness::core::evidence {
 
-/// An array by bin as one that can be calculated with; it must outlive what is returned.
+/// Makes arithmetic possible on an array by bin. The array must outlive what is returned.
 template <typename Value, std::size_t kSize>
 Eigen::Map<Eigen::Array<Value, static_cast<int>(kSize), 1>> asArray(
     std::array<Value, kSize>& values) {

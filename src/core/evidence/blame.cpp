@@ -10,10 +10,11 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-// Evidence below this share of its limit says nothing of who is involved.
+// Evidence below this share of its limit does not say who is involved.
 constexpr double kLeastShare = 0.3;
+// Of one track, no more than this share of its limit counts.
 constexpr double kMostShare = 2;
-// When the first piece of evidence passes its limit, that of its root may still be on the way.
+// When a victim's evidence passes its limit, the root's may still be on the way.
 constexpr double kNearLimit = 0.75;
 // Of an unusual delay between two event types, the later one is a little more to blame.
 constexpr double kShareOfEarlier = 0.9;
@@ -78,15 +79,16 @@ std::vector<Blame::Candidate> Blame::silent(const std::vector<double>& shares,
   return rootFirst(std::move(candidates));
 }
 
-// Upstream before downstream is no total order: whoever has fewest others upstream is next. When a
-// whole robot falls silent there are as many candidates as event types, but of few components.
+// Upstream before downstream is no total order: the candidate with the fewest others upstream is
+// next. Sources are compared, not candidates: when a whole robot falls silent, every event type is
+// a candidate, but there are few components.
 std::vector<Blame::Candidate> Blame::rootFirst(std::vector<Candidate> candidates) const {
   std::stable_sort(candidates.begin(), candidates.end(), likelier);
   std::map<std::string, std::vector<std::size_t>> by_component;  // indexes of candidates
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     by_component[component(candidates[i].suspect.id)].push_back(i);
   }
-  std::vector<std::size_t> upstream(candidates.size(), 0);  // how many are, of those left
+  std::vector<std::size_t> upstream(candidates.size(), 0);  // number of those left that are
   std::map<std::string, std::vector<std::size_t>> downstream;
   for (const auto& [source, members] : by_component) {
     for (const auto& [other, victims] : by_component) {
@@ -118,7 +120,7 @@ std::vector<Blame::Candidate> Blame::unusual(const std::vector<double>& shares,
                                              const Scorer& scorer) const {
   struct Involved {
     double sum = 0;
-    std::size_t track = 0;  // the one that says most
+    std::size_t track = 0;  // with the largest share
     double largest = 0;
     bool own = false;  // something is wrong with it, whatever the others do
   };

@@ -12,17 +12,17 @@
 
 namespace self_awareness::core::evidence {
 
-/// Names the event types that abnormal evidence may be blamed on. Who is silent comes first: the
-/// source upstream of the others, then by how improbable so long a silence is. Where nobody is,
-/// the source that is involved in most of what is unusual.
+/// Names the event types that may have caused abnormal evidence (docs/method.md, section 6).
+/// Silent ones come first, a source upstream of the others before them, then the least probable
+/// silence. If none is silent, the source comes first that most of what is unusual involves.
 class Blame {
  public:
-  /// @param graph may be empty: then the silences alone decide
+  /// @param graph may be empty: the silences alone then decide
   Blame(std::shared_ptr<const Model> model, std::shared_ptr<const SourceGraph> graph);
 
-  /// @param shares of its limit that every track of the model has reached
+  /// @param shares of their limits that the tracks of the model have reached
   /// @param window that the scorer closed last
-  /// @return at most kMostSuspects, the first the most likely, each event type once
+  /// @return at most kMostSuspects, the most likely first, each event type once
   std::vector<Suspect> suspects(const std::vector<double>& shares, const Scorer& scorer,
                                 const Window& window) const;
 

@@ -14,9 +14,10 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-// The linker is suspicious from this share of its limit on.
+// Above this share of its limit, the linker is suspicious.
 constexpr double kSuspicious = 0.75;
-// Whoever has been overdue for so long [ns] is silent: further windows would say nothing new.
+// An event type that was overdue this long ago [ns] already is silent: further windows would say
+// nothing new.
 constexpr std::int64_t kConfirmation = kNanosecondsPerSecond / 10;
 
 class Judge : public core::Judge {

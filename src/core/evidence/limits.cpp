@@ -23,14 +23,17 @@ constexpr double kKinds = 4;      // of evidence: overdue, rate, pairs, answers
 // What was seen once in normal operation is normal, and so is a little more (docs/method.md,
 // section 5.3).
 constexpr double kMargin = 1.25;
+// The same for the longest gap (docs/method.md, section 5.2).
 constexpr double kGapMargin = 1.1;
-// It depends on what the robot is at, and that changes from hour to hour.
+// The linker depends on what the robot is doing, and that changes from hour to hour.
 constexpr double kLinkerMargin = 1.5;
 constexpr std::size_t kTailGaps = 20;
 
-// Evidence that gets nowhere near its limit in this time [ns] of a component's death is no use.
+// Evidence that takes longer than this [ns] after a component's death is of no use.
 constexpr double kLongestWait = 10e9;
+// A pair with a larger limit would need 20 or more improbable delays in a row.
 constexpr double kMostDelayLimit = 100;
+// An event type that may wait longer than this many mean gaps comes when something happens.
 constexpr double kMostMeanGaps = 3;
 
 }  // namespace
@@ -162,7 +165,7 @@ void LimitFinder::close(const Window& window, std::int64_t end) {
 }
 
 void LimitFinder::closeBlock() {
-  // Half a block at the end of a recording would have smaller maxima.
+  // A shorter block at the end of a recording would have a smaller maximum.
   if (static_cast<std::int64_t>(block_windows_) * parameters_.window >= kBlock) {
     if (second_pass_) {
       linker_maxima_.add(linker_block_);
@@ -194,7 +197,8 @@ void LimitFinder::startSecondPass() {
                                 std::to_string(kBlock / kNanosecondsPerSecond) +
                                 " s, after the first seconds of every recording");
   }
-  // Each kind of evidence has its share of the budget, each track of the kind its share of that.
+  // Each kind of evidence gets an equal share of the budget, each track of a kind an equal share
+  // of that.
   std::map<std::string, std::size_t> of_kind;
   for (const Track& track : model_->tracks()) {
     ++of_kind[channelName(track.channel)];

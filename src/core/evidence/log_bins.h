@@ -10,10 +10,9 @@
 
 namespace self_awareness::core::evidence {
 
-/// How the evidence puts delays into bins (docs/method.md, section 3.1): four bins an octave
-/// from 2.5 ms to 10.24 s, one for all below and one for all beyond. Relative precision is what
-/// delays of a millisecond and of seconds have in common, and few bins are what counts of many
-/// pairs need.
+/// The bins of delays in the evidence detector (docs/method.md, section 3.1): four an octave from
+/// 2.5 ms to 10.24 s, one for all shorter and one for all longer delays. Relative precision suits
+/// delays of milliseconds and of seconds, and few bins keep the counts of many pairs small.
 namespace log_bins {
 
 constexpr std::size_t kBins = kDelayBins;
@@ -24,8 +23,8 @@ constexpr std::int64_t kFirstEdge = 2500000;  // [ns]
 inline constexpr std::array<double, 4> kQuarterOctaves{1, 1.189207115002721, 1.4142135623730951,
                                                        1.681792830507429};
 
-/// Lower edge of the bins but the first [ns]. Whole nanoseconds: the same bin on every machine,
-/// however it rounds.
+/// Lower edges of all bins but the first [ns]. They are whole nanoseconds, so a delay falls into
+/// the same bin on every machine, however it rounds.
 constexpr std::array<std::int64_t, kBins - 1> makeEdges() {
   std::array<std::int64_t, kBins - 1> edges{};
   for (std::size_t k = 0; k < edges.size(); ++k) {
@@ -38,14 +37,14 @@ constexpr std::array<std::int64_t, kBins - 1> makeEdges() {
 
 inline constexpr std::array<std::int64_t, kBins - 1> kEdges = makeEdges();
 
-/// An eighth of an octave between two powers of two: at most one edge lies within.
+/// An eighth of the range between two powers of two: at most one edge lies in it.
 struct Eighth {
   std::int64_t edge = 0;  // [ns]
-  std::size_t below = 0;  // bin of what is less than the edge
+  std::size_t below = 0;  // bin of delays shorter than the edge
 };
 
 constexpr std::size_t kFirstExponent = 21;  // 2^21 ns < kFirstEdge
-constexpr std::size_t kExponents = 13;      // up to more than the last edge
+constexpr std::size_t kExponents = 13;      // to beyond the last edge
 
 constexpr std::array<Eighth, 8 * kExponents> makeEighths() {
   std::array<Eighth, 8 * kExponents> eighths{};
@@ -67,7 +66,7 @@ inline constexpr std::array<Eighth, 8 * kExponents> kEighths = makeEighths();
 
 /// Bin of a delay [ns]; a negative delay (a late stamp) counts as 0.
 inline std::size_t bin(std::int64_t delay) {
-  // The exponent of a double and the first three bits behind its point, instead of a search.
+  // The exponent of a double and the first three bits after its point replace a search.
   const auto within =
       static_cast<double>(std::clamp(delay, detail::kFirstEdge - 1, detail::kEdges.back()));
   static_assert(sizeof within == sizeof(std::uint64_t), "a double has 64 bits");
@@ -81,8 +80,8 @@ inline std::size_t bin(std::int64_t delay) {
 
 /// Smallest delay in a bin [ns]; 0 for the first one.
 std::int64_t lowerEdge(std::size_t bin);
-/// What stands for the delays in a bin [ns]: the geometric mean of its edges, for the first half
-/// its upper edge, for the last its lower edge.
+/// Delay that stands for all delays in a bin [ns]: the geometric mean of its edges; for the first
+/// bin half its upper edge, for the last its lower edge.
 double middle(std::size_t bin);
 
 }  // namespace log_bins

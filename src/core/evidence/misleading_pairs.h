@@ -11,17 +11,19 @@
 namespace self_awareness::core::evidence {
 
 /// Finds pairs of event types whose delays say less in a part of a recording than in the whole
-/// training: independent timers keep one phase for a while, and what they say then is gone when
-/// they drift.
+/// training (docs/method.md, section 5.4): independent timers keep one phase for a while, and what
+/// they say then is gone when they drift.
 class MisleadingPairs {
  public:
   explicit MisleadingPairs(const Model& model);
 
-  /// The next event of a recording, in its order. @param event of a type that the model knows
+  /// Takes in the next event of a recording, in its order.
+  /// @param event of a type that the model knows
   void add(const Event& event);
-  /// The recording ends.
+  /// Ends the recording.
   void finish();
-  /// Adds those of other recordings. @param tracks as of tracks()
+  /// Adds the misleading tracks of other recordings.
+  /// @param tracks as tracks() returns them
   void add(const std::vector<bool>& tracks);
   /// Whether a delay track was misleading in any part of what came, by track.
   const std::vector<bool>& tracks() const { return misleading_; }
@@ -42,7 +44,7 @@ class MisleadingPairs {
   std::vector<std::int64_t> last_seen_;   // [ns] by id, kNever before the first in the part
   std::int64_t newest_stamp_ = 0;         // [ns]
   std::int64_t duration_ = 0;             // of the part [ns]
-  bool started_ = false;                  // the part
+  bool started_ = false;                  // whether the part has an event
   std::vector<bool> misleading_;          // by track
 };
 

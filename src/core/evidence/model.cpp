@@ -12,18 +12,21 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-// A single event proves little, however improbable; and delays of one bin vary by nothing.
+// A single event proves little, however improbable.
 constexpr double kMostSurprise = 6;
+// Delays that all fall into one bin vary by nothing.
 constexpr double kLeastDeviation = 0.5;  // [nat]
 
-// Share of the answers that come which a fault is supposed to take away.
+// Share of the usual answers that a fault takes away: the fault that is looked for.
 constexpr double kLost = 0.5;
 constexpr double kLeastMissRate = 0.1;
 constexpr double kMostMissRate = 0.95;
 
-// Below these, training data by the hour would be needed to tell chance from fault. One event that
-// comes late makes two unusual delays, one too long and one too short: they must not do.
+// Below the least limits, hours of data would be needed to tell chance from fault (docs/method.md,
+// section 5.3).
 constexpr double kLeastRateLimit = 3;
+// One late event makes two unusual delays, one too long and one too short: they must not be
+// enough.
 constexpr double kLeastDelayLimit = 2 * kMostSurprise + 1;
 constexpr double kLeastMisses = 4;
 constexpr double kLeastAnswerLimit = 5;  // [nat]
@@ -157,7 +160,7 @@ double Model::overdue(EventId id, std::int64_t age) const {
   const auto longer =
       std::upper_bound(gaps.bins.begin(), gaps.bins.end(), a,
                        [](double age, const Gaps::Bin& bin) { return age < bin.middle; });
-  // Where no gap was longer, exp(-a / b) would underflow long before its logarithm.
+  // If no gap was longer: exp(-a / b) would underflow long before its logarithm.
   return longer != gaps.bins.end() ? all - std::log(longer->sum - a * longer->count +
                                                     gaps.longest * std::exp(-a / gaps.longest))
                                    : all - std::log(gaps.longest) + a / gaps.longest;
@@ -184,7 +187,7 @@ double Model::logSurvival(EventId id, std::int64_t age) const {
   const double tail =
       static_cast<double>(age) / static_cast<double>(std::max<std::int64_t>(longest.front(), 1));
   const double all = std::log(static_cast<double>(type.gaps) + 1);
-  // Where no gap was longer, exp(-tail) would underflow long before its logarithm.
+  // If no gap was longer: exp(-tail) would underflow long before its logarithm.
   return longer > 0 ? std::log(longer + std::exp(-tail)) - all : -tail - all;
 }
 

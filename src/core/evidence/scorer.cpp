@@ -8,20 +8,21 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-// What usual delays take from the sum, in standard deviations: much finds strong evidence without
-// false alarms, little lets weak evidence add up.
+// What every delay takes from the sum, in standard deviations: a large drift finds strong evidence
+// without false alarms, a small one lets weak evidence add up.
 constexpr double kDrift = 1;
 constexpr double kSlowDrift = 0.5;
 // Independent timers keep one phase as long as they run, and have another one in every run:
-// training may have met the same one by chance every time. So delays and answers count from when
-// they have once been as in training, and anew when one of the event types comes back after it was
-// gone.
+// training may have met the same one by chance every time. So delays and answers count only after
+// they have once been as in training, and again so when one of the event types comes back after it
+// was gone (docs/method.md, section 3.7).
 constexpr std::uint32_t kArmingEvents = 30;
 constexpr double kUsualSurprise = 0.3;  // standard deviations above the mean of training
 constexpr double kUsualMisses = 0.15;   // share of the gaps above that of training
 constexpr std::int64_t kGoneGaps = 5;   // times the longest gap in training
 constexpr double kMostEvidence = 200;   // while limits are not known
 constexpr double kMostOfLimit = 1.5;    // in units of the limit
+// Larger than any step of an answer track: taken from the step of a missed answer if it came.
 constexpr double kMoreThanAnyStep = 1e6;
 
 }  // namespace
@@ -120,17 +121,17 @@ std::optional<std::int64_t> Scorer::add(const Event& event) {
   }
   const OfType& type = types_[event.id];
   counts_.add(event.id);
-  // What is not known to the compiler not to change is looked up again and again.
+  // Constant local copies: the compiler would look up again what it does not know to be constant.
   const std::int64_t* const stamps = stamps_.data();
   const double* const numbers = numbers_.data();
   const double last = numbers[event.id];
   const Eigen::Array2d drifts(kDrift, kSlowDrift);
-  // Where the other one was never seen, its pairs and answers are not armed yet: what is added to
-  // their sums is taken back there, which spares all the others the question.
+  // Pairs and answers with a type that was never seen are not armed: arming takes back what is
+  // added to their sums here. So the many others need no check.
   DelayPair* const pairs_end = pairs_.data() + type.pairs_end;
   for (DelayPair* pair = pairs_.data() + type.pairs_begin; pair != pairs_end; ++pair) {
-    // Only the first event after another answers it: those that follow while the other pauses
-    // would count one pause many times. Which one that is cannot be predicted, thus no branch.
+    // Only the first event after another counts: later ones, while the other pauses, would count
+    // one pause many times. No branch, since the processor cannot predict which one is first.
     const bool first = numbers[pair->from] >= last;
     const std::int64_t delay = event.stamp - stamps[pair->from];
     const double surprise = pair->surprises[log_bins::bin(delay)];
@@ -146,7 +147,7 @@ std::optional<std::int64_t> Scorer::add(const Event& event) {
     for (AnswerBlock* block = blocks_.data() + type.blocks_begin; block != blocks_end; ++block) {
       const Eigen::Array4d others(numbers[block->to[0]], numbers[block->to[1]],
                                   numbers[block->to[2]], numbers[block->to[3]]);
-      // Numbers are whole: of one that came, this is 1 or more. A select would not be vectorised.
+      // Numbers are whole: this is 1 or more for one that came. A select would not be vectorised.
       const Eigen::Array4d came = (others - last).max(0.0);
       block->sums.add((block->missed - kMoreThanAnyStep * came).max(block->answered));
       if (block->unarmed != 0) {

@@ -13,28 +13,30 @@
 
 namespace self_awareness::core::evidence {
 
-/// Gathers the evidence of every track from the events of one recording (docs/method.md, section
-/// 3). Delays and answers are summed up as in Page's CUSUM test: what is usual takes from the sum,
-/// what is not adds to it, and below 0 it does not fall. A fault that lasts is found soon, one
-/// that comes and goes later, and chance alone hardly gets anywhere.
+/// Collects the evidence of every track from the events of one recording (docs/method.md, sections
+/// 3.2 to 3.5 and 3.7). Delays and answers are summed up as in Page's CUSUM test: what is usual
+/// takes from the sum, what is unusual adds to it, and the sum never falls below 0. A fault that
+/// lasts is found soon, one that comes and goes is found later, and chance alone hardly adds up.
 class Scorer {
  public:
   /// @param window length [ns] of the windows that rates are counted in
   Scorer(std::shared_ptr<const Model> model, std::int64_t window);
 
-  /// Lets no sum grow far beyond its limit: an alarm must not outlast its cause for long.
+  /// Caps every sum a little above its limit: an alarm must not last much longer than its cause.
   void capAt(const Limits& limits);
 
-  /// @param event ids the model does not know are left out
+  /// @param event ignored if the model does not know its id
   /// @return delay since the last event of the same type [ns], if there was one
   std::optional<std::int64_t> add(const Event& event);
-  /// Closes a window. @param end of the window [ns]. @return evidence by track, 0: none
+  /// Closes a window.
+  /// @param end of the window [ns]
+  /// @return evidence by track; 0: none
   const std::vector<double>& closeWindow(std::int64_t end);
-  /// Forgets what was seen: another recording, or the clock was set.
+  /// Forgets what was seen: a new recording starts, or the clock was set.
   void restart();
 
   const Model& model() const { return *model_; }
-  /// When each event type of the model was last seen [ns], by id.
+  /// Stamp of the last event of a type of the model [ns]; none before the first.
   std::optional<std::int64_t> lastSeen(EventId id) const;
   /// The last delay of a delay track [ns].
   std::int64_t lastDelay(std::size_t track) const {
@@ -48,10 +50,10 @@ class Scorer {
  private:
   /// Whether the delays or answers of a track have once been as in training since the start.
   struct Arming {
-    double excess = 0;  // over the mean in training, of the last events
+    double excess = 0;  // of the last events over the mean in training
     std::uint32_t events = 0;
   };
-  /// Sums that are never below 0, nor above a cap.
+  /// Sums that stay between 0 and a cap.
   template <int kSize>
   struct Sums {
     using Array = Eigen::Array<double, kSize, 1>;
@@ -62,9 +64,9 @@ class Scorer {
       values = (values + steps).min(caps).max(0.0);
     }
   };
-  // All that an event needs of a pair or of some answers lies together, and those of an event type
-  // one after the other: the time goes into fetching them.
-  /// Of the two delay tracks of a pair of event types.
+  // All that an event needs of a pair or of a block of answers lies together, and so do the pairs
+  // and blocks of an event type: most of the time goes into fetching them.
+  /// State of the two delay tracks of a pair of event types.
   struct DelayPair {
     EventId from = 0;
     bool armed = false;
@@ -72,9 +74,9 @@ class Scorer {
     const double* surprises = nullptr;  // by bin
     Sums<2> sums;                       // of the track, and of the slow one
   };
-  /// Of some answer tracks with the same `from`: the end of a loop over blocks is less often a
-  /// surprise for the processor. Where there are fewer of them, a block is filled up with answers
-  /// that add nothing.
+  /// State of several answer tracks with the same `from`. The processor predicts the end of a loop
+  /// over blocks better than that of one over tracks. A block with fewer tracks is filled up with
+  /// answers that add nothing.
   struct AnswerBlock {
     static constexpr int kAnswers = 4;
     std::array<EventId, kAnswers> to{};
@@ -86,8 +88,8 @@ class Scorer {
     bool armed(std::size_t answer) const { return (unarmed >> answer & 1U) == 0; }
   };
 
-  /// Where its pairs and blocks of answers lie, and how long [ns] an event type must be away to be
-  /// gone.
+  /// Where the pairs and blocks of answers of an event type lie, and after how long a gap [ns] it
+  /// was gone.
   struct OfType {
     std::uint32_t pairs_begin = 0;
     std::uint32_t pairs_end = 0;
@@ -96,15 +98,17 @@ class Scorer {
     std::int64_t gone_after = 0;
   };
 
-  /// @param usual the largest mean excess that is as in training
+  /// Takes in one event of a track that is not armed.
+  /// @param usual largest mean excess that counts as in training
   /// @return whether the track is armed now
   static bool arm(Arming& arming, double excess, double usual);
   void addTracks();
   /// @param tracks all answer tracks of the `from`
   void addAnswers(EventId from, const std::vector<std::size_t>& tracks);
-  /// What a delay means for a pair that is not armed. @param first whether it counts
+  /// Takes in a delay of a pair that is not armed.
+  /// @param first whether it counts
   void armPair(std::size_t number, bool first, double surprise);
-  /// What an event means for the answers of a block that are not armed.
+  /// Takes in an event for the answers of a block that are not armed.
   /// @param since number of the last event of the same type
   void armAnswers(std::size_t block, double since);
   void disarm(EventId id);
@@ -119,10 +123,10 @@ class Scorer {
   std::vector<Arming> answers_arming_;               // by number of the answer
   std::vector<double> miss_rates_;                   // by number of the answer
   std::vector<std::size_t> state_of_;                // number of its pair or answer, by track
-  std::vector<std::vector<std::size_t>> tracks_of_;  // those of pairs and answers, by id
+  std::vector<std::vector<std::size_t>> tracks_of_;  // delay and answer tracks, by id
   std::vector<std::int64_t> stamps_;                 // of the last event [ns], by id
-  // Number of the last event in the recording, from 1, by id; 0: never seen. Exact up to 2^53, and
-  // vectors of them can be compared on every processor that adds vectors of double.
+  // Number of the last event in the recording, from 1, by id; 0: never seen. A double is exact up
+  // to 2^53, and every processor that adds vectors of double can compare them, too.
   std::vector<double> numbers_;
   double number_ = 0;
   RecentCounts counts_;
@@ -130,15 +134,16 @@ class Scorer {
   std::int64_t window_end_ = 0;   // [ns]
 };
 
-/// What a window's evidence comes to.
+/// The evidence of a window, summed up.
 struct Sum {
   double largest = 0;  ///< of the tracks, in units of their limits
   double linker = 0;   ///< evidence of all event types together, not in units of its limit
 };
 
-/// The largest evidence, and the linker's: the sum over the event types of the largest share of
-/// its limit that one of their slow delay and answer tracks has reached, at most 1. It links what
-/// is too little for an alarm wherever it is looked at alone (paper, section V-C).
+/// Finds the largest evidence and the linker's (docs/method.md, sections 3.6 and 4.1). The
+/// linker's is a sum over event types: of the largest share of its limit, at most 1, that a slow
+/// delay or answer track of the type has reached. It links evidence that is too weak for an alarm
+/// in any one place (paper, section V-C).
 Sum sumUp(const std::vector<double>& evidence, const Model& model, const Limits& limits);
 
 }  // namespace self_awareness::core::evidence

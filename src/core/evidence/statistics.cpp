@@ -31,20 +31,20 @@ void addCounts(const Counts& counts, Statistics::SumOfDelays& sum) {
   asArray(sum) += asArray(counts).template cast<std::uint64_t>();
 }
 
-// A fleet's years may be more than a count holds: the largest one stands for all that are larger.
+// The years of a fleet may be more than a count holds: it then stays at the largest number.
 void addCounts(const Statistics::Delays& counts, Statistics::Delays& sum) {
   asArray(sum) += asArray(counts).min(std::numeric_limits<std::uint32_t>::max() - asArray(sum));
 }
 
 const Partner* find(const Partners& partners, EventId id) {
   if (id < partners.size() && partners[id].id == id) {
-    return &partners[id];  // where all are there
+    return &partners[id];  // if all event types are partners
   }
   const auto place = std::lower_bound(partners.begin(), partners.end(), id, lowerId);
   return place != partners.end() && place->id == id ? &*place : nullptr;
 }
 
-// Both in order, and so is the result.
+// Adds up counts by id; both are in order, and so is the result.
 Partners sum(const Partners& a, const Partners& b) {
   Partners both;
   both.reserve(std::max(a.size(), b.size()));

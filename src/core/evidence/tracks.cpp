@@ -12,20 +12,20 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-// With a smaller gain, timers that beat against each other get in.
+// With a smaller gain, pairs of timers that beat against each other would be watched.
 constexpr double kLeastGain = 0.3;  // [nat]
 constexpr std::uint64_t kFewestDelaysOfPair = 200;
 
-// Few events in kRateSpan come in bursts, or when something happens.
+// Events that are fewer in kRateSpan come in bursts, or when something happens.
 constexpr double kLeastRate = 1.5;
 
 constexpr std::size_t kAsked = 8;
-constexpr std::uint64_t kFewestAnswers = 100;
+constexpr std::uint64_t kFewestGapsOfAnswers = 100;
 constexpr double kMostMisses = 0.6;
 
 using Halves = std::array<const Statistics*, 2>;
 
-/// Gains between all pairs, the mean of both directions.
+/// Gains of all pairs: the mean of learning from either half (docs/method.md, section 3.4).
 class Gains {
  public:
   explicit Gains(const Halves& halves) : size_(halves[0]->size()), gains_(size_ * size_, 0) {
@@ -49,7 +49,7 @@ class Gains {
   std::vector<double> gains_;
 };
 
-/// What to watch, by the counts of both halves.
+/// Chooses what to watch, by the counts of both halves.
 class Choice {
  public:
   Choice(const Halves& halves, std::size_t predecessors)
@@ -101,13 +101,15 @@ class Choice {
     }
   }
 
-  // Whoever follows `to` says nothing about it: a dead component's victims are silent, too.
+  // A type that follows `to` says nothing about it: the victims of a dead component are silent,
+  // too.
   void addAnswerTracks(std::vector<Track>& tracks) const {
     for (EventId to = 0; to < types_.size(); ++to) {
       Ranked best;  // by the time that some misses take
       for (EventId from = 0; from < types_.size(); ++from) {
         const Statistics::Type& asking = types_.type(from);
-        if (from == to || asking.gaps < kFewestAnswers || types_.type(to).gaps < kFewestAnswers ||
+        if (from == to || asking.gaps < kFewestGapsOfAnswers ||
+            types_.type(to).gaps < kFewestGapsOfAnswers ||
             gains_(to, from) > gains_(from, to) + kLeastGain) {
           continue;
         }
@@ -139,7 +141,7 @@ class Choice {
   Statistics types_;  // counts of both halves, without pairs
 };
 
-/// The counts, with the event types of both halves and their ids.
+/// The counts of one half, with the event types of both and the same ids.
 Statistics withTypes(const Statistics& first, const Statistics& second, const Statistics& counts) {
   Statistics all;
   for (const Statistics* half : {&first, &second}) {
@@ -215,7 +217,7 @@ double InformationGain::operator()(EventId from, EventId to) const {
   const double total = static_cast<double>(learned_number) + log_bins::kBins;
   double sum = 0;
   for (std::size_t bin = 0; bin < log_bins::kBins; ++bin) {
-    if (measured[bin] > 0) {  // logarithms are what takes the time
+    if (measured[bin] > 0) {  // logarithms take most of the time
       sum += measured[bin] * (std::log((learned[bin] + 1.0) / total) - any_[from][bin]);
     }
   }

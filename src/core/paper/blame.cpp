@@ -8,7 +8,7 @@
 namespace self_awareness::core::paper {
 namespace {
 
-// Events that score less than this share of what training lets expect are worth naming.
+// Events that score less than this share of the expected score are named.
 constexpr double kLowScore = 0.5;
 
 struct SeenInWindow {

@@ -11,9 +11,9 @@
 
 namespace self_awareness::core::paper {
 
-/// Ranks the event types that an abnormal window may be blamed on (docs/method.md, section 2.5):
-/// first those with the smallest probability of so long a silence by their own gaps in training,
-/// then unknown events, then those whose score is far below what training lets expect.
+/// Ranks the event types that may have made a window abnormal (docs/method.md, section 2.5): first
+/// the silent ones, the least probable silence first, then unknown ones, then those whose score is
+/// far below what training lets expect.
 class Blame {
  public:
   explicit Blame(std::shared_ptr<const Model> model);
@@ -21,7 +21,7 @@ class Blame {
   /// @param scores s_j of eq. 3 of the window's events
   /// @param last_seen when each event type was last seen [ns], at the window's end
   /// @param end of the window [ns]
-  /// @return at most five suspects, the first the most likely
+  /// @return at most kMostSuspects, the most likely first
   std::vector<Suspect> suspects(const Window& window, const std::vector<double>& scores,
                                 const std::vector<std::optional<std::int64_t>>& last_seen,
                                 std::int64_t end) const;

@@ -25,7 +25,7 @@ void SeenTypes::clear() {
 }
 
 void SeenTypes::add(EventId id, std::uint64_t mark) {
-  // Marks wrap around: what is older is told by the difference.
+  // Marks wrap around, so the sign of the difference says which one is later.
   const auto after = [](std::uint64_t a, std::uint64_t b) {
     return static_cast<std::int64_t>(a - b) > 0;
   };

@@ -9,10 +9,11 @@
 
 namespace self_awareness::core::paper {
 
-/// Bins of the delays between stamps, the same as Binning's, without a division for every delay: a
-/// stamp is divided once, into a mark whose upper bits are the quotient and whose lower ones the
-/// remainder. The upper bits of the difference of two marks are the bin, as the lower ones borrow
-/// from them. Exact for delays up to 2^61 ns, 73 years.
+/// Finds the bins of delays between stamps (docs/method.md, section 2.1). They are those of
+/// Binning, without a division for every delay. Each stamp is divided once, into a mark: its upper
+/// bits are the quotient, its lower ones the remainder. The upper bits of the difference of two
+/// marks are the bin, as the lower ones borrow from them. Exact for delays up to 2^61 ns, 73
+/// years.
 class DelayBins {
  public:
   /// @throw std::invalid_argument if a value of the binning is out of range
@@ -32,7 +33,7 @@ class DelayBins {
   }
   /// Number of lower bits of a mark.
   int remainderBits() const { return remainder_bits_; }
-  /// The largest bin that there is.
+  /// Largest bin that a delay can have.
   std::int64_t lastBin() const { return last_bin_; }
 
  private:
@@ -41,8 +42,7 @@ class DelayBins {
   int remainder_bits_ = 0;
 };
 
-/// The event types seen so far in a recording, the "E" of eq. 3, with the marks of their last
-/// events.
+/// The event types seen so far in a recording ("E" of eq. 3), with the marks of their last events.
 class SeenTypes {
  public:
   /// Makes room for a number of event types.
@@ -53,12 +53,13 @@ class SeenTypes {
 
   std::size_t size() const { return marks_.size(); }
   bool contains(EventId id) const { return masks_[id] != 0; }
-  /// By id: all bits are set of those seen, none of the others.
+  /// By id: all bits set if the type was seen, none if not.
   const std::vector<std::uint32_t>& masks() const { return masks_; }
-  /// By id, of those seen.
+  /// Mark of the last event, by id; valid for types that were seen.
   const std::vector<std::uint64_t>& marks() const { return marks_; }
-  /// The smallest and the largest mark so far.
+  /// Smallest mark so far.
   std::uint64_t oldest() const { return oldest_; }
+  /// Largest mark so far.
   std::uint64_t newest() const { return newest_; }
 
  private:

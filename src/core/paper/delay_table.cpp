@@ -12,17 +12,17 @@
 namespace self_awareness::core::paper {
 namespace {
 
-// This bin and larger ones are in no array.
+// Larger bins, and this one, are in no array.
 constexpr std::int64_t kLargestBin = std::numeric_limits<std::int32_t>::max();
-// Behind an array: counts of bins outside of it are among the scattered ones.
+// Stands after an array if bins outside have counts: they are among the scattered ones.
 constexpr std::int32_t kScattered = -1;
-// Holds 0.
+// This cell holds 0.
 constexpr std::uint32_t kEmptyCell = 0;
 
-// Pairs that are worked on together.
+// Number of pairs that are worked on together.
 constexpr std::size_t kBlock = 64;
 
-// Terms that are added up side by side, in vector registers where there are any.
+// Number of terms that are added up side by side, in vector registers where there are any.
 constexpr std::size_t kLanes = 4;
 using Int4 = std::int32_t __attribute__((vector_size(kLanes * sizeof(std::int32_t))));
 using Double4 = double __attribute__((vector_size(kLanes * sizeof(double))));
@@ -31,7 +31,7 @@ void load(const double* values, Double4& lanes) {
   std::memcpy(&lanes, values, sizeof(lanes));
 }
 
-// So many cells of an array a bin with counts is worth; scattered, it takes as much memory as six
+// A bin with counts is worth so many cells of an array: scattered, it takes as much memory as six,
 // and a search.
 constexpr std::int64_t kCellsPerBin = 8;
 
@@ -79,7 +79,7 @@ void DelayTable::append(const Histogram::Entries& entries) {
 }
 
 void DelayTable::finish() {
-  // The last lanes read on behind the last pair.
+  // The last lanes read beyond the last pair.
   const std::size_t lanes = (size() + kLanes - 1) / kLanes * kLanes;
   scales_.resize(lanes, 0);
   entropies_.resize(lanes, 0);
@@ -101,7 +101,8 @@ double DelayTable::scatteredCount(EventId from, std::int64_t bin) const {
   return found ? static_cast<double>(place->entry.count) : 0;
 }
 
-// The cells of the delays since the types `first` to `end`; of those not seen, the empty one.
+// Finds the cells of the delays since the types `first` to `end`; for types not seen, the empty
+// one.
 void DelayTable::findCells(const SeenTypes& seen, std::uint64_t mark, const DelayBins& bins,
                            std::size_t first, std::size_t end, std::uint32_t* cells) const {
   const std::uint64_t* const marks = seen.marks().data() + first;
@@ -111,7 +112,7 @@ void DelayTable::findCells(const SeenTypes& seen, std::uint64_t mark, const Dela
   const std::size_t terms = end - first;
   std::array<std::int32_t, kBlock> delays;
   const int shift = bins.remainderBits();
-  // With bins that 31 bits hold, all differences are done side by side: always, but for late
+  // If 31 bits hold the bins, all differences are computed side by side. They do, but for late
   // stamps, horizons, and recordings of months (at 10 ms).
   const bool late = static_cast<std::int64_t>(mark - seen.newest()) < 0;
   if (!late && bins.lastBin() > kLargestBin &&
@@ -145,8 +146,8 @@ DelayTable::Sums DelayTable::sums(const SeenTypes& seen, std::uint64_t mark,
       __builtin_prefetch(&counts_[cells[i]]);
     }
     std::fill(cells.begin() + (end - first), cells.end(), kEmptyCell);
-    // Without a branch on what is looked up, so that no look-up waits for another; what kScattered
-    // stands for is rare and comes after.
+    // No branch on what is looked up: so no look-up waits for another. What kScattered stands for
+    // is rare and comes later.
     Int4 signs = {};
     for (std::size_t i = 0; i < end - first; i += kLanes) {
       const Int4 counts = {counts_[cells[i]], counts_[cells[i + 1]], counts_[cells[i + 2]],
@@ -165,7 +166,7 @@ DelayTable::Sums DelayTable::sums(const SeenTypes& seen, std::uint64_t mark,
         if (counts_[cells[i]] == kScattered) {
           const auto from = static_cast<EventId>(first + i);
           const double count = scatteredCount(from, bins.bin(seen.marks()[from], mark));
-          const double probability = (count - kScattered) * scales_[from];  // beside that above
+          const double probability = (count - kScattered) * scales_[from];  // added to that above
           scattered.probabilities += probability;
           scattered.with_entropies += entropies_[from] * probability;
         }

@@ -8,7 +8,7 @@
 namespace self_awareness::core::paper {
 namespace {
 
-// Pairs that are worked on together.
+// Number of pairs that are worked on together.
 constexpr std::size_t kBlock = 64;
 
 }  // namespace
@@ -29,8 +29,7 @@ void DelayTrainer::add(const Event& event) {
   statistics_.countEvent(event.id);
   const std::uint64_t mark = bins_.mark(event.stamp);
   Histogram* const pairs = statistics_.pairsTo(event.id).data();
-  // All slots of a block are fetched before the first is needed: one after the other, they would
-  // be waited for one after the other.
+  // All slots of a block are fetched before the first one is needed: so they arrive together.
   std::array<EventId, kBlock> block;
   std::array<std::int64_t, kBlock> bins;
   EventId next = 0;

@@ -8,8 +8,8 @@
 namespace self_awareness::core::paper {
 namespace {
 
-// An array may have so many cells for every bin with counts: it then takes not much more memory
-// than slots would, and less time.
+// An array may have so many cells for every bin with counts: it takes little more memory than
+// slots would, and less time.
 constexpr std::int64_t kCellsPerBin = 4;
 
 bool lowerBin(const Histogram::Entry& a, const Histogram::Entry& b) {
@@ -80,7 +80,7 @@ std::uint32_t* Histogram::find(std::int64_t bin) const {
   if (capacity_ == 0 || bin > kLargestBin) {
     return nullptr;
   }
-  // Neighbouring bins do not collide. There always is an empty slot.
+  // Neighbouring bins do not collide, and there is always an empty slot.
   std::uint32_t* const slots = &memory_[length_];
   for (std::size_t slot = static_cast<std::uint32_t>(bin);; ++slot) {
     slot &= capacity_ - 1;
@@ -121,7 +121,7 @@ void Histogram::add(std::int64_t bin, std::uint64_t count) {
   }
 }
 
-// Into the hash table, which must have room for a bin that it does not have.
+// Adds a new bin to the hash table, which must have room for it.
 void Histogram::insert(std::uint32_t bin, std::uint32_t count) {
   std::uint32_t* const slots = &memory_[length_];
   std::size_t slot = bin & (capacity_ - 1);
@@ -145,7 +145,8 @@ std::uint32_t Histogram::lengthened() const {
   return static_cast<std::uint32_t>(std::min<std::uint64_t>(length, kLargestBin - first_bin_));
 }
 
-// Delays since a rare event grow bin by bin: what each of them costs must not grow with them.
+// Delays since a rare event grow bin by bin, so the cost of adding one must not grow with the
+// number of bins.
 void Histogram::lengthen() {
   const Entries entries = smallEntriesOutside();
   const std::uint32_t length = lengthened();
@@ -165,7 +166,7 @@ void Histogram::lengthen() {
   }
 }
 
-// Divides the entries between the array and the hash table anew.
+// Divides the entries between the array and the hash table again.
 void Histogram::rebuild(const Entries& entries) {
   const auto [first, last] = wellFilled(entries.begin(), entries.end(), kCellsPerBin);
   first_bin_ = 0;
@@ -197,7 +198,7 @@ void Histogram::merge(const Histogram& other) {
 }
 
 void Histogram::add(const Entries& entries) {
-  // New bins come at once: one after the other, it would be rebuilt again and again.
+  // New bins are added all at once: one after the other, each might cause a rebuild.
   Entries added;
   for (const Entry& entry : entries) {
     if (entry.bin > kLargestBin || entry.count > kLargestCount || find(entry.bin) != nullptr) {
@@ -242,7 +243,7 @@ std::uint64_t Histogram::count(std::int64_t bin) const {
   return count;
 }
 
-// Without the large ones.
+// Entries of the hash table.
 Histogram::Entries Histogram::smallEntriesOutside() const {
   Entries outside;
   for (std::uint32_t slot = 0; slot < capacity_; ++slot) {

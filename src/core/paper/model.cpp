@@ -68,7 +68,7 @@ double Model::logSurvival(EventId id, std::int64_t age) const {
   const double longest = static_cast<double>(gaps.quantile(1) + 1) * toSeconds(binning_.bin_size);
   const double tail = toSeconds(age) / longest;
   const double all = std::log(static_cast<double>(total) + 1);
-  // Where no gap was longer, exp(-tail) would underflow long before its logarithm.
+  // If no gap was longer: exp(-tail) would underflow long before its logarithm.
   return longer == 0 ? -tail - all : std::log(static_cast<double>(longer) + std::exp(-tail)) - all;
 }
 

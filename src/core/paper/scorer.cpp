@@ -28,7 +28,8 @@ Scorer::Scored Scorer::score(const Event& event) {
   }
   const std::uint64_t mark = bins_.mark(event.stamp);
   const DelayTable::Sums sums = model_->table(event.id).sums(seen_, mark, bins_);
-  // The weights 1 - h_ij / H_j of eq. 4, multiplied out; rounding must not make 0 less than 0.
+  // Eq. 3 with the weights 1 - h_ij / H_j of eq. 4 multiplied out; rounding must not make a 0
+  // negative.
   const double entropy_sum = entropy_sums_[event.id];
   scored.score = entropy_sum > 0
                      ? std::max(sums.probabilities - sums.with_entropies / entropy_sum, 0.0)

@@ -11,8 +11,9 @@
 
 namespace self_awareness::core::paper {
 
-/// Scores events one after the other: eq. 3 with the weights of eq. 4 over the event types of
-/// training that were seen before in this recording. An event is scored first, then tracked.
+/// Scores events one after the other (docs/method.md, section 2.2): eq. 3 with the weights of eq.
+/// 4, over the event types of training that were seen before in this recording. An event is scored
+/// first, then tracked.
 class Scorer {
  public:
   explicit Scorer(std::shared_ptr<const Model> model);
@@ -23,12 +24,12 @@ class Scorer {
     double score = 0;  ///< s_j of eq. 3, 0 or more; 0 if the event is unknown
   };
 
-  /// @param event ids the model does not know are unknown events: scored 0 and not tracked.
+  /// @param event unknown if the model does not know its id: it scores 0 and is not tracked
   Scored score(const Event& event);
-  /// Forgets what was seen: another recording, or the clock was set.
+  /// Forgets what was seen: a new recording starts, or the clock was set.
   void restart();
 
-  /// When each event type of the model was last seen [ns], by id.
+  /// Stamp of the last event of each type of the model [ns], by id; none before the first.
   const std::vector<std::optional<std::int64_t>>& lastSeen() const { return last_seen_; }
   const Model& model() const { return *model_; }
 

@@ -76,7 +76,8 @@ Roc::Point Roc::youden() const {
   }
   const auto normal = static_cast<double>(normal_.size());
   const auto abnormal = static_cast<double>(abnormal_.size());
-  // Products of counts are exact where the difference of two rates would tie by rounding only.
+  // Products of counts are exact: the difference of two rates would make or break ties by
+  // rounding.
   const auto youdens_j = [&](const Point& point) {
     return std::round(point.true_positive_rate * abnormal) * normal -
            std::round(point.false_positive_rate * normal) * abnormal;

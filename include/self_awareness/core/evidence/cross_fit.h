@@ -10,20 +10,20 @@
 
 namespace self_awareness::core::evidence {
 
-/// Who judges a recording when limits are sought (docs/method.md, section 5.6). What a model
-/// learned from a recording would find it too normal: a recording that was trained on is judged by
-/// what the other half of the training says.
+/// Says which model judges a recording in the search for limits (docs/method.md, section 5.6). A
+/// model finds the recordings that it learned from too normal. So a recording that was trained on
+/// is judged by what the other half of the training says.
 class CrossFit {
  public:
-  /// @throw std::invalid_argument as Model
+  /// @throw std::invalid_argument in the same cases as Model
   explicit CrossFit(const Watched& watched);
 
-  /// Of the whole training.
+  /// Model of the whole training.
   const std::shared_ptr<const Model>& model() const { return model_; }
-  /// Who judges a recording; all have the same tracks.
+  /// Model that judges a recording; all models have the same tracks.
   /// @param half of the training that the recording belongs to, 0 or 1; none: it was not trained
   /// on
-  /// @throw std::out_of_range
+  /// @throw std::out_of_range if the half is another number
   const std::shared_ptr<const Model>& judging(std::optional<std::size_t> half) const;
 
  private:

@@ -10,15 +10,16 @@
 
 namespace self_awareness::core::evidence {
 
-/// The threshold of every judgement: the score is the largest evidence in units of its limit,
-/// negative, so that as in eq. 5 low is abnormal.
+/// Threshold of every judgement. The score is the largest evidence in units of its limit, with a
+/// minus sign: as in eq. 5, low is abnormal (docs/method.md, section 4.1).
 constexpr double kThreshold = -1;
 
-/// The evidence detector (docs/method.md, section 4.1): the largest evidence in units of its limit
-/// decides over a window, and the linker, apart, over the last tens of seconds.
+/// Makes the judge of the evidence detector (docs/method.md, sections 3, 4.1 and 4.3): the largest
+/// evidence in units of its limit decides over a window; the linker decides over the last tens of
+/// seconds.
 /// @param limits none: not calibrated, windows have no score and are never abnormal
 /// @param window length [ns]
-/// @param graph who is upstream of whom; shared, so that it can grow meanwhile
+/// @param graph who is upstream of whom; shared, so it may grow meanwhile
 /// @throw std::invalid_argument if the limits are not those of the model
 std::unique_ptr<core::Judge> makeJudge(std::shared_ptr<const Model> model,
                                        std::optional<Limits> limits, std::int64_t window,

@@ -11,39 +11,42 @@
 
 namespace self_awareness::core::evidence {
 
-/// The limit that the largest value of a block exceeds with a small probability: a Gumbel
-/// distribution is fitted to the maxima of blocks by L-moments (Hosking 1990), and extrapolated.
+/// Limit that the largest value of a block exceeds with a small probability: a Gumbel distribution
+/// is fitted to the maxima of blocks by L-moments (Hosking 1990), and extrapolated
+/// (docs/method.md, section 5.3).
 /// @param maxima of at least two blocks
 /// @param probability 0 to 1
 double gumbelLimit(const BlockMaxima& maxima, double probability);
 
-/// The age [ns] that gaps between two events of a type reach less often than a rate: the excess of
-/// the longest gaps over the shortest of them is taken for exponential, and extrapolated.
+/// Age [ns] that gaps between two events of a type reach less often than a rate says: the excess
+/// of the longest gaps over the shortest of them is taken for exponential, and extrapolated
+/// (docs/method.md, section 5.2).
 /// @param longest_gaps [ns], the longest first, at least two
 /// @param duration in which they were the longest [ns]
-/// @param rate per nanosecond
+/// @param rate of such gaps [1/ns]
 double overdueAge(const std::vector<std::int64_t>& longest_gaps, std::int64_t duration,
                   double rate);
 
 class MisleadingPairs;
 class Scorer;
 
-/// Finds the limits of a model's evidence on normal operation that was not trained on, so that
-/// those of the tracks together are exceeded less often than a number of times an hour; and in a
-/// second pass over the same recordings that of the linker, for the same number of its own.
+/// Finds the limits of a model's evidence on recordings of normal operation (docs/method.md,
+/// section 5). The first pass finds those of the tracks: for all of them together, a number of
+/// false alarms an hour is allowed. The second pass over the same recordings finds that of the
+/// linker, which is allowed the same number again.
 class LimitFinder : private WindowObserver {
  public:
   struct Parameters {
     std::int64_t window = kDefaultWindow;   ///< length of a window [ns]
     std::int64_t settle_time = 5000000000;  ///< left out at a recording's start [ns]
-    double false_alarms_per_hour = 0.5;     ///< all together, > 0
+    double false_alarms_per_hour = 0.5;     ///< allowed in each pass, > 0
 
     /// @throw std::invalid_argument if a value is out of range.
     void validate() const;
   };
 
-  /// What recordings say in one pass. That of some recordings and that of others add up to that of
-  /// all, in any order; it does not grow with their length.
+  /// What recordings say. Findings of parts of the recordings add up to those of all, in any
+  /// order. They do not grow with the length of the recordings.
   struct Findings {
     std::uint64_t windows = 0;        ///< looked at in the first pass
     std::int64_t duration = 0;        ///< [ns]
@@ -57,36 +60,40 @@ class LimitFinder : private WindowObserver {
   LimitFinder(std::shared_ptr<const Model> model, const Parameters& parameters);
   ~LimitFinder() override;
 
-  /// The next events belong to another recording, which is judged by a model: that of the
-  /// constructor, or one learned from the other half of the training, with the same tracks.
+  /// Starts a recording: the next events belong to it.
+  /// @param model that judges it: that of the constructor, or one with the same tracks that was
+  /// learned from the other half of the training (CrossFit)
   void startRecording(std::shared_ptr<const Model> model);
   void add(const Event& event);
-  /// The recording ends.
+  /// Ends the recording.
   void finish();
-  /// Ends the first pass: the limits of the tracks are found, and recordings come once more.
-  /// @throw std::invalid_argument if there was too little data: less than kFewestBlocks blocks, or
-  /// so little to train on that the model has no tracks
+  /// Ends the first pass and finds the limits of the tracks. All recordings must then come once
+  /// more.
+  /// @throw std::invalid_argument if there was too little data: fewer than kFewestBlocks blocks,
+  /// or so little to train on that the model has no tracks
   void startSecondPass();
-  /// Begins with the second pass, by what a first one elsewhere found.
-  /// @throw std::invalid_argument if that belongs to another model
+  /// Starts the second pass with the limits that a first one elsewhere found.
+  /// @throw std::invalid_argument if they belong to another model
   void startSecondPass(Limits limits);
-  /// What the recordings said that have ended, in this pass and those before.
+  /// What the recordings that have ended said, in this pass and those before.
   Findings findings() const;
-  /// Adds what recordings said elsewhere, in the pass that goes on here.
-  /// @throw std::invalid_argument if it belongs to another model
+  /// Adds what recordings said elsewhere, in the same pass as here.
+  /// @throw std::invalid_argument if the findings belong to another model
   void merge(const Findings& other);
-  /// Limits of the tracks alone, once the second pass has begun: the linker's is still missing.
+  /// Limits of the tracks alone, once the second pass has started: the linker's is still missing.
   const Limits& trackLimits() const { return limits_; }
-  /// @throw std::logic_error before the second pass
+  /// Limits of the tracks and of the linker.
+  /// @throw std::logic_error before the second pass, or if it has had fewer than two blocks so far
   Limits limits() const;
 
   const Parameters& parameters() const { return parameters_; }
   bool inSecondPass() const { return second_pass_; }
-  /// Windows that were looked at, of one pass.
+  /// Number of windows that were looked at, in one pass.
   std::uint64_t windows() const { return windows_seen_; }
 
-  /// The maxima are those of blocks of this length [ns]: longer than evidence remembers.
+  /// Length of the blocks [ns]: longer than evidence remembers.
   static constexpr std::int64_t kBlock = 10 * kNanosecondsPerSecond;
+  /// Fewer blocks are too little to find limits.
   static constexpr std::uint64_t kFewestBlocks = 5;
 
  private:

@@ -12,47 +12,50 @@
 
 namespace self_awareness::core::evidence {
 
-/// Number of bins that delays are counted in: four an octave from 2.5 ms to 10.24 s, one for all
-/// below and one for all beyond (docs/method.md, section 3.1).
+/// Number of bins in which delays are counted: four an octave from 2.5 ms to 10.24 s, one for all
+/// shorter and one for all longer delays (docs/method.md, section 3.1).
 constexpr std::size_t kDelayBins = 50;
 
-/// The rate of an event type is its number of events in this time [ns].
+/// The rate of an event type is its number of events in this time [ns] (docs/method.md, section
+/// 1.4).
 constexpr std::int64_t kRateSpan = 2 * kNanosecondsPerSecond;
 
-/// Number of windows of a length [ns] in kRateSpan, at least 1.
+/// Number of windows of the length `window` [ns] in kRateSpan, at least 1.
+/// @throw std::invalid_argument if the length is out of range
 std::size_t rateWindows(std::int64_t window);
 
-/// What the evidence learns (docs/method.md, section 3.1), as counts: those of two trainings add
-/// up to those of a training on both.
+/// The counts that the evidence detector learns (docs/method.md, section 3.1). The counts of two
+/// trainings add up to those of a training on both.
 class Statistics {
  public:
-  /// So many of the longest gaps of a type are kept: the tail beyond them is extrapolated.
+  /// So many of the longest gaps of a type are kept: limits are extrapolated from them.
   static constexpr std::size_t kLongestGaps = 32;
 
   /// Counts of delays, by bin.
   using Delays = std::array<std::uint32_t, kDelayBins>;
+  /// Sums of such counts, which may need more bits.
   using SumOfDelays = std::array<std::uint64_t, kDelayBins>;
 
-  /// Gaps between two events of a type, and its events.
+  /// Counts of one event type.
   struct Type {
     std::uint64_t events = 0;
     std::uint64_t gaps = 0;
     std::int64_t gap_sum = 0;                ///< [ns]
     std::vector<std::int64_t> longest_gaps;  ///< [ns], the longest first
-    std::uint64_t rate_sum = 0;              ///< events in kRateSpan, over all windows
-    std::uint64_t rate_squares = 0;
-    /// Delays since the last event of the type in pairs whose counts were left out (only()).
+    std::uint64_t rate_sum = 0;              ///< sum of the recent counts of all windows
+    std::uint64_t rate_squares = 0;          ///< sum of their squares
+    /// Delays since the last event of the type in pairs that only() left out.
     SumOfDelays left_out{};
 
     void addGap(std::int64_t gap);
   };
-  /// What is counted of an event type e and another one, with one event of e.
+  /// What the events of a type e count about another type.
   struct Partner {
-    EventId id = 0;             ///< of the other one
+    EventId id = 0;             ///< of the other type
     std::uint64_t answers = 0;  ///< gaps between two e in which the other came
-    Delays delays{};            ///< from the last of the other to an e
+    Delays delays{};            ///< from the last event of the other to an e
   };
-  /// Ordered by id, each there once.
+  /// Ordered by id, each once.
   using Partners = std::vector<Partner>;
   /// An ordered pair of event types, `from` before `to`.
   struct Pair {
@@ -62,7 +65,7 @@ class Statistics {
 
   /// Makes room for the event type and returns its id.
   EventId intern(const EventType& type);
-  /// Adds the counts of `other`; event types that are new here get ids behind the present ones.
+  /// Adds the counts of `other`; event types that are new here get the next ids.
   void merge(const Statistics& other);
 
   const Vocabulary& vocabulary() const { return vocabulary_; }
@@ -76,16 +79,16 @@ class Statistics {
   /// Gaps of `from` in which a `to` came.
   std::uint64_t answers(EventId from, EventId to) const;
   const Partners& partners(EventId id) const { return partners_.at(id); }
-  /// Gives an event type these partners.
+  /// Replaces the partners of an event type.
   /// @throw std::invalid_argument if they are not in order
   void setPartners(EventId id, Partners partners);
-  /// Makes sure that all event types are partners of this one, so that the index is the id.
+  /// Makes all event types partners of this one: the index is then the id.
   Partners& allPartners(EventId id);
 
   /// Delays from the last event of a type to any event, by type.
   std::vector<SumOfDelays> delaysToAny() const;
-  /// The counts of all event types, but of these pairs only, whichever way round; delaysToAny()
-  /// stays the same.
+  /// The counts of all event types, but only of these pairs, in both orders. delaysToAny() stays
+  /// the same.
   Statistics only(const std::vector<Pair>& pairs) const;
 
   /// The counts of all event types without any pair.
@@ -108,8 +111,9 @@ class Statistics {
 
 bool operator==(const Statistics& a, const Statistics& b);
 
-/// Counts one recording after the other into an Statistics, in one pass. No delay and no
-/// window crosses from one recording into the next, nor a step of the clock (clock.h).
+/// Counts one recording after the other into a Statistics, in one pass (docs/method.md, section
+/// 3.1). No delay and no window crosses from one recording into the next, or a step of the clock
+/// (stream/clock.h).
 class Trainer {
  public:
   /// @param statistics counted into; must outlive the trainer
@@ -117,7 +121,7 @@ class Trainer {
   /// @throw std::invalid_argument
   Trainer(Statistics& statistics, std::int64_t window);
 
-  /// Forgets what was seen: the next event belongs to another recording.
+  /// Forgets what was seen: the next event belongs to a new recording.
   void startRecording();
   /// @param event with an id of the statistics' vocabulary; in the order of the recording.
   void add(const Event& event);

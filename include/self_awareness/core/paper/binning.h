@@ -4,7 +4,7 @@
 
 namespace self_awareness::core::paper {
 
-/// How delays are put into bins.
+/// How delays fall into bins (docs/method.md, section 2.1).
 struct Binning {
   std::int64_t bin_size = 10000000;  ///< s_b [ns], > 0
   std::int64_t horizon_bins = 0;     ///< delays of this many bins or more share one overflow bin

@@ -10,8 +10,9 @@
 
 namespace self_awareness::core::paper {
 
-/// The delays between every ordered pair of event types, as counts (section III-B of the paper).
-/// Counts of two trainings add up to the counts of a training on both.
+/// Counts the delays between every ordered pair of event types (paper, section III-B;
+/// docs/method.md, section 2.1). The counts of two trainings add up to those of a training on
+/// both.
 class DelayStatistics {
  public:
   explicit DelayStatistics(const Binning& binning);
@@ -20,13 +21,13 @@ class DelayStatistics {
   EventId intern(const EventType& type);
 
   void countEvent(EventId id, std::uint64_t count = 1) { event_counts_.at(id) += count; }
-  /// Histogram of the delay from the last e_i (`from`) to the current e_j (`to`).
+  /// Histogram of the delays from the last e_i (`from`) to the current e_j (`to`).
   Histogram& pair(EventId from, EventId to) { return pairsTo(to).at(from); }
   const Histogram& pair(EventId from, EventId to) const;
   /// The histograms of all pairs with this e_j, by the id of e_i.
   std::vector<Histogram>& pairsTo(EventId to);
 
-  /// Adds the counts of `other`; event types that are new here get ids behind the present ones.
+  /// Adds the counts of `other`; event types that are new here get the next ids.
   /// @throw std::invalid_argument if the two were binned differently.
   void merge(const DelayStatistics& other);
 

@@ -9,9 +9,9 @@
 
 namespace self_awareness::core::paper {
 
-/// Counts of delays per bin: P_ij of the paper before it is normalised. Every pair of event types
-/// has one, so it is small: an array over the stretch of bins that is well filled, and a hash
-/// table for those outside. What gets beyond 32 bits is in a map.
+/// Counts of delays by bin: n_ij(b) of docs/method.md, section 2.1. Every pair of event types has
+/// one, so it must be small. An array holds the run of bins that is well filled, a hash table the
+/// bins outside, and a map what does not fit into 32 bits.
 class Histogram {
  public:
   struct Entry {
@@ -39,7 +39,7 @@ class Histogram {
   void add(std::int64_t bin, std::uint64_t count);
   /// @param entries sorted by bin, each bin once, with counts above 0
   void add(const Entries& entries);
-  /// Fetches what an addition to a bin is likely to need into the cache.
+  /// Brings into the cache what add() to this bin probably needs.
   void prefetch(std::int64_t bin) const {
     const std::uint64_t cell = static_cast<std::uint64_t>(bin) - first_bin_;
     __builtin_prefetch(memory_.get() + std::min<std::uint64_t>(cell, length_), 1);
@@ -55,7 +55,7 @@ class Histogram {
 
   /// Shannon entropy of the normalised histogram [bit]; 0 if it is empty.
   double entropyBits() const;
-  /// Smallest bin below or in which the given fraction (0 to 1) of the counts lies; 0 if empty.
+  /// Smallest bin up to which the given fraction (0 to 1) of the counts lies; 0 if empty.
   std::int64_t quantile(double fraction) const;
 
  private:
@@ -71,23 +71,23 @@ class Histogram {
   std::uint32_t lengthened() const;
   void lengthen();
   Entries smallEntries() const;
-  Entries smallEntriesOutside() const;  // of the array
+  Entries smallEntriesOutside() const;  // outside the array
   std::uint32_t words() const { return length_ + 2 * capacity_; }
 
-  // The counts of the array, then the slots of the hash table: a bin and its count each. A count
-  // of 0 is none.
+  // First the counts of the array, then the slots of the hash table: a bin and its count each. A
+  // slot with a count of 0 is free.
   std::unique_ptr<std::uint32_t[]> memory_;
-  std::unique_ptr<Large> large_;  // beside the others
+  std::unique_ptr<Large> large_;  // added to the others
   std::uint32_t first_bin_ = 0;   // of the array
   std::uint32_t length_ = 0;      // of the array
   std::uint32_t capacity_ = 0;    // of the hash table: a power of two, or 0
-  std::uint32_t filled_ = 0;      // slots of it
+  std::uint32_t filled_ = 0;      // slots in use
 };
 
 bool operator==(const Histogram& a, const Histogram& b);
 
-/// The stretch of bins in which an array pays most: where what its entries are worth exceeds what
-/// its cells cost by the most (the largest sum of a contiguous run).
+/// Finds the run of bins for which an array pays most: where the worth of the entries exceeds the
+/// number of cells by the most (the largest sum of a contiguous run).
 /// @param begin, end entries sorted by bin
 /// @param worth of an entry, in cells
 std::pair<Histogram::Entries::const_iterator, Histogram::Entries::const_iterator> wellFilled(

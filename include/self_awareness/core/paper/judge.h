@@ -8,10 +8,10 @@
 
 namespace self_awareness::core::paper {
 
-/// The paper's detector: the score of eq. 2 to 4 against the threshold s* of eq. 5
-/// (docs/method.md, section 2).
+/// Makes the judge of the paper's detector: it compares the score of eq. 2 to 4 with the threshold
+/// s* of eq. 5 (docs/method.md, section 2.2).
 /// @param threshold s*; none: windows are scored and never abnormal
-/// @param silence_is_abnormal a window without events scores 0, else nothing
+/// @param silence_is_abnormal true: a window without events scores 0; false: it has no score
 /// @throw std::invalid_argument if the threshold is not finite
 std::unique_ptr<core::Judge> makeJudge(std::shared_ptr<const Model> model,
                                        std::optional<double> threshold, bool silence_is_abnormal);

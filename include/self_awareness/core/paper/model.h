@@ -9,8 +9,9 @@ namespace self_awareness::core::paper {
 
 class DelayTable;
 
-/// The self-awareness model M = {P_ij} of section III-B with the entropies of eq. 4, computed once
-/// from counts and never changed, so that threads may share it.
+/// The self-awareness model M = {P_ij} with the entropies of eq. 4 (paper, section III-B;
+/// docs/method.md, section 2.1). It is computed once from counts and never changes, so threads may
+/// share it.
 class Model {
  public:
   /// @throw std::invalid_argument if the statistics hold no event.
@@ -22,7 +23,8 @@ class Model {
   const Vocabulary& vocabulary() const { return vocabulary_; }
   const Binning& binning() const { return binning_; }
   std::size_t size() const { return vocabulary_.size(); }
-  /// Whether the id is one of training; ids behind it stand for events never seen there.
+  /// Whether training saw the event type; the ids after those of training stand for unknown
+  /// events.
   bool knows(EventId id) const { return id < size(); }
   /// The histograms of an e_j with all e_i.
   const DelayTable& table(EventId to) const;
@@ -31,15 +33,16 @@ class Model {
   double probability(EventId from, EventId to, std::int64_t delay) const;
   /// h_ij of eq. 4 [bit].
   double entropy(EventId from, EventId to) const;
-  /// w_ij of eq. 4 where all event types of training are tracked; 1 if H_j is 0.
+  /// w_ij of eq. 4 once all event types of training were seen; 1 if H_j is 0.
   double weight(EventId from, EventId to) const;
-  /// The score that an event of training has on the average, all event types tracked.
+  /// Score to expect of an event by training, once all event types of training were seen
+  /// (docs/method.md, section 2.5, group 3).
   double expectedScore(EventId to) const;
   /// Delays between two events of the type.
   const Histogram& gaps(EventId id) const { return gaps_.at(id); }
-  /// Natural logarithm of the probability of a gap of at least this age [ns] between two events
-  /// of the type: the share of such gaps in training, beyond the longest one b with the tail
-  /// exp(-age / b). 0 if the type has fewer than kFewestGaps.
+  /// Natural logarithm of the probability P(gap >= age) of docs/method.md, section 2.5: the share
+  /// of the gaps in training that are at least as long as the age [ns], with an exponential tail
+  /// after the longest one. 0 if the type has fewer gaps than kFewestGaps.
   double logSurvival(EventId id, std::int64_t age) const;
 
  private:

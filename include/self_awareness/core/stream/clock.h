@@ -6,14 +6,16 @@
 
 namespace self_awareness::core {
 
-/// How far a stamp may lie behind the one before it and still be a late event [ns].
+/// An event whose stamp is at most this much [ns] smaller than that of the event before it is
+/// late; the clock was not set (docs/method.md, section 1.2).
 constexpr std::int64_t kLatestEvent = kNanosecondsPerSecond / 10;
-/// A longer gap than this between two events [ns] is no silence of a robot: the clock was set, or
-/// started to run (messages recorded before the first /clock have the stamp 0).
+/// A longer gap than this [ns] between two events is no silence of a robot: the clock was set, or
+/// it started to run (messages recorded before the first /clock have the stamp 0).
 constexpr std::int64_t kLongestSilence = 3600 * kNanosecondsPerSecond;
 
-/// Whether the clock was set between two events that follow each other: delays across such a step
-/// mean nothing.
+/// Whether the clock was set between two events in a row: delays across such a step mean nothing.
+/// @param previous stamp of the earlier one of the two [ns]
+/// @param current stamp of the one after it [ns]
 constexpr bool isClockStep(std::int64_t previous, std::int64_t current) {
   return current < previous - kLatestEvent || current - previous > kLongestSilence;
 }

@@ -6,7 +6,8 @@
 
 namespace self_awareness::core {
 
-/// What happened, without when: e = (source, scope, type), section IV-C of the paper.
+/// What happened, without the time: e = (source, scope, type) (paper, section IV-C;
+/// docs/method.md, section 1.1).
 struct EventType {
   std::string source;  ///< the component that produced it (a node's name); empty: not told apart
   std::string scope;   ///< where others perceive it (a topic)
@@ -23,7 +24,7 @@ inline bool operator<(const EventType& a, const EventType& b) {
   return std::tie(a.source, a.scope, a.type) < std::tie(b.source, b.scope, b.type);
 }
 
-/// What a component is called: its source, or where the encoding leaves sources out, its scope.
+/// Name of a component: its source, or its scope where the encoding leaves sources out.
 inline const std::string& componentOf(const std::string& source, const std::string& scope) {
   return source.empty() ? scope : source;
 }

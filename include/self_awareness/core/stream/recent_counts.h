@@ -8,23 +8,26 @@
 
 namespace self_awareness::core {
 
-/// How many events of every type came in the last windows, the sliding count of the rate evidence
-/// (docs/method.md, section 1.4).
+/// Counts the events of every type in the last windows, for the rate evidence (docs/method.md,
+/// section 1.4).
 class RecentCounts {
  public:
-  /// @param windows how many windows are counted together, > 0
+  /// @param types number of event types
+  /// @param windows number of windows that are counted together, > 0
   RecentCounts(std::size_t types, std::size_t windows);
 
-  /// Counts an event in the open window. @param id less than the number of types
+  /// Counts an event in the open window.
+  /// @param id less than the number of types
   void add(EventId id) { ++open_[id]; }
-  /// Makes room for event types that are new.
+  /// Makes room for new event types.
+  /// @param types number of event types from now on
   void resize(std::size_t types);
-  /// Closes the open window: counts() now holds it.
+  /// Closes the open window: counts() then includes it.
   void close();
   /// Forgets all windows.
   void restart();
 
-  /// Whether as many windows were closed as are counted together.
+  /// Whether enough windows were closed for counts() to be valid.
   bool full() const { return closed_ >= windows_; }
   /// Events in the last closed windows, by type.
   const std::vector<std::uint32_t>& counts() const { return sums_; }

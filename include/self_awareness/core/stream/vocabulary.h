@@ -9,17 +9,18 @@
 
 namespace self_awareness::core {
 
-/// The set U_E of event types, each with a dense id in the order of first appearance.
+/// The set U_E of event types, each with a dense id in the order of first appearance
+/// (docs/method.md, section 1.1).
 class Vocabulary {
  public:
   Vocabulary() = default;
   /// @throw std::invalid_argument if a type occurs twice.
   explicit Vocabulary(const std::vector<EventType>& types);
 
-  /// The id of `type`, which is added if it is new.
+  /// Id of `type`; a new type is added.
   EventId intern(const EventType& type);
   std::optional<EventId> find(const EventType& type) const;
-  /// @throw std::out_of_range
+  /// @throw std::out_of_range if there is no such id
   const EventType& at(EventId id) const { return types_.at(id); }
   std::size_t size() const { return types_.size(); }
   const std::vector<EventType>& types() const { return types_; }

@@ -9,62 +9,65 @@
 
 namespace self_awareness::core {
 
-/// Length of a window where nothing else is asked for [ns]: that of the paper, section V-B.
+/// Default length of a window [ns] (paper, section V-B).
 constexpr std::int64_t kDefaultWindow = kNanosecondsPerSecond / 10;
 
-/// Start of the window [ns] that a stamp [ns] lies in, on the absolute grid of window lengths
+/// Start [ns] of the window in which a stamp [ns] lies: windows start at the multiples of `length`
 /// [ns].
 std::int64_t floorToGrid(std::int64_t stamp, std::int64_t length);
 
-/// An event with what was seen when it came.
+/// An event, and what was known when it came.
 struct ObservedEvent {
   Event event;
   bool unknown = false;             ///< never seen in training
   std::optional<std::int64_t> gap;  ///< delay since the last event of the same type [ns]
 };
 
-/// One window of eq. 2.
+/// One window of eq. 2 (docs/method.md, section 1.3).
 struct Window {
   std::int64_t start = 0;  ///< [ns], on the absolute grid of window lengths
   std::vector<ObservedEvent> events;
 
-  /// How many of its events were never seen in training.
+  /// Number of its events of types that training never saw.
   std::size_t unknown() const;
 };
 
-/// Who takes in the events of a recording and looks at its windows, each in its turn.
+/// Takes in the events of a recording and looks at its windows, one after the other.
 class WindowObserver {
  public:
   virtual ~WindowObserver() = default;
 
-  /// The next event. All windows that end before it were closed.
+  /// Takes in the next event. All windows that end at or before it are closed already.
   virtual ObservedEvent observe(const Event& event) = 0;
-  /// A window is over. @param end of what is known of it [ns]: its own end, or where the recording
-  /// ends within it
+  /// Looks at a window that is over.
+  /// @param end up to where the window is known [ns]: its own end, or the recording's if that is
+  /// earlier
   virtual void close(const Window& window, std::int64_t end) = 0;
-  /// The clock was set (clock.h): what was seen before says nothing of what follows.
+  /// Forgets what was seen, since the clock was set (clock.h).
   virtual void onClockStep() = 0;
 };
 
-/// Walks through the events of a recording and cuts them into windows that do not overlap: window
-/// k holds k * length <= t < (k + 1) * length. Windows without events are closed like any other.
+/// Cuts the events of a recording into windows that do not overlap (docs/method.md, section 1.3):
+/// window k holds k * length <= t < (k + 1) * length. Windows without events are closed, too.
 class Windows {
  public:
   /// @param length [ns], > 0
   /// @param observer must outlive the windows, and not call them back
-  /// @throw std::invalid_argument
+  /// @throw std::invalid_argument if the length is out of range
   Windows(std::int64_t length, WindowObserver& observer);
 
   /// Closes the windows that end at or before the event, hands it to the observer, and counts it.
-  /// An event that comes late, after its window was closed, counts in the open one. Where the
-  /// clock was set since the last event, the open window is lost, and the walk starts afresh.
+  /// An event that comes late, after its window was closed, counts in the open one. If the clock
+  /// was set since the last event, the open window is dropped, and a new recording starts with
+  /// this event.
   /// @return false if the clock was set
   bool add(const Event& event);
-  /// Closes all windows that end at or before `now` [ns]; silence has windows too.
+  /// Closes all windows that end at or before `now` [ns]; silence has windows, too.
   void advance(std::int64_t now);
-  /// The recording ends: closes the open window, if there is one. The next event starts afresh.
+  /// Ends the recording: closes the open window, if there is one. The next event starts a new
+  /// recording.
   void finish();
-  /// Forgets the open window; the grid starts again with the next event.
+  /// Drops the open window; the next event opens a new one.
   void restart();
 
   std::int64_t length() const { return length_; }

@@ -13,31 +13,32 @@
 
 namespace self_awareness::core {
 
-/// What is said of one window.
+/// What the detector says about one window.
 struct Verdict {
   const Window* window = nullptr;   ///< valid during the handler's call
-  std::optional<double> score;      ///< low is abnormal; none: nothing is said of the window
+  std::optional<double> score;      ///< low is abnormal; none: the window has no score
   std::optional<double> threshold;  ///< s*; none: not calibrated
   bool abnormal = false;            ///< eq. 5, or silence, or unknown events that are an error
-  bool settling = false;            ///< too early to alarm; the window is not held against anyone
+  bool settling = false;            ///< too early for an alarm; the window does not count
   bool alarm = false;               ///< the alarm stands
-  bool suspicion = false;           ///< no alarm, but something was abnormal of late
+  bool suspicion = false;           ///< no alarm, but something was abnormal recently
   bool changed = false;             ///< the alarm or the suspicion began or ended with this window
-  std::string evidence;             ///< of an abnormal or suspicious window, in words
+  std::string evidence;             ///< what made the window abnormal or suspicious
   std::vector<Suspect> suspects;    ///< of an abnormal window that is not settling, best first
 };
 
-/// What is thought of events never seen in training: somebody may have plugged in a joystick.
+/// What an event type means that training never saw (docs/method.md, section 4.5): somebody may
+/// have plugged in a joystick.
 enum class UnknownEvents { kIgnore, kWarn, kError };
 
-/// The way of an event to an alarm, the same live and from a bag: window, judgement, persistence
+/// Turns events into alarms, in the same way live and from a bag: window, judgement, persistence
 /// (docs/method.md, section 4).
 class Detector : private WindowObserver {
  public:
   struct Parameters {
     Persistence::Parameters persistence;
-    std::int64_t settle_time = 5000000000;  ///< without alarms after the first event [ns]
-    bool silence_is_abnormal = true;  ///< paper: a window without events scores 0, else nothing
+    std::int64_t settle_time = 5000000000;  ///< no alarms this long after the first event [ns]
+    bool silence_is_abnormal = true;        ///< paper: a window without events scores 0
     UnknownEvents unknown = UnknownEvents::kWarn;  ///< a suspicion, or an alarm at once
 
     /// @throw std::invalid_argument if a value is out of range.
@@ -46,24 +47,26 @@ class Detector : private WindowObserver {
   using Handler = std::function<void(const Verdict&)>;
 
   /// @param window length [ns]
-  /// @param handler called with the verdict of every window in turn; must not call back
+  /// @param handler called with the verdict on every window, in order; must not call the detector
   /// @throw std::invalid_argument if a parameter is out of range
   Detector(std::unique_ptr<Judge> judge, std::int64_t window, const Parameters& parameters,
            Handler handler);
 
-  /// The next event. Where the clock was set since the last one, all starts afresh.
-  /// @return false if it was: what was open is lost, and the recording starts here.
+  /// Takes in the next event. If the clock was set since the last one, the open window is dropped,
+  /// and a new recording starts with this event.
+  /// @return false if the clock was set
   bool add(const Event& event);
-  /// The time is `now` [ns], whether something came or not: windows that are over are judged.
+  /// Judges the windows that are over at the time `now` [ns], whether events came or not.
   void advance(std::int64_t now);
-  /// The recording ends: the open window is judged.
+  /// Ends the recording and judges the open window.
   void finish();
 
   /// Forgets delays, windows and the alarm: the next event is the first.
   void restart();
-  /// Lets settle_time pass without raising an alarm, from `now` [ns] on; one that stands, stands.
+  /// Raises no alarm for settle_time from `now` [ns] on: no window counts meanwhile, so an alarm
+  /// that stands clears after its hold time (docs/method.md, section 4.4).
   void settle(std::int64_t now);
-  /// Forgets the alarm and the windows that led to it; the delays go on.
+  /// Forgets the alarm and the windows that led to it; the judge forgets nothing.
   void clearAlarm();
 
   /// Whether an event has come since the start.
@@ -79,8 +82,8 @@ class Detector : private WindowObserver {
   Handler handler_;
   Windows windows_;
   Persistence persistence_;
-  bool suspicion_ = false;          // stands
-  std::int64_t suspicious_at_ = 0;  // end of the last window that was [ns], while it stands
+  bool suspicion_ = false;          // whether it stands
+  std::int64_t suspicious_at_ = 0;  // end of the last suspicious window [ns], while it stands
   std::int64_t settled_at_ = 0;     // [ns], valid once started
 };
 

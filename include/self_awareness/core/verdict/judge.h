@@ -10,36 +10,36 @@
 
 namespace self_awareness::core {
 
-/// What a judge says of one window.
+/// What a judge says about one window.
 struct Judgement {
-  std::optional<double> score;      ///< low is abnormal; none: it says nothing of such a window
+  std::optional<double> score;      ///< low is abnormal; none: such a window has no score
   std::optional<double> threshold;  ///< none: not calibrated
   bool abnormal = false;            ///< score < threshold (eq. 5), or silence
-  bool certain = false;             ///< an alarm at once: what was found has lasted already
+  bool certain = false;             ///< an alarm at once (docs/method.md, section 4.3)
   bool suspicious = false;          ///< not abnormal, but on the way to it
   std::string evidence;             ///< what made the window abnormal or suspicious, in words
-  std::vector<Suspect> suspects;    ///< if they were asked for; the first is the most likely
+  std::vector<Suspect> suspects;    ///< if they were asked for; the most likely first
 };
 
-/// When a judge names those who may have made a window abnormal. Naming takes time.
+/// Of which windows a judge names suspects: naming them takes time.
 enum class NameSuspects {
   kNever,
-  kIfUnusual,  ///< of a window that is abnormal or suspicious
-  kAlways      ///< whoever asks knows more than the judge
+  kIfUnusual,  ///< of windows that are abnormal or suspicious
+  kAlways      ///< of all windows: the caller knows more than the judge
 };
 
-/// Judges the windows of one recording after its events came in: the method behind the detector.
+/// Takes in the events of a recording and judges its windows: the method that the detector uses.
 class Judge {
  public:
   virtual ~Judge() = default;
 
-  /// Takes in the next event; ids the model does not know are unknown events.
+  /// Takes in the next event. One with an id that the model does not know is an unknown event.
   virtual ObservedEvent add(const Event& event) = 0;
-  /// Judges a window that is over: all events taken in since the window before. Without
-  /// calibration it names no suspects.
-  /// @param end of what is known of the window [ns], as of WindowObserver::close()
+  /// Judges a window that is over. Its events are all those taken in since the window before it.
+  /// Without calibration, the judge names no suspects.
+  /// @param end up to where the window is known [ns], as for WindowObserver::close()
   virtual Judgement judge(const Window& window, std::int64_t end, NameSuspects suspects) = 0;
-  /// Forgets what was seen: another recording, or the clock was set.
+  /// Forgets what was seen: a new recording starts, or the clock was set.
   virtual void restart() = 0;
 };
 

@@ -5,8 +5,8 @@
 
 namespace self_awareness::core {
 
-/// When abnormal windows are an alarm: k abnormal ones among the last n windows raise it, and it
-/// clears after a hold time without any (docs/method.md, section 4.2).
+/// Decides when abnormal windows are an alarm (docs/method.md, section 4.2): k abnormal ones among
+/// the last n raise it, and it clears after a hold time without any.
 class Persistence {
  public:
   struct Parameters {
@@ -20,8 +20,10 @@ class Persistence {
 
   explicit Persistence(const Parameters& parameters);
 
-  /// Takes in the next window's verdict. @param end of the window [ns]. @param certain raises the
-  /// alarm at once. @return raised()
+  /// Takes in the next window.
+  /// @param end of the window [ns]
+  /// @param certain raises the alarm at once
+  /// @return raised()
   bool add(bool abnormal, std::int64_t end, bool certain = false);
   /// Whether the alarm stands.
   bool raised() const { return raised_; }

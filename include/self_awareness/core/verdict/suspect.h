@@ -9,24 +9,23 @@
 
 namespace self_awareness::core {
 
-/// Event types with fewer gaps than this in training are not judged: they have no usual delay to
-/// be measured by.
+/// Event types with fewer gaps than this in training are not judged: too little is known about
+/// their usual gaps.
 constexpr std::uint64_t kFewestGaps = 30;
-/// The usual delay of an event type reaches from the one that this share of its delays in training
-/// does not exceed,
+/// Lower end of the usual gaps of an event type: this share of its gaps in training is no longer.
 constexpr double kUsualFrom = 0.01;
-/// to the one that this share does not exceed.
+/// Upper end of the usual gaps of an event type: this share of its gaps in training is no longer.
 constexpr double kUsualTo = 0.99;
-/// Logarithm of the probability below which a silence is worth naming once a window is abnormal:
-/// one gap in a hundred is as long.
+/// Natural logarithm of a probability. Once a window is abnormal, silences that are less probable
+/// are named: one gap in a hundred is as long (docs/method.md, sections 2.5 and 6).
 inline const double kRareSilence = std::log(0.01);
-/// No more suspects than this are named.
+/// At most so many suspects are named.
 constexpr std::size_t kMostSuspects = 5;
 
-/// Who may have made a window abnormal, and why.
+/// Who may have made a window abnormal, and why (docs/method.md, sections 2.5 and 6).
 struct Suspect {
   enum class Reason {
-    kSilent,   ///< did not come although it should have by now
+    kSilent,   ///< has not come, although it should have by now
     kLate,     ///< came after an unusually long silence
     kUnknown,  ///< was never seen in training
     kUnusual,  ///< came at delays after the others that were rare or absent in training
@@ -44,11 +43,11 @@ struct Suspect {
                               ///< kDelay: 5 % of the delays
   std::size_t events = 0;     ///< kUnknown, kUnusual: such events in the window; kRate: in the
                               ///< last kRateSpan
-  double usual_fewest = 0;    ///< kRate: the mean of training less two spreads
-  double usual_most = 0;      ///< kRate: the mean of training and two spreads
+  double usual_fewest = 0;    ///< kRate: the mean of training minus two spreads
+  double usual_most = 0;      ///< kRate: the mean of training plus two spreads
   double score = 0;           ///< kUnusual: their mean score
   double usual_score = 0;     ///< kUnusual: the score to expect by training
-  std::string other;          ///< kDelay, kAnswer: the other event type; empty: it follows itself
+  std::string other;          ///< kDelay, kAnswer: the other event type; empty: its own
   double delay = 0;           ///< kDelay: the last one [s]
 };
 
