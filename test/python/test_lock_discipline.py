@@ -1,4 +1,4 @@
-"""Data that threads share is in a Guarded, and what is in a Guarded needs its lock to be reached."""
+"""Data that threads share is in a Guarded, and can only be reached through its lock."""
 from __future__ import annotations
 
 import re

@@ -1,7 +1,7 @@
 """The comment of the class Monitor is its manual: complete, and as the code and the configuration.
 
-That the defaults of the configuration are those of the code, live_rules_test.py finds with a monitor
-that runs.
+live_rules_test.py checks with a running monitor that the defaults of the configuration are those of
+the code.
 """
 from __future__ import annotations
 
@@ -74,7 +74,8 @@ def test_types_and_defaults_are_those_of_the_configuration(name: str) -> None:
     entry = _entries(_manual())[name]
     default = yaml.safe_load(entry.default)
     assert default == _configuration()[name]
-    assert type(default) is TYPES[entry.type] is type(_configuration()[name])
+    expected = TYPES[entry.type]
+    assert {type(default), type(_configuration()[name])} == {expected}
 
 
 @pytest.mark.parametrize('name', sorted(set(_readings()) - READ_BY_OTHERS))
