@@ -11,9 +11,6 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 PAGES = [ROOT / 'README.md', *sorted((ROOT / 'docs').rglob('*.md'))]
 
-# Written again when the costs are measured again; the test fails as soon as its links are right.
-STALE = ('docs/performance.md',)
-
 # [text](target), also of an image, with an optional "title".
 LINK = re.compile(r'\[[^\]]*\]\(<?([^)\s>]+)>?(?:\s+"[^"]*")?\)')
 HEADING = re.compile(r'^#{1,6}\s+(.*?)\s*#*$')
@@ -75,10 +72,7 @@ def _programs() -> Set[str]:
     return found | set(re.findall(r'add_executable\((\w+)', (ROOT / 'CMakeLists.txt').read_text()))
 
 
-@pytest.mark.parametrize('page', [
-    pytest.param(page, id=_name(page), marks=pytest.mark.xfail(
-        _name(page) in STALE, strict=True, reason='links to where headers lay before'))
-    for page in PAGES])
+@pytest.mark.parametrize('page', PAGES, ids=_name)
 def test_links_lead_somewhere(page: Path) -> None:
     assert _broken(page) == []
 
