@@ -14,7 +14,7 @@ namespace {
 
 using Reason = Suspect::Reason;
 
-// A every 200 ms at random, B 20 ms after it, C often.
+// A comes at random, about every 200 ms, B 20 ms after it, and C often.
 Events robot(std::int64_t length, unsigned seed) {
   const Events asked = irregular(kA, 0, length, 200 * kMillisecond, seed);
   return together({asked, answers(kB, asked, 20 * kMillisecond),
@@ -29,7 +29,7 @@ class EvidenceBlameTest : public testing::Test {
       last_ = event.stamp;
     }
   }
-  // Who is named where tracks have reached these shares of their limits.
+  // Names the suspects when tracks have reached these shares of their limits.
   std::vector<Suspect> suspects(const std::vector<std::pair<Track, double>>& reached,
                                 std::int64_t end, const Window& window = {}) {
     std::vector<double> shares(model_->tracks().size(), 0);
