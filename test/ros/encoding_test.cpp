@@ -242,7 +242,7 @@ TEST_F(EncoderTest, PatternsMatchWholeNames) {
   EXPECT_FALSE(makeEncoder(rules).connect(scan()));
 }
 
-TEST_F(EncoderTest, NamesThePatternThatIsNone) {
+TEST_F(EncoderTest, NamesThePatternThatIsNoRegularExpression) {
   EncodingRules rules;
   rules.exclude_topics = {"/a(b"};
   try {

@@ -114,7 +114,7 @@ TEST(EvidenceTracks, AFollowerDoesNotAskForWhatItFollows) {
   EXPECT_FALSE(isWatched(tracks, Channel::kAnswer, kA, kA));
 }
 
-TEST(EvidenceTracks, WhoMostlyGetsNoAnswerDoesNotAsk) {
+TEST(EvidenceTracks, ATypeThatMostlyGetsNoAnswerDoesNotAsk) {
   const Statistics counts =
       countsOf({together({irregular(kA, 0, kLength, 50 * kMillisecond, 2),
                           irregular(kB, 0, kLength, 200 * kMillisecond, 1)})},
@@ -158,7 +158,7 @@ TEST(EvidenceTracks, CountsOfWatchedPairsAreKeptAndOthersLeftOut) {
   EXPECT_EQ(first.only({}).delaysToAny(), first.delaysToAny());
 }
 
-TEST(EvidenceTracks, TracksOfDelaysComeInTwos) {
+TEST(EvidenceTracks, DelayTracksComeInPairs) {
   const Track overdue{Channel::kOverdue, kA, kA};
   const Track now{Channel::kDelay, kB, kA};
   const Track slow{Channel::kSlowDelay, kB, kA};

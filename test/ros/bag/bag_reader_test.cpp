@@ -189,7 +189,7 @@ TEST_F(BagReaderTest, TheSummaryNamesTheRecordingHoweverItIsCompressed) {
   EXPECT_EQ(read(path("packed.bag")).size(), 111U);
 }
 
-TEST_F(BagReaderTest, TheSummaryNamesTheRecordingWhoeverWroteItAgain) {
+TEST_F(BagReaderTest, TheSummaryIsTheSameAfterAnotherProgramWroteTheBagAgain) {
   const auto fingerprint = [this](const std::vector<std::pair<std::string, int>>& messages) {
     rosbag::Bag bag(path("again.bag"), rosbag::bagmode::Write);
     for (const auto& [topic, second] : messages) {
@@ -319,7 +319,7 @@ TEST_F(BagReaderTest, SaysWhatIsWrongWithABag) {
       << bagError(path("none.bag"));
 }
 
-TEST_F(BagReaderTest, EveryTruncatedBagIsRefusedWithTheMend) {
+TEST_F(BagReaderTest, EveryTruncatedBagIsRefusedWithTheRepair) {
   const std::string bag = writeBag("a.bag");
   const auto size = fs::file_size(bag);
   for (const double share : {0.02, 0.1, 0.3, 0.5, 0.7, 0.9, 0.97, 0.999}) {
