@@ -3,8 +3,8 @@
 
 Makes a bag of some 1.5 GB in a temporary folder, and runs in turn a bare `rosbag::View` iteration
 in C++, `rosbag.Bag.read_messages(raw=True)` in Python, `read_events` (how `train` reads its bags),
-and `train`: time, CPU time, and what they read of the bag. Every program is run without work as
-well: its start, with its imports, is told apart. Needs `catkin_make bags_benchmark`.
+and `train`: time, CPU time, and what they read of the bag. To measure the start of a program with
+its imports, it also runs every one without work. Needs `catkin_make bags_benchmark`.
 
 Then it makes bags of many event types, and trains on them with one process and with two, in turn.
 """
@@ -40,19 +40,19 @@ _PIECE_BYTES = 1 << 20
 
 
 class Program(NamedTuple):
-    """Something that goes through a bag, and the same program without work."""
+    """A program that reads a bag, and the same program without work."""
 
     work: List[str]
     start: List[str]
 
 
 class Usage(NamedTuple):
-    """What a process used; all threads together."""
+    """What a process used, in all its threads."""
 
     wall_s: float
     cpu_s: float
     read_bytes: int
-    """By read(2), from whatever file."""
+    """By read(2), from any file."""
     disk_bytes: int
     """From the disk."""
 
@@ -61,11 +61,11 @@ def run(command: Sequence[str]) -> Usage:
     """Run a program to its end.
 
     Raises:
-        RuntimeError: it failed.
+        RuntimeError: the program failed.
     """
     begin = time.perf_counter()
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
-    os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOWAIT)  # the process's counts are kept
+    os.waitid(os.P_PID, process.pid, os.WEXITED | os.WNOWAIT)  # keeps the counts of the process
     wall = time.perf_counter() - begin
     io = dict(line.split(': ') for line in
               Path(f'/proc/{process.pid}/io').read_text().splitlines())
@@ -91,10 +91,10 @@ def warm(path: str) -> None:
 
 
 def programs(bag: str, model: str) -> Dict[str, Program]:
-    """Return what is measured, by name; 'view' is what the others are compared with.
+    """Return the programs to measure, by name; the others are compared with 'view'.
 
     Raises:
-        FileNotFoundError: it is not built.
+        FileNotFoundError: a program is not built.
     """
     view = _built('bags_view_iteration')
     train = _built('train')
@@ -109,7 +109,7 @@ def programs(bag: str, model: str) -> Dict[str, Program]:
 
 
 def measure(bag: str, model: str, rounds: int) -> Dict[str, Any]:
-    """Return the medians of every program, and what it reads of a bag that no cache holds."""
+    """Return the medians of every program, and what it reads of a bag that is in no cache."""
     chosen = programs(bag, model)
     work: Dict[str, List[Usage]] = {name: [] for name in chosen}
     start: Dict[str, List[Usage]] = {name: [] for name in chosen}

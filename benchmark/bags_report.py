@@ -1,4 +1,4 @@
-"""What the benchmark of bags found, as a section of docs/performance.md."""
+"""Results of the benchmark of bags, as a section of docs/performance.md."""
 from __future__ import annotations
 
 from typing import Any, Dict, List
@@ -8,7 +8,7 @@ _NAMES = {'view': '`rosbag::View`, C++', 'read_messages': '`read_messages(raw=Tr
 
 
 def markdown(result: Dict[str, Any]) -> str:
-    """Return the tables; that of --jobs where it was measured."""
+    """Return the tables, with that of --jobs if it was measured."""
     programs = result['programs']
     size = result['bag_bytes']
     lines = [

@@ -1,4 +1,4 @@
-"""A bag like that of a robot with a camera: much payload, and many small messages."""
+"""Writes a bag like that of a robot with a camera: large images, and many small messages."""
 from __future__ import annotations
 
 import random
@@ -19,7 +19,7 @@ _SHORTEST_STEP_S = 1e-5  # between two messages of one topic
 
 
 class Topic(NamedTuple):
-    """What a node publishes each `every` of its cycles, `delay` [s] after the cycle's begin."""
+    """What a node publishes each `every` of its cycles, `delay` [s] after the cycle's start."""
 
     name: str
     kind: Any
@@ -50,11 +50,11 @@ NODES: Dict[str, Tuple[float, List[Topic]]] = {
                       Topic('/guard/range', Range(), 1, 0.004),
                       Topic('/guard/state', BatteryState(), 25, 0.001)]),
 }
-"""Cycles a second and topics, by node; every node logs now and then as well."""
+"""Cycles a second and topics, by node; every node also logs from time to time."""
 
 
 def write(path: str, seconds: float, seed: int) -> int:
-    """Write the bag, uncompressed and with rosbag's own size of chunks.
+    """Write the bag, uncompressed, with rosbag's default size of chunks.
 
     Returns:
         the number of messages.

@@ -1,4 +1,4 @@
-"""Bags of a robot with many event types, neighbouring parts of one recording: much to count."""
+"""Writes bags of a robot with many event types, parts of one recording: much to count."""
 from __future__ import annotations
 
 import os

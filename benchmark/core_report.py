@@ -18,7 +18,7 @@ Measured = Dict[str, Any]
 
 
 def _medians(benchmarks: List[Measured]) -> Dict[str, Measured]:
-    """Return by name and size the medians of the repetitions; time: of the processor [ms]."""
+    """Return the medians of the repetitions, by name and size; times: CPU time [ms]."""
     runs: Dict[str, List[Measured]] = {}
     for run in benchmarks:
         if run['run_type'] == 'iteration':
@@ -34,7 +34,7 @@ def _medians(benchmarks: List[Measured]) -> Dict[str, Measured]:
 
 
 def summary(raw: Measured, numpy: Dict[str, Dict[str, float]]) -> Measured:
-    """Return what is measured of every detector by number of event types."""
+    """Return the results of every detector, by number of event types."""
     medians = _medians(raw['benchmarks'])
     result: Measured = {'date': raw['context']['date'][:10]}
     for detector in DETECTORS:

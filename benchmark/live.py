@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Benchmark of whole processes: what the monitor costs, and others that hear the same.
+"""Benchmark of whole processes: the cost of the monitor, and of others that hear the same.
 
 Ten nodes publish at exact rates; in turn, the monitor, a bare ShapeShifter subscriber that only
 counts, and `rosbag record` listen to them on a core of their own. Needs `catkin_make
@@ -101,7 +101,7 @@ class _Benchmark:
     def _sample(self, robot: Robot, subject: Subject) -> Dict[str, float]:
         process = subject.start()
         robot.await_subscribers(1)
-        time.sleep(1)  # what connecting costs is not counted
+        time.sleep(1)  # the cost of connecting does not count
         robot.start(_WARM_UP_S + self._seconds + 0.2)
         time.sleep(_WARM_UP_S)
         begin, before = time.monotonic(), usage(process.pid)
@@ -146,7 +146,7 @@ class _Benchmark:
         times = []
         with contextlib.closing(Monitor(self._processes, model)) as monitor:
             for _ in range(_STARTS):
-                time.sleep(2)  # the publishers notice that the one before has gone
+                time.sleep(2)  # the publishers notice that the last one has gone
                 begin = time.time()
                 monitor.start()
                 robot.await_subscribers(1)
@@ -156,14 +156,14 @@ class _Benchmark:
         return times
 
     def _loads(self, model: Path) -> List[float]:
-        """Measure from the start of the process to where it has loaded the model."""
+        """Measure from the start of the process until it has loaded the model."""
         times = []
         with contextlib.closing(Monitor(self._processes, model)) as monitor:
             for _ in range(_STARTS):
                 begin = time.time()
                 monitor.start()
                 monitor.await_level('diagnostics', lambda _: True, _WITHIN_S)
-                monitor.stop()  # which writes the log
+                monitor.stop()  # writes the log
                 log = (self._folder / 'monitor.log').read_text()
                 times.append(float(_LOADED.findall(log)[-1]) - begin)
         print(json.dumps(times), flush=True)
@@ -171,12 +171,12 @@ class _Benchmark:
 
 
 def _waits(published: List[float], verdicts: List[Tuple[float, float]]) -> List[float]:
-    """From each message to when the verdict on its window was heard [s]."""
+    """Return the times from each message until the verdict on its window was heard [s]."""
     ends = [end for end, _ in verdicts]
     waits = []
     for stamp in published:
         window = bisect.bisect_right(ends, stamp)
-        if window < len(ends) and ends[window] - stamp <= _WINDOW_S:  # else it settled then
+        if window < len(ends) and ends[window] - stamp <= _WINDOW_S:  # else it was settling
             waits.append(verdicts[window][1] - stamp)
     return waits
 
@@ -186,7 +186,7 @@ def _summary(seconds: List[float]) -> Dict[str, float]:
 
 
 def _await_quiet(monitor: Monitor, seconds: float) -> None:
-    """Wait until there is no alarm, and none comes for so long."""
+    """Wait until there is no alarm, and no new one comes for so long."""
     # On a machine that is busy with something else, a suspicion may stand at any time.
     while True:
         monitor.await_level('no alarm', lambda level: level < _LEVEL_ERROR, _WITHIN_S)

@@ -1,4 +1,4 @@
-"""What the live benchmark found, as a section of docs/performance.md."""
+"""Results of the live benchmark, as a section of docs/performance.md."""
 from __future__ import annotations
 
 import statistics

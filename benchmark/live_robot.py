@@ -20,9 +20,9 @@ NODES = 10
 IMAGE_TOPIC = '/camera/image'
 FULL_HD_BYTES = 1920 * 1080 * 3
 LOAD_CORE = 1
-"""Of the publishers, the master and this program."""
+"""Core of the publishers, the master and this program."""
 SUBJECT_CORE = 0
-"""Of what is measured, which has it for itself."""
+"""Core of the program that is measured; nothing else runs on it."""
 
 _PROGRAM = 'live_load'
 _STARTED_WITHIN_S = 60.0
@@ -40,7 +40,7 @@ class Configuration(NamedTuple):
     """Messages a second, without the images."""
     topics: int
     image: bool
-    """Whether full HD images are published, too, 30 a second."""
+    """Whether 30 full HD images a second are published, too."""
 
 
 def pin(core: int, *command: str) -> List[str]:
@@ -50,7 +50,7 @@ def pin(core: int, *command: str) -> List[str]:
 
 @contextlib.contextmanager
 def master(folder: Path) -> Iterator[Processes]:
-    """Run a master on a free port of the loopback interface; programs started later find it."""
+    """Run a master on a free port of the loopback interface; programs that start later find it."""
     port = free_port()
     os.environ.update(ROS_MASTER_URI=f'http://127.0.0.1:{port}', ROS_IP='127.0.0.1',
                       ROS_LOG_DIR=str(folder / 'log'))
@@ -67,7 +67,7 @@ def _master_answers() -> bool:
 
 
 class Robot:
-    """The publishers of one configuration. As a context manager it ends them.
+    """The publishers of one configuration. As a context manager, it ends them.
 
     Args:
         configuration: its image topic is advertised in any case.
@@ -121,7 +121,7 @@ class Robot:
         return sum(int(answer) for answer in self._answers())
 
     def publish_for_training(self, seconds: float) -> None:
-        """Publish everything, with images of next to no size."""
+        """Publish everything, with tiny images."""
         self._tell(f'publish {seconds} {_TINY_IMAGE_BYTES}')
         self._answers()
 
@@ -132,7 +132,7 @@ class Robot:
         return stamp
 
     def restart(self, node: int, subscribers: int, seconds: float) -> None:
-        """Start a node again that crashed, and let it publish."""
+        """Start a crashed node again, and let it publish."""
         self._nodes[node] = self._start(node)
         _write(self._nodes[node].stdin, f'await {subscribers}')
         _read(self._nodes[node].stdout)
@@ -187,7 +187,7 @@ def write_synthetic_model(model: Path, types: int) -> None:
 
 def record_command(bag: Path, topics: Sequence[str]) -> List[str]:
     """Return the command that records topics in a bag."""
-    # `rosbag record` would add a Python process that waits.
+    # The command `rosbag record` would add a Python process that only waits.
     return ['rosrun', 'rosbag', 'record', '-b', '0', '--tcpnodelay', '-O', str(bag), *topics]
 
 

@@ -1,4 +1,4 @@
-"""What the live benchmark measures: programs that hear all that the robot publishes."""
+"""The programs that the live benchmark measures; they hear all that the robot publishes."""
 from __future__ import annotations
 
 import abc
@@ -26,7 +26,7 @@ class Usage(NamedTuple):
     cpu_s: float
     """User and system."""
     peak_bytes: int
-    """Resident memory at its largest."""
+    """Peak of the resident memory."""
 
 
 def usage(pid: int) -> Usage:
@@ -41,7 +41,7 @@ def usage(pid: int) -> Usage:
 
 
 class Subject(abc.ABC):
-    """A program that listens. As a context manager it runs."""
+    """A program that listens. It runs as a context manager."""
 
     def __init__(self, processes: Processes) -> None:
         self._processes = processes
@@ -98,7 +98,7 @@ class Record(Subject):
 
 
 class Monitor(Subject):
-    """The live monitor; listens to what it says. Needs rospy.init_node()."""
+    """The live monitor; hears its verdicts and diagnostics. Needs rospy.init_node()."""
 
     NAME = '/watch'
 
@@ -108,10 +108,10 @@ class Monitor(Subject):
         self._lock = threading.Lock()
         self._events = 0
         self.verdicts: List[Tuple[float, float]] = []
-        """Of every window since it had settled: its end, and when its verdict was heard [s since
+        """End of every window since it had settled, and when its verdict was heard [s since
         1970]."""
         self.level = -1
-        """Of communication on /diagnostics; -1 before the first."""
+        """Level of communication on /diagnostics; -1 before the first."""
         self._changed_at = 0.0
         self._subscribers = [
             rospy.Subscriber(f'{self.NAME}/status', SelfAwareness, self._on_status),
@@ -162,7 +162,7 @@ class Monitor(Subject):
 
 
 def executable(name: str) -> str:
-    """Return the path of a program of this package as it was built."""
+    """Return the path of a built program of this package."""
     for prefix in os.environ['CMAKE_PREFIX_PATH'].split(':'):
         path = Path(prefix) / _LIBRARIES / name
         if path.exists():

@@ -27,7 +27,7 @@ _LOADS = 5
 
 
 def _train(types: int, path: str) -> Dict[str, Any]:
-    """Train and save a model; the start of the process and its events are not counted."""
+    """Train and save a model; the start of the process and making the events do not count."""
     stamps, ids = events_of(types, _SECONDS)
     kinds = [EventType(f'/node_{kind // 3}', f'/topic_{kind}', 'T') for kind in range(types)]
     training = Training(EncodingRules())
@@ -62,7 +62,7 @@ def _in_process(*arguments: str) -> Dict[str, Any]:
 
 
 def measure() -> Dict[str, Any]:
-    """Return what is measured, by number of event types."""
+    """Return the results, by number of event types."""
     result: Dict[str, Any] = dict(page.machine(), seconds=_SECONDS, loads=_LOADS, models={})
     with tempfile.TemporaryDirectory() as folder:
         for types in SIZES:
@@ -91,7 +91,7 @@ def markdown(result: Dict[str, Any]) -> str:
 
 
 def main() -> None:
-    """Run the benchmark, or what it runs in processes of their own."""
+    """Run the benchmark, or one of its parts that run in their own processes."""
     parser = argparse.ArgumentParser(prog='benchmark models', description=__doc__)
     parser.add_argument('--output', type=Path, default=_DOCS, metavar='FOLDER',
                         help='for performance/models.json and performance.md (default: docs)')

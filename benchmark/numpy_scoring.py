@@ -1,5 +1,6 @@
-"""Scores events as the detectors do, with the sums of numpy: what a vectorised implementation in
-Python comes to. Writes the nanoseconds of an event by detector and number of event types.
+"""Scores events as the detectors do, with the sums of numpy: the speed that a vectorised
+implementation in Python reaches. Writes the nanoseconds of an event by detector and number of
+event types.
 """
 from __future__ import annotations
 
@@ -66,7 +67,7 @@ class NumpyDetector:
             self._track(stamp, kind)
 
     def finish(self) -> None:
-        """Compute the entropies [bit] and scales from the counts, row by row: they are large."""
+        """Compute the entropies [bit] and scales from the counts, row by row to save memory."""
         types = len(self._counts)
         self._scales = np.zeros((types, types))
         self._entropies = np.zeros((types, types))
@@ -88,7 +89,7 @@ class NumpyDetector:
 
 
 class NumpyEvidence:
-    """The sums of the evidence's delays and answers, of all that an event makes it look at."""
+    """The sums of the delays and answers that the evidence detector updates at an event."""
 
     PREDECESSORS = 3
     ASKED = 8
@@ -129,7 +130,7 @@ class NumpyEvidence:
 
 
 def check(detector: NumpyDetector, types: int, stamps: np.ndarray, ids: np.ndarray) -> None:
-    """Raise AssertionError unless the sums are those of the package."""
+    """Raise AssertionError unless the sums equal those of the package."""
     training = Training(EncodingRules(), BIN_SIZE, DEFAULT_WINDOW, BINS - 1, paper=True)
     kinds = [EventType('', f'/topic_{kind}', 'T') for kind in range(types)]
     training.add_events(kinds, stamps, ids)
@@ -143,9 +144,9 @@ def check(detector: NumpyDetector, types: int, stamps: np.ndarray, ids: np.ndarr
 
 
 def nanoseconds(types: int) -> Tuple[float, float]:
-    """Return how long an event takes with the paper's detector and with evidence [ns].
+    """Return the time of an event with the paper's detector and with evidence [ns].
 
-    The medians of some rounds, all event types seen.
+    They are medians of some rounds, after all event types were seen.
     """
     stamps, ids = events_of(types, TRAINING)
     detector = NumpyDetector(types)

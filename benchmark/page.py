@@ -1,4 +1,4 @@
-"""The page docs/performance.md, whose tables are written from the JSON files of measurements."""
+"""Writes the tables of docs/performance.md from the JSON files of measurements."""
 from __future__ import annotations
 
 import json
@@ -9,7 +9,7 @@ from typing import Any, Dict, List, Sequence
 
 
 def machine() -> Dict[str, Any]:
-    """Return what the numbers depend on."""
+    """Return the properties of this machine that the numbers depend on."""
     return {'cores': os.cpu_count(), 'machine': platform.machine(), 'kernel': platform.release()}
 
 
@@ -17,7 +17,7 @@ def publish(name: str, result: Dict[str, Any], text: str, docs: Path) -> None:
     """Write performance/NAME.json and the section NAME of performance.md.
 
     Raises:
-        ValueError: the page has no such section; the JSON file is written all the same.
+        ValueError: the page has no such section; the JSON file is written anyway.
     """
     (docs / 'performance').mkdir(parents=True, exist_ok=True)
     (docs / 'performance' / f'{name}.json').write_text(json.dumps(result, indent=1) + '\n')
@@ -31,7 +31,7 @@ def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
 
 
 def write_section(page: Path, name: str, text: str) -> None:
-    """Replace what stands between the markers `<!-- NAME -->` and `<!-- /NAME -->` of the page.
+    """Replace the text between the markers `<!-- NAME -->` and `<!-- /NAME -->` of the page.
 
     Raises:
         ValueError: the page has no such section.

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Benchmark of the number of watched predecessors: what it costs and what it brings.
+"""Benchmark of the number of watched predecessors: its cost and its use.
 
 Trains the evidence detector on the simulated follow-me robot with several bounds on the number of
 predecessors of an event type, and judges the same normal operation and the same faults with each.

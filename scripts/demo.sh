@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# The whole way on a simulated robot of 15 nodes: build, record normal runs, train, calibrate, run
-# the monitor with a diagnostic_aggregator, kill the laser driver, print the alarm.
+# Shows the whole way on a simulated robot of 15 nodes: build, record normal runs, train,
+# calibrate, run the monitor with a diagnostic_aggregator, kill the laser driver, print the alarm.
 #
 # usage: scripts/demo.sh [FOLDER]     where bags, model and plots go; out/ in the checkout by default
 #
@@ -14,7 +14,7 @@ run_seconds=60
 install_packages
 build > "$out/build.log" 2>&1 || { tail -n 40 "$out/build.log" >&2; exit 1; }
 
-# A master of the demo's own, on a free port of the loopback interface.
+# The demo has its own master, on a free port of the loopback interface.
 port=$(/usr/bin/python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0))
 print(s.getsockname()[1])')
 export ROS_MASTER_URI=http://127.0.0.1:$port ROS_IP=127.0.0.1 ROS_LOG_DIR=$out/log

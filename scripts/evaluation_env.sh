@@ -21,7 +21,7 @@ if ! "$environment/bin/python3" -c 'import hmmlearn' 2> /dev/null; then
   "$environment/bin/pip" install --quiet --only-binary :all: "$hmmlearn"
 fi
 
-# The programs name the system's Python, which looks here, too.
+# The programs run with the system's Python; this makes it look here, too.
 PYTHONPATH=${PYTHONPATH:+$PYTHONPATH:}$(
   "$environment/bin/python3" -c 'import sysconfig; print(sysconfig.get_path("purelib"))')
 export PYTHONPATH

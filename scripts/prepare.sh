@@ -1,5 +1,5 @@
 # Sourced by benchmark, demo.sh and test.sh: installs what is missing, builds in a workspace of its
-# own, and sets up the environment. Can be run again without harm.
+# own, and sets up the environment. It may run again at any time.
 #
 # SELF_AWARENESS_WORKSPACE  the catkin workspace; by default a folder of its own for every checkout
 #                           under ~/.cache/self_awareness
@@ -10,7 +10,7 @@ checkout=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 workspace=${SELF_AWARENESS_WORKSPACE:-${XDG_CACHE_HOME:-$HOME/.cache}/self_awareness/$(
   echo "$checkout" | cksum | cut -d ' ' -f 1)}
 
-# ROS 1 lives in the system's Python; another one may come first on the path.
+# ROS 1 is installed for the system's Python; another one may come first on the path.
 export PATH=/usr/bin:/bin:$PATH
 
 packages_debian=(
@@ -84,14 +84,14 @@ build() {
   mkdir -p "$workspace/src"
   ln -sfn "$checkout" "$workspace/src/self_awareness"
   [ ! -d /opt/ros/noetic ] || source_ros /opt/ros/noetic/setup.bash
-  # "|| return": inside of a condition, set -e is without effect.
+  # "|| return", because set -e has no effect inside a condition.
   catkin_make --directory "$workspace" -DPYTHON_EXECUTABLE=/usr/bin/python3 "$@" || return
   source_ros "$workspace/devel/setup.bash"
   find_plugins_of_debian_11
 }
 
-# Debian 11's pluginlib does not look where Debian 11 puts plugins' libraries, those of
-# diagnostic_aggregator among them; it takes a prefix that has them in lib/.
+# Debian 11's pluginlib does not look where Debian 11 installs the libraries of plugins, such as
+# those of diagnostic_aggregator. It does look in a prefix that has them in lib/.
 find_plugins_of_debian_11() {
   [ "$(. /etc/os-release && echo "$ID-${VERSION_ID:-}")" = debian-11 ] || return 0
   mkdir -p "$workspace/debian-11"

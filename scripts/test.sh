@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Builds and runs every test, installs what that needs, and says how many passed.
+# Installs what the tests need, builds and runs them all, and says how many passed.
 
 source "$(dirname "${BASH_SOURCE[0]}")/prepare.sh"
 
@@ -13,7 +13,7 @@ unset ROS_HOSTNAME ROS_MASTER_URI ROS_NAMESPACE
 say "Testing"
 results=$workspace/build/test_results
 rm -rf "$results"
-# Live tests share the processor with nobody: one after the other.
+# Live tests need the processor for themselves, so tests run one after the other.
 make -C "$workspace/build" run_tests -j1 || true  # the results below tell
 
 catkin_test_results --verbose "$results" || true

@@ -22,8 +22,8 @@ say "Building for aarch64 in $folder"
 cmake -S /usr/src/googletest -B "$folder/googletest" "${cross[@]}" \
   -DBUILD_GMOCK=OFF -DCMAKE_INSTALL_PREFIX="$prefix" > "$folder/googletest.log"
 make -C "$folder/googletest" -j"$(nproc)" install >> "$folder/googletest.log"
-# Headers alone, but in /usr/include beside those of this machine's processor: they need a folder
-# of their own.
+# The package has only headers, but they lie in /usr/include beside those for this machine's
+# processor: they need a folder of their own.
 dpkg --listfiles nlohmann-json3-dev | sed 's,^/,,' |
   tar --create --directory / --no-recursion --files-from - |
   tar --extract --directory "$prefix" --strip-components 1

@@ -1,6 +1,6 @@
-// Iterates a bag with rosbag alone and looks at the time and the topic of every message: what no
-// program that uses rosbag::View can do without. Without a bag it does nothing, for the time that
-// a process needs to start.
+// Iterates over a bag with rosbag alone and looks at the time and the topic of every message:
+// every program that uses rosbag::View must do this. Without a bag it does nothing: this measures
+// how long a process takes to start.
 
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
@@ -14,7 +14,7 @@ int main(int argc, char** argv) {
   }
   rosbag::Bag bag(argv[1], rosbag::bagmode::Read);
   std::uint64_t messages = 0;
-  std::uint64_t seen = 0;  // what is looked at must be used
+  std::uint64_t seen = 0;  // used, so that the compiler keeps the loop
   for (const rosbag::MessageInstance& message : rosbag::View(bag)) {
     seen += message.getTime().toNSec() + message.getTopic().size();
     ++messages;

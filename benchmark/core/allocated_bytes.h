@@ -4,7 +4,7 @@
 
 namespace self_awareness::benchmarks {
 
-/// What operator new has handed out and was not given back [bytes], as malloc rounded it.
+/// Memory that operator new has allocated and that is not yet freed [bytes], as malloc rounds it.
 std::size_t allocatedBytes();
 
 }  // namespace self_awareness::benchmarks

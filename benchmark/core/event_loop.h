@@ -11,7 +11,7 @@
 
 namespace self_awareness::benchmarks {
 
-/// Some events of a system over and over, each round later by the time of one round.
+/// Repeats some events of a system, each round later by the time of one round.
 class EventLoop {
  public:
   explicit EventLoop(std::vector<core::Event> events)
@@ -26,9 +26,9 @@ class EventLoop {
     }
     return event;
   }
-  /// Index in a round of the event that comes next.
+  /// Index of the next event in its round.
   std::size_t position() const { return position_; }
-  /// Events in a round.
+  /// Number of events in a round.
   std::size_t size() const { return events_.size(); }
 
  private:
@@ -40,11 +40,11 @@ class EventLoop {
   std::size_t position_ = 0;
 };
 
-/// Events of a system of a number of types, not those that it is trained on.
+/// Events of a system with so many event types, other than those for training.
 inline EventLoop loopOfEvents(std::size_t types) {
   constexpr std::size_t kEvents = 20000;
-  // A round that began before all timers have started would have them silent for longer than they
-  // ever were in training, again and again.
+  // All timers must have started before the round: else they would be silent in every round for
+  // longer than ever in training.
   constexpr std::int64_t kStarting = 3 * core::kNanosecondsPerSecond;
   SyntheticSystem system(types, 2);
   system.take(kStarting);
@@ -55,13 +55,13 @@ inline EventLoop loopOfEvents(std::size_t types) {
   return EventLoop(std::move(events));
 }
 
-/// How much processor time training took, without the making of the events.
+/// Processor time of a training, without the time to make the events.
 struct TrainingRun {
   std::size_t events = 0;
   double seconds = 0;
 };
 
-/// Trains on the next events of a system, which are not kept.
+/// Trains on the next events of a system; does not keep them.
 /// @param duration of the events [ns]
 template <typename Trainer>
 TrainingRun trainFor(std::int64_t duration, SyntheticSystem& system, Trainer& trainer) {

@@ -12,11 +12,11 @@
 
 namespace self_awareness::benchmarks {
 
-/// The numbers of event types at which everything is measured.
+/// Numbers of event types for which everything is measured.
 const std::vector<std::int64_t> kSizes = {15, 60, 150, 300, 1000};
 
 /// A system in which timers of 50 ms to 2 s with jitter start chains of two answers each. The
-/// events come one by one, in the order of their stamps, without end.
+/// events come one after the other, in the order of their stamps, without end.
 class SyntheticSystem {
  public:
   /// @param types number of event types
@@ -24,7 +24,7 @@ class SyntheticSystem {
   explicit SyntheticSystem(std::size_t types, unsigned seed = 1);
 
   core::Event next();
-  /// Some first events, of at least this time [ns].
+  /// The next events, of at least this time [ns].
   std::vector<core::Event> take(std::int64_t duration);
 
   static core::EventType type(core::EventId id);

@@ -1,5 +1,5 @@
-// What the live monitor is measured against: subscribes to the topics named on the command line by
-// ShapeShifter, as any program does that takes messages of every type, and only counts. Prints the
+// The live monitor is compared with this program. It subscribes by ShapeShifter to the topics on
+// the command line, as programs do that take messages of every type, and only counts. Prints the
 // number when it is interrupted.
 
 #include <ros/ros.h>

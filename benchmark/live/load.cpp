@@ -29,7 +29,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr double kJitter = 0.02;     // of a period, either way
+constexpr double kJitter = 0.02;     // of a period, up or down
 constexpr double kStepJitter = 0.5;  // of the distances in a cycle
 constexpr double kBusy = 0.9;        // share of a period that a cycle takes
 constexpr double kImageRate = 30;    // [Hz]

@@ -29,8 +29,8 @@ inline py::array_t<bool> toArray(const std::vector<bool>& values) {
   return array;
 }
 
-/// Calls the handler with every event of two arrays, stamps [ns] and ids.
-/// @throw std::invalid_argument if they do not fit together
+/// Calls the handler with every event of two arrays: stamps [ns] and ids.
+/// @throw std::invalid_argument if the arrays are not of one dimension and the same length
 template <typename Handler>
 void forEachEvent(const Stamps& stamps, const Ids& ids, Handler handler) {
   if (stamps.ndim() != 1 || ids.ndim() != 1 || stamps.size() != ids.size()) {
@@ -43,13 +43,13 @@ void forEachEvent(const Stamps& stamps, const Ids& ids, Handler handler) {
   }
 }
 
-/// Encoding, bags and model files (files_bindings.cpp).
+/// Binds encoding, bags and model files (files_bindings.cpp).
 void bindFiles(py::module& module);
-/// Training (training_bindings.cpp).
+/// Binds the training (training_bindings.cpp).
 void bindTraining(py::module& module);
-/// Evidence and its limits (evidence_bindings.cpp).
+/// Binds evidence and its limits (evidence_bindings.cpp).
 void bindEvidence(py::module& module);
-/// Model, scores, verdicts and ROC (detector_bindings.cpp).
+/// Binds model, scores, verdicts and ROC (detector_bindings.cpp).
 void bindDetector(py::module& module);
 
 }  // namespace self_awareness::python

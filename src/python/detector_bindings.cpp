@@ -83,7 +83,7 @@ Verdicts judge(std::unique_ptr<core::Judge> judge, std::int64_t window,
     last = event.stamp;
   });
   if (end && last && !core::isClockStep(*last, *end)) {
-    detector.advance(*end);  // silence up to the end is a part of the recording
+    detector.advance(*end);  // silence until the end is part of the recording
   }
   detector.finish();
   return verdicts;
@@ -116,14 +116,15 @@ std::vector<double> scoreEvents(const std::shared_ptr<core::paper::Model>& model
 }
 
 void bindVerdicts(py::module& m) {
-  py::class_<core::Suspect>(m, "Suspect", "An event type a window may be blamed on.")
+  py::class_<core::Suspect>(m, "Suspect", "An event type that may have made a window abnormal.")
       .def_readonly("id", &core::Suspect::id)
       .def_readonly("silence", &core::Suspect::silence, "[s]")
       .def_readonly("usual_shortest", &core::Suspect::usual_shortest, "[s]")
       .def_readonly("usual_longest", &core::Suspect::usual_longest, "[s]")
       .def("describe", &core::describe, "the reason in words and numbers");
 
-  py::enum_<core::UnknownEvents>(m, "UnknownEvents", "What is thought of unknown events.")
+  py::enum_<core::UnknownEvents>(m, "UnknownEvents",
+                                 "What an unknown event means: nothing, a suspicion, or an alarm.")
       .value("IGNORE", core::UnknownEvents::kIgnore)
       .value("WARN", core::UnknownEvents::kWarn)
       .value("ERROR", core::UnknownEvents::kError);
@@ -147,22 +148,21 @@ void bindVerdicts(py::module& m) {
       .def_readwrite("unknown", &Detector::Parameters::unknown)
       .def("validate", &Detector::Parameters::validate);
 
-  py::class_<core::Persistence>(m, "Persistence",
-                                "When abnormal windows are an alarm: the detector's own rule.")
+  py::class_<core::Persistence>(
+      m, "Persistence", "Decides when abnormal windows are an alarm, as the detector does.")
       .def(py::init([](const Detector::Parameters& parameters) {
              return core::Persistence(parameters.persistence);
            }),
            py::arg("parameters"))
-      .def(
-          "add", &core::Persistence::add, py::arg("abnormal"), py::arg("end"),
-          py::arg("certain") = false,
-          "Takes in the next window's verdict, end: of the window [ns]; whether the alarm stands.")
+      .def("add", &core::Persistence::add, py::arg("abnormal"), py::arg("end"),
+           py::arg("certain") = false,
+           "Takes in the next window; end: of the window [ns]. Returns whether the alarm stands.")
       .def("clear", &core::Persistence::clear, "Forgets all windows and the alarm.");
 
   py::class_<Alarm>(m, "Alarm", "A stretch of time in which the alarm stood.")
       .def_readonly("start", &Alarm::start, "[ns]")
       .def_readonly("end", &Alarm::end, "[ns]")
-      .def_readonly("cleared", &Alarm::cleared, "False: it stood to the end of the recording")
+      .def_readonly("cleared", &Alarm::cleared, "False: it stood until the end of the recording")
       .def_readonly("lowest_score", &Alarm::lowest_score)
       .def_readonly("evidence", &Alarm::evidence, "what raised it, in words")
       .def_readonly("suspects", &Alarm::suspects, "of the window that raised it, best first");
@@ -183,7 +183,7 @@ void bindVerdicts(py::module& m) {
                              [](const Verdicts& self) { return toArray(self.settling); })
       .def_property_readonly(
           "suspicion", [](const Verdicts& self) { return toArray(self.suspicion); },
-          "WARN: no alarm, but something was abnormal of late")
+          "WARN: no alarm, but something was abnormal recently")
       .def_readonly("alarms", &Verdicts::alarms);
 
   py::class_<core::paper::Model, std::shared_ptr<core::paper::Model>>(
@@ -209,7 +209,7 @@ void bindVerdicts(py::module& m) {
           },
           "h_ij [bit], [from, to]")
       .def("weight", &core::paper::Model::weight, py::arg("from_id"), py::arg("to_id"),
-           "w_ij where all event types are tracked")
+           "w_ij once all event types were seen")
       .def("log_survival", &core::paper::Model::logSurvival, py::arg("id"), py::arg("age"))
       .def(
           "score_events",
@@ -218,13 +218,13 @@ void bindVerdicts(py::module& m) {
           py::arg("stamps"), py::arg("ids"), "s_j of every event, float64")
       .def("judge", &judgeByPaper, py::arg("window"), py::arg("threshold"), py::arg("parameters"),
            py::arg("stamps"), py::arg("ids"), py::arg("end") = py::none(),
-           "Verdicts on a recording. window: [ns]; threshold None: not calibrated; stamps: int64\n"
-           "[ns] in order; ids from len(event_types) of the model on are unknown events. end "
-           "[ns]:\n"
-           "the recording goes on in silence until then; None: it ends with the last event.");
+           "Verdicts on a recording. window: [ns]; threshold None: not calibrated.\n"
+           "stamps: int64 [ns], in order. ids: those from len(event_types) of the model on are\n"
+           "unknown events. end [ns]: the recording goes on in silence until then; None: it ends\n"
+           "with the last event.");
   m.def("judge_by_evidence", &judgeByEvidence, py::arg("trained"), py::arg("model"),
         py::arg("parameters"), py::arg("stamps"), py::arg("ids"), py::arg("end") = py::none(),
-        "Verdicts on a recording by the EvidenceModel of a TrainedModel; as Model.judge.");
+        "Verdicts on a recording by the EvidenceModel of a TrainedModel, like Model.judge.");
   m.attr("EVIDENCE_THRESHOLD") = core::evidence::kThreshold;
   m.attr("DEFAULT_WINDOW") = core::kDefaultWindow;  // [ns]
   m.attr("FEWEST_GAPS") = core::kFewestGaps;

@@ -21,13 +21,13 @@ namespace {
 
 namespace evidence = core::evidence;
 
-/// A search for limits, and who judges the recordings.
+/// A search for limits, with the models that judge the recordings.
 struct LimitSearch {
   LimitSearch(std::shared_ptr<const evidence::CrossFit> models,
               const evidence::LimitFinder::Parameters& parameters)
       : cross_fit(std::move(models)), finder(cross_fit->model(), parameters) {}
 
-  /// One without findings, for the same model and in the same pass.
+  /// A search without findings, for the same model and in the same pass.
   std::unique_ptr<LimitSearch> part() const {
     auto search = std::make_unique<LimitSearch>(cross_fit, finder.parameters());
     if (finder.inSecondPass()) {
@@ -57,8 +57,8 @@ struct LimitSearch {
 using LimitsState = std::tuple<std::vector<double>, double>;
 
 using Findings = evidence::LimitFinder::Findings;
-// Numbers of cells, and of all cells one behind the other the maxima and their counts. Arrays are
-// pickled as they lie in the memory.
+// Number of cells of each track; then the maxima of all cells, one after the other, and their
+// counts. Arrays are pickled as they lie in memory.
 using MaximaState =
     std::tuple<py::array_t<std::uint32_t>, py::array_t<float>, py::array_t<std::uint32_t>>;
 using FindingsState =
@@ -136,7 +136,7 @@ class EvidenceRows : public core::WindowObserver {
   std::vector<double> rows_;
 };
 
-/// [windows, tracks]
+/// Evidence of a recording, [windows, tracks].
 py::array_t<double> evidenceOf(const std::shared_ptr<evidence::Model>& model, std::int64_t window,
                                const Stamps& stamps, const Ids& ids) {
   EvidenceRows observer(model, window);
@@ -159,7 +159,8 @@ void bindEvidence(py::module& m) {
           "channel", [](const Track& self) { return evidence::channelName(self.channel); },
           "overdue, rate, pairs or answers")
       .def_readonly("to_id", &Track::to)
-      .def_readonly("from_id", &Track::from, "as to_id where one event type is looked at");
+      .def_readonly("from_id", &Track::from,
+                    "same as to_id if the channel looks at one event type");
 
   py::class_<evidence::Model, std::shared_ptr<evidence::Model>>(
       m, "EvidenceModel", "What normal operation lets expect, from a TrainedModel's counts.")
@@ -171,13 +172,14 @@ void bindEvidence(py::module& m) {
       .def_property_readonly("tracks", &evidence::Model::tracks)
       .def("usual_delay", &evidence::Model::usualDelay, py::arg("from_id"), py::arg("to_id"),
            py::arg("share"),
-           "delay [s] that a share of those in training did not exceed, as exactly as bins are")
+           "delay [s] that this share (0 to 1) of the delays in training did not exceed,\n"
+           "as exactly as the bins are")
       .def("overdue", &evidence::Model::overdue, py::arg("id"), py::arg("age"), "age: [ns]")
       .def("log_survival", &evidence::Model::logSurvival, py::arg("id"), py::arg("age"))
       .def("evidence", &evidenceOf, py::arg("window"), py::arg("stamps"), py::arg("ids"),
-           "float64 [windows, tracks], at the end of every window of a recording");
+           "Evidence at the end of every window of a recording: float64 [windows, tracks].");
 
-  py::class_<evidence::Limits>(m, "EvidenceLimits", "When evidence is abnormal.")
+  py::class_<evidence::Limits>(m, "EvidenceLimits", "The largest evidence that is normal.")
       .def_readonly("tracks", &evidence::Limits::tracks, "by track; NaN: not judged")
       .def_readonly("linker", &evidence::Limits::linker)
       .def(py::pickle(
@@ -189,14 +191,14 @@ void bindEvidence(py::module& m) {
           }));
 
   py::class_<Findings>(m, "LimitFindings",
-                       "What recordings said to a LimitFinder; may go to another process.")
+                       "What a LimitFinder learned from recordings; may go to another process.")
       .def(py::pickle([](const Findings& self) { return stateOf(self); },
                       [](const FindingsState& state) { return fromState(state); }));
 
   py::class_<LimitSearch>(
       m, "LimitFinder",
       "Finds limits in two passes over the same recordings of normal operation.\n"
-      "Parts of a pass may be made by other finders, elsewhere, and merged.")
+      "Other finders, in other processes, may do parts of a pass; merge() adds their findings.")
       .def(
           py::init([](const ros1::TrainedModel& trained, std::int64_t settle_time, double budget) {
             trained.requireWatched();
@@ -208,7 +210,7 @@ void bindEvidence(py::module& m) {
           "settle_time: [ns]; budget: false alarms an hour")
       .def("add_events", &LimitSearch::addEvents, py::arg("stamps"), py::arg("ids"),
            py::arg("half") = py::none(),
-           "A recording; half: 0 or 1 where that half of the training was trained on it.")
+           "Takes in a recording; half: 0 or 1 if that half of the training learned from it.")
       .def("part", &LimitSearch::part, "A finder without findings, for the same model and pass.")
       .def(
           "findings", [](const LimitSearch& self) { return self.finder.findings(); },
@@ -218,8 +220,8 @@ void bindEvidence(py::module& m) {
           [](LimitSearch& self, const Findings& findings) { self.finder.merge(findings); },
           py::arg("findings"))
       .def("start_second_pass", &LimitSearch::startSecondPass, py::arg("limits") = py::none(),
-           "Returns the EvidenceLimits of the tracks, by which another finder may start its own\n"
-           "second pass. ValueError where the recordings were too short.")
+           "Returns the EvidenceLimits of the tracks; another finder may start its own second\n"
+           "pass with them. ValueError if the recordings were too short.")
       .def("limits", [](const LimitSearch& self) { return self.finder.limits(); })
       .def_property_readonly("windows",
                              [](const LimitSearch& self) { return self.finder.windows(); });

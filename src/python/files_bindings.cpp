@@ -21,7 +21,7 @@
 namespace self_awareness::python {
 namespace {
 
-// The progress bar lives in Python, and Ctrl-C must get through while C++ reads.
+// The progress bar is in Python, and Ctrl-C must work while C++ reads.
 ros1::BagReader::Progress progressTo(const py::object& callback) {
   return [&callback](std::uint64_t done, std::uint64_t all) {
     if (PyErr_CheckSignals() != 0) {
@@ -42,12 +42,12 @@ ros1::TimeRange timeRange(std::optional<double> start, std::optional<double> end
 /// The events of a recording, in memory.
 struct RecordedEvents {
   ros1::BagSummary summary;
-  std::vector<core::EventType> event_types;  // those asked for first, then the new ones
+  std::vector<core::EventType> event_types;  // the known ones first, then the new ones
   std::vector<std::int64_t> stamps;          // [ns]
   std::vector<std::uint32_t> ids;
 };
 
-// The array reads what its owner holds, and keeps it alive: events may be many.
+// The array is a view of its owner's data, and keeps the owner alive: events may be many.
 template <typename T>
 py::array_t<T> viewOf(const std::vector<T>& values, const py::object& owner) {
   py::array_t<T> view(static_cast<py::ssize_t>(values.size()), values.data(), owner);
@@ -148,7 +148,7 @@ void bindEncoding(py::module& m) {
       .def_readwrite("exclude_sources", &ros1::EncodingRules::exclude_sources)
       .def_readwrite("type_fields", &ros1::EncodingRules::type_fields)
       .def("validate", &ros1::EncodingRules::validate,
-           "ValueError where a pattern is no regular expression.")
+           "ValueError if a pattern is no regular expression.")
       .def(py::pickle(&stateOf, &fromState))
       .def("__eq__",
            [](const ros1::EncodingRules& a, const ros1::EncodingRules& b) { return a == b; });
@@ -157,7 +157,7 @@ void bindEncoding(py::module& m) {
 void bindBags(py::module& m) {
   py::register_exception<ros1::BagError>(m, "BagError", PyExc_RuntimeError);
 
-  py::class_<ros1::BagSummary>(m, "BagSummary", "What a bag's index says of it.")
+  py::class_<ros1::BagSummary>(m, "BagSummary", "What a bag's index says about it.")
       .def_readonly("path", &ros1::BagSummary::path)
       .def_readonly("start", &ros1::BagSummary::start, "stamp of the first message [ns]")
       .def_readonly("end", &ros1::BagSummary::end, "stamp of the last message [ns]")
@@ -194,8 +194,8 @@ void bindBags(py::module& m) {
       py::arg("event_types") = std::vector<core::EventType>(), py::arg("start") = py::none(),
       py::arg("end") = py::none(), py::arg("progress") = py::none(),
       "RecordedEvents of a bag: stamps (int64 [ns]) and ids (uint32). Ids below len(event_types)\n"
-      "stand for these, the ids behind for types not among them. start, end: seconds from the\n"
-      "recording's first message. progress(done, all) is called now and then. Raises BagError.");
+      "stand for these, the ids after them for new types. start, end: seconds from the\n"
+      "recording's first message. Calls progress(done, all) from time to time. Raises BagError.");
 }
 
 std::vector<std::pair<std::int64_t, std::uint64_t>> delaysOf(const ros1::TrainedModel& model,
@@ -269,13 +269,13 @@ void bindModel(py::module& m) {
                 path, watched_only ? ros1::ModelCounts::kWatched : ros1::ModelCounts::kAll);
           },
           py::arg("path"), py::arg("watched_only") = false,
-          "watched_only: without the counts that the evidence detector does not judge by, as the\n"
-          "monitor does: quick and small. Raises ModelFileError.")
+          "watched_only: only the counts that the evidence detector judges by, as the monitor\n"
+          "does: quick and small. Raises ModelFileError.")
       .def("save", &ros1::saveModel, py::arg("path"),
            "Raises ModelFileError; writes all or nothing.")
       .def("merge", &ros1::merge, py::arg("other"),
-           "Adds what another model learned, behind what this one did; drops the calibrations,\n"
-           "and watch() must follow. ValueError where they do not count the same things.")
+           "Adds what another model learned, and drops the calibrations; watch() must follow.\n"
+           "ValueError if they do not count the same things.")
       .def("watch", &TrainedModel::watch, "Chooses what is watched, by all counts.")
       .def(
           "watched_only",
@@ -283,20 +283,19 @@ void bindModel(py::module& m) {
             self.dropCounts();
             return self;
           },
-          "A copy without the counts that the evidence detector does not judge by: small.")
+          "A small copy, with only the counts that the evidence detector judges by.")
       .def_readonly("predecessors", &TrainedModel::predecessors,
-                    "of an event type that are watched at most")
+                    "most that are watched of an event type")
       .def(
           "swap_halves", [](TrainedModel& self) { std::swap(self.evidence[0], self.evidence[1]); },
-          "Takes the first half of the training for the second, and the second for the first;\n"
-          "not for a model with a calibration.")
+          "Exchanges the two halves of the training; not for a model with a calibration.")
       .def(py::pickle([](const TrainedModel& self) { return py::bytes(ros1::toBytes(self)); },
                       [](const py::bytes& state) { return ros1::fromBytes(state); }))
       .def_readonly("encoding", &TrainedModel::encoding)
       .def_readonly("window", &TrainedModel::window, "length of a window [ns]")
       .def_property_readonly(
           "recordings",
-          [](const TrainedModel& self) { return self.recordings; },  // copies: merge() moves them
+          [](const TrainedModel& self) { return self.recordings; },  // a copy: merge() moves them
           "trained on")
       .def_property_readonly(
           "stamp", [](const TrainedModel& self) { return self.stamp.toNSec(); }, "[ns]")
@@ -340,7 +339,7 @@ void bindModel(py::module& m) {
             }
           },
           py::arg("detector"),
-          "ValueError where it was not trained for this detector (evidence or paper)")
+          "ValueError if it was not trained for this detector (evidence or paper)")
       .def_property_readonly("pairs", &TrainedModel::pairs,
                              "number of ordered pairs with at least one delay")
       .def("gaps", &TrainedModel::gaps, py::arg("id"), "number of gaps between two of a type")
@@ -357,19 +356,18 @@ void bindModel(py::module& m) {
             return counts;
           },
           py::arg("from_id"), py::arg("to_id"),
-          "dict of bin: count, of the delay from the last from_id to the current to_id; of the\n"
-          "paper's counts")
+          "the paper's counts of the delays from the last from_id to the current to_id: dict of\n"
+          "bin: count")
       .def("delays", &delaysOf, py::arg("from_id"), py::arg("to_id"),
-           "list of (shortest delay [ns], count) by bin, of the evidence detector's counts")
+           "the evidence detector's counts: list of (shortest delay [ns], count) by bin")
       .def(
           "quantile",
           [](const TrainedModel& self, core::EventId from, core::EventId to, double fraction) {
             return self.statistics.pair(from, to).quantile(fraction);
           },
           py::arg("from_id"), py::arg("to_id"), py::arg("fraction"),
-          "the bin below or in which the fraction of the pair's delays lies; 0 if there is none; "
-          "of\n"
-          "the paper's counts");
+          "by the paper's counts: the bin up to which the fraction of the pair's delays lies;\n"
+          "0 if there is none");
 }
 
 }  // namespace

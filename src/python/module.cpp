@@ -1,5 +1,5 @@
-// The Python module: the C++ core and the bag reader for the package's programs, as thin as can
-// be.
+// The Python module: gives the package's programs the C++ core and the bag reader. It is as thin
+// as possible.
 
 #include "bindings.h"
 

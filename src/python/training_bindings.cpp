@@ -16,7 +16,7 @@
 namespace self_awareness::python {
 namespace {
 
-/// A training, and what its model says beside the counts.
+/// A training, and what its model holds besides the counts.
 class Training {
  public:
   Training(ros1::EncodingRules rules, const core::Training::Parameters& parameters,
@@ -94,7 +94,7 @@ class Training {
 }  // namespace
 
 void bindTraining(py::module& m) {
-  py::class_<Training>(m, "Training", "Counts the delays of one recording after the other.")
+  py::class_<Training>(m, "Training", "Trains on one recording after the other.")
       .def(py::init([](ros1::EncodingRules rules, std::int64_t bin_size, std::int64_t window,
                        std::int64_t horizon_bins, std::size_t predecessors, bool evidence,
                        bool paper) {
@@ -109,20 +109,18 @@ void bindTraining(py::module& m) {
            py::arg("window") = core::kDefaultWindow, py::arg("horizon_bins") = 0,
            py::arg("predecessors") = core::evidence::kPredecessors, py::arg("evidence") = true,
            py::arg("paper") = false,
-           "bin_size, window: [ns]; horizon_bins 0: unbounded; predecessors: most of an event "
-           "type\n"
-           "that the evidence watches")
+           "bin_size, window: [ns]; horizon_bins 0: unbounded; predecessors: most that the\n"
+           "evidence detector watches of an event type")
+      .def("add_events", &Training::addEvents, py::arg("event_types"), py::arg("stamps"),
+           py::arg("ids"), py::arg("middle") = py::none(), py::arg("recording") = py::none(),
+           "Trains on one recording given as arrays; ids are indices of event_types.\n"
+           "middle [ns]: the recording is the only one; events before it are one half of the\n"
+           "training, the others the other half. recording: what the model says about it.\n"
+           "After a ValueError the training is incomplete: do not use it any more.")
       .def(
-          "add_events", &Training::addEvents, py::arg("event_types"), py::arg("stamps"),
-          py::arg("ids"), py::arg("middle") = py::none(), py::arg("recording") = py::none(),
-          "Trains on one recording given as arrays; ids are indices of event_types. middle: "
-          "[ns],\n"
-          "of a recording that is alone: what comes before it is one half of the training, the\n"
-          "rest the other. recording: what the model says of it. After a ValueError the training\n"
-          "is incomplete and must be thrown away.")
-      .def("model", &Training::model, py::arg("watch") = true,
-           "The TrainedModel of all that was added; ends the training. watch: choose what is\n"
-           "watched; not needed where it is merged.");
+          "model", &Training::model, py::arg("watch") = true,
+          "Ends the training; returns the TrainedModel of all that was added. watch: choose what\n"
+          "is watched; not needed for a model that is merged into another.");
 }
 
 }  // namespace self_awareness::python

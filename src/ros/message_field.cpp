@@ -36,7 +36,7 @@ std::string packageOf(const std::string& datatype) {
   return datatype.substr(0, datatype.find('/'));
 }
 
-// "Header" is the one type that may be named without its package from anywhere.
+// "Header" is the one type that every package may name without a package.
 std::string fullType(const std::string& type, const std::string& package) {
   if (type == "string" || builtInSizes().count(type) > 0 || type.find('/') != std::string::npos) {
     return type;
@@ -58,7 +58,7 @@ Fields parseFields(std::istream& lines, std::string& next_type, const std::strin
     }
     std::istringstream words(line.substr(0, line.find('#')));
     FieldLine field;
-    // A constant has a "=" behind its name.
+    // A constant has a "=" after its name.
     if (!(words >> field.type >> field.name) || line.find('=') < line.find('#')) {
       continue;
     }
@@ -88,7 +88,7 @@ std::map<std::string, Fields> parseDefinition(const std::string& definition,
 
 }  // namespace
 
-/// Walks over a serialized message and never past its end.
+/// Walks over a serialized message, never beyond its end.
 class MessageField::Cursor {
  public:
   Cursor(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}

@@ -5,8 +5,8 @@
 namespace self_awareness::ros1 {
 
 std::string stableName(const std::string& name) {
-  // 19 digits are nanoseconds, 13 milliseconds, since 1970, of any year from 2001 to 2286: shorter
-  // numbers, such as a camera's serial number, belong to the name.
+  // 19 digits are nanoseconds since 1970, 13 are milliseconds, in any year from 2001 to 2286.
+  // Shorter numbers, such as a camera's serial number, belong to the name.
   static const std::regex kAnonymous("_([0-9]{19}|[0-9]{1,7}_[0-9]{13,19})$");
   return std::regex_replace(name, kAnonymous, "");
 }

@@ -81,7 +81,7 @@ TEST(Training, CountsWhatItsTrainersDo) {
   EXPECT_TRUE(counts.halves[0] == half);
 }
 
-TEST(Training, CountsOnlyForWhoIsAskedFor) {
+TEST(Training, CountsOnlyForTheDetectorsAskedFor) {
   const TrainingCounts both = threeRecordings(counting(true, true));
   const TrainingCounts evidence = threeRecordings(counting(true, false));
   EXPECT_TRUE(evidence.halves == both.halves);

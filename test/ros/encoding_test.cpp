@@ -98,7 +98,7 @@ TEST(StableName, KeepsNumbersThatBelongToTheName) {
   }
 }
 
-TEST(MessageField, ReadsBehindStringsArraysAndNestedMessages) {
+TEST(MessageField, ReadsAfterStringsArraysAndNestedMessages) {
   visualization_msgs::Marker marker;
   marker.header.frame_id = "map";
   marker.ns = "people";
@@ -189,7 +189,7 @@ TEST_F(EncoderTest, SourcesMayBeLeftOut) {
   EncodingRules rules = EncodingRules::defaults();
   rules.source = EncodingRules::Source::kNone;
   Connection connection = scan();
-  connection.callerid = "/play_1795206538727453261";  // excluded, were it looked at
+  connection.callerid = "/play_1795206538727453261";  // it would be excluded
   auto encoder = makeEncoder(rules).connect(connection);
   ASSERT_TRUE(encoder);
   EXPECT_EQ(vocabulary_.at(encoder->id()).source, "");
@@ -242,7 +242,7 @@ TEST_F(EncoderTest, PatternsMatchWholeNames) {
   EXPECT_FALSE(makeEncoder(rules).connect(scan()));
 }
 
-TEST_F(EncoderTest, NamesThePatternThatIsNone) {
+TEST_F(EncoderTest, NamesThePatternThatIsNoRegularExpression) {
   EncodingRules rules;
   rules.exclude_topics = {"/a(b"};
   try {

@@ -1,5 +1,5 @@
-// The evidence detector: taking in an event, against the bare look-ups; closing a window;
-// training; its size in memory.
+// Measures the evidence detector: taking in an event, compared with the bare look-ups; closing a
+// window; training; size in memory.
 
 #include <benchmark/benchmark.h>
 
@@ -50,7 +50,7 @@ struct Trained {
   std::size_t bytes = 0;  // of the model and of a scorer
 };
 
-// Google Benchmark calls a function several times; models are the same every time.
+// Google Benchmark calls a function several times; the models are trained only once.
 const Trained& trained(std::size_t types) {
   static std::map<std::size_t, Trained> all;
   Trained& entry = all[types];
@@ -65,8 +65,8 @@ const Trained& trained(std::size_t types) {
   return entry;
 }
 
-// Pairs of event types that an event makes the scorer look at, by the event's type. The two tracks
-// of a pair's delays are one.
+// Pairs of event types that the scorer looks at, by the type of the event. The two delay tracks of
+// a pair count as one.
 struct Terms {
   std::vector<std::vector<core::EventId>> delays;   // since these
   std::vector<std::vector<core::EventId>> answers;  // of these
@@ -85,7 +85,7 @@ Terms termsOf(const evidence::Model& model) {
   return terms;
 }
 
-// Terms of an event, the mean over the events of a round.
+// Mean number of terms of an event, over the events of a round.
 double termsPerEvent(const Terms& terms, EventLoop& events) {
   std::size_t number = 0;
   for (std::size_t i = 0; i < events.size(); ++i) {
@@ -102,7 +102,7 @@ void scoreEvidence(benchmark::State& state) {
   state.counters["terms"] = termsPerEvent(termsOf(*entry.model), events);
   evidence::Scorer scorer(entry.model, kWindow);
   for (std::size_t i = 0; i < events.size(); ++i) {
-    scorer.add(events.next());  // from now on all types have been seen
+    scorer.add(events.next());  // after this, all types have been seen
   }
   for (auto _ : state) {
     benchmark::DoNotOptimize(scorer.add(events.next()));
@@ -110,8 +110,8 @@ void scoreEvidence(benchmark::State& state) {
 }
 BENCHMARK(scoreEvidence)->ArgsProduct({kSizes});
 
-// What has to be looked up for the terms of an event, wherever it lies in the scorer, and nothing
-// else: when the other one came, the sums of the pair, and how surprising a delay is.
+// Looks up what the terms of an event need, and does nothing else: when the other event came, the
+// sums of the pair, and how surprising a delay is.
 void lookUpEvidence(benchmark::State& state) {
   struct Seen {
     double stamp = 1;

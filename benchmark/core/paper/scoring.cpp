@@ -1,4 +1,5 @@
-// The paper's detector: scoring an event, against the bare look-ups; training; its size in memory.
+// Measures the paper's detector: scoring an event, compared with the bare look-ups; training; size
+// in memory.
 
 #include <benchmark/benchmark.h>
 
@@ -38,7 +39,7 @@ struct Trained {
   std::size_t bytes = 0;  // of the model
 };
 
-// Google Benchmark calls a function several times; models are the same every time.
+// Google Benchmark calls a function several times; the models are trained only once.
 const Trained& trained(std::size_t types) {
   static std::map<std::size_t, Trained> all;
   const auto [place, is_new] = all.try_emplace(types, Trained{emptyStatistics(types), nullptr, 0});
@@ -59,7 +60,7 @@ void scorePaper(benchmark::State& state) {
   paper::Scorer scorer(trained(types).model);
   EventLoop events = loopOfEvents(types);
   for (std::size_t i = 0; i < events.size(); ++i) {
-    scorer.score(events.next());  // from now on all types are tracked
+    scorer.score(events.next());  // after this, all types are tracked
   }
   double sum = 0;
   for (auto _ : state) {
@@ -72,7 +73,7 @@ void scorePaper(benchmark::State& state) {
 }
 BENCHMARK(scorePaper)->ArgsProduct({kSizes});
 
-// The same number of look-ups for the same events and delays, in a table of the same size, and
+// Does the same number of look-ups for the same events and delays in a table of the same size, and
 // nothing else.
 void lookUpPaper(benchmark::State& state) {
   const auto types = static_cast<std::size_t>(state.range(0));

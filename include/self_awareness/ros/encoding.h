@@ -19,24 +19,24 @@
 
 namespace self_awareness::ros1 {
 
-/// How messages become events: the rules of the function f of section IV-C. They are stored in the
-/// model, so that training and running cannot disagree. Patterns are regular expressions that must
-/// match the whole name.
+/// How messages become events: the rules of the function f (paper, section IV-C; docs/method.md,
+/// section 1.1). The model holds them, so training and the monitor cannot disagree. Patterns are
+/// regular expressions that must match the whole name.
 struct EncodingRules {
   enum class Source {
-    kCallerId,  ///< the publisher's node name, anonymous numbers removed
+    kCallerId,  ///< the publisher's node name, without anonymous numbers
     kNone       ///< left out: replays by rosbag play, bags without callerids
   };
 
   Source source = Source::kCallerId;
   std::vector<std::string> include_topics;  ///< empty: all
   std::vector<std::string> exclude_topics;
-  std::vector<std::string> include_sources;  ///< empty: all; without effect for Source::kNone
+  std::vector<std::string> include_sources;  ///< empty: all; no effect for Source::kNone
   std::vector<std::string> exclude_sources;
   std::map<std::string, std::string> type_fields;  ///< field by datatype
 
-  /// What fits most robots: everything but the monitor's own output, clocks, aggregated logs and
-  /// the tools of people who look on.
+  /// Rules that suit most robots: everything but the monitor's own output, clocks, aggregated logs
+  /// and tools that only look on.
   static EncodingRules defaults();
   /// @throw std::invalid_argument names the pattern that is no regular expression
   void validate() const;
@@ -44,12 +44,12 @@ struct EncodingRules {
 
 bool operator==(const EncodingRules& a, const EncodingRules& b);
 
-/// Every pair of event types has a histogram: a field that is no small set of values, such as an
-/// identifier, would fill the memory long before it taught anything.
+/// Most event types that one type field may make. Every pair of event types has a histogram: a
+/// field with many values, such as an identifier, would fill the memory and teach nothing.
 constexpr std::size_t kMostTypesOfField = 1000;
 
-/// @throw std::invalid_argument names the type field that gives more event types than
-/// kMostTypesOfField
+/// Checks that no type field makes too many event types.
+/// @throw std::invalid_argument names the type field that makes more than kMostTypesOfField
 void checkTypeFields(const EncodingRules& rules, const core::Vocabulary& vocabulary);
 
 /// One publisher's connection to a topic, from a connection header, live or in a bag.
@@ -64,21 +64,22 @@ struct Connection {
 /// What a connection header says; fields that it lacks are empty.
 Connection connectionFrom(const ros::M_string& header, const std::string& topic);
 
-/// Gives an event type its id: a new one for a new type, where the vocabulary grows.
+/// Gives an event type its id; a new type gets a new id where the vocabulary may grow.
 using EventIds = std::function<core::EventId(const core::EventType&)>;
 
 /// Turns the messages of one connection into event ids.
 class ConnectionEncoder {
  public:
-  /// Whether the next message is an event: the first on a latching connection was not published
-  /// now, it came because somebody subscribed. To be asked once for every message.
+  /// Whether the next message is an event. The first one on a latching connection is not: it came
+  /// because this program subscribed, not because it was published now. Call it once for every
+  /// message.
   bool accept();
-  /// Whether the message must be read: without that, the id is that of any message here.
+  /// Whether messages must be read; if not, all on this connection have one id.
   bool needsContent() const { return field_ != nullptr; }
-  /// Id of a message that need not be read.
+  /// Id of a message if needsContent() is false.
   core::EventId id();
   /// Id of a message by its serialized content.
-  /// @throw std::out_of_range if the message is shorter than its definition says
+  /// @throw std::out_of_range if the message is shorter than its definition
   core::EventId id(const std::uint8_t* data, std::size_t size);
 
  private:
@@ -86,7 +87,7 @@ class ConnectionEncoder {
 
   EventIds ids_;
   core::EventType type_;
-  std::optional<core::EventId> id_;  // given with the first message, not with the connection
+  std::optional<core::EventId> id_;  // given at the first message, not at the connection
   bool skip_next_ = false;
   std::shared_ptr<const MessageField> field_;
   std::string field_name_;
@@ -104,7 +105,7 @@ class Encoder {
   /// Whether the rules let any message of the source be an event.
   /// @param source the publisher's stable name
   bool includesSource(const std::string& source) const;
-  /// What encodes the connection's messages; none if the rules leave them out.
+  /// Encoder of the connection's messages; none if the rules leave them out.
   /// @throw std::invalid_argument if a type field does not fit the message's definition
   std::optional<ConnectionEncoder> connect(const Connection& connection) const;
 

@@ -10,11 +10,11 @@
 
 namespace self_awareness::ros1 {
 
-/// Who publishes and subscribes what, as the master knows it. A dead node stays in it: being
-/// registered says nothing about life.
+/// Who publishes and subscribes to what, as the master knows it. A dead node stays in the graph:
+/// the master does not notice its death.
 struct Graph {
   struct Topic {
-    std::string datatype;  ///< "" or "*" if nobody said it yet
+    std::string datatype;  ///< "" or "*" if no node has said it yet
     std::set<std::string> publishers;
     std::set<std::string> subscribers;
   };
@@ -23,23 +23,24 @@ struct Graph {
 
 bool operator==(const Graph& a, const Graph& b);
 
-/// Asks the master. Blocks for as long as it takes to answer; none if it does not.
+/// Asks the master, and blocks until it answers; none if it does not.
 std::optional<Graph> fetchGraph();
 
-/// Adds an edge from every publisher of a topic to every subscriber, by their stable names.
-/// @param own_name of a node that listens to everything, and is left out
+/// Adds an edge from every publisher of a topic to every subscriber, by their stable names
+/// (docs/method.md, section 6).
+/// @param own_name name of a node that is left out, since it listens to everything
 void addEdges(const Graph& graph, const std::string& own_name, core::SourceGraph& edges);
 
-/// Which topics to listen to besides those of the model.
+/// Topics to subscribe to besides those of the model.
 enum class SubscribePolicy {
-  kUsed,  ///< those that somebody else listens to: subscribing wakes no lazy publisher
+  kUsed,  ///< those that another node listens to: so no lazy publisher wakes up
   kAll,   ///< all that are published
   kModel  ///< none
 };
 
-/// The topics to subscribe to: all of the model, whether they are published yet or not, and others
-/// by the policy, as far as the encoding includes them.
-/// @param own_name the subscriber's node name, which does not count as somebody else
+/// Topics to subscribe to: all of the model, even if they are not published yet, and others by the
+/// policy if the encoding includes them.
+/// @param own_name the subscriber's node name, which does not count as another node
 std::set<std::string> chooseTopics(const Graph& graph, SubscribePolicy policy,
                                    const std::set<std::string>& model_topics,
                                    const std::function<bool(const std::string&)>& included,

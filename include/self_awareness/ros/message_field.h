@@ -7,26 +7,25 @@
 
 namespace self_awareness::ros1 {
 
-/// Reads one field of a serialized message by the message's definition, without its C++ type.
-/// The field is an integer, a bool or a string, and not inside an array.
+/// Reads one field of a serialized message by the message's definition, without its C++ type. The
+/// field must be an integer, a bool or a string, and not in an array.
 class MessageField {
  public:
-  /// @param definition the full text, with those of nested types, as bags and connection headers
-  ///   carry it
+  /// @param definition full text, with those of nested types, as in bags and connection headers
   /// @param datatype e.g. visualization_msgs/Marker
   /// @param path e.g. "action" or "header.frame_id"
   /// @throw std::invalid_argument names the datatype, the field and what is wrong with it
   MessageField(const std::string& definition, const std::string& datatype,
                const std::string& path);
 
-  /// The value as text; strings are cut after 64 bytes.
-  /// @throw std::out_of_range if the message ends before the field does
+  /// Value as text; strings are cut after 64 bytes.
+  /// @throw std::out_of_range if the message ends before the end of the field
   std::string read(const std::uint8_t* data, std::size_t size) const;
 
  private:
   friend class DefinitionParser;
 
-  // What to do to get across one piece of the message, or to read it.
+  // How to skip one piece of the message, or to read it.
   struct Step {
     enum class Kind { kSkipBytes, kSkipString, kSkipArray, kRead };
     Kind kind = Kind::kSkipBytes;

@@ -15,9 +15,10 @@ namespace {
 
 using namespace bag_records;  // NOLINT: the format's words, in this file only
 
-constexpr std::uint64_t kFileHeaderBytes = 4096;  // to which every writer fills it up
-// Of a record of the index as every writer writes it, and of each message in it.
+constexpr std::uint64_t kFileHeaderBytes = 4096;  // every writer fills it up to this
+// Header of a record of the index, as every writer writes it.
 constexpr std::uint64_t kIndexHeaderBytes = 55;
+// Each message in such a record.
 constexpr std::uint64_t kIndexEntryBytes = 12;
 
 struct ChunkInfo {
@@ -26,7 +27,7 @@ struct ChunkInfo {
   std::uint64_t messages = 0;
 };
 
-// A type, not a function: std::sort, which takes most of the time here, inlines it.
+// A type and not a function, so that std::sort can inline it: sorting takes most of the time here.
 struct Earlier {
   bool operator()(const BagIndexEntry& a, const BagIndexEntry& b) const {
     if (a.stamp != b.stamp) {
@@ -112,13 +113,13 @@ class IndexReader {
     for (const ChunkInfo& chunk : chunks_) {
       const auto first = static_cast<std::ptrdiff_t>(index_.entries.size());
       std::uint64_t position = Chunk(file_, chunk.position).end;
-      // All records at once; the header of the next chunk follows, and is read with them.
+      // Reads all records at once, with the header of the next chunk, which follows.
       file_.at(position, chunk.connections * kIndexHeaderBytes + chunk.messages * kIndexEntryBytes,
                2 * kHeaderBytes);
       for (std::uint64_t i = 0; i < chunk.connections; ++i) {
         position = readRecord(position, chunk.position);
       }
-      // Recordings are nearly in order; so the whole need not be sorted.
+      // Recordings are nearly in order, so it is mostly enough to sort each chunk.
       std::sort(index_.entries.begin() + first, index_.entries.end(), Earlier());
     }
     if (!std::is_sorted(index_.entries.begin(), index_.entries.end(), Earlier())) {
@@ -126,7 +127,7 @@ class IndexReader {
     }
   }
 
-  /// Returns where the next record begins.
+  /// Reads a record; returns where the next one begins.
   std::uint64_t readRecord(std::uint64_t position, std::uint64_t chunk) {
     std::string_view bytes = file_.at(position, kHeaderBytes);
     const std::size_t all = bytes.size();
@@ -149,7 +150,7 @@ class IndexReader {
       const std::int64_t nanoseconds = takeNumber<std::uint32_t>(entries);
       entry.stamp = seconds * core::kNanosecondsPerSecond + nanoseconds;
       entry.offset = takeNumber<std::uint32_t>(entries);
-      if (entry.stamp != 0) {  // rosbag leaves out what has no time, too
+      if (entry.stamp != 0) {  // rosbag, too, leaves out messages without a time
         index_.entries.push_back(entry);
       }
     }

@@ -6,10 +6,10 @@
 
 #include "self_awareness/ros/encoding.h"
 
-/// The index of a bag. That of rosbag is a tree for every connection, 64 bytes a message, which
-/// must be merged for every pass, by sorting all connections at every message; to build, merge and
-/// free them takes four times as long as to read this one, an array in order. What cannot be read
-/// here (format 1.2 and encrypted bags) is left to rosbag.
+/// The index of a bag: one array in order. rosbag has a tree for every connection, 64 bytes a
+/// message, and merges them in every pass, by sorting all connections at every message. To build,
+/// merge and free its trees takes four times as long as to read this array. Bags of format 1.2 and
+/// encrypted ones are left to rosbag.
 namespace self_awareness::ros1 {
 
 /// When a message came, and where it lies.

@@ -13,7 +13,7 @@ namespace {
 
 using namespace bag_records;  // NOLINT: the format's words, in this file only
 
-constexpr std::uint64_t kShortMessageBytes = 1024;  // is read together with its header
+constexpr std::uint64_t kShortMessageBytes = 1024;  // up to here, read together with its header
 
 void assign(std::vector<std::uint8_t>& content, std::string_view bytes) {
   content.assign(bytes.begin(), bytes.end());
@@ -54,8 +54,8 @@ class MessagesOfChunks : public BagMessages {
   }
 
  private:
-  /// Size of the record that the bytes begin with if it is a connection's, else 0: an index may
-  /// point at one before the message, and rosbag skips it as well.
+  /// Size of the record that the bytes begin with if it is a connection's, else 0. An index may
+  /// point at such a record before the message; rosbag skips it, too.
   static std::uint64_t connectionBytes(std::string_view bytes) {
     const std::size_t all = bytes.size();
     const std::string_view header = takeBlock(bytes);
@@ -87,7 +87,7 @@ class MessagesOfChunks : public BagMessages {
   }
 
   PiecesOfFile file_;
-  std::optional<Chunk> chunk_;  // that was read last
+  std::optional<Chunk> chunk_;  // the one that was read last
   std::uint64_t chunk_position_ = 0;
   std::string unpacked_;  // its data, if it is compressed
 };
@@ -101,7 +101,7 @@ class MessagesOfRosbag : public BagMessages, private rosbag::View {
     place.time.fromNSec(static_cast<std::uint64_t>(entry.stamp));
     place.chunk_pos = entry.chunk;
     place.offset = entry.offset;
-    // The place alone says where the content is; the connection is not asked for.
+    // The place alone says where the content is; rosbag does not look at the connection.
     const std::unique_ptr<rosbag::MessageInstance> message(
         newMessageInstance(nullptr, place, bag_));
     content.resize(message->size());

@@ -9,9 +9,9 @@
 
 namespace self_awareness::ros1 {
 
-/// Reads the contents of a bag's messages. rosbag reads the whole chunk around a message; here it
-/// is the message alone, unless the chunk is compressed. Such a chunk is unpacked once for all of
-/// its messages that are read one after the other.
+/// Reads the contents of a bag's messages. rosbag reads the whole chunk around a message; this
+/// class reads the message alone, unless the chunk is compressed. Such a chunk is unpacked once
+/// for all of its messages that are read in a row.
 class BagMessages {
  public:
   virtual ~BagMessages() = default;

@@ -32,8 +32,8 @@ std::uint64_t mix(std::uint64_t value) {
   return value ^ value >> 31;
 }
 
-// Names the recording, guards nothing. A sum, so that the order of messages with the same stamp
-// does not matter: another program may write them in another one.
+// Names the recording; it is no protection. A sum, so the order of messages with the same stamp
+// does not matter: another program may write them in another order.
 std::uint64_t fingerprint(const BagIndex& index) {
   std::vector<std::uint64_t> topics;
   topics.reserve(index.connections.size());
@@ -81,7 +81,7 @@ BagIndex openBag(const std::string& path) {
   } catch (const rosbag::BagException& error) {
     throw BagError(path + ": the bag is truncated or damaged (" + error.what() + ")" +
                    reindexHint(path));
-  } catch (const std::bad_alloc&) {  // numbers that are damaged ask for much
+  } catch (const std::bad_alloc&) {  // damaged numbers ask for much memory
     throw BagError(path + ": the bag is damaged, or there is too little memory" +
                    reindexHint(path));
   } catch (const std::length_error&) {

@@ -13,10 +13,10 @@
 /// named fields, and data.
 namespace self_awareness::ros1::bag_records {
 
-/// The file is not as the format says.
+/// The file does not follow the format.
 using FormatError = rosbag::BagFormatException;
 
-constexpr std::string_view kFormat = "#ROSBAG V2.0\n";  // begins the file
+constexpr std::string_view kFormat = "#ROSBAG V2.0\n";  // at the beginning of the file
 
 enum class Op : std::uint8_t {
   kMessage = 0x02,
@@ -28,7 +28,7 @@ enum class Op : std::uint8_t {
 };
 
 /// Takes bytes from the front.
-/// @throw FormatError if there are not as many
+/// @throw FormatError if there are fewer
 inline std::string_view take(std::string_view& bytes, std::size_t size) {
   if (size > bytes.size()) {
     throw FormatError("a record is cut off");
@@ -38,7 +38,7 @@ inline std::string_view take(std::string_view& bytes, std::size_t size) {
   return taken;
 }
 
-/// Takes a number: little endian, as the machines that ROS 1 runs on.
+/// Takes a number: little endian, like the machines that ROS 1 runs on.
 template <typename Number>
 Number takeNumber(std::string_view& bytes) {
   Number value;
@@ -63,7 +63,7 @@ inline std::pair<std::string_view, std::string_view> takeField(std::string_view&
 }
 
 /// A field of a header.
-/// @throw FormatError if there is none of that name
+/// @throw FormatError if there is no field of that name
 inline std::string_view field(std::string_view header, std::string_view name) {
   while (!header.empty()) {
     const auto [here, value] = takeField(header);
@@ -90,18 +90,18 @@ inline std::string_view takeHeader(std::string_view& bytes, Op op) {
   return header;
 }
 
-/// Enough for the header of a chunk or of a message [bytes].
+/// Size that is enough for the header of a chunk or of a message [bytes].
 constexpr std::uint64_t kHeaderBytes = 256;
 
-/// A file that is read in pieces: no more than is asked for, as a stream's own buffer would.
+/// Reads a file in pieces, and no more than is asked for: a stream's own buffer would read more.
 class PiecesOfFile {
  public:
   explicit PiecesOfFile(const std::string& path);
 
   std::uint64_t size() const { return size_; }
-  /// What is at a position, up to the end of the file; valid until the next call. If it is not at
-  /// hand, it is read, and `ahead` [bytes] with it.
-  /// @throw FormatError if the position lies behind the end
+  /// The bytes at a position, up to the end of the file; valid until the next call. Reads them,
+  /// and `ahead` [bytes] more, if they are not in the buffer.
+  /// @throw FormatError if the position lies beyond the end
   std::string_view at(std::uint64_t position, std::uint64_t bytes, std::uint64_t ahead = 0);
 
  private:

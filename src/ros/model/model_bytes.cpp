@@ -16,7 +16,7 @@ namespace {
 namespace serialization = ros::serialization;
 using Length = std::uint32_t;
 
-// Which counts follow the model, in one byte.
+// Bits of the byte that says which counts follow the model.
 constexpr unsigned kDelays = 1;
 constexpr unsigned kEvidence = 2;
 
@@ -25,7 +25,7 @@ std::string version() {
          ros::message_traits::md5sum<self_awareness::DelayHistograms>();
 }
 
-/// Appends a message, its length before it.
+/// Appends the length of a message, and the message.
 template <typename Message>
 void append(const Message& message, std::string& bytes) {
   const Length length = serialization::serializationLength(message);
@@ -56,7 +56,7 @@ class Reader {
     std::memcpy(&length, &bytes_[next_], sizeof length);
     next_ += sizeof length;
     require(length);
-    // The stream takes its bytes for writable, though nothing is written.
+    // The stream wants writable bytes, but writes nothing.
     serialization::IStream stream(
         reinterpret_cast<std::uint8_t*>(const_cast<char*>(bytes_.data() + next_)), length);
     next_ += length;

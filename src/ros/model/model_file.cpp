@@ -126,7 +126,7 @@ TrainedModel read(const rosbag::Bag& bag, const std::string& path, ModelCounts c
 }
 
 void write(const TrainedModel& model, rosbag::Bag& bag) {
-  // A bag cannot hold a message of the time 0.
+  // A bag cannot hold a message with the time 0.
   const ros::Time stamp = std::max(model.stamp, ros::TIME_MIN);
   bag.write(kTopic, stamp, toMessage(model));
   for (core::EventId id = 0; id < model.vocabulary().size(); ++id) {
@@ -320,7 +320,7 @@ TrainedModel loadModel(const std::string& path, ModelCounts counts) {
     throw ModelFileError(path + ": a damaged model file (" + error.what() + ")");
   } catch (const std::invalid_argument& error) {
     throw ModelFileError(path + ": a damaged model file: " + error.what());
-  } catch (const std::bad_alloc&) {  // numbers that are damaged ask for much
+  } catch (const std::bad_alloc&) {  // damaged numbers ask for much memory
     throw ModelFileError(path + ": a damaged model file, or too little memory");
   } catch (const std::length_error& error) {
     throw ModelFileError(path + ": a damaged model file (" + error.what() + ")");

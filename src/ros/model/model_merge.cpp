@@ -19,7 +19,8 @@ std::int64_t horizon(const core::paper::Binning& binning) {
   return binning.horizon_bins * binning.bin_size;
 }
 
-// @param none what 0 stands for
+// Throws std::invalid_argument unless the two are the same.
+// @param none what a 0 means, in words
 void requireSame(const std::string& what, std::int64_t one, std::int64_t other,
                  const std::string& none) {
   const auto text = [&](std::int64_t time) { return time == 0 ? none : seconds(time); };

@@ -14,7 +14,7 @@ namespace {
 
 using Reason = Suspect::Reason;
 
-// A every 200 ms at random, B 20 ms after it, C often.
+// A comes at random, about every 200 ms, B 20 ms after it, and C often.
 Events robot(std::int64_t length, unsigned seed) {
   const Events asked = irregular(kA, 0, length, 200 * kMillisecond, seed);
   return together({asked, answers(kB, asked, 20 * kMillisecond),
@@ -29,7 +29,7 @@ class EvidenceBlameTest : public testing::Test {
       last_ = event.stamp;
     }
   }
-  // Who is named where tracks have reached these shares of their limits.
+  // Names the suspects when tracks have reached these shares of their limits.
   std::vector<Suspect> suspects(const std::vector<std::pair<Track, double>>& reached,
                                 std::int64_t end, const Window& window = {}) {
     std::vector<double> shares(model_->tracks().size(), 0);
@@ -56,7 +56,7 @@ class EvidenceBlameTest : public testing::Test {
   std::int64_t last_ = 0;
 };
 
-TEST_F(EvidenceBlameTest, NobodyIsNamedForNothing) {
+TEST_F(EvidenceBlameTest, NoEvidenceNamesNoSuspect) {
   EXPECT_TRUE(suspects({}, last_ + kWindow).empty());
 }
 
@@ -99,7 +99,7 @@ TEST_F(EvidenceBlameTest, ARootThatIsNearItsLimitIsNamedAlready) {
             (std::vector<EventId>{kA, kB}));
 }
 
-TEST_F(EvidenceBlameTest, WhoAnswersLateIsNamedBeforeWhomItAnswers) {
+TEST_F(EvidenceBlameTest, ALateAnswererIsNamedBeforeTheOneThatAsks) {
   const std::vector<Suspect> named = suspects({{{Channel::kDelay, kB, kA}, 1.5}}, last_ + kWindow);
   ASSERT_EQ(ids(named), std::vector<EventId>{kB});
   EXPECT_EQ(named.front().reason, Reason::kDelay);
@@ -108,7 +108,7 @@ TEST_F(EvidenceBlameTest, WhoAnswersLateIsNamedBeforeWhomItAnswers) {
   EXPECT_NEAR(named.front().usual_shortest, 0.020, 0.004);
 }
 
-TEST_F(EvidenceBlameTest, WhoLeavesAnswersOutIsNamed) {
+TEST_F(EvidenceBlameTest, AComponentThatLeavesAnswersOutIsNamed) {
   const std::vector<Suspect> named =
       suspects({{{Channel::kAnswer, kB, kA}, 1.5}}, last_ + kWindow);
   ASSERT_EQ(ids(named), std::vector<EventId>{kB});
@@ -116,7 +116,7 @@ TEST_F(EvidenceBlameTest, WhoLeavesAnswersOutIsNamed) {
   EXPECT_EQ(named.front().other, toString(kTypes[kA]));
 }
 
-TEST_F(EvidenceBlameTest, WhoComesTooOftenIsNamedWithNumbers) {
+TEST_F(EvidenceBlameTest, ATypeThatComesTooOftenIsNamedWithNumbers) {
   const std::vector<Suspect> named = suspects({{{Channel::kMore, kC, kC}, 1.5}}, last_ + kWindow);
   ASSERT_EQ(ids(named), std::vector<EventId>{kC});
   EXPECT_EQ(named.front().reason, Reason::kRate);
@@ -124,13 +124,13 @@ TEST_F(EvidenceBlameTest, WhoComesTooOftenIsNamedWithNumbers) {
   EXPECT_DOUBLE_EQ(named.front().usual_most, model_->usualCount(kC, 2));
 }
 
-TEST_F(EvidenceBlameTest, WhoIsSilentComesBeforeWhatIsUnusual) {
+TEST_F(EvidenceBlameTest, SilentOnesComeBeforeUnusualOnes) {
   const std::vector<Suspect> named =
       suspects({{{Channel::kMore, kC, kC}, 2}, {overdue(kA), 1.1}}, last_ + 5 * kSecond);
   EXPECT_EQ(ids(named), (std::vector<EventId>{kA, kC}));
 }
 
-TEST_F(EvidenceBlameTest, WhatIsWrongWithOneselfCountsMoreThanDelaysAfterOthers) {
+TEST_F(EvidenceBlameTest, OwnFaultsCountMoreThanDelaysAfterOthers) {
   // B's delays after A are unusual because A comes at another rate.
   const std::vector<Suspect> named = suspects(
       {{{Channel::kDelay, kB, kA}, 1.9}, {{Channel::kMore, kA, kA}, 1.1}}, last_ + kWindow);
@@ -158,7 +158,7 @@ TEST_F(EvidenceBlameTest, NoMoreThanFiveAreNamed) {
   EXPECT_EQ(suspects({}, last_ + kWindow, window).size(), kMostSuspects);
 }
 
-TEST_F(EvidenceBlameTest, ATopicStandsForWhomItIsNotKnownWhoSends) {
+TEST_F(EvidenceBlameTest, ATopicIsNamedIfItsSenderIsNotKnown) {
   Statistics counts;
   for (const EventType& type : kTypes) {
     counts.intern({"", type.scope, type.type});

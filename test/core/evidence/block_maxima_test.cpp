@@ -31,13 +31,13 @@ Values gumbel(double location, double scale, std::size_t number, unsigned seed) 
   return values;
 }
 
-// The nearest of 256 values between two powers of two.
+// Rounds to the nearest of 256 values between two powers of two.
 double nearest(double value) {
   const double step = std::exp2(std::floor(std::log2(value)) - 8);
   return value < 1.0 / 1024 ? 0 : std::floor(value / step + 0.5) * step;
 }
 
-// L-moments of single values, in the order of their size (Hosking 1990).
+// L-moments of single values in the order of their size (Hosking 1990).
 double literalLimit(Values values, double probability) {
   std::sort(values.begin(), values.end());
   const auto n = static_cast<double>(values.size());
@@ -98,7 +98,7 @@ TEST(BlockMaxima, OfPartsAddUpInAnyOrder) {
   const auto whole = contents(maximaOf(values));
   std::vector<BlockMaxima> parts(7);
   for (std::size_t k = 0; k < values.size(); ++k) {
-    parts[k * k % parts.size()].add(values[k]);  // no number of parts alike, some empty
+    parts[k * k % parts.size()].add(values[k]);  // parts of different sizes, some empty
   }
   std::mt19937 random(2);
   for (int k = 0; k < 10; ++k) {

@@ -23,7 +23,7 @@ Statistics followed(unsigned seed) {
 
 class EvidenceJudgeTest : public testing::Test {
  protected:
-  // Nothing is judged but what a test gives a limit.
+  // Only what a test gives a limit is judged.
   EvidenceJudgeTest() {
     limits_.tracks.assign(model_->tracks().size(), kNone);
     limits_.linker = 100;
@@ -38,7 +38,7 @@ class EvidenceJudgeTest : public testing::Test {
                            NameSuspects suspects = NameSuspects::kNever) {
     return judge.judge({}, end, suspects);
   }
-  // As in training, so that all that is watched counts, and then answers that come late.
+  // Adds answers as in training, so that all tracks count, and then late ones.
   static void feed(core::Judge& judge, int late) {
     for (int i = 0; i < 40 + late; ++i) {
       const std::int64_t delay = i < 40 ? 20 * kMillisecond : 70 * kMillisecond;

@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::int64_t kPeriod = 200 * kMillisecond;
 
-// A comes irregularly, B follows it after a delay, and C comes when it likes.
+// A comes irregularly, B follows it after a delay, and C comes at random.
 Events robot(std::int64_t length, unsigned seed, std::int64_t delay = 20 * kMillisecond) {
   const Events asked = irregular(kA, 0, length, kPeriod, seed);
   return together(
@@ -93,7 +93,8 @@ TEST(GumbelLimit, OfMaximaThatNeverVaryIsTheirValue) {
 }
 
 TEST(OverdueAge, ExtrapolatesTheExcessOverTheShortestOfTheLongestGaps) {
-  // Three gaps in 1000 ns, once in 10000 ns wanted: 30 times rarer, with a mean excess of 2 ns.
+  // Three gaps in 1000 ns, and one in 10000 ns allowed: 30 times rarer, with a mean excess of 2
+  // ns.
   EXPECT_NEAR(overdueAge({10, 8, 6}, 1000, 1e-4), 6 + 2 * std::log(30), 1e-9);
 }
 
@@ -152,8 +153,8 @@ TEST_F(LimitFinderTest, APairThatMisleadsIsNotJudged) {
   const Limits holds = limitsOf(model_, robot(200 * kSecond, 3));
   EXPECT_TRUE(std::isfinite(limit(holds, Channel::kDelay, kB, kA)));
   EXPECT_TRUE(std::isfinite(limit(holds, Channel::kSlowDelay, kB, kA)));
-  // It held in both halves of the training by chance: in another recording it never does, so that
-  // there is no evidence, only less information.
+  // The phase held in both halves of the training by chance. It never does in another recording,
+  // so there is no evidence, only less information.
   LimitFinder finder(model_, {kWindow, 5 * kSecond, 0.5});
   for (const bool first : {true, false}) {
     feed(finder, model_, robot(200 * kSecond, 3));
@@ -193,7 +194,8 @@ TEST_F(LimitFinderTest, AnAnswerThatIsAskedForTooSeldomIsNotJudged) {
 
 TEST_F(LimitFinderTest, LessThanFiveBlocksAreTooLittle) {
   LimitFinder finder(model_, {kWindow, 5 * kSecond, 0.5});
-  // Two recordings of 5 s to settle, 20 s, and a rest that is no block.
+  // Two recordings, each with 5 s to settle, 20 s that count, and a rest that is shorter than a
+  // block.
   feed(finder, model_, robot(34 * kSecond, 3));
   feed(finder, model_, robot(34 * kSecond, 4));
   EXPECT_THROW(finder.startSecondPass(), std::invalid_argument);
@@ -218,7 +220,7 @@ TEST_F(LimitFinderTest, CountsTheWindowsOfTheFirstPassAfterSettling) {
   LimitFinder finder(model_, {kWindow, 5 * kSecond, 0.5});
   const Events normal = timer(kA, 0, 60 * kSecond, kPeriod);
   feed(finder, model_, normal);
-  EXPECT_EQ(finder.windows(), 548U);  // the last window lasts longer than the recording
+  EXPECT_EQ(finder.windows(), 548U);  // the recording ends before the last window does
   finder.startSecondPass();
   feed(finder, model_, normal);
   EXPECT_EQ(finder.windows(), 548U);
@@ -235,7 +237,7 @@ TEST_F(LimitFinderTest, WithoutASecondPassThereAreNoLimits) {
 }
 
 TEST_F(LimitFinderTest, WhatRecordingsSayElsewhereAddsUp) {
-  // Pairs mislead in the second recording, and the third has no block to its end.
+  // Pairs mislead in the second recording, and the third ends within a block.
   const std::vector<Events> recordings{robot(60 * kSecond, 3),
                                        robot(110 * kSecond, 4, 60 * kMillisecond),
                                        robot(19 * kSecond, 5), robot(45 * kSecond, 6)};

@@ -15,7 +15,7 @@ namespace {
 
 const Statistics kNothing = countsOf({});
 
-// Gaps [ns] as the model knows them: by the middle of their bins, none beyond the longest.
+// Gaps [ns] as the model knows them: the middle of their bins, but at most the longest gap.
 std::vector<double> binnedGaps(const Events& events) {
   std::vector<double> gaps;
   double longest = 0;
@@ -30,7 +30,7 @@ std::vector<double> binnedGaps(const Events& events) {
   return gaps;
 }
 
-// Counts of one event type's rate.
+// Statistics with the recent counts of one event type.
 Statistics ofRate(std::uint64_t sum, std::uint64_t squares, std::uint64_t windows) {
   Statistics counts;
   counts.intern(kTypes[kA]);
@@ -141,7 +141,7 @@ TEST(EvidenceModel, MissRateIsNeverQuiteZeroOrOne) {
 TEST(EvidenceModel, AnswersAreALogLikelihoodRatio) {
   const Events asked = timer(kA, 0, 100 * kSecond, 100 * kMillisecond);
   Events answered = answers(kB, asked, 30 * kMillisecond);
-  std::size_t index = 0;  // every fifth is left out
+  std::size_t index = 0;  // every fifth answer is left out
   answered.erase(std::remove_if(answered.begin(), answered.end(),
                                 [&](const Event&) { return index++ % 5 == 0; }),
                  answered.end());
@@ -175,7 +175,7 @@ TEST(EvidenceModel, SurpriseIsStandardisedByWhatTheOtherHalfFinds) {
     squares += share * surprise * surprise;
   }
   EXPECT_NEAR(mean, 0, 1e-9);
-  EXPECT_LE(squares, 1 + 1e-9);  // less where the delays vary by less than half a nat
+  EXPECT_LE(squares, 1 + 1e-9);  // less if the delays vary by less than half a nat
   EXPECT_GT(squares, 0.3);
 }
 

@@ -9,7 +9,7 @@
 #include "self_awareness/core/evidence/statistics.h"
 #include "self_awareness/core/evidence/tracks.h"
 
-/// Recordings made to measure for the tests of the evidence detector.
+/// Small recordings for the tests of the evidence detector.
 namespace self_awareness::core::evidence {
 
 constexpr std::int64_t kMillisecond = 1000000;
@@ -58,7 +58,7 @@ inline Events irregular(EventId id, std::int64_t start, std::int64_t end, std::i
   return events;
 }
 
-/// What answers every one of other events after a delay [ns].
+/// Answers to every one of other events, after a delay [ns].
 inline Events answers(EventId id, const Events& asked, std::int64_t delay) {
   Events events;
   for (const Event& event : asked) {
@@ -84,7 +84,7 @@ inline Statistics countsOf(const std::vector<Events>& recordings,
   return statistics;
 }
 
-/// Index of a track; its number if it is not watched.
+/// Index of a track; the number of tracks if it is not watched.
 inline std::size_t indexOf(const std::vector<Track>& tracks, Channel channel, EventId to,
                            EventId from) {
   return static_cast<std::size_t>(std::find_if(tracks.begin(), tracks.end(),

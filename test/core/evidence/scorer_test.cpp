@@ -34,7 +34,7 @@ class EvidenceScorerTest : public testing::Test {
     EXPECT_LT(index, model_->tracks().size());
     return index;
   }
-  // An A, and a B that many ns later; none: no B.
+  // Adds an A, and a B so many ns later; none: no B.
   void ask(std::optional<std::int64_t> delay) {
     scorer_.add({now_, kA});
     if (delay) {
@@ -61,7 +61,7 @@ TEST_F(EvidenceScorerTest, DelaysAddUpAsInACusumTest) {
     scorer_.restart();
     askUsually(kArming);
     double sum = evidence(pair);
-    EXPECT_EQ(sum, 0);  // what is usual does not let it fall below 0
+    EXPECT_EQ(sum, 0);  // usual delays do not let it fall below 0
     for (const std::int64_t delay : {kUnusual, kUnusual, kUsual, kUnusual, kUsual, kUsual}) {
       ask(delay);
       sum = std::max(sum + model_->surprises(pair)[log_bins::bin(delay)] - drift, 0.0);
@@ -120,12 +120,12 @@ TEST_F(EvidenceScorerTest, FewerEventsThanNeededDoNotArm) {
   askUsually(kArming - 2);
   ask(kUnusual);
   EXPECT_EQ(evidence(pair), 0);
-  ask(kUsual);  // one of thirty that is unusual is as in training
+  ask(kUsual);  // one unusual delay of thirty is as in training
   ask(kUnusual);
   EXPECT_GT(evidence(pair), 0);
 }
 
-TEST_F(EvidenceScorerTest, WhatWasGoneCountsAnew) {
+TEST_F(EvidenceScorerTest, WhatWasGoneMustBeArmedAgain) {
   for (const EventId gone : {kA, kB}) {
     const std::size_t pair = track(Channel::kDelay, kB, kA);
     scorer_.restart();
@@ -157,7 +157,7 @@ TEST_F(EvidenceScorerTest, APauseIsNotYetGone) {
 
 TEST_F(EvidenceScorerTest, MissedAnswersAddUpAsInACusumTest) {
   const std::size_t answer = track(Channel::kAnswer, kB, kA);
-  askUsually(kArming + 1);  // what an A gets is known with the next one
+  askUsually(kArming + 1);  // the next A shows what an A got
   ask(kUsual);
   double sum = evidence(answer);
   EXPECT_EQ(sum, 0);

@@ -61,7 +61,7 @@ TEST(EvidenceTrainer, CountsDelaysGapsAndAnswers) {
   EXPECT_EQ(counts.total(kA, kB), 3U);
   EXPECT_EQ(in(kA, kB, 10), 1U);
   EXPECT_EQ(in(kA, kB, 30), 1U);
-  EXPECT_EQ(in(kA, kB, 50), 1U);  // the second B after the same A, too
+  EXPECT_EQ(in(kA, kB, 50), 1U);  // also the second B after the same A
   EXPECT_EQ(counts.total(kB, kA), 3U);
   EXPECT_EQ(in(kB, kA, 90), 1U);
   EXPECT_EQ(in(kB, kA, 150), 1U);
@@ -108,7 +108,7 @@ TEST(EvidenceTrainer, ALateEventHasNoNegativeDelay) {
 }
 
 TEST(EvidenceTrainer, OnlyTheEventBeforeTellsAStepOfTheClock) {
-  // Two late events, each within what is late of the one before it, as everywhere (clock.h).
+  // Two late events: each is late compared with the one before it, and no step (clock.h).
   const Statistics counts =
       countsOf({inMilliseconds({{1000, kA}, {1160, kA}, {1100, kA}, {1040, kA}, {1200, kA}})}, 1);
   EXPECT_EQ(counts.type(kA).gaps, 4U);
@@ -121,7 +121,7 @@ TEST(EvidenceTrainer, NothingCrossesFromOneRecordingIntoTheNext) {
   const Events second = timer(kB, 1500 * kMillisecond, 3000 * kMillisecond, 100 * kMillisecond);
   const Statistics counts = countsOf({first, second}, 2);
   EXPECT_EQ(counts.total(kA, kB), 0U);
-  EXPECT_EQ(counts.rateWindows(), 0U);  // 2 s are full in neither
+  EXPECT_EQ(counts.rateWindows(), 0U);  // neither has 2 s of windows
   EXPECT_EQ(counts.duration(), 2800 * kMillisecond);
   const Events joined = together({first, second});
   EXPECT_EQ(countsOf({joined}, 2).total(kA, kB), 15U);
@@ -170,7 +170,7 @@ TEST(EvidenceStatistics, CountsOfTwoTrainingsEqualTrainingOnBoth) {
 
 TEST(EvidenceStatistics, MergingCommutesUpToTheIds) {
   const Statistics first = countsOf({randomEvents(1, kA, kB)}, 2);
-  Statistics second;  // kTypes the other way round
+  Statistics second;  // kTypes in the opposite order
   for (const EventId id : {kC, kB}) {
     second.intern(kTypes[id]);
   }

@@ -21,8 +21,8 @@ std::vector<Track> chosen(const Statistics& first, const Statistics& second) {
   return watch(first, second).tracks;
 }
 
-// Two timers of the same period, the second one behind the first by a phase, and something else at
-// random times.
+// Two timers of the same period, the second one later than the first by a phase, and a third type
+// at random times.
 Statistics twoTimers(std::int64_t phase) {
   return countsOf({together({timer(kA, 0, kLength, 100 * kMillisecond),
                              timer(kB, phase, kLength, 100 * kMillisecond),
@@ -53,7 +53,7 @@ TEST(EvidenceTracks, APhaseThatOneHalfDoesNotConfirmIsNot) {
       chosen(twoTimers(20 * kMillisecond), twoTimers(70 * kMillisecond));
   EXPECT_FALSE(isWatched(lost, Channel::kDelay, kB, kA));
   EXPECT_FALSE(isWatched(lost, Channel::kDelay, kA, kB));
-  EXPECT_TRUE(isWatched(lost, Channel::kDelay, kB, kB));  // its period stays
+  EXPECT_TRUE(isWatched(lost, Channel::kDelay, kB, kB));  // its period is the same in both halves
 }
 
 TEST(EvidenceTracks, FewGapsAreNotJudged) {
@@ -114,7 +114,7 @@ TEST(EvidenceTracks, AFollowerDoesNotAskForWhatItFollows) {
   EXPECT_FALSE(isWatched(tracks, Channel::kAnswer, kA, kA));
 }
 
-TEST(EvidenceTracks, WhoMostlyGetsNoAnswerDoesNotAsk) {
+TEST(EvidenceTracks, ATypeThatMostlyGetsNoAnswerDoesNotAsk) {
   const Statistics counts =
       countsOf({together({irregular(kA, 0, kLength, 50 * kMillisecond, 2),
                           irregular(kB, 0, kLength, 200 * kMillisecond, 1)})},
@@ -152,13 +152,13 @@ TEST(EvidenceTracks, CountsOfWatchedPairsAreKeptAndOthersLeftOut) {
     EXPECT_EQ(kept.duration(), all.duration());
     EXPECT_EQ(kept.type(kA).longest_gaps, all.type(kA).longest_gaps);
   }
-  // Nothing changes for those who see the rest only.
+  // Leaving pairs out changes nothing else.
   EXPECT_TRUE(watched.halves[0].only({}).withoutPairs() == first.withoutPairs());
   EXPECT_EQ(first.only({}).partners(kA).size(), 0U);
   EXPECT_EQ(first.only({}).delaysToAny(), first.delaysToAny());
 }
 
-TEST(EvidenceTracks, TracksOfDelaysComeInTwos) {
+TEST(EvidenceTracks, DelayTracksComeInPairs) {
   const Track overdue{Channel::kOverdue, kA, kA};
   const Track now{Channel::kDelay, kB, kA};
   const Track slow{Channel::kSlowDelay, kB, kA};

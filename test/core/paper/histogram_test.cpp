@@ -42,7 +42,7 @@ void expectCounts(const Histogram& histogram, const Counts& expected) {
   EXPECT_EQ(histogram.empty(), expected.empty());
 }
 
-// Bins of well filled stretches, scattered ones, and both.
+// Bins of well filled runs, scattered bins, or both.
 std::vector<std::int64_t> randomBins(unsigned seed) {
   std::mt19937_64 random(seed);
   const std::int64_t stretch = 1 + static_cast<std::int64_t>(random() % 300);
@@ -161,8 +161,8 @@ TEST(DelayBins, AreThoseOfTheBinning) {
   }
 }
 
-// As of delays since an event that comes once: were all rebuilt for every bin, it would take
-// hours.
+// Delays since an event that comes only once make such bins. If every bin caused a rebuild, it
+// would take hours.
 TEST(Histogram, GrowsBinByBinInNoTime) {
   constexpr std::int64_t kNumber = 1000000;
   Histogram histogram;

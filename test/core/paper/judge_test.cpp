@@ -29,7 +29,7 @@ class PaperJudgeTest : public testing::Test {
     }
     return std::make_shared<const Model>(statistics);
   }
-  // What the windows would hand to the judge.
+  // Does what the windows do with the judge.
   void add(const Event& event) { window_.events.push_back(judge_->add(event)); }
   Judgement judge(std::int64_t end, NameSuspects suspects = NameSuspects::kIfUnusual) {
     Judgement judgement = judge_->judge(window_, end, suspects);

@@ -27,7 +27,7 @@ TEST(PaperModel, ATypeWithFewGapsHasNoOpinion) {
   }
   const Model model(statistics);
   EXPECT_EQ(model.logSurvival(rare, 3600 * kSecond), 0);
-  // One virtual gap of the tail on 30 of 1 s: 1.01 s is the upper edge of the longest one's bin.
+  // The tail adds one virtual gap to 30 of 1 s: 1.01 s is the upper edge of the longest gap's bin.
   EXPECT_NEAR(model.logSurvival(common, 2 * kSecond), -2 / 1.01 - std::log(31), 1e-12);
   EXPECT_NEAR(model.logSurvival(common, kSecond),
               std::log(30 + std::exp(-1 / 1.01)) - std::log(31), 1e-12);

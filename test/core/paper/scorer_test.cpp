@@ -1,4 +1,4 @@
-// The scorer against equations 3 and 4, written down literally.
+// Compares the scorer with equations 3 and 4, written down literally.
 
 #include "core/paper/scorer.h"
 
@@ -48,7 +48,7 @@ class LiteralScorer {
   std::vector<std::optional<std::int64_t>> last_seen_;
 };
 
-// Events at random moments, some of them late; the types from `always` on are rare.
+// Events at random times, some of them late; the types from `always` on are rare.
 std::vector<Event> randomEvents(unsigned seed, std::size_t types, std::size_t always, int events,
                                 std::int64_t mean_gap) {
   std::mt19937_64 random(seed);
@@ -96,7 +96,7 @@ TEST(PaperScorer, ScoresLiterallyForAnyNumberOfTypes) {
     const DelayStatistics statistics =
         train(Binning{10000000, 0}, types, randomEvents(1, types, always, 3000, 5000000));
     expectLiteralScores(statistics, randomEvents(2, types, always, 500, 5000000));
-    // Two types only: most are never seen.
+    // Only two types: most are never seen.
     expectLiteralScores(statistics, randomEvents(3, std::min<std::size_t>(types, 2),
                                                  std::min<std::size_t>(types, 2), 300, 5000000));
   }

@@ -1,4 +1,4 @@
-// Every case of vectors.json, whose values were worked out by hand.
+// Checks every case of vectors.json; its values were computed by hand.
 
 #include <gtest/gtest.h>
 
@@ -71,7 +71,7 @@ class Vectors : public testing::Test {
     return statistics;
   }
 
-  // The events of the test recording; those unknown to the model get ids behind theirs.
+  // The events of the test recording; those that the model does not know get the next ids.
   static std::vector<Event> testEvents(const json& test_case, const Model& model) {
     Vocabulary vocabulary = model.vocabulary();
     std::vector<Event> events;

@@ -15,7 +15,7 @@ namespace {
 constexpr std::int64_t kWindow = 100 * kNanosecondsPerSecond / 1000;
 constexpr EventId kUnknownId = 7;
 
-// Writes down what it is told: "1" for an event of type 1, "[start end events]" for a window.
+// Records what it is told: "1" for an event of type 1, "[start end events]" for a window.
 class Told : public WindowObserver {
  public:
   ObservedEvent observe(const Event& event) override {
@@ -48,7 +48,7 @@ TEST(Windows, AreClosedBeforeTheEventThatEndsThem) {
   Windows windows(100, told);
   windows.add({10, 1});
   windows.add({50, kUnknownId});
-  windows.add({310, 2});  // two windows of silence lie between
+  windows.add({310, 2});  // after two windows of silence
   windows.add({290, 3});  // late: its window was closed
   windows.advance(400);
   EXPECT_EQ(told.told, "17[0 100 2][100 200 0][200 300 0]23[300 400 2]");
@@ -75,7 +75,7 @@ TEST(Windows, ALateEventDoesNotTakeTimeBack) {
   EXPECT_EQ(told.told, "11[0 90 2]");
 }
 
-TEST(Windows, AStepOfTheClockStartsAfresh) {
+TEST(Windows, AStepOfTheClockStartsANewRecording) {
   for (const std::int64_t step : {-(kLatestEvent + 1), kLongestSilence + 1}) {
     Told told;
     Windows windows(kWindow, told);
@@ -95,7 +95,7 @@ TEST(Windows, ARestartForgetsTheOpenWindow) {
   windows.advance(1000);
   windows.finish();
   EXPECT_EQ(told.told, "1");
-  EXPECT_TRUE(windows.add({-1000 * kWindow, 2}));  // no step: it is the first
+  EXPECT_TRUE(windows.add({-1000 * kWindow, 2}));  // no step: it is the first event
 }
 
 }  // namespace

@@ -15,7 +15,7 @@ constexpr std::int64_t kWindow = 100000000;
 constexpr std::int64_t kSecond = 10 * kWindow;
 constexpr EventId kUnknownId = 7;
 
-// Says of every window what the test wants to hear.
+// Gives every window the judgement that the test wants.
 class ToldJudge : public Judge {
  public:
   explicit ToldJudge(std::shared_ptr<Judgement> told) : told_(std::move(told)) {}
@@ -39,7 +39,7 @@ class ToldJudge : public Judge {
 
 class DetectorLevelsTest : public testing::Test {
  protected:
-  // Normal operation until the detector has settled.
+  // Runs normal operation until the detector has settled.
   void start(UnknownEvents unknown = UnknownEvents::kWarn) {
     Detector::Parameters parameters;
     parameters.unknown = unknown;
@@ -53,7 +53,7 @@ class DetectorLevelsTest : public testing::Test {
     detector_->add({0, 0});
     windows(10);
   }
-  // A window, with an event if one is asked for.
+  // Passes one window, with an event if the test wants one.
   const Verdict& window(std::optional<EventId> id = std::nullopt) {
     if (id) {
       detector_->add({now_, *id});
@@ -151,7 +151,7 @@ TEST_F(DetectorLevelsTest, WhatIsCertainRaisesTheAlarmAtOnce) {
   start();
   told_->certain = true;
   window();
-  EXPECT_FALSE(verdict_.alarm);  // certain of a window that is not abnormal
+  EXPECT_FALSE(verdict_.alarm);  // certain, but not abnormal
   EXPECT_TRUE(abnormalWindow().alarm);
   EXPECT_FALSE(verdict_.suspicion);
 }
@@ -241,7 +241,7 @@ TEST_F(DetectorLevelsTest, ClearingTheAlarmForgetsTheSuspicion) {
   EXPECT_FALSE(window().suspicion);
 }
 
-// What would have come in the rest of the window is not known.
+// What would come in the rest of the window is not known.
 TEST(Detector, TheLastWindowIsJudgedAtTheRecordingsEnd) {
   class EndsJudge : public ToldJudge {
    public:

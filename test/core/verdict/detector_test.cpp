@@ -21,7 +21,7 @@ const EventType kLaser{"/player", "/scan", "sensor_msgs/LaserScan"};
 const EventType kPose{"/slam", "/pose", "geometry_msgs/PoseStamped"};
 const EventType kWheels{"/base", "/odom", "nav_msgs/Odometry"};
 
-// A robot like clockwork: a scan every 80 ms, its pose 10 ms later, odometry every 20 ms.
+// A robot with exact timing: a scan every 80 ms, its pose 10 ms later, odometry every 20 ms.
 std::vector<Event> clockwork(std::int64_t start, std::int64_t end, bool laser) {
   std::vector<Event> events;
   for (std::int64_t t = start; t < end; t += 10 * kMillisecond) {
@@ -75,7 +75,7 @@ class DetectorTest : public testing::Test {
       detector.add(event);
     }
   }
-  // The end of the window that raised the alarm first.
+  // End of the first window that raised the alarm.
   std::optional<std::int64_t> firstAlarm() const {
     for (const Seen& seen : seen_) {
       if (seen.changed && seen.alarm) {
@@ -164,7 +164,7 @@ TEST_F(DetectorTest, UnknownEventsScoreZeroAndAreNamed) {
   EXPECT_EQ(seen_.back().suspects.front().reason, Suspect::Reason::kUnknown);
 }
 
-TEST_F(DetectorTest, AStepOfTheClockStartsAfreshWithoutAnAlarm) {
+TEST_F(DetectorTest, AStepOfTheClockStartsANewRecordingWithoutAnAlarm) {
   for (const std::int64_t step : {-500 * kSecond, kLongestSilence + kSecond}) {
     seen_.clear();
     Detector detector = makeDetector(0.5);
@@ -174,7 +174,7 @@ TEST_F(DetectorTest, AStepOfTheClockStartsAfreshWithoutAnAlarm) {
     feed(detector, {after.begin() + 1, after.end()});
     detector.finish();
     EXPECT_FALSE(firstAlarm().has_value()) << step;
-    EXPECT_LT(seen_.size(), 205U) << step;  // no windows for time that never was
+    EXPECT_LT(seen_.size(), 205U) << step;  // no windows for the time that the step skipped
     EXPECT_TRUE(seen_[120].settling) << step;
   }
 }

@@ -25,7 +25,7 @@ TEST(Roc, LevelIsTheLargestCutoffWithSoFewFalsePositives) {
   EXPECT_EQ(roc.level(0.2).cutoff, 2.5);
   EXPECT_EQ(roc.level(0.2).false_positive_rate, 0.2);
   EXPECT_TRUE(std::isnan(roc.level(0.2).true_positive_rate));
-  EXPECT_EQ(roc.level(0.05).cutoff, 1);  // eq. 5 is strict: nothing normal lies below it
+  EXPECT_EQ(roc.level(0.05).cutoff, 1);  // eq. 5 is strict: no normal score lies below it
   EXPECT_EQ(roc.level(0.05).false_positive_rate, 0);
   EXPECT_EQ(roc.level(1).cutoff, std::numeric_limits<double>::infinity());
 }

@@ -5,7 +5,7 @@
 namespace self_awareness::core {
 namespace {
 
-TEST(SourceGraph, WhoIsReachedIsDownstream) {
+TEST(SourceGraph, ReachedSourcesAreDownstream) {
   SourceGraph graph;
   EXPECT_TRUE(graph.empty());
   graph.connect("/laser", "/slam");
@@ -17,7 +17,7 @@ TEST(SourceGraph, WhoIsReachedIsDownstream) {
   EXPECT_FALSE(graph.isUpstream("/slam", "/laser"));
 }
 
-TEST(SourceGraph, WhoIsNotConnectedIsNeither) {
+TEST(SourceGraph, UnconnectedSourcesAreNeither) {
   SourceGraph graph;
   graph.connect("/laser", "/slam");
   graph.connect("/camera", "/faces");
@@ -27,7 +27,7 @@ TEST(SourceGraph, WhoIsNotConnectedIsNeither) {
   EXPECT_FALSE(graph.isUpstream("/nobody", "/laser"));
 }
 
-TEST(SourceGraph, NobodyIsUpstreamOfItself) {
+TEST(SourceGraph, NoSourceIsUpstreamOfItself) {
   SourceGraph graph;
   graph.connect("/motors", "/motors");
   EXPECT_FALSE(graph.isUpstream("/motors", "/motors"));
@@ -44,7 +44,7 @@ TEST(SourceGraph, InALoopTheShorterWayDecides) {
   EXPECT_FALSE(graph.isUpstream("/laser", "/navigation"));  // two steps there, one back
 }
 
-TEST(SourceGraph, WhoTalkToEachOtherAreNotToldApart) {
+TEST(SourceGraph, SourcesThatTalkToEachOtherAreNeither) {
   SourceGraph graph;
   graph.connect("/motors", "/control");
   graph.connect("/control", "/motors");

@@ -1,4 +1,4 @@
-// Bags, good and bad.
+// Tests the reader on good and on bad bags.
 
 #include "self_awareness/ros/bag/bag_reader.h"
 
@@ -46,7 +46,7 @@ class BagReaderTest : public testing::Test {
 
   std::string path(const std::string& name) const { return (folder_ / name).string(); }
 
-  // Ten seconds of two nodes, 10 Hz and 1 Hz, and a latching one.
+  // Writes ten seconds of two nodes, at 10 Hz and 1 Hz, and of a latching one.
   std::string writeBag(const std::string& name,
                        rosbag::CompressionType compression = rosbag::compression::Uncompressed) {
     rosbag::Bag bag(path(name), rosbag::bagmode::Write);
@@ -78,7 +78,7 @@ class BagReaderTest : public testing::Test {
     return events;
   }
 
-  // Three messages /a, one a second. rosbag writes this format no longer.
+  // Writes three messages /a, one a second, in a format that rosbag no longer writes.
   std::string writeBagOfFormerFormat(const std::string& name) const {
     const auto number = [](auto value) {
       return std::string(reinterpret_cast<const char*>(&value), sizeof value);
@@ -106,7 +106,7 @@ class BagReaderTest : public testing::Test {
                                   "");
     std::string index;
     for (std::uint32_t i = 0; i < 3; ++i) {
-      // The first message's place is that of the definition before it.
+      // The index points at the definition before the first message.
       const std::uint64_t place = first + (i == 0 ? 0 : messages.size());
       index += number(100 + i) + number(std::uint32_t{0}) + number(place);
       messages += record({{"op", "\x02"}, {"topic", "/a"}}, block(std::string(1, "xyz"[i])));
@@ -122,7 +122,7 @@ class BagReaderTest : public testing::Test {
     return path(name);
   }
 
-  // What this process has read so far, from wherever [bytes].
+  // What this process has read so far, from any file [bytes].
   static std::uint64_t bytesRead() {
     std::ifstream io("/proc/self/io");
     std::string name;
@@ -161,7 +161,7 @@ TEST_F(BagReaderTest, EqualStampsKeepTheOrderOfTheRecording) {
   const auto node = header("/node");
   std::string order;
   for (int round = 1; round < 20; ++round) {
-    // Each topic is first, last and between at times.
+    // Each topic is sometimes first, sometimes last, and sometimes between.
     for (int i = 0; i < 3; ++i) {
       const char topic = static_cast<char>('a' + (i * (round % 2 + 1) + round) % 3);
       order += topic;
@@ -189,7 +189,7 @@ TEST_F(BagReaderTest, TheSummaryNamesTheRecordingHoweverItIsCompressed) {
   EXPECT_EQ(read(path("packed.bag")).size(), 111U);
 }
 
-TEST_F(BagReaderTest, TheSummaryNamesTheRecordingWhoeverWroteItAgain) {
+TEST_F(BagReaderTest, TheSummaryIsTheSameAfterAnotherProgramWroteTheBagAgain) {
   const auto fingerprint = [this](const std::vector<std::pair<std::string, int>>& messages) {
     rosbag::Bag bag(path("again.bag"), rosbag::bagmode::Write);
     for (const auto& [topic, second] : messages) {
@@ -222,14 +222,14 @@ TEST_F(BagReaderTest, ChunksThatOverlapInTimeAreReadInItsOrder) {
   }
 }
 
-TEST_F(BagReaderTest, NextToNothingIsReadOfABagWithImages) {
+TEST_F(BagReaderTest, HardlyAnythingIsReadOfABagWithImages) {
   std_msgs::String image;
   image.data = std::string(1000000, 'x');
   std_msgs::String small;
   small.data = "y";
   rosbag::Bag bag(path("images.bag"), rosbag::bagmode::Write);
   auto image_header = header("/camera");
-  (*image_header)["type"] = "test/Image";  // no content of it is asked for
+  (*image_header)["type"] = "test/Image";  // nothing reads its content
   for (int i = 1; i <= 5000; ++i) {
     const ros::Time stamp = ros::Time(100, 0) + ros::Duration(0.01 * i);
     bag.write("/small", stamp, small, header("/node"));
@@ -242,7 +242,7 @@ TEST_F(BagReaderTest, NextToNothingIsReadOfABagWithImages) {
   const std::uint64_t before = bytesRead();
   EXPECT_EQ(read(path("images.bag")).size(), 5050U);
   const auto read = static_cast<double>(bytesRead() - before);
-  EXPECT_GT(read, 5050 * 12);  // it was counted
+  EXPECT_GT(read, 5050 * 12);  // the counter works
   EXPECT_LT(read, 0.05 * static_cast<double>(fs::file_size(path("images.bag"))));
 }
 
@@ -265,7 +265,7 @@ TEST_F(BagReaderTest, ABagOfTheFormerFormatIsLeftToRosbag) {
 
 TEST_F(BagReaderTest, NoMessageIsReadUnlessItsContentIsNeeded) {
   const std::string bag = writeBag("a.bag", rosbag::compression::BZ2);
-  // What cannot be unpacked cannot have been read.
+  // Data that cannot be unpacked: it cannot have been read.
   std::fstream file(bag, std::ios::in | std::ios::out | std::ios::binary);
   file.seekg(0, std::ios::beg);
   std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
@@ -319,7 +319,7 @@ TEST_F(BagReaderTest, SaysWhatIsWrongWithABag) {
       << bagError(path("none.bag"));
 }
 
-TEST_F(BagReaderTest, EveryTruncatedBagIsRefusedWithTheMend) {
+TEST_F(BagReaderTest, EveryTruncatedBagIsRefusedWithTheRepair) {
   const std::string bag = writeBag("a.bag");
   const auto size = fs::file_size(bag);
   for (const double share : {0.02, 0.1, 0.3, 0.5, 0.7, 0.9, 0.97, 0.999}) {
@@ -348,7 +348,7 @@ TEST_F(BagReaderTest, ADamagedBagIsReadOrRefused) {
       read(path("damaged.bag"));
     } catch (const BagError&) {
       ++refused;
-    } catch (const std::invalid_argument&) {  // the message's definition was hit
+    } catch (const std::invalid_argument&) {  // the damage is in the message's definition
       ++refused;
     }
   }

@@ -1,4 +1,4 @@
-// Model files, good and bad.
+// Tests good and bad model files.
 
 #include "self_awareness/ros/model/model_file.h"
 
@@ -87,7 +87,7 @@ class ModelFileTest : public testing::Test {
     return model;
   }
 
-  // What is said of a model file whose messages were changed after they were made.
+  // Error on loading a model file whose messages a test has changed.
   std::string damagedFile(
       const std::function<void(rosbag::Bag&, const rosbag::MessageInstance&)>& write) {
     saveModel(calibratedModel(), path("whole"));
@@ -191,7 +191,7 @@ TEST_F(ModelFileTest, SaysWhatIsWrongWithAModelFile) {
 }
 
 TEST_F(ModelFileTest, AModelOfAnotherVersionIsRefused) {
-  // The md5 as another version of the package would have it.
+  // The md5 of another version of the package.
   saveModel(someModel(), path("m"));
   std::ifstream in(path("m"), std::ios::binary);
   std::string bytes((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());

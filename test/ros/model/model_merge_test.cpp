@@ -19,7 +19,7 @@ const core::EventType kScan{"/a", "/scan", "T"};
 const core::EventType kMap{"/b", "/map", "T"};
 const core::EventType kPose{"/b", "/pose", "T[status=1]"};
 
-// Each event type in turn, 40 ms after the other, from a time on; counted into one of the halves.
+// Counts each event type in turn, 40 ms apart, from a time on, into one of the halves.
 void trainOn(TrainedModel& model, const Types& types, std::int64_t start, std::size_t half) {
   core::paper::DelayTrainer trainer(model.statistics);
   core::evidence::Trainer evidence(model.evidence.at(half), model.window);

@@ -13,7 +13,7 @@
 
 namespace self_awareness::ros1 {
 
-/// A bag that cannot be used; the message names the file and the way out.
+/// A bag that cannot be used; the message names the file and what to do.
 class BagError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -24,18 +24,18 @@ struct TimeRange {
   std::optional<double> start;  ///< [s]; none: from the beginning
   std::optional<double> end;    ///< [s]; none: to the end
 
-  /// @throw std::invalid_argument if a value is negative, NaN, or the end is not behind the start
+  /// @throw std::invalid_argument if a value is negative, NaN, or the end is not after the start
   void validate() const;
 };
 
-/// What a bag's index says of it.
+/// What a bag's index says about the bag.
 struct BagSummary {
   std::string path;
   std::int64_t start = 0;      ///< of the first message [ns]
   std::int64_t end = 0;        ///< of the last message [ns]
   std::uint64_t messages = 0;  ///< in the bag, whether they are events or not
-  /// Over the time and the topic of every message: the same however the bag is compressed, and
-  /// whichever program wrote the same messages once more.
+  /// Hash over the time and the topic of every message. It does not depend on compression, or on
+  /// the program that wrote the messages again.
   std::uint64_t fingerprint = 0;
   bool has_sources = false;  ///< at least one connection names its publisher
 };
@@ -43,12 +43,12 @@ struct BagSummary {
 struct BagIndex;
 
 /// Reads a bag as a stream of events. Time, topic, type and callerid come from the index, which is
-/// read once and kept (24 bytes a message); a message itself is read only if the encoding needs
+/// read once and kept (24 bytes a message). A message itself is read only if the encoding needs
 /// its content.
 class BagReader {
  public:
   using Handler = std::function<void(const core::Event&)>;
-  /// Called now and then with the number of messages passed and of all; may throw to stop.
+  /// Called from time to time with the number of messages passed and of all; may throw to stop.
   using Progress = std::function<void(std::uint64_t done, std::uint64_t all)>;
 
   /// @throw BagError if the file is missing, no bag, unindexed, truncated or without messages
@@ -57,7 +57,7 @@ class BagReader {
 
   const BagSummary& summary() const { return summary_; }
   /// First and last stamp [ns] of a range.
-  /// @throw std::invalid_argument if it is none
+  /// @throw std::invalid_argument if the range is not valid
   std::pair<std::int64_t, std::int64_t> limits(const TimeRange& range) const;
   /// Calls the handler with every event of the range, in the order of the recording.
   /// @throw BagError if the range holds no time of the recording or a message cannot be read

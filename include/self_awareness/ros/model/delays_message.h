@@ -5,11 +5,11 @@
 
 namespace self_awareness::ros1 {
 
-/// The delays from all event types to one.
+/// Message with the delays from all event types to one, `to`.
 self_awareness::DelayHistograms toMessage(const core::paper::DelayStatistics& statistics,
                                           core::EventId to);
 /// Adds a message's counts.
-/// @throw std::invalid_argument says what in the message contradicts itself or the event types
+/// @throw std::invalid_argument names the contradiction in the message, or with the event types
 void addMessage(const self_awareness::DelayHistograms& message,
                 core::paper::DelayStatistics& statistics);
 

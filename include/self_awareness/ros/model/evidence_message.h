@@ -11,24 +11,25 @@
 
 namespace self_awareness::ros1 {
 
-/// Counts with all their pairs.
+/// Message with counts and all their pairs.
 self_awareness::Evidence toMessage(const core::evidence::Statistics& statistics);
-/// The counts of an event type and its partners.
+/// Message with the counts of an event type and its partners.
 self_awareness::EvidencePairs pairsMessage(const core::evidence::Statistics& statistics,
                                            core::EventId id);
-/// @param vocabulary whose ids the message uses
-/// @throw std::invalid_argument says what in the message contradicts itself
+/// @param vocabulary with the ids that the message uses
+/// @throw std::invalid_argument names the contradiction in the message
 core::evidence::Statistics fromMessage(const self_awareness::Evidence& message,
                                        const core::Vocabulary& vocabulary);
-/// Gives an event type the partners that a message holds.
-/// @throw std::invalid_argument says what in the message contradicts itself or the event types
+/// Gives an event type the partners of a message.
+/// @throw std::invalid_argument names the contradiction in the message, or with the event types
 void setPairs(const self_awareness::EvidencePairs& message,
               core::evidence::Statistics& statistics);
 
 self_awareness::Track toMessage(const core::evidence::Track& track);
-/// @throw std::invalid_argument if there is no such channel
+/// @throw std::invalid_argument if the message's channel does not exist
 core::evidence::Track fromMessage(const self_awareness::Track& message);
 
+/// The limits of a calibration.
 core::evidence::Limits limitsOf(const self_awareness::EvidenceCalibration& message);
 
 }  // namespace self_awareness::ros1

@@ -20,43 +20,45 @@
 
 namespace self_awareness::ros1 {
 
-/// A model file that cannot be used; the message names the file and the way out.
+/// A model file that cannot be used; the message names the file and what to do.
 class ModelFileError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// What a model file holds: counts for the evidence detector, for the paper's, or for both.
+/// What a model file holds: counts for the evidence detector, for the paper's, or for both
+/// (docs/method.md, sections 2.1 and 3.1).
 struct TrainedModel {
   EncodingRules encoding;
   std::int64_t window = core::kDefaultWindow;  ///< length of a window [ns]
   /// Counts of the paper's detector; without delays where there are none, or they were not loaded.
   core::paper::DelayStatistics statistics{core::paper::Binning{}};
-  /// All counts of the evidence detector, of the two halves of the training; without event types
-  /// where there are none, or they were not loaded. Models are added, and trained on, by these.
+  /// All counts of the evidence detector, of each half of the training; without event types where
+  /// there are none, or they were not loaded. merge() and further training need them.
   std::array<core::evidence::Statistics, 2> evidence;
-  /// What of them the evidence detector judges by.
+  /// The part of them that the evidence detector judges by.
   core::evidence::Watched watched;
   std::size_t predecessors =
-      core::evidence::kPredecessors;  ///< of an event type that are watched at most
-  core::SourceGraph graph;            ///< who listens to whom; empty: not known
-  std::vector<self_awareness::Recording> recordings;       ///< trained on
+      core::evidence::kPredecessors;  ///< most that are watched of an event type
+  core::SourceGraph graph;            ///< whose messages reach whom; empty: not known
+  std::vector<self_awareness::Recording> recordings;       ///< that it was trained on
   std::optional<self_awareness::Calibration> calibration;  ///< of the paper's detector
   std::optional<self_awareness::EvidenceCalibration> evidence_calibration;
   ros::Time stamp;  ///< when it was trained
 
   const core::Vocabulary& vocabulary() const { return statistics.vocabulary(); }
-  /// Whether it holds the counts of the paper's detector.
+  /// Whether the model holds the counts of the paper's detector.
   bool hasDelays() const { return statistics.hasDelays(); }
-  /// @throw std::invalid_argument if not; says how to get them
+  /// @throw std::invalid_argument if hasDelays() is false; says how to get them
   void requireDelays() const;
-  /// Whether it holds all counts of the evidence detector.
+  /// Whether the model holds all counts of the evidence detector.
   bool hasEvidence() const { return evidence[0].size() > 0; }
-  /// Whether it was chosen what is watched.
+  /// Whether watch() has chosen what is watched.
   bool isWatched() const { return watched.halves[0].size() > 0; }
-  /// @throw std::invalid_argument if it was not, or not trained for the evidence detector
+  /// @throw std::invalid_argument if isWatched() is false, or the model was not trained for the
+  /// evidence detector
   void requireWatched() const;
-  /// What it was trained for, as far as it was loaded: "evidence", "paper" or "both".
+  /// What the model was trained for, as far as it was loaded: "evidence", "paper" or "both".
   std::string detectors() const;
   /// Number of gaps between two events of a type.
   std::uint64_t gaps(core::EventId id) const;
@@ -64,33 +66,33 @@ struct TrainedModel {
   std::size_t pairs() const;
   /// Forgets all counts but those that the evidence detector judges by.
   void dropCounts();
-  /// Chooses what is watched, by all counts of the evidence detector.
-  /// @throw std::invalid_argument if it does not hold them
+  /// Chooses what is watched, by all counts of the evidence detector (docs/method.md, section 3).
+  /// @throw std::invalid_argument if hasEvidence() is false
   void watch();
-  /// s* of eq. 5, if the model was calibrated.
+  /// s* of eq. 5; none: not calibrated.
   std::optional<double> threshold() const;
-  /// Limits of the evidence, if it was calibrated.
+  /// Limits of the evidence; none: not calibrated.
   std::optional<core::evidence::Limits> limits() const;
 };
 
-/// What of a model file's counts is read: they take time and memory where event types are many.
+/// Which counts of a model file are read: with many event types, they take time and memory.
 enum class ModelCounts {
   kWatched,  ///< what the evidence detector judges by
-  kDelays,   ///< those of the paper's detector, too, where there are any
+  kDelays,   ///< also those of the paper's detector, if there are any
   kAll
 };
 
-/// The message on /model.
+/// The message on the topic /model of a model file.
 self_awareness::Model toMessage(const TrainedModel& model);
-/// @throw std::invalid_argument says what in the message contradicts itself
+/// @throw std::invalid_argument names the contradiction in the message
 TrainedModel fromMessage(const self_awareness::Model& message);
 
-/// Writes a temporary file beside `path` and renames it, so that no half-written model is ever
-/// seen.
-/// @throw ModelFileError
-/// @throw std::logic_error if what is watched was not chosen, or counts were dropped
+/// Writes a temporary file beside `path` and renames it: no program ever reads a model that is
+/// only half written.
+/// @throw ModelFileError if the file cannot be written
+/// @throw std::logic_error if watch() was not called, or counts were dropped
 void saveModel(const TrainedModel& model, const std::string& path);
-/// @throw ModelFileError if the file is missing, no model, of another version, or damaged
+/// @throw ModelFileError if the file is missing, not a model, of another version, or damaged
 TrainedModel loadModel(const std::string& path, ModelCounts counts = ModelCounts::kAll);
 
 }  // namespace self_awareness::ros1

@@ -4,11 +4,11 @@
 
 namespace self_awareness::ros1 {
 
-/// Adds what another model learned: counts to counts and half to half, so that the order in which
-/// models are added decides on nothing but the ids. Edges and recordings are those of both.
-/// Calibrations are dropped, as they were made for less, and what is watched is to be chosen anew.
-/// @throw std::invalid_argument says what differs where the two do not count the same things, or
-/// which type field has too many values together; the model is as it was then
+/// Adds what another model learned: counts to counts, and half to half. The order in which models
+/// are added decides nothing but the ids. Edges and recordings are those of both. Calibrations are
+/// dropped, since they were made for fewer counts, and watch() must be called again.
+/// @throw std::invalid_argument if the two do not count the same things, or a type field has too
+/// many values in both together; says what it is, and leaves the model as it was
 void merge(TrainedModel& model, const TrainedModel& other);
 
 }  // namespace self_awareness::ros1
