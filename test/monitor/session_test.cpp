@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <set>
+#include <stdexcept>
 #include <string>
 
 namespace self_awareness {
@@ -55,6 +56,14 @@ TEST(Session, IsCalibratedForTheDetectorThatWasChosen) {
   trained.calibration = self_awareness::Calibration();
   trained.calibration->threshold = 0.1;
   EXPECT_TRUE(Session(trained, byPaper(), [](const core::Verdict&) {}).calibrated());
+}
+
+TEST(Session, NeedsTheCountsOfItsDetector) {
+  EXPECT_THROW(Session(model(), MonitorParameters(), [](const core::Verdict&) {}),
+               std::invalid_argument);
+  ros1::TrainedModel without = model();
+  without.dropCounts();
+  EXPECT_THROW(Session(without, byPaper(), [](const core::Verdict&) {}), std::invalid_argument);
 }
 
 TEST(Session, JudgesItsWindowsInTurn) {
