@@ -27,7 +27,9 @@ packages_debian=(
   pybind11-dev libboost-filesystem-dev libeigen3-dev
   python3-numpy python3-matplotlib python3-tqdm python3-yaml
   catkin-lint clang-format libgtest-dev libgmock-dev nlohmann-json3-dev procps python3-pytest
-  python3-distributed python3-flake8 python3-mypy
+  python3-flake8 python3-mypy
+  # Debian 11's distributed imports tornado, but its package does not depend on it.
+  python3-distributed python3-tornado
 )
 packages_noetic=(
   g++ make cmake python3-dev python3-setuptools

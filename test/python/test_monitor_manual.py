@@ -1,7 +1,7 @@
 """The comment of the class Monitor is its manual: complete, and as the code and the configuration.
 
-live_rules_test.py checks with a running monitor that the defaults of the configuration are those of
-the code.
+live_rules_test.py checks with a running monitor that the defaults of the configuration are those
+of the code.
 """
 from __future__ import annotations
 
