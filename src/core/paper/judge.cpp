@@ -3,7 +3,6 @@
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
-#include <utility>
 #include <vector>
 
 #include "core/paper/blame.h"
@@ -74,9 +73,9 @@ class Judge : public core::Judge {
 
 }  // namespace
 
-std::unique_ptr<core::Judge> makeJudge(std::shared_ptr<const Model> model,
+std::unique_ptr<core::Judge> makeJudge(const std::shared_ptr<const Model>& model,
                                        std::optional<double> threshold, bool silence_is_abnormal) {
-  return std::make_unique<Judge>(std::move(model), threshold, silence_is_abnormal);
+  return std::make_unique<Judge>(model, threshold, silence_is_abnormal);
 }
 
 }  // namespace self_awareness::core::paper

@@ -13,7 +13,7 @@ namespace self_awareness::core::paper {
 /// @param threshold s*; none: windows are scored and never abnormal
 /// @param silence_is_abnormal true: a window without events scores 0; false: it has no score
 /// @throw std::invalid_argument if the threshold is not finite
-std::unique_ptr<core::Judge> makeJudge(std::shared_ptr<const Model> model,
+std::unique_ptr<core::Judge> makeJudge(const std::shared_ptr<const Model>& model,
                                        std::optional<double> threshold, bool silence_is_abnormal);
 
 }  // namespace self_awareness::core::paper
