@@ -204,8 +204,8 @@ void Scorer::capAt(const Limits& limits) {
       cap(track, pairs_[number].sums.caps[0]);
       cap(track + 1, pairs_[number].sums.caps[1]);
     } else if (channel == Channel::kAnswer) {
-      cap(track,
-          blocks_[number / AnswerBlock::kAnswers].sums.caps[number % AnswerBlock::kAnswers]);
+      cap(track, blocks_[number / AnswerBlock::kAnswers]
+                     .sums.caps[static_cast<int>(number % AnswerBlock::kAnswers)]);
     }
   }
 }
@@ -229,7 +229,7 @@ void Scorer::disarmPair(std::size_t number) {
 void Scorer::disarmAnswer(std::size_t number) {
   AnswerBlock& block = blocks_[number / AnswerBlock::kAnswers];
   const std::size_t answer = number % AnswerBlock::kAnswers;
-  block.sums.values[answer] = 0;
+  block.sums.values[static_cast<int>(answer)] = 0;
   block.unarmed |= 1U << answer;
   answers_arming_[number] = {};
 }
@@ -261,7 +261,7 @@ const std::vector<double>& Scorer::closeWindow(std::int64_t end) {
       case Channel::kAnswer: {
         const AnswerBlock& block = blocks_[state_of_[track] / AnswerBlock::kAnswers];
         const std::size_t answer = state_of_[track] % AnswerBlock::kAnswers;
-        evidence_[track] = block.armed(answer) ? block.sums.values[answer] : 0;
+        evidence_[track] = block.armed(answer) ? block.sums.values[static_cast<int>(answer)] : 0;
         break;
       }
     }
