@@ -80,14 +80,20 @@ source_ros() {  # ROS's setup files use variables that are not set
   set -u
 }
 
+on_debian_11() { [ "$(. /etc/os-release && echo "$ID-${VERSION_ID:-}")" = debian-11 ]; }
+
 # build [TARGET...]
 build() {
   say "Building in $workspace"
   mkdir -p "$workspace/src"
   ln -sfn "$checkout" "$workspace/src/self_awareness"
   [ ! -d /opt/ros/noetic ] || source_ros /opt/ros/noetic/setup.bash
+  local options=(-DPYTHON_EXECUTABLE=/usr/bin/python3)
+  # Debian 11's catkin caches that it has found GMock: a second run of CMake does not look for it
+  # again, and has no targets of gtest. Without GMock, catkin builds gtest from its sources.
+  ! on_debian_11 || options+=(-DCMAKE_DISABLE_FIND_PACKAGE_GMock=TRUE)
   # "|| return", because set -e has no effect inside a condition.
-  catkin_make --directory "$workspace" -DPYTHON_EXECUTABLE=/usr/bin/python3 "$@" || return
+  catkin_make --directory "$workspace" "${options[@]}" "$@" || return
   source_ros "$workspace/devel/setup.bash"
   find_plugins_of_debian_11
 }
@@ -95,7 +101,7 @@ build() {
 # Debian 11's pluginlib does not look where Debian 11 installs the libraries of plugins, such as
 # those of diagnostic_aggregator. It does look in a prefix that has them in lib/.
 find_plugins_of_debian_11() {
-  [ "$(. /etc/os-release && echo "$ID-${VERSION_ID:-}")" = debian-11 ] || return 0
+  on_debian_11 || return 0
   mkdir -p "$workspace/debian-11"
   ln -sfn "/usr/lib/$(gcc -dumpmachine)" "$workspace/debian-11/lib"
   export CMAKE_PREFIX_PATH=$CMAKE_PREFIX_PATH:$workspace/debian-11
