@@ -23,7 +23,8 @@ constexpr std::int64_t kGoneGaps = 5;   // times the longest gap in training
 constexpr double kMostEvidence = 200;   // while limits are not known
 constexpr double kMostOfLimit = 1.5;    // in units of the limit
 // Larger than any step of an answer track: taken from the step of a missed answer if it came.
-constexpr double kMoreThanAnyStep = 1e6;
+// By so much the numbers of two events differ at least. An answer adds or takes less than 3 [nat].
+constexpr double kMoreThanAnyStep = 1024;
 
 }  // namespace
 
@@ -147,9 +148,9 @@ std::optional<std::int64_t> Scorer::add(const Event& event) {
     for (AnswerBlock* block = blocks_.data() + type.blocks_begin; block != blocks_end; ++block) {
       const Eigen::Array4d others(numbers[block->to[0]], numbers[block->to[1]],
                                   numbers[block->to[2]], numbers[block->to[3]]);
-      // Numbers are whole: this is 1 or more for one that came. A select would not be vectorised.
-      const Eigen::Array4d came = (others - last).max(0.0);
-      block->sums.add((block->missed - kMoreThanAnyStep * came).max(block->answered));
+      // One that came has a number so much larger, one that did not so much smaller, that these
+      // are the steps of the one and of the other. Eigen does not vectorise a select.
+      block->sums.add((last - others).max(block->answered).min(block->missed));
       if (block->unarmed != 0) {
         armAnswers(static_cast<std::size_t>(block - blocks_.data()), last);
       }
@@ -160,7 +161,8 @@ std::optional<std::int64_t> Scorer::add(const Event& event) {
     }
   }
   stamps_[event.id] = event.stamp;
-  numbers_[event.id] = ++number_;
+  number_ += kMoreThanAnyStep;
+  numbers_[event.id] = number_;
   return gap;
 }
 

@@ -125,8 +125,8 @@ class Scorer {
   std::vector<std::size_t> state_of_;                // number of its pair or answer, by track
   std::vector<std::vector<std::size_t>> tracks_of_;  // delay and answer tracks, by id
   std::vector<std::int64_t> stamps_;                 // of the last event [ns], by id
-  // Number of the last event in the recording, from 1, by id; 0: never seen. A double is exact up
-  // to 2^53, and every processor that adds vectors of double can compare them, too.
+  // Number of the last event in the recording, by id, in steps of kMoreThanAnyStep; 0: never seen.
+  // Steps of answers are made of them, so they are doubles: exact for 2^43 events.
   std::vector<double> numbers_;
   double number_ = 0;
   RecentCounts counts_;
