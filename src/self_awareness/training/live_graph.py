@@ -1,15 +1,15 @@
 """Asks the running robot who listens to whom; the blame needs it to tell roots from victims."""
 from __future__ import annotations
 
-from typing import Dict, Set
+from typing import Set, Tuple
 
 from self_awareness import stable_name
 
 _CALLER_ID = '/train'
 
 
-def fetch() -> Dict[str, Set[str]]:
-    """Return the nodes that subscribe to what a node publishes, by the node.
+def fetch() -> Set[Tuple[str, str, str]]:
+    """Return whose messages reach whom: (publisher, topic, subscriber), as in TrainedModel.graph.
 
     Anonymous numbers are removed from the names, as the encoding does.
 
@@ -25,10 +25,6 @@ def fetch() -> Dict[str, Set[str]]:
         raise ValueError(f'--graph: no master at {rosgraph.get_master_uri()}: is the robot '
                          'running, and is ROS_MASTER_URI right?') from error
     listeners = dict(subscribers)
-    graph: Dict[str, Set[str]] = {}
-    for topic, nodes in publishers:
-        for node in nodes:
-            followers = {stable_name(listener) for listener in listeners.get(topic, [])}
-            if followers:
-                graph.setdefault(stable_name(node), set()).update(followers)
-    return graph
+    return {(stable_name(publisher), topic, stable_name(subscriber))
+            for topic, nodes in publishers for publisher in nodes
+            for subscriber in listeners.get(topic, [])}
