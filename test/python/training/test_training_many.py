@@ -11,6 +11,7 @@ from conftest import jittery_robot, learned, robot, write_bag
 
 from self_awareness import EncodingRules, EventType, TrainedModel, Training, read_events
 from self_awareness.commands import train
+from self_awareness.training.robot_graph import RobotGraph
 
 LENGTH_S = 40.0
 
@@ -161,7 +162,8 @@ def test_the_graph_is_kept_unless_another_is_asked_for(bags: List[str], tmp_path
     model.graph = {('/laser', '/scan', '/slam')}
     model.save(str(output))
     assert trained(bags[1:2], output, '--add-to', str(output)).graph == model.graph
-    monkeypatch.setattr('self_awareness.training.live_graph.fetch', lambda: {('/a', '/x', '/b')})
+    monkeypatch.setattr('self_awareness.training.live_graph.fetch',
+                        lambda: RobotGraph({'/x': {'/a'}}, {'/x': {'/b'}}))
     again = trained(bags[2:3], output, '--add-to', str(output), '--graph')
     assert again.graph == {('/a', '/x', '/b')}
 
