@@ -60,6 +60,9 @@ class RecordTest(unittest.TestCase):
         self.assertIn((name, '/a', name), RobotGraph.load(graph_file(bag)).edges())
         self.assertEqual(subscribers('/a'), [])
 
+    def test_only_the_topics_that_are_named_are_recorded(self) -> None:
+        self.assertEqual(self.topics(self.record('topics:=/a /c')), {'/a'})
+
 
 if __name__ == '__main__':
     rospy.init_node('recording')  # as rostest calls it, too
