@@ -64,7 +64,7 @@ Monitor::Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& priv
       std::make_unique<Discovery>(node_handle_, live_events_->arrivals(), parameters_.subscribe,
                                   parameters_.poll_interval, service_names);
   try {
-    load();
+    load(parameters_.model);
   } catch (const ros1::ModelFileError& error) {
     // Not fatal: the operator sees it in the diagnostics, and ~reload tries again.
     model_error_ = error.what();
@@ -79,28 +79,37 @@ Monitor::~Monitor() {
   live_events_.reset();
 }
 
-void Monitor::load() {
-  if (parameters_.model.empty()) {
+void Monitor::load(const std::string& path) {
+  std::unique_ptr<Session> session = makeSession(path);
+  parameters_.model = path;
+  startSession(std::move(session));
+}
+
+std::unique_ptr<Session> Monitor::makeSession(const std::string& path) {
+  if (path.empty()) {
     throw ros1::ModelFileError(private_node_handle_.resolveName("model") +
                                " is not set; give it the path of a model file");
   }
-  startSession(
-      ros1::loadModel(parameters_.model, parameters_.method == MonitorParameters::Method::kPaper
-                                             ? ros1::ModelCounts::kDelays
-                                             : ros1::ModelCounts::kWatched));
-}
-
-std::unique_ptr<Session> Monitor::makeSession(ros1::TrainedModel trained) {
+  ros1::TrainedModel trained = ros1::loadModel(
+      path, parameters_.method == MonitorParameters::Method::kPaper ? ros1::ModelCounts::kDelays
+                                                                    : ros1::ModelCounts::kWatched);
   try {
     return std::make_unique<Session>(std::move(trained), parameters_,
                                      [this](const core::Verdict& verdict) { onVerdict(verdict); });
   } catch (const std::invalid_argument& error) {
-    throw ros1::ModelFileError(parameters_.model + ": " + error.what());
+    throw ros1::ModelFileError(path + ": " + error.what());
   }
 }
 
-void Monitor::startSession(ros1::TrainedModel trained) {
-  session_ = makeSession(std::move(trained));
+std::string Monitor::modelPath() const {
+  // The question would wait for a master that hangs, and all events with it.
+  return discovery_->state().master_answers
+             ? MonitorParameters::loadModel(private_node_handle_, parameters_.model)
+             : parameters_.model;
+}
+
+void Monitor::startSession(std::unique_ptr<Session> session) {
+  session_ = std::move(session);
   model_error_.clear();
   alarm_.forgetWindow();
   heard_.setTypes(session_->types());
@@ -242,8 +251,11 @@ bool Monitor::onClear(std_srvs::Trigger::Request& /*request*/,
 bool Monitor::onReload(std_srvs::Trigger::Request& /*request*/,
                        std_srvs::Trigger::Response& response) {
   try {
-    load();
-  } catch (const ros1::ModelFileError& error) {
+    load(modelPath());
+  } catch (const std::exception& error) {
+    if (!session_) {
+      model_error_ = error.what();
+    }
     response.success = false;
     response.message = std::string(error.what()) + (session_ ? "; the old model stays" : "");
     ROS_ERROR("%s", response.message.c_str());

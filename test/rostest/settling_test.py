@@ -133,6 +133,29 @@ class SettlingTest(MonitorCase):
             self.assertEqual(alarm.message, 'settling: model loaded')
 
     @again_if_clock_was_set
+    def test_reload_takes_the_model_that_is_set_now(self) -> None:
+        first, second = self.model(name='first'), self.model(name='second', topics=('/a', '/b'))
+        with Talker('/a'), Talker('/b'), self.monitor(first), MonitorListener() as listener:
+            listener.await_settled()
+            rospy.set_param('/self_awareness/model', second)
+            response = self.call('/self_awareness/reload')
+            self.assertTrue(response.success, response.message)
+            self.assertIn(second, response.message)
+            await_condition('the other model is said', lambda: (
+                listener.value('communication', 'model') == second), 20)
+            listener.await_settled()
+            await_condition('events of both', lambda: listener.statuses[-1].events > 2, 20)
+            for bad in (self.path('missing'), 42):
+                rospy.set_param('/self_awareness/model', bad)
+                response = self.call('/self_awareness/reload')
+                self.assertFalse(response.success)
+                self.assertIn('the old model stays', response.message)
+            self.assertEqual(listener.value('communication', 'model'), second)
+            # As after a restart of the master, which forgets its parameters.
+            rospy.delete_param('/self_awareness/model')
+            self.assertIn(second, self.call('/self_awareness/reload').message)
+
+    @again_if_clock_was_set
     def test_after_reload_the_next_message_of_a_latching_connection_is_an_event(self) -> None:
         latching = rospy.Publisher('/latched', String, latch=True, queue_size=1)
         self.addCleanup(latching.unregister)
