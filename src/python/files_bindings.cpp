@@ -301,6 +301,8 @@ void bindModel(py::module& m) {
           "stamp", [](const TrainedModel& self) { return self.stamp.toNSec(); }, "[ns]")
       .def_readwrite("calibration", &TrainedModel::calibration,
                      "of the paper's detector; None: not calibrated")
+      .def_readwrite("findings", &TrainedModel::findings,
+                     "LimitFindings of the recordings of the training")
       .def_readwrite("evidence_calibration", &TrainedModel::evidence_calibration,
                      "of the evidence detector; None: not calibrated")
       .def_property(

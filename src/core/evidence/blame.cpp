@@ -62,8 +62,12 @@ std::vector<Suspect> Blame::suspects(const std::vector<double>& shares, const Sc
 std::vector<Blame::Candidate> Blame::silent(const std::vector<double>& shares,
                                             const Scorer& scorer) const {
   std::set<EventId> missing;
+  std::map<EventId, std::size_t> unanswered;  // tracks
   for (std::size_t track = 0; track < shares.size(); ++track) {
     const Channel channel = model_->tracks()[track].channel;
+    if (shares[track] > kNearLimit && channel == Channel::kDeadline) {
+      unanswered.emplace(model_->tracks()[track].to, track);
+    }
     if (shares[track] > kNearLimit &&
         (channel == Channel::kOverdue || channel == Channel::kAnswer)) {
       missing.insert(model_->tracks()[track].to);
@@ -74,6 +78,12 @@ std::vector<Blame::Candidate> Blame::silent(const std::vector<double>& shares,
     const double survival = logSurvival(id, scorer);
     if (survival < kRareSilence) {
       candidates.push_back({silence(id, scorer), survival});
+    }
+  }
+  for (const auto& [id, track] : unanswered) {
+    const double survival = logSurvival(id, scorer);
+    if (missing.count(id) == 0 || survival >= kRareSilence) {
+      candidates.push_back({unusualTrack(track, scorer), std::min(survival, kRareSilence)});
     }
   }
   return rootFirst(std::move(candidates));
@@ -200,6 +210,11 @@ Suspect Blame::unusualTrack(std::size_t track, const Scorer& scorer) const {
     case Channel::kAnswer:
       suspect.reason = Suspect::Reason::kAnswer;
       suspect.other = toString(model_->vocabulary().at(from));
+      break;
+    case Channel::kDeadline:
+      suspect.reason = Suspect::Reason::kUnanswered;
+      suspect.other = toString(model_->vocabulary().at(from));
+      suspect.silence = scorer.waiting(track);
       break;
   }
   return suspect;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -17,6 +18,13 @@ constexpr double kMostSurprise = 6;
 // Delays that all fall into one bin vary by nothing.
 constexpr double kLeastDeviation = 0.5;  // [nat]
 
+// Delays that differ by less than this from the usual ones are no fault: so many milliseconds, or
+// such a share of the period.
+constexpr double kLeastEffect = 10e6;  // [ns]
+constexpr double kLeastEffectOfPeriod = 0.03;
+constexpr double kLeastEffectOfGap = 0.1;  // the same for the gaps of one event type
+constexpr double kUsual = 0.9;  // share of the delays that are usual
+
 // Share of the usual answers that a fault takes away: the fault that is looked for.
 constexpr double kLost = 0.5;
 constexpr double kLeastMissRate = 0.1;
@@ -28,6 +36,7 @@ constexpr double kLeastRateLimit = 3;
 // One late event makes two unusual delays, one too long and one too short: they must not be
 // enough.
 constexpr double kLeastDelayLimit = 2 * kMostSurprise + 1;
+constexpr double kLeastDeadline = 0.5;  // [s]
 constexpr double kLeastMisses = 4;
 constexpr double kLeastAnswerLimit = 5;  // [nat]
 
@@ -133,6 +142,36 @@ void Model::learnDelays(const std::array<Statistics, 2>& halves) {
     std::transform(logs.begin(), logs.end(), surprises.begin(), [&](double log) {
       return std::min((-log - usual.mean()) / usual.deviation(), kMostSurprise);
     });
+    forgiveSmallEffects(from, to, surprises);
+  }
+}
+
+void Model::forgiveSmallEffects(EventId from, EventId to, Surprises& surprises) const {
+  const Statistics::Delays& delays = learned().delays(from, to);
+  const auto total = static_cast<double>(learned().total(from, to));
+  const Statistics::Type& asking = learned().type(from);
+  const double period =
+      static_cast<double>(asking.gap_sum) / static_cast<double>(std::max<std::uint64_t>(asking.gaps, 1));
+  const double effect = std::max(kLeastEffect, (from == to ? kLeastEffectOfGap : kLeastEffectOfPeriod) * period);
+  const auto lower = [](std::size_t bin) { return static_cast<double>(log_bins::lowerEdge(bin)); };
+  const auto upper = [&](std::size_t bin) {
+    return bin + 1 < log_bins::kBins ? lower(bin + 1) : std::numeric_limits<double>::infinity();
+  };
+  double shortest = 0;  // of the usual delays [ns]
+  double longest = 0;
+  double below = 0;
+  for (std::size_t bin = 0; bin < delays.size(); ++bin) {
+    shortest = below <= (1 - kUsual) / 2 * total ? lower(bin) : shortest;
+    longest = below < (1 + kUsual) / 2 * total ? upper(bin) : longest;
+    below += delays[bin];
+  }
+  for (std::size_t bin = 0; bin < surprises.size(); ++bin) {
+    // A delay near 0 may wrap to a period, and a delay of a period to 0.
+    for (const double shift : {0.0, period, -period}) {
+      if (upper(bin) + shift <= longest + effect && lower(bin) + shift >= shortest - effect) {
+        surprises[bin] = std::min(surprises[bin], 0.0);
+      }
+    }
   }
 }
 
@@ -145,7 +184,8 @@ void Model::learnAnswers() {
           std::clamp(evidence::missRate(learned().type(from).gaps, learned().answers(from, to)),
                      kLeastMissRate, kMostMissRate);
       const double faulty = usual + (1 - usual) * kLost;
-      steps_[track] = {std::log((1 - faulty) / (1 - usual)), std::log(faulty / usual), usual};
+      steps_[track] = {std::log((1 - faulty) / (1 - usual)), std::log(faulty / usual), usual,
+                       std::llround(usualDelay(from, to, 0.5) * 1e9)};
     }
   }
 }
@@ -229,6 +269,8 @@ double Model::leastLimit(std::size_t track) const {
       return kLeastDelayLimit;
     case Channel::kAnswer:
       return std::max(kLeastMisses * steps_[track].missed, kLeastAnswerLimit);
+    case Channel::kDeadline:
+      return kLeastDeadline;
   }
   return 0;
 }

@@ -20,21 +20,25 @@ constexpr std::uint32_t kArmingEvents = 30;
 constexpr double kUsualSurprise = 0.3;  // standard deviations above the mean of training
 constexpr double kUsualMisses = 0.15;   // share of the gaps above that of training
 constexpr std::int64_t kGoneGaps = 5;   // times the longest gap in training
-constexpr double kMostEvidence = 200;   // while limits are not known
-constexpr double kMostOfLimit = 1.5;    // in units of the limit
-// Larger than any step of an answer track: taken from the step of a missed answer if it came.
-// By so much the numbers of two events differ at least. An answer adds or takes less than 3 [nat].
-constexpr double kMoreThanAnyStep = 1024;
+constexpr std::uint32_t kMostFailures = 10;  // to arm, that count
+constexpr double kMostEvidence = 200;        // while limits are not known
+constexpr double kMostOfLimit = 1.5;         // in units of the limit
+// Smaller shares of a limit are what normal operation is made of: they link nothing.
+constexpr double kLeastLinked = 0.5;
+// A relation that has been abnormal for so long [ns], while both its event types come, has
+// changed: it is news once (docs/method.md, section 3.7).
+constexpr std::int64_t kAcceptAfter = 60 * kNanosecondsPerSecond;
 
 }  // namespace
 
 inline bool Scorer::arm(Arming& arming, double excess, double usual) {
   arming.excess += excess;
-  if (++arming.events < kArmingEvents) {
+  const std::uint32_t needed = kArmingEvents << std::min(arming.failures, kMostFailures);
+  if (++arming.events < needed) {
     return false;
   }
-  const bool armed = arming.excess <= usual * kArmingEvents;
-  arming = {};
+  const bool armed = arming.excess <= usual * needed;
+  arming = {0, 0, arming.failures + (armed ? 0 : 1)};
   return armed;
 }
 
@@ -46,11 +50,16 @@ Scorer::Scorer(std::shared_ptr<const Model> model, std::int64_t window)
 
 void Scorer::addTracks() {
   const std::vector<Track>& tracks = model_->tracks();
-  std::vector<std::vector<std::size_t>> pairs(model_->size());    // tracks by `to`
-  std::vector<std::vector<std::size_t>> answers(model_->size());  // tracks by `from`
+  std::vector<std::vector<std::size_t>> pairs(model_->size());      // tracks by `to`
+  std::vector<std::vector<std::size_t>> answers(model_->size());    // tracks by `from`
+  std::vector<std::vector<std::size_t>> deadlines(model_->size());  // tracks by `from`
   tracks_of_.resize(model_->size());
   for (std::size_t track = 0; track < tracks.size(); ++track) {
     const auto& [channel, to, from] = tracks[track];
+    if (channel == Channel::kDeadline) {
+      deadlines[from].push_back(track);
+      continue;
+    }
     if (channel == Channel::kDelay) {
       pairs[to].push_back(track);
     } else if (channel == Channel::kAnswer) {
@@ -64,7 +73,7 @@ void Scorer::addTracks() {
     }
   }
   state_of_.resize(tracks.size());
-  Sums<2> none;
+  Sums none;
   none.caps.setConstant(kMostEvidence);
   for (EventId id = 0; id < model_->size(); ++id) {
     OfType type;
@@ -75,44 +84,52 @@ void Scorer::addTracks() {
       pairs_.push_back({tracks[track].from, false, 0, model_->surprises(track).data(), none});
     }
     type.pairs_end = static_cast<std::uint32_t>(pairs_.size());
-    type.blocks_begin = static_cast<std::uint32_t>(blocks_.size());
-    addAnswers(id, answers[id]);
-    type.blocks_end = static_cast<std::uint32_t>(blocks_.size());
-    types_.push_back(type);
-  }
-  pairs_arming_.resize(pairs_.size());
-}
-
-void Scorer::addAnswers(EventId from, const std::vector<std::size_t>& tracks) {
-  for (std::size_t k = 0; k < tracks.size(); ++k) {
-    const std::size_t answer = k % AnswerBlock::kAnswers;
-    if (answer == 0) {
-      blocks_.emplace_back().to.fill(from);
-      miss_rates_.resize(blocks_.size() * AnswerBlock::kAnswers);
-      answers_arming_.resize(blocks_.size() * AnswerBlock::kAnswers);
+    type.answers_begin = static_cast<std::uint32_t>(answers_.size());
+    for (const std::size_t track : answers[id]) {
+      state_of_[track] = answers_.size();
+      Answer& answer = answers_.emplace_back();
+      answer.to = tracks[track].to;
+      answer.usual_delay = model_->usualAnswer(track);
+      answer.answered = model_->answered(track);
+      answer.missed = model_->missed(track);
+      answer.usual = model_->missRate(track);
+      answer.cap = kMostEvidence;
     }
-    const std::size_t track = tracks[k];
-    state_of_[track] = (blocks_.size() - 1) * AnswerBlock::kAnswers + answer;
-    miss_rates_[state_of_[track]] = model_->missRate(track);
-    AnswerBlock& block = blocks_.back();
-    block.to[answer] = model_->tracks()[track].to;
-    block.answered[static_cast<int>(answer)] = model_->answered(track);
-    block.missed[static_cast<int>(answer)] = model_->missed(track);
-    block.sums.caps[static_cast<int>(answer)] = kMostEvidence;
+    type.answers_end = static_cast<std::uint32_t>(answers_.size());
+    type.deadlines_begin = static_cast<std::uint32_t>(deadlines_.size());
+    for (const std::size_t track : deadlines[id]) {
+      state_of_[track] = deadlines_.size();
+      deadlines_.push_back({tracks[track].to, false, 0});
+    }
+    type.deadlines_end = static_cast<std::uint32_t>(deadlines_.size());
+    types_.push_back(std::move(type));
+  }
+  for (std::uint32_t number = 0; number < deadlines_.size(); ++number) {
+    types_[deadlines_[number].to].answered_deadlines.push_back(number);
   }
 }
 
 void Scorer::restart() {
   stamps_.assign(model_->size(), 0);
+  first_stamps_.assign(model_->size(), 0);
   numbers_.assign(model_->size(), 0);
+  seen_.assign(model_->size(), 0);
   number_ = 0;
   counts_.restart();
   evidence_.assign(model_->tracks().size(), 0);
-  for (DelayPair& pair : pairs_) {
-    pair.last_delay = 0;
+  pairs_arming_.assign(pairs_.size(), {});
+  answers_arming_.assign(answers_.size(), {});
+  pairs_abnormal_since_.assign(pairs_.size(), 0);
+  answers_abnormal_since_.assign(answers_.size(), 0);
+  for (std::size_t pair = 0; pair < pairs_.size(); ++pair) {
+    pairs_[pair].last_delay = 0;
+    disarmPair(pair);
   }
-  for (EventId id = 0; id < model_->size(); ++id) {
-    disarm(id);
+  for (std::size_t answer = 0; answer < answers_.size(); ++answer) {
+    disarmAnswer(answer);
+  }
+  for (Deadline& deadline : deadlines_) {
+    deadline.open = false;
   }
 }
 
@@ -124,11 +141,11 @@ std::optional<std::int64_t> Scorer::add(const Event& event) {
   counts_.add(event.id);
   // Constant local copies: the compiler would look up again what it does not know to be constant.
   const std::int64_t* const stamps = stamps_.data();
-  const double* const numbers = numbers_.data();
-  const double last = numbers[event.id];
+  const std::uint64_t* const numbers = numbers_.data();
+  const std::uint64_t last = numbers[event.id];
   const Eigen::Array2d drifts(kDrift, kSlowDrift);
-  // Pairs and answers with a type that was never seen are not armed: arming takes back what is
-  // added to their sums here. So the many others need no check.
+  // Pairs with a type that was never seen are not armed: arming takes back what is added to their
+  // sums here. So the many others need no check.
   DelayPair* const pairs_end = pairs_.data() + type.pairs_end;
   for (DelayPair* pair = pairs_.data() + type.pairs_begin; pair != pairs_end; ++pair) {
     // Only the first event after another counts: later ones, while the other pauses, would count
@@ -142,27 +159,29 @@ std::optional<std::int64_t> Scorer::add(const Event& event) {
       armPair(static_cast<std::size_t>(pair - pairs_.data()), first, surprise);
     }
   }
+  for (std::uint32_t answer = type.answers_begin; answer < type.answers_end; ++answer) {
+    ask(answer, event.stamp);
+  }
+  for (const std::uint32_t deadline : type.answered_deadlines) {
+    deadlines_[deadline].open = false;
+  }
+  for (std::uint32_t deadline = type.deadlines_begin; deadline < type.deadlines_end; ++deadline) {
+    Deadline& state = deadlines_[deadline];
+    state.since = state.open ? state.since : event.stamp;
+    state.open = true;
+  }
   std::optional<std::int64_t> gap;
   if (last > 0) {
-    AnswerBlock* const blocks_end = blocks_.data() + type.blocks_end;
-    for (AnswerBlock* block = blocks_.data() + type.blocks_begin; block != blocks_end; ++block) {
-      const Eigen::Array4d others(numbers[block->to[0]], numbers[block->to[1]],
-                                  numbers[block->to[2]], numbers[block->to[3]]);
-      // One that came has a number so much larger, one that did not so much smaller, that these
-      // are the steps of the one and of the other. Eigen does not vectorise a select.
-      block->sums.add((last - others).max(block->answered).min(block->missed));
-      if (block->unarmed != 0) {
-        armAnswers(static_cast<std::size_t>(block - blocks_.data()), last);
-      }
-    }
     gap = event.stamp - stamps[event.id];
     if (*gap > type.gone_after) {
       disarm(event.id);
     }
+  } else {
+    first_stamps_[event.id] = event.stamp;
   }
   stamps_[event.id] = event.stamp;
-  number_ += kMoreThanAnyStep;
-  numbers_[event.id] = number_;
+  numbers_[event.id] = ++number_;
+  ++seen_[event.id];
   return gap;
 }
 
@@ -176,24 +195,38 @@ void Scorer::armPair(std::size_t number, bool first, double surprise) {
   }
 }
 
-void Scorer::armAnswers(std::size_t block, double since) {
-  AnswerBlock& answers = blocks_[block];
-  for (std::size_t k = 0; k < AnswerBlock::kAnswers; ++k) {
-    if (answers.armed(k)) {
-      continue;
-    }
-    const double other = numbers_[answers.to[k]];
-    const std::size_t number = block * AnswerBlock::kAnswers + k;
-    if (other == 0) {
-      answers.sums.values[static_cast<int>(k)] = 0;
-    } else if (arm(answers_arming_[number], (other <= since ? 1 : 0) - miss_rates_[number],
-                   kUsualMisses)) {
-      answers.unarmed &= ~(1U << k);
-    }
+void Scorer::ask(std::size_t number, std::int64_t stamp) {
+  Answer& answer = answers_[number];
+  // A burst is one question.
+  if (answer.asked && stamp - answer.asked_at < answer.usual_delay) {
+    return;
+  }
+  const std::uint64_t came = seen_[answer.to] - answer.seen;
+  const bool first = !answer.asked;
+  answer.asked = true;
+  answer.asked_at = stamp;
+  answer.seen = seen_[answer.to];
+  if (first || answer.seen == 0) {
+    return;
+  }
+  // Two timers of one rate whose phases cross give 0, 2, 0, 2 answers: nothing was left out.
+  double late = 0;
+  if (came > 0) {
+    late = std::min(static_cast<double>(came - 1), answer.owed);
+    answer.owed -= late;
+  } else {
+    answer.owed += 1;
+  }
+  answer.sum += came > 0 ? answer.answered - late * answer.missed : answer.missed;
+  answer.sum = std::max(std::min(answer.sum, answer.cap), 0.0);
+  if (!answer.armed) {
+    answer.armed = arm(answers_arming_[number], (came > 0 ? -late : 1) - answer.usual,
+                       kUsualMisses);
   }
 }
 
 void Scorer::capAt(const Limits& limits) {
+  has_limits_ = true;
   const auto cap = [&](std::size_t track, double& of_sum) {
     if (limits.tracks[track] > 0) {  // never so where it is NaN
       of_sum = kMostOfLimit * limits.tracks[track];
@@ -206,8 +239,7 @@ void Scorer::capAt(const Limits& limits) {
       cap(track, pairs_[number].sums.caps[0]);
       cap(track + 1, pairs_[number].sums.caps[1]);
     } else if (channel == Channel::kAnswer) {
-      cap(track, blocks_[number / AnswerBlock::kAnswers]
-                     .sums.caps[static_cast<int>(number % AnswerBlock::kAnswers)]);
+      cap(track, answers_[number].cap);
     }
   }
 }
@@ -225,20 +257,53 @@ void Scorer::disarm(EventId id) {
 void Scorer::disarmPair(std::size_t number) {
   pairs_[number].sums.values.setZero();
   pairs_[number].armed = false;
-  pairs_arming_[number] = {};
+  pairs_arming_[number] = {0, 0, pairs_arming_[number].failures};
+  pairs_abnormal_since_[number] = 0;
 }
 
 void Scorer::disarmAnswer(std::size_t number) {
-  AnswerBlock& block = blocks_[number / AnswerBlock::kAnswers];
-  const std::size_t answer = number % AnswerBlock::kAnswers;
-  block.sums.values[static_cast<int>(answer)] = 0;
-  block.unarmed |= 1U << answer;
-  answers_arming_[number] = {};
+  Answer& answer = answers_[number];
+  answer.sum = 0;
+  answer.owed = 0;
+  answer.asked = false;
+  answer.armed = false;
+  answers_arming_[number] = {0, 0, answers_arming_[number].failures};
+  answers_abnormal_since_[number] = 0;
+}
+
+void Scorer::accept(std::int64_t end) {
+  for (std::size_t number = 0; number < pairs_.size(); ++number) {
+    const Sums& sums = pairs_[number].sums;
+    std::int64_t& since = pairs_abnormal_since_[number];
+    if (!pairs_[number].armed || (sums.values * kMostOfLimit <= sums.caps).all()) {
+      since = 0;
+    } else if (since == 0) {
+      since = end;
+    } else if (end - since >= kAcceptAfter) {
+      ++pairs_arming_[number].failures;
+      disarmPair(number);
+    }
+  }
+  for (std::size_t number = 0; number < answers_.size(); ++number) {
+    const Answer& answer = answers_[number];
+    std::int64_t& since = answers_abnormal_since_[number];
+    if (!answer.armed || answer.sum * kMostOfLimit <= answer.cap) {
+      since = 0;
+    } else if (since == 0) {
+      since = end;
+    } else if (end - since >= kAcceptAfter && stamps_[answer.to] > since) {
+      ++answers_arming_[number].failures;
+      disarmAnswer(number);
+    }
+  }
 }
 
 const std::vector<double>& Scorer::closeWindow(std::int64_t end) {
   window_end_ = end;
   counts_.close();
+  if (has_limits_) {
+    accept(end);
+  }
   const std::vector<Track>& tracks = model_->tracks();
   for (std::size_t track = 0; track < tracks.size(); ++track) {
     const auto& [channel, id, from] = tracks[track];
@@ -250,7 +315,9 @@ const std::vector<double>& Scorer::closeWindow(std::int64_t end) {
       case Channel::kFewer:
       case Channel::kMore: {
         const double sign = channel == Channel::kMore ? 1 : -1;
-        const double more = counts_.full() && seen ? model_->rate(id, counts_.counts()[id]) : 0;
+        // A topic that began within the span has too few for that reason alone.
+        const bool valid = counts_.full() && seen && end - first_stamps_[id] >= kRateSpan;
+        const double more = valid ? model_->rate(id, counts_.counts()[id]) : 0;
         evidence_[track] = std::max(sign * more, 0.0);
         break;
       }
@@ -261,9 +328,13 @@ const std::vector<double>& Scorer::closeWindow(std::int64_t end) {
         break;
       }
       case Channel::kAnswer: {
-        const AnswerBlock& block = blocks_[state_of_[track] / AnswerBlock::kAnswers];
-        const std::size_t answer = state_of_[track] % AnswerBlock::kAnswers;
-        evidence_[track] = block.armed(answer) ? block.sums.values[static_cast<int>(answer)] : 0;
+        const Answer& answer = answers_[state_of_[track]];
+        evidence_[track] = answer.armed ? answer.sum : 0;
+        break;
+      }
+      case Channel::kDeadline: {
+        const Deadline& deadline = deadlines_[state_of_[track]];
+        evidence_[track] = deadline.open && seen ? toSeconds(end - deadline.since) : 0;
         break;
       }
     }
@@ -286,7 +357,7 @@ Sum sumUp(const std::vector<double>& evidence, const Model& model, const Limits&
     }
     if ((channel == Channel::kSlowDelay || channel == Channel::kAnswer) && share > 0) {
       double& of_type = linked[model.tracks()[track].to];
-      of_type = std::max(of_type, std::min(share, 1.0));
+      of_type = std::max(of_type, std::min((share - kLeastLinked) / (1 - kLeastLinked), 1.0));
     }
   }
   for (const double share : linked) {

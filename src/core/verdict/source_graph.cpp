@@ -5,6 +5,11 @@
 
 namespace self_awareness::core {
 
+bool SourceGraph::isConnected(const std::string& from, const std::string& to) const {
+  const auto followers = followers_.find(from);
+  return followers != followers_.end() && followers->second.count(to) > 0;
+}
+
 bool SourceGraph::isUpstream(const std::string& from, const std::string& to) const {
   const std::optional<std::size_t> there = distance(from, to);
   const std::optional<std::size_t> back = distance(to, from);

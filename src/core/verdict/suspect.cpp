@@ -34,6 +34,9 @@ std::string describe(const Suspect& suspect) {
       return (suspect.other.empty() ? "came after" : "delay after " + suspect.other + ":") + text;
     case Suspect::Reason::kAnswer:
       return "left out too often after " + suspect.other;
+    case Suspect::Reason::kUnanswered:
+      std::snprintf(text, sizeof text, "has not come for %.2f s after ", suspect.silence);
+      return text + suspect.other;
   }
   return "";
 }

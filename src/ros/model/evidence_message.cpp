@@ -152,9 +152,10 @@ evidence::Track fromMessage(const self_awareness::Track& message) {
                     static_cast<int>(evidence::Channel::kMore) == Track::MORE &&
                     static_cast<int>(evidence::Channel::kDelay) == Track::DELAY &&
                     static_cast<int>(evidence::Channel::kSlowDelay) == Track::SLOW_DELAY &&
-                    static_cast<int>(evidence::Channel::kAnswer) == Track::ANSWER,
+                    static_cast<int>(evidence::Channel::kAnswer) == Track::ANSWER &&
+                    static_cast<int>(evidence::Channel::kDeadline) == Track::DEADLINE,
                 "the message has the channels of the core");
-  check(message.channel <= Track::ANSWER, "it watches what this version does not know");
+  check(message.channel <= Track::DEADLINE, "it watches what this version does not know");
   return {static_cast<evidence::Channel>(message.channel), message.to_id, message.from_id};
 }
 

@@ -190,7 +190,7 @@ std::size_t TrainedModel::pairs() const {
 
 void TrainedModel::watch() {
   check(hasEvidence(), "loaded without its counts");
-  watched = core::evidence::watch(evidence[0], evidence[1], predecessors);
+  watched = core::evidence::watch(evidence[0], evidence[1], predecessors, graph);
 }
 
 void TrainedModel::dropCounts() {

@@ -6,7 +6,6 @@ are added up.
 """
 from __future__ import annotations
 
-import math
 import time
 from contextlib import closing
 from dataclasses import dataclass
@@ -108,14 +107,14 @@ def cross_fit(trained: TrainedModel, trained_on: Sequence[TrainedOn], settle_tim
         BagError: a recording cannot be read any more.
         TooLittleError: the recordings are too short.
     """
-    calibration = find(trained, settle_time, budget, trained_on, workers)
+    calibration = find(trained, settle_time, budget, trained_on, workers, keep_findings=True)
     calibration.method = 'cross-fit'
     calibration.recordings = trained.recordings[-len(trained_on):]
     return calibration
 
 
 def find(trained: TrainedModel, settle_time: int, budget: float, tasks: Sequence[Any],
-         workers: Optional[Workers] = None) -> EvidenceCalibration:
+         workers: Optional[Workers] = None, keep_findings: bool = False) -> EvidenceCalibration:
     """Return limits by recordings; without the method and the recordings, which the caller adds.
 
     Args:
@@ -124,6 +123,7 @@ def find(trained: TrainedModel, settle_time: int, budget: float, tasks: Sequence
         budget: false alarms an hour that the limits allow.
         tasks: HeldOut or TrainedOn recordings.
         workers: who does the work; None: this process.
+        keep_findings: the model keeps what the recordings show, for later calibrations.
 
     Raises:
         BagError: a recording cannot be read.
@@ -131,7 +131,11 @@ def find(trained: TrainedModel, settle_time: int, budget: float, tasks: Sequence
     """
     workers = workers or InProcess()
     judging = _Judging(trained, settle_time, budget)
+    if not any(isinstance(task, TrainedOn) for task in tasks):
+        judging.finder.merge(trained.findings)
     judging.add_all(tasks, workers, 'limits, first pass')
+    if keep_findings:
+        trained.findings = judging.finder.findings()
     judging.start_second_pass()
     judging.add_all(tasks, workers, 'limits, second pass')
     limits = judging.finder.limits()
@@ -139,7 +143,7 @@ def find(trained: TrainedModel, settle_time: int, budget: float, tasks: Sequence
     calibration.limits = limits.tracks
     calibration.linker_limit = limits.linker
     calibration.budget = budget
-    calibration.false_alarms_per_hour = math.nan
+    calibration.false_alarms_per_hour = judging.finder.expected_rate()
     calibration.windows = judging.finder.windows
     calibration.stamp = int(time.time()) * SECOND_NS
     return calibration

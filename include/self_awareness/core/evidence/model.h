@@ -75,6 +75,9 @@ class Model {
   double missed(std::size_t track) const { return steps_[track].missed; }
   /// Share of the gaps of `from` in which usually no `to` comes, of an answer track: p, 0 to 1.
   double missRate(std::size_t track) const { return steps_[track].usual; }
+  /// Time [ns] in which the answer of an answer track usually comes: what asks again sooner asks
+  /// nothing new (docs/method.md, section 3.5).
+  std::int64_t usualAnswer(std::size_t track) const { return steps_[track].delay; }
   /// Least limit that a track may have, in units of its evidence (docs/method.md, section 5.3).
   double leastLimit(std::size_t track) const;
 
@@ -97,11 +100,14 @@ class Model {
     double answered = 0;
     double missed = 0;
     double usual = 0;  // share that is missed
+    std::int64_t delay = 0;  // that answers usually take [ns]
   };
 
   void learnGaps();
   void learnRates();
   void learnDelays(const std::array<Statistics, 2>& halves);
+  /// Takes the surprise from delays that differ from the usual ones by little.
+  void forgiveSmallEffects(EventId from, EventId to, Surprises& surprises) const;
   void learnAnswers();
 
   /// What the probabilities are learned from.

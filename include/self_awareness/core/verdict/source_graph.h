@@ -16,6 +16,8 @@ class SourceGraph {
 
   bool empty() const { return followers_.empty(); }
   const std::map<std::string, std::set<std::string>>& edges() const { return followers_; }
+  /// Whether `to` subscribes to what `from` publishes.
+  bool isConnected(const std::string& from, const std::string& to) const;
   /// Whether messages of `from` reach `to`, directly or through others, in fewer steps than the
   /// other way round. Robots have loops; what is wrong with both more likely began at `from`.
   bool isUpstream(const std::string& from, const std::string& to) const;

@@ -31,12 +31,14 @@ struct Suspect {
     kUnusual,  ///< came at delays after the others that were rare or absent in training
     kRate,     ///< comes more or less often than it should
     kDelay,    ///< comes sooner or later after another event type than it should
-    kAnswer    ///< is left out after another event type more often than it should
+    kAnswer,   ///< is left out after another event type more often than it should
+    kUnanswered  ///< has not come since another event type asked for it
   };
 
   EventId id = 0;
   Reason reason = Reason::kSilent;
-  double silence = 0;         ///< kSilent, kLate: time without such an event [s]
+  double silence = 0;         ///< kSilent, kLate: time without such an event [s]; kUnanswered: time
+                              ///< since it was asked for
   double usual_shortest = 0;  ///< kSilent, kLate: 1 % of the gaps in training are shorter [s];
                               ///< kDelay: 5 % of the delays
   double usual_longest = 0;   ///< kSilent, kLate: 1 % of the gaps in training are longer [s];
@@ -47,7 +49,7 @@ struct Suspect {
   double usual_most = 0;      ///< kRate: the mean of training plus two spreads
   double score = 0;           ///< kUnusual: their mean score
   double usual_score = 0;     ///< kUnusual: the score to expect by training
-  std::string other;          ///< kDelay, kAnswer: the other event type; empty: its own
+  std::string other;          ///< kDelay, kAnswer, kUnanswered: the other event type; empty: its own
   double delay = 0;           ///< kDelay: the last one [s]
 };
 

@@ -1,0 +1,102 @@
+#include "core/evidence/held_out.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace self_awareness::core::evidence {
+namespace {
+
+// What is believed before anything is seen: values exceed by so much on average (a logarithm), as
+// if so many had done so.
+constexpr double kPriorScale = 0.2;
+constexpr double kPriorExceedances = 5;
+
+}  // namespace
+
+HeldOut::HeldOut(std::vector<Part> parts) {
+  std::vector<std::size_t> by_start;
+  std::vector<std::size_t> by_part;
+  for (const Part& part : parts) {
+    by_part.push_back(by_part.size());
+    by_start.push_back(part.start);
+  }
+  levels_.push_back(levelOf(parts, std::move(by_start)));
+  levels_.push_back(levelOf(parts, std::move(by_part)));
+}
+
+HeldOut::Level HeldOut::levelOf(const std::vector<Part>& parts,
+                                std::vector<std::size_t> group_of) {
+  Level level;
+  double all = 0;
+  for (std::size_t part = 0; part < parts.size(); ++part) {
+    level.hours.resize(std::max(level.hours.size(), group_of[part] + 1), 0);
+    level.hours[group_of[part]] += parts[part].hours;
+    all += parts[part].hours;
+  }
+  // What is shorter than what it is left out of: else the others say too little about it.
+  for (double& hours : level.hours) {
+    hours = hours <= all / 2 ? hours : 0;
+    level.eligible_hours += hours;
+  }
+  level.group_of = std::move(group_of);
+  return level;
+}
+
+double HeldOut::exceedance(const Level& level, const std::vector<double>& largest, double least) {
+  std::vector<double> of_group(level.hours.size(), 0);
+  for (std::size_t part = 0; part < largest.size(); ++part) {
+    double& group = of_group[level.group_of[part]];
+    group = std::max(group, largest[part]);
+  }
+  const auto first = std::max_element(of_group.begin(), of_group.end());
+  if (first == of_group.end() || *first <= least ||
+      level.hours[static_cast<std::size_t>(first - of_group.begin())] <= 0) {
+    return 0;
+  }
+  const double most = *first;
+  *first = 0;
+  const double second = *std::max_element(of_group.begin(), of_group.end());
+  return std::log(most / std::max(second, kLeastShare * least));
+}
+
+double HeldOut::scale(const Level& level) {
+  return (level.logarithms + kPriorScale * kPriorExceedances) /
+         (level.exceedances + kPriorExceedances);
+}
+
+void HeldOut::add(const std::vector<double>& largest, double least) {
+  for (Level& level : levels_) {
+    const double logarithm = exceedance(level, largest, least);
+    level.exceedances += logarithm > 0 ? 1 : 0;
+    level.logarithms += logarithm;
+  }
+}
+
+double HeldOut::margin(double rate, double least) const {
+  double margin = least;
+  for (const Level& level : levels_) {
+    if (level.exceedances > 0) {
+      const double expected = level.exceedances / (level.eligible_hours * rate);
+      margin = std::max(margin, std::pow(expected, scale(level)));
+    }
+  }
+  return margin;
+}
+
+double HeldOut::rate(double margin) const {
+  double rate = 0;
+  for (const Level& level : levels_) {
+    if (level.exceedances > 0) {
+      rate = std::max(rate, level.exceedances / level.eligible_hours *
+                                std::pow(margin, -1 / scale(level)));
+    }
+  }
+  return rate;
+}
+
+double HeldOut::excess(const std::vector<double>& largest, double least) const {
+  return std::exp(exceedance(levels_.front(), largest, least));
+}
+
+}  // namespace self_awareness::core::evidence
