@@ -32,7 +32,7 @@ class Judge : public core::Judge {
   void restart() override { scorer_.restart(); }
 
  private:
-  bool isSilent(std::int64_t end) const;
+  bool isSilent() const;
 
   std::shared_ptr<const Model> model_;
   std::optional<Limits> limits_;
@@ -76,7 +76,7 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
   judgement.score = -std::max(sum.largest, linker);
   judgement.threshold = kThreshold;
   judgement.abnormal = *judgement.score < kThreshold;
-  judgement.certain = linker > 1 || isSilent(end);
+  judgement.certain = linker > 1 || isSilent();
   judgement.suspicious = linker > kSuspicious;
   if (judgement.suspicious) {
     channels.insert("linker");
@@ -91,13 +91,12 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
   return judgement;
 }
 
-bool Judge::isSilent(std::int64_t end) const {
+bool Judge::isSilent() const {
   const std::vector<Track>& tracks = model_->tracks();
   for (std::size_t track = 0; track < tracks.size(); ++track) {
     const EventId id = tracks[track].to;
     if (tracks[track].channel == Channel::kOverdue && shares_[track] > 1 &&
-        model_->overdue(id, end - scorer_.lastSeen(id).value_or(end) - kConfirmation) >
-            limits_->tracks[track]) {
+        model_->overdue(id, scorer_.age(id) - kConfirmation) > limits_->tracks[track]) {
       return true;
     }
   }

@@ -23,6 +23,9 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 // What was seen once in normal operation is normal, and so is a little more (docs/method.md,
 // section 5.2).
 constexpr double kLeastMargin = 1.25;
+// More would find nothing any more: where the data say so, the budget cannot be kept.
+constexpr double kMostMargin = 4;
+constexpr double kMostOwnMargin = 2;  // of one track
 // The linker depends on what the robot is doing, and that changes from hour to hour.
 constexpr double kLeastLinkerMargin = 1.5;
 constexpr double kLeastLinkerLimit = 2;  // event types
@@ -307,7 +310,7 @@ void LimitFinder::findRelations() {
       }
       relation = relations.delays(from, to, as_usual);
       for (const Recording& recording : findings_) {
-        relation.watched &= recording.said[track] != Said::kMisleading;
+        relation.watched &= from == to || recording.said[track] != Said::kMisleading;
       }
     } else {
       relation.watched = true;
@@ -383,13 +386,16 @@ void LimitFinder::findLimits() {
     for (const Seen& seen : tracks) {
       held_out.add(seen.largest, seen.least);
     }
-    const double margin = held_out.margin(parameters_.false_alarms_per_hour / kShares, leastMargin(pool));
+    const double margin = std::min(
+        held_out.margin(parameters_.false_alarms_per_hour / kShares, leastMargin(pool)),
+        kMostMargin);
     tracks_rate_ += pool == Pool::kSlowDelays ? 0 : held_out.rate(margin);
     for (const Seen& seen : tracks) {
       const auto& [channel, to, from] = model_->tracks()[seen.track];
       // A track that would have raised an alarm had its worst start been left out gets a wider
       // limit.
-      const double own = std::max(margin, held_out.excess(seen.largest, seen.least));
+      const double own =
+          std::max(margin, std::min(held_out.excess(seen.largest, seen.least), kMostOwnMargin));
       const double largest = *std::max_element(seen.largest.begin(), seen.largest.end());
       const double found =
           std::max(seen.least, own * std::max(largest, HeldOut::kLeastShare * seen.least));
@@ -403,7 +409,9 @@ void LimitFinder::findLimits() {
       } else if (channel == Channel::kAnswer) {
         limit = found / model_->missed(seen.track) * meanGap(from) > kLongestWait ? kNone : found;
       } else if (channel == Channel::kDeadline) {
-        limit = found > kLongestDeadline ? kNone : found;
+        const double seconds =
+            model_->countsRequests(seen.track) ? found * model_->usualDelay(from, from, 0.5) : found;
+        limit = seconds > kLongestDeadline ? kNone : found;
       } else {
         limit = found;
       }

@@ -22,7 +22,9 @@ constexpr double kLeastDeviation = 0.5;  // [nat]
 // such a share of the period.
 constexpr double kLeastEffect = 10e6;  // [ns]
 constexpr double kLeastEffectOfPeriod = 0.03;
-constexpr double kLeastEffectOfGap = 0.1;  // the same for the gaps of one event type
+// The same for the gaps of one event type.
+constexpr double kLeastEffectOnGap = 20e6;  // [ns]
+constexpr double kLeastEffectOnGapOfPeriod = 0.3;
 constexpr double kUsual = 0.9;  // share of the delays that are usual
 
 // Share of the usual answers that a fault takes away: the fault that is looked for.
@@ -36,7 +38,9 @@ constexpr double kLeastRateLimit = 3;
 // One late event makes two unusual delays, one too long and one too short: they must not be
 // enough.
 constexpr double kLeastDelayLimit = 2 * kMostSurprise + 1;
-constexpr double kLeastDeadline = 0.5;  // [s]
+constexpr double kLeastDeadline = 0.5;         // [s]
+constexpr double kLeastRequests = 3;           // without an answer
+constexpr double kLongestGapOfSeries = 2;      // [s]
 constexpr double kLeastMisses = 4;
 constexpr double kLeastAnswerLimit = 5;  // [nat]
 
@@ -152,7 +156,9 @@ void Model::forgiveSmallEffects(EventId from, EventId to, Surprises& surprises) 
   const Statistics::Type& asking = learned().type(from);
   const double period =
       static_cast<double>(asking.gap_sum) / static_cast<double>(std::max<std::uint64_t>(asking.gaps, 1));
-  const double effect = std::max(kLeastEffect, (from == to ? kLeastEffectOfGap : kLeastEffectOfPeriod) * period);
+  const double effect = from == to
+                            ? std::max(kLeastEffectOnGap, kLeastEffectOnGapOfPeriod * period)
+                            : std::max(kLeastEffect, kLeastEffectOfPeriod * period);
   const auto lower = [](std::size_t bin) { return static_cast<double>(log_bins::lowerEdge(bin)); };
   const auto upper = [&](std::size_t bin) {
     return bin + 1 < log_bins::kBins ? lower(bin + 1) : std::numeric_limits<double>::infinity();
@@ -236,6 +242,19 @@ std::int64_t Model::longestGap(EventId id) const {
   return longest.empty() ? 0 : longest.front();
 }
 
+std::int64_t Model::longestSilence() const {
+  std::int64_t longest = 0;
+  for (const Statistics::Recording& recording : statistics_.recordings()) {
+    longest = std::max(longest, recording.longest_silence);
+  }
+  return longest;
+}
+
+bool Model::countsRequests(std::size_t track) const {
+  const EventId from = tracks_[track].from;
+  return usualDelay(from, from, 0.5) < kLongestGapOfSeries;
+}
+
 double Model::usualDelay(EventId from, EventId to, double share) const {
   const Statistics::Delays& delays = learned().delays(from, to);
   const std::uint64_t total = learned().total(from, to);
@@ -270,7 +289,7 @@ double Model::leastLimit(std::size_t track) const {
     case Channel::kAnswer:
       return std::max(kLeastMisses * steps_[track].missed, kLeastAnswerLimit);
     case Channel::kDeadline:
-      return kLeastDeadline;
+      return countsRequests(track) ? kLeastRequests : kLeastDeadline;
   }
   return 0;
 }

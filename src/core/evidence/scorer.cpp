@@ -29,6 +29,13 @@ constexpr double kLeastLinked = 0.5;
 // changed: it is news once (docs/method.md, section 3.7).
 constexpr std::int64_t kAcceptAfter = 60 * kNanosecondsPerSecond;
 
+// Delays count relative to those of the last minutes [ns]: load changes with the time of day.
+constexpr std::int64_t kRegime = 120 * kNanosecondsPerSecond;
+// A stall of the whole robot, beyond what is usual [ns]; more often, it is something else.
+constexpr std::int64_t kShortestStall = kNanosecondsPerSecond / 20;
+constexpr std::int64_t kLongestStall = kNanosecondsPerSecond * 7 / 10;
+constexpr std::int64_t kBetweenStalls = 30 * kNanosecondsPerSecond;
+
 }  // namespace
 
 inline bool Scorer::arm(Arming& arming, double excess, double usual) {
@@ -45,6 +52,7 @@ inline bool Scorer::arm(Arming& arming, double excess, double usual) {
 Scorer::Scorer(std::shared_ptr<const Model> model, std::int64_t window)
     : model_(std::move(model)), counts_(model_->size(), rateWindows(window)) {
   addTracks();
+  longest_silence_ = std::max(model_->longestSilence() * 5 / 4, kShortestStall);
   restart();
 }
 
@@ -81,7 +89,7 @@ void Scorer::addTracks() {
     type.pairs_begin = static_cast<std::uint32_t>(pairs_.size());
     for (const std::size_t track : pairs[id]) {
       state_of_[track] = state_of_[track + 1] = pairs_.size();
-      pairs_.push_back({tracks[track].from, false, 0, model_->surprises(track).data(), none});
+      pairs_.push_back({tracks[track].from, false, 0, model_->surprises(track).data(), 0, none});
     }
     type.pairs_end = static_cast<std::uint32_t>(pairs_.size());
     type.answers_begin = static_cast<std::uint32_t>(answers_.size());
@@ -99,7 +107,7 @@ void Scorer::addTracks() {
     type.deadlines_begin = static_cast<std::uint32_t>(deadlines_.size());
     for (const std::size_t track : deadlines[id]) {
       state_of_[track] = deadlines_.size();
-      deadlines_.push_back({tracks[track].to, false, 0});
+      deadlines_.push_back({tracks[track].to, model_->countsRequests(track), 0, 0});
     }
     type.deadlines_end = static_cast<std::uint32_t>(deadlines_.size());
     types_.push_back(std::move(type));
@@ -115,6 +123,7 @@ void Scorer::restart() {
   numbers_.assign(model_->size(), 0);
   seen_.assign(model_->size(), 0);
   number_ = 0;
+  last_stamp_ = stall_ = stalled_at_ = stalled_until_ = 0;
   counts_.restart();
   evidence_.assign(model_->tracks().size(), 0);
   pairs_arming_.assign(pairs_.size(), {});
@@ -129,7 +138,7 @@ void Scorer::restart() {
     disarmAnswer(answer);
   }
   for (Deadline& deadline : deadlines_) {
-    deadline.open = false;
+    deadline.requests = 0;
   }
 }
 
@@ -144,6 +153,9 @@ std::optional<std::int64_t> Scorer::add(const Event& event) {
   const std::uint64_t* const numbers = numbers_.data();
   const std::uint64_t last = numbers[event.id];
   const Eigen::Array2d drifts(kDrift, kSlowDrift);
+  noteStall(event.stamp);
+  const bool stalled = event.stamp < stalled_until_;
+  const std::int64_t last_stamp = last > 0 ? stamps[event.id] : event.stamp;
   // Pairs with a type that was never seen are not armed: arming takes back what is added to their
   // sums here. So the many others need no check.
   DelayPair* const pairs_end = pairs_.data() + type.pairs_end;
@@ -154,7 +166,10 @@ std::optional<std::int64_t> Scorer::add(const Event& event) {
     const std::int64_t delay = event.stamp - stamps[pair->from];
     const double surprise = pair->surprises[log_bins::bin(delay)];
     pair->last_delay ^= (pair->last_delay ^ delay) & -static_cast<std::int64_t>(first);
-    pair->sums.add((surprise - drifts) * (first ? 1.0 : 0.0));
+    const double count = first && !stalled ? 1.0 : 0.0;
+    pair->sums.add((surprise - std::max(pair->regime, 0.0) - drifts) * count);
+    const double elapsed = static_cast<double>(std::min(event.stamp - last_stamp, kRegime)) / static_cast<double>(kRegime);
+    pair->regime += (surprise - pair->regime) * std::max(elapsed, 0.0) * count;
     if (!pair->armed) {
       armPair(static_cast<std::size_t>(pair - pairs_.data()), first, surprise);
     }
@@ -163,12 +178,12 @@ std::optional<std::int64_t> Scorer::add(const Event& event) {
     ask(answer, event.stamp);
   }
   for (const std::uint32_t deadline : type.answered_deadlines) {
-    deadlines_[deadline].open = false;
+    deadlines_[deadline].requests = 0;
   }
   for (std::uint32_t deadline = type.deadlines_begin; deadline < type.deadlines_end; ++deadline) {
     Deadline& state = deadlines_[deadline];
-    state.since = state.open ? state.since : event.stamp;
-    state.open = true;
+    state.since = state.requests > 0 ? state.since : event.stamp;
+    ++state.requests;
   }
   std::optional<std::int64_t> gap;
   if (last > 0) {
@@ -183,6 +198,16 @@ std::optional<std::int64_t> Scorer::add(const Event& event) {
   numbers_[event.id] = ++number_;
   ++seen_[event.id];
   return gap;
+}
+
+void Scorer::noteStall(std::int64_t stamp) {
+  const std::int64_t silence = stamp - last_stamp_;
+  if (number_ > 0 && silence > longest_silence_ && silence <= longest_silence_ + kLongestStall &&
+      stamp - stalled_at_ > kBetweenStalls) {
+    stalled_at_ = stamp;
+    stalled_until_ = stamp + silence;
+  }
+  last_stamp_ = std::max(last_stamp_, stamp);
 }
 
 void Scorer::armPair(std::size_t number, bool first, double surprise) {
@@ -256,6 +281,7 @@ void Scorer::disarm(EventId id) {
 
 void Scorer::disarmPair(std::size_t number) {
   pairs_[number].sums.values.setZero();
+  pairs_[number].regime = 0;
   pairs_[number].armed = false;
   pairs_arming_[number] = {0, 0, pairs_arming_[number].failures};
   pairs_abnormal_since_[number] = 0;
@@ -304,19 +330,25 @@ const std::vector<double>& Scorer::closeWindow(std::int64_t end) {
   if (has_limits_) {
     accept(end);
   }
+  // While all are silent, none is more so than the others.
+  const std::int64_t silence = number_ > 0 ? end - last_stamp_ : 0;
+  stall_ = silence > longest_silence_ ? std::min(silence, kLongestStall) : 0;
+  const bool stalled = (stall_ > 0 && stall_ < kLongestStall) ||
+                       (stalled_at_ > 0 && end < stalled_until_ + kRateSpan);
   const std::vector<Track>& tracks = model_->tracks();
   for (std::size_t track = 0; track < tracks.size(); ++track) {
     const auto& [channel, id, from] = tracks[track];
     const bool seen = numbers_[id] > 0;
     switch (channel) {
       case Channel::kOverdue:
-        evidence_[track] = seen ? model_->overdue(id, end - stamps_[id]) : 0;
+        evidence_[track] = seen ? model_->overdue(id, age(id)) : 0;
         break;
       case Channel::kFewer:
       case Channel::kMore: {
         const double sign = channel == Channel::kMore ? 1 : -1;
         // A topic that began within the span has too few for that reason alone.
-        const bool valid = counts_.full() && seen && end - first_stamps_[id] >= kRateSpan;
+        const bool valid = counts_.full() && seen && end - first_stamps_[id] >= kRateSpan &&
+                           !(stalled && channel == Channel::kFewer);
         const double more = valid ? model_->rate(id, counts_.counts()[id]) : 0;
         evidence_[track] = std::max(sign * more, 0.0);
         break;
@@ -334,7 +366,9 @@ const std::vector<double>& Scorer::closeWindow(std::int64_t end) {
       }
       case Channel::kDeadline: {
         const Deadline& deadline = deadlines_[state_of_[track]];
-        evidence_[track] = deadline.open && seen ? toSeconds(end - deadline.since) : 0;
+        evidence_[track] = deadline.requests == 0 || !seen ? 0
+                           : deadline.in_requests           ? deadline.requests
+                                                            : toSeconds(end - deadline.since);
         break;
       }
     }

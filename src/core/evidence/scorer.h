@@ -38,6 +38,11 @@ class Scorer {
   const Model& model() const { return *model_; }
   /// Stamp of the last event of a type of the model [ns]; none before the first.
   std::optional<std::int64_t> lastSeen(EventId id) const;
+  /// Time since the last event of a type, at the end of the last window [ns]; 0 before the first.
+  /// While the whole robot is silent for a moment, nobody's silence grows.
+  std::int64_t age(EventId id) const {
+    return numbers_.at(id) > 0 ? window_end_ - stamps_[id] - stall_ : 0;
+  }
   /// The last delay of a delay track [ns].
   std::int64_t lastDelay(std::size_t track) const {
     return pairs_[state_of_.at(track)].last_delay;
@@ -74,6 +79,7 @@ class Scorer {
     bool armed = false;
     std::int64_t last_delay = 0;        // [ns]
     const double* surprises = nullptr;  // by bin
+    double regime = 0;                  // mean surprise of the last minutes, if it is above usual
     Sums sums;                          // of the track, and of the slow one
   };
   /// State of an answer track.
@@ -94,8 +100,9 @@ class Scorer {
   /// State of a deadline track.
   struct Deadline {
     EventId to = 0;
-    bool open = false;
-    std::int64_t since = 0;  // stamp of the first request without an answer [ns], while open
+    bool in_requests = false;  // else in seconds
+    std::uint32_t requests = 0;  // without an answer
+    std::int64_t since = 0;      // stamp of the first of them [ns], if there is one
   };
 
   /// Where the pairs, answers and deadlines of an event type lie, and after how long a gap [ns] it
@@ -125,6 +132,9 @@ class Scorer {
   void disarm(EventId id);
   void disarmPair(std::size_t number);
   void disarmAnswer(std::size_t number);
+  /// Takes in the time since the last event of any type: a whole robot that stops for a moment and
+  /// goes on has a busy machine, and no component is to blame.
+  void noteStall(std::int64_t stamp);
   /// Accepts what has been abnormal for long, and is stable: it is news once.
   void accept(std::int64_t end);
 
@@ -140,6 +150,11 @@ class Scorer {
   std::vector<std::size_t> state_of_;                // number of its pair, answer..., by track
   std::vector<std::vector<std::size_t>> tracks_of_;  // delay and answer tracks, by id
   bool has_limits_ = false;
+  std::int64_t longest_silence_ = 0;  // that is usual [ns]
+  std::int64_t last_stamp_ = 0;       // [ns], once there was an event
+  std::int64_t stall_ = 0;            // that goes on at the end of the last window [ns]
+  std::int64_t stalled_at_ = 0;       // end of the last stall [ns]; 0: none
+  std::int64_t stalled_until_ = 0;    // what waited has come by then [ns]
   std::vector<std::int64_t> stamps_;        // of the last event [ns], by id
   std::vector<std::int64_t> first_stamps_;  // of the first event since the start [ns], by id
   std::vector<std::uint64_t> numbers_;      // of the last event in the recording, by id; 0: none

@@ -74,7 +74,7 @@ bool isSame(const Statistics::Recording& a, const Statistics::Recording& b, std:
   const auto at = [](const auto& counts, EventId id) {
     return id < counts.size() ? counts[id] : 0;
   };
-  bool same = a.start == b.start && a.end == b.end;
+  bool same = a.start == b.start && a.end == b.end && a.longest_silence == b.longest_silence;
   for (EventId id = 0; same && id < types; ++id) {
     same = at(a.events, id) == at(b.events, id) && at(a.longest_gaps, id) == at(b.longest_gaps, id);
   }
@@ -140,7 +140,7 @@ void Statistics::merge(const Statistics& other) {
     partners_[here[id]] = sum(partners_[here[id]], partners);
   }
   for (const Recording& theirs : other.recordings_) {
-    Recording ours{theirs.start, theirs.end, std::vector<std::uint64_t>(size(), 0),
+    Recording ours{theirs.start, theirs.end, theirs.longest_silence, std::vector<std::uint64_t>(size(), 0),
                    std::vector<std::int64_t>(size(), 0)};
     for (EventId id = 0; id < theirs.events.size(); ++id) {
       ours.events[here[id]] = theirs.events[id];
@@ -297,6 +297,8 @@ void Trainer::add(const Event& event) {
   counts_.resize(statistics_.size());
   if (last_stamp_) {
     closeWindows(event.stamp);
+    recording_.longest_silence =
+        std::max(recording_.longest_silence, event.stamp - *last_stamp_);
     statistics_.addDuration(std::max<std::int64_t>(event.stamp - newest_stamp_, 0));
     newest_stamp_ = std::max(newest_stamp_, event.stamp);
   } else {

@@ -53,6 +53,11 @@ class Model {
   double logSurvival(EventId id, std::int64_t age) const;
   /// Longest gap between two events of the type in training [ns]; 0 if there was none.
   std::int64_t longestGap(EventId id) const;
+  /// Longest time without any event in training [ns].
+  std::int64_t longestSilence() const;
+  /// Whether a deadline track counts requests without an answer, not seconds: requests come in
+  /// series (docs/method.md, section 3.6).
+  bool countsRequests(std::size_t track) const;
   /// Delay from `from` to `to` [s] that a share (0 to 1) of the delays in training did not exceed,
   /// as exactly as the bins are.
   double usualDelay(EventId from, EventId to, double share) const;
