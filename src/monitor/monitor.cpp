@@ -53,7 +53,7 @@ Monitor::Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& priv
   }
   ros1::LiveEvents::Handlers handlers;
   handlers.on_event = [this](const core::Event& event) { onEvent(event); };
-  // It may be a publisher that the master has not told of: settling cannot wait for the next poll.
+  // Whether its messages must be read cannot wait for the next poll.
   handlers.on_connection = [this] { discovery_->pollNow(); };
   handlers.on_arrivals = [this] { onArrivals(); };
   live_events_ =
@@ -64,7 +64,7 @@ Monitor::Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& priv
       std::make_unique<Discovery>(node_handle_, live_events_->arrivals(), parameters_.subscribe,
                                   parameters_.poll_interval, service_names);
   try {
-    load();
+    load(parameters_.model);
   } catch (const ros1::ModelFileError& error) {
     // Not fatal: the operator sees it in the diagnostics, and ~reload tries again.
     model_error_ = error.what();
@@ -79,28 +79,37 @@ Monitor::~Monitor() {
   live_events_.reset();
 }
 
-void Monitor::load() {
-  if (parameters_.model.empty()) {
+void Monitor::load(const std::string& path) {
+  std::unique_ptr<Session> session = makeSession(path);
+  parameters_.model = path;
+  startSession(std::move(session));
+}
+
+std::unique_ptr<Session> Monitor::makeSession(const std::string& path) {
+  if (path.empty()) {
     throw ros1::ModelFileError(private_node_handle_.resolveName("model") +
                                " is not set; give it the path of a model file");
   }
-  startSession(
-      ros1::loadModel(parameters_.model, parameters_.method == MonitorParameters::Method::kPaper
-                                             ? ros1::ModelCounts::kDelays
-                                             : ros1::ModelCounts::kWatched));
-}
-
-std::unique_ptr<Session> Monitor::makeSession(ros1::TrainedModel trained) {
+  ros1::TrainedModel trained = ros1::loadModel(
+      path, parameters_.method == MonitorParameters::Method::kPaper ? ros1::ModelCounts::kDelays
+                                                                    : ros1::ModelCounts::kWatched);
   try {
     return std::make_unique<Session>(std::move(trained), parameters_,
                                      [this](const core::Verdict& verdict) { onVerdict(verdict); });
   } catch (const std::invalid_argument& error) {
-    throw ros1::ModelFileError(parameters_.model + ": " + error.what());
+    throw ros1::ModelFileError(path + ": " + error.what());
   }
 }
 
-void Monitor::startSession(ros1::TrainedModel trained) {
-  session_ = makeSession(std::move(trained));
+std::string Monitor::modelPath() const {
+  // The question would wait for a master that hangs, and all events with it.
+  return discovery_->state().master_answers
+             ? MonitorParameters::loadModel(private_node_handle_, parameters_.model)
+             : parameters_.model;
+}
+
+void Monitor::startSession(std::unique_ptr<Session> session) {
+  session_ = std::move(session);
   model_error_.clear();
   alarm_.forgetWindow();
   heard_.setTypes(session_->types());
@@ -109,8 +118,8 @@ void Monitor::startSession(ros1::TrainedModel trained) {
   Discovery::Wanted wanted;
   wanted.model_topics = session_->topics();
   wanted.encoder = session_->encoder();
-  wanted.own_output = session_->ownOutput(ros::this_node::getName());
-  live_events_->setEncoder(session_->encoder(), wanted.own_output, session_->window());
+  live_events_->setEncoder(session_->encoder(), session_->ownOutput(ros::this_node::getName()),
+                           session_->window());
   discovery_->setWanted(std::move(wanted));
   ROS_INFO("model %s: %zu event types of %zu components, %s", parameters_.model.c_str(),
            session_->types().size(), heard_.components(),
@@ -140,11 +149,6 @@ void Monitor::onTick(const ros::SteadyTimerEvent& /*tick*/) {
   const std::int64_t now = watchClock();
   live_events_->deliver();
   if (session_) {
-    for (const ros1::Publisher& publisher : discovery_->takeNewPublishers()) {
-      ROS_INFO("settling: %s began to publish %s", publisher.source.c_str(),
-               publisher.topic.c_str());
-      session_->detector().settle(now);
-    }
     session_->detector().advance(now - kGrace);
   }
   heard_.addProcessing(steadyNow() - begin);
@@ -227,7 +231,6 @@ bool Monitor::onReset(std_srvs::Trigger::Request& /*request*/,
   response.message = session_ ? "delays, windows and the alarm start afresh" : model_error_;
   if (session_) {
     session_->detector().restart();
-    discovery_->restart();
     standDown("settling: reset");
   }
   return true;
@@ -248,8 +251,11 @@ bool Monitor::onClear(std_srvs::Trigger::Request& /*request*/,
 bool Monitor::onReload(std_srvs::Trigger::Request& /*request*/,
                        std_srvs::Trigger::Response& response) {
   try {
-    load();
-  } catch (const ros1::ModelFileError& error) {
+    load(modelPath());
+  } catch (const std::exception& error) {
+    if (!session_) {
+      model_error_ = error.what();
+    }
     response.success = false;
     response.message = std::string(error.what()) + (session_ ? "; the old model stays" : "");
     ROS_ERROR("%s", response.message.c_str());

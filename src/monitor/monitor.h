@@ -39,8 +39,8 @@ namespace self_awareness {
 /// - `~unknown` (string; default: warn; ignore, warn or error): what events are that training
 ///   never saw: nothing, a suspicion, or an alarm at once.
 /// - `~settle_time` (double, s; default: 5.0; at least 0): time without alarms after the first
-///   message since the start, `~reset` or `~reload`, after a publisher registers for the first
-///   time since then, and after ROS time was set.
+///   message since the start, `~reset` or `~reload`, and after ROS time was set. What is heard
+///   later for the first time has as long before it is judged; everything else is judged on.
 /// - `~alarm_windows` (int; default: 3; 1 to `~alarm_of`): number of abnormal windows that raises
 ///   an alarm; fewer are a suspicion.
 /// - `~alarm_of` (int; default: 5; at least 1): number of windows among which they are counted.
@@ -72,8 +72,8 @@ namespace self_awareness {
 /// - `~reset` (std_srvs/Trigger): delays, windows and the alarm start from the beginning.
 /// - `~clear` (std_srvs/Trigger): ends the alarm and forgets the windows that led to it; delays go
 ///   on.
-/// - `~reload` (std_srvs/Trigger): reads the file `~model` again, and keeps the old model where
-///   that fails.
+/// - `~reload` (std_srvs/Trigger): reads the parameter `~model` and its file again, and keeps the
+///   old model where that fails.
 ///
 /// **Threads**: one thread serves messages, windows, services and diagnostics through a queue of
 /// its own. What may block on the network is done by the thread of Discovery. They share what has
@@ -89,10 +89,15 @@ class Monitor {
   Monitor& operator=(const Monitor&) = delete;
 
  private:
-  void load();
-  /// @throw ros1::ModelFileError if the model's calibration does not fit it
-  std::unique_ptr<Session> makeSession(ros1::TrainedModel trained);
-  void startSession(ros1::TrainedModel trained);
+  /// Starts with the model of a file; if that fails, all stays as it was.
+  /// @throw ros1::ModelFileError if it cannot be read, or its calibration does not fit it
+  void load(const std::string& path);
+  /// @throw ros1::ModelFileError as load()
+  std::unique_ptr<Session> makeSession(const std::string& path);
+  /// The file that ~model names now.
+  /// @throw std::invalid_argument if it is no text
+  std::string modelPath() const;
+  void startSession(std::unique_ptr<Session> session);
 
   void onArrivals();
   void onEvent(const core::Event& event);

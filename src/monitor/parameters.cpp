@@ -100,6 +100,11 @@ std::int64_t nanoseconds(double seconds) {
 
 }  // namespace
 
+std::string MonitorParameters::loadModel(const ros::NodeHandle& private_node_handle,
+                                         const std::string& otherwise) {
+  return ParameterReader(private_node_handle).read("model", otherwise);
+}
+
 MonitorParameters MonitorParameters::load(const ros::NodeHandle& private_node_handle) {
   using ros1::SubscribePolicy;
   MonitorParameters parameters;

@@ -27,6 +27,11 @@ struct MonitorParameters {
   /// Reads the parameters, checks and logs them; warns of those it does not know.
   /// @throw std::invalid_argument names the parameter, its value and what it may be
   static MonitorParameters load(const ros::NodeHandle& private_node_handle);
+  /// Reads ~model again, and logs it; `otherwise` if it is not set (any more). Blocks if the
+  /// master hangs.
+  /// @throw std::invalid_argument if it is no text
+  static std::string loadModel(const ros::NodeHandle& private_node_handle,
+                               const std::string& otherwise);
 };
 
 }  // namespace self_awareness

@@ -11,6 +11,12 @@ namespace {
 // if so many had done so.
 constexpr double kPriorScale = 0.2;
 constexpr double kPriorExceedances = 5;
+// As if so many exceedances had been seen where there were none.
+constexpr double kFewest = 0.5;
+// Smaller excesses (logarithms) are those of what hardly varies.
+const double kLeastExcess = std::log(1.1);
+// What goes so much (a logarithm) beyond all that was seen need not be feared.
+const double kBeyond = std::log(1.25);
 
 }  // namespace
 
@@ -68,17 +74,21 @@ double HeldOut::scale(const Level& level) {
 void HeldOut::add(const std::vector<double>& largest, double least) {
   for (Level& level : levels_) {
     const double logarithm = exceedance(level, largest, least);
-    level.exceedances += logarithm > 0 ? 1 : 0;
-    level.logarithms += logarithm;
+    if (logarithm > kLeastExcess) {
+      level.exceedances += 1;
+      level.logarithms += logarithm - kLeastExcess;
+      level.most = std::max(level.most, logarithm);
+    }
   }
 }
 
 double HeldOut::margin(double rate, double least) const {
   double margin = least;
   for (const Level& level : levels_) {
-    if (level.exceedances > 0) {
-      const double expected = level.exceedances / (level.eligible_hours * rate);
-      margin = std::max(margin, std::pow(expected, scale(level)));
+    if (level.eligible_hours > 0) {
+      const double expected = std::max(level.exceedances, kFewest) / (level.eligible_hours * rate);
+      const double logarithm = kLeastExcess + scale(level) * std::max(std::log(expected), 0.0);
+      margin = std::max(margin, std::exp(std::min(logarithm, level.most + kBeyond)));
     }
   }
   return margin;
@@ -87,9 +97,10 @@ double HeldOut::margin(double rate, double least) const {
 double HeldOut::rate(double margin) const {
   double rate = 0;
   for (const Level& level : levels_) {
-    if (level.exceedances > 0) {
-      rate = std::max(rate, level.exceedances / level.eligible_hours *
-                                std::pow(margin, -1 / scale(level)));
+    if (level.eligible_hours > 0) {
+      const double beyond = std::max(std::log(margin) - kLeastExcess, 0.0);
+      rate = std::max(rate, std::max(level.exceedances, kFewest) / level.eligible_hours *
+                                std::exp(-beyond / scale(level)));
     }
   }
   return rate;

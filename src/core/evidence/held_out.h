@@ -46,6 +46,7 @@ class HeldOut {
     double eligible_hours = 0;          // of groups that the others can judge
     double exceedances = 0;
     double logarithms = 0;  // their sum, of by how much
+    double most = 0;        // the largest of them
   };
 
   static Level levelOf(const std::vector<Part>& parts, std::vector<std::size_t> group_of);

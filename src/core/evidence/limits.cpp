@@ -36,7 +36,7 @@ constexpr double kRegular = 1.5;
 
 // Evidence that takes longer than this [ns] after a component's death is of no use.
 constexpr double kLongestWait = 10e9;
-constexpr double kLongestDeadline = 60;  // [s]
+constexpr double kLongestDeadline = 20;  // [s]
 // A pair with a larger limit would need 20 or more improbable delays in a row.
 constexpr double kMostDelayLimit = 100;
 // An event type that may wait longer than this many mean gaps comes when something happens.
@@ -299,8 +299,10 @@ void LimitFinder::findRelations() {
   for (std::size_t track = 0; track < model_->tracks().size(); ++track) {
     const auto& [channel, to, from] = model_->tracks()[track];
     Relation relation;
-    if (channel == Channel::kAnswer || channel == Channel::kDeadline) {
+    if (channel == Channel::kAnswer) {
       relation = relations.answers(from, to);
+    } else if (channel == Channel::kDeadline) {
+      relation = relations.deadline(from, to);
     } else if (channel == Channel::kDelay || channel == Channel::kSlowDelay) {
       std::vector<Span> as_usual;
       for (const Recording& recording : findings_) {

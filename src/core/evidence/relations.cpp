@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 
 #include "core/evidence/log_bins.h"
@@ -19,7 +20,7 @@ constexpr std::uint64_t kFewestEventsOfStart = 20;
 constexpr double kMostOutliers = 0.1;
 
 // Chance of one relation among all that are looked at, where nothing else speaks for it.
-constexpr double kChanceOfAny = 0.01;
+constexpr double kChanceOfAny = 0.1;
 // Chance of a relation that something else speaks for.
 constexpr double kChanceOfOne = 0.05;
 
@@ -32,6 +33,15 @@ constexpr double kIrregular = 2;
 // alone say as much.
 constexpr double kLeastChanceMisses = 0.2;
 constexpr double kMostOfChanceMisses = 0.5;
+
+// Answers that take less than this share of the longest usual ones may as well come before.
+constexpr double kLeastOfLongest = 0.1;
+
+// A topic that so many nodes hear, and more than half of all, reaches everybody: that it does is no
+// reason.
+constexpr std::size_t kFewestOfBroadcast = 4;
+// /tf and /clock are for everybody, however many listen.
+const std::set<std::string> kBroadcasts{"/tf", "/tf_static", "/clock"};
 
 /// n log-likelihood ratios of shares that were observed and expected [nat].
 double divergence(double n, double observed, double expected) {
@@ -56,7 +66,7 @@ std::size_t numberOfStarts(std::vector<Span> recordings) {
 }
 
 Relations::Relations(const Statistics& counts, const SourceGraph& graph)
-    : counts_(counts), graph_(graph), gaps_(counts.size()) {
+    : counts_(counts), graph_(graph), broadcasts_(kBroadcasts), gaps_(counts.size()) {
   double types = 0;
   for (EventId id = 0; id < counts.size(); ++id) {
     const Statistics::Type& type = counts.type(id);
@@ -84,13 +94,26 @@ Relations::Relations(const Statistics& counts, const SourceGraph& graph)
     }
   }
   looked_at_ = std::max(types * (types - 1), 1.0);
+  std::map<std::string, std::set<std::string>> listeners;  // by topic
+  std::set<std::string> all;
+  for (const SourceGraph::Edge& edge : graph.edges()) {
+    listeners[edge.topic].insert(edge.subscriber);
+    all.insert(edge.subscriber);
+  }
+  for (const auto& [topic, subscribers] : listeners) {
+    if (subscribers.size() >= kFewestOfBroadcast && 2 * subscribers.size() > all.size()) {
+      broadcasts_.insert(topic);
+    }
+  }
 }
 
 bool Relations::reaches(EventId from, EventId to) const {
   const EventType& asks = counts_.vocabulary().at(from);
   const EventType& answers = counts_.vocabulary().at(to);
-  return asks.source == answers.source ? !asks.source.empty()
-                                       : graph_.isConnected(asks.source, answers.source);
+  return asks.source == answers.source
+             ? !asks.source.empty()
+             : graph_.hears(answers.source, asks.source, asks.scope) &&
+                   broadcasts_.count(asks.scope) == 0;
 }
 
 bool Relations::isIrregular(EventId from, EventId to) const {
@@ -216,6 +239,23 @@ Relation Relations::answers(EventId from, EventId to) const {
   relation.irregular = by_chance >= kLeastChanceMisses && misses <= kMostOfChanceMisses * by_chance;
   relation.watched = relation.irregular && divergence(gaps, misses, by_chance) >
                                                std::log(looked_at_ / kChanceOfAny);
+  return relation;
+}
+
+Relation Relations::deadline(EventId from, EventId to) const {
+  Relation relation = answers(from, to);
+  // Two that answer to the same come one after the other, now in this order, now in that.
+  const Statistics::Delays& delays = counts_.delays(from, to);
+  const auto total = static_cast<double>(counts_.total(from, to));
+  double below = 0;
+  double shortest = 0;
+  double longest = 0;
+  for (std::size_t bin = 0; bin < delays.size(); ++bin) {
+    shortest = below <= 0.05 * total ? log_bins::middle(bin) : shortest;
+    longest = below < 0.95 * total ? log_bins::middle(bin) : longest;
+    below += delays[bin];
+  }
+  relation.watched &= shortest >= kLeastOfLongest * longest && (graph_.empty() || relation.reaches);
   return relation;
 }
 

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <set>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -34,6 +36,9 @@ class Relations {
   /// at any time.
   Relation answers(EventId from, EventId to) const;
 
+  /// Reasons to watch whether `to` comes in time after `from`.
+  Relation deadline(EventId from, EventId to) const;
+
   /// Share of the gaps of `from` in which no `to` would come if they had nothing to do with each
   /// other, 0 to 1.
   double missRateByChance(EventId from, EventId to) const;
@@ -52,6 +57,7 @@ class Relations {
 
   const Statistics& counts_;
   const SourceGraph& graph_;
+  std::set<std::string> broadcasts_;     // topics that everybody hears
   double looked_at_ = 1;                 // number of pairs
   std::vector<std::vector<Gap>> gaps_;   // by id
   std::vector<double> mean_gaps_;        // [ns] by id

@@ -204,6 +204,7 @@ void Scorer::noteStall(std::int64_t stamp) {
   const std::int64_t silence = stamp - last_stamp_;
   if (number_ > 0 && silence > longest_silence_ && silence <= longest_silence_ + kLongestStall &&
       stamp - stalled_at_ > kBetweenStalls) {
+    stalled_from_ = last_stamp_;
     stalled_at_ = stamp;
     stalled_until_ = stamp + silence;
   }
@@ -348,7 +349,7 @@ const std::vector<double>& Scorer::closeWindow(std::int64_t end) {
         const double sign = channel == Channel::kMore ? 1 : -1;
         // A topic that began within the span has too few for that reason alone.
         const bool valid = counts_.full() && seen && end - first_stamps_[id] >= kRateSpan &&
-                           !(stalled && channel == Channel::kFewer);
+                           !stalled;
         const double more = valid ? model_->rate(id, counts_.counts()[id]) : 0;
         evidence_[track] = std::max(sign * more, 0.0);
         break;

@@ -41,7 +41,9 @@ class Scorer {
   /// Time since the last event of a type, at the end of the last window [ns]; 0 before the first.
   /// While the whole robot is silent for a moment, nobody's silence grows.
   std::int64_t age(EventId id) const {
-    return numbers_.at(id) > 0 ? window_end_ - stamps_[id] - stall_ : 0;
+    const std::int64_t stall =
+        stall_ > 0 || stalled_at_ == 0 || stamps_.at(id) > stalled_from_ ? stall_ : stalled_at_ - stalled_from_;
+    return numbers_.at(id) > 0 ? window_end_ - stamps_[id] - stall : 0;
   }
   /// The last delay of a delay track [ns].
   std::int64_t lastDelay(std::size_t track) const {
@@ -153,6 +155,7 @@ class Scorer {
   std::int64_t longest_silence_ = 0;  // that is usual [ns]
   std::int64_t last_stamp_ = 0;       // [ns], once there was an event
   std::int64_t stall_ = 0;            // that goes on at the end of the last window [ns]
+  std::int64_t stalled_from_ = 0;     // begin of the last stall [ns]
   std::int64_t stalled_at_ = 0;       // end of the last stall [ns]; 0: none
   std::int64_t stalled_until_ = 0;    // what waited has come by then [ns]
   std::vector<std::int64_t> stamps_;        // of the last event [ns], by id

@@ -144,7 +144,7 @@ class Choice {
         const std::uint64_t answers = types_.answers(from, to);
         if (from != to && answers >= kFewestAnswers &&
             missRate(gaps, answers) <= kMostMissesOfDeadline &&
-            relations_.answers(from, to).watched) {
+            relations_.deadline(from, to).watched) {
           best.emplace_back(missRate(gaps, answers), from);
         }
       }

@@ -5,9 +5,10 @@
 
 namespace self_awareness::core {
 
-bool SourceGraph::isConnected(const std::string& from, const std::string& to) const {
-  const auto followers = followers_.find(from);
-  return followers != followers_.end() && followers->second.count(to) > 0;
+void SourceGraph::connect(const std::string& publisher, const std::string& topic,
+                          const std::string& subscriber) {
+  edges_.insert({publisher, topic, subscriber});
+  followers_[publisher].insert(subscriber);
 }
 
 bool SourceGraph::isUpstream(const std::string& from, const std::string& to) const {
