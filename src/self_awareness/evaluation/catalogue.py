@@ -4,7 +4,7 @@ from __future__ import annotations
 from importlib import util
 from typing import Callable, Dict, Sequence
 
-from self_awareness.evaluation.detectors import Evidence, Paper
+from self_awareness.evaluation.detectors import Evidence, Paper, scenario_graph
 from self_awareness.evaluation.peers.frequency import (TOLERANCE, FrequencyMonitor,
                                                        LearnedFrequencyMonitor)
 from self_awareness.evaluation.peers.markov import MarkovScorer
@@ -27,8 +27,8 @@ def _hmm() -> Scorer:
 
 
 _DETECTORS: Dict[str, Callable[[], System]] = {
-    'evidence': lambda: Evidence(knows_graph=True),
-    'evidence_no_graph': lambda: Evidence(knows_graph=False),
+    'evidence': lambda: Evidence(scenario_graph()),
+    'evidence_no_graph': lambda: Evidence({}),
     'paper': Paper,
 }
 

@@ -1,6 +1,7 @@
 """The package's own detectors as systems to evaluate: a class for each."""
 from __future__ import annotations
 
+import math
 from typing import Dict, List, Optional, Sequence, Set
 
 import numpy as np
@@ -52,18 +53,21 @@ class Paper:
 
 
 class Evidence:
-    """The evidence detector (`detector: evidence`), with limits for the default budget.
+    """The evidence detector (`detector: evidence`).
 
     Args:
-        knows_graph: whether the model holds who listens to whom, as after a training
-            while the robot runs; if not, it was trained on bags alone.
+        graph: who subscribes to each source, as the model holds it after a training while the
+            robot runs; empty: it was trained on bags alone.
         predecessors: of an event type that are watched at most.
+        budget: false alarms an hour that the limits allow.
     """
 
-    def __init__(self, knows_graph: bool, predecessors: int = PREDECESSORS) -> None:
-        self.name = 'evidence' if knows_graph else 'evidence_no_graph'
-        self._graph = _scenario_graph() if knows_graph else {}
+    def __init__(self, graph: Dict[str, Set[str]], predecessors: int = PREDECESSORS,
+                 budget: float = limits.BUDGET) -> None:
+        self.name = 'evidence' if graph else 'evidence_no_graph'
+        self._graph = graph
         self._predecessors = predecessors
+        self._budget = budget
         self._trained: Optional[TrainedModel] = None
         self._model: Optional[EvidenceModel] = None
 
@@ -78,7 +82,7 @@ class Evidence:
         trained: TrainedModel = required(self._trained, self.name, 'train')
         encoded = [recording.encoded(trained.event_types) for recording in recordings]
         trained.evidence_calibration = limits.find(
-            trained, DetectorParameters().settle_time, limits.BUDGET,
+            trained, DetectorParameters().settle_time, self._budget,
             [HeldOut(recording.stamps, recording.ids) for recording in encoded])
 
     def judge(self, recording: WindowedEvents) -> Judged:
@@ -86,6 +90,12 @@ class Evidence:
         trained: TrainedModel = required(self._trained, self.name, 'train')
         return _judged(recording.encoded(trained.event_types),
                        self.verdicts(recording, DetectorParameters()), EVIDENCE_THRESHOLD)
+
+    @property
+    def expected_per_hour(self) -> float:
+        """The false alarms an hour that the calibration expects; NaN: it does not say."""
+        calibration = None if self._trained is None else self._trained.evidence_calibration
+        return math.nan if calibration is None else calibration.false_alarms_per_hour
 
     def verdicts(self, recording: WindowedEvents, parameters: DetectorParameters) -> Verdicts:
         """Return what the detector says of a recording, suspicions included."""
@@ -108,13 +118,13 @@ def _trained(recordings: Sequence[WindowedEvents], predecessors: int = PREDECESS
 def _judged(encoded: WindowedEvents, verdicts: Verdicts, threshold: float) -> Judged:
     alarms = [SystemAlarm(alarm.start, alarm.end, alarm.cleared,
                           distinct([encoded.event_types[suspect.id].source
-                                    for suspect in alarm.suspects]))
+                                    for suspect in alarm.suspects]), alarm.evidence)
               for alarm in verdicts.alarms]
     return Judged(verdicts.start, verdicts.abnormal, np.nan_to_num(verdicts.score),
                   verdicts.settling, alarms, threshold, verdicts.suspicion)
 
 
-def _scenario_graph() -> Dict[str, Set[str]]:
+def scenario_graph() -> Dict[str, Set[str]]:
     """Return who listens to whom in the robot that comes with the package."""
     scenario = load_scenario()
     graph: Dict[str, Set[str]] = {}
