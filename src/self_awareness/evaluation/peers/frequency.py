@@ -12,6 +12,7 @@ from typing import Dict, List, NamedTuple, Sequence
 import numpy as np
 
 from self_awareness import DEFAULT_WINDOW
+from self_awareness.evaluation.peers.deviations import DeviationScorer
 from self_awareness.evaluation.windowed_events import WindowedEvents
 from self_awareness.stamps import SECOND_NS
 
@@ -32,10 +33,11 @@ class Bounds(NamedTuple):
     most: float
 
 
-class _FrequencyMonitor:
+class _FrequencyMonitor(DeviationScorer):
     """What both monitors share: counting, and the deviation from the bounds."""
 
     def __init__(self) -> None:
+        super().__init__()
         self._bounds: Dict[str, Bounds] = {}
         self._sources: Dict[str, List[str]] = {}
 
@@ -60,31 +62,22 @@ class _FrequencyMonitor:
                 if bounds.fewest > 0:
                     self._bounds[topic] = bounds
 
-    def scores(self, recording: WindowedEvents) -> np.ndarray:
-        """Return the scores of the windows."""
-        deviations = self._deviations(recording)
-        return -deviations.max(axis=0) if len(deviations) else np.zeros(len(recording.starts()))
-
-    def suspects(self, recording: WindowedEvents, window: int) -> List[str]:
-        """Return the publishers of the topics beyond their bounds, the furthest first."""
-        deviations = self._deviations(recording)[:, window]
-        topics = list(self._bounds)
-        return list(dict.fromkeys(source for index in np.argsort(-deviations, kind='stable')
-                                  if deviations[index] > 0
-                                  for source in self._sources[topics[index]]))
-
     def _bounds_of(self, recordings: Sequence[WindowedEvents], stamps: Sequence[np.ndarray],
                    gaps: np.ndarray) -> Bounds:
         raise NotImplementedError
 
     def _deviations(self, recording: WindowedEvents) -> np.ndarray:
-        """Return by how much topics are beyond their bounds, [topic, window], 0 within them."""
+        """Return by how much topics are beyond their bounds."""
         ends = recording.starts() + DEFAULT_WINDOW
         rows = []
         for topic, (fewest, most) in self._bounds.items():
             count = messages_in_span(_stamps(recording, topic), ends)
             rows.append(np.maximum((fewest - count) / fewest, (count - most) / most).clip(0.0))
         return np.array(rows).reshape(len(rows), len(ends))
+
+    def _blamed(self, row: int) -> List[str]:
+        """Return the publishers of a topic."""
+        return self._sources[list(self._bounds)[row]]
 
 
 class FrequencyMonitor(_FrequencyMonitor):
