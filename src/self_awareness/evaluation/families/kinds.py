@@ -259,7 +259,7 @@ FAMILIES: Dict[str, Family] = {
                            _timers(Timing(ppm=50.0))),
     'timers_one_start': Family('timers, recorded in one start, watched in others', _timers(),
                                one_start=True),
-    'stalls': Family('timers, the same start, six stalls of the host of 0.1 to 0.6 s an hour',
+    'stalls': Family('timers, the same start, six stalls of 0.1 to 0.6 s an hour',
                      _timers(conditions=_STALLS), one_start=True, watched_start=True),
     'stalled_loops': Family('the same, half of the timers have a new phase after each stall',
                             _timers(Timing(loops=True), _STALLS), one_start=True,

@@ -180,10 +180,7 @@ class Robot:
         over_link = source != listener and (source in self.far) != (listener in self.far)
         arrived = self.conditions.transport(scene.published[index], over_link,
                                             scene.of_recording(f'transport {way}'))
-        if not self.conditions.lost:
-            return arrived
-        kept = scene.of_recording(f'lost {way}').uniform(size=len(arrived))
-        return arrived[kept >= self.conditions.lost]
+        return self.conditions.received(arrived, scene.of_recording(f'lost {way}'))
 
     def _merged(self, recorded: List[np.ndarray], begin: float, end: float,
                 origin: int) -> WindowedEvents:
