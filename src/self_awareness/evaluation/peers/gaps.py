@@ -14,7 +14,7 @@ from self_awareness import DEFAULT_WINDOW, EventType
 from self_awareness.evaluation.peers.deviations import DeviationScorer
 from self_awareness.evaluation.peers.frequency import SPAN, messages_in_span
 from self_awareness.evaluation.systems import ScoringSystem
-from self_awareness.evaluation.windowed_events import WindowedEvents
+from self_awareness.evaluation.windowed_events import WindowedEvents, stamps_by
 
 LONGER = 1.25
 """Times the longest gap ever seen, from where on an event type is silent for too long."""
@@ -74,7 +74,7 @@ class GapScorer(DeviationScorer):
         self._last = None
         for recording in recordings:
             ends = recording.starts() + DEFAULT_WINDOW
-            for event_type, stamps in _stamps(recording).items():
+            for event_type, stamps in _by_type(recording).items():
                 if len(stamps) < 2:
                     continue
                 counts = _counts(stamps, ends[ends <= recording.end])
@@ -87,7 +87,7 @@ class GapScorer(DeviationScorer):
 
     def _deviations(self, recording: WindowedEvents) -> np.ndarray:
         ends = recording.starts() + DEFAULT_WINDOW
-        stamps = _stamps(recording)
+        stamps = _by_type(recording)
         deviations = np.zeros((len(self._bounds), len(ends)))
         for row, (event_type, bounds) in enumerate(self._bounds.items()):
             if event_type in stamps:
@@ -116,12 +116,8 @@ class GapMonitor(ScoringSystem):
         self._gaps.widen(recordings)
 
 
-def _stamps(recording: WindowedEvents) -> Dict[EventType, np.ndarray]:
-    """Return the stamps of the event types that there are."""
-    order = np.argsort(recording.ids, kind='stable')
-    edges = np.searchsorted(recording.ids[order], np.arange(len(recording.event_types) + 1))
-    return {event_type: recording.stamps[order[begin:end]] for event_type, begin, end
-            in zip(recording.event_types, edges, edges[1:]) if end > begin}
+def _by_type(recording: WindowedEvents) -> Dict[EventType, np.ndarray]:
+    return stamps_by(recording, lambda event_type: event_type)
 
 
 def _ages(stamps: np.ndarray, ends: np.ndarray) -> np.ndarray:
