@@ -221,14 +221,15 @@ def test_the_page_has_a_table_of_families_and_one_of_budgets(written: Path) -> N
     tables = [block.split('\n') for block in page.split('\n\n') if block.startswith('| ')]
     assert len(tables) == 2
     head = cells(tables[0][0])
-    assert head[:5] == ['family', '1 x 60 s', '2 x 60 s', 'from', 'gaps, 2 x 60 s']
+    assert head[:5] == ['family', 'false alarms/h, 1 start', 'false alarms/h, 2 starts', 'from',
+                        'gaps, 2 starts']
     assert [cells(line)[0] for line in tables[0][2:5]] == ['events_only', 'bursty', 'all']
     assert all(len(cells(line)) == len(head) for line in tables[0] if line)
     bursty = dict(zip(head, cells(tables[0][3])))
     assert float(bursty['crash, within 1 / 5 / 50 s'].split(' %')[0]) > 30.0
     assert bursty['half rate'] == '–'
     assert [cells(line)[:2] for line in tables[1][2:6]] == [
-        ['1 x 60 s', '0.5'], ['1 x 60 s', '5'], ['2 x 60 s', '0.5'], ['2 x 60 s', '5']]
+        ['1 start', '0.5'], ['1 start', '5'], ['2 starts', '0.5'], ['2 starts', '5']]
     assert 'nan' not in page and 'inf' not in page.replace('info', '')
 
 

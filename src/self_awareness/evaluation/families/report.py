@@ -43,12 +43,14 @@ timers have new phases; where a family is recorded or watched in one start, its 
 systems judge the same recordings; alarms while a detector settles (the first {settle_s:g} s of a
 recording) are left out with their time.
 
-The columns of seconds are false alarms an hour of `{system}` by what it learned from, with their
-95 % interval (alarms come in clusters: it is the wider the more the robots differ), and `from`
-says what raised most of them. All other columns are about {main}, late answers about {late}, and
-limits for a budget of {budget:g} false alarms an hour. `found, latency`: share of the records with
-an alarm after the onset, and the median latency. `first`: share of these alarms that name the
-guilty component first. A system with many false alarms finds faults by chance: read both together.
+The table is about `{system}` with limits for a budget of {budget:g} false alarms an hour. It
+begins with the false alarms an hour by what was learned from, with their 95 % interval (alarms
+come in clusters: it is the wider the more the robots differ); `from` says what raised most of
+them, and beside them are those of other systems. All columns without a number of starts are about
+{main}, those of late answers about {late}. Half rates, late answers and deaths: share of
+the records with an alarm after the onset, and the median latency. `first`: share of these alarms
+that name the guilty component first. A system with many false alarms finds faults by chance: read
+both together.
 
 All figures, also of the other systems: [{name}.csv]({name}.csv).
 """

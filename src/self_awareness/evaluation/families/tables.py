@@ -39,9 +39,9 @@ def families_table(plan: Plan, results: Results) -> List[str]:
     normal = summary.groups(results.normal)
     system, learning = main_system(plan), main_learning(plan)
     others = [name for name in plan.systems if name != system]
-    head = ['family', *(_started(each) for each in plan.learnings), 'from',
-            *(f'{name}, {_started(learning)}' for name in others), 'alarm stands', 'WARN an hour',
-            'crash, within 1 / 5 / 50 s', 'first', 'half rate', 'late answers', 'first',
+    head = ['family', *(f'false alarms/h, {_started(plan, each)}' for each in plan.learnings),
+            'from', *(f'{name}, {_started(plan, learning)}' for name in others), 'alarm stands',
+            'WARN/h', 'crash, within 1 / 5 / 50 s', 'first', 'half rate', 'late answers', 'first',
             'deaths when asked', 'first']
     body = []
     for family in _with_all(plan.families):
@@ -68,7 +68,7 @@ def budgets_table(plan: Plan, results: Results) -> List[str]:
             rows = normal[Group(ALL, str(learning), main_system(plan), budget)]
             quiet = summary.quiet(rows)
             expected = quiet.expected_per_hour
-            body.append([_started(learning), f'{budget:g}',
+            body.append([_started(plan, learning), f'{budget:g}',
                          _NONE if math.isnan(expected) else f'{expected:.2f}', _rate(quiet),
                          percent(summary.kept(rows, budget))])
     return table(['learned from', 'budget', 'expected', 'came', 'robots within the budget'], body)
@@ -102,8 +102,10 @@ def _learning(plan: Plan, starts: int) -> Learning:
     return next((each for each in plan.learnings if each.starts == starts), plan.learnings[0])
 
 
-def _started(learning: Learning) -> str:
-    return f'{learning.starts} x {learning.training_s:g} s'
+def _started(plan: Plan, learning: Learning) -> str:
+    if learning.training_s != plan.learnings[0].training_s:
+        return f'{learning.starts} x {learning.training_s:g} s'
+    return '1 start' if learning.starts == 1 else f'{learning.starts} starts'
 
 
 def _with_all(families: Sequence[str]) -> List[str]:
