@@ -120,11 +120,19 @@ def test_measures_of_a_fault() -> None:
               SystemAlarm(at(80), at(90), True, ['/b', '/a'])]
     row = fault_row(SUBJECT, fault_at(70), judged(alarms))
     assert row.latency_s == pytest.approx(1.0, abs=1e-6)
-    assert (row.first, row.among_three) == (False, True)
+    assert (row.first, row.among_three, row.stood_before) == (False, True, False)
     row = fault_row(SUBJECT, fault_at(59), judged(alarms))
     assert (row.latency_s, row.first) == (pytest.approx(0.1, abs=1e-6), True)
     row = fault_row(SUBJECT, fault_at(90), judged(alarms))
     assert (row.latency_s, row.first, row.among_three) == (None, None, None)
+
+
+def test_a_false_alarm_that_stands_at_the_onset_is_told() -> None:
+    for alarm, stood in ((SystemAlarm(at(60), at(69), True, []), False),
+                         (SystemAlarm(at(60), at(71), True, []), True),
+                         (SystemAlarm(at(60), at(99), False, []), True),
+                         (SystemAlarm(at(71), at(99), False, []), False)):
+        assert fault_row(SUBJECT, fault_at(70), judged([alarm])).stood_before == stood
 
 
 def normal(seed: int, alarms: int, hours: float = 1.0, system: str = 'evidence',
@@ -137,8 +145,8 @@ def normal(seed: int, alarms: int, hours: float = 1.0, system: str = 'evidence',
 def fault(kind: str, latency_s: Optional[float], first: Optional[bool],
           family: str = 'timers', system: str = 'evidence') -> FaultRow:
     """Return a row of a fault."""
-    return FaultRow(Subject(family, 1, str(TWO), system, 0.5), kind, '/a', latency_s, first,
-                    None if first is None else True)
+    return FaultRow(Subject(family, 1, str(TWO), system, 0.5), kind, '/a', latency_s is None,
+                    latency_s, first, None if first is None else True)
 
 
 def test_figures_of_normal_operation() -> None:
@@ -166,7 +174,7 @@ def test_figures_of_faults() -> None:
             fault(CRASH, 0.1, True, system='gaps')]
     group = Group('timers', str(TWO), 'evidence', 0.5)
     crash = summary.found(rows, group, CRASH)
-    assert crash.records == 3
+    assert (crash.records, crash.stood_before) == (3, pytest.approx(1 / 3))
     assert [crash.within(s) for s in (0.3, 1.0, 5.0)] == pytest.approx([0.0, 1 / 3, 2 / 3])
     assert crash.within() == pytest.approx(2 / 3)
     assert crash.interval() == confidence.wilson(2, 3)

@@ -65,6 +65,8 @@ class FaultRow:
         subject: who judged it.
         kind: of the fault, one of protocol.KINDS.
         source: the guilty component.
+        stood_before: whether an alarm stood at the onset, a false one; only when it has cleared
+            can another one be raised.
         latency_s: from the onset to the first alarm raised after it; None: none was.
         first: whether that alarm names the guilty component first; None: no such alarm, or the
             system names nobody.
@@ -74,6 +76,7 @@ class FaultRow:
     subject: Subject
     kind: str
     source: str
+    stood_before: bool
     latency_s: Optional[float]
     first: Optional[bool]
     among_three: Optional[bool]
@@ -93,6 +96,8 @@ def fault_row(subject: Subject, record: FaultRecord, judged: Judged) -> FaultRow
     suspects = None if alarm is None else alarm.suspects
     return FaultRow(
         subject, record.kind, record.source,
+        any(alarm.start <= record.onset and not (alarm.cleared and alarm.end <= record.onset)
+            for alarm in judged.alarms),
         None if alarm is None else (alarm.start - record.onset) / SECOND_NS,
         None if suspects is None else suspects[:1] == [record.source],
         None if suspects is None else record.source in suspects[:3])

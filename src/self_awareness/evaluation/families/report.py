@@ -49,8 +49,8 @@ come in clusters: it is the wider the more the robots differ); `from` says what 
 them, and beside them are those of other systems. All columns without a number of starts are about
 {main}, those of late answers about {late}. Half rates, late answers and deaths: share of
 the records with an alarm after the onset, and the median latency. `first`: share of these alarms
-that name the guilty component first. A system with many false alarms finds faults by chance: read
-both together.
+that name the guilty component first. A system with many false alarms finds faults by chance, and
+one whose false alarm stands at the onset raises none for the fault: read all together.
 
 All figures, also of the other systems: [{name}.csv]({name}.csv).
 """
@@ -124,9 +124,10 @@ def figures(results: Results) -> List[Dict[str, Any]]:
 
 def _of_fault(kind: str, found: Found) -> Dict[str, Any]:
     low, high = found.interval()
-    figures_of = {'records': found.records, 'found': found.within(), 'found_low': low,
-                  'found_high': high, 'median_s': found.median_s, 'first': found.first,
-                  'among_three': found.among_three}
+    figures_of = {
+        'records': found.records, 'stood_before': found.stood_before, 'found': found.within(),
+        'found_low': low, 'found_high': high, 'median_s': found.median_s, 'first': found.first,
+        'among_three': found.among_three}
     figures_of.update({f'within_{within_s:g}_s': found.within(within_s)
                        for within_s in _WITHIN_S})
     return {f'{kind.split()[0]}_{name}': value for name, value in figures_of.items()}

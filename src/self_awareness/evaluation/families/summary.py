@@ -59,12 +59,14 @@ class Found:
 
     Args:
         records: with such a fault.
+        stood_before: share of them with a false alarm that stood at the onset.
         latencies_s: to the first alarm of each; infinite where there was none [s].
         first: share of the alarms that name the guilty component first; NaN: none names anybody.
         among_three: the same of the first three.
     """
 
     records: int
+    stood_before: float
     latencies_s: Tuple[float, ...]
     first: float
     among_three: float
@@ -128,7 +130,7 @@ def found(rows: Sequence[FaultRow], group: Group, kind: str) -> Found:
               and (group.learning, group.system, group.budget)
               == (row.subject.learning, row.subject.system, row.subject.budget)]
     return Found(
-        len(chosen),
+        len(chosen), _share([row.stood_before for row in chosen]),
         tuple(math.inf if row.latency_s is None else row.latency_s for row in chosen),
         _share([row.first for row in chosen]), _share([row.among_three for row in chosen]))
 
