@@ -51,7 +51,8 @@ class Output:
 
     Args:
         source: name of the component.
-        event_type: of all messages.
+        topic: that it publishes.
+        datatype: of the messages.
         emission: when it sends; answers are to outputs before it.
     """
 
