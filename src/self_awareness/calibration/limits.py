@@ -39,6 +39,19 @@ class HeldOut:
 
 
 @dataclass(frozen=True)
+class OfHalf:
+    """A recording of the training in memory: stamps [ns], ids, and the half that it belongs to."""
+
+    stamps: np.ndarray
+    ids: np.ndarray
+    half: int
+
+    def parts(self, _: TrainedModel) -> Iterable[Part]:
+        """Return what is to be judged."""
+        return [(self.stamps, self.ids, self.half)]
+
+
+@dataclass(frozen=True)
 class TrainedOn:
     """A recording of the training.
 
@@ -131,7 +144,7 @@ def find(trained: TrainedModel, settle_time: int, budget: float, tasks: Sequence
     """
     workers = workers or InProcess()
     judging = _Judging(trained, settle_time, budget)
-    if not any(isinstance(task, TrainedOn) for task in tasks):
+    if not keep_findings:
         judging.finder.merge(trained.findings)
     judging.add_all(tasks, workers, 'limits, first pass')
     if keep_findings:
@@ -147,6 +160,19 @@ def find(trained: TrainedModel, settle_time: int, budget: float, tasks: Sequence
     calibration.windows = judging.finder.windows
     calibration.stamp = int(time.time()) * SECOND_NS
     return calibration
+
+
+def compare_halves(trained: TrainedModel, settle_time: int, recordings_: Sequence[OfHalf]) -> None:
+    """Let a model keep what the recordings of its training show, without limits by them.
+
+    Args:
+        trained: the model.
+        settle_time: left out at the start of every recording [ns].
+        recordings_: all recordings of the training.
+    """
+    judging = _Judging(trained, settle_time, BUDGET)
+    judging.add_all(recordings_, InProcess(), 'training')
+    trained.findings = judging.finder.findings()
 
 
 class TooLittleError(ValueError):

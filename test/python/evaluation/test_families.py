@@ -6,7 +6,8 @@ from typing import Dict
 import numpy as np
 import pytest
 
-from self_awareness.evaluation.families.emissions import Answer, Timer
+from self_awareness.evaluation.families.conditions import Conditions
+from self_awareness.evaluation.families.emissions import Answer, Feedback, Sporadic, Timer
 from self_awareness.evaluation.families.kinds import FAMILIES, draw
 from self_awareness.evaluation.families.robot import (CRASH, HALF_RATE, LATE, Fault, Output,
                                                       Robot)
@@ -181,6 +182,66 @@ def test_late_answers_are_late_and_what_follows_too() -> None:
         shift = late[topic][250:500] - normal[topic][250:500]
         assert np.median(shift) == pytest.approx(0.06, abs=0.001), topic
     assert np.array_equal(normal['/charge'], late['/charge'])
+
+
+def test_queues_lose_only_what_comes_soon_after_another() -> None:
+    conditions = Conditions(lost=0.1)
+    for gap_s, lost in ((0.1, 0.1), (0.2, 0.0)):
+        sent = np.arange(5000) * gap_s
+        received = conditions.received(sent, np.random.default_rng(1))
+        assert 1.0 - len(received) / len(sent) == pytest.approx(lost, abs=0.02)
+        assert np.isin(received, sent).all()
+
+
+def test_a_link_has_a_heavy_tail_and_nothing_overtakes() -> None:
+    sent = np.arange(20_000) * 0.1
+    conditions = Conditions(heavy=0.01)
+    delays, near = (conditions.transport(sent, over_link, np.random.default_rng(1)) - sent
+                    for over_link in (True, False))
+    assert np.median(near) < 0.0003 and 0.003 < np.median(delays) < 0.006
+    assert (delays > 5.0 * np.median(delays)).mean() == pytest.approx(0.01, abs=0.003)
+    fast = conditions.transport(np.arange(20_000) * 0.001, True, np.random.default_rng(1))
+    assert (np.diff(fast) >= 0.0).all()
+
+
+def test_a_load_makes_work_take_longer_and_shorter_again() -> None:
+    robot = Robot(7, small().outputs, Conditions(load_period_s=3600.0, most_load=3.0))
+    recorded = stamps(robot.start(1, 3600.0))
+    number = np.searchsorted(recorded['/scan'], recorded['/map'][1:]) - 1
+    delays = recorded['/map'][1:] - recorded['/scan'][number]
+    by_minute = [np.median(part) for part in np.array_split(delays, 60)]
+    assert min(by_minute) == pytest.approx(0.02, abs=0.001)
+    assert max(by_minute) == pytest.approx(0.06, abs=0.002)
+
+
+def test_who_drives_now_and_then_is_not_regular() -> None:
+    robot = draw('driving_docked', 1)
+    assert '/motion0' not in robot.regular and '/planner0' in robot.regular
+    recorded = stamps(robot.start(1, 3600.0))
+    gaps = np.diff(recorded['/motion0/data'])
+    pauses = gaps[gaps > 1.0]
+    assert 5 <= len(pauses) <= 30 and 40.0 < pauses.mean() < 300.0
+    # All that moves pauses at the same times.
+    assert abs((np.diff(recorded['/motion1/data']) > 1.0).sum() - len(pauses)) <= 1
+
+
+def test_feedback_comes_between_goal_and_result() -> None:
+    robot = Robot(7, (
+        Output('/client', '/goal', 'std_msgs/String', Sporadic(20.0)),
+        Output('/server', '/result', 'std_msgs/String', Answer(0, 1.05, 0.01)),
+        Output('/server', '/feedback', 'std_msgs/String', Feedback(1, 0.3)),
+    ))
+    recorded = stamps(robot.start(1, 3600.0))
+    goals, results, feedback = recorded['/goal'], recorded['/result'], recorded['/feedback']
+    assert len(goals) == pytest.approx(180, abs=50)
+    assert abs(len(results) - len(goals)) <= 1
+    assert len(feedback) == pytest.approx(3 * len(goals), abs=3)
+    since = feedback[3:] - goals[np.searchsorted(goals, feedback[3:]) - 1]
+    assert (since < 1.0).mean() > 0.95
+    # Sessions leave minutes of idleness, in which only heartbeats come.
+    idle = draw('events_only', 1).start(1, 3600.0)
+    asked = np.array(['watchdog' not in kind.source for kind in idle.event_types])
+    assert np.diff(idle.stamps[asked[idle.ids]]).max() > 60 * SECOND_NS
 
 
 def test_stalls_let_all_wait_and_come_at_once() -> None:

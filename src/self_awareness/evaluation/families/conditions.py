@@ -11,6 +11,7 @@ _LINK_S = 0.004
 _SHORTEST_LINK, _LONGEST_LINK = 0.7, 1.5
 _LINK_HEAVY = 10.0
 _HICCUP_S = 0.02
+_SOON_S = 0.15
 _SHORTEST_STALL_S, _LONGEST_STALL_S = 0.1, 0.6
 _HOUR_S = 3600.0
 
@@ -44,7 +45,8 @@ class Conditions:
 
     Args:
         hiccups: share of messages that come some 20 ms later still, as what follows them does.
-        lost: share of messages that a listener does not get.
+        lost: share of messages that a listener does not get, of those that come soon after the
+            one before: queues lose what comes too fast for the listener, and nothing else.
         heavy: share of delays over the wireless link that are ten times as long.
         load_period_s: time in which the load rises and falls once [s]; 0: it does not.
         most_load: by how much longer work takes at the most, 1 or more.
@@ -75,6 +77,13 @@ class Conditions:
             link = _LINK_S * (_SHORTEST_LINK + (_LONGEST_LINK - _SHORTEST_LINK) * drawn[:, 1])
             delay += np.where(drawn[:, 2] < self.heavy, _LINK_HEAVY * link, link)
         return in_order(sent + delay)
+
+    def received(self, arrived: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+        """Return which messages a listener gets, of those that arrive at some times [s]."""
+        if not self.lost:
+            return arrived
+        soon = np.diff(arrived, prepend=-np.inf) < _SOON_S
+        return arrived[~soon | (rng.uniform(size=len(arrived)) >= self.lost)]
 
     def hiccup(self, times: np.ndarray, rng: np.random.Generator) -> np.ndarray:
         """Return when messages are sent that were to be at some times [s]."""

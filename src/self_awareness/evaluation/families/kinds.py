@@ -132,7 +132,7 @@ def _large(seed: int) -> Robot:
         begin, rate = ends[int(draft.rng.integers(len(ends)))]
         ends.append((draft.add_chain(f'filter{number}', begin, rate, 1)[0], rate))
         heads.append(ends[-1])
-    # 250 topics; the number of the faster ones decides on 2000 messages a second.
+    # The other topics of 250, at 8 messages a second on average: 2000.
     shares = draft.rng.multinomial(250 - len(heads), [1.0 / len(heads)] * len(heads))
     for (index, _), number in zip(heads, shares.tolist()):
         draft.add_copies(index, number)
@@ -147,10 +147,10 @@ def _driving_docked(seed: int) -> Robot:
     for number, rate in enumerate((10.0, 20.0, 50.0)):
         index = draft.add_timer(f'motion{number}', rate, activity='driving')
         draft.add_chain(f'motion_filter{number}', index, rate, number % 2 + 1)
-    # What works at twice the rate while the robot drives.
+    # Who has more to say while the robot drives.
     for number, rate in enumerate((5.0, 10.0)):
         draft.add_timer(f'planner{number}', rate)
-        draft.add_timer(f'planner{number}', rate, 'data_fast', activity='driving')
+        draft.add_timer(f'planner{number}', rate, 'motion', activity='driving')
     return draft.robot(seed)
 
 
@@ -259,7 +259,7 @@ FAMILIES: Dict[str, Family] = {
                            _timers(Timing(ppm=50.0))),
     'timers_one_start': Family('timers, recorded in one start, watched in others', _timers(),
                                one_start=True),
-    'stalls': Family('timers, the same start, six stalls of the host of 0.1 to 0.6 s an hour',
+    'stalls': Family('timers, the same start, six stalls of 0.1 to 0.6 s an hour',
                      _timers(conditions=_STALLS), one_start=True, watched_start=True),
     'stalled_loops': Family('the same, half of the timers have a new phase after each stall',
                             _timers(Timing(loops=True), _STALLS), one_start=True,

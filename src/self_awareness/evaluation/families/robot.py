@@ -51,7 +51,8 @@ class Output:
 
     Args:
         source: name of the component.
-        event_type: of all messages.
+        topic: that it publishes.
+        datatype: of the messages.
         emission: when it sends; answers are to outputs before it.
     """
 
@@ -83,17 +84,15 @@ class Robot:
     far: FrozenSet[str] = frozenset()
 
     @property
-    def graph(self) -> Dict[str, Set[str]]:
-        """Who subscribes to each component, other components only."""
-        pairs = set(self.subscriptions)
+    def graph(self) -> Set[Tuple[str, str, str]]:
+        """Publisher, topic and subscriber of all that is heard by other components."""
+        heard = {(output.source, output.topic, subscriber) for output in self.outputs
+                 for publisher, subscriber in self.subscriptions if publisher == output.source}
         for output in self.outputs:
             if output.emission.trigger is not None:
-                pairs.add((self.outputs[output.emission.trigger].source, output.source))
-        graph: Dict[str, Set[str]] = {}
-        for publisher, subscriber in sorted(pairs):
-            if publisher != subscriber:
-                graph.setdefault(publisher, set()).add(subscriber)
-        return graph
+                asking = self.outputs[output.emission.trigger]
+                heard.add((asking.source, asking.topic, output.source))
+        return {edge for edge in heard if edge[0] != edge[2]}
 
     @property
     def regular(self) -> List[str]:
@@ -180,10 +179,7 @@ class Robot:
         over_link = source != listener and (source in self.far) != (listener in self.far)
         arrived = self.conditions.transport(scene.published[index], over_link,
                                             scene.of_recording(f'transport {way}'))
-        if not self.conditions.lost:
-            return arrived
-        kept = scene.of_recording(f'lost {way}').uniform(size=len(arrived))
-        return arrived[kept >= self.conditions.lost]
+        return self.conditions.received(arrived, scene.of_recording(f'lost {way}'))
 
     def _merged(self, recorded: List[np.ndarray], begin: float, end: float,
                 origin: int) -> WindowedEvents:
