@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 
 #include "self_awareness/core/stream/event.h"
@@ -34,21 +35,23 @@ struct Suspect {
     kAnswer    ///< is left out after another event type more often than it should
   };
 
+  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
   EventId id = 0;
   Reason reason = Reason::kSilent;
-  double silence = 0;         ///< kSilent, kLate: time without such an event [s]
-  double usual_shortest = 0;  ///< kSilent, kLate: 1 % of the gaps in training are shorter [s];
-                              ///< kDelay: 5 % of the delays
-  double usual_longest = 0;   ///< kSilent, kLate: 1 % of the gaps in training are longer [s];
-                              ///< kDelay: 5 % of the delays
-  std::size_t events = 0;     ///< kUnknown, kUnusual: such events in the window; kRate: in the
-                              ///< last kRateSpan
-  double usual_fewest = 0;    ///< kRate: the mean of training minus two spreads
-  double usual_most = 0;      ///< kRate: the mean of training plus two spreads
-  double score = 0;           ///< kUnusual: their mean score
-  double usual_score = 0;     ///< kUnusual: the score to expect by training
-  std::string other;          ///< kDelay, kAnswer: the other event type; empty: its own
-  double delay = 0;           ///< kDelay: the last one [s]
+  double silence = kNone;         ///< kSilent, kLate: time without such an event [s]; else NaN
+  double usual_shortest = kNone;  ///< kSilent, kLate: 1 % of the gaps in training are shorter [s];
+                                  ///< kDelay: 5 % of the delays; else NaN
+  double usual_longest = kNone;   ///< kSilent, kLate: 1 % of the gaps in training are longer [s];
+                                  ///< kDelay: 5 % of the delays; else NaN
+  std::size_t events = 0;         ///< kUnknown, kUnusual: such events in the window; kRate: in the
+                                  ///< last kRateSpan
+  double usual_fewest = 0;        ///< kRate: the mean of training minus two spreads
+  double usual_most = 0;          ///< kRate: the mean of training plus two spreads
+  double score = 0;               ///< kUnusual: their mean score
+  double usual_score = 0;         ///< kUnusual: the score to expect by training
+  std::string other;              ///< kDelay, kAnswer: the other event type; empty: its own
+  double delay = 0;               ///< kDelay: the last one [s]
 };
 
 /// The reason in words and numbers: "silent for 2.31 s, usually every 0.070 to 0.090 s".
