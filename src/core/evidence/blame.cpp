@@ -170,6 +170,8 @@ Suspect Blame::silence(EventId id, const Scorer& scorer) const {
   suspect.silence = toSeconds(age(id, scorer));
   suspect.usual_shortest = model_->usualDelay(id, id, kUsualFrom);
   suspect.usual_longest = model_->usualDelay(id, id, kUsualTo);
+  suspect.usual_gap = model_->meanGap(id) * 1e-9;
+  suspect.longest_gap = toSeconds(model_->longestGap(id));
   return suspect;
 }
 

@@ -1,20 +1,34 @@
 #include "self_awareness/core/verdict/suspect.h"
 
+#include <cmath>
 #include <cstdio>
 
 namespace self_awareness::core {
+namespace {
+
+std::string usualGap(const Suspect& suspect) {
+  char text[80];
+  if (std::isnan(suspect.usual_gap)) {
+    std::snprintf(text, sizeof text, "usually every %.3f to %.3f s", suspect.usual_shortest,
+                  suspect.usual_longest);
+  } else {
+    std::snprintf(text, sizeof text, "usually every %.3f s, at most %.3f s", suspect.usual_gap,
+                  suspect.longest_gap);
+  }
+  return text;
+}
+
+}  // namespace
 
 std::string describe(const Suspect& suspect) {
   char text[160];
   switch (suspect.reason) {
     case Suspect::Reason::kSilent:
-      std::snprintf(text, sizeof text, "silent for %.2f s, usually every %.3f to %.3f s",
-                    suspect.silence, suspect.usual_shortest, suspect.usual_longest);
-      return text;
+      std::snprintf(text, sizeof text, "silent for %.2f s, ", suspect.silence);
+      return text + usualGap(suspect);
     case Suspect::Reason::kLate:
-      std::snprintf(text, sizeof text, "came after %.2f s, usually every %.3f to %.3f s",
-                    suspect.silence, suspect.usual_shortest, suspect.usual_longest);
-      return text;
+      std::snprintf(text, sizeof text, "came after %.2f s, ", suspect.silence);
+      return text + usualGap(suspect);
     case Suspect::Reason::kUnknown:
       std::snprintf(text, sizeof text, "never seen in training, %zu in this window",
                     suspect.events);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <memory>
 #include <string>
 #include <utility>
@@ -71,6 +72,16 @@ TEST_F(EvidenceBlameTest, WithoutAGraphTheLeastProbableSilenceComesFirst) {
     EXPECT_NEAR(suspect.silence, 5, 0.5);
     EXPECT_LT(suspect.usual_shortest, suspect.usual_longest);
   }
+}
+
+TEST_F(EvidenceBlameTest, SaysOfASilentOneWhatWasMeasuredInTraining) {
+  const Suspect silent = suspects({{overdue(kA), 1.5}}, last_ + 5 * kSecond).at(0);
+  EXPECT_DOUBLE_EQ(silent.usual_gap * 1e9, model_->meanGap(kA));
+  EXPECT_DOUBLE_EQ(silent.longest_gap * 1e9, static_cast<double>(model_->longestGap(kA)));
+  char text[100];
+  std::snprintf(text, sizeof text, "silent for %.2f s, usually every %.3f s, at most %.3f s",
+                silent.silence, silent.usual_gap, silent.longest_gap);
+  EXPECT_EQ(describe(silent), text);
 }
 
 TEST_F(EvidenceBlameTest, TheRootOfTheSilentComesBeforeItsVictims) {

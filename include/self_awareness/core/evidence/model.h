@@ -53,8 +53,10 @@ class Model {
   double logSurvival(EventId id, std::int64_t age) const;
   /// Longest gap between two events of the type in training [ns]; 0 if there was none.
   std::int64_t longestGap(EventId id) const;
-  /// Delay from `from` to `to` [s] that a share (0 to 1) of the delays in training did not exceed,
-  /// as exactly as the bins are.
+  /// Mean gap between two events of the type in training [ns]; 0 if there was none.
+  double meanGap(EventId id) const;
+  /// Delay from `from` to `to` [s] that a share (0 to 1) of the delays in training did not exceed.
+  /// Exact for the longest gaps of a type; an estimate within the bin for the others.
   double usualDelay(EventId from, EventId to, double share) const;
   /// Number of events of a type in kRateSpan that lies this many spreads above the mean.
   double usualCount(EventId id, double spreads) const {

@@ -44,6 +44,8 @@ struct Suspect {
                                   ///< kDelay: 5 % of the delays; else NaN
   double usual_longest = kNone;   ///< kSilent, kLate: 1 % of the gaps in training are longer [s];
                                   ///< kDelay: 5 % of the delays; else NaN
+  double usual_gap = kNone;       ///< kSilent: mean gap in training [s]; NaN: not known
+  double longest_gap = kNone;     ///< kSilent: longest gap in training [s]; NaN: not known
   std::size_t events = 0;         ///< kUnknown, kUnusual: such events in the window; kRate: in the
                                   ///< last kRateSpan
   double usual_fewest = 0;        ///< kRate: the mean of training minus two spreads
@@ -54,7 +56,7 @@ struct Suspect {
   double delay = 0;               ///< kDelay: the last one [s]
 };
 
-/// The reason in words and numbers: "silent for 2.31 s, usually every 0.070 to 0.090 s".
+/// The reason in words and numbers: "silent for 2.31 s, usually every 0.083 s, at most 0.104 s".
 std::string describe(const Suspect& suspect);
 
 }  // namespace self_awareness::core
