@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/evidence/blame.h"
+#include "core/evidence/hindsight.h"
 #include "core/evidence/scorer.h"
 
 namespace self_awareness::core::evidence {
@@ -26,10 +27,14 @@ class Judge : public core::Judge {
         std::shared_ptr<const SourceGraph> graph);
 
   ObservedEvent add(const Event& event) override {
+    hindsight_.add(event);
     return {event, !model_->knows(event.id), scorer_.add(event)};
   }
   Judgement judge(const Window& window, std::int64_t end, NameSuspects suspects) override;
-  void restart() override { scorer_.restart(); }
+  void restart() override {
+    scorer_.restart();
+    hindsight_.restart();
+  }
 
  private:
   bool isSilent(std::int64_t end) const;
@@ -37,6 +42,7 @@ class Judge : public core::Judge {
   std::shared_ptr<const Model> model_;
   std::optional<Limits> limits_;
   Scorer scorer_;
+  Hindsight hindsight_;
   Blame blame_;
   std::vector<double> shares_;  // of its limit that each track has reached
 };
@@ -46,6 +52,7 @@ Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, s
     : model_(std::move(model)),
       limits_(std::move(limits)),
       scorer_(model_, window),
+      hindsight_(model_),
       blame_(model_, std::move(graph)),
       shares_(model_->tracks().size(), 0) {
   if (limits_ && (limits_->tracks.size() != model_->tracks().size() ||
@@ -86,7 +93,7 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
   }
   if (suspects == NameSuspects::kAlways ||
       (suspects == NameSuspects::kIfUnusual && (judgement.abnormal || judgement.suspicious))) {
-    judgement.suspects = blame_.suspects(shares_, scorer_, window);
+    judgement.suspects = blame_.suspects(shares_, scorer_, hindsight_, window);
   }
   return judgement;
 }

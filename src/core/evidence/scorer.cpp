@@ -8,9 +8,7 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-// What every delay takes from the sum, in standard deviations: a large drift finds strong evidence
-// without false alarms, a small one lets weak evidence add up.
-constexpr double kDrift = 1;
+// The drift of the slow sums: a small one lets weak evidence add up.
 constexpr double kSlowDrift = 0.5;
 // Independent timers keep one phase as long as they run, and have another one in every run:
 // training may have met the same one by chance every time. So delays and answers count only after
@@ -72,7 +70,7 @@ void Scorer::addTracks() {
     type.pairs_begin = static_cast<std::uint32_t>(pairs_.size());
     for (const std::size_t track : pairs[id]) {
       state_of_[track] = state_of_[track + 1] = pairs_.size();
-      pairs_.push_back({tracks[track].from, false, 0, model_->surprises(track).data(), none});
+      pairs_.push_back({tracks[track].from, false, model_->surprises(track).data(), none});
     }
     type.pairs_end = static_cast<std::uint32_t>(pairs_.size());
     type.blocks_begin = static_cast<std::uint32_t>(blocks_.size());
@@ -108,9 +106,6 @@ void Scorer::restart() {
   number_ = 0;
   counts_.restart();
   evidence_.assign(model_->tracks().size(), 0);
-  for (DelayPair& pair : pairs_) {
-    pair.last_delay = 0;
-  }
   for (EventId id = 0; id < model_->size(); ++id) {
     disarm(id);
   }
@@ -136,7 +131,6 @@ std::optional<std::int64_t> Scorer::add(const Event& event) {
     const bool first = numbers[pair->from] >= last;
     const std::int64_t delay = event.stamp - stamps[pair->from];
     const double surprise = pair->surprises[log_bins::bin(delay)];
-    pair->last_delay ^= (pair->last_delay ^ delay) & -static_cast<std::int64_t>(first);
     pair->sums.add((surprise - drifts) * (first ? 1.0 : 0.0));
     if (!pair->armed) {
       armPair(static_cast<std::size_t>(pair - pairs_.data()), first, surprise);
@@ -170,7 +164,6 @@ void Scorer::armPair(std::size_t number, bool first, double surprise) {
   DelayPair& pair = pairs_[number];
   if (numbers_[pair.from] == 0) {
     pair.sums.values.setZero();
-    pair.last_delay = 0;
   } else if (first) {
     pair.armed = arm(pairs_arming_[number], surprise, kUsualSurprise);
   }
@@ -209,6 +202,21 @@ void Scorer::capAt(const Limits& limits) {
       cap(track, blocks_[number / AnswerBlock::kAnswers]
                      .sums.caps[static_cast<int>(number % AnswerBlock::kAnswers)]);
     }
+  }
+}
+
+double Scorer::cap(std::size_t track) const {
+  const std::size_t number = state_of_.at(track);
+  switch (model_->tracks()[track].channel) {
+    case Channel::kDelay:
+      return pairs_[number].sums.caps[0];
+    case Channel::kSlowDelay:
+      return pairs_[number].sums.caps[1];
+    case Channel::kAnswer:
+      return blocks_[number / AnswerBlock::kAnswers]
+          .sums.caps[static_cast<int>(number % AnswerBlock::kAnswers)];
+    default:
+      return kMostEvidence;
   }
 }
 

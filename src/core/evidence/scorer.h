@@ -13,6 +13,10 @@
 
 namespace self_awareness::core::evidence {
 
+/// What every delay takes from the sum of its track, in standard deviations: a large drift finds
+/// strong evidence without false alarms.
+constexpr double kDrift = 1;
+
 /// Collects the evidence of every track from the events of one recording (docs/method.md, sections
 /// 3.2 to 3.5 and 3.7). Delays and answers are summed up as in Page's CUSUM test: what is usual
 /// takes from the sum, what is unusual adds to it, and the sum never falls below 0. A fault that
@@ -38,10 +42,8 @@ class Scorer {
   const Model& model() const { return *model_; }
   /// Stamp of the last event of a type of the model [ns]; none before the first.
   std::optional<std::int64_t> lastSeen(EventId id) const;
-  /// The last delay of a delay track [ns].
-  std::int64_t lastDelay(std::size_t track) const {
-    return pairs_[state_of_.at(track)].last_delay;
-  }
+  /// The most that the sum of a delay or answer track may be.
+  double cap(std::size_t track) const;
   /// Events of a type in the last kRateSpan.
   std::uint32_t recentCount(EventId id) const { return counts_.counts().at(id); }
   /// End of the window that was closed last [ns].
@@ -70,7 +72,6 @@ class Scorer {
   struct DelayPair {
     EventId from = 0;
     bool armed = false;
-    std::int64_t last_delay = 0;        // [ns]
     const double* surprises = nullptr;  // by bin
     Sums<2> sums;                       // of the track, and of the slow one
   };

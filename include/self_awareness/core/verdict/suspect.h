@@ -53,7 +53,15 @@ struct Suspect {
   double score = 0;               ///< kUnusual: their mean score
   double usual_score = 0;         ///< kUnusual: the score to expect by training
   std::string other;              ///< kDelay, kAnswer: the other event type; empty: its own
-  double delay = 0;               ///< kDelay: the last one [s]
+  double lasted = 0;              ///< kDelay, kAnswer: the numbers below are of the last so many s
+  std::size_t of = 0;             ///< kDelay: delays; kAnswer: events of the other type
+  std::size_t times = 0;   ///< kDelay: delays of them that were unusual; kAnswer: answers of
+                           ///< them that were left out
+  double delay = 0;        ///< kDelay: median of the unusual ones, or of all if none is [s]
+  double usual_delay = 0;  ///< kDelay: median before, or in training [s]
+  double scatter = kNone;  ///< kDelay: some were earlier than usual, some later, by so much
+                           ///< (median) [s]; NaN: nearly all of them on the same side
+  double usual_share = 0;  ///< kAnswer: share of the answers left out in training, 0 to 1
 };
 
 /// The reason in words and numbers: "silent for 2.31 s, usually every 0.083 s, at most 0.104 s".
