@@ -59,7 +59,7 @@ int main() {
 
   // 4. The detector judges another recording, in which the laser dies after 60 s.
   const auto graph = std::make_shared<core::SourceGraph>();
-  graph->connect("/laser", "/slam");  // who hears whom tells the root from its victims
+  graph->connect("/laser", "/scan", "/slam");  // who hears whom tells the root from its victims
   const auto print = [&models](const core::Verdict& verdict) {
     if (verdict.changed && verdict.alarm) {
       std::cout << "alarm at " << core::toSeconds(verdict.window->start) << " s\n";

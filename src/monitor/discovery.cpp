@@ -5,8 +5,6 @@
 
 #include <utility>
 
-#include "self_awareness/ros/stable_name.h"
-
 namespace self_awareness {
 namespace {
 
@@ -34,16 +32,6 @@ void Discovery::setWanted(Wanted wanted) {
   {
     const auto shared = shared_.lock();
     shared->wanted = std::move(wanted);
-    shared->restart = true;
-    shared->poll_now = true;
-  }
-  wake_.notify_all();
-}
-
-void Discovery::restart() {
-  {
-    const auto shared = shared_.lock();
-    shared->restart = true;
     shared->poll_now = true;
   }
   wake_.notify_all();
@@ -63,18 +51,14 @@ Discovery::State Discovery::state() const {
   return state;
 }
 
-std::vector<ros1::Publisher> Discovery::takeNewPublishers() {
-  return std::exchange(shared_.lock()->new_publishers, {});
-}
-
 void Discovery::run() {
-  while (const std::optional<Poll> next = awaitPoll()) {
+  while (const std::optional<Wanted> next = awaitPoll()) {
     poll(*next);
     shared_.lock()->asked_at.reset();
   }
 }
 
-std::optional<Discovery::Poll> Discovery::awaitPoll() {
+std::optional<Discovery::Wanted> Discovery::awaitPoll() {
   auto shared = shared_.lock();
   shared.waitFor(wake_, interval_, [](const Shared& now) { return now.stopping || now.poll_now; });
   if (shared->stopping) {
@@ -82,17 +66,12 @@ std::optional<Discovery::Poll> Discovery::awaitPoll() {
   }
   shared->poll_now = false;
   shared->asked_at = std::chrono::steady_clock::now();
-  return Poll{shared->wanted, std::exchange(shared->restart, false)};
+  return shared->wanted;
 }
 
-void Discovery::poll(const Poll& poll) {
-  const Wanted& wanted = poll.wanted;
+void Discovery::poll(const Wanted& wanted) {
   subscriptions_.adaptReading();  // at once, whether the master answers or not
-  if (poll.restart) {
-    publishers_.restart();
-  }
   State state;
-  std::vector<ros1::Publisher> new_publishers;
   const ros1::MasterRegistration::Master master = registration_.check();
   std::optional<ros1::Graph> graph = ros1::fetchGraph();
   state.master_answers = master != ros1::MasterRegistration::Master::kAway && graph;
@@ -110,13 +89,6 @@ void Discovery::poll(const Poll& poll) {
     }
     subscriptions_.setTopics(topics, *graph);
     state.subscriptions = topics.size();
-    if (wanted.encoder) {
-      new_publishers =
-          publishers_.look(*graph, topics, [&](const std::string& node, const std::string& topic) {
-            return wanted.encoder->includesSource(ros1::stableName(node)) &&
-                   !wanted.own_output.covers(node, topic);
-          });
-    }
     state.graph = std::make_shared<const ros1::Graph>(std::move(*graph));
   }
   const auto shared = shared_.lock();
@@ -127,8 +99,6 @@ void Discovery::poll(const Poll& poll) {
     state.graph = shared->state.graph;  // its users see that nothing changed
   }
   shared->state = state;
-  shared->new_publishers.insert(shared->new_publishers.end(), new_publishers.begin(),
-                                new_publishers.end());
 }
 
 }  // namespace self_awareness

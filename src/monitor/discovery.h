@@ -17,14 +17,12 @@
 #include "self_awareness/ros/live/arrivals.h"
 #include "self_awareness/ros/live/guarded.h"
 #include "self_awareness/ros/live/master_registration.h"
-#include "self_awareness/ros/live/new_publishers.h"
-#include "self_awareness/ros/live/own_output.h"
 #include "self_awareness/ros/live/subscriptions.h"
 
 namespace self_awareness {
 
 /// Polls the master in a thread of its own, on steady time, and keeps the subscriptions up to
-/// date; notices who begins to publish. All calls that may block on the network are made here.
+/// date. All calls that may block on the network are made here.
 ///
 /// What the thread shares with others is in Shared; the rest is the thread's own.
 class Discovery {
@@ -33,7 +31,6 @@ class Discovery {
   struct Wanted {
     std::set<std::string> model_topics;
     std::shared_ptr<const ros1::Encoder> encoder;  ///< none: nothing is wanted
-    ros1::OwnOutput own_output;
   };
   /// What the last poll found.
   struct State {
@@ -54,41 +51,30 @@ class Discovery {
   Discovery(const Discovery&) = delete;
   Discovery& operator=(const Discovery&) = delete;
 
-  /// Polls at once with what is wanted from now on. Publishers that this poll finds are not new.
+  /// Polls at once with what is wanted from now on.
   void setWanted(Wanted wanted);
-  /// Polls at once. Publishers that this poll finds are not new.
-  void restart();
   /// Polls at once, not only when the interval is over.
   void pollNow();
   State state() const;
-  /// Publishers of what is subscribed to that registered after the start and were not taken yet.
-  std::vector<ros1::Publisher> takeNewPublishers();
 
  private:
-  struct Poll {
-    Wanted wanted;
-    bool restart = false;
-  };
   struct Shared {
     Wanted wanted;
     State state;
-    std::vector<ros1::Publisher> new_publishers;
     /// While polling: since when.
     std::optional<std::chrono::steady_clock::time_point> asked_at;
     bool poll_now = true;
-    bool restart = false;
     bool stopping = false;
   };
 
   void run();
   /// Waits until it is time to poll; none: the thread must end.
-  std::optional<Poll> awaitPoll();
-  void poll(const Poll& poll);
+  std::optional<Wanted> awaitPoll();
+  void poll(const Wanted& wanted);
 
   const ros1::SubscribePolicy policy_;
   const std::chrono::duration<double> interval_;
   ros1::MasterRegistration registration_;
-  ros1::NewPublishers publishers_;
   ros1::Subscriptions subscriptions_;
 
   ros1::Guarded<Shared> shared_;

@@ -53,7 +53,7 @@ Monitor::Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& priv
   }
   ros1::LiveEvents::Handlers handlers;
   handlers.on_event = [this](const core::Event& event) { onEvent(event); };
-  // It may be a publisher that the master has not told of: settling cannot wait for the next poll.
+  // Whether its messages must be read cannot wait for the next poll.
   handlers.on_connection = [this] { discovery_->pollNow(); };
   handlers.on_arrivals = [this] { onArrivals(); };
   live_events_ =
@@ -109,8 +109,8 @@ void Monitor::startSession(ros1::TrainedModel trained) {
   Discovery::Wanted wanted;
   wanted.model_topics = session_->topics();
   wanted.encoder = session_->encoder();
-  wanted.own_output = session_->ownOutput(ros::this_node::getName());
-  live_events_->setEncoder(session_->encoder(), wanted.own_output, session_->window());
+  live_events_->setEncoder(session_->encoder(), session_->ownOutput(ros::this_node::getName()),
+                           session_->window());
   discovery_->setWanted(std::move(wanted));
   ROS_INFO("model %s: %zu event types of %zu components, %s", parameters_.model.c_str(),
            session_->types().size(), heard_.components(),
@@ -140,11 +140,6 @@ void Monitor::onTick(const ros::SteadyTimerEvent& /*tick*/) {
   const std::int64_t now = watchClock();
   live_events_->deliver();
   if (session_) {
-    for (const ros1::Publisher& publisher : discovery_->takeNewPublishers()) {
-      ROS_INFO("settling: %s began to publish %s", publisher.source.c_str(),
-               publisher.topic.c_str());
-      session_->detector().settle(now);
-    }
     session_->detector().advance(now - kGrace);
   }
   heard_.addProcessing(steadyNow() - begin);
@@ -227,7 +222,6 @@ bool Monitor::onReset(std_srvs::Trigger::Request& /*request*/,
   response.message = session_ ? "delays, windows and the alarm start afresh" : model_error_;
   if (session_) {
     session_->detector().restart();
-    discovery_->restart();
     standDown("settling: reset");
   }
   return true;

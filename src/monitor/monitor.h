@@ -39,8 +39,8 @@ namespace self_awareness {
 /// - `~unknown` (string; default: warn; ignore, warn or error): what events are that training
 ///   never saw: nothing, a suspicion, or an alarm at once.
 /// - `~settle_time` (double, s; default: 5.0; at least 0): time without alarms after the first
-///   message since the start, `~reset` or `~reload`, after a publisher registers for the first
-///   time since then, and after ROS time was set.
+///   message since the start, `~reset` or `~reload`, and after ROS time was set. What is heard
+///   later for the first time has as long before it is judged; everything else is judged on.
 /// - `~alarm_windows` (int; default: 3; 1 to `~alarm_of`): number of abnormal windows that raises
 ///   an alarm; fewer are a suspicion.
 /// - `~alarm_of` (int; default: 5; at least 1): number of windows among which they are counted.

@@ -212,6 +212,9 @@ std::vector<std::pair<std::int64_t, std::uint64_t>> delaysOf(const ros1::Trained
   return delays;
 }
 
+// Of an edge of the graph: publisher, topic, subscriber.
+using EdgeState = std::tuple<std::string, std::string, std::string>;
+
 void bindModel(py::module& m) {
   py::register_exception<ros1::ModelFileError>(m, "ModelFileError", PyExc_RuntimeError);
 
@@ -304,16 +307,22 @@ void bindModel(py::module& m) {
       .def_readwrite("evidence_calibration", &TrainedModel::evidence_calibration,
                      "of the evidence detector; None: not calibrated")
       .def_property(
-          "graph", [](const TrainedModel& self) { return self.graph.edges(); },
-          [](TrainedModel& self, const std::map<std::string, std::set<std::string>>& edges) {
+          "graph",
+          [](const TrainedModel& self) {
+            std::set<EdgeState> edges;
+            for (const auto& [publisher, topic, subscriber] : self.graph.edges()) {
+              edges.emplace(publisher, topic, subscriber);
+            }
+            return edges;
+          },
+          [](TrainedModel& self, const std::set<EdgeState>& edges) {
             self.graph = {};
-            for (const auto& [from, followers] : edges) {
-              for (const std::string& to : followers) {
-                self.graph.connect(from, to);
-              }
+            for (const auto& [publisher, topic, subscriber] : edges) {
+              self.graph.connect(publisher, topic, subscriber);
             }
           },
-          "dict of source: set of sources that its messages reach; empty: not known")
+          "whose messages reach whom: set of (publisher, topic, subscriber), nodes by their\n"
+          "stable names; empty: not known")
       .def_property_readonly("threshold", &TrainedModel::threshold, "None: not calibrated")
       .def_property_readonly(
           "bin_size", [](const TrainedModel& self) { return self.statistics.binning().bin_size; },

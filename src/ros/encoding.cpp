@@ -42,6 +42,7 @@ EncodingRules EncodingRules::defaults() {
                           "/statistics",
                           "/diagnostics_agg",
                           "/diagnostics_toplevel_state",
+                          ".*/bond",
                           ".*/self_awareness/(status|alarm)"};
   rules.exclude_sources = {".*/self_awareness(_manager)?", "(.*/)?(play|record|recorder|rosbag.*)",
                            "(.*/)?(rqt|rviz|rostopic|rosnode|rosservice|plotjuggler|foxglove).*"};

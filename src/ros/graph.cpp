@@ -72,7 +72,7 @@ void addEdges(const Graph& graph, const std::string& own_name, core::SourceGraph
     for (const std::string& publisher : topic.publishers) {
       for (const std::string& subscriber : topic.subscribers) {
         if (publisher != own_name && subscriber != own_name) {
-          edges.connect(stableName(publisher), stableName(subscriber));
+          edges.connect(stableName(publisher), name, stableName(subscriber));
         }
       }
     }

@@ -62,52 +62,15 @@ TEST_F(DiscoveryTest, KeepsTheNewestGraph) {
   EXPECT_TRUE(knows(*discovery, "/a"));
 }
 
-TEST_F(DiscoveryTest, TellsOfAPublisherThatRegistersLaterOnce) {
-  const ros::Publisher first = publish("/a");
+TEST_F(DiscoveryTest, PollsAtOnceWhenItIsAsked) {
   const auto discovery = discover();
   discovery->setWanted(wanted_);
   ASSERT_TRUE(await([&] { return discovery->state().subscriptions == 2; }));
-  EXPECT_TRUE(discovery->takeNewPublishers().empty());
-
-  const auto knows_b = [&] {
+  const ros::Publisher publisher = publish("/b");
+  EXPECT_TRUE(await([&] {
     discovery->pollNow();
     return knows(*discovery, "/b");
-  };
-  ros::Publisher second = publish("/b");
-  ASSERT_TRUE(await(knows_b));
-  const std::vector<ros1::Publisher> found = discovery->takeNewPublishers();
-  ASSERT_EQ(found.size(), 1U);
-  EXPECT_EQ(found[0].source, ros::this_node::getName());
-  EXPECT_EQ(found[0].topic, "/b");
-
-  second.shutdown();
-  ASSERT_TRUE(await([&] { return !knows_b(); }));
-  second = publish("/b");
-  ASSERT_TRUE(await(knows_b));
-  EXPECT_TRUE(discovery->takeNewPublishers().empty());
-}
-
-TEST_F(DiscoveryTest, PublishersThatItFindsAfterARestartAreNotNew) {
-  const auto discovery = discover();
-  discovery->setWanted(wanted_);
-  ASSERT_TRUE(await([&] { return discovery->state().subscriptions == 2; }));
-  ros::Publisher publisher = publish("/b");
-  discovery->restart();
-  ASSERT_TRUE(await([&] { return knows(*discovery, "/b"); }));
-  EXPECT_TRUE(discovery->takeNewPublishers().empty());
-}
-
-TEST_F(DiscoveryTest, LeavesOutTheMonitorsOwnOutput) {
-  wanted_.own_output = ros1::OwnOutput(ros::this_node::getName(), {"/a"});
-  const auto discovery = discover(0.05);
-  discovery->setWanted(wanted_);
-  ASSERT_TRUE(await([&] { return discovery->state().subscriptions == 2; }));
-  const ros::Publisher own = publish("/b");
-  ASSERT_TRUE(await([&] { return knows(*discovery, "/b"); }));
-  EXPECT_TRUE(discovery->takeNewPublishers().empty());
-  const ros::Publisher of_the_robot = publish("/a");
-  ASSERT_TRUE(await([&] { return knows(*discovery, "/a"); }));
-  EXPECT_EQ(discovery->takeNewPublishers().size(), 1U);
+  }));
 }
 
 }  // namespace

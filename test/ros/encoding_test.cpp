@@ -222,10 +222,11 @@ TEST_F(EncoderTest, DefaultsLeaveOutOnlookersAndKeepTheRobot) {
     connection.callerid = node;
     EXPECT_FALSE(encoder.connect(connection)) << node;
   }
-  for (const char* topic : {"/clock", "/rosout_agg", "/statistics", "/self_awareness/status"}) {
+  for (const char* topic : {"/clock", "/rosout_agg", "/statistics", "/self_awareness/status",
+                            "/bond", "/robot_manager/bond"}) {
     EXPECT_FALSE(encoder.includesTopic(topic)) << topic;
   }
-  for (const char* topic : {"/scan", "/rosout", "/diagnostics", "/alarm_clock"}) {
+  for (const char* topic : {"/scan", "/rosout", "/diagnostics", "/alarm_clock", "/vagabond"}) {
     EXPECT_TRUE(encoder.includesTopic(topic)) << topic;
   }
 }

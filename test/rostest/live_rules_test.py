@@ -127,7 +127,7 @@ class LiveRulesTest(MonitorCase):
     @again_if_clock_was_set
     def test_monitors_in_one_manager_are_not_part_of_the_robot(self) -> None:
         """Nodelets in one manager share its name; a monitor there does not hear itself."""
-        model = self.model(threshold=0.99)  # so that unknown events are named
+        model = self.model(threshold=0.99, bonds=True)  # so that unknown events are named
         with Talker('/a'), Process('rosrun', 'nodelet', 'nodelet', 'manager',
                                    '__name:=robot_manager'):
             loads = [Process('rosrun', 'nodelet', 'nodelet', 'load',

@@ -39,6 +39,10 @@ class Talker:
         self.publisher.unregister()
 
 
+def publishers(topic: str) -> List[str]:
+    return dict(rosgraph.Master(rospy.get_name()).getSystemState()[0]).get(topic, [])
+
+
 def subscribers(topic: str) -> List[str]:
     return dict(rosgraph.Master(rospy.get_name()).getSystemState()[1]).get(topic, [])
 
@@ -62,19 +66,26 @@ class MonitorCase(unittest.TestCase):
 
     def model(self, threshold: Optional[float] = 0.01, topics: Sequence[str] = ('/a',),
               type_fields: Optional[Dict[str, str]] = None, name: str = 'model',
-              window: int = 10**8) -> str:
+              window: int = 10**8, bonds: bool = False,
+              sources: Optional[Dict[str, str]] = None) -> str:
         """A model of this process as it publishes on topics, std_msgs/String at 20 Hz.
 
         The bins are wide: on a busy machine, delays up to half a second are normal, too.
+
+        Args:
+            bonds: of nodelets are events, too
+            sources: who publishes a topic, where it is not this process
         """
         encoding = self_awareness.EncodingRules.defaults()
         encoding.type_fields = type_fields or {}
         # What rospy has to say of nodes that come and go is not what is tested.
         encoding.exclude_topics += ['/rosout']
+        if bonds:
+            encoding.exclude_topics = [x for x in encoding.exclude_topics if x != '.*/bond']
         training = self_awareness.Training(encoding, bin_size=500 * 10**6, window=window,
                                            paper=True)
-        types = [self_awareness.EventType(rospy.get_name(), topic, 'std_msgs/String')
-                 for topic in topics]
+        types = [self_awareness.EventType((sources or {}).get(topic, rospy.get_name()), topic,
+                                          'std_msgs/String') for topic in topics]
         stamps, ids = [], []
         for tick in range(1000):
             for event, _ in enumerate(types):

@@ -1,17 +1,31 @@
 #!/usr/bin/python3
 """When the monitor settles, and what ~reload changes and leaves."""
 
+import signal
 import statistics
+import subprocess
 import time
 from typing import List
 
 import rospy
 import rostest
+from diagnostic_msgs.msg import DiagnosticStatus
 from std_msgs.msg import String
 
-from live_system import MonitorListener, again_if_clock_was_set, await_condition
-from monitor_case import MonitorCase, Talker
+from live_system import (MonitorListener, Process, again_if_clock_was_set, await_condition,
+                         operation, write_bag)
+from monitor_case import MonitorCase, Talker, publishers
 from self_awareness.msg import SelfAwareness
+
+
+def talker(name: str, topic: str, rate: float) -> Process:
+    """A node whose periods vary as those of operation()."""
+    return Process('rosrun', 'self_awareness', 'talker.py', '__name:=' + name, '_output:=' + topic,
+                   '_rate:={}'.format(rate), '_variation:=0.3')
+
+
+def late() -> Process:
+    return talker('late', '/late', 10)
 
 
 class SettlingTest(MonitorCase):
@@ -44,27 +58,64 @@ class SettlingTest(MonitorCase):
             self.await_statuses(listener, 5)
             self.assertEqual({s.settling for s in listener.statuses[seen:]}, {False})
 
+    # By the paper's detector: the whole robot settles.
+
     @again_if_clock_was_set
-    def test_a_publisher_that_registers_later_is_new_once(self) -> None:
-        with Talker('/a'), self.monitor(self.model(topics=('/a', '/late'))), \
-                MonitorListener() as listener:
+    def test_a_component_that_starts_later_is_new_once(self) -> None:
+        with Talker('/a'), self.monitor(self.late_model()), MonitorListener() as listener:
             listener.await_settled()
-            with Talker('/late'):
+            with late():
                 await_condition('settling', lambda: listener.statuses[-1].settling, 20)
                 listener.await_settled()
-            with Talker('/late') as again:
-                await_condition('the monitor listens', again.publisher.get_num_connections, 20)
+            heard = len(listener.statuses)
+            with late():
+                await_condition('it is heard again', lambda: any(
+                    status.events > 3 for status in listener.statuses[heard:]), 20)
                 statuses = self.await_statuses(listener, 10)
             self.assertEqual({s.settling for s in statuses}, {False})
 
     @again_if_clock_was_set
     def test_settling_does_not_wait_for_the_next_poll_of_the_master(self) -> None:
-        model = self.model(topics=('/a', '/late'))
-        with Talker('/a'), self.monitor(model, poll_interval=3600), \
+        with Talker('/a'), self.monitor(self.late_model(), poll_interval=3600), \
                 MonitorListener() as listener:
             listener.await_settled()
-            with Talker('/late'):
+            with late():
                 await_condition('settling', lambda: listener.statuses[-1].settling, 20)
+
+    def late_model(self) -> str:
+        return self.model(topics=('/a', '/late'), sources={'/late': '/late'})
+
+    # By the default detector: what is new settles, and nothing else.
+
+    @again_if_clock_was_set
+    def test_an_alarm_stands_whoever_starts_meanwhile(self) -> None:
+        bags = [write_bag(self.path('{}.bag'.format(seed)), operation(
+            [('/driver', '/scan', 0.08), ('/base', '/odom', 0.1), ('/late', '/late', 0.1)],
+            120, seed)) for seed in (1, 2)]
+        subprocess.run(['rosrun', 'self_awareness', 'train', *bags, '-o', self.path('model')],
+                       check=True, stdout=subprocess.DEVNULL)
+        with talker('driver', '/scan', 12.5) as driver, talker('base', '/odom', 10), \
+                self.monitor(self.path('model'), detector='evidence', unknown='warn',
+                             settle_time=3, hold_time=0.3), MonitorListener() as listener:
+            listener.await_settled()
+            driver.send(signal.SIGKILL)
+            listener.await_alarm()
+            await_condition('it is reported', lambda: (
+                listener.diagnostics('communication')[-1].level == DiagnosticStatus.ERROR), 20)
+            stands, reports = len(listener.statuses), len(listener.diagnostics('communication'))
+            # A node with a new name, which publishes /rosout as all do, and one of the model.
+            with Process('rosrun', 'nodelet', 'nodelet', 'manager', '__name:=newcomer'), late():
+                await_condition('the newcomer is there', lambda: '/newcomer' in publishers(
+                    '/rosout'), 20)
+                await_condition('the late one is heard', lambda: (
+                    float(listener.value('/late', 'events a second') or 0) > 5), 20)
+                self.await_statuses(listener, 50)
+            said = listener.statuses[stands:]
+            self.assertEqual({status.level for status in said}, {SelfAwareness.ERROR})
+            self.assertEqual({status.suspects[0].source for status in said}, {'/driver'})
+            self.assertEqual({status.level for status
+                              in listener.diagnostics('communication')[reports:]},
+                             {DiagnosticStatus.ERROR})
 
     # ~reload
 

@@ -35,8 +35,8 @@ struct EncodingRules {
   std::vector<std::string> exclude_sources;
   std::map<std::string, std::string> type_fields;  ///< field by datatype
 
-  /// Rules that suit most robots: everything but the monitor's own output, clocks, aggregated logs
-  /// and tools that only look on.
+  /// Rules that suit most robots: everything but the monitor's own output, clocks, aggregated
+  /// logs, bonds and tools that only look on.
   static EncodingRules defaults();
   /// @throw std::invalid_argument names the pattern that is no regular expression
   void validate() const;

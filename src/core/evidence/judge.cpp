@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -30,13 +31,13 @@ class Judge : public core::Judge {
     hindsight_.add(event);
     return {event, !model_->knows(event.id), scorer_.add(event)};
   }
+  void settle(const Event& first, std::int64_t settle_time) override;
   Judgement judge(const Window& window, std::int64_t end, NameSuspects suspects) override;
-  void restart() override {
-    scorer_.restart();
-    hindsight_.restart();
-  }
+  void restart() override;
 
  private:
+  /// Takes back what the tracks say of event types that settle.
+  void leaveOutNew(std::int64_t now, std::vector<double>& evidence) const;
   bool isSilent(std::int64_t end) const;
 
   std::shared_ptr<const Model> model_;
@@ -44,7 +45,9 @@ class Judge : public core::Judge {
   Scorer scorer_;
   Hindsight hindsight_;
   Blame blame_;
-  std::vector<double> shares_;  // of its limit that each track has reached
+  std::vector<double> shares_;            // of its limit that each track has reached
+  std::vector<std::int64_t> settled_at_;  // [ns], by id
+  std::int64_t all_settled_at_ = std::numeric_limits<std::int64_t>::min();  // the latest of them
 };
 
 Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, std::int64_t window,
@@ -54,7 +57,8 @@ Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, s
       scorer_(model_, window),
       hindsight_(model_),
       blame_(model_, std::move(graph)),
-      shares_(model_->tracks().size(), 0) {
+      shares_(model_->tracks().size(), 0),
+      settled_at_(model_->size(), std::numeric_limits<std::int64_t>::min()) {
   if (limits_ && (limits_->tracks.size() != model_->tracks().size() ||
                   !std::isfinite(limits_->linker) || limits_->linker <= 0)) {
     throw std::invalid_argument("the limits are not those of the model: calibrate it again");
@@ -64,12 +68,39 @@ Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, s
   }
 }
 
+void Judge::settle(const Event& first, std::int64_t settle_time) {
+  if (model_->knows(first.id)) {
+    settled_at_[first.id] = first.stamp + settle_time;
+    all_settled_at_ = std::max(all_settled_at_, settled_at_[first.id]);
+  }
+}
+
+void Judge::restart() {
+  scorer_.restart();
+  hindsight_.restart();
+  std::fill(settled_at_.begin(), settled_at_.end(), std::numeric_limits<std::int64_t>::min());
+  all_settled_at_ = std::numeric_limits<std::int64_t>::min();
+}
+
+void Judge::leaveOutNew(std::int64_t now, std::vector<double>& evidence) const {
+  if (now >= all_settled_at_) {
+    return;
+  }
+  for (std::size_t track = 0; track < evidence.size(); ++track) {
+    const auto& [channel, to, from] = model_->tracks()[track];
+    if (now < std::max(settled_at_[to], settled_at_[from])) {
+      evidence[track] = 0;
+    }
+  }
+}
+
 Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects suspects) {
   Judgement judgement;
-  const std::vector<double>& evidence = scorer_.closeWindow(end);
+  std::vector<double> evidence = scorer_.closeWindow(end);
   if (!limits_) {
     return judgement;
   }
+  leaveOutNew(window.start, evidence);
   std::set<std::string> channels;
   for (std::size_t track = 0; track < evidence.size(); ++track) {
     const double share = evidence[track] / limits_->tracks[track];

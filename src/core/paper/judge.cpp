@@ -2,7 +2,9 @@
 
 #include <cmath>
 #include <numeric>
+#include <set>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "core/paper/blame.h"
@@ -17,6 +19,7 @@ class Judge : public core::Judge {
         bool silence_is_abnormal)
       : threshold_(threshold),
         silence_is_abnormal_(silence_is_abnormal),
+        model_(model),
         scorer_(model),
         blame_(model) {
     if (threshold_ && !std::isfinite(*threshold_)) {
@@ -30,8 +33,25 @@ class Judge : public core::Judge {
     return scored.event;
   }
 
+  // The score is that of the whole window, and delays since what is new take part in it. A topic
+  // that a known component is heard on for the first time says too little: many are rare.
+  void settle(const Event& first, std::int64_t settle_time) override {
+    const std::int64_t settled = first.stamp + settle_time;
+    if (!start_settled_at_) {
+      start_settled_at_ = settled;
+    }
+    if (first.id < model_->size()) {
+      const EventType& type = model_->vocabulary().at(first.id);
+      const bool is_new = heard_.insert(componentOf(type.source, type.scope)).second;
+      if (is_new && first.stamp >= *start_settled_at_) {
+        settled_at_ = settled;
+      }
+    }
+  }
+
   Judgement judge(const Window& window, std::int64_t end, NameSuspects suspects) override {
     Judgement judgement;
+    judgement.settling = settled_at_ && window.start < *settled_at_;
     judgement.score = windowScore();
     judgement.threshold = threshold_;
     if (threshold_) {
@@ -52,6 +72,9 @@ class Judge : public core::Judge {
   void restart() override {
     scorer_.restart();
     scores_.clear();
+    heard_.clear();
+    start_settled_at_.reset();
+    settled_at_.reset();
   }
 
  private:
@@ -66,9 +89,13 @@ class Judge : public core::Judge {
 
   std::optional<double> threshold_;
   bool silence_is_abnormal_;
+  std::shared_ptr<const Model> model_;
   Scorer scorer_;
   Blame blame_;
-  std::vector<double> scores_;  // of the events since the last window
+  std::vector<double> scores_;                    // of the events since the last window
+  std::set<std::string> heard_;                   // components, since the start
+  std::optional<std::int64_t> start_settled_at_;  // [ns]; none: nothing was heard
+  std::optional<std::int64_t> settled_at_;        // of the newest component after that [ns]
 };
 
 }  // namespace

@@ -27,7 +27,7 @@ bool Detector::add(const Event& event) {
   const bool first = !started();
   const bool same_clock = windows_.add(event);
   if (first || !same_clock) {
-    settle(event.stamp);
+    settled_at_ = event.stamp + parameters_.settle_time;
   }
   return same_clock;
 }
@@ -47,11 +47,8 @@ void Detector::restart() {
 
 void Detector::onClockStep() {
   judge_->restart();
+  heard_.clear();
   clearAlarm();
-}
-
-void Detector::settle(std::int64_t now) {
-  settled_at_ = now + parameters_.settle_time;
 }
 
 void Detector::clearAlarm() {
@@ -59,12 +56,23 @@ void Detector::clearAlarm() {
   suspicion_ = false;
 }
 
+ObservedEvent Detector::observe(const Event& event) {
+  if (event.id >= heard_.size()) {
+    heard_.resize(event.id + 1, false);
+  }
+  if (!heard_[event.id]) {
+    heard_[event.id] = true;
+    judge_->settle(event, parameters_.settle_time);
+  }
+  return judge_->add(event);
+}
+
 void Detector::close(const Window& window, std::int64_t end) {
   const std::int64_t window_end = window.start + windows_.length();
-  const bool settling = window.start < settled_at_;
+  const bool starting = window.start < settled_at_;
   const bool unknown = window.unknown() > 0 && parameters_.unknown != UnknownEvents::kIgnore;
   Judgement judgement = judge_->judge(window, end,
-                                      settling  ? NameSuspects::kNever
+                                      starting  ? NameSuspects::kNever
                                       : unknown ? NameSuspects::kAlways
                                                 : NameSuspects::kIfUnusual);
   if (unknown) {
@@ -81,22 +89,31 @@ void Detector::close(const Window& window, std::int64_t end) {
   verdict.score = judgement.score;
   verdict.threshold = judgement.threshold;
   verdict.abnormal = judgement.abnormal;
-  verdict.settling = settling;
-  verdict.evidence = judgement.evidence;
-  verdict.suspects = std::move(judgement.suspects);
-  const bool counts = verdict.abnormal && !settling;
+  verdict.settling = starting || judgement.settling;
   const bool stood = persistence_.raised();
   const bool was_suspicion = suspicion_;
-  verdict.alarm = persistence_.add(counts, window_end, counts && judgement.certain);
-  if (judgement.threshold && !settling && (counts || judgement.suspicious)) {
-    suspicion_ = true;
-    suspicious_at_ = window_end;
-  } else if (window_end - suspicious_at_ >= parameters_.persistence.hold_time) {
-    suspicion_ = false;
+  if (verdict.settling) {
+    verdict.alarm = persistence_.leaveOut(windows_.length());
+    suspicious_at_ += windows_.length();
+  } else {
+    verdict.evidence = judgement.evidence;
+    verdict.suspects = std::move(judgement.suspects);
+    count(judgement, window_end);
+    verdict.alarm = persistence_.raised();
   }
   verdict.suspicion = suspicion_ && !verdict.alarm;
   verdict.changed = verdict.alarm != stood || verdict.suspicion != (was_suspicion && !stood);
   handler_(verdict);
+}
+
+void Detector::count(const Judgement& judgement, std::int64_t end) {
+  persistence_.add(judgement.abnormal, end, judgement.abnormal && judgement.certain);
+  if (judgement.threshold && (judgement.abnormal || judgement.suspicious)) {
+    suspicion_ = true;
+    suspicious_at_ = end;
+  } else if (end - suspicious_at_ >= parameters_.persistence.hold_time) {
+    suspicion_ = false;
+  }
 }
 
 }  // namespace self_awareness::core

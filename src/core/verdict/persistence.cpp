@@ -37,6 +37,11 @@ bool Persistence::add(bool abnormal, std::int64_t end, bool certain) {
   return raised_;
 }
 
+bool Persistence::leaveOut(std::int64_t length) {
+  last_abnormal_ += length;
+  return raised_;
+}
+
 void Persistence::clear() {
   recent_.clear();
   raised_ = false;

@@ -5,6 +5,12 @@
 
 namespace self_awareness::core {
 
+void SourceGraph::connect(const std::string& publisher, const std::string& topic,
+                          const std::string& subscriber) {
+  edges_.insert({publisher, topic, subscriber});
+  followers_[publisher].insert(subscriber);
+}
+
 bool SourceGraph::isUpstream(const std::string& from, const std::string& to) const {
   const std::optional<std::size_t> there = distance(from, to);
   const std::optional<std::size_t> back = distance(to, from);

@@ -43,6 +43,14 @@ self_awareness::Encoding encodingMessage(const EncodingRules& rules) {
   return message;
 }
 
+self_awareness::GraphEdge graphMessage(const core::SourceGraph::Edge& edge) {
+  self_awareness::GraphEdge message;
+  message.publisher = edge.publisher;
+  message.topic = edge.topic;
+  message.subscriber = edge.subscriber;
+  return message;
+}
+
 EncodingRules rulesOf(const self_awareness::Encoding& message) {
   EncodingRules rules;
   const bool none = message.source == self_awareness::Encoding::SOURCE_NONE;
@@ -235,13 +243,8 @@ self_awareness::Model toMessage(const TrainedModel& model) {
       message.watched.push_back(toMessage(half));
     }
   }
-  for (const auto& [from, followers] : model.graph.edges()) {
-    for (const std::string& to : followers) {
-      self_awareness::GraphEdge edge;
-      edge.from_source = from;
-      edge.to_source = to;
-      message.graph.push_back(edge);
-    }
+  for (const core::SourceGraph::Edge& edge : model.graph.edges()) {
+    message.graph.push_back(graphMessage(edge));
   }
   message.recordings = model.recordings;
   if (model.calibration) {
@@ -272,7 +275,7 @@ TrainedModel fromMessage(const self_awareness::Model& message) {
       [&](const self_awareness::Evidence& half) { return fromMessage(half, model.vocabulary()); });
   core::evidence::checkTracks(model.watched.tracks, model.vocabulary().size());
   for (const self_awareness::GraphEdge& edge : message.graph) {
-    model.graph.connect(edge.from_source, edge.to_source);
+    model.graph.connect(edge.publisher, edge.topic, edge.subscriber);
   }
   model.recordings = message.recordings;
   check(message.calibration.size() <= 1, "it has more than one calibration");

@@ -76,10 +76,8 @@ void merge(TrainedModel& model, const TrainedModel& other) {
   for (std::size_t half = 0; half < model.evidence.size(); ++half) {
     model.evidence[half].merge(other.evidence[half]);
   }
-  for (const auto& [from, followers] : other.graph.edges()) {
-    for (const std::string& to : followers) {
-      model.graph.connect(from, to);
-    }
+  for (const auto& [publisher, topic, subscriber] : other.graph.edges()) {
+    model.graph.connect(publisher, topic, subscriber);
   }
   model.recordings.insert(model.recordings.end(), other.recordings.begin(),
                           other.recordings.end());

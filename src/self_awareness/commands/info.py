@@ -77,11 +77,12 @@ def _event_type(kind: Dict[str, Any]) -> str:
             f'{kind["source"] or "-"} {kind["scope"]} {kind["type"]}{rare}')
 
 
-def _graph(graph: Dict[str, List[str]]) -> str:
+def _graph(graph: List[Dict[str, str]]) -> str:
     if not graph:
-        return 'none: roots are told from victims by the training alone (train --graph)'
-    listeners = sum(len(each) for each in graph.values())
-    return f'sources that somebody listens to: {len(graph)}, connections: {listeners}'
+        return ('none: roots are told from victims by the training alone (record.launch writes it '
+                'beside the bags, or train --graph)')
+    publishers = {edge['publisher'] for edge in graph}
+    return f'sources that somebody listens to: {len(publishers)}, connections: {len(graph)}'
 
 
 def _print_evidence(evidence: Dict[str, Any]) -> None:

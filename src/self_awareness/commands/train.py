@@ -4,7 +4,7 @@ from __future__ import annotations
 import argparse
 import os
 from contextlib import closing
-from typing import Dict, Optional, Sequence
+from typing import Dict, Optional, Sequence, Set, Tuple
 
 from self_awareness import PREDECESSORS, BagError, TrainedModel, encoding_file, progress
 from self_awareness.calibration.limits import TooLittleError
@@ -42,7 +42,7 @@ def _train(arguments: argparse.Namespace) -> None:
     base = None if arguments.add_to is None else TrainedModel.load(arguments.add_to)
     counting = _counting(arguments, base)
     _check_distinct(arguments.bags)
-    graph = live_graph.fetch() if arguments.graph else None  # first: counting may take hours
+    graph = _live_graph(base) if arguments.graph else set()  # first: counting may take hours
     # The workers of a cluster have working directories of their own.
     paths = map(os.path.abspath, arguments.bags) if arguments.scheduler else arguments.bags
     parts = [BagPart(path, arguments.start, arguments.end) for path in paths]
@@ -52,8 +52,7 @@ def _train(arguments: argparse.Namespace) -> None:
         if counting.encoding is None and model.encoding.source == 'none':
             print('no bag names the senders of its messages: sources are not told apart '
                   '(source: none)')
-        if graph is not None:
-            model.graph = graph
+        model.graph = model.graph | graph
         try:
             limits = _limits(trained, workers)
         except (BagError, ValueError) as error:  # the counts are not lost
@@ -66,6 +65,17 @@ def _train(arguments: argparse.Namespace) -> None:
         cli.warn('train', f'skipped: {bad}')
     print(f'written: {arguments.output}; next, find limits on recordings that it was not trained '
           'on (rosrun self_awareness calibrate)')
+
+
+def _live_graph(base: Optional[TrainedModel]) -> Set[Tuple[str, str, str]]:
+    """Return the running robot's edges, which take the place of those that the base has."""
+    try:
+        edges = live_graph.fetch().edges()
+    except ValueError as error:
+        raise ValueError(f'--graph: {error}') from error
+    if base is not None:
+        base.graph = set()
+    return edges
 
 
 def _limits(trained: Trained, workers: Workers) -> str:
@@ -151,8 +161,9 @@ def _parser() -> argparse.ArgumentParser:
                         help='of each event type, watch the delays since at most so many others, '
                              f'the most informative ones (default: {PREDECESSORS})')
     parser.add_argument('--graph', action='store_true',
-                        help='ask the master of the running robot who subscribes to what, and '
-                             'keep it: it tells the root of a fault from its victims')
+                        help='ask the master of the running robot who subscribes to what: it '
+                             'tells the root of a fault from its victims. What record.launch '
+                             'writes beside the bags is used without this option, too')
     parser.add_argument('--encoding', metavar='FILE',
                         help='how messages become events (example: config/encoding.yaml)')
     parser.add_argument('--start', type=cli.offset, metavar='S',

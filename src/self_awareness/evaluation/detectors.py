@@ -1,7 +1,7 @@
 """The package's own detectors as systems to evaluate: a class for each."""
 from __future__ import annotations
 
-from typing import Dict, List, Optional, Sequence, Set
+from typing import List, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
@@ -62,7 +62,7 @@ class Evidence:
 
     def __init__(self, knows_graph: bool, predecessors: int = PREDECESSORS) -> None:
         self.name = 'evidence' if knows_graph else 'evidence_no_graph'
-        self._graph = _scenario_graph() if knows_graph else {}
+        self._graph = _scenario_graph() if knows_graph else set()
         self._predecessors = predecessors
         self._trained: Optional[TrainedModel] = None
         self._model: Optional[EvidenceModel] = None
@@ -114,12 +114,9 @@ def _judged(encoded: WindowedEvents, verdicts: Verdicts, threshold: float) -> Ju
                   verdicts.settling, alarms, threshold, verdicts.suspicion)
 
 
-def _scenario_graph() -> Dict[str, Set[str]]:
+def _scenario_graph() -> Set[Tuple[str, str, str]]:
     """Return who listens to whom in the robot that comes with the package."""
-    scenario = load_scenario()
-    graph: Dict[str, Set[str]] = {}
-    for publisher in scenario.components:
-        for listener in scenario.components:
-            if set(publisher.outputs()) & set(listener.inputs()):
-                graph.setdefault(f'/{publisher.name}', set()).add(f'/{listener.name}')
-    return graph
+    components = load_scenario().components
+    return {(f'/{publisher.name}', topic, f'/{listener.name}')
+            for publisher in components for listener in components
+            for topic in set(publisher.outputs()) & set(listener.inputs())}

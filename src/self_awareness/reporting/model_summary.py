@@ -46,7 +46,8 @@ def summarise(model: TrainedModel) -> Dict[str, Any]:
         'sources': sorted({kind.source for kind in model.event_types} - {''}),
         'event_types': types,
         'pairs': model.pairs,
-        'graph': {source: sorted(listeners) for source, listeners in sorted(model.graph.items())},
+        'graph': [dict(zip(('publisher', 'topic', 'subscriber'), edge))
+                  for edge in sorted(model.graph)],
         'evidence': None if evidence is None else _evidence(model, evidence),
         'calibration': None if model.calibration is None else _calibration(model.calibration),
     }

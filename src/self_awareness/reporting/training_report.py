@@ -19,6 +19,7 @@ def print_summary(model: TrainedModel) -> None:
     print(f'event types  {len(types)}')
     print(f'sources      {len(sources) if sources else "not told apart"}')
     print(f'pairs        {model.pairs} of {len(types) ** 2} with delays')
+    print(f'graph        connections: {len(model.graph) or "none"}')
     rare = _too_rare(model)
     print(f'too rare to judge (fewer than {FEWEST_GAPS} gaps between two of a kind)  {len(rare)}')
     for name, gaps in rare:

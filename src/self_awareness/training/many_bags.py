@@ -10,7 +10,7 @@ import copy
 import os
 from contextlib import closing
 from dataclasses import dataclass, field, replace
-from typing import Callable, Dict, Iterable, List, Optional, Sequence, Tuple
+from typing import Callable, Dict, Iterable, List, Optional, Sequence, Set, Tuple
 
 from self_awareness import (DEFAULT_WINDOW, PREDECESSORS, BagError, DetectorParameters,
                             EncodingRules, Recording, TrainedModel, Training, progress,
@@ -20,6 +20,7 @@ from self_awareness.calibration.limits import TrainedOn
 from self_awareness.judging import BOTH, EVIDENCE, PAPER
 from self_awareness.recordings import BagPart, RecordingEvents, overlap
 from self_awareness.stamps import SECOND_NS
+from self_awareness.training.robot_graph import RobotGraph, graph_file
 from self_awareness.workers import InProcess, Workers
 
 _MOST_EVENTS_OF_BATCH = 5_000_000
@@ -285,6 +286,8 @@ def _count(how: _How, part: BagPart) -> _Sum:
                             counting.detector in (PAPER, BOTH))
         training.add_events(events.event_types, events.stamps, events.ids,
                             events.middle if how.alone else None, recording)
+        model = training.model(watch=False)
+        model.graph = _graph(part)
     except BagError as error:
         raise _BadBag(str(error)) from error
     except ValueError as error:
@@ -292,7 +295,13 @@ def _count(how: _How, part: BagPart) -> _Sum:
     seconds = (recording.end - recording.start) / SECOND_NS
     line = f'{part.path}: {seconds:.1f} s, {recording.events} events'
     trained_on = TrainedOn(part, None if how.alone else 0, events)
-    return _Sum(recording.events, training.model(watch=False), [trained_on], [line])
+    return _Sum(recording.events, model, [trained_on], [line])
+
+
+def _graph(part: BagPart) -> Set[Tuple[str, str, str]]:
+    """Return whose messages reach whom, if a file beside the bag says so."""
+    path = graph_file(part.path)
+    return RobotGraph.load(path).edges() if os.path.exists(path) else set()
 
 
 def _read(counting: Counting, part: BagPart) -> Tuple[RecordingEvents, EncodingRules]:

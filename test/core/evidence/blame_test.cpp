@@ -90,17 +90,17 @@ TEST_F(EvidenceBlameTest, SaysOfASilentOneWhatWasMeasuredInTraining) {
 }
 
 TEST_F(EvidenceBlameTest, TheRootOfTheSilentComesBeforeItsVictims) {
-  graph_->connect("/a", "/b");
-  graph_->connect("/b", "/c");
+  graph_->connect("/a", "/a/out", "/b");
+  graph_->connect("/b", "/b/out", "/c");
   const std::vector<Suspect> named =
       suspects({{overdue(kA), 1.1}, {overdue(kB), 1.5}, {overdue(kC), 3}}, last_ + 5 * kSecond);
   EXPECT_EQ(ids(named), (std::vector<EventId>{kA, kB, kC}));
 }
 
 TEST_F(EvidenceBlameTest, InALoopTheShorterWayDecides) {
-  graph_->connect("/b", "/a");
-  graph_->connect("/a", "/c");
-  graph_->connect("/c", "/b");
+  graph_->connect("/b", "/b/out", "/a");
+  graph_->connect("/a", "/a/out", "/c");
+  graph_->connect("/c", "/c/out", "/b");
   const std::int64_t end = last_ + 5 * kSecond;
   EXPECT_EQ(ids(suspects({{overdue(kC), 1.5}, {overdue(kA), 1.5}}, end)),
             (std::vector<EventId>{kA, kC}));
@@ -109,7 +109,7 @@ TEST_F(EvidenceBlameTest, InALoopTheShorterWayDecides) {
 }
 
 TEST_F(EvidenceBlameTest, ARootThatIsNearItsLimitIsNamedAlready) {
-  graph_->connect("/a", "/b");
+  graph_->connect("/a", "/a/out", "/b");
   const std::int64_t end = last_ + 5 * kSecond;
   EXPECT_EQ(ids(suspects({{overdue(kA), 0.8}, {overdue(kB), 1.5}}, end)),
             (std::vector<EventId>{kA, kB}));
@@ -220,7 +220,7 @@ TEST_F(EvidenceBlameTest, ATopicIsNamedIfItsSenderIsNotKnown) {
     trainer.add(event);
   }
   model_ = std::make_shared<Model>(watch(counts, {}));
-  graph_->connect("/x", "/z");
+  graph_->connect("/x", "/x/out", "/z");
   const std::vector<Suspect> named =
       suspects({{overdue(kA), 1.5}, {overdue(kC), 1.5}}, last_ + 5 * kSecond);
   EXPECT_EQ(ids(named), (std::vector<EventId>{kA, kC}));

@@ -2,13 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <tuple>
+#include <vector>
 
 #include "recordings.h"
+#include "self_awareness/core/verdict/detector.h"
 
 namespace self_awareness::core::evidence {
 namespace {
@@ -138,6 +141,78 @@ TEST_F(EvidenceJudgeTest, KnowsUnknownEvents) {
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   EXPECT_FALSE(judge->add({0, kA}).unknown);
   EXPECT_TRUE(judge->add({0, kC}).unknown);
+}
+
+TEST_F(EvidenceJudgeTest, WhatSettlesIsNotJudgedAndAllElseIs) {
+  limits_.tracks[track(Channel::kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
+  limits_.tracks[track(Channel::kDelay, kB, kA)] = 1;
+  const std::int64_t now = 45 * kPeriod;
+  const auto evidenceAt = [&](std::int64_t start, EventId is_new, std::int64_t until) {
+    const std::unique_ptr<core::Judge> judge = newJudge(limits_);
+    judge->settle({until - kSecond, is_new}, kSecond);
+    feed(*judge, 5);
+    Judgement judgement = judge->judge({start, {}}, now + 3 * kSecond, NameSuspects::kNever);
+    EXPECT_FALSE(judgement.settling);
+    return judgement.evidence;
+  };
+  EXPECT_EQ(evidenceAt(now, kB, now), "overdue, pairs");
+  EXPECT_EQ(evidenceAt(now, kB, now + 1), "overdue");  // its pair with A is left out
+  EXPECT_EQ(evidenceAt(now, kA, now + 1), "");
+  EXPECT_EQ(evidenceAt(now, kC, now + 1), "overdue, pairs");  // unknown to the model
+}
+
+TEST_F(EvidenceJudgeTest, AfterARestartNothingSettlesThatDidBefore) {
+  limits_.tracks[track(Channel::kOverdue, kA, kA)] = 1;
+  const std::unique_ptr<core::Judge> judge = newJudge(limits_);
+  judge->settle({0, kA}, 1000 * kSecond);
+  judge->add({0, kA});
+  EXPECT_FALSE(judgeAt(*judge, 100 * kSecond).abnormal);
+  judge->restart();
+  judge->add({0, kA});
+  EXPECT_TRUE(judgeAt(*judge, 100 * kSecond).abnormal);
+}
+
+TEST_F(EvidenceJudgeTest, AnAlarmStandsAsLongAsItsCauseWhoeverStartsMeanwhile) {
+  const std::size_t overdue = track(Channel::kOverdue, kA, kA);
+  limits_.tracks[overdue] = model_->overdue(kA, kSecond);
+  std::vector<bool> alarm;
+  Detector detector(newJudge(limits_), kWindow, {},
+                    [&](const Verdict& verdict) { alarm.push_back(verdict.alarm); });
+  std::int64_t now = 0;
+  for (; now < 10 * kSecond; now += kPeriod) {
+    detector.add({now, kA});
+  }
+  detector.advance(now += 2 * kSecond);
+  EXPECT_TRUE(alarm.back());
+  alarm.clear();
+  // A component that the model knows starts, then one that it does not.
+  for (const EventId id : {kB, kC}) {
+    for (int i = 0; i < 100; ++i) {
+      detector.add({now += 100 * kMillisecond, id});
+    }
+  }
+  EXPECT_EQ(std::count(alarm.begin(), alarm.end(), false), 0);
+  EXPECT_GT(alarm.size(), 190U);
+}
+
+TEST_F(EvidenceJudgeTest, ADeathIsFoundWhileAnotherComponentStarts) {
+  const std::size_t overdue = track(Channel::kOverdue, kA, kA);
+  limits_.tracks[overdue] = model_->overdue(kA, kSecond);
+  std::optional<std::int64_t> alarm;
+  Detector detector(newJudge(limits_), kWindow, {}, [&](const Verdict& verdict) {
+    if (verdict.changed && verdict.alarm) {
+      alarm = verdict.window->start;
+    }
+  });
+  std::int64_t now = 0;
+  for (; now < 10 * kSecond; now += kPeriod) {
+    detector.add({now, kA});
+  }
+  for (int i = 0; i < 30; ++i) {
+    detector.add({now += 100 * kMillisecond, kB});
+  }
+  ASSERT_TRUE(alarm.has_value());
+  EXPECT_LT(*alarm, 12 * kSecond);
 }
 
 TEST_F(EvidenceJudgeTest, ARestartForgetsWhatWasSeen) {

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -23,6 +24,9 @@ class ToldJudge : public Judge {
   ObservedEvent add(const Event& event) override {
     return {event, event.id == kUnknownId, std::nullopt};
   }
+  void settle(const Event& first, std::int64_t settle_time) override {
+    settling_[first.id] = first.stamp + settle_time;
+  }
   Judgement judge(const Window& /*window*/, std::int64_t /*end*/, NameSuspects suspects) override {
     Judgement judgement = *told_;
     if (suspects == NameSuspects::kAlways ||
@@ -31,9 +35,11 @@ class ToldJudge : public Judge {
     }
     return judgement;
   }
-  void restart() override {}
+  void restart() override { settling_.clear(); }
+  const std::map<EventId, std::int64_t>& settling() const { return settling_; }
 
  private:
+  std::map<EventId, std::int64_t> settling_;
   std::shared_ptr<Judgement> told_;
 };
 
@@ -45,7 +51,9 @@ class DetectorLevelsTest : public testing::Test {
     parameters.unknown = unknown;
     parameters.settle_time = kSecond;
     told_->threshold = -1;
-    detector_ = std::make_unique<Detector>(std::make_unique<ToldJudge>(told_), kWindow, parameters,
+    auto judge = std::make_unique<ToldJudge>(told_);
+    judge_ = judge.get();
+    detector_ = std::make_unique<Detector>(std::move(judge), kWindow, parameters,
                                            [this](const Verdict& verdict) {
                                              verdict_ = verdict;
                                              changes_ += verdict.changed ? 1 : 0;
@@ -74,6 +82,7 @@ class DetectorLevelsTest : public testing::Test {
   }
 
   std::shared_ptr<Judgement> told_ = std::make_shared<Judgement>();
+  const ToldJudge* judge_ = nullptr;  // of the detector
   std::unique_ptr<Detector> detector_;
   std::int64_t now_ = 0;
   Verdict verdict_;
@@ -198,7 +207,7 @@ TEST_F(DetectorLevelsTest, SettlingHoldsASuspicionOff) {
     now_ = 0;
     start(unknown);
     changes_ = 0;
-    detector_->settle(now_);
+    told_->settling = true;
     for (int i = 0; i < 10; ++i) {
       told_->abnormal = i % 3 == 0;
       window(kUnknownId);
@@ -207,7 +216,7 @@ TEST_F(DetectorLevelsTest, SettlingHoldsASuspicionOff) {
       EXPECT_FALSE(verdict_.alarm) << i;
       EXPECT_TRUE(verdict_.suspects.empty());
     }
-    told_->abnormal = false;
+    told_->abnormal = told_->settling = false;
     EXPECT_EQ(changes_, 0);
     window(kUnknownId);
     EXPECT_EQ(verdict_.suspicion, unknown == UnknownEvents::kWarn);
@@ -218,11 +227,45 @@ TEST_F(DetectorLevelsTest, SettlingHoldsASuspicionOff) {
 TEST_F(DetectorLevelsTest, AStandingSuspicionStandsWhileItSettles) {
   start();
   abnormalWindow();
-  detector_->settle(now_);
-  windows(9);
+  told_->settling = true;
+  windows(30);
   EXPECT_TRUE(verdict_.suspicion);
-  windows(11);
+  told_->settling = false;
+  windows(19);
+  EXPECT_TRUE(verdict_.suspicion);
+  windows(1);
   EXPECT_FALSE(verdict_.suspicion);
+}
+
+TEST_F(DetectorLevelsTest, AStandingAlarmStandsWhileItSettles) {
+  start();
+  told_->abnormal = true;
+  windows(3);
+  EXPECT_TRUE(verdict_.alarm);
+  told_->abnormal = false;
+  told_->settling = true;
+  windows(30);
+  EXPECT_TRUE(verdict_.alarm);
+  EXPECT_TRUE(verdict_.settling);
+  EXPECT_EQ(changes_, 2);
+  told_->settling = false;
+  windows(19);
+  EXPECT_TRUE(verdict_.alarm);
+  windows(1);
+  EXPECT_FALSE(verdict_.alarm);
+}
+
+TEST_F(DetectorLevelsTest, EveryEventTypeSettlesAfterItsFirstEvent) {
+  start();
+  EXPECT_EQ(judge_->settling(), (std::map<EventId, std::int64_t>{{0, kSecond}}));
+  const std::int64_t first = now_;
+  window(3);
+  window(3);
+  EXPECT_EQ(judge_->settling(),
+            (std::map<EventId, std::int64_t>{{0, kSecond}, {3, first + kSecond}}));
+  detector_->restart();
+  window(3);
+  EXPECT_EQ(judge_->settling(), (std::map<EventId, std::int64_t>{{3, now_ - kWindow + kSecond}}));
 }
 
 TEST_F(DetectorLevelsTest, WithoutCalibrationNothingIsSuspicious) {

@@ -33,6 +33,18 @@ TEST(Persistence, HoldsWhileAbnormalWindowsKeepComing) {
   EXPECT_FALSE(persistence.add(false, 600));
 }
 
+TEST(Persistence, TheHoldTimeStandsStillInWindowsThatAreLeftOut) {
+  Persistence persistence({1, 1, 250});
+  EXPECT_FALSE(persistence.leaveOut(100));
+  EXPECT_TRUE(persistence.add(true, 200));
+  EXPECT_TRUE(persistence.leaveOut(100));
+  EXPECT_TRUE(persistence.leaveOut(100));
+  EXPECT_TRUE(persistence.leaveOut(100));
+  EXPECT_TRUE(persistence.add(false, 600));
+  EXPECT_TRUE(persistence.add(false, 700));
+  EXPECT_FALSE(persistence.add(false, 800));
+}
+
 TEST(Persistence, RefusesImpossibleValues) {
   EXPECT_THROW(Persistence({0, 5, 0}), std::invalid_argument);
   EXPECT_THROW(Persistence({6, 5, 0}), std::invalid_argument);

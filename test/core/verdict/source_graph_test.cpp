@@ -8,8 +8,8 @@ namespace {
 TEST(SourceGraph, ReachedSourcesAreDownstream) {
   SourceGraph graph;
   EXPECT_TRUE(graph.empty());
-  graph.connect("/laser", "/slam");
-  graph.connect("/slam", "/navigation");
+  graph.connect("/laser", "/laser/out", "/slam");
+  graph.connect("/slam", "/slam/out", "/navigation");
   EXPECT_FALSE(graph.empty());
   EXPECT_TRUE(graph.isUpstream("/laser", "/slam"));
   EXPECT_TRUE(graph.isUpstream("/laser", "/navigation"));
@@ -19,8 +19,8 @@ TEST(SourceGraph, ReachedSourcesAreDownstream) {
 
 TEST(SourceGraph, UnconnectedSourcesAreNeither) {
   SourceGraph graph;
-  graph.connect("/laser", "/slam");
-  graph.connect("/camera", "/faces");
+  graph.connect("/laser", "/laser/out", "/slam");
+  graph.connect("/camera", "/camera/out", "/faces");
   EXPECT_FALSE(graph.isUpstream("/laser", "/faces"));
   EXPECT_FALSE(graph.isUpstream("/faces", "/laser"));
   EXPECT_FALSE(graph.isUpstream("/laser", "/nobody"));
@@ -29,15 +29,15 @@ TEST(SourceGraph, UnconnectedSourcesAreNeither) {
 
 TEST(SourceGraph, NoSourceIsUpstreamOfItself) {
   SourceGraph graph;
-  graph.connect("/motors", "/motors");
+  graph.connect("/motors", "/motors/out", "/motors");
   EXPECT_FALSE(graph.isUpstream("/motors", "/motors"));
 }
 
 TEST(SourceGraph, InALoopTheShorterWayDecides) {
   SourceGraph graph;
-  graph.connect("/laser", "/slam");
-  graph.connect("/slam", "/navigation");
-  graph.connect("/navigation", "/laser");
+  graph.connect("/laser", "/laser/out", "/slam");
+  graph.connect("/slam", "/slam/out", "/navigation");
+  graph.connect("/navigation", "/navigation/out", "/laser");
   EXPECT_TRUE(graph.isUpstream("/laser", "/slam"));
   EXPECT_FALSE(graph.isUpstream("/slam", "/laser"));
   EXPECT_TRUE(graph.isUpstream("/navigation", "/laser"));
@@ -46,17 +46,30 @@ TEST(SourceGraph, InALoopTheShorterWayDecides) {
 
 TEST(SourceGraph, SourcesThatTalkToEachOtherAreNeither) {
   SourceGraph graph;
-  graph.connect("/motors", "/control");
-  graph.connect("/control", "/motors");
+  graph.connect("/motors", "/motors/out", "/control");
+  graph.connect("/control", "/control/out", "/motors");
   EXPECT_FALSE(graph.isUpstream("/motors", "/control"));
   EXPECT_FALSE(graph.isUpstream("/control", "/motors"));
 }
 
+TEST(SourceGraph, HearsWhatItSubscribesToOfWhoPublishesIt) {
+  SourceGraph graph;
+  graph.connect("/laser", "/scan", "/slam");
+  graph.connect("/laser", "/status", "/log");
+  graph.connect("/camera", "/points", "/slam");
+  EXPECT_TRUE(graph.hears("/slam", "/laser", "/scan"));
+  EXPECT_TRUE(graph.hears("/log", "/laser", "/status"));
+  EXPECT_FALSE(graph.hears("/laser", "/slam", "/scan"));    // the other way round
+  EXPECT_FALSE(graph.hears("/slam", "/laser", "/status"));  // another topic of the same two
+  EXPECT_FALSE(graph.hears("/slam", "/camera", "/scan"));   // the topic of another publisher
+  EXPECT_FALSE(graph.hears("/slam", "/laser", "/nothing"));
+}
+
 TEST(SourceGraph, ALoopBesideTheWayIsWalkedOnce) {
   SourceGraph graph;
-  graph.connect("/a", "/b");
-  graph.connect("/b", "/a");
-  graph.connect("/b", "/c");
+  graph.connect("/a", "/a/out", "/b");
+  graph.connect("/b", "/b/out", "/a");
+  graph.connect("/b", "/b/out", "/c");
   EXPECT_TRUE(graph.isUpstream("/a", "/c"));
   EXPECT_FALSE(graph.isUpstream("/c", "/a"));
 }

@@ -28,7 +28,7 @@ def test_json_holds_all_but_the_histograms(model_file: str, capsys) -> None:
     summary = as_json(capsys, model_file)
     assert summary['window'] == 0.1 and summary['bin_size'] == 0.01
     assert summary['horizon'] is None and summary['calibration'] is None
-    assert summary['graph'] == {} and summary['evidence']['calibration'] is None
+    assert summary['graph'] == [] and summary['evidence']['calibration'] is None
     assert summary['sources'] == ['/battery', '/laser', '/slam']
     assert summary['events'] == 1282 and summary['pairs'] == 9
     assert summary['encoding']['type_fields']['rosgraph_msgs/Log'] == 'level'
@@ -80,7 +80,9 @@ def test_json_holds_preliminary_limits_and_the_graph(long_bags, tmp_path, capsys
     assert train.main([long_bags[0], '--graph', '-o', output]) == 0
     capsys.readouterr()
     summary = as_json(capsys, output)
-    assert summary['graph'] == {'/laser': ['/map_saver', '/slam']}
+    assert summary['graph'] == [
+        {'publisher': '/laser', 'topic': '/scan', 'subscriber': '/map_saver'},
+        {'publisher': '/laser', 'topic': '/scan', 'subscriber': '/slam'}]
     calibration = summary['evidence']['calibration']
     assert calibration['method'] == 'cross-fit' and calibration['false_alarms_per_hour'] is None
     assert info.main([output]) == 0

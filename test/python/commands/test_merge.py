@@ -59,15 +59,16 @@ def test_limits_of_one_robot_are_not_those_of_all(evidence_model: str, model_fil
 def test_the_graph_is_that_of_all(model_file: str, evidence_model: str, tmp_path: Path) -> None:
     paths = []
     for number, (path, graph) in enumerate((
-            (model_file, {'/a': {'/b'}, '/c': {'/d'}}),
-            (evidence_model, {'/a': {'/c'}, '/d': {'/a'}}))):
+            (model_file, {('/a', '/x', '/b'), ('/c', '/z', '/d')}),
+            (evidence_model, {('/a', '/x', '/c'), ('/a', '/y', '/b')}))):
         model = TrainedModel.load(path)
         model.graph = graph
         paths.append(str(tmp_path / str(number)))
         model.save(paths[-1])
     output = str(tmp_path / 'm')
     assert merge.main([*paths, '-o', output]) == 0
-    assert TrainedModel.load(output).graph == {'/a': {'/b', '/c'}, '/c': {'/d'}, '/d': {'/a'}}
+    assert TrainedModel.load(output).graph == {
+        ('/a', '/x', '/b'), ('/a', '/x', '/c'), ('/a', '/y', '/b'), ('/c', '/z', '/d')}
 
 
 @pytest.mark.parametrize('options, told', [

@@ -11,6 +11,7 @@ from conftest import jittery_robot, learned, robot, write_bag
 
 from self_awareness import EncodingRules, EventType, TrainedModel, Training, read_events
 from self_awareness.commands import train
+from self_awareness.training.robot_graph import RobotGraph
 
 LENGTH_S = 40.0
 
@@ -158,12 +159,13 @@ def test_the_graph_is_kept_unless_another_is_asked_for(bags: List[str], tmp_path
                                                        monkeypatch) -> None:
     output = tmp_path / 'm'
     model = trained(bags[:1], output)
-    model.graph = {'/laser': {'/slam'}}
+    model.graph = {('/laser', '/scan', '/slam')}
     model.save(str(output))
-    assert trained(bags[1:2], output, '--add-to', str(output)).graph == {'/laser': {'/slam'}}
-    monkeypatch.setattr('self_awareness.training.live_graph.fetch', lambda: {'/a': {'/b'}})
+    assert trained(bags[1:2], output, '--add-to', str(output)).graph == model.graph
+    monkeypatch.setattr('self_awareness.training.live_graph.fetch',
+                        lambda: RobotGraph({'/x': {'/a'}}, {'/x': {'/b'}}))
     again = trained(bags[2:3], output, '--add-to', str(output), '--graph')
-    assert again.graph == {'/a': {'/b'}}
+    assert again.graph == {('/a', '/x', '/b')}
 
 
 def test_what_is_in_the_model_already_is_not_added(bags: List[str], tmp_path: Path,

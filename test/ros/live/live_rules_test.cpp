@@ -1,5 +1,5 @@
-// What the live side decides without a master: which topics, who is new there, and
-// when the clock was set.
+// What the live side decides without a master: which topics, what its own output is, and when the
+// clock was set.
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,6 @@
 
 #include "self_awareness/ros/graph.h"
 #include "self_awareness/ros/live/clock_watch.h"
-#include "self_awareness/ros/live/new_publishers.h"
 #include "self_awareness/ros/live/own_output.h"
 
 namespace self_awareness::ros1 {
@@ -42,60 +41,6 @@ TEST(ChooseTopics, AllTakesWhatIsPublished) {
 
 TEST(ChooseTopics, ModelTakesTheModelsTopicsPublishedOrNot) {
   EXPECT_EQ(choose(SubscribePolicy::kModel), (Topics{"/pose"}));
-}
-
-class NewPublishersTest : public testing::Test {
- protected:
-  /// Names the new publishers of a graph in which these nodes publish /scan.
-  std::vector<std::string> look(const std::set<std::string>& nodes, bool subscribed = true) {
-    Graph graph;
-    graph.topics["/scan"].publishers = nodes;
-    const Topics topics = subscribed ? Topics{"/scan"} : Topics{"/pose"};
-    std::vector<std::string> names;
-    for (const Publisher& publisher : new_publishers_.look(
-             graph, topics, [](const std::string&node, const std::string& /*topic*/) {
-               return node != "/rviz";
-             })) {
-      EXPECT_EQ(publisher.topic, "/scan");
-      names.push_back(publisher.source);
-    }
-    return names;
-  }
-
-  using Names = std::vector<std::string>;
-  NewPublishers new_publishers_;
-};
-
-TEST_F(NewPublishersTest, WhoIsThereAtTheStartIsNotNew) {
-  EXPECT_EQ(look({"/player"}), Names());
-  EXPECT_EQ(look({"/player"}), Names());
-  EXPECT_EQ(look({"/player", "/ghost"}), Names{"/ghost"});
-}
-
-TEST_F(NewPublishersTest, IsNewOnceHoweverOftenItIsRestarted) {
-  look({});
-  EXPECT_EQ(look({"/talker_4242_1430709709567"}), Names{"/talker"});
-  EXPECT_EQ(look({}), Names());
-  EXPECT_EQ(look({"/talker_4343_1430709719567"}), Names());
-}
-
-TEST_F(NewPublishersTest, IsNewWhenItIsHeard) {
-  look({"/player"});
-  EXPECT_EQ(look({"/player", "/ghost"}, false), Names());
-  EXPECT_EQ(look({"/player", "/ghost"}), Names{"/ghost"});
-}
-
-TEST_F(NewPublishersTest, LeavesOutWhatIsNotIncluded) {
-  look({});
-  EXPECT_EQ(look({"/rviz"}), Names());
-}
-
-TEST_F(NewPublishersTest, PublishersThatItFindsAfterARestartAreNotNew) {
-  look({});
-  look({"/ghost"});
-  new_publishers_.restart();
-  EXPECT_EQ(look({"/player"}), Names());
-  EXPECT_EQ(look({"/player", "/ghost"}), Names{"/ghost"});
 }
 
 TEST(OwnOutput, IsWhatTheModelDoesNotKnowFromTheProcess) {

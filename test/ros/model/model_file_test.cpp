@@ -282,8 +282,8 @@ TEST_F(ModelFileTest, NoMoreIsReadThanIsAskedFor) {
 
 TEST_F(ModelFileTest, TheEvidenceItsLimitsAndTheGraphComeBackAsTheyWereSaved) {
   TrainedModel model = calibratedModel();
-  model.graph.connect("/a", "/b");
-  model.graph.connect("/a", "/c");
+  model.graph.connect("/a", "/x", "/b");
+  model.graph.connect("/a", "/y", "/c");
   ASSERT_GE(model.evidence_calibration->limits.size(), 6U);
   saveModel(model, path("m"));
   const TrainedModel loaded = loadModel(path("m"));
@@ -298,7 +298,8 @@ TEST_F(ModelFileTest, TheEvidenceItsLimitsAndTheGraphComeBackAsTheyWereSaved) {
     EXPECT_EQ(loaded.watched.tracks[track].from, model.watched.tracks[track].from);
   }
   EXPECT_EQ(loaded.predecessors, model.predecessors);
-  EXPECT_EQ(loaded.graph.edges(), model.graph.edges());
+  EXPECT_EQ(loaded.graph.edges().size(), 2U);
+  EXPECT_TRUE(loaded.graph.edges() == model.graph.edges());
   const core::evidence::Limits limits = loaded.limits().value();
   ASSERT_EQ(limits.tracks.size(), model.evidence_calibration->limits.size());
   EXPECT_TRUE(std::isnan(limits.tracks[0]));

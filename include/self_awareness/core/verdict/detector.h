@@ -19,11 +19,11 @@ struct Verdict {
   std::optional<double> score;      ///< low is abnormal; none: the window has no score
   std::optional<double> threshold;  ///< s*; none: not calibrated
   bool abnormal = false;            ///< eq. 5, or silence, or unknown events that are an error
-  bool settling = false;            ///< too early for an alarm; the window does not count
+  bool settling = false;            ///< too early to say anything; the window does not count
   bool alarm = false;               ///< the alarm stands
   bool suspicion = false;           ///< no alarm, but something was abnormal recently
   bool changed = false;             ///< the alarm or the suspicion began or ended with this window
-  std::string evidence;             ///< what made the window abnormal or suspicious
+  std::string evidence;             ///< what made the window abnormal or suspicious, once settled
   std::vector<Suspect> suspects;    ///< of an abnormal window that is not settling, best first
 };
 
@@ -37,7 +37,7 @@ class Detector : private WindowObserver {
  public:
   struct Parameters {
     Persistence::Parameters persistence;
-    std::int64_t settle_time = 5000000000;  ///< no alarms this long after the first event [ns]
+    std::int64_t settle_time = 5000000000;  ///< after the first event, of all or of a type [ns]
     bool silence_is_abnormal = true;        ///< paper: a window without events scores 0
     UnknownEvents unknown = UnknownEvents::kWarn;  ///< a suspicion, or an alarm at once
 
@@ -63,9 +63,6 @@ class Detector : private WindowObserver {
 
   /// Forgets delays, windows and the alarm: the next event is the first.
   void restart();
-  /// Raises no alarm for settle_time from `now` [ns] on: no window counts meanwhile, so an alarm
-  /// that stands clears after its hold time (docs/method.md, section 4.4).
-  void settle(std::int64_t now);
   /// Forgets the alarm and the windows that led to it; the judge forgets nothing.
   void clearAlarm();
 
@@ -73,9 +70,12 @@ class Detector : private WindowObserver {
   bool started() const { return windows_.lastStamp().has_value(); }
 
  private:
-  ObservedEvent observe(const Event& event) override { return judge_->add(event); }
+  ObservedEvent observe(const Event& event) override;
   void close(const Window& window, std::int64_t end) override;
   void onClockStep() override;
+  /// Takes a window that is not settling into account for the alarm and the suspicion.
+  /// @param end of the window [ns]
+  void count(const Judgement& judgement, std::int64_t end);
 
   std::unique_ptr<Judge> judge_;
   Parameters parameters_;
@@ -85,6 +85,7 @@ class Detector : private WindowObserver {
   bool suspicion_ = false;          // whether it stands
   std::int64_t suspicious_at_ = 0;  // end of the last suspicious window [ns], while it stands
   std::int64_t settled_at_ = 0;     // [ns], valid once started
+  std::vector<bool> heard_;         // since the start, by id
 };
 
 }  // namespace self_awareness::core

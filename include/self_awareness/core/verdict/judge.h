@@ -17,6 +17,7 @@ struct Judgement {
   bool abnormal = false;            ///< score < threshold (eq. 5), or silence
   bool certain = false;             ///< an alarm at once (docs/method.md, section 4.3)
   bool suspicious = false;          ///< not abnormal, but on the way to it
+  bool settling = false;            ///< too much is new to say anything of the whole window
   std::string evidence;             ///< what made the window abnormal or suspicious, in words
   std::vector<Suspect> suspects;    ///< if they were asked for; the most likely first
 };
@@ -35,6 +36,11 @@ class Judge {
 
   /// Takes in the next event. One with an id that the model does not know is an unknown event.
   virtual ObservedEvent add(const Event& event) = 0;
+  /// Takes note that an event type is heard for the first time in the recording: what is unusual
+  /// of it meanwhile is its start (docs/method.md, section 4.4).
+  /// @param first event of the type, which add() follows
+  /// @param settle_time from the event on [ns]
+  virtual void settle(const Event& first, std::int64_t settle_time) = 0;
   /// Judges a window that is over. Its events are all those taken in since the window before it.
   /// Without calibration, the judge names no suspects.
   /// @param end up to where the window is known [ns], as for WindowObserver::close()

@@ -25,6 +25,10 @@ class Persistence {
   /// @param certain raises the alarm at once
   /// @return raised()
   bool add(bool abnormal, std::int64_t end, bool certain = false);
+  /// Leaves out the next window: it says nothing, and the hold time stands still.
+  /// @param length of the window [ns]
+  /// @return raised()
+  bool leaveOut(std::int64_t length);
   /// Whether the alarm stands.
   bool raised() const { return raised_; }
   /// Forgets all windows and the alarm.

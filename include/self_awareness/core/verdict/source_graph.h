@@ -5,17 +5,30 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 
 namespace self_awareness::core {
 
-/// Says whose messages reach whom (docs/method.md, section 6): it has an edge from every source
-/// that publishes on a topic to every source that subscribes to it.
+/// Says whose messages reach whom, and on which topic (docs/method.md, section 6): it has an edge
+/// from every source that publishes on a topic to every source that subscribes to it.
 class SourceGraph {
  public:
-  void connect(const std::string& from, const std::string& to) { followers_[from].insert(to); }
+  struct Edge {
+    std::string publisher;
+    std::string topic;
+    std::string subscriber;
+  };
 
-  bool empty() const { return followers_.empty(); }
-  const std::map<std::string, std::set<std::string>>& edges() const { return followers_; }
+  void connect(const std::string& publisher, const std::string& topic,
+               const std::string& subscriber);
+
+  bool empty() const { return edges_.empty(); }
+  const std::set<Edge>& edges() const { return edges_; }
+  /// Whether `subscriber` subscribes to a topic on which `publisher` publishes.
+  bool hears(const std::string& subscriber, const std::string& publisher,
+             const std::string& topic) const {
+    return edges_.count({publisher, topic, subscriber}) > 0;
+  }
   /// Whether messages of `from` reach `to`, directly or through others, in fewer steps than the
   /// other way round. Robots have loops; what is wrong with both more likely began at `from`.
   bool isUpstream(const std::string& from, const std::string& to) const;
@@ -24,7 +37,17 @@ class SourceGraph {
   /// Number of steps from a source to another or back to itself; none: there is no way.
   std::optional<std::size_t> distance(const std::string& from, const std::string& to) const;
 
-  std::map<std::string, std::set<std::string>> followers_;
+  std::set<Edge> edges_;
+  std::map<std::string, std::set<std::string>> followers_;  // of the edges, by publisher
 };
+
+inline bool operator<(const SourceGraph::Edge& a, const SourceGraph::Edge& b) {
+  return std::tie(a.publisher, a.topic, a.subscriber) <
+         std::tie(b.publisher, b.topic, b.subscriber);
+}
+inline bool operator==(const SourceGraph::Edge& a, const SourceGraph::Edge& b) {
+  return std::tie(a.publisher, a.topic, a.subscriber) ==
+         std::tie(b.publisher, b.topic, b.subscriber);
+}
 
 }  // namespace self_awareness::core

@@ -51,7 +51,7 @@ if an alarm stood at the onset, if the monitor was settling, or if the machine's
 during the fault.
 
 By default (`~unknown`: `warn`) events never seen in training, those of `unknown` and `extra`, are
-a suspicion and no alarm; a new publisher, as that of `extra`, lets the monitor settle for 5 s.
+a suspicion and no alarm.
 
 The other systems were not running: they judge the recording of the same session, having learned
 from the same training, with thresholds that a share of 0.001 of the calibration's windows falls

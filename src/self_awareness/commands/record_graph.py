@@ -1,0 +1,64 @@
+"""`rosrun self_awareness record_graph`: writes who listens to whom beside bags that are recorded.
+"""
+from __future__ import annotations
+
+import argparse
+import glob
+import os
+import sys
+import time
+from typing import Optional, Sequence, Set
+
+import rospy
+
+from self_awareness.commands import cli
+from self_awareness.training import live_graph
+from self_awareness.training.robot_graph import RobotGraph, graph_file
+
+_PERIOD_S = 1.0
+
+_EPILOG = """\
+Run it while `rosbag record --output-prefix PREFIX` (or --output-name) runs; record.launch does.
+A bag does not say who subscribes. train reads the file PREFIX...graph.yaml by itself where it lies
+beside the bag. Only the master is asked, once a second; no node notices. End it by Ctrl-C.
+"""
+
+
+def main(argv: Optional[Sequence[str]] = None) -> int:
+    """Run the program; return its exit code (see cli.run)."""
+    # Under roslaunch, the name of a node comes with the arguments.
+    return cli.run(_parser(), _record, rospy.myargv(sys.argv if argv is None else ['', *argv])[1:])
+
+
+def _record(arguments: argparse.Namespace) -> None:
+    written: Set[str] = set()
+    current: Set[str] = set()  # of these, the files that hold all that is known
+    graph = RobotGraph()
+    while True:
+        if _learn(graph):
+            current.clear()
+        for bag in glob.glob(f'{glob.escape(arguments.prefix)}*.bag.active'):
+            path = graph_file(bag)
+            # What lies there already belongs to a bag that was not finished, of another time.
+            if path not in current and (path in written or not os.path.exists(path)):
+                graph.save(path)
+                written.add(path)
+                current.add(path)
+        time.sleep(_PERIOD_S)
+
+
+def _learn(graph: RobotGraph) -> bool:
+    """Add what the master knows now; return whether anything of it is new."""
+    try:
+        return graph.add(live_graph.fetch())
+    except ValueError:  # it may come back, and rosbag waits for it, too
+        return False
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog='record_graph', description=__doc__.split(': ', 1)[1].strip(), epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('prefix', metavar='PREFIX',
+                        help='beginning of the paths of the bags, as rosbag record was told')
+    return parser

@@ -1,0 +1,97 @@
+"""Who publishes and who subscribes to what in a robot, and the file that says so beside a bag."""
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any, Dict, Set, Tuple
+
+from self_awareness import stable_name
+from self_awareness.output_files import replacing
+
+_Nodes = Dict[str, Set[str]]
+
+_HEADER = """\
+# Who published and who subscribed to what, by topic, as the robot's master knew it.
+"""
+
+
+@dataclass
+class RobotGraph:
+    """Who publishes and who subscribes to what, by topic; nodes by their full names."""
+
+    publishers: _Nodes = field(default_factory=dict)
+    subscribers: _Nodes = field(default_factory=dict)
+
+    def add(self, other: RobotGraph) -> bool:
+        """Add what another graph knows; return whether it is new."""
+        news = False
+        for mine, theirs in ((self.publishers, other.publishers),
+                             (self.subscribers, other.subscribers)):
+            for topic, nodes in theirs.items():
+                known = mine.setdefault(topic, set())
+                news = news or not nodes <= known
+                known |= nodes
+        return news
+
+    def edges(self) -> Set[Tuple[str, str, str]]:
+        """Return (publisher, topic, subscriber), as in TrainedModel.graph.
+
+        Anonymous numbers are removed from the names, as the encoding does.
+        """
+        return {(stable_name(publisher), topic, stable_name(subscriber))
+                for topic, nodes in self.publishers.items() for publisher in nodes
+                for subscriber in self.subscribers.get(topic, ())}
+
+    def save(self, path: str) -> None:
+        """Write a file that load() reads."""
+        import yaml
+
+        topics = sorted(set(self.publishers) | set(self.subscribers))
+        content = {topic: {'publishers': sorted(self.publishers.get(topic, ())),
+                           'subscribers': sorted(self.subscribers.get(topic, ()))}
+                   for topic in topics}
+        with replacing(path) as temporary, open(temporary, 'w', encoding='utf-8') as file:
+            file.write(_HEADER)
+            yaml.safe_dump(content, file, default_flow_style=None, width=1000)
+
+    @classmethod
+    def load(cls, path: str) -> RobotGraph:
+        """Read a file.
+
+        Raises:
+            OSError: it cannot be read.
+            ValueError: it does not hold a graph; the message names the file.
+        """
+        # Imported here: it takes long, and not all recordings have such a file.
+        import yaml
+
+        with open(path, encoding='utf-8') as file:
+            try:
+                content = yaml.safe_load(file)
+            except (yaml.YAMLError, UnicodeDecodeError) as error:
+                raise ValueError(f'{path}: not YAML: {error}') from error
+        if not isinstance(content, dict):
+            raise ValueError(f'{path}: expected topics, each with publishers and subscribers')
+        graph = cls()
+        for topic, nodes in content.items():
+            graph.publishers[topic] = _nodes(path, topic, nodes, 'publishers')
+            graph.subscribers[topic] = _nodes(path, topic, nodes, 'subscribers')
+        return graph
+
+
+def graph_file(bag: str) -> str:
+    """Return the name of the file with the graph of the robot that a bag is a recording of.
+
+    Args:
+        bag: NAME.bag, or NAME.bag.active while it is written.
+    """
+    for end in ('.active', '.bag'):
+        bag = bag[:-len(end)] if bag.endswith(end) else bag
+    return f'{bag}.graph.yaml'
+
+
+def _nodes(path: str, topic: Any, nodes: Any, key: str) -> Set[str]:
+    names: Any = nodes.get(key) if isinstance(nodes, dict) else None
+    if not isinstance(topic, str) or not isinstance(names, list) or not all(
+            isinstance(name, str) for name in names):
+        raise ValueError(f'{path}: {topic}: expected {key} with a list of nodes')
+    return set(names)

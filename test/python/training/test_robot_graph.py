@@ -1,0 +1,86 @@
+"""The file beside a bag that says who listens to whom: what train makes of it, and bad ones."""
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+from typing import Tuple
+
+import pytest
+
+from self_awareness import TrainedModel, stable_name
+from self_awareness.commands import train
+from self_awareness.training.robot_graph import RobotGraph, graph_file
+
+Bags = Tuple[str, str]
+
+
+@pytest.fixture
+def bags(robot_bags: Bags, tmp_path: Path) -> Bags:
+    """The two recordings, in a folder where files may lie beside them."""
+    first, second = (shutil.copy(bag, tmp_path) for bag in robot_bags)
+    return first, second
+
+
+def trained(tmp_path: Path, *arguments: str) -> TrainedModel:
+    output = str(tmp_path / 'm')
+    assert train.main([*arguments, '-o', output]) == 0
+    return TrainedModel.load(output)
+
+
+def test_it_lies_beside_the_bag_also_while_that_is_written() -> None:
+    assert graph_file('/data/monday.bag') == '/data/monday.graph.yaml'
+    assert graph_file('/data/monday.bag.active') == '/data/monday.graph.yaml'
+    assert graph_file('monday') == 'monday.graph.yaml'
+
+
+def test_it_comes_back_as_it_was_saved(tmp_path: Path) -> None:
+    graph = RobotGraph({'/scan': {'/laser'}, '/nobody/listens': {'/laser'}},
+                       {'/scan': {'/slam', '/log'}, '/nobody/talks': {'/slam'}})
+    path = str(tmp_path / 'g')
+    graph.save(path)
+    loaded = RobotGraph.load(path)
+    assert loaded.edges() == graph.edges() == {('/laser', '/scan', '/slam'),
+                                               ('/laser', '/scan', '/log')}
+    assert not graph.add(loaded) and not loaded.add(graph)
+    assert loaded.add(RobotGraph({}, {'/nobody/listens': {'/slam'}}))
+    assert ('/laser', '/nobody/listens', '/slam') in loaded.edges()
+
+
+def test_a_model_has_the_graphs_of_all_its_bags(bags: Bags, tmp_path: Path) -> None:
+    RobotGraph({'/scan': {'/laser'}}, {'/scan': {'/slam_4242_1600000000000'}}).save(
+        graph_file(bags[0]))
+    RobotGraph({'/scan': {'/laser'}, '/map': {'/slam'}}, {'/map': {'/log'}}).save(
+        graph_file(bags[1]))
+    both = {('/laser', '/scan', stable_name('/slam_4242_1600000000000')),
+            ('/slam', '/map', '/log')}
+    assert trained(tmp_path, *bags, '--jobs', '1').graph == both
+    assert trained(tmp_path, *bags, '--jobs', '2').graph == both
+
+
+def test_the_running_robots_graph_is_added(bags: Bags, tmp_path: Path, monkeypatch) -> None:
+    RobotGraph({'/scan': {'/laser'}}, {'/scan': {'/slam'}}).save(graph_file(bags[0]))
+    monkeypatch.setattr('self_awareness.training.live_graph.fetch',
+                        lambda: RobotGraph({'/map': {'/slam'}}, {'/map': {'/log'}}))
+    assert trained(tmp_path, *bags, '--graph').graph == {('/laser', '/scan', '/slam'),
+                                                         ('/slam', '/map', '/log')}
+
+
+def test_without_a_file_there_is_no_graph(bags: Bags, tmp_path: Path, capsys) -> None:
+    assert trained(tmp_path, *bags).graph == set()
+    assert 'graph        connections: none\n' in capsys.readouterr().out
+
+
+@pytest.mark.parametrize('text, told', [
+    ('{', 'not YAML'),
+    ('- /scan', 'expected topics'),
+    ('/scan: [/laser]', '/scan: expected publishers with a list of nodes'),
+    ('/scan: {publishers: [/laser]}', '/scan: expected subscribers with a list of nodes'),
+    ('/scan: {publishers: [1], subscribers: []}', '/scan: expected publishers'),
+])
+def test_a_bad_file_is_named(bags: Bags, tmp_path: Path, capsys, text: str, told: str) -> None:
+    path = graph_file(bags[0])
+    Path(path).write_text(text)
+    assert train.main([*bags, '-o', str(tmp_path / 'm')]) == 1
+    error = capsys.readouterr().err
+    assert path in error and told in error and error.count('\n') == 1
+    assert len(trained(tmp_path, *bags, '--skip-bad').recordings) == 1
