@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/evidence/blame.h"
+#include "core/evidence/hindsight.h"
 #include "core/evidence/scorer.h"
 
 namespace self_awareness::core::evidence {
@@ -27,6 +28,7 @@ class Judge : public core::Judge {
         std::shared_ptr<const SourceGraph> graph);
 
   ObservedEvent add(const Event& event) override {
+    hindsight_.add(event);
     return {event, !model_->knows(event.id), scorer_.add(event)};
   }
   void settle(const Event& first, std::int64_t settle_time) override;
@@ -41,6 +43,7 @@ class Judge : public core::Judge {
   std::shared_ptr<const Model> model_;
   std::optional<Limits> limits_;
   Scorer scorer_;
+  Hindsight hindsight_;
   Blame blame_;
   std::vector<double> shares_;            // of its limit that each track has reached
   std::vector<std::int64_t> settled_at_;  // [ns], by id
@@ -52,6 +55,7 @@ Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, s
     : model_(std::move(model)),
       limits_(std::move(limits)),
       scorer_(model_, window),
+      hindsight_(model_),
       blame_(model_, std::move(graph)),
       shares_(model_->tracks().size(), 0),
       settled_at_(model_->size(), std::numeric_limits<std::int64_t>::min()) {
@@ -73,6 +77,7 @@ void Judge::settle(const Event& first, std::int64_t settle_time) {
 
 void Judge::restart() {
   scorer_.restart();
+  hindsight_.restart();
   std::fill(settled_at_.begin(), settled_at_.end(), std::numeric_limits<std::int64_t>::min());
   all_settled_at_ = std::numeric_limits<std::int64_t>::min();
 }
@@ -119,7 +124,7 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
   }
   if (suspects == NameSuspects::kAlways ||
       (suspects == NameSuspects::kIfUnusual && (judgement.abnormal || judgement.suspicious))) {
-    judgement.suspects = blame_.suspects(shares_, scorer_, window);
+    judgement.suspects = blame_.suspects(shares_, scorer_, hindsight_, window);
   }
   return judgement;
 }

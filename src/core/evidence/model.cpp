@@ -255,19 +255,35 @@ bool Model::countsRequests(std::size_t track) const {
   return usualDelay(from, from, 0.5) < kLongestGapOfSeries;
 }
 
+double Model::meanGap(EventId id) const {
+  const Statistics::Type& type = statistics_.type(id);
+  return type.gaps == 0 ? 0 : static_cast<double>(type.gap_sum) / static_cast<double>(type.gaps);
+}
+
 double Model::usualDelay(EventId from, EventId to, double share) const {
   const Statistics::Delays& delays = learned().delays(from, to);
-  const std::uint64_t total = learned().total(from, to);
-  if (total == 0) {
-    return 0;
+  const double wanted = share * static_cast<double>(learned().total(from, to));
+  // How long the longest delay between two types was is not known: the last bin ends where it
+  // begins.
+  auto longest = static_cast<double>(log_bins::lowerEdge(log_bins::kBins - 1));
+  if (from == to && learned().type(to).gaps > 0) {
+    const Statistics::Type& type = learned().type(to);
+    const auto longer = static_cast<std::size_t>(static_cast<double>(type.gaps) - wanted);
+    if (longer < type.longest_gaps.size()) {
+      return toSeconds(type.longest_gaps[longer]);
+    }
+    longest = static_cast<double>(type.longest_gaps.front());
   }
-  const double wanted = share * static_cast<double>(total);
   double below = 0;
   for (std::size_t bin = 0; bin < delays.size(); ++bin) {
-    below += delays[bin];
-    if (below >= wanted) {
-      return log_bins::middle(bin) * 1e-9;
+    if (delays[bin] > 0 && below + delays[bin] >= wanted) {
+      const auto lower = static_cast<double>(log_bins::lowerEdge(bin));
+      const double upper =
+          bin + 1 < delays.size() ? static_cast<double>(log_bins::lowerEdge(bin + 1)) : longest;
+      const double width = std::min(upper, std::max(longest, lower)) - lower;
+      return (lower + width * (wanted - below) / delays[bin]) * 1e-9;
     }
+    below += delays[bin];
   }
   return 0;
 }

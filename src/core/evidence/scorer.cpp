@@ -8,9 +8,7 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-// What every delay takes from the sum, in standard deviations: a large drift finds strong evidence
-// without false alarms, a small one lets weak evidence add up.
-constexpr double kDrift = 1;
+// The drift of the slow sums: a small one lets weak evidence add up.
 constexpr double kSlowDrift = 0.5;
 // Independent timers keep one phase as long as they run, and have another one in every run:
 // training may have met the same one by chance every time. So delays and answers count only after
@@ -89,7 +87,7 @@ void Scorer::addTracks() {
     type.pairs_begin = static_cast<std::uint32_t>(pairs_.size());
     for (const std::size_t track : pairs[id]) {
       state_of_[track] = state_of_[track + 1] = pairs_.size();
-      pairs_.push_back({tracks[track].from, false, 0, model_->surprises(track).data(), 0, none});
+      pairs_.push_back({tracks[track].from, false, model_->surprises(track).data(), 0, none});
     }
     type.pairs_end = static_cast<std::uint32_t>(pairs_.size());
     type.answers_begin = static_cast<std::uint32_t>(answers_.size());
@@ -131,7 +129,6 @@ void Scorer::restart() {
   pairs_abnormal_since_.assign(pairs_.size(), 0);
   answers_abnormal_since_.assign(answers_.size(), 0);
   for (std::size_t pair = 0; pair < pairs_.size(); ++pair) {
-    pairs_[pair].last_delay = 0;
     disarmPair(pair);
   }
   for (std::size_t answer = 0; answer < answers_.size(); ++answer) {
@@ -165,7 +162,6 @@ std::optional<std::int64_t> Scorer::add(const Event& event) {
     const bool first = numbers[pair->from] >= last;
     const std::int64_t delay = event.stamp - stamps[pair->from];
     const double surprise = pair->surprises[log_bins::bin(delay)];
-    pair->last_delay ^= (pair->last_delay ^ delay) & -static_cast<std::int64_t>(first);
     const double count = first && !stalled ? 1.0 : 0.0;
     pair->sums.add((surprise - std::max(pair->regime, 0.0) - drifts) * count);
     const double elapsed = static_cast<double>(std::min(event.stamp - last_stamp, kRegime)) / static_cast<double>(kRegime);
@@ -215,7 +211,6 @@ void Scorer::armPair(std::size_t number, bool first, double surprise) {
   DelayPair& pair = pairs_[number];
   if (numbers_[pair.from] == 0) {
     pair.sums.values.setZero();
-    pair.last_delay = 0;
   } else if (first) {
     pair.armed = arm(pairs_arming_[number], surprise, kUsualSurprise);
   }
@@ -267,6 +262,20 @@ void Scorer::capAt(const Limits& limits) {
     } else if (channel == Channel::kAnswer) {
       cap(track, answers_[number].cap);
     }
+  }
+}
+
+double Scorer::cap(std::size_t track) const {
+  const std::size_t number = state_of_.at(track);
+  switch (model_->tracks()[track].channel) {
+    case Channel::kDelay:
+      return pairs_[number].sums.caps[0];
+    case Channel::kSlowDelay:
+      return pairs_[number].sums.caps[1];
+    case Channel::kAnswer:
+      return answers_[number].cap;
+    default:
+      return kMostEvidence;
   }
 }
 

@@ -13,6 +13,10 @@
 
 namespace self_awareness::core::evidence {
 
+/// What every delay takes from the sum of its track, in standard deviations: a large drift finds
+/// strong evidence without false alarms.
+constexpr double kDrift = 1;
+
 /// Collects the evidence of every track from the events of one recording (docs/method.md, sections
 /// 3.2 to 3.5 and 3.7). Delays and answers are summed up as in Page's CUSUM test: what is usual
 /// takes from the sum, what is unusual adds to it, and the sum never falls below 0. A fault that
@@ -42,16 +46,16 @@ class Scorer {
   /// While the whole robot is silent for a moment, nobody's silence grows.
   std::int64_t age(EventId id) const {
     const std::int64_t stall =
-        stall_ > 0 || stalled_at_ == 0 || stamps_.at(id) > stalled_from_ ? stall_ : stalled_at_ - stalled_from_;
+        stall_ > 0 || stalled_at_ == 0 || stamps_.at(id) > stalled_from_
+            ? stall_
+            : stalled_at_ - stalled_from_;
     return numbers_.at(id) > 0 ? window_end_ - stamps_[id] - stall : 0;
-  }
-  /// The last delay of a delay track [ns].
-  std::int64_t lastDelay(std::size_t track) const {
-    return pairs_[state_of_.at(track)].last_delay;
   }
   /// Time since the first request without an answer of a deadline track, at the end of the last
   /// window [s].
   double waiting(std::size_t track) const { return evidence_.at(track); }
+  /// The most that the sum of a delay or answer track may be.
+  double cap(std::size_t track) const;
   /// Events of a type in the last kRateSpan.
   std::uint32_t recentCount(EventId id) const { return counts_.counts().at(id); }
   /// End of the window that was closed last [ns].
@@ -79,7 +83,6 @@ class Scorer {
   struct DelayPair {
     EventId from = 0;
     bool armed = false;
-    std::int64_t last_delay = 0;        // [ns]
     const double* surprises = nullptr;  // by bin
     double regime = 0;                  // mean surprise of the last minutes, if it is above usual
     Sums sums;                          // of the track, and of the slow one

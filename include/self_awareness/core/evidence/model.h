@@ -58,8 +58,10 @@ class Model {
   /// Whether a deadline track counts requests without an answer, not seconds: requests come in
   /// series (docs/method.md, section 3.6).
   bool countsRequests(std::size_t track) const;
-  /// Delay from `from` to `to` [s] that a share (0 to 1) of the delays in training did not exceed,
-  /// as exactly as the bins are.
+  /// Mean gap between two events of the type in training [ns]; 0 if there was none.
+  double meanGap(EventId id) const;
+  /// Delay from `from` to `to` [s] that a share (0 to 1) of the delays in training did not exceed.
+  /// Exact for the longest gaps of a type; an estimate within the bin for the others.
   double usualDelay(EventId from, EventId to, double share) const;
   /// Number of events of a type in kRateSpan that lies this many spreads above the mean.
   double usualCount(EventId id, double spreads) const {
