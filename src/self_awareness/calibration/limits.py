@@ -155,6 +155,7 @@ def find(trained: TrainedModel, settle_time: int, budget: float, tasks: Sequence
     calibration = EvidenceCalibration()
     calibration.limits = limits.tracks
     calibration.linker_limit = limits.linker
+    calibration.relations = judging.finder.relations()
     calibration.budget = budget
     calibration.false_alarms_per_hour = judging.finder.expected_rate()
     calibration.windows = judging.finder.windows
