@@ -15,7 +15,8 @@ constexpr double kPriorExceedances = 5;
 constexpr double kFewest = 0.5;
 // Smaller excesses (logarithms) are those of what hardly varies.
 const double kLeastExcess = std::log(1.1);
-// What goes so much (a logarithm) beyond all that was seen need not be feared.
+// Where many tracks were seen, what goes so much (a logarithm) beyond them all need not be feared.
+constexpr std::size_t kManyTracks = 20;
 const double kBeyond = std::log(1.25);
 
 }  // namespace
@@ -72,6 +73,7 @@ double HeldOut::scale(const Level& level) {
 }
 
 void HeldOut::add(const std::vector<double>& largest, double least) {
+  ++tracks_;
   for (Level& level : levels_) {
     const double logarithm = exceedance(level, largest, least);
     if (logarithm > kLeastExcess) {
@@ -88,7 +90,8 @@ double HeldOut::margin(double rate, double least) const {
     if (level.eligible_hours > 0) {
       const double expected = std::max(level.exceedances, kFewest) / (level.eligible_hours * rate);
       const double logarithm = kLeastExcess + scale(level) * std::max(std::log(expected), 0.0);
-      margin = std::max(margin, std::exp(std::min(logarithm, level.most + kBeyond)));
+      const double most = tracks_ >= kManyTracks ? level.most + kBeyond : logarithm;
+      margin = std::max(margin, std::exp(std::min(logarithm, most)));
     }
   }
   return margin;

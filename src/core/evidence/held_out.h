@@ -54,6 +54,7 @@ class HeldOut {
   static double exceedance(const Level& level, const std::vector<double>& largest, double least);
   static double scale(const Level& level);
 
+  std::size_t tracks_ = 0;
   std::vector<Level> levels_;  // by start first
 };
 

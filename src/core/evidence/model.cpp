@@ -27,6 +27,9 @@ constexpr double kLeastEffectOnGap = 20e6;  // [ns]
 constexpr double kLeastEffectOnGapOfPeriod = 0.3;
 constexpr double kUsual = 0.9;  // share of the delays that are usual
 
+// A rate that changes by this share is no fault: clocks and loads differ from day to day.
+constexpr double kLeastRateEffect = 0.04;
+
 // Share of the usual answers that a fault takes away: the fault that is looked for.
 constexpr double kLost = 0.5;
 constexpr double kLeastMissRate = 0.1;
@@ -125,7 +128,9 @@ void Model::learnRates() {
     rate.mean = static_cast<double>(type.rate_sum) / windows;
     const double variance =
         static_cast<double>(type.rate_squares) / windows - rate.mean * rate.mean;
-    rate.spread = std::sqrt(std::max(variance, 0.0) + std::min(1.0, rate.mean / 4) + 0.25);
+    const double drift = kLeastRateEffect * rate.mean;
+    rate.spread =
+        std::sqrt(std::max(variance, 0.0) + std::min(1.0, rate.mean / 4) + 0.25 + drift * drift);
     rates_.push_back(rate);
   }
 }
