@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, Dict, List, Sequence
 
 import page
-from self_awareness.evaluation.detectors import Evidence
+from self_awareness.evaluation.detectors import Evidence, scenario_graph
 from self_awareness.evaluation.simulated import experiment, summary
 from self_awareness.evaluation.simulated.experiment import Plan
 from self_awareness.evaluation.simulated.measures import Row, fault_row, normal_row
@@ -40,7 +40,7 @@ def _measure_seed(plan: Plan, seed: int) -> List[Row]:
     records = experiment.make_records(plan, load_scenario(), seed)
     rows = []
     for bound in BOUNDS:
-        system = Evidence(True, bound)
+        system = Evidence(scenario_graph(), bound)
         system.train(records.training)
         system.calibrate([records.calibration])
         normal = system.judge(records.normal)

@@ -74,6 +74,9 @@ TrainingCounts Training::finish() {
   if (!trainers_) {
     throw std::logic_error("the training is over: its counts were handed out");
   }
+  for (evidence::Trainer& trainer : trainers_->evidence) {
+    trainer.finish();
+  }
   trainers_.reset();
   return std::move(counts_);
 }

@@ -93,7 +93,7 @@ void Diagnostics::component(const std::string& name, Status& status) const {
       status.summary(i == 0 && state_.last.level == DiagnosticStatus::ERROR
                          ? DiagnosticStatus::ERROR
                          : DiagnosticStatus::WARN,
-                     suspects[i].scope + ": " + suspects[i].reason);
+                     describeOnScope(suspects[i]));
       break;
     }
   }

@@ -30,9 +30,14 @@ std::vector<self_awareness::Suspect> toMessages(const std::vector<core::Suspect>
   return messages;
 }
 
+std::string describeOnScope(const self_awareness::Suspect& suspect) {
+  const std::size_t field = suspect.type.find('[');
+  return suspect.scope + (field == std::string::npos ? "" : " " + suspect.type.substr(field)) +
+         ": " + suspect.reason;
+}
+
 std::string describe(const self_awareness::Suspect& suspect) {
-  return (suspect.source.empty() ? "" : suspect.source + " on ") + suspect.scope + ": " +
-         suspect.reason;
+  return (suspect.source.empty() ? "" : suspect.source + " on ") + describeOnScope(suspect);
 }
 
 std::string wording(const core::Verdict& verdict, const std::string& evidence,

@@ -17,6 +17,10 @@ std::uint8_t levelOf(const core::Verdict& verdict);
 std::vector<self_awareness::Suspect> toMessages(const std::vector<core::Suspect>& suspects,
                                                 const core::Vocabulary& vocabulary);
 
+/// What is wrong with the component of a suspect: "SCOPE: REASON", and between them the value of
+/// the type field if there is one, "/rosout [level=8]: never seen in training, 1 in this window".
+std::string describeOnScope(const self_awareness::Suspect& suspect);
+
 /// "SOURCE on SCOPE: REASON", without the source where the encoding leaves it out.
 std::string describe(const self_awareness::Suspect& suspect);
 

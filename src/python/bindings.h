@@ -8,9 +8,12 @@
 #include <stdexcept>
 #include <vector>
 
+#include "self_awareness/core/evidence/limits.h"
 #include "self_awareness/core/stream/event.h"
 
 /// What the parts of the Python module share.
+PYBIND11_MAKE_OPAQUE(self_awareness::core::evidence::LimitFinder::Findings)
+
 namespace self_awareness::python {
 
 namespace py = pybind11;

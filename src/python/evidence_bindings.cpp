@@ -24,12 +24,12 @@ namespace evidence = core::evidence;
 /// A search for limits, with the models that judge the recordings.
 struct LimitSearch {
   LimitSearch(std::shared_ptr<const evidence::CrossFit> models,
-              const evidence::LimitFinder::Parameters& parameters)
-      : cross_fit(std::move(models)), finder(cross_fit->model(), parameters) {}
+              const evidence::LimitFinder::Parameters& parameters, const core::SourceGraph& graph)
+      : cross_fit(std::move(models)), finder(cross_fit->model(), parameters, graph) {}
 
   /// A search without findings, for the same model and in the same pass.
   std::unique_ptr<LimitSearch> part() const {
-    auto search = std::make_unique<LimitSearch>(cross_fit, finder.parameters());
+    auto search = std::make_unique<LimitSearch>(cross_fit, finder.parameters(), finder.graph());
     if (finder.inSecondPass()) {
       search->finder.startSecondPass(finder.trackLimits());
     }
@@ -57,58 +57,43 @@ struct LimitSearch {
 using LimitsState = std::tuple<std::vector<double>, double>;
 
 using Findings = evidence::LimitFinder::Findings;
-// Number of cells of each track; then the maxima of all cells, one after the other, and their
-// counts. Arrays are pickled as they lie in memory.
-using MaximaState =
-    std::tuple<py::array_t<std::uint32_t>, py::array_t<float>, py::array_t<std::uint32_t>>;
-using FindingsState =
-    std::tuple<std::uint64_t, std::int64_t, std::uint64_t, MaximaState,
-               std::vector<std::vector<std::int64_t>>, std::vector<bool>, MaximaState>;
-
-MaximaState stateOf(const std::vector<evidence::BlockMaxima>& all) {
-  std::vector<std::uint32_t> sizes;
-  std::vector<float> maxima;
-  std::vector<std::uint32_t> counts;
-  for (const evidence::BlockMaxima& of_track : all) {
-    sizes.push_back(static_cast<std::uint32_t>(of_track.cells().size()));
-    for (const auto& [maximum, count] : of_track.cells()) {
-      maxima.push_back(maximum);
-      counts.push_back(count);
-    }
-  }
-  return {toArray(sizes), toArray(maxima), toArray(counts)};
-}
-
-std::vector<evidence::BlockMaxima> fromState(const MaximaState& state) {
-  const auto& [sizes, maxima, counts] = state;
-  std::vector<evidence::BlockMaxima> all(static_cast<std::size_t>(sizes.size()));
-  py::ssize_t cell = 0;
-  for (std::size_t track = 0; track < all.size(); ++track) {
-    for (std::uint32_t k = 0; k < sizes.at(track); ++k, ++cell) {
-      all[track].add(maxima.at(cell), counts.at(cell));
-    }
-  }
-  return all;
-}
+using PartState = std::tuple<std::uint64_t, std::vector<float>, std::vector<std::int64_t>, float>;
+using RecordingState = std::tuple<std::int64_t, std::int64_t, bool, std::uint64_t,
+                                  std::vector<PartState>, std::vector<std::uint8_t>>;
+using FindingsState = std::vector<RecordingState>;
 
 FindingsState stateOf(const Findings& findings) {
-  return {findings.windows,
-          findings.duration,
-          findings.blocks,
-          stateOf(findings.maxima),
-          findings.longest_gaps,
-          findings.misleading,
-          stateOf(std::vector<evidence::BlockMaxima>{findings.linker_maxima})};
+  FindingsState state;
+  for (const evidence::LimitFinder::Recording& recording : findings) {
+    std::vector<PartState> parts;
+    for (const auto& [windows, evidence, gaps, linker] : recording.parts) {
+      parts.emplace_back(windows, evidence, gaps, linker);
+    }
+    std::vector<std::uint8_t> said;
+    for (const evidence::LimitFinder::Said each : recording.said) {
+      said.push_back(static_cast<std::uint8_t>(each));
+    }
+    state.emplace_back(recording.start, recording.end, recording.trained_on, recording.windows,
+                       parts, said);
+  }
+  return state;
 }
 
 Findings fromState(const FindingsState& state) {
   Findings findings;
-  MaximaState maxima;
-  MaximaState linker_maxima;
-  std::tie(findings.windows, findings.duration, findings.blocks, maxima, findings.longest_gaps,
-           findings.misleading, linker_maxima) = state;
-  findings.maxima = fromState(maxima);
-  findings.linker_maxima = fromState(linker_maxima).at(0);
+  for (const auto& [start, end, trained_on, windows, parts, said] : state) {
+    evidence::LimitFinder::Recording& recording = findings.emplace_back();
+    recording.start = start;
+    recording.end = end;
+    recording.trained_on = trained_on;
+    recording.windows = windows;
+    for (const auto& [part_windows, evidence, gaps, linker] : parts) {
+      recording.parts.push_back({part_windows, evidence, gaps, linker});
+    }
+    for (const std::uint8_t each : said) {
+      recording.said.push_back(static_cast<evidence::LimitFinder::Said>(each));
+    }
+  }
   return findings;
 }
 
@@ -190,6 +175,14 @@ void bindEvidence(py::module& m) {
             return evidence::Limits{std::get<0>(state), std::get<1>(state)};
           }));
 
+  py::class_<evidence::Relation>(m, "Relation", "What speaks for a relation.")
+      .def_readonly("watched", &evidence::Relation::watched)
+      .def_readonly("reaches", &evidence::Relation::reaches)
+      .def_readonly("irregular", &evidence::Relation::irregular)
+      .def_readonly("spread", &evidence::Relation::spread)
+      .def_readonly("starts", &evidence::Relation::starts)
+      .def_readonly("starts_needed", &evidence::Relation::starts_needed);
+
   py::class_<Findings>(m, "LimitFindings",
                        "What a LimitFinder learned from recordings; may go to another process.")
       .def(py::pickle([](const Findings& self) { return stateOf(self); },
@@ -204,7 +197,8 @@ void bindEvidence(py::module& m) {
             trained.requireWatched();
             return std::make_unique<LimitSearch>(
                 std::make_shared<evidence::CrossFit>(trained.watched),
-                evidence::LimitFinder::Parameters{trained.window, settle_time, budget});
+                evidence::LimitFinder::Parameters{trained.window, settle_time, budget},
+                trained.graph);
           }),
           py::arg("trained"), py::arg("settle_time"), py::arg("budget"),
           "settle_time: [ns]; budget: false alarms an hour")
@@ -214,7 +208,12 @@ void bindEvidence(py::module& m) {
       .def("part", &LimitSearch::part, "A finder without findings, for the same model and pass.")
       .def(
           "findings", [](const LimitSearch& self) { return self.finder.findings(); },
-          "LimitFindings of what was added.")
+          "LimitFindings of what was added, in this pass.")
+      .def(
+          "first_findings", [](const LimitSearch& self) { return self.finder.firstFindings(); },
+          "LimitFindings of the first pass.")
+      .def("expected_rate", [](const LimitSearch& self) { return self.finder.expectedRate(); })
+      .def("relations", [](const LimitSearch& self) { return self.finder.relations(); })
       .def(
           "merge",
           [](LimitSearch& self, const Findings& findings) { self.finder.merge(findings); },

@@ -13,6 +13,7 @@
 #include "bindings.h"
 #include "core/evidence/log_bins.h"
 #include "self_awareness/ros/bag/bag_reader.h"
+#include "self_awareness/ros/model/evidence_message.h"
 #include "self_awareness/ros/model/model_bytes.h"
 #include "self_awareness/ros/model/model_file.h"
 #include "self_awareness/ros/model/model_merge.h"
@@ -255,6 +256,22 @@ void bindModel(py::module& m) {
       .def_readwrite("method", &EvidenceCalibration::method)
       .def_readwrite("limits", &EvidenceCalibration::limits)
       .def_readwrite("linker_limit", &EvidenceCalibration::linker_limit)
+      .def_property(
+          "relations",
+          [](const EvidenceCalibration& self) {
+            std::vector<core::evidence::Relation> relations;
+            for (const self_awareness::Relation& relation : self.relations) {
+              relations.push_back(ros1::fromMessage(relation));
+            }
+            return relations;
+          },
+          [](EvidenceCalibration& self, const std::vector<core::evidence::Relation>& relations) {
+            self.relations.clear();
+            for (const core::evidence::Relation& relation : relations) {
+              self.relations.push_back(ros1::toMessage(relation));
+            }
+          },
+          "what speaks for watching each track; by track")
       .def_readwrite("budget", &EvidenceCalibration::budget)
       .def_readwrite("false_alarms_per_hour", &EvidenceCalibration::false_alarms_per_hour)
       .def_readwrite("windows", &EvidenceCalibration::windows)
@@ -304,6 +321,8 @@ void bindModel(py::module& m) {
           "stamp", [](const TrainedModel& self) { return self.stamp.toNSec(); }, "[ns]")
       .def_readwrite("calibration", &TrainedModel::calibration,
                      "of the paper's detector; None: not calibrated")
+      .def_readwrite("findings", &TrainedModel::findings,
+                     "LimitFindings of the recordings of the training")
       .def_readwrite("evidence_calibration", &TrainedModel::evidence_calibration,
                      "of the evidence detector; None: not calibrated")
       .def_property(

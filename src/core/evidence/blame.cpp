@@ -19,51 +19,51 @@ constexpr double kNearLimit = 0.75;
 // Of an unusual delay between two event types, the later one is a little more to blame.
 constexpr double kShareOfEarlier = 0.9;
 
-/// Time since the last event of a type at the end of the window that was judged [ns].
-std::int64_t age(EventId id, const Scorer& scorer) {
-  return scorer.windowEnd() - scorer.lastSeen(id).value_or(scorer.windowEnd());
-}
-
 }  // namespace
 
 Blame::Blame(std::shared_ptr<const Model> model, std::shared_ptr<const SourceGraph> graph)
     : model_(std::move(model)), graph_(std::move(graph)) {}
 
 std::vector<Suspect> Blame::suspects(const std::vector<double>& shares, const Scorer& scorer,
-                                     const Window& window) const {
-  std::vector<Candidate> candidates = silent(shares, scorer);
-  const std::vector<Candidate> others = unusual(shares, scorer);
+                                     const Hindsight& hindsight, const Window& window) const {
+  const Reasons reasons(scorer, hindsight);
+  std::vector<Candidate> candidates = silent(shares, reasons);
+  const std::vector<Candidate> others = unusual(shares, reasons);
   candidates.insert(candidates.end(), others.begin(), others.end());
 
   std::vector<Suspect> suspects;
   std::set<EventId> named;
-  const auto name = [&](const Suspect& suspect) {
-    if (suspects.size() < kMostSuspects && named.insert(suspect.id).second) {
-      suspects.push_back(suspect);
-    }
+  const auto isNamed = [&](EventId id) {
+    return suspects.size() < kMostSuspects && named.insert(id).second;
   };
   for (const Candidate& candidate : candidates) {
-    name(candidate.suspect);
+    if (isNamed(model_->tracks()[candidate.track].to)) {
+      suspects.push_back(reasons.of(candidate.track));
+    }
   }
   for (const ObservedEvent& observed : window.events) {
-    if (observed.unknown) {
+    if (observed.unknown && isNamed(observed.event.id)) {
       Suspect suspect;
       suspect.id = observed.event.id;
       suspect.reason = Suspect::Reason::kUnknown;
       suspect.events = static_cast<std::size_t>(std::count_if(
           window.events.begin(), window.events.end(),
           [&](const ObservedEvent& other) { return other.event.id == observed.event.id; }));
-      name(suspect);
+      suspects.push_back(suspect);
     }
   }
   return suspects;
 }
 
 std::vector<Blame::Candidate> Blame::silent(const std::vector<double>& shares,
-                                            const Scorer& scorer) const {
+                                            const Reasons& reasons) const {
   std::set<EventId> missing;
+  std::map<EventId, std::size_t> unanswered;  // tracks
   for (std::size_t track = 0; track < shares.size(); ++track) {
     const Channel channel = model_->tracks()[track].channel;
+    if (shares[track] > kNearLimit && channel == Channel::kDeadline) {
+      unanswered.emplace(model_->tracks()[track].to, track);
+    }
     if (shares[track] > kNearLimit &&
         (channel == Channel::kOverdue || channel == Channel::kAnswer)) {
       missing.insert(model_->tracks()[track].to);
@@ -71,9 +71,15 @@ std::vector<Blame::Candidate> Blame::silent(const std::vector<double>& shares,
   }
   std::vector<Candidate> candidates;
   for (const EventId id : missing) {
-    const double survival = logSurvival(id, scorer);
+    const double survival = logSurvival(id, reasons);
     if (survival < kRareSilence) {
-      candidates.push_back({silence(id, scorer), survival});
+      candidates.push_back({trackOfSilence(id, shares), survival});
+    }
+  }
+  for (const auto& [id, track] : unanswered) {
+    const double survival = logSurvival(id, reasons);
+    if (missing.count(id) == 0 || survival >= kRareSilence) {
+      candidates.push_back({track, std::min(survival, kRareSilence)});
     }
   }
   return rootFirst(std::move(candidates));
@@ -84,9 +90,12 @@ std::vector<Blame::Candidate> Blame::silent(const std::vector<double>& shares,
 // a candidate, but there are few components.
 std::vector<Blame::Candidate> Blame::rootFirst(std::vector<Candidate> candidates) const {
   std::stable_sort(candidates.begin(), candidates.end(), likelier);
+  const auto sourceOf = [&](const Candidate& candidate) {
+    return component(model_->tracks()[candidate.track].to);
+  };
   std::map<std::string, std::vector<std::size_t>> by_component;  // indexes of candidates
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    by_component[component(candidates[i].suspect.id)].push_back(i);
+    by_component[sourceOf(candidates[i])].push_back(i);
   }
   std::vector<std::size_t> upstream(candidates.size(), 0);  // number of those left that are
   std::map<std::string, std::vector<std::size_t>> downstream;
@@ -108,7 +117,7 @@ std::vector<Blame::Candidate> Blame::rootFirst(std::vector<Candidate> candidates
         std::min_element(left.begin(), left.end(),
                          [&](std::size_t a, std::size_t b) { return upstream[a] < upstream[b]; });
     ordered.push_back(candidates[*root]);
-    for (const std::size_t victim : downstream[component(candidates[*root].suspect.id)]) {
+    for (const std::size_t victim : downstream[sourceOf(candidates[*root])]) {
       --upstream[victim];
     }
     left.erase(root);
@@ -117,7 +126,7 @@ std::vector<Blame::Candidate> Blame::rootFirst(std::vector<Candidate> candidates
 }
 
 std::vector<Blame::Candidate> Blame::unusual(const std::vector<double>& shares,
-                                             const Scorer& scorer) const {
+                                             const Reasons& reasons) const {
   struct Involved {
     double sum = 0;
     std::size_t track = 0;  // with the largest share
@@ -129,7 +138,7 @@ std::vector<Blame::Candidate> Blame::unusual(const std::vector<double>& shares,
     const auto& [channel, to, from] = model_->tracks()[track];
     if (shares[track] < kLeastShare || channel == Channel::kSlowDelay ||
         // An age that is usual has some share of its limit, too.
-        (channel == Channel::kOverdue && logSurvival(to, scorer) >= kRareSilence)) {
+        (channel == Channel::kOverdue && logSurvival(to, reasons) >= kRareSilence)) {
       continue;
     }
     const double share = std::min(shares[track], kMostShare);
@@ -149,8 +158,7 @@ std::vector<Blame::Candidate> Blame::unusual(const std::vector<double>& shares,
   std::vector<Candidate> others;
   for (const auto& [name, involved] : components) {
     if (involved.largest > 0) {
-      (involved.own ? roots : others)
-          .push_back({unusualTrack(involved.track, scorer), -involved.sum});
+      (involved.own ? roots : others).push_back({involved.track, -involved.sum});
     }
   }
   roots = rootFirst(std::move(roots));
@@ -159,50 +167,31 @@ std::vector<Blame::Candidate> Blame::unusual(const std::vector<double>& shares,
   return roots;
 }
 
-double Blame::logSurvival(EventId id, const Scorer& scorer) const {
-  return model_->logSurvival(id, age(id, scorer));
+double Blame::logSurvival(EventId id, const Reasons& reasons) const {
+  return model_->logSurvival(id, reasons.age(id));
 }
 
-Suspect Blame::silence(EventId id, const Scorer& scorer) const {
-  Suspect suspect;
-  suspect.id = id;
-  suspect.reason = Suspect::Reason::kSilent;
-  suspect.silence = toSeconds(age(id, scorer));
-  suspect.usual_shortest = model_->usualDelay(id, id, kUsualFrom);
-  suspect.usual_longest = model_->usualDelay(id, id, kUsualTo);
-  return suspect;
-}
-
-Suspect Blame::unusualTrack(std::size_t track, const Scorer& scorer) const {
-  const auto& [channel, to, from] = model_->tracks()[track];
-  Suspect suspect;
-  suspect.id = to;
-  switch (channel) {
-    case Channel::kOverdue:
-      return silence(to, scorer);
-    case Channel::kFewer:
-    case Channel::kMore:
-      suspect.reason = Suspect::Reason::kRate;
-      suspect.events = scorer.recentCount(to);
-      suspect.usual_fewest = std::max(model_->usualCount(to, -2), 0.0);
-      suspect.usual_most = model_->usualCount(to, 2);
-      break;
-    case Channel::kDelay:
-    case Channel::kSlowDelay:
-      suspect.reason = Suspect::Reason::kDelay;
-      if (from != to) {
-        suspect.other = toString(model_->vocabulary().at(from));
-      }
-      suspect.delay = toSeconds(scorer.lastDelay(track));
-      suspect.usual_shortest = model_->usualDelay(from, to, 0.05);
-      suspect.usual_longest = model_->usualDelay(from, to, 0.95);
-      break;
-    case Channel::kAnswer:
-      suspect.reason = Suspect::Reason::kAnswer;
-      suspect.other = toString(model_->vocabulary().at(from));
-      break;
+// Its age, if that alone is abnormal; else what is nearer to its limit: at half its rate, say, its
+// age may be rare as well, but that is not what is wrong.
+std::size_t Blame::trackOfSilence(EventId id, const std::vector<double>& shares) const {
+  std::size_t most = 0;
+  double largest = -1;
+  for (std::size_t track = 0; track < shares.size(); ++track) {
+    const Channel channel = model_->tracks()[track].channel;
+    if (model_->tracks()[track].to != id ||
+        (channel != Channel::kOverdue && channel != Channel::kFewer &&
+         channel != Channel::kAnswer)) {
+      continue;
+    }
+    if (channel == Channel::kOverdue && shares[track] > 1) {
+      return track;
+    }
+    if (shares[track] > largest) {
+      largest = shares[track];
+      most = track;
+    }
   }
-  return suspect;
+  return most;
 }
 
 const std::string& Blame::component(EventId id) const {

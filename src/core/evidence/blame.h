@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/evidence/hindsight.h"
+#include "core/evidence/reasons.h"
 #include "core/evidence/scorer.h"
 #include "self_awareness/core/stream/windows.h"
 #include "self_awareness/core/verdict/source_graph.h"
@@ -21,24 +23,24 @@ class Blame {
   Blame(std::shared_ptr<const Model> model, std::shared_ptr<const SourceGraph> graph);
 
   /// @param shares of their limits that the tracks of the model have reached
+  /// @param hindsight of the scorer's recording
   /// @param window that the scorer closed last
   /// @return at most kMostSuspects, the most likely first, each event type once
   std::vector<Suspect> suspects(const std::vector<double>& shares, const Scorer& scorer,
-                                const Window& window) const;
+                                const Hindsight& hindsight, const Window& window) const;
 
  private:
   struct Candidate {
-    Suspect suspect;
-    double rank = 0;  // the smaller, the more likely
+    std::size_t track = 0;  // that speaks against its `to`
+    double rank = 0;        // the smaller, the more likely
   };
 
   static bool likelier(const Candidate& a, const Candidate& b) { return a.rank < b.rank; }
   std::vector<Candidate> rootFirst(std::vector<Candidate> candidates) const;
-  std::vector<Candidate> silent(const std::vector<double>& shares, const Scorer& scorer) const;
-  std::vector<Candidate> unusual(const std::vector<double>& shares, const Scorer& scorer) const;
-  double logSurvival(EventId id, const Scorer& scorer) const;
-  Suspect silence(EventId id, const Scorer& scorer) const;
-  Suspect unusualTrack(std::size_t track, const Scorer& scorer) const;
+  std::vector<Candidate> silent(const std::vector<double>& shares, const Reasons& reasons) const;
+  std::vector<Candidate> unusual(const std::vector<double>& shares, const Reasons& reasons) const;
+  double logSurvival(EventId id, const Reasons& reasons) const;
+  std::size_t trackOfSilence(EventId id, const std::vector<double>& shares) const;
   const std::string& component(EventId id) const;
 
   std::shared_ptr<const Model> model_;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/evidence/blame.h"
+#include "core/evidence/hindsight.h"
 #include "core/evidence/scorer.h"
 
 namespace self_awareness::core::evidence {
@@ -27,6 +28,7 @@ class Judge : public core::Judge {
         std::shared_ptr<const SourceGraph> graph);
 
   ObservedEvent add(const Event& event) override {
+    hindsight_.add(event);
     return {event, !model_->knows(event.id), scorer_.add(event)};
   }
   void settle(const Event& first, std::int64_t settle_time) override;
@@ -36,11 +38,12 @@ class Judge : public core::Judge {
  private:
   /// Takes back what the tracks say of event types that settle.
   void leaveOutNew(std::int64_t now, std::vector<double>& evidence) const;
-  bool isSilent(std::int64_t end) const;
+  bool isSilent() const;
 
   std::shared_ptr<const Model> model_;
   std::optional<Limits> limits_;
   Scorer scorer_;
+  Hindsight hindsight_;
   Blame blame_;
   std::vector<double> shares_;            // of its limit that each track has reached
   std::vector<std::int64_t> settled_at_;  // [ns], by id
@@ -52,6 +55,7 @@ Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, s
     : model_(std::move(model)),
       limits_(std::move(limits)),
       scorer_(model_, window),
+      hindsight_(model_),
       blame_(model_, std::move(graph)),
       shares_(model_->tracks().size(), 0),
       settled_at_(model_->size(), std::numeric_limits<std::int64_t>::min()) {
@@ -73,6 +77,7 @@ void Judge::settle(const Event& first, std::int64_t settle_time) {
 
 void Judge::restart() {
   scorer_.restart();
+  hindsight_.restart();
   std::fill(settled_at_.begin(), settled_at_.end(), std::numeric_limits<std::int64_t>::min());
   all_settled_at_ = std::numeric_limits<std::int64_t>::min();
 }
@@ -109,7 +114,7 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
   judgement.score = -std::max(sum.largest, linker);
   judgement.threshold = kThreshold;
   judgement.abnormal = *judgement.score < kThreshold;
-  judgement.certain = linker > 1 || isSilent(end);
+  judgement.certain = linker > 1 || isSilent();
   judgement.suspicious = linker > kSuspicious;
   if (judgement.suspicious) {
     channels.insert("linker");
@@ -119,18 +124,17 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
   }
   if (suspects == NameSuspects::kAlways ||
       (suspects == NameSuspects::kIfUnusual && (judgement.abnormal || judgement.suspicious))) {
-    judgement.suspects = blame_.suspects(shares_, scorer_, window);
+    judgement.suspects = blame_.suspects(shares_, scorer_, hindsight_, window);
   }
   return judgement;
 }
 
-bool Judge::isSilent(std::int64_t end) const {
+bool Judge::isSilent() const {
   const std::vector<Track>& tracks = model_->tracks();
   for (std::size_t track = 0; track < tracks.size(); ++track) {
     const EventId id = tracks[track].to;
     if (tracks[track].channel == Channel::kOverdue && shares_[track] > 1 &&
-        model_->overdue(id, end - scorer_.lastSeen(id).value_or(end) - kConfirmation) >
-            limits_->tracks[track]) {
+        model_->overdue(id, scorer_.age(id) - kConfirmation) > limits_->tracks[track]) {
       return true;
     }
   }

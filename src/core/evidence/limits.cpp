@@ -1,71 +1,98 @@
 #include "self_awareness/core/evidence/limits.h"
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
-#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "core/evidence/held_out.h"
 #include "core/evidence/misleading_pairs.h"
+#include "core/evidence/relations.h"
 #include "core/evidence/scorer.h"
 #include "self_awareness/core/verdict/suspect.h"
 
 namespace self_awareness::core::evidence {
 namespace {
 
-constexpr double kEulerMascheroni = 0.57721566490153286;
 constexpr double kHour = 3600e9;  // [ns]
-constexpr double kKinds = 4;      // of evidence: overdue, rate, pairs, answers
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 // What was seen once in normal operation is normal, and so is a little more (docs/method.md,
-// section 5.3).
-constexpr double kMargin = 1.25;
-// The same for the longest gap (docs/method.md, section 5.2).
-constexpr double kGapMargin = 1.1;
+// section 5.2).
+constexpr double kLeastMargin = 1.25;
+// More would find nothing any more: where the data say so, the budget cannot be kept.
+constexpr double kMostMargin = 4;
+constexpr double kMostOwnMargin = 2;  // of one track
 // The linker depends on what the robot is doing, and that changes from hour to hour.
-constexpr double kLinkerMargin = 1.5;
-constexpr std::size_t kTailGaps = 20;
+constexpr double kLeastLinkerMargin = 1.5;
+constexpr double kLeastLinkerLimit = 2;  // event types
+// An answer may take so many times the longest wait that was seen.
+constexpr double kLeastDeadlineMargin = 2;
+// A gap shorter than this many mean gaps is one of a timer that lost nothing.
+constexpr double kRegular = 1.5;
 
 // Evidence that takes longer than this [ns] after a component's death is of no use.
 constexpr double kLongestWait = 10e9;
+constexpr double kLongestDeadline = 20;  // [s]
 // A pair with a larger limit would need 20 or more improbable delays in a row.
 constexpr double kMostDelayLimit = 100;
 // An event type that may wait longer than this many mean gaps comes when something happens.
 constexpr double kMostMeanGaps = 3;
 
-}  // namespace
+/// Tracks whose values exceed those of other recordings in the same way share what they show.
+enum class Pool { kTimers, kOthers, kRates, kDelays, kSlowDelays, kAnswers, kDeadlines };
+// Each pool and the linker have an equal share of the budget, but slow delays, which raise no alarm.
+constexpr double kShares = 7;
 
-double gumbelLimit(const BlockMaxima& maxima, double probability) {
-  const auto n = static_cast<double>(maxima.number());
-  double mean = 0;
-  double weighted = 0;
-  double rank = 0;  // of the cell's first maximum, from 0
-  for (const auto& [maximum, cell_count] : maxima.cells()) {
-    const double count = cell_count;
-    const double ranks = count * (rank + (count - 1) / 2);  // their sum
-    mean += maximum * count / n;
-    weighted += ranks / (n - 1) * maximum / n;
-    rank += count;
+Pool poolOf(Channel channel) {
+  switch (channel) {
+    case Channel::kOverdue:
+      return Pool::kOthers;
+    case Channel::kFewer:
+    case Channel::kMore:
+      return Pool::kRates;
+    case Channel::kDelay:
+      return Pool::kDelays;
+    case Channel::kSlowDelay:
+      return Pool::kSlowDelays;
+    case Channel::kAnswer:
+      return Pool::kAnswers;
+    case Channel::kDeadline:
+      break;
   }
-  const double scale = (2 * weighted - mean) / std::log(2.0);
-  const double location = mean - kEulerMascheroni * scale;
-  return location - scale * std::log(-std::log1p(-probability));
+  return Pool::kDeadlines;
 }
 
-double overdueAge(const std::vector<std::int64_t>& longest_gaps, std::int64_t duration,
-                  double rate) {
-  const std::size_t number = std::min(longest_gaps.size(), kTailGaps);
-  const auto shortest = static_cast<double>(longest_gaps[number - 1]);
-  const double mean = std::accumulate(longest_gaps.begin(),
-                                      longest_gaps.begin() + static_cast<long>(number), 0.0) /
-                      static_cast<double>(number);
-  const double expected = static_cast<double>(number) / (static_cast<double>(duration) * rate);
-  return std::max(shortest + (mean - shortest) * std::max(std::log(expected), 0.0),
-                  kGapMargin * static_cast<double>(longest_gaps.front()));
+double leastMargin(Pool pool) {
+  return pool == Pool::kDeadlines ? kLeastDeadlineMargin : kLeastMargin;
 }
+
+/// A track and its largest values.
+struct Seen {
+  std::size_t track = 0;
+  double least = 0;  // limit
+  std::vector<double> largest;  // by part
+};
+
+/// Numbers the starts that recordings belong to.
+std::vector<std::size_t> startsOf(const std::vector<Span>& recordings) {
+  std::vector<std::size_t> starts;
+  for (const Span& recording : recordings) {
+    std::vector<Span> before;
+    for (const Span& other : recordings) {
+      if (other <= recording) {
+        before.push_back(other);
+      }
+    }
+    starts.push_back(numberOfStarts(before) - 1);
+  }
+  return starts;
+}
+
+}  // namespace
 
 void LimitFinder::Parameters::validate() const {
   if (window <= 0 || settle_time < 0) {
@@ -76,13 +103,12 @@ void LimitFinder::Parameters::validate() const {
   }
 }
 
-LimitFinder::LimitFinder(std::shared_ptr<const Model> model, const Parameters& parameters)
+LimitFinder::LimitFinder(std::shared_ptr<const Model> model, const Parameters& parameters,
+                         SourceGraph graph)
     : model_(std::move(model)),
       parameters_(parameters),
+      graph_(std::move(graph)),
       windows_(parameters.window, *this),
-      block_(model_->tracks().size(), 0),
-      maxima_(model_->tracks().size()),
-      gaps_(model_->size()),
       misleading_(std::make_unique<MisleadingPairs>(*model_)) {
   parameters_.validate();
 }
@@ -100,6 +126,9 @@ void LimitFinder::startScoring() {
   if (second_pass_) {
     scorer_->capAt(limits_);  // as the detector does
   }
+  recording_ = {};
+  recording_.trained_on = judging_ != model_;
+  part_windows_ = static_cast<std::uint64_t>(std::max<std::int64_t>(kShortestPart / parameters_.window, 1));
 }
 
 void LimitFinder::add(const Event& event) {
@@ -109,12 +138,15 @@ void LimitFinder::add(const Event& event) {
 ObservedEvent LimitFinder::observe(const Event& event) {
   if (!first_stamp_) {
     first_stamp_ = event.stamp;
+    recording_.start = event.stamp;
+    startPart();
   }
-  last_stamp_ = event.stamp;
+  recording_.end = event.stamp;
   const ObservedEvent observed{event, !model_->knows(event.id), scorer_->add(event)};
   if (!second_pass_ && !observed.unknown) {
     if (observed.gap) {
-      gaps_[event.id].addGap(*observed.gap);
+      std::int64_t& longest = recording_.parts.back().longest_gaps[event.id];
+      longest = std::max(longest, *observed.gap);
     }
     misleading_->add(event);
   }
@@ -131,16 +163,49 @@ void LimitFinder::finish() {
   endRecording();
 }
 
+void LimitFinder::startPart() {
+  if (recording_.parts.size() == kMostParts) {
+    joinParts();
+  }
+  Recording::Part part;
+  part.evidence.resize(second_pass_ ? 0 : model_->tracks().size());
+  part.longest_gaps.resize(second_pass_ ? 0 : model_->size());
+  recording_.parts.push_back(std::move(part));
+}
+
+void LimitFinder::joinParts() {
+  const auto largest = [](auto& values, const auto& others) {
+    std::transform(values.begin(), values.end(), others.begin(), values.begin(),
+                   [](auto a, auto b) { return std::max(a, b); });
+  };
+  for (std::size_t k = 0; k < kMostParts / 2; ++k) {
+    Recording::Part& part = recording_.parts[2 * k];
+    const Recording::Part& next = recording_.parts[2 * k + 1];
+    part.windows += next.windows;
+    part.linker = std::max(part.linker, next.linker);
+    largest(part.evidence, next.evidence);
+    largest(part.longest_gaps, next.longest_gaps);
+    if (k > 0) {
+      recording_.parts[k] = std::move(part);
+    }
+  }
+  recording_.parts.resize(kMostParts / 2);
+  part_windows_ *= 2;
+}
+
 void LimitFinder::endRecording() {
   if (!first_stamp_) {
     return;
   }
-  closeBlock();
+  first_stamp_.reset();
   if (!second_pass_) {
     misleading_->finish();
-    duration_ += last_stamp_ - *first_stamp_;
+    for (const MisleadingPairs::Said said : misleading_->takeFindings()) {
+      recording_.said.push_back(static_cast<Said>(said));
+    }
   }
-  first_stamp_.reset();
+  (second_pass_ ? linker_findings_ : findings_).push_back(std::move(recording_));
+  recording_ = {};
 }
 
 void LimitFinder::close(const Window& window, std::int64_t end) {
@@ -151,63 +216,54 @@ void LimitFinder::close(const Window& window, std::int64_t end) {
   if (end - parameters_.window < *first_stamp_ + parameters_.settle_time) {
     return;
   }
-  ++block_windows_;
-  if (second_pass_) {
-    linker_block_ = std::max(linker_block_, sumUp(evidence, *judging_, limits_).linker);
-  } else {
-    ++windows_seen_;
-    Eigen::Map<Eigen::ArrayXd> block(block_.data(), static_cast<Eigen::Index>(block_.size()));
-    block = block.max(Eigen::Map<const Eigen::ArrayXd>(evidence.data(), block.size()));
+  if (recording_.parts.back().windows == part_windows_) {
+    startPart();
   }
-  if (static_cast<std::int64_t>(block_windows_) * parameters_.window >= kBlock) {
-    closeBlock();
+  Recording::Part& part = recording_.parts.back();
+  ++part.windows;
+  ++recording_.windows;
+  if (second_pass_) {
+    part.linker = std::max(part.linker,
+                           static_cast<float>(sumUp(evidence, *judging_, limits_).linker));
+    return;
+  }
+  for (std::size_t track = 0; track < evidence.size(); ++track) {
+    if (model_->tracks()[track].channel != Channel::kOverdue) {
+      part.evidence[track] = std::max(part.evidence[track], static_cast<float>(evidence[track]));
+    }
   }
 }
 
-void LimitFinder::closeBlock() {
-  // A shorter block at the end of a recording would have a smaller maximum.
-  if (static_cast<std::int64_t>(block_windows_) * parameters_.window >= kBlock) {
-    if (second_pass_) {
-      linker_maxima_.add(linker_block_);
-    } else {
-      ++blocks_;
-      for (std::size_t track = 0; track < block_.size(); ++track) {
-        if (model_->tracks()[track].channel != Channel::kOverdue) {
-          maxima_[track].add(block_[track]);
-        }
-      }
-    }
+std::uint64_t LimitFinder::windows() const {
+  std::uint64_t windows = 0;
+  for (const Recording& recording : findings_) {
+    windows += recording.windows;
   }
-  block_windows_ = 0;
-  linker_block_ = 0;
-  std::fill(block_.begin(), block_.end(), 0);
+  return windows;
+}
+
+double LimitFinder::hoursOf(std::uint64_t windows) const {
+  return static_cast<double>(windows) * static_cast<double>(parameters_.window) / kHour;
 }
 
 void LimitFinder::startSecondPass() {
   finish();
-  if (maxima_.empty()) {
+  if (model_->tracks().empty()) {
     throw std::invalid_argument("the model watches nothing, as no event type has " +
                                 std::to_string(kFewestGaps) +
                                 " gaps in its training: train it on more");
   }
-  if (blocks_ < kFewestBlocks) {
+  std::uint64_t windows = 0;
+  for (const Recording& recording : findings_) {
+    windows += recording.windows;
+  }
+  if (static_cast<std::int64_t>(windows) * parameters_.window < kLeastTime) {
     throw std::invalid_argument("too little normal operation to find limits: at least " +
-                                std::to_string(kFewestBlocks * kBlock / kNanosecondsPerSecond) +
-                                " s are needed in pieces of " +
-                                std::to_string(kBlock / kNanosecondsPerSecond) +
-                                " s, after the first seconds of every recording");
+                                std::to_string(kLeastTime / kNanosecondsPerSecond) +
+                                " s are needed after the first seconds of every recording");
   }
-  // Each kind of evidence gets an equal share of the budget, each track of a kind an equal share
-  // of that.
-  std::map<std::string, std::size_t> of_kind;
-  for (const Track& track : model_->tracks()) {
-    ++of_kind[channelName(track.channel)];
-  }
-  for (std::size_t track = 0; track < maxima_.size(); ++track) {
-    const std::size_t number = of_kind.at(channelName(model_->tracks()[track].channel));
-    limits_.tracks.push_back(
-        limit(track, parameters_.false_alarms_per_hour / kKinds / static_cast<double>(number)));
-  }
+  findRelations();
+  findLimits();
   second_pass_ = true;
 }
 
@@ -220,38 +276,17 @@ void LimitFinder::startSecondPass(Limits limits) {
   second_pass_ = true;
 }
 
-LimitFinder::Findings LimitFinder::findings() const {
-  Findings found;
-  found.windows = windows_seen_;
-  found.duration = duration_;
-  found.blocks = blocks_;
-  found.maxima = maxima_;
-  for (const Statistics::Type& type : gaps_) {
-    found.longest_gaps.push_back(type.longest_gaps);
-  }
-  found.misleading = misleading_->tracks();
-  found.linker_maxima = linker_maxima_;
-  return found;
-}
-
 void LimitFinder::merge(const Findings& other) {
-  if (other.maxima.size() != maxima_.size() || other.longest_gaps.size() != gaps_.size() ||
-      other.misleading.size() != misleading_->tracks().size()) {
-    throw std::invalid_argument("the findings are those of another model");
-  }
-  windows_seen_ += other.windows;
-  duration_ += other.duration;
-  blocks_ += other.blocks;
-  for (std::size_t track = 0; track < maxima_.size(); ++track) {
-    maxima_[track].merge(other.maxima[track]);
-  }
-  misleading_->add(other.misleading);
-  for (std::size_t id = 0; id < gaps_.size(); ++id) {
-    for (const std::int64_t gap : other.longest_gaps[id]) {
-      gaps_[id].addGap(gap);
+  for (const Recording& recording : other) {
+    for (const Recording::Part& part : recording.parts) {
+      if (!second_pass_ && (part.evidence.size() != model_->tracks().size() ||
+                            part.longest_gaps.size() != model_->size())) {
+        throw std::invalid_argument("the findings are those of another model");
+      }
     }
   }
-  linker_maxima_.merge(other.linker_maxima);
+  Findings& mine = second_pass_ ? linker_findings_ : findings_;
+  mine.insert(mine.end(), other.begin(), other.end());
 }
 
 double LimitFinder::meanGap(EventId id) const {
@@ -259,42 +294,182 @@ double LimitFinder::meanGap(EventId id) const {
   return static_cast<double>(type.gap_sum) / static_cast<double>(type.gaps);
 }
 
-double LimitFinder::limit(std::size_t track, double rate) const {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  const auto& [channel, to, from] = model_->tracks()[track];
-  if (channel == Channel::kOverdue) {
-    Statistics::Type gaps = model_->statistics().type(to);
-    for (const std::int64_t gap : gaps_[to].longest_gaps) {
-      gaps.addGap(gap);
+void LimitFinder::findRelations() {
+  const Relations relations(model_->statistics(), graph_);
+  for (std::size_t track = 0; track < model_->tracks().size(); ++track) {
+    const auto& [channel, to, from] = model_->tracks()[track];
+    Relation relation;
+    if (channel == Channel::kAnswer) {
+      relation = relations.answers(from, to);
+    } else if (channel == Channel::kDeadline) {
+      relation = relations.deadline(from, to);
+    } else if (channel == Channel::kDelay || channel == Channel::kSlowDelay) {
+      std::vector<Span> as_usual;
+      for (const Recording& recording : findings_) {
+        if (!recording.trained_on && recording.said[track] == Said::kAsUsual) {
+          as_usual.emplace_back(recording.start, recording.end);
+        }
+      }
+      relation = relations.delays(from, to, as_usual);
+      for (const Recording& recording : findings_) {
+        relation.watched &= from == to || recording.said[track] != Said::kMisleading;
+      }
+    } else {
+      relation.watched = true;
     }
-    const double age =
-        overdueAge(gaps.longest_gaps, model_->statistics().duration() + duration_, rate / kHour);
-    // What comes when something happens may stay away for as long as nothing does.
-    const bool irregular = age > kLongestWait && age > kMostMeanGaps * meanGap(to);
-    return irregular ? kNone : model_->overdue(to, std::llround(age));
+    relations_.push_back(relation);
   }
-  const BlockMaxima& maxima = maxima_[track];
-  const double found = std::max({model_->leastLimit(track), kMargin * maxima.largest(),
-                                 gumbelLimit(maxima, std::min(rate * kBlock / kHour, 0.5))});
-  if (channel == Channel::kDelay || channel == Channel::kSlowDelay) {
-    return misleading_->tracks()[track] || found > kMostDelayLimit ? kNone : found;
-  }
-  if (channel == Channel::kAnswer) {
-    return found / model_->missed(track) * meanGap(from) > kLongestWait ? kNone : found;
-  }
-  return found;
 }
 
+void LimitFinder::findLimits() {
+  // Of the training, the gaps of each recording are known; the other evidence only where its
+  // recordings were judged by each other.
+  std::vector<Part> judged;
+  std::vector<Part> with_gaps;
+  std::vector<const Recording::Part*> judged_parts;
+  std::vector<const Recording::Part*> gap_parts;
+  std::vector<Span> spans;
+  const std::vector<Statistics::Recording>& training = model_->statistics().recordings();
+  for (const Statistics::Recording& recording : training) {
+    spans.emplace_back(recording.start, recording.end);
+  }
+  for (const Recording& recording : findings_) {
+    spans.emplace_back(recording.start, recording.end);
+  }
+  const std::vector<std::size_t> starts = startsOf(spans);
+  for (std::size_t k = 0; k < training.size(); ++k) {
+    with_gaps.push_back({starts[k], static_cast<double>(training[k].end - training[k].start) / kHour});
+  }
+  for (std::size_t k = 0; k < findings_.size(); ++k) {
+    for (const Recording::Part& part : findings_[k].parts) {
+      const Part hours{starts[training.size() + k], hoursOf(part.windows)};
+      judged.push_back(hours);
+      judged_parts.push_back(&part);
+      if (!findings_[k].trained_on) {
+        with_gaps.push_back(hours);
+        gap_parts.push_back(&part);
+      }
+    }
+  }
+
+  std::map<Pool, std::vector<Seen>> pools;
+  for (std::size_t track = 0; track < model_->tracks().size(); ++track) {
+    const auto& [channel, to, from] = model_->tracks()[track];
+    Seen seen{track, model_->leastLimit(track), {}};
+    Pool pool = poolOf(channel);
+    if (channel == Channel::kOverdue) {
+      for (const Statistics::Recording& recording : training) {
+        seen.largest.push_back(to < recording.longest_gaps.size()
+                                   ? static_cast<double>(recording.longest_gaps[to])
+                                   : 0);
+      }
+      for (const Recording::Part* part : gap_parts) {
+        seen.largest.push_back(static_cast<double>(part->longest_gaps[to]));
+      }
+      std::vector<double> sorted = seen.largest;
+      std::sort(sorted.rbegin(), sorted.rend());
+      const double second = sorted.size() > 1 ? sorted[1] : sorted[0];
+      pool = second < kRegular * meanGap(to) ? Pool::kTimers : Pool::kOthers;
+    } else {
+      for (const Recording::Part* part : judged_parts) {
+        seen.largest.push_back(part->evidence[track]);
+      }
+    }
+    if (relations_[track].watched) {
+      pools[pool].push_back(std::move(seen));
+    }
+  }
+
+  limits_.tracks.assign(model_->tracks().size(), kNone);
+  tracks_rate_ = 0;
+  for (const auto& [pool, tracks] : pools) {
+    const bool gaps = pool == Pool::kTimers || pool == Pool::kOthers;
+    HeldOut held_out(gaps ? with_gaps : judged);
+    for (const Seen& seen : tracks) {
+      held_out.add(seen.largest, seen.least);
+    }
+    const double margin = std::min(
+        held_out.margin(parameters_.false_alarms_per_hour / kShares, leastMargin(pool)),
+        kMostMargin);
+    tracks_rate_ += pool == Pool::kSlowDelays ? 0 : held_out.rate(margin);
+    for (const Seen& seen : tracks) {
+      const auto& [channel, to, from] = model_->tracks()[seen.track];
+      // A track that would have raised an alarm had its worst start been left out gets a wider
+      // limit.
+      const double own =
+          std::max(margin, std::min(held_out.excess(seen.largest, seen.least), kMostOwnMargin));
+      const double largest = *std::max_element(seen.largest.begin(), seen.largest.end());
+      const double found =
+          std::max(seen.least, own * std::max(largest, HeldOut::kLeastShare * seen.least));
+      double& limit = limits_.tracks[seen.track];
+      if (channel == Channel::kOverdue) {
+        // What comes when something happens may stay away for as long as nothing does.
+        const bool irregular = found > kLongestWait && found > kMostMeanGaps * meanGap(to);
+        limit = irregular ? kNone : model_->overdue(to, std::llround(found));
+      } else if (channel == Channel::kDelay || channel == Channel::kSlowDelay) {
+        limit = found > kMostDelayLimit ? kNone : found;
+      } else if (channel == Channel::kAnswer) {
+        limit = found / model_->missed(seen.track) * meanGap(from) > kLongestWait ? kNone : found;
+      } else if (channel == Channel::kDeadline) {
+        const double seconds =
+            model_->countsRequests(seen.track) ? found * model_->usualDelay(from, from, 0.5) : found;
+        limit = seconds > kLongestDeadline ? kNone : found;
+      } else {
+        limit = found;
+      }
+    }
+  }
+}
+
+namespace {
+
+/// The linker's largest values in all parts.
+struct LinkerParts {
+  std::vector<Part> parts;
+  std::vector<double> largest;
+};
+
+LinkerParts linkerParts(const LimitFinder::Findings& findings, std::int64_t window) {
+  LinkerParts all;
+  std::vector<Span> spans;
+  for (const LimitFinder::Recording& recording : findings) {
+    spans.emplace_back(recording.start, recording.end);
+  }
+  const std::vector<std::size_t> starts = startsOf(spans);
+  for (std::size_t k = 0; k < findings.size(); ++k) {
+    for (const LimitFinder::Recording::Part& part : findings[k].parts) {
+      all.parts.push_back({starts[k], static_cast<double>(part.windows) *
+                                          static_cast<double>(window) / kHour});
+      all.largest.push_back(part.linker);
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
 Limits LimitFinder::limits() const {
-  if (linker_maxima_.number() < 2) {
+  if (linker_findings_.empty()) {
     throw std::logic_error("limits are known after the second pass");
   }
+  const LinkerParts seen = linkerParts(linker_findings_, parameters_.window);
+  HeldOut held_out(seen.parts);
+  held_out.add(seen.largest, kLeastLinkerLimit);
+  const double margin =
+      held_out.margin(parameters_.false_alarms_per_hour / kShares, kLeastLinkerMargin);
+  const double largest = *std::max_element(seen.largest.begin(), seen.largest.end());
   Limits limits = limits_;
-  limits.linker =
-      std::max({1.0, kLinkerMargin * linker_maxima_.largest(),
-                gumbelLimit(linker_maxima_,
-                            std::min(parameters_.false_alarms_per_hour * kBlock / kHour, 0.5))});
+  limits.linker = std::max(kLeastLinkerLimit,
+                           margin * std::max(largest, HeldOut::kLeastShare * kLeastLinkerLimit));
   return limits;
+}
+
+double LimitFinder::expectedRate() const {
+  const LinkerParts seen = linkerParts(linker_findings_, parameters_.window);
+  HeldOut held_out(seen.parts);
+  held_out.add(seen.largest, kLeastLinkerLimit);
+  return tracks_rate_ + held_out.rate(held_out.margin(
+                            parameters_.false_alarms_per_hour / kShares, kLeastLinkerMargin));
 }
 
 }  // namespace self_awareness::core::evidence

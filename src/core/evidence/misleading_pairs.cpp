@@ -1,7 +1,6 @@
 #include "core/evidence/misleading_pairs.h"
 
 #include <algorithm>
-#include <functional>
 #include <limits>
 
 #include "core/evidence/bin_arrays.h"
@@ -16,7 +15,7 @@ constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::min();
 }  // namespace
 
 MisleadingPairs::MisleadingPairs(const Model& model)
-    : pairs_(model.size()), misleading_(model.tracks().size(), false) {
+    : pairs_(model.size()), said_(model.tracks().size(), Said::kNothing) {
   const Statistics& training = model.statistics();
   const InformationGain gain(training, training);
   const std::vector<Statistics::SumOfDelays> to_any = training.delaysToAny();
@@ -60,9 +59,10 @@ void MisleadingPairs::finish() {
   closePart();
 }
 
-void MisleadingPairs::add(const std::vector<bool>& tracks) {
-  std::transform(misleading_.begin(), misleading_.end(), tracks.begin(), misleading_.begin(),
-                 std::logical_or<>());
+std::vector<MisleadingPairs::Said> MisleadingPairs::takeFindings() {
+  std::vector<Said> said(said_.size(), Said::kNothing);
+  said.swap(said_);
+  return said;
 }
 
 void MisleadingPairs::startPart() {
@@ -84,9 +84,10 @@ void MisleadingPairs::closePart() {
       if (number < InformationGain::kFewestDelays) {
         continue;
       }
-      if ((delays * asArray(pair.log_ratios)).sum() / number < kLeastGainLeft * pair.usual_gain) {
-        misleading_[pair.track] = misleading_[pair.track + 1] = true;
-      }
+      const double gain = (delays * asArray(pair.log_ratios)).sum() / number;
+      const Said said =
+          gain < kLeastGainLeft * pair.usual_gain ? Said::kMisleading : Said::kAsUsual;
+      said_[pair.track] = said_[pair.track + 1] = std::max(said_[pair.track], said);
     }
   }
   startPart();

@@ -22,11 +22,10 @@ class MisleadingPairs {
   void add(const Event& event);
   /// Ends the recording.
   void finish();
-  /// Adds the misleading tracks of other recordings.
-  /// @param tracks as tracks() returns them
-  void add(const std::vector<bool>& tracks);
-  /// Whether a delay track was misleading in any part of what came, by track.
-  const std::vector<bool>& tracks() const { return misleading_; }
+  /// What a delay track said in a recording.
+  enum class Said : std::uint8_t { kNothing, kAsUsual, kMisleading };
+  /// Returns what the recording said that has ended, by track, and forgets it.
+  std::vector<Said> takeFindings();
 
  private:
   struct Pair {
@@ -45,7 +44,7 @@ class MisleadingPairs {
   std::int64_t newest_stamp_ = 0;         // [ns]
   std::int64_t duration_ = 0;             // of the part [ns]
   bool started_ = false;                  // whether the part has an event
-  std::vector<bool> misleading_;          // by track
+  std::vector<Said> said_;                // by track
 };
 
 }  // namespace self_awareness::core::evidence

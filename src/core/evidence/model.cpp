@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -17,6 +18,18 @@ constexpr double kMostSurprise = 6;
 // Delays that all fall into one bin vary by nothing.
 constexpr double kLeastDeviation = 0.5;  // [nat]
 
+// Delays that differ by less than this from the usual ones are no fault: so many milliseconds, or
+// such a share of the period.
+constexpr double kLeastEffect = 10e6;  // [ns]
+constexpr double kLeastEffectOfPeriod = 0.03;
+// The same for the gaps of one event type.
+constexpr double kLeastEffectOnGap = 20e6;  // [ns]
+constexpr double kLeastEffectOnGapOfPeriod = 0.3;
+constexpr double kUsual = 0.9;  // share of the delays that are usual
+
+// A rate that changes by this share is no fault: clocks and loads differ from day to day.
+constexpr double kLeastRateEffect = 0.04;
+
 // Share of the usual answers that a fault takes away: the fault that is looked for.
 constexpr double kLost = 0.5;
 constexpr double kLeastMissRate = 0.1;
@@ -28,6 +41,9 @@ constexpr double kLeastRateLimit = 3;
 // One late event makes two unusual delays, one too long and one too short: they must not be
 // enough.
 constexpr double kLeastDelayLimit = 2 * kMostSurprise + 1;
+constexpr double kLeastDeadline = 0.5;         // [s]
+constexpr double kLeastRequests = 3;           // without an answer
+constexpr double kLongestGapOfSeries = 2;      // [s]
 constexpr double kLeastMisses = 4;
 constexpr double kLeastAnswerLimit = 5;  // [nat]
 
@@ -112,7 +128,9 @@ void Model::learnRates() {
     rate.mean = static_cast<double>(type.rate_sum) / windows;
     const double variance =
         static_cast<double>(type.rate_squares) / windows - rate.mean * rate.mean;
-    rate.spread = std::sqrt(std::max(variance, 0.0) + std::min(1.0, rate.mean / 4) + 0.25);
+    const double drift = kLeastRateEffect * rate.mean;
+    rate.spread =
+        std::sqrt(std::max(variance, 0.0) + std::min(1.0, rate.mean / 4) + 0.25 + drift * drift);
     rates_.push_back(rate);
   }
 }
@@ -133,6 +151,38 @@ void Model::learnDelays(const std::array<Statistics, 2>& halves) {
     std::transform(logs.begin(), logs.end(), surprises.begin(), [&](double log) {
       return std::min((-log - usual.mean()) / usual.deviation(), kMostSurprise);
     });
+    forgiveSmallEffects(from, to, surprises);
+  }
+}
+
+void Model::forgiveSmallEffects(EventId from, EventId to, Surprises& surprises) const {
+  const Statistics::Delays& delays = learned().delays(from, to);
+  const auto total = static_cast<double>(learned().total(from, to));
+  const Statistics::Type& asking = learned().type(from);
+  const double period =
+      static_cast<double>(asking.gap_sum) / static_cast<double>(std::max<std::uint64_t>(asking.gaps, 1));
+  const double effect = from == to
+                            ? std::max(kLeastEffectOnGap, kLeastEffectOnGapOfPeriod * period)
+                            : std::max(kLeastEffect, kLeastEffectOfPeriod * period);
+  const auto lower = [](std::size_t bin) { return static_cast<double>(log_bins::lowerEdge(bin)); };
+  const auto upper = [&](std::size_t bin) {
+    return bin + 1 < log_bins::kBins ? lower(bin + 1) : std::numeric_limits<double>::infinity();
+  };
+  double shortest = 0;  // of the usual delays [ns]
+  double longest = 0;
+  double below = 0;
+  for (std::size_t bin = 0; bin < delays.size(); ++bin) {
+    shortest = below <= (1 - kUsual) / 2 * total ? lower(bin) : shortest;
+    longest = below < (1 + kUsual) / 2 * total ? upper(bin) : longest;
+    below += delays[bin];
+  }
+  for (std::size_t bin = 0; bin < surprises.size(); ++bin) {
+    // A delay near 0 may wrap to a period, and a delay of a period to 0.
+    for (const double shift : {0.0, period, -period}) {
+      if (upper(bin) + shift <= longest + effect && lower(bin) + shift >= shortest - effect) {
+        surprises[bin] = std::min(surprises[bin], 0.0);
+      }
+    }
   }
 }
 
@@ -145,7 +195,8 @@ void Model::learnAnswers() {
           std::clamp(evidence::missRate(learned().type(from).gaps, learned().answers(from, to)),
                      kLeastMissRate, kMostMissRate);
       const double faulty = usual + (1 - usual) * kLost;
-      steps_[track] = {std::log((1 - faulty) / (1 - usual)), std::log(faulty / usual), usual};
+      steps_[track] = {std::log((1 - faulty) / (1 - usual)), std::log(faulty / usual), usual,
+                       std::llround(usualDelay(from, to, 0.5) * 1e9)};
     }
   }
 }
@@ -196,19 +247,48 @@ std::int64_t Model::longestGap(EventId id) const {
   return longest.empty() ? 0 : longest.front();
 }
 
+std::int64_t Model::longestSilence() const {
+  std::int64_t longest = 0;
+  for (const Statistics::Recording& recording : statistics_.recordings()) {
+    longest = std::max(longest, recording.longest_silence);
+  }
+  return longest;
+}
+
+bool Model::countsRequests(std::size_t track) const {
+  const EventId from = tracks_[track].from;
+  return usualDelay(from, from, 0.5) < kLongestGapOfSeries;
+}
+
+double Model::meanGap(EventId id) const {
+  const Statistics::Type& type = statistics_.type(id);
+  return type.gaps == 0 ? 0 : static_cast<double>(type.gap_sum) / static_cast<double>(type.gaps);
+}
+
 double Model::usualDelay(EventId from, EventId to, double share) const {
   const Statistics::Delays& delays = learned().delays(from, to);
-  const std::uint64_t total = learned().total(from, to);
-  if (total == 0) {
-    return 0;
+  const double wanted = share * static_cast<double>(learned().total(from, to));
+  // How long the longest delay between two types was is not known: the last bin ends where it
+  // begins.
+  auto longest = static_cast<double>(log_bins::lowerEdge(log_bins::kBins - 1));
+  if (from == to && learned().type(to).gaps > 0) {
+    const Statistics::Type& type = learned().type(to);
+    const auto longer = static_cast<std::size_t>(static_cast<double>(type.gaps) - wanted);
+    if (longer < type.longest_gaps.size()) {
+      return toSeconds(type.longest_gaps[longer]);
+    }
+    longest = static_cast<double>(type.longest_gaps.front());
   }
-  const double wanted = share * static_cast<double>(total);
   double below = 0;
   for (std::size_t bin = 0; bin < delays.size(); ++bin) {
-    below += delays[bin];
-    if (below >= wanted) {
-      return log_bins::middle(bin) * 1e-9;
+    if (delays[bin] > 0 && below + delays[bin] >= wanted) {
+      const auto lower = static_cast<double>(log_bins::lowerEdge(bin));
+      const double upper =
+          bin + 1 < delays.size() ? static_cast<double>(log_bins::lowerEdge(bin + 1)) : longest;
+      const double width = std::min(upper, std::max(longest, lower)) - lower;
+      return (lower + width * (wanted - below) / delays[bin]) * 1e-9;
     }
+    below += delays[bin];
   }
   return 0;
 }
@@ -229,6 +309,8 @@ double Model::leastLimit(std::size_t track) const {
       return kLeastDelayLimit;
     case Channel::kAnswer:
       return std::max(kLeastMisses * steps_[track].missed, kLeastAnswerLimit);
+    case Channel::kDeadline:
+      return countsRequests(track) ? kLeastRequests : kLeastDeadline;
   }
   return 0;
 }

@@ -8,9 +8,7 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-// What every delay takes from the sum, in standard deviations: a large drift finds strong evidence
-// without false alarms, a small one lets weak evidence add up.
-constexpr double kDrift = 1;
+// The drift of the slow sums: a small one lets weak evidence add up.
 constexpr double kSlowDrift = 0.5;
 // Independent timers keep one phase as long as they run, and have another one in every run:
 // training may have met the same one by chance every time. So delays and answers count only after
@@ -20,37 +18,54 @@ constexpr std::uint32_t kArmingEvents = 30;
 constexpr double kUsualSurprise = 0.3;  // standard deviations above the mean of training
 constexpr double kUsualMisses = 0.15;   // share of the gaps above that of training
 constexpr std::int64_t kGoneGaps = 5;   // times the longest gap in training
-constexpr double kMostEvidence = 200;   // while limits are not known
-constexpr double kMostOfLimit = 1.5;    // in units of the limit
-// Larger than any step of an answer track: taken from the step of a missed answer if it came.
-// By so much the numbers of two events differ at least. An answer adds or takes less than 3 [nat].
-constexpr double kMoreThanAnyStep = 1024;
+constexpr std::uint32_t kMostFailures = 10;  // to arm, that count
+constexpr double kMostEvidence = 200;        // while limits are not known
+constexpr double kMostOfLimit = 1.5;         // in units of the limit
+// Smaller shares of a limit are what normal operation is made of: they link nothing.
+constexpr double kLeastLinked = 0.5;
+// A relation that has been abnormal for so long [ns], while both its event types come, has
+// changed: it is news once (docs/method.md, section 3.7).
+constexpr std::int64_t kAcceptAfter = 60 * kNanosecondsPerSecond;
+
+// Delays count relative to those of the last minutes [ns]: load changes with the time of day.
+constexpr std::int64_t kRegime = 120 * kNanosecondsPerSecond;
+// A stall of the whole robot, beyond what is usual [ns]; more often, it is something else.
+constexpr std::int64_t kShortestStall = kNanosecondsPerSecond / 20;
+constexpr std::int64_t kLongestStall = kNanosecondsPerSecond * 7 / 10;
+constexpr std::int64_t kBetweenStalls = 30 * kNanosecondsPerSecond;
 
 }  // namespace
 
 inline bool Scorer::arm(Arming& arming, double excess, double usual) {
   arming.excess += excess;
-  if (++arming.events < kArmingEvents) {
+  const std::uint32_t needed = kArmingEvents << std::min(arming.failures, kMostFailures);
+  if (++arming.events < needed) {
     return false;
   }
-  const bool armed = arming.excess <= usual * kArmingEvents;
-  arming = {};
+  const bool armed = arming.excess <= usual * needed;
+  arming = {0, 0, arming.failures + (armed ? 0 : 1)};
   return armed;
 }
 
 Scorer::Scorer(std::shared_ptr<const Model> model, std::int64_t window)
     : model_(std::move(model)), counts_(model_->size(), rateWindows(window)) {
   addTracks();
+  longest_silence_ = std::max(model_->longestSilence() * 5 / 4, kShortestStall);
   restart();
 }
 
 void Scorer::addTracks() {
   const std::vector<Track>& tracks = model_->tracks();
-  std::vector<std::vector<std::size_t>> pairs(model_->size());    // tracks by `to`
-  std::vector<std::vector<std::size_t>> answers(model_->size());  // tracks by `from`
+  std::vector<std::vector<std::size_t>> pairs(model_->size());      // tracks by `to`
+  std::vector<std::vector<std::size_t>> answers(model_->size());    // tracks by `from`
+  std::vector<std::vector<std::size_t>> deadlines(model_->size());  // tracks by `from`
   tracks_of_.resize(model_->size());
   for (std::size_t track = 0; track < tracks.size(); ++track) {
     const auto& [channel, to, from] = tracks[track];
+    if (channel == Channel::kDeadline) {
+      deadlines[from].push_back(track);
+      continue;
+    }
     if (channel == Channel::kDelay) {
       pairs[to].push_back(track);
     } else if (channel == Channel::kAnswer) {
@@ -64,7 +79,7 @@ void Scorer::addTracks() {
     }
   }
   state_of_.resize(tracks.size());
-  Sums<2> none;
+  Sums none;
   none.caps.setConstant(kMostEvidence);
   for (EventId id = 0; id < model_->size(); ++id) {
     OfType type;
@@ -72,47 +87,55 @@ void Scorer::addTracks() {
     type.pairs_begin = static_cast<std::uint32_t>(pairs_.size());
     for (const std::size_t track : pairs[id]) {
       state_of_[track] = state_of_[track + 1] = pairs_.size();
-      pairs_.push_back({tracks[track].from, false, 0, model_->surprises(track).data(), none});
+      pairs_.push_back({tracks[track].from, false, model_->surprises(track).data(), 0, none});
     }
     type.pairs_end = static_cast<std::uint32_t>(pairs_.size());
-    type.blocks_begin = static_cast<std::uint32_t>(blocks_.size());
-    addAnswers(id, answers[id]);
-    type.blocks_end = static_cast<std::uint32_t>(blocks_.size());
-    types_.push_back(type);
-  }
-  pairs_arming_.resize(pairs_.size());
-}
-
-void Scorer::addAnswers(EventId from, const std::vector<std::size_t>& tracks) {
-  for (std::size_t k = 0; k < tracks.size(); ++k) {
-    const std::size_t answer = k % AnswerBlock::kAnswers;
-    if (answer == 0) {
-      blocks_.emplace_back().to.fill(from);
-      miss_rates_.resize(blocks_.size() * AnswerBlock::kAnswers);
-      answers_arming_.resize(blocks_.size() * AnswerBlock::kAnswers);
+    type.answers_begin = static_cast<std::uint32_t>(answers_.size());
+    for (const std::size_t track : answers[id]) {
+      state_of_[track] = answers_.size();
+      Answer& answer = answers_.emplace_back();
+      answer.to = tracks[track].to;
+      answer.usual_delay = model_->usualAnswer(track);
+      answer.answered = model_->answered(track);
+      answer.missed = model_->missed(track);
+      answer.usual = model_->missRate(track);
+      answer.cap = kMostEvidence;
     }
-    const std::size_t track = tracks[k];
-    state_of_[track] = (blocks_.size() - 1) * AnswerBlock::kAnswers + answer;
-    miss_rates_[state_of_[track]] = model_->missRate(track);
-    AnswerBlock& block = blocks_.back();
-    block.to[answer] = model_->tracks()[track].to;
-    block.answered[static_cast<int>(answer)] = model_->answered(track);
-    block.missed[static_cast<int>(answer)] = model_->missed(track);
-    block.sums.caps[static_cast<int>(answer)] = kMostEvidence;
+    type.answers_end = static_cast<std::uint32_t>(answers_.size());
+    type.deadlines_begin = static_cast<std::uint32_t>(deadlines_.size());
+    for (const std::size_t track : deadlines[id]) {
+      state_of_[track] = deadlines_.size();
+      deadlines_.push_back({tracks[track].to, model_->countsRequests(track), 0, 0});
+    }
+    type.deadlines_end = static_cast<std::uint32_t>(deadlines_.size());
+    types_.push_back(std::move(type));
+  }
+  for (std::uint32_t number = 0; number < deadlines_.size(); ++number) {
+    types_[deadlines_[number].to].answered_deadlines.push_back(number);
   }
 }
 
 void Scorer::restart() {
   stamps_.assign(model_->size(), 0);
+  first_stamps_.assign(model_->size(), 0);
   numbers_.assign(model_->size(), 0);
+  seen_.assign(model_->size(), 0);
   number_ = 0;
+  last_stamp_ = stall_ = stalled_at_ = stalled_until_ = 0;
   counts_.restart();
   evidence_.assign(model_->tracks().size(), 0);
-  for (DelayPair& pair : pairs_) {
-    pair.last_delay = 0;
+  pairs_arming_.assign(pairs_.size(), {});
+  answers_arming_.assign(answers_.size(), {});
+  pairs_abnormal_since_.assign(pairs_.size(), 0);
+  answers_abnormal_since_.assign(answers_.size(), 0);
+  for (std::size_t pair = 0; pair < pairs_.size(); ++pair) {
+    disarmPair(pair);
   }
-  for (EventId id = 0; id < model_->size(); ++id) {
-    disarm(id);
+  for (std::size_t answer = 0; answer < answers_.size(); ++answer) {
+    disarmAnswer(answer);
+  }
+  for (Deadline& deadline : deadlines_) {
+    deadline.requests = 0;
   }
 }
 
@@ -124,11 +147,14 @@ std::optional<std::int64_t> Scorer::add(const Event& event) {
   counts_.add(event.id);
   // Constant local copies: the compiler would look up again what it does not know to be constant.
   const std::int64_t* const stamps = stamps_.data();
-  const double* const numbers = numbers_.data();
-  const double last = numbers[event.id];
+  const std::uint64_t* const numbers = numbers_.data();
+  const std::uint64_t last = numbers[event.id];
   const Eigen::Array2d drifts(kDrift, kSlowDrift);
-  // Pairs and answers with a type that was never seen are not armed: arming takes back what is
-  // added to their sums here. So the many others need no check.
+  noteStall(event.stamp);
+  const bool stalled = event.stamp < stalled_until_;
+  const std::int64_t last_stamp = last > 0 ? stamps[event.id] : event.stamp;
+  // Pairs with a type that was never seen are not armed: arming takes back what is added to their
+  // sums here. So the many others need no check.
   DelayPair* const pairs_end = pairs_.data() + type.pairs_end;
   for (DelayPair* pair = pairs_.data() + type.pairs_begin; pair != pairs_end; ++pair) {
     // Only the first event after another counts: later ones, while the other pauses, would count
@@ -136,64 +162,92 @@ std::optional<std::int64_t> Scorer::add(const Event& event) {
     const bool first = numbers[pair->from] >= last;
     const std::int64_t delay = event.stamp - stamps[pair->from];
     const double surprise = pair->surprises[log_bins::bin(delay)];
-    pair->last_delay ^= (pair->last_delay ^ delay) & -static_cast<std::int64_t>(first);
-    pair->sums.add((surprise - drifts) * (first ? 1.0 : 0.0));
+    const double count = first && !stalled ? 1.0 : 0.0;
+    pair->sums.add((surprise - std::max(pair->regime, 0.0) - drifts) * count);
+    const double elapsed = static_cast<double>(std::min(event.stamp - last_stamp, kRegime)) / static_cast<double>(kRegime);
+    pair->regime += (surprise - pair->regime) * std::max(elapsed, 0.0) * count;
     if (!pair->armed) {
       armPair(static_cast<std::size_t>(pair - pairs_.data()), first, surprise);
     }
   }
+  for (std::uint32_t answer = type.answers_begin; answer < type.answers_end; ++answer) {
+    ask(answer, event.stamp);
+  }
+  for (const std::uint32_t deadline : type.answered_deadlines) {
+    deadlines_[deadline].requests = 0;
+  }
+  for (std::uint32_t deadline = type.deadlines_begin; deadline < type.deadlines_end; ++deadline) {
+    Deadline& state = deadlines_[deadline];
+    state.since = state.requests > 0 ? state.since : event.stamp;
+    ++state.requests;
+  }
   std::optional<std::int64_t> gap;
   if (last > 0) {
-    AnswerBlock* const blocks_end = blocks_.data() + type.blocks_end;
-    for (AnswerBlock* block = blocks_.data() + type.blocks_begin; block != blocks_end; ++block) {
-      const Eigen::Array4d others(numbers[block->to[0]], numbers[block->to[1]],
-                                  numbers[block->to[2]], numbers[block->to[3]]);
-      // One that came has a number so much larger, one that did not so much smaller, that these
-      // are the steps of the one and of the other. Eigen does not vectorise a select.
-      block->sums.add((last - others).max(block->answered).min(block->missed));
-      if (block->unarmed != 0) {
-        armAnswers(static_cast<std::size_t>(block - blocks_.data()), last);
-      }
-    }
     gap = event.stamp - stamps[event.id];
     if (*gap > type.gone_after) {
       disarm(event.id);
     }
+  } else {
+    first_stamps_[event.id] = event.stamp;
   }
   stamps_[event.id] = event.stamp;
-  number_ += kMoreThanAnyStep;
-  numbers_[event.id] = number_;
+  numbers_[event.id] = ++number_;
+  ++seen_[event.id];
   return gap;
+}
+
+void Scorer::noteStall(std::int64_t stamp) {
+  const std::int64_t silence = stamp - last_stamp_;
+  if (number_ > 0 && silence > longest_silence_ && silence <= longest_silence_ + kLongestStall &&
+      stamp - stalled_at_ > kBetweenStalls) {
+    stalled_from_ = last_stamp_;
+    stalled_at_ = stamp;
+    stalled_until_ = stamp + silence;
+  }
+  last_stamp_ = std::max(last_stamp_, stamp);
 }
 
 void Scorer::armPair(std::size_t number, bool first, double surprise) {
   DelayPair& pair = pairs_[number];
   if (numbers_[pair.from] == 0) {
     pair.sums.values.setZero();
-    pair.last_delay = 0;
   } else if (first) {
     pair.armed = arm(pairs_arming_[number], surprise, kUsualSurprise);
   }
 }
 
-void Scorer::armAnswers(std::size_t block, double since) {
-  AnswerBlock& answers = blocks_[block];
-  for (std::size_t k = 0; k < AnswerBlock::kAnswers; ++k) {
-    if (answers.armed(k)) {
-      continue;
-    }
-    const double other = numbers_[answers.to[k]];
-    const std::size_t number = block * AnswerBlock::kAnswers + k;
-    if (other == 0) {
-      answers.sums.values[static_cast<int>(k)] = 0;
-    } else if (arm(answers_arming_[number], (other <= since ? 1 : 0) - miss_rates_[number],
-                   kUsualMisses)) {
-      answers.unarmed &= ~(1U << k);
-    }
+void Scorer::ask(std::size_t number, std::int64_t stamp) {
+  Answer& answer = answers_[number];
+  // A burst is one question.
+  if (answer.asked && stamp - answer.asked_at < answer.usual_delay) {
+    return;
+  }
+  const std::uint64_t came = seen_[answer.to] - answer.seen;
+  const bool first = !answer.asked;
+  answer.asked = true;
+  answer.asked_at = stamp;
+  answer.seen = seen_[answer.to];
+  if (first || answer.seen == 0) {
+    return;
+  }
+  // Two timers of one rate whose phases cross give 0, 2, 0, 2 answers: nothing was left out.
+  double late = 0;
+  if (came > 0) {
+    late = std::min(static_cast<double>(came - 1), answer.owed);
+    answer.owed -= late;
+  } else {
+    answer.owed += 1;
+  }
+  answer.sum += came > 0 ? answer.answered - late * answer.missed : answer.missed;
+  answer.sum = std::max(std::min(answer.sum, answer.cap), 0.0);
+  if (!answer.armed) {
+    answer.armed = arm(answers_arming_[number], (came > 0 ? -late : 1) - answer.usual,
+                       kUsualMisses);
   }
 }
 
 void Scorer::capAt(const Limits& limits) {
+  has_limits_ = true;
   const auto cap = [&](std::size_t track, double& of_sum) {
     if (limits.tracks[track] > 0) {  // never so where it is NaN
       of_sum = kMostOfLimit * limits.tracks[track];
@@ -206,9 +260,22 @@ void Scorer::capAt(const Limits& limits) {
       cap(track, pairs_[number].sums.caps[0]);
       cap(track + 1, pairs_[number].sums.caps[1]);
     } else if (channel == Channel::kAnswer) {
-      cap(track, blocks_[number / AnswerBlock::kAnswers]
-                     .sums.caps[static_cast<int>(number % AnswerBlock::kAnswers)]);
+      cap(track, answers_[number].cap);
     }
+  }
+}
+
+double Scorer::cap(std::size_t track) const {
+  const std::size_t number = state_of_.at(track);
+  switch (model_->tracks()[track].channel) {
+    case Channel::kDelay:
+      return pairs_[number].sums.caps[0];
+    case Channel::kSlowDelay:
+      return pairs_[number].sums.caps[1];
+    case Channel::kAnswer:
+      return answers_[number].cap;
+    default:
+      return kMostEvidence;
   }
 }
 
@@ -224,33 +291,75 @@ void Scorer::disarm(EventId id) {
 
 void Scorer::disarmPair(std::size_t number) {
   pairs_[number].sums.values.setZero();
+  pairs_[number].regime = 0;
   pairs_[number].armed = false;
-  pairs_arming_[number] = {};
+  pairs_arming_[number] = {0, 0, pairs_arming_[number].failures};
+  pairs_abnormal_since_[number] = 0;
 }
 
 void Scorer::disarmAnswer(std::size_t number) {
-  AnswerBlock& block = blocks_[number / AnswerBlock::kAnswers];
-  const std::size_t answer = number % AnswerBlock::kAnswers;
-  block.sums.values[static_cast<int>(answer)] = 0;
-  block.unarmed |= 1U << answer;
-  answers_arming_[number] = {};
+  Answer& answer = answers_[number];
+  answer.sum = 0;
+  answer.owed = 0;
+  answer.asked = false;
+  answer.armed = false;
+  answers_arming_[number] = {0, 0, answers_arming_[number].failures};
+  answers_abnormal_since_[number] = 0;
+}
+
+void Scorer::accept(std::int64_t end) {
+  for (std::size_t number = 0; number < pairs_.size(); ++number) {
+    const Sums& sums = pairs_[number].sums;
+    std::int64_t& since = pairs_abnormal_since_[number];
+    if (!pairs_[number].armed || (sums.values * kMostOfLimit <= sums.caps).all()) {
+      since = 0;
+    } else if (since == 0) {
+      since = end;
+    } else if (end - since >= kAcceptAfter) {
+      ++pairs_arming_[number].failures;
+      disarmPair(number);
+    }
+  }
+  for (std::size_t number = 0; number < answers_.size(); ++number) {
+    const Answer& answer = answers_[number];
+    std::int64_t& since = answers_abnormal_since_[number];
+    if (!answer.armed || answer.sum * kMostOfLimit <= answer.cap) {
+      since = 0;
+    } else if (since == 0) {
+      since = end;
+    } else if (end - since >= kAcceptAfter && stamps_[answer.to] > since) {
+      ++answers_arming_[number].failures;
+      disarmAnswer(number);
+    }
+  }
 }
 
 const std::vector<double>& Scorer::closeWindow(std::int64_t end) {
   window_end_ = end;
   counts_.close();
+  if (has_limits_) {
+    accept(end);
+  }
+  // While all are silent, none is more so than the others.
+  const std::int64_t silence = number_ > 0 ? end - last_stamp_ : 0;
+  stall_ = silence > longest_silence_ ? std::min(silence, kLongestStall) : 0;
+  const bool stalled = (stall_ > 0 && stall_ < kLongestStall) ||
+                       (stalled_at_ > 0 && end < stalled_until_ + kRateSpan);
   const std::vector<Track>& tracks = model_->tracks();
   for (std::size_t track = 0; track < tracks.size(); ++track) {
     const auto& [channel, id, from] = tracks[track];
     const bool seen = numbers_[id] > 0;
     switch (channel) {
       case Channel::kOverdue:
-        evidence_[track] = seen ? model_->overdue(id, end - stamps_[id]) : 0;
+        evidence_[track] = seen ? model_->overdue(id, age(id)) : 0;
         break;
       case Channel::kFewer:
       case Channel::kMore: {
         const double sign = channel == Channel::kMore ? 1 : -1;
-        const double more = counts_.full() && seen ? model_->rate(id, counts_.counts()[id]) : 0;
+        // A topic that began within the span has too few for that reason alone.
+        const bool valid = counts_.full() && seen && end - first_stamps_[id] >= kRateSpan &&
+                           !stalled;
+        const double more = valid ? model_->rate(id, counts_.counts()[id]) : 0;
         evidence_[track] = std::max(sign * more, 0.0);
         break;
       }
@@ -261,9 +370,15 @@ const std::vector<double>& Scorer::closeWindow(std::int64_t end) {
         break;
       }
       case Channel::kAnswer: {
-        const AnswerBlock& block = blocks_[state_of_[track] / AnswerBlock::kAnswers];
-        const std::size_t answer = state_of_[track] % AnswerBlock::kAnswers;
-        evidence_[track] = block.armed(answer) ? block.sums.values[static_cast<int>(answer)] : 0;
+        const Answer& answer = answers_[state_of_[track]];
+        evidence_[track] = answer.armed ? answer.sum : 0;
+        break;
+      }
+      case Channel::kDeadline: {
+        const Deadline& deadline = deadlines_[state_of_[track]];
+        evidence_[track] = deadline.requests == 0 || !seen ? 0
+                           : deadline.in_requests           ? deadline.requests
+                                                            : toSeconds(end - deadline.since);
         break;
       }
     }
@@ -286,7 +401,7 @@ Sum sumUp(const std::vector<double>& evidence, const Model& model, const Limits&
     }
     if ((channel == Channel::kSlowDelay || channel == Channel::kAnswer) && share > 0) {
       double& of_type = linked[model.tracks()[track].to];
-      of_type = std::max(of_type, std::min(share, 1.0));
+      of_type = std::max(of_type, std::min((share - kLeastLinked) / (1 - kLeastLinked), 1.0));
     }
   }
   for (const double share : linked) {

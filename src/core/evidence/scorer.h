@@ -13,6 +13,10 @@
 
 namespace self_awareness::core::evidence {
 
+/// What every delay takes from the sum of its track, in standard deviations: a large drift finds
+/// strong evidence without false alarms.
+constexpr double kDrift = 1;
+
 /// Collects the evidence of every track from the events of one recording (docs/method.md, sections
 /// 3.2 to 3.5 and 3.7). Delays and answers are summed up as in Page's CUSUM test: what is usual
 /// takes from the sum, what is unusual adds to it, and the sum never falls below 0. A fault that
@@ -38,10 +42,20 @@ class Scorer {
   const Model& model() const { return *model_; }
   /// Stamp of the last event of a type of the model [ns]; none before the first.
   std::optional<std::int64_t> lastSeen(EventId id) const;
-  /// The last delay of a delay track [ns].
-  std::int64_t lastDelay(std::size_t track) const {
-    return pairs_[state_of_.at(track)].last_delay;
+  /// Time since the last event of a type, at the end of the last window [ns]; 0 before the first.
+  /// While the whole robot is silent for a moment, nobody's silence grows.
+  std::int64_t age(EventId id) const {
+    const std::int64_t stall =
+        stall_ > 0 || stalled_at_ == 0 || stamps_.at(id) > stalled_from_
+            ? stall_
+            : stalled_at_ - stalled_from_;
+    return numbers_.at(id) > 0 ? window_end_ - stamps_[id] - stall : 0;
   }
+  /// Time since the first request without an answer of a deadline track, at the end of the last
+  /// window [s].
+  double waiting(std::size_t track) const { return evidence_.at(track); }
+  /// The most that the sum of a delay or answer track may be.
+  double cap(std::size_t track) const;
   /// Events of a type in the last kRateSpan.
   std::uint32_t recentCount(EventId id) const { return counts_.counts().at(id); }
   /// End of the window that was closed last [ns].
@@ -52,49 +66,60 @@ class Scorer {
   struct Arming {
     double excess = 0;  // of the last events over the mean in training
     std::uint32_t events = 0;
+    std::uint32_t failures = 0;  // to be as in training; every one doubles the events it takes
   };
   /// Sums that stay between 0 and a cap.
-  template <int kSize>
   struct Sums {
-    using Array = Eigen::Array<double, kSize, 1>;
-    Array values = Array::Zero();
-    Array caps = Array::Zero();
+    Eigen::Array2d values = Eigen::Array2d::Zero();
+    Eigen::Array2d caps = Eigen::Array2d::Zero();
     template <typename Steps>
     void add(const Steps& steps) {
       values = (values + steps).min(caps).max(0.0);
     }
   };
-  // All that an event needs of a pair or of a block of answers lies together, and so do the pairs
-  // and blocks of an event type: most of the time goes into fetching them.
+  // All that an event needs of a pair lies together, and so do the pairs of an event type: most of
+  // the time goes into fetching them.
   /// State of the two delay tracks of a pair of event types.
   struct DelayPair {
     EventId from = 0;
     bool armed = false;
-    std::int64_t last_delay = 0;        // [ns]
     const double* surprises = nullptr;  // by bin
-    Sums<2> sums;                       // of the track, and of the slow one
+    double regime = 0;                  // mean surprise of the last minutes, if it is above usual
+    Sums sums;                          // of the track, and of the slow one
   };
-  /// State of several answer tracks with the same `from`. The processor predicts the end of a loop
-  /// over blocks better than that of one over tracks. A block with fewer tracks is filled up with
-  /// answers that add nothing.
-  struct AnswerBlock {
-    static constexpr int kAnswers = 4;
-    std::array<EventId, kAnswers> to{};
-    std::uint32_t unarmed = 0;  // a bit for each
-    Eigen::Array4d answered = Eigen::Array4d::Zero();
-    Eigen::Array4d missed = Eigen::Array4d::Zero();
-    Sums<kAnswers> sums;
-
-    bool armed(std::size_t answer) const { return (unarmed >> answer & 1U) == 0; }
+  /// State of an answer track.
+  struct Answer {
+    EventId to = 0;
+    bool armed = false;
+    bool asked = false;            // since the start
+    std::int64_t asked_at = 0;     // stamp of the last question [ns]
+    std::uint64_t seen = 0;        // events of `to` up to then
+    std::int64_t usual_delay = 0;  // [ns]; what asks again sooner asks nothing new
+    double owed = 0;               // answers that did not come, and may still come back
+    double answered = 0;           // steps of the sum
+    double missed = 0;
+    double usual = 0;              // share that is missed
+    double sum = 0;
+    double cap = 0;
+  };
+  /// State of a deadline track.
+  struct Deadline {
+    EventId to = 0;
+    bool in_requests = false;  // else in seconds
+    std::uint32_t requests = 0;  // without an answer
+    std::int64_t since = 0;      // stamp of the first of them [ns], if there is one
   };
 
-  /// Where the pairs and blocks of answers of an event type lie, and after how long a gap [ns] it
+  /// Where the pairs, answers and deadlines of an event type lie, and after how long a gap [ns] it
   /// was gone.
   struct OfType {
     std::uint32_t pairs_begin = 0;
     std::uint32_t pairs_end = 0;
-    std::uint32_t blocks_begin = 0;
-    std::uint32_t blocks_end = 0;
+    std::uint32_t answers_begin = 0;
+    std::uint32_t answers_end = 0;
+    std::uint32_t deadlines_begin = 0;
+    std::uint32_t deadlines_end = 0;
+    std::vector<std::uint32_t> answered_deadlines;  // whose `to` it is
     std::int64_t gone_after = 0;
   };
 
@@ -103,32 +128,44 @@ class Scorer {
   /// @return whether the track is armed now
   static bool arm(Arming& arming, double excess, double usual);
   void addTracks();
-  /// @param tracks all answer tracks of the `from`
-  void addAnswers(EventId from, const std::vector<std::size_t>& tracks);
   /// Takes in a delay of a pair that is not armed.
   /// @param first whether it counts
   void armPair(std::size_t number, bool first, double surprise);
-  /// Takes in an event for the answers of a block that are not armed.
-  /// @param since number of the last event of the same type
-  void armAnswers(std::size_t block, double since);
+  /// Takes in a question.
+  void ask(std::size_t answer, std::int64_t stamp);
+  /// Forgets the sums of all tracks with the type, and lets them be armed again.
   void disarm(EventId id);
   void disarmPair(std::size_t number);
   void disarmAnswer(std::size_t number);
+  /// Takes in the time since the last event of any type: a whole robot that stops for a moment and
+  /// goes on has a busy machine, and no component is to blame.
+  void noteStall(std::int64_t stamp);
+  /// Accepts what has been abnormal for long, and is stable: it is news once.
+  void accept(std::int64_t end);
 
   std::shared_ptr<const Model> model_;
   std::vector<OfType> types_;                        // by id
   std::vector<DelayPair> pairs_;                     // by `to`
-  std::vector<AnswerBlock> blocks_;                  // by `from`
+  std::vector<Answer> answers_;                      // by `from`
+  std::vector<Deadline> deadlines_;                  // by `from`
   std::vector<Arming> pairs_arming_;                 // by number of the pair
   std::vector<Arming> answers_arming_;               // by number of the answer
-  std::vector<double> miss_rates_;                   // by number of the answer
-  std::vector<std::size_t> state_of_;                // number of its pair or answer, by track
+  std::vector<std::int64_t> pairs_abnormal_since_;   // [ns] by number of the pair; 0: it is normal
+  std::vector<std::int64_t> answers_abnormal_since_;  // [ns] by number of the answer; 0: likewise
+  std::vector<std::size_t> state_of_;                // number of its pair, answer..., by track
   std::vector<std::vector<std::size_t>> tracks_of_;  // delay and answer tracks, by id
-  std::vector<std::int64_t> stamps_;                 // of the last event [ns], by id
-  // Number of the last event in the recording, by id, in steps of kMoreThanAnyStep; 0: never seen.
-  // Steps of answers are made of them, so they are doubles: exact for 2^43 events.
-  std::vector<double> numbers_;
-  double number_ = 0;
+  bool has_limits_ = false;
+  std::int64_t longest_silence_ = 0;  // that is usual [ns]
+  std::int64_t last_stamp_ = 0;       // [ns], once there was an event
+  std::int64_t stall_ = 0;            // that goes on at the end of the last window [ns]
+  std::int64_t stalled_from_ = 0;     // begin of the last stall [ns]
+  std::int64_t stalled_at_ = 0;       // end of the last stall [ns]; 0: none
+  std::int64_t stalled_until_ = 0;    // what waited has come by then [ns]
+  std::vector<std::int64_t> stamps_;        // of the last event [ns], by id
+  std::vector<std::int64_t> first_stamps_;  // of the first event since the start [ns], by id
+  std::vector<std::uint64_t> numbers_;      // of the last event in the recording, by id; 0: none
+  std::vector<std::uint64_t> seen_;         // events since the start, by id
+  std::uint64_t number_ = 0;
   RecentCounts counts_;
   std::vector<double> evidence_;  // by track
   std::int64_t window_end_ = 0;   // [ns]

@@ -65,6 +65,22 @@ Partners sum(const Partners& a, const Partners& b) {
   return both;
 }
 
+bool startsEarlier(const Statistics::Recording& a, const Statistics::Recording& b) {
+  return std::tie(a.start, a.end) < std::tie(b.start, b.end);
+}
+
+// Types that a recording does not name have no events in it.
+bool isSame(const Statistics::Recording& a, const Statistics::Recording& b, std::size_t types) {
+  const auto at = [](const auto& counts, EventId id) {
+    return id < counts.size() ? counts[id] : 0;
+  };
+  bool same = a.start == b.start && a.end == b.end && a.longest_silence == b.longest_silence;
+  for (EventId id = 0; same && id < types; ++id) {
+    same = at(a.events, id) == at(b.events, id) && at(a.longest_gaps, id) == at(b.longest_gaps, id);
+  }
+  return same;
+}
+
 bool isEmpty(const Partner& partner) {
   return partner.answers == 0 && partner.delays == kNoDelays;
 }
@@ -123,8 +139,22 @@ void Statistics::merge(const Statistics& other) {
               [](const Partner& a, const Partner& b) { return a.id < b.id; });
     partners_[here[id]] = sum(partners_[here[id]], partners);
   }
+  for (const Recording& theirs : other.recordings_) {
+    Recording ours{theirs.start, theirs.end, theirs.longest_silence, std::vector<std::uint64_t>(size(), 0),
+                   std::vector<std::int64_t>(size(), 0)};
+    for (EventId id = 0; id < theirs.events.size(); ++id) {
+      ours.events[here[id]] = theirs.events[id];
+      ours.longest_gaps[here[id]] = theirs.longest_gaps[id];
+    }
+    addRecording(std::move(ours));
+  }
   rate_windows_ += other.rate_windows_;
   duration_ += other.duration_;
+}
+
+void Statistics::addRecording(Recording recording) {
+  const auto place = std::upper_bound(recordings_.begin(), recordings_.end(), recording, startsEarlier);
+  recordings_.insert(place, std::move(recording));
 }
 
 const Statistics::Delays& Statistics::delays(EventId from, EventId to) const {
@@ -185,6 +215,7 @@ Statistics Statistics::withoutPairs() const {
     type.left_out.fill(0);
   }
   rest.partners_.resize(size());
+  rest.recordings_ = recordings_;
   rest.rate_windows_ = rate_windows_;
   rest.duration_ = duration_;
   return rest;
@@ -217,7 +248,9 @@ bool operator==(const Statistics::Partner& a, const Statistics::Partner& b) {
 
 bool operator==(const Statistics& a, const Statistics& b) {
   if (a.vocabulary().types() != b.vocabulary().types() || a.rateWindows() != b.rateWindows() ||
-      a.duration() != b.duration()) {
+      a.duration() != b.duration() ||
+      !std::equal(a.recordings().begin(), a.recordings().end(), b.recordings().begin(),
+                  b.recordings().end(), [&](const auto& x, const auto& y) { return isSame(x, y, a.size()); })) {
     return false;
   }
   const auto counted = [](const Partners& partners) {
@@ -243,6 +276,11 @@ Trainer::Trainer(Statistics& statistics, std::int64_t window)
     : statistics_(statistics), window_(window), counts_(0, rateWindows(window)) {}
 
 void Trainer::startRecording() {
+  if (last_stamp_) {
+    recording_.end = newest_stamp_;
+    statistics_.addRecording(std::move(recording_));
+    recording_ = {};
+  }
   last_seen_.clear();
   last_stamp_.reset();
   number_ = 0;
@@ -254,13 +292,18 @@ void Trainer::add(const Event& event) {
     startRecording();
   }
   last_seen_.resize(statistics_.size());
+  recording_.events.resize(statistics_.size());
+  recording_.longest_gaps.resize(statistics_.size());
   counts_.resize(statistics_.size());
   if (last_stamp_) {
     closeWindows(event.stamp);
+    recording_.longest_silence =
+        std::max(recording_.longest_silence, event.stamp - *last_stamp_);
     statistics_.addDuration(std::max<std::int64_t>(event.stamp - newest_stamp_, 0));
     newest_stamp_ = std::max(newest_stamp_, event.stamp);
   } else {
     newest_stamp_ = event.stamp;
+    recording_.start = event.stamp;
     window_end_ = floorToGrid(event.stamp, window_) + window_;
   }
   last_stamp_ = event.stamp;
@@ -268,6 +311,7 @@ void Trainer::add(const Event& event) {
   Statistics::Type& type = statistics_.type(event.id);
   Seen& last = last_seen_.at(event.id);
   ++type.events;
+  ++recording_.events[event.id];
   counts_.add(event.id);
   Partner* partner = statistics_.allPartners(event.id).data();
   for (const Seen& other : last_seen_) {
@@ -282,6 +326,7 @@ void Trainer::add(const Event& event) {
     ++type.gaps;
     type.gap_sum += gap;
     type.addGap(gap);
+    recording_.longest_gaps[event.id] = std::max(recording_.longest_gaps[event.id], gap);
   }
   last = Seen{event.stamp, ++number_};
 }

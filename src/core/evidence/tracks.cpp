@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
 #include "core/evidence/bin_arrays.h"
 #include "core/evidence/log_bins.h"
+#include "core/evidence/relations.h"
 #include "self_awareness/core/verdict/suspect.h"
 
 namespace self_awareness::core::evidence {
@@ -20,6 +22,10 @@ constexpr std::uint64_t kFewestDelaysOfPair = 200;
 constexpr double kLeastRate = 1.5;
 
 constexpr std::size_t kAsked = 8;
+// A deadline needs fewer: a request is rare, and its answer hardly ever fails to come.
+constexpr std::size_t kDeadlines = 3;
+constexpr std::uint64_t kFewestAnswers = 30;
+constexpr double kMostMissesOfDeadline = 0.1;
 constexpr std::uint64_t kFewestGapsOfAnswers = 100;
 constexpr double kMostMisses = 0.6;
 
@@ -52,24 +58,26 @@ class Gains {
 /// Chooses what to watch, by the counts of both halves.
 class Choice {
  public:
-  Choice(const Halves& halves, std::size_t predecessors)
+  Choice(const Statistics& both, const Halves& halves, std::size_t predecessors,
+         const SourceGraph& graph)
       : halves_(halves),
         predecessors_(predecessors),
         gains_(halves),
-        types_(halves[0]->withoutPairs()) {
-    types_.merge(halves[1]->withoutPairs());
-  }
+        types_(both),
+        relations_(both, graph) {}
 
   std::vector<Track> tracks() const {
     std::vector<Track> tracks;
     addTracksOfTypes(tracks);
     addDelayTracks(tracks);
     addAnswerTracks(tracks);
+    addDeadlineTracks(tracks);
     return tracks;
   }
 
  private:
   using Ranked = std::vector<std::pair<double, EventId>>;  // the least first
+  using RankedPairs = std::vector<std::tuple<bool, double, EventId>>;
 
   void addTracksOfTypes(std::vector<Track>& tracks) const {
     for (EventId id = 0; id < types_.size(); ++id) {
@@ -86,15 +94,15 @@ class Choice {
 
   void addDelayTracks(std::vector<Track>& tracks) const {
     for (EventId to = 0; to < types_.size(); ++to) {
-      Ranked best;  // by negative gain
+      RankedPairs best;  // first those that are watched, by negative gain
       for (EventId from = 0; from < types_.size(); ++from) {
         if (gains_(from, to) >= kLeastGain &&
             halves_[0]->total(from, to) + halves_[1]->total(from, to) >= kFewestDelaysOfPair) {
-          best.emplace_back(-gains_(from, to), from);
+          best.emplace_back(!relations_.delays(from, to).watched, -gains_(from, to), from);
         }
       }
       keepBest(predecessors_, best);
-      for (const auto& [gain, from] : best) {
+      for (const auto& [waits, gain, from] : best) {
         tracks.push_back({Channel::kDelay, to, from});
         tracks.push_back({Channel::kSlowDelay, to, from});
       }
@@ -115,7 +123,7 @@ class Choice {
         }
         const double misses =
             missRate(asking.gaps, halves_[0]->answers(from, to) + halves_[1]->answers(from, to));
-        if (misses <= kMostMisses) {
+        if (misses <= kMostMisses && relations_.answers(from, to).watched) {
           const double gap =
               static_cast<double>(asking.gap_sum) / static_cast<double>(asking.gaps);
           best.emplace_back(gap / (1 - misses), from);
@@ -128,7 +136,27 @@ class Choice {
     }
   }
 
-  static void keepBest(std::size_t number, Ranked& best) {
+  void addDeadlineTracks(std::vector<Track>& tracks) const {
+    for (EventId to = 0; to < types_.size(); ++to) {
+      Ranked best;  // by the share of the gaps without an answer
+      for (EventId from = 0; from < types_.size(); ++from) {
+        const std::uint64_t gaps = types_.type(from).gaps;
+        const std::uint64_t answers = types_.answers(from, to);
+        if (from != to && answers >= kFewestAnswers &&
+            missRate(gaps, answers) <= kMostMissesOfDeadline &&
+            relations_.deadline(from, to).watched) {
+          best.emplace_back(missRate(gaps, answers), from);
+        }
+      }
+      keepBest(kDeadlines, best);
+      for (const auto& [misses, from] : best) {
+        tracks.push_back({Channel::kDeadline, to, from});
+      }
+    }
+  }
+
+  template <typename Best>
+  static void keepBest(std::size_t number, Best& best) {
     number = std::min(number, best.size());
     std::partial_sort(best.begin(), best.begin() + static_cast<std::ptrdiff_t>(number),
                       best.end());
@@ -138,7 +166,8 @@ class Choice {
   Halves halves_;
   std::size_t predecessors_;
   Gains gains_;
-  Statistics types_;  // counts of both halves, without pairs
+  const Statistics& types_;  // counts of both halves
+  Relations relations_;
 };
 
 /// The counts of one half, with the event types of both and the same ids.
@@ -189,6 +218,8 @@ std::string channelName(Channel channel) {
       return "pairs";
     case Channel::kAnswer:
       return "answers";
+    case Channel::kDeadline:
+      return "deadlines";
   }
   return "";
 }
@@ -232,13 +263,17 @@ LogProbabilities logProbabilities(const Statistics::SumOfDelays& counts) {
   return logsOf(counts);
 }
 
-Watched watch(const Statistics& first, const Statistics& second, std::size_t predecessors) {
+Watched watch(const Statistics& first, const Statistics& second, std::size_t predecessors,
+              const SourceGraph& graph) {
   if (first.vocabulary().types() != second.vocabulary().types()) {
-    return watch(withTypes(first, second, first), withTypes(first, second, second), predecessors);
+    return watch(withTypes(first, second, first), withTypes(first, second, second), predecessors,
+                 graph);
   }
   const Halves halves{&first, &second};
   Watched watched;
-  watched.tracks = Choice(halves, predecessors).tracks();
+  Statistics both = first;
+  both.merge(second);
+  watched.tracks = Choice(both, halves, predecessors, graph).tracks();
   const std::vector<Statistics::Pair> pairs = pairsOf(watched.tracks, first.size());
   watched.halves = {first.only(pairs), second.only(pairs)};
   return watched;

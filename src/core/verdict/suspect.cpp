@@ -1,20 +1,86 @@
 #include "self_awareness/core/verdict/suspect.h"
 
+#include <cmath>
 #include <cstdio>
 
 namespace self_awareness::core {
+namespace {
+
+std::string usualGap(const Suspect& suspect) {
+  char text[80];
+  if (std::isnan(suspect.usual_gap)) {
+    std::snprintf(text, sizeof text, "usually every %.3f to %.3f s", suspect.usual_shortest,
+                  suspect.usual_longest);
+  } else {
+    std::snprintf(text, sizeof text, "usually every %.3f s, at most %.3f s", suspect.usual_gap,
+                  suspect.longest_gap);
+  }
+  return text;
+}
+
+// Seconds of a small time in the unit that shows it.
+std::string inMilliseconds(double seconds) {
+  char text[40];
+  if (seconds < 1) {
+    std::snprintf(text, sizeof text, seconds < 0.1 ? "%.1f ms" : "%.0f ms", 1000 * seconds);
+  } else {
+    std::snprintf(text, sizeof text, "%.2f s", seconds);
+  }
+  return text;
+}
+
+// "7 times of 9 after /a /x T in the last 3.2 s"
+std::string timesOf(const Suspect& suspect) {
+  char text[80];
+  std::snprintf(text, sizeof text, "%zu time%s of %zu", suspect.times,
+                suspect.times == 1 ? "" : "s", suspect.of);
+  std::string times = text;
+  if (!suspect.other.empty()) {
+    times += " after " + suspect.other;
+  }
+  std::snprintf(text, sizeof text, " in the last %.1f s", suspect.lasted);
+  return times + text;
+}
+
+std::string describeDelay(const Suspect& suspect) {
+  if (suspect.times == 0) {
+    return "at unusual delays" + (suspect.other.empty() ? "" : " after " + suspect.other);
+  }
+  const double later = suspect.delay - suspect.usual_delay;
+  const bool scattered = !std::isnan(suspect.scatter);
+  char usual[60];
+  std::snprintf(usual, sizeof usual, ", usually %s%.3f s", suspect.other.empty() ? "every " : "",
+                suspect.usual_delay);
+  return inMilliseconds(scattered ? suspect.scatter : std::abs(later)) +
+         (scattered   ? " earlier or later"
+          : later > 0 ? " later"
+                      : " earlier") +
+         " than usual " + timesOf(suspect) + usual;
+}
+
+std::string describeAnswer(const Suspect& suspect) {
+  if (suspect.of == 0) {
+    return "left out too often after " + suspect.other;
+  }
+  char usual[40] = "never";
+  if (suspect.usual_share > 0) {
+    const double one_in = 1 / suspect.usual_share;
+    std::snprintf(usual, sizeof usual, one_in < 9.95 ? "1 in %.2g" : "1 in %.0f", one_in);
+  }
+  return "left out " + timesOf(suspect) + ", usually " + usual;
+}
+
+}  // namespace
 
 std::string describe(const Suspect& suspect) {
   char text[160];
   switch (suspect.reason) {
     case Suspect::Reason::kSilent:
-      std::snprintf(text, sizeof text, "silent for %.2f s, usually every %.3f to %.3f s",
-                    suspect.silence, suspect.usual_shortest, suspect.usual_longest);
-      return text;
+      std::snprintf(text, sizeof text, "silent for %.2f s, ", suspect.silence);
+      return text + usualGap(suspect);
     case Suspect::Reason::kLate:
-      std::snprintf(text, sizeof text, "came after %.2f s, usually every %.3f to %.3f s",
-                    suspect.silence, suspect.usual_shortest, suspect.usual_longest);
-      return text;
+      std::snprintf(text, sizeof text, "came after %.2f s, ", suspect.silence);
+      return text + usualGap(suspect);
     case Suspect::Reason::kUnknown:
       std::snprintf(text, sizeof text, "never seen in training, %zu in this window",
                     suspect.events);
@@ -29,11 +95,12 @@ std::string describe(const Suspect& suspect) {
                     suspect.usual_fewest, suspect.usual_most);
       return text;
     case Suspect::Reason::kDelay:
-      std::snprintf(text, sizeof text, " %.3f s, usually %.3f to %.3f s", suspect.delay,
-                    suspect.usual_shortest, suspect.usual_longest);
-      return (suspect.other.empty() ? "came after" : "delay after " + suspect.other + ":") + text;
+      return describeDelay(suspect);
     case Suspect::Reason::kAnswer:
-      return "left out too often after " + suspect.other;
+      return describeAnswer(suspect);
+    case Suspect::Reason::kUnanswered:
+      std::snprintf(text, sizeof text, "has not come for %.2f s after ", suspect.silence);
+      return text + suspect.other;
   }
   return "";
 }

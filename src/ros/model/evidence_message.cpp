@@ -12,6 +12,10 @@ namespace {
 
 namespace evidence = core::evidence;
 
+std::int64_t nanoseconds(const ros::Time& stamp) {
+  return static_cast<std::int64_t>(stamp.toNSec());
+}
+
 bool areOffsets(const std::vector<std::uint64_t>& offsets, std::size_t groups,
                 std::size_t entries) {
   return offsets.size() == groups + 1 && offsets.front() == 0 && offsets.back() == entries &&
@@ -65,6 +69,15 @@ self_awareness::Evidence toMessage(const evidence::Statistics& statistics) {
   self_awareness::Evidence message;
   message.rate_windows = statistics.rateWindows();
   message.duration = statistics.duration();
+  for (const evidence::Statistics::Recording& recording : statistics.recordings()) {
+    self_awareness::RecordingCounts counts;
+    counts.start.fromNSec(static_cast<std::uint64_t>(recording.start));
+    counts.end.fromNSec(static_cast<std::uint64_t>(recording.end));
+    counts.longest_silence = recording.longest_silence;
+    counts.events = recording.events;
+    counts.longest_gaps = recording.longest_gaps;
+    message.recordings.push_back(counts);
+  }
   message.longest_offsets.push_back(0);
   for (core::EventId id = 0; id < statistics.size(); ++id) {
     appendType(statistics.type(id), message);
@@ -112,6 +125,12 @@ evidence::Statistics fromMessage(const self_awareness::Evidence& message,
   }
   statistics.addRateWindows(message.rate_windows);
   statistics.addDuration(message.duration);
+  for (const self_awareness::RecordingCounts& counts : message.recordings) {
+    check(counts.events.size() <= n && counts.events.size() == counts.longest_gaps.size(),
+          "its recordings do not fit its event types");
+    statistics.addRecording({nanoseconds(counts.start), nanoseconds(counts.end),
+                             counts.longest_silence, counts.events, counts.longest_gaps});
+  }
   for (core::EventId id = 0; id < n; ++id) {
     statistics.type(id) = typeOf(message, id);
     check(message.pairs[id].id == id, "its evidence does not fit its event types");
@@ -152,10 +171,76 @@ evidence::Track fromMessage(const self_awareness::Track& message) {
                     static_cast<int>(evidence::Channel::kMore) == Track::MORE &&
                     static_cast<int>(evidence::Channel::kDelay) == Track::DELAY &&
                     static_cast<int>(evidence::Channel::kSlowDelay) == Track::SLOW_DELAY &&
-                    static_cast<int>(evidence::Channel::kAnswer) == Track::ANSWER,
+                    static_cast<int>(evidence::Channel::kAnswer) == Track::ANSWER &&
+                    static_cast<int>(evidence::Channel::kDeadline) == Track::DEADLINE,
                 "the message has the channels of the core");
-  check(message.channel <= Track::ANSWER, "it watches what this version does not know");
+  check(message.channel <= Track::DEADLINE, "it watches what this version does not know");
   return {static_cast<evidence::Channel>(message.channel), message.to_id, message.from_id};
+}
+
+self_awareness::RecordingFindings toMessage(const evidence::LimitFinder::Recording& recording) {
+  self_awareness::RecordingFindings message;
+  message.start.fromNSec(static_cast<std::uint64_t>(recording.start));
+  message.end.fromNSec(static_cast<std::uint64_t>(recording.end));
+  message.windows = recording.windows;
+  for (const evidence::LimitFinder::Recording::Part& part : recording.parts) {
+    message.part_windows.push_back(part.windows);
+    message.evidence.insert(message.evidence.end(), part.evidence.begin(), part.evidence.end());
+    message.longest_gaps.insert(message.longest_gaps.end(), part.longest_gaps.begin(),
+                                part.longest_gaps.end());
+  }
+  for (const evidence::LimitFinder::Said said : recording.said) {
+    message.said.push_back(static_cast<std::uint8_t>(said));
+  }
+  return message;
+}
+
+evidence::LimitFinder::Recording fromMessage(const self_awareness::RecordingFindings& message,
+                                             std::size_t tracks, std::size_t types) {
+  using Findings = self_awareness::RecordingFindings;
+  using evidence::LimitFinder;
+  static_assert(static_cast<int>(LimitFinder::Said::kNothing) == Findings::NOTHING &&
+                    static_cast<int>(LimitFinder::Said::kAsUsual) == Findings::AS_USUAL &&
+                    static_cast<int>(LimitFinder::Said::kMisleading) == Findings::MISLEADING,
+                "the message says what the core says");
+  const std::size_t parts = message.part_windows.size();
+  check(message.evidence.size() == parts * tracks && message.longest_gaps.size() == parts * types &&
+            message.said.size() == tracks,
+        "its findings do not fit its tracks");
+  LimitFinder::Recording recording;
+  recording.start = nanoseconds(message.start);
+  recording.end = nanoseconds(message.end);
+  recording.trained_on = true;
+  recording.windows = message.windows;
+  for (std::size_t k = 0; k < parts; ++k) {
+    const auto evidence = message.evidence.begin() + static_cast<std::ptrdiff_t>(k * tracks);
+    const auto gaps = message.longest_gaps.begin() + static_cast<std::ptrdiff_t>(k * types);
+    recording.parts.push_back({message.part_windows[k],
+                               {evidence, evidence + static_cast<std::ptrdiff_t>(tracks)},
+                               {gaps, gaps + static_cast<std::ptrdiff_t>(types)},
+                               0});
+  }
+  for (const std::uint8_t said : message.said) {
+    check(said <= Findings::MISLEADING, "its findings say what this version does not know");
+    recording.said.push_back(static_cast<LimitFinder::Said>(said));
+  }
+  return recording;
+}
+
+self_awareness::Relation toMessage(const evidence::Relation& relation) {
+  self_awareness::Relation message;
+  message.watched = relation.watched;
+  message.reaches = relation.reaches;
+  message.irregular = relation.irregular;
+  message.spread = relation.spread;
+  message.starts = static_cast<std::uint32_t>(relation.starts);
+  message.starts_needed = static_cast<std::uint32_t>(relation.starts_needed);
+  return message;
+}
+
+evidence::Relation fromMessage(const self_awareness::Relation& message) {
+  return {message.watched != 0, message.reaches != 0, message.irregular != 0, message.spread,
+          message.starts, message.starts_needed};
 }
 
 evidence::Limits limitsOf(const self_awareness::EvidenceCalibration& message) {

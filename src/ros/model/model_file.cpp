@@ -198,7 +198,7 @@ std::size_t TrainedModel::pairs() const {
 
 void TrainedModel::watch() {
   check(hasEvidence(), "loaded without its counts");
-  watched = core::evidence::watch(evidence[0], evidence[1], predecessors);
+  watched = core::evidence::watch(evidence[0], evidence[1], predecessors, graph);
 }
 
 void TrainedModel::dropCounts() {
@@ -247,6 +247,9 @@ self_awareness::Model toMessage(const TrainedModel& model) {
     message.graph.push_back(graphMessage(edge));
   }
   message.recordings = model.recordings;
+  for (const core::evidence::LimitFinder::Recording& recording : model.findings) {
+    message.findings.push_back(toMessage(recording));
+  }
   if (model.calibration) {
     message.calibration.push_back(*model.calibration);
   }
@@ -278,6 +281,10 @@ TrainedModel fromMessage(const self_awareness::Model& message) {
     model.graph.connect(edge.publisher, edge.topic, edge.subscriber);
   }
   model.recordings = message.recordings;
+  for (const self_awareness::RecordingFindings& findings : message.findings) {
+    model.findings.push_back(
+        fromMessage(findings, model.watched.tracks.size(), model.vocabulary().size()));
+  }
   check(message.calibration.size() <= 1, "it has more than one calibration");
   if (!message.calibration.empty()) {
     model.calibration = message.calibration.front();

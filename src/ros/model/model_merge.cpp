@@ -82,6 +82,7 @@ void merge(TrainedModel& model, const TrainedModel& other) {
   model.recordings.insert(model.recordings.end(), other.recordings.begin(),
                           other.recordings.end());
   model.watched = {};
+  model.findings.clear();
   model.calibration.reset();
   model.evidence_calibration.reset();
   model.stamp = std::max(model.stamp, other.stamp);

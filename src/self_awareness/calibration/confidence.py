@@ -19,7 +19,7 @@ def wilson(found: int, of: int) -> Interval:
     return max(0.0, centre - half), min(1.0, centre + half)
 
 
-def poisson_rate(count: int, time: float) -> Interval:
+def poisson_rate(count: float, time: float) -> Interval:
     """Return the score interval of a rate by the number of events in a time > 0."""
     centre = count + _Z * _Z / 2.0
     half = _Z * math.sqrt(count + _Z * _Z / 4.0)

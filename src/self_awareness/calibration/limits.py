@@ -6,7 +6,6 @@ are added up.
 """
 from __future__ import annotations
 
-import math
 import time
 from contextlib import closing
 from dataclasses import dataclass
@@ -37,6 +36,19 @@ class HeldOut:
     def parts(self, _: TrainedModel) -> Iterable[Part]:
         """Return what is to be judged."""
         return [(self.stamps, self.ids, None)]
+
+
+@dataclass(frozen=True)
+class OfHalf:
+    """A recording of the training in memory: stamps [ns], ids, and the half that it belongs to."""
+
+    stamps: np.ndarray
+    ids: np.ndarray
+    half: int
+
+    def parts(self, _: TrainedModel) -> Iterable[Part]:
+        """Return what is to be judged."""
+        return [(self.stamps, self.ids, self.half)]
 
 
 @dataclass(frozen=True)
@@ -108,14 +120,14 @@ def cross_fit(trained: TrainedModel, trained_on: Sequence[TrainedOn], settle_tim
         BagError: a recording cannot be read any more.
         TooLittleError: the recordings are too short.
     """
-    calibration = find(trained, settle_time, budget, trained_on, workers)
+    calibration = find(trained, settle_time, budget, trained_on, workers, keep_findings=True)
     calibration.method = 'cross-fit'
     calibration.recordings = trained.recordings[-len(trained_on):]
     return calibration
 
 
 def find(trained: TrainedModel, settle_time: int, budget: float, tasks: Sequence[Any],
-         workers: Optional[Workers] = None) -> EvidenceCalibration:
+         workers: Optional[Workers] = None, keep_findings: bool = False) -> EvidenceCalibration:
     """Return limits by recordings; without the method and the recordings, which the caller adds.
 
     Args:
@@ -124,6 +136,7 @@ def find(trained: TrainedModel, settle_time: int, budget: float, tasks: Sequence
         budget: false alarms an hour that the limits allow.
         tasks: HeldOut or TrainedOn recordings.
         workers: who does the work; None: this process.
+        keep_findings: the model keeps what the recordings show, for later calibrations.
 
     Raises:
         BagError: a recording cannot be read.
@@ -131,18 +144,36 @@ def find(trained: TrainedModel, settle_time: int, budget: float, tasks: Sequence
     """
     workers = workers or InProcess()
     judging = _Judging(trained, settle_time, budget)
+    if not keep_findings:
+        judging.finder.merge(trained.findings)
     judging.add_all(tasks, workers, 'limits, first pass')
+    if keep_findings:
+        trained.findings = judging.finder.findings()
     judging.start_second_pass()
     judging.add_all(tasks, workers, 'limits, second pass')
     limits = judging.finder.limits()
     calibration = EvidenceCalibration()
     calibration.limits = limits.tracks
     calibration.linker_limit = limits.linker
+    calibration.relations = judging.finder.relations()
     calibration.budget = budget
-    calibration.false_alarms_per_hour = math.nan
+    calibration.false_alarms_per_hour = judging.finder.expected_rate()
     calibration.windows = judging.finder.windows
     calibration.stamp = int(time.time()) * SECOND_NS
     return calibration
+
+
+def compare_halves(trained: TrainedModel, settle_time: int, recordings_: Sequence[OfHalf]) -> None:
+    """Let a model keep what the recordings of its training show, without limits by them.
+
+    Args:
+        trained: the model.
+        settle_time: left out at the start of every recording [ns].
+        recordings_: all recordings of the training.
+    """
+    judging = _Judging(trained, settle_time, BUDGET)
+    judging.add_all(recordings_, InProcess(), 'training')
+    trained.findings = judging.finder.findings()
 
 
 class TooLittleError(ValueError):

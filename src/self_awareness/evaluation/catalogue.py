@@ -4,9 +4,10 @@ from __future__ import annotations
 from importlib import util
 from typing import Callable, Dict, Sequence
 
-from self_awareness.evaluation.detectors import Evidence, Paper
+from self_awareness.evaluation.detectors import Evidence, Paper, scenario_graph
 from self_awareness.evaluation.peers.frequency import (TOLERANCE, FrequencyMonitor,
                                                        LearnedFrequencyMonitor)
+from self_awareness.evaluation.peers.gaps import GapMonitor
 from self_awareness.evaluation.peers.markov import MarkovScorer
 from self_awareness.evaluation.systems import Scorer, ScoringSystem, System
 
@@ -26,13 +27,14 @@ def _hmm() -> Scorer:
     return HmmScorer()
 
 
-_DETECTORS: Dict[str, Callable[[], System]] = {
-    'evidence': lambda: Evidence(knows_graph=True),
-    'evidence_no_graph': lambda: Evidence(knows_graph=False),
+_SYSTEMS: Dict[str, Callable[[], System]] = {
+    'evidence': lambda: Evidence(scenario_graph()),
+    'evidence_no_graph': lambda: Evidence(set()),
     'paper': Paper,
+    'gaps': GapMonitor,
 }
 
-_PEERS: Dict[str, Callable[[], Scorer]] = {
+_SCORERS: Dict[str, Callable[[], Scorer]] = {
     'frequency': FrequencyMonitor,
     'frequency_learned': LearnedFrequencyMonitor,
     'isolation_forest': _isolation_forest,
@@ -41,21 +43,21 @@ _PEERS: Dict[str, Callable[[], Scorer]] = {
     'markov': MarkovScorer,
 }
 
-# Peers that have a threshold of their own.
+# Scorers that have a threshold of their own.
 _THRESHOLDS = {'frequency': -TOLERANCE}
 
 # Imported when the peer is made: nothing else needs them.
 _LIBRARIES = {'isolation_forest': 'sklearn', 'one_class_svm': 'sklearn', 'hmm': 'hmmlearn'}
 
-NAMES = (*_DETECTORS, *_PEERS)
+NAMES = (*_SYSTEMS, *_SCORERS)
 """Of all systems, the package's own detectors first."""
 
 
 def make(name: str) -> System:
     """Return a new system by its name, one of NAMES."""
-    if name in _DETECTORS:
-        return _DETECTORS[name]()
-    return ScoringSystem(name, _PEERS[name](), _THRESHOLDS.get(name))
+    if name in _SYSTEMS:
+        return _SYSTEMS[name]()
+    return ScoringSystem(name, _SCORERS[name](), _THRESHOLDS.get(name))
 
 
 def check_libraries(names: Sequence[str]) -> None:

@@ -1,6 +1,7 @@
 """The package's own detectors as systems to evaluate: a class for each."""
 from __future__ import annotations
 
+import math
 from typing import List, Optional, Sequence, Set, Tuple
 
 import numpy as np
@@ -9,7 +10,7 @@ from self_awareness import (DEFAULT_WINDOW, EVIDENCE_THRESHOLD, PREDECESSORS, De
                             EncodingRules, EventType, EvidenceModel, Model, TrainedModel, Training,
                             Verdicts, judge_by_evidence)
 from self_awareness.calibration import limits
-from self_awareness.calibration.limits import HeldOut
+from self_awareness.calibration.limits import HeldOut, OfHalf
 from self_awareness.evaluation.systems import (Judged, SystemAlarm, common_threshold, distinct,
                                                required)
 from self_awareness.evaluation.windowed_events import WindowedEvents
@@ -28,7 +29,7 @@ class Paper:
 
     def train(self, recordings: Sequence[WindowedEvents]) -> None:
         """Count the delays."""
-        trained = _trained(recordings, paper=True)
+        trained = _counted(recordings, paper=True)
         self._types = trained.event_types
         self._model = Model(trained)
 
@@ -52,33 +53,43 @@ class Paper:
 
 
 class Evidence:
-    """The evidence detector (`detector: evidence`), with limits for the default budget.
+    """The evidence detector (`detector: evidence`).
 
     Args:
-        knows_graph: whether the model holds who listens to whom, as after a training
-            while the robot runs; if not, it was trained on bags alone.
+        graph: publisher, topic and subscriber, as the model holds it after a training while the
+            robot runs; empty: it was trained on bags alone.
         predecessors: of an event type that are watched at most.
+        budget: false alarms an hour that the limits allow.
     """
 
-    def __init__(self, knows_graph: bool, predecessors: int = PREDECESSORS) -> None:
-        self.name = 'evidence' if knows_graph else 'evidence_no_graph'
-        self._graph = _scenario_graph() if knows_graph else set()
+    def __init__(self, graph: Set[Tuple[str, str, str]], predecessors: int = PREDECESSORS,
+                 budget: float = limits.BUDGET) -> None:
+        self.name = 'evidence' if graph else 'evidence_no_graph'
+        self._graph = graph
         self._predecessors = predecessors
+        self._budget = budget
         self._trained: Optional[TrainedModel] = None
         self._model: Optional[EvidenceModel] = None
 
     def train(self, recordings: Sequence[WindowedEvents]) -> None:
         """Count the delays and gaps."""
-        self._trained = _trained(recordings, self._predecessors)
-        self._trained.graph = self._graph
-        self._model = EvidenceModel(self._trained)
+        trained = _counted(recordings, self._predecessors)
+        trained.graph = self._graph
+        trained.watch()
+        if len(recordings) > 1:
+            encoded = [recording.encoded(trained.event_types) for recording in recordings]
+            limits.compare_halves(trained, DetectorParameters().settle_time,
+                                  [OfHalf(recording.stamps, recording.ids, index % 2)
+                                   for index, recording in enumerate(encoded)])
+        self._trained = trained
+        self._model = EvidenceModel(trained)
 
     def calibrate(self, recordings: Sequence[WindowedEvents]) -> None:
         """Find the limits."""
         trained: TrainedModel = required(self._trained, self.name, 'train')
         encoded = [recording.encoded(trained.event_types) for recording in recordings]
         trained.evidence_calibration = limits.find(
-            trained, DetectorParameters().settle_time, limits.BUDGET,
+            trained, DetectorParameters().settle_time, self._budget,
             [HeldOut(recording.stamps, recording.ids) for recording in encoded])
 
     def judge(self, recording: WindowedEvents) -> Judged:
@@ -86,6 +97,12 @@ class Evidence:
         trained: TrainedModel = required(self._trained, self.name, 'train')
         return _judged(recording.encoded(trained.event_types),
                        self.verdicts(recording, DetectorParameters()), EVIDENCE_THRESHOLD)
+
+    @property
+    def expected_per_hour(self) -> float:
+        """The false alarms an hour that the calibration expects; NaN: it does not say."""
+        calibration = None if self._trained is None else self._trained.evidence_calibration
+        return math.nan if calibration is None else calibration.false_alarms_per_hour
 
     def verdicts(self, recording: WindowedEvents, parameters: DetectorParameters) -> Verdicts:
         """Return what the detector says of a recording, suspicions included."""
@@ -96,25 +113,25 @@ class Evidence:
                                  encoded.ids, encoded.end - 1)
 
 
-def _trained(recordings: Sequence[WindowedEvents], predecessors: int = PREDECESSORS,
+def _counted(recordings: Sequence[WindowedEvents], predecessors: int = PREDECESSORS,
              paper: bool = False) -> TrainedModel:
     training = Training(EncodingRules(), window=DEFAULT_WINDOW, predecessors=predecessors,
                         evidence=not paper, paper=paper)
     for recording in recordings:
         training.add_events(recording.event_types, recording.stamps, recording.ids)
-    return training.model(watch=not paper)
+    return training.model(watch=False)
 
 
 def _judged(encoded: WindowedEvents, verdicts: Verdicts, threshold: float) -> Judged:
     alarms = [SystemAlarm(alarm.start, alarm.end, alarm.cleared,
                           distinct([encoded.event_types[suspect.id].source
-                                    for suspect in alarm.suspects]))
+                                    for suspect in alarm.suspects]), alarm.evidence)
               for alarm in verdicts.alarms]
     return Judged(verdicts.start, verdicts.abnormal, np.nan_to_num(verdicts.score),
                   verdicts.settling, alarms, threshold, verdicts.suspicion)
 
 
-def _scenario_graph() -> Set[Tuple[str, str, str]]:
+def scenario_graph() -> Set[Tuple[str, str, str]]:
     """Return who listens to whom in the robot that comes with the package."""
     components = load_scenario().components
     return {(f'/{publisher.name}', topic, f'/{listener.name}')

@@ -11,14 +11,21 @@ import tempfile
 from pathlib import Path
 from typing import Iterator, Optional, Sequence
 
+from self_awareness.calibration.limits import BUDGET
 from self_awareness.commands import cli
 from self_awareness.evaluation import catalogue
+from self_awareness.evaluation.families import experiment as families, report as families_report
+from self_awareness.evaluation.families.kinds import FAMILIES
+from self_awareness.evaluation.families.protocol import KINDS, MOST_STARTS, Learning
 from self_awareness.evaluation.recordings import outages, report as recordings_report
 from self_awareness.evaluation.simulated import experiment, report
 from self_awareness.evaluation.simulated.experiment import Plan
 from self_awareness.evaluation.simulated.records import default_faults
 from self_awareness.follow_me.faults import effect_of
 from self_awareness.follow_me.scenario import load_scenario
+
+_SHORT = Learning(2, 30.0, 1, 60.0)
+_FAULTS = tuple(kind.split()[0] for kind in KINDS)
 
 _EPILOG = """\
 scikit-learn and hmmlearn, which three of the peers need, are no part of the package:
@@ -59,6 +66,22 @@ def _recordings(arguments: argparse.Namespace, command: str) -> None:
         print(f'written: {path}')
 
 
+def _families(arguments: argparse.Namespace, command: str) -> None:
+    learnings = [Learning.of(starts, arguments.training, arguments.calibration)
+                 for starts in arguments.starts]
+    if arguments.short:
+        learnings.append(_SHORT)
+    plan = families.Plan(
+        tuple(arguments.families), tuple(range(arguments.seed, arguments.seed + arguments.robots)),
+        tuple(learnings), tuple(arguments.systems), tuple(arguments.budgets), arguments.hours,
+        tuple(kind for kind in KINDS if kind.split()[0] in arguments.faults))
+    catalogue.check_libraries(plan.systems)
+    arguments.output.mkdir(parents=True, exist_ok=True)
+    results = families.run(plan, arguments.jobs)
+    for path in families_report.write(arguments.output, plan, results, command):
+        print(f'written: {path}')
+
+
 def _live(arguments: argparse.Namespace, command: str) -> None:
     # ROS is imported only here: the other parts do not need it.
     from self_awareness.evaluation.live import evaluation, session
@@ -96,6 +119,10 @@ def _parser() -> argparse.ArgumentParser:
         'simulated', help='the simulated follow-me robot, in simulated time',
         description='Every system learns from the same records of the simulated robot, and judges '
         'the same normal operation and the same faults, once for every seed.'))
+    _add_families(parts.add_parser(
+        'families', help='simulated robots as different as possible, drawn by seed',
+        description='Every system learns from few starts of each robot and from many, watches '
+        'hours of normal operation in others, and judges every component\'s faults.'))
     _add_recordings(parts.add_parser(
         'recordings', help='recordings of real robots that others made',
         description='The outages in recordings of real robots, and false alarms on them.'))
@@ -162,6 +189,39 @@ def _add_simulated(parser: argparse.ArgumentParser) -> None:
                         help='seeds at a time (default: as many as there are cores)')
 
 
+def _add_families(parser: argparse.ArgumentParser) -> None:
+    parser.set_defaults(work=_families)
+    _add_output(parser, f'the page, its figures and, in the folder {report.FULL}, all numbers')
+    parser.add_argument('--families', nargs='+', choices=FAMILIES, default=list(FAMILIES),
+                        metavar='FAMILY', help='evaluate robots of these only: '
+                        f'{", ".join(FAMILIES)} (default: all)')
+    parser.add_argument('--robots', type=cli.count, default=3, metavar='N',
+                        help='robots of each family, each with the next seed (default: 3)')
+    parser.add_argument('--seed', type=cli.count, default=1, help='the first seed (default: 1)')
+    parser.add_argument('--starts', type=cli.checked(_starts), nargs='+', default=[1, 2, 4, 8],
+                        metavar='N', help='starts to train on, in turn; half as many, but one at '
+                        'least, are calibrated on (default: 1 2 4 8)')
+    parser.add_argument('--training', type=cli.checked(_calibration_s), default=150.0, metavar='S',
+                        help='length of a recording to train on [s] (default: 150)')
+    parser.add_argument('--calibration', type=cli.checked(_calibration_s), default=150.0,
+                        metavar='S', help='length of one to calibrate on [s] (default: 150)')
+    parser.add_argument('--short', action='store_true', help=f'learn from {_SHORT} as well')
+    parser.add_argument('--hours', type=cli.checked(_hours), default=2.0, metavar='H',
+                        help='normal operation that is watched, for each robot (default: 2)')
+    parser.add_argument('--budgets', type=cli.checked(_budget), nargs='+', default=[BUDGET],
+                        metavar='B', help='false alarms an hour that limits are made for, in '
+                        f'turn; faults are judged with the first (default: {BUDGET:g})')
+    parser.add_argument('--systems', nargs='+', choices=catalogue.NAMES,
+                        default=families.SYSTEMS, metavar='SYSTEM',
+                        help=f'evaluate these: {", ".join(catalogue.NAMES)} '
+                        f'(default: {" ".join(families.SYSTEMS)})')
+    parser.add_argument('--faults', nargs='*', choices=_FAULTS, default=_FAULTS, metavar='FAULT',
+                        help=f'kinds of faults: {", ".join(_FAULTS)}; none at all if no name '
+                        'follows (default: all)')
+    parser.add_argument('--jobs', type=cli.count, default=os.cpu_count(), metavar='N',
+                        help='robots at a time (default: as many as there are cores)')
+
+
 def _calibration_s(text: str) -> float:
     value = float(text)
     if not 10.0 <= value <= 86400.0:
@@ -173,4 +233,25 @@ def _share(text: str) -> float:
     value = float(text)
     if not 0.0 <= value < 1.0:
         raise ValueError(f'expected a share from 0 to less than 1, not {text}')
+    return value
+
+
+def _starts(text: str) -> int:
+    value = int(text)
+    if not 1 <= value <= MOST_STARTS:
+        raise ValueError(f'expected starts from 1 to {MOST_STARTS}, not {text}')
+    return value
+
+
+def _hours(text: str) -> float:
+    value = float(text)
+    if not 0.02 <= value <= 1000.0:
+        raise ValueError(f'expected hours from 0.02 to 1000, not {text}')
+    return value
+
+
+def _budget(text: str) -> float:
+    value = float(text)
+    if not 0.001 <= value <= 1000.0:
+        raise ValueError(f'expected false alarms an hour from 0.001 to 1000, not {text}')
     return value

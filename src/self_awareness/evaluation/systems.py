@@ -25,12 +25,14 @@ class SystemAlarm:
         cleared: False if it stood to the end of the recording.
         suspects: sources that the alarm is blamed on when it is raised, best first, each once;
             None if the system names no suspects.
+        evidence: what raised it, in words; empty if the system does not say.
     """
 
     start: int
     end: int
     cleared: bool
     suspects: Optional[List[str]]
+    evidence: str = ''
 
 
 @dataclass(frozen=True)

@@ -5,11 +5,13 @@ The windows of all systems are DEFAULT_WINDOW long and lie on the absolute time 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Dict, List, Sequence
+from typing import Callable, Dict, Hashable, List, Sequence, TypeVar
 
 import numpy as np
 
 from self_awareness import DEFAULT_WINDOW, EventType
+
+_Key = TypeVar('_Key', bound=Hashable)
 
 
 @dataclass(frozen=True)
@@ -74,3 +76,20 @@ def counts(recording: WindowedEvents, types: Sequence[EventType]) -> np.ndarray:
     table = np.zeros((len(recording.starts()), len(types) + 1))
     np.add.at(table, (recording.window_of_events(), known_ids(recording, types)), 1.0)
     return table
+
+
+def stamps_by(recording: WindowedEvents, key: Callable[[EventType], _Key]
+              ) -> Dict[_Key, np.ndarray]:
+    """Return the stamps of the events by something of their types, such as the topic [ns].
+
+    What no event has is not in it.
+    """
+    keys: Dict[_Key, int] = {}
+    numbers = [keys.setdefault(key(event_type), len(keys))
+               for event_type in recording.event_types]
+    # Few bits: these are sorted by radix, which is five times as fast.
+    of_events = np.array(numbers, dtype=np.min_scalar_type(len(keys)))[recording.ids]
+    order = np.argsort(of_events, kind='stable')
+    edges = np.searchsorted(of_events[order], np.arange(len(keys) + 1))
+    return {known: recording.stamps[order[begin:end]]
+            for known, begin, end in zip(keys, edges, edges[1:]) if end > begin}

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <memory>
 #include <string>
 #include <utility>
@@ -25,9 +26,13 @@ class EvidenceBlameTest : public testing::Test {
  protected:
   EvidenceBlameTest() {
     for (const Event& event : robot(10 * kSecond, 3)) {
-      scorer_.add(event);
-      last_ = event.stamp;
+      add(event);
     }
+  }
+  void add(const Event& event) {
+    scorer_.add(event);
+    hindsight_.add(event);
+    last_ = event.stamp;
   }
   // Names the suspects when tracks have reached these shares of their limits.
   std::vector<Suspect> suspects(const std::vector<std::pair<Track, double>>& reached,
@@ -37,7 +42,7 @@ class EvidenceBlameTest : public testing::Test {
       shares.at(indexOf(model_->tracks(), track.channel, track.to, track.from)) = share;
     }
     scorer_.closeWindow(end);
-    return Blame(model_, graph_).suspects(shares, scorer_, window);
+    return Blame(model_, graph_).suspects(shares, scorer_, hindsight_, window);
   }
   static std::vector<EventId> ids(const std::vector<Suspect>& suspects) {
     std::vector<EventId> ids;
@@ -53,6 +58,7 @@ class EvidenceBlameTest : public testing::Test {
       watch(countsOf({robot(100 * kSecond, 1)}), countsOf({robot(100 * kSecond, 2)})));
   std::shared_ptr<SourceGraph> graph_ = std::make_shared<SourceGraph>();
   Scorer scorer_{model_, kWindow};
+  Hindsight hindsight_{model_};
   std::int64_t last_ = 0;
 };
 
@@ -71,6 +77,16 @@ TEST_F(EvidenceBlameTest, WithoutAGraphTheLeastProbableSilenceComesFirst) {
     EXPECT_NEAR(suspect.silence, 5, 0.5);
     EXPECT_LT(suspect.usual_shortest, suspect.usual_longest);
   }
+}
+
+TEST_F(EvidenceBlameTest, SaysOfASilentOneWhatWasMeasuredInTraining) {
+  const Suspect silent = suspects({{overdue(kA), 1.5}}, last_ + 5 * kSecond).at(0);
+  EXPECT_DOUBLE_EQ(silent.usual_gap * 1e9, model_->meanGap(kA));
+  EXPECT_DOUBLE_EQ(silent.longest_gap * 1e9, static_cast<double>(model_->longestGap(kA)));
+  char text[100];
+  std::snprintf(text, sizeof text, "silent for %.2f s, usually every %.3f s, at most %.3f s",
+                silent.silence, silent.usual_gap, silent.longest_gap);
+  EXPECT_EQ(describe(silent), text);
 }
 
 TEST_F(EvidenceBlameTest, TheRootOfTheSilentComesBeforeItsVictims) {
@@ -97,6 +113,42 @@ TEST_F(EvidenceBlameTest, ARootThatIsNearItsLimitIsNamedAlready) {
   const std::int64_t end = last_ + 5 * kSecond;
   EXPECT_EQ(ids(suspects({{overdue(kA), 0.8}, {overdue(kB), 1.5}}, end)),
             (std::vector<EventId>{kA, kB}));
+}
+
+TEST_F(EvidenceBlameTest, ASilentOneIsWordedByTheTrackThatSpeaksAgainstIt) {
+  const std::int64_t end = last_ + 2 * model_->longestGap(kA);
+  ASSERT_LT(model_->logSurvival(kA, end - *scorer_.lastSeen(kA)), kRareSilence);
+  const Track fewer{Channel::kFewer, kA, kA};
+  const Track answer{Channel::kAnswer, kB, kA};
+  // At half its rate its age is rare, too, but no more than that.
+  EXPECT_EQ(suspects({{overdue(kA), 0.9}, {fewer, 1.4}}, end).at(0).reason, Reason::kRate);
+  EXPECT_EQ(suspects({{overdue(kA), 0.9}, {fewer, 0.8}}, end).at(0).reason, Reason::kSilent);
+  EXPECT_EQ(suspects({{overdue(kA), 1.1}, {fewer, 1.4}}, end).at(0).reason, Reason::kSilent);
+  EXPECT_EQ(suspects({{overdue(kB), 0.9}, {answer, 1.2}}, end).at(0).reason, Reason::kAnswer);
+}
+
+TEST_F(EvidenceBlameTest, LateAnswersAreWordedByWhatTheirSumSaw) {
+  for (int i = 0; i < 12; ++i) {
+    const std::int64_t stamp = last_ + 100 * kMillisecond;
+    add({stamp, kA});
+    add({stamp + 70 * kMillisecond, kB});
+  }
+  const Suspect late = suspects({{{Channel::kDelay, kB, kA}, 1.5}}, last_ + kMillisecond).at(0);
+  EXPECT_EQ(describe(late),
+            "50.0 ms later than usual 12 times of 12 after /a /x T in the last 1.9 s, usually "
+            "0.020 s");
+}
+
+TEST_F(EvidenceBlameTest, AnswersThatAreLeftOutAreWordedByWhatTheirSumSaw) {
+  for (int i = 0; i < 12; ++i) {
+    add({last_ + 100 * kMillisecond, kA});
+    if (i % 3 == 2) {
+      add({last_ + 20 * kMillisecond, kB});
+    }
+  }
+  const Suspect silent = suspects({{{Channel::kAnswer, kB, kA}, 1.5}}, last_).at(0);
+  EXPECT_EQ(describe(silent),
+            "left out 8 times of 11 after /a /x T in the last 1.2 s, usually never");
 }
 
 TEST_F(EvidenceBlameTest, ALateAnswererIsNamedBeforeTheOneThatAsks) {

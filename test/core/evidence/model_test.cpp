@@ -223,6 +223,41 @@ TEST(EvidenceModel, AHalfMayLackAnEventType) {
   EXPECT_GT(model.overdue(kB, kSecond), 1);
 }
 
+TEST(EvidenceModel, TheLongestGapsAreTheUsualOnesExactly) {
+  // 5 Hz, of which one gap in fifty is 13 ms longer: within one bin.
+  Events events;
+  std::int64_t stamp = 0;
+  for (int i = 0; i <= 1000; ++i) {
+    events.push_back({stamp, kA});
+    stamp += (i % 50 == 7 ? 213 : 200) * kMillisecond;
+  }
+  const Model model(watch(countsOf({events}), kNothing));
+  EXPECT_DOUBLE_EQ(model.usualDelay(kA, kA, 1), 0.213);
+  EXPECT_DOUBLE_EQ(model.usualDelay(kA, kA, 0.99), 0.213);
+  EXPECT_DOUBLE_EQ(model.usualDelay(kA, kA, 0.975), 0.200);
+  EXPECT_DOUBLE_EQ(model.meanGap(kA), 200.26 * kMillisecond);
+  // The shorter ones are known as exactly as their bin, and never longer than the longest.
+  EXPECT_GT(model.usualDelay(kA, kA, 0.01), 0.190);
+  EXPECT_LT(model.usualDelay(kA, kA, 0.01), 0.200);
+  EXPECT_LT(model.usualDelay(kA, kA, 0.96), 0.213);
+  EXPECT_EQ(model.usualDelay(kB, kB, 0.5), 0);
+  EXPECT_EQ(model.meanGap(kB), 0);
+}
+
+TEST(EvidenceModel, UsualDelaysAreEstimatedWithinTheirBin) {
+  // Delays of 20 to 23.7 ms, which fill the bin from 20 ms on evenly.
+  const Events asked = timer(kA, 0, 100 * kSecond, 100 * kMillisecond);
+  Events answered = answers(kB, asked, 20 * kMillisecond);
+  for (std::size_t k = 0; k < answered.size(); ++k) {
+    answered[k].stamp += static_cast<std::int64_t>(k % 38) * kMillisecond / 10;
+  }
+  const Statistics half = countsOf({together({asked, answered})}, 2);
+  const Model model(watch(half, half));
+  for (const double share : {0.05, 0.3, 0.5, 0.8, 0.95}) {
+    EXPECT_NEAR(model.usualDelay(kA, kB, share), 0.020 + 0.0038 * share, 1e-4) << share;
+  }
+}
+
 TEST(EvidenceModel, UsualDelaysAreThoseThatAShareDidNotExceed) {
   const Model model(watch(pairCounts(1), pairCounts(2)));
   EXPECT_NEAR(model.usualDelay(kA, kB, 0.05), 0.020, 0.004);

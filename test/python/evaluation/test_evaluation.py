@@ -15,7 +15,7 @@ from self_awareness.evaluation.simulated import measures, summary, tradeoff
 from self_awareness.evaluation.simulated.records import (default_faults, encode, fault_record,
                                                          normal_record)
 from self_awareness.evaluation.systems import Judged, SystemAlarm, persistent, settling
-from self_awareness.evaluation.windowed_events import WindowedEvents, counts, known_ids
+from self_awareness.evaluation.windowed_events import WindowedEvents, counts, known_ids, stamps_by
 from self_awareness.follow_me.faults import effect_of
 from self_awareness.follow_me.scenario import load_scenario
 from self_awareness.follow_me.simulation import START_S, events, simulate
@@ -58,6 +58,20 @@ def test_types_not_in_the_vocabulary_are_told_apart_behind_it() -> None:
     assert ([encoded.event_types[id_] for id_ in encoded.ids]
             == [recording.event_types[id_] for id_ in recording.ids])
     assert set(known_ids(recording, [camera]).tolist()) == {1}
+
+
+def test_stamps_of_every_topic() -> None:
+    recording = robot(20.0, 1, silent=((8.0, 12.0),))
+    by_topic = stamps_by(recording, lambda event_type: event_type.scope)
+    assert list(by_topic) == ['/scan', '/battery']
+    for id_, stamps in enumerate(by_topic.values()):
+        assert np.array_equal(stamps, recording.stamps[recording.ids == id_])
+    together = stamps_by(recording, lambda event_type: 'all')
+    assert np.array_equal(together['all'], recording.stamps)
+    # A type that never came is left out.
+    more = WindowedEvents([*recording.event_types, EventType('/a', '/b', 'c')], recording.stamps,
+                          recording.ids, recording.end)
+    assert list(stamps_by(more, lambda event_type: event_type)) == [LASER, BATTERY]
 
 
 def test_an_unknown_source_is_blamed() -> None:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from self_awareness import DEFAULT_WINDOW, DetectorParameters, UnknownEvents
-from self_awareness.evaluation.detectors import Evidence, Paper
+from self_awareness.evaluation.detectors import Evidence, Paper, scenario_graph
 from self_awareness.evaluation.simulated.measures import first_alarm
 from self_awareness.evaluation.simulated.records import (CALIBRATION_NAME, RECORD_S,
                                                          TRAINING_NAMES, FaultRecord, fault_record,
@@ -32,7 +32,7 @@ def _systems() -> Systems:
     scenario = load_scenario()
     training = [normal_record(scenario, SEED, name, RECORD_S) for name in TRAINING_NAMES]
     calibration = [normal_record(scenario, SEED, CALIBRATION_NAME, CALIBRATION_S)]
-    evidence, paper = Evidence(knows_graph=True), Paper()
+    evidence, paper = Evidence(scenario_graph()), Paper()
     evidence.train(training)
     evidence.calibrate(calibration)
     paper.train(training)

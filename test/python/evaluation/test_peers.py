@@ -9,6 +9,7 @@ from self_awareness import EventType
 from self_awareness.evaluation import catalogue
 from self_awareness.evaluation.peers.frequency import (SPAN, FrequencyMonitor,
                                                        LearnedFrequencyMonitor, messages_in_span)
+from self_awareness.evaluation.peers.gaps import GapBounds, GapMonitor
 from self_awareness.evaluation.systems import ScoringSystem, System
 from self_awareness.evaluation.windowed_events import WindowedEvents
 from self_awareness.stamps import SECOND_NS
@@ -118,3 +119,44 @@ def test_a_system_that_was_not_calibrated_says_so() -> None:
     system.train([robot(30.0, 1)])
     with pytest.raises(ValueError, match='mine: calibrate first'):
         system.judge(robot(30.0, 2))
+
+
+def test_gaps_may_last_a_quarter_longer_than_ever_seen() -> None:
+    monitor = GapMonitor()
+    monitor.train([steady(30.0, 10.0)])
+    bounds, = monitor.bounds.values()
+    assert bounds == (0.1 * SECOND_NS, 50, 50)
+    ages = np.array([np.nan, 0.124, 0.125, 0.25]) * SECOND_NS
+    assert bounds.deviation(ages, np.full(4, 50.0)).tolist() == pytest.approx([0.0, 0.0, 0.0, 1.0])
+
+
+def test_rates_may_leave_what_was_seen_by_a_quarter() -> None:
+    bounds = GapBounds(1e9, 40.0, 60.0)
+    counts = np.array([np.nan, 29.0, 30.0, 75.0, 90.0])
+    assert bounds.deviation(np.zeros(5), counts).tolist() == pytest.approx(
+        [0.0, 1.0 / 30.0, 0.0, 0.0, 0.2])
+    # Where a quarter is less than one event, it takes more than one event.
+    slow = GapBounds(1e9, 2.0, 3.0)
+    assert slow.deviation(np.zeros(4), np.array([0.0, 1.0, 4.0, 5.0])).tolist() \
+        == pytest.approx([1.0, 0.0, 0.0, 0.25])
+    # A recording shorter than the span says nothing about the rate.
+    short = GapBounds(1e9, np.inf, 0.0)
+    assert short.deviation(np.array([0.0, 2.5e9]), np.array([3.0, 0.0])).tolist() == [0.0, 1.0]
+
+
+def test_the_gap_monitor_learns_from_the_calibration_too() -> None:
+    monitor = GapMonitor()
+    monitor.train([steady(30.0, 10.0)])
+    slow = steady(30.0, 7.0)
+    assert monitor.judge(slow).abnormal.mean() > 0.5
+    monitor.calibrate([slow])
+    assert not monitor.judge(slow).abnormal.any()
+    assert not monitor.judge(steady(30.0, 10.0)).abnormal.any()
+
+
+def test_the_gap_monitor_blames_who_is_silent() -> None:
+    monitor = GapMonitor()
+    monitor.train([robot(60.0, 1)])
+    judged = monitor.judge(robot(60.0, 2, silent=((30.0, 60.0),)))
+    assert [alarm.suspects for alarm in judged.alarms] == [['/player']]
+    assert 0.1 <= (judged.alarms[0].start - START) / SECOND_NS - 30.0 <= 0.5

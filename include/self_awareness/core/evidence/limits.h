@@ -5,59 +5,57 @@
 #include <optional>
 #include <vector>
 
-#include "self_awareness/core/evidence/block_maxima.h"
 #include "self_awareness/core/evidence/model.h"
 #include "self_awareness/core/stream/windows.h"
+#include "self_awareness/core/verdict/source_graph.h"
 
 namespace self_awareness::core::evidence {
-
-/// Limit that the largest value of a block exceeds with a small probability: a Gumbel distribution
-/// is fitted to the maxima of blocks by L-moments (Hosking 1990), and extrapolated
-/// (docs/method.md, section 5.3).
-/// @param maxima of at least two blocks
-/// @param probability 0 to 1
-double gumbelLimit(const BlockMaxima& maxima, double probability);
-
-/// Age [ns] that gaps between two events of a type reach less often than a rate says: the excess
-/// of the longest gaps over the shortest of them is taken for exponential, and extrapolated
-/// (docs/method.md, section 5.2).
-/// @param longest_gaps [ns], the longest first, at least two
-/// @param duration in which they were the longest [ns]
-/// @param rate of such gaps [1/ns]
-double overdueAge(const std::vector<std::int64_t>& longest_gaps, std::int64_t duration,
-                  double rate);
 
 class MisleadingPairs;
 class Scorer;
 
 /// Finds the limits of a model's evidence on recordings of normal operation (docs/method.md,
-/// section 5). The first pass finds those of the tracks: for all of them together, a number of
-/// false alarms an hour is allowed. The second pass over the same recordings finds that of the
-/// linker, which is allowed the same number again.
+/// section 5). The first pass finds those of the tracks, the second pass over the same recordings
+/// that of the linker. A number of false alarms an hour is allowed to all of them together.
 class LimitFinder : private WindowObserver {
  public:
   struct Parameters {
     std::int64_t window = kDefaultWindow;   ///< length of a window [ns]
     std::int64_t settle_time = 5000000000;  ///< left out at a recording's start [ns]
-    double false_alarms_per_hour = 0.5;     ///< allowed in each pass, > 0
+    double false_alarms_per_hour = 0.5;     ///< allowed, > 0
 
     /// @throw std::invalid_argument if a value is out of range.
     void validate() const;
   };
 
-  /// What recordings say. Findings of parts of the recordings add up to those of all, in any
-  /// order. They do not grow with the length of the recordings.
-  struct Findings {
-    std::uint64_t windows = 0;        ///< looked at in the first pass
-    std::int64_t duration = 0;        ///< [ns]
-    std::uint64_t blocks = 0;         ///< of the first pass
-    std::vector<BlockMaxima> maxima;  ///< largest evidence of blocks, by track; none for overdue
-    std::vector<std::vector<std::int64_t>> longest_gaps;  ///< [ns], by id
-    std::vector<bool> misleading;                         ///< by track
-    BlockMaxima linker_maxima;                            ///< of the second pass
+  /// What a delay track said in a recording.
+  enum class Said : std::uint8_t {
+    kNothing,    ///< there were too few delays
+    kAsUsual,    ///< as much as in training
+    kMisleading  ///< less than in training, in a part of the recording
   };
+  /// What one recording says. It is cut into at most kMostParts parts of one length.
+  struct Recording {
+    std::int64_t start = 0;      ///< stamp of the first event [ns]
+    std::int64_t end = 0;        ///< stamp of the last one [ns]
+    bool trained_on = false;     ///< it was judged by what the other half of the training says
+    std::uint64_t windows = 0;   ///< looked at
+    /// A part of it.
+    struct Part {
+      std::uint64_t windows = 0;               ///< looked at
+      std::vector<float> evidence;             ///< the largest, by track; 0 for overdue
+      std::vector<std::int64_t> longest_gaps;  ///< [ns], by id; 0: none
+      float linker = 0;                        ///< the largest of the second pass
+    };
+    std::vector<Part> parts;
+    std::vector<Said> said;  ///< by track
+  };
+  /// What recordings say. Findings of some add up to those of all, in any order.
+  using Findings = std::vector<Recording>;
 
-  LimitFinder(std::shared_ptr<const Model> model, const Parameters& parameters);
+  /// @param graph who hears whom
+  LimitFinder(std::shared_ptr<const Model> model, const Parameters& parameters,
+              SourceGraph graph = {});
   ~LimitFinder() override;
 
   /// Starts a recording: the next events belong to it.
@@ -68,33 +66,44 @@ class LimitFinder : private WindowObserver {
   /// Ends the recording.
   void finish();
   /// Ends the first pass and finds the limits of the tracks. All recordings must then come once
-  /// more.
-  /// @throw std::invalid_argument if there was too little data: fewer than kFewestBlocks blocks,
-  /// or so little to train on that the model has no tracks
+  /// more, but those that were merged from an earlier search.
+  /// @throw std::invalid_argument if there was too little data: less than kLeastTime, or so little
+  /// to train on that the model has no tracks
   void startSecondPass();
   /// Starts the second pass with the limits that a first one elsewhere found.
   /// @throw std::invalid_argument if they belong to another model
   void startSecondPass(Limits limits);
-  /// What the recordings that have ended said, in this pass and those before.
-  Findings findings() const;
+  /// What the recordings that have ended said, in this pass; in the second, of the linker only.
+  const Findings& findings() const { return second_pass_ ? linker_findings_ : findings_; }
+  /// What they said in the first pass.
+  const Findings& firstFindings() const { return findings_; }
   /// Adds what recordings said elsewhere, in the same pass as here.
   /// @throw std::invalid_argument if the findings belong to another model
   void merge(const Findings& other);
   /// Limits of the tracks alone, once the second pass has started: the linker's is still missing.
   const Limits& trackLimits() const { return limits_; }
   /// Limits of the tracks and of the linker.
-  /// @throw std::logic_error before the second pass, or if it has had fewer than two blocks so far
+  /// @throw std::logic_error before the second pass, or if it has had no recording so far
   Limits limits() const;
+  /// False alarms an hour to be expected with these limits: what recordings show that are left out
+  /// in turn.
+  /// @throw std::logic_error as limits()
+  double expectedRate() const;
+  /// What speaks for the relation that a track watches, from the second pass on; the own history of
+  /// an event type is always watched.
+  const std::vector<Relation>& relations() const { return relations_; }
 
   const Parameters& parameters() const { return parameters_; }
+  const SourceGraph& graph() const { return graph_; }
   bool inSecondPass() const { return second_pass_; }
-  /// Number of windows that were looked at, in one pass.
-  std::uint64_t windows() const { return windows_seen_; }
+  /// Number of windows that were looked at, in the first pass.
+  std::uint64_t windows() const;
 
-  /// Length of the blocks [ns]: longer than evidence remembers.
-  static constexpr std::int64_t kBlock = 10 * kNanosecondsPerSecond;
-  /// Fewer blocks are too little to find limits.
-  static constexpr std::uint64_t kFewestBlocks = 5;
+  /// Shorter parts are no sample of what a robot does [ns].
+  static constexpr std::int64_t kShortestPart = 30 * kNanosecondsPerSecond;
+  static constexpr std::size_t kMostParts = 16;
+  /// Less time than this is too little to find limits [ns].
+  static constexpr std::int64_t kLeastTime = 50 * kNanosecondsPerSecond;
 
  private:
   ObservedEvent observe(const Event& event) override;
@@ -102,32 +111,31 @@ class LimitFinder : private WindowObserver {
   void onClockStep() override;
   void endRecording();
   void startScoring();
-  void closeBlock();
+  void startPart();
+  /// Joins neighbouring parts: they then last twice as long.
+  void joinParts();
   double meanGap(EventId id) const;  // of training [ns]
-  /// @param rate false alarms an hour that the track may raise
-  double limit(std::size_t track, double rate) const;
+  double hoursOf(std::uint64_t windows) const;
+  void findRelations();
+  void findLimits();
 
   std::shared_ptr<const Model> model_;
   Parameters parameters_;
+  SourceGraph graph_;
   std::shared_ptr<const Model> judging_;
   std::unique_ptr<Scorer> scorer_;
   Windows windows_;
   std::optional<std::int64_t> first_stamp_;  // of the recording [ns]
-  std::int64_t last_stamp_ = 0;              // [ns], once there was a first
-  std::uint64_t windows_seen_ = 0;
-
-  std::vector<double> block_;  // largest evidence, by track
-  std::size_t block_windows_ = 0;
-  std::uint64_t blocks_ = 0;
-  std::vector<BlockMaxima> maxima_;     // by track, none for overdue
-  std::vector<Statistics::Type> gaps_;  // longest gaps, by id
-  std::int64_t duration_ = 0;           // [ns]
+  Recording recording_;                      // the open one
+  std::uint64_t part_windows_ = 0;           // length of its parts
   std::unique_ptr<MisleadingPairs> misleading_;
 
+  Findings findings_;
+  Findings linker_findings_;
   bool second_pass_ = false;
   Limits limits_;
-  double linker_block_ = 0;
-  BlockMaxima linker_maxima_;
+  std::vector<Relation> relations_;  // by track
+  double tracks_rate_ = 0;           // expected false alarms an hour of the tracks
 };
 
 }  // namespace self_awareness::core::evidence

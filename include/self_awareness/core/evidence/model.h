@@ -53,8 +53,15 @@ class Model {
   double logSurvival(EventId id, std::int64_t age) const;
   /// Longest gap between two events of the type in training [ns]; 0 if there was none.
   std::int64_t longestGap(EventId id) const;
-  /// Delay from `from` to `to` [s] that a share (0 to 1) of the delays in training did not exceed,
-  /// as exactly as the bins are.
+  /// Longest time without any event in training [ns].
+  std::int64_t longestSilence() const;
+  /// Whether a deadline track counts requests without an answer, not seconds: requests come in
+  /// series (docs/method.md, section 3.6).
+  bool countsRequests(std::size_t track) const;
+  /// Mean gap between two events of the type in training [ns]; 0 if there was none.
+  double meanGap(EventId id) const;
+  /// Delay from `from` to `to` [s] that a share (0 to 1) of the delays in training did not exceed.
+  /// Exact for the longest gaps of a type; an estimate within the bin for the others.
   double usualDelay(EventId from, EventId to, double share) const;
   /// Number of events of a type in kRateSpan that lies this many spreads above the mean.
   double usualCount(EventId id, double spreads) const {
@@ -75,6 +82,9 @@ class Model {
   double missed(std::size_t track) const { return steps_[track].missed; }
   /// Share of the gaps of `from` in which usually no `to` comes, of an answer track: p, 0 to 1.
   double missRate(std::size_t track) const { return steps_[track].usual; }
+  /// Time [ns] in which the answer of an answer track usually comes: what asks again sooner asks
+  /// nothing new (docs/method.md, section 3.5).
+  std::int64_t usualAnswer(std::size_t track) const { return steps_[track].delay; }
   /// Least limit that a track may have, in units of its evidence (docs/method.md, section 5.3).
   double leastLimit(std::size_t track) const;
 
@@ -97,11 +107,14 @@ class Model {
     double answered = 0;
     double missed = 0;
     double usual = 0;  // share that is missed
+    std::int64_t delay = 0;  // that answers usually take [ns]
   };
 
   void learnGaps();
   void learnRates();
   void learnDelays(const std::array<Statistics, 2>& halves);
+  /// Takes the surprise from delays that differ from the usual ones by little.
+  void forgiveSmallEffects(EventId from, EventId to, Surprises& surprises) const;
   void learnAnswers();
 
   /// What the probabilities are learned from.

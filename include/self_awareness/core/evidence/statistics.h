@@ -57,6 +57,15 @@ class Statistics {
   };
   /// Ordered by id, each once.
   using Partners = std::vector<Partner>;
+  /// What one recording said of every event type. The independent sample of what is normal is a
+  /// recording, not an event: what did not vary in one may differ in the next.
+  struct Recording {
+    std::int64_t start = 0;  ///< stamp of the first event [ns]
+    std::int64_t end = 0;    ///< latest stamp [ns]
+    std::int64_t longest_silence = 0;  ///< between two events in a row, of any types [ns]
+    std::vector<std::uint64_t> events;        ///< by id; 0 for ids beyond
+    std::vector<std::int64_t> longest_gaps;   ///< [ns] by id, as long as events; 0: no gap
+  };
   /// An ordered pair of event types, `from` before `to`.
   struct Pair {
     EventId from = 0;
@@ -97,6 +106,9 @@ class Statistics {
   /// Windows in which rates were counted, the same for all types.
   std::uint64_t rateWindows() const { return rate_windows_; }
   void addRateWindows(std::uint64_t windows) { rate_windows_ += windows; }
+  /// Recordings that were counted, in the order of their start.
+  const std::vector<Recording>& recordings() const { return recordings_; }
+  void addRecording(Recording recording);
   /// Time between the first and the last event of the recordings [ns].
   std::int64_t duration() const { return duration_; }
   void addDuration(std::int64_t duration) { duration_ += duration; }
@@ -105,6 +117,7 @@ class Statistics {
   Vocabulary vocabulary_;
   std::vector<Type> types_;
   std::vector<Partners> partners_;  // by id: contiguous for the current event
+  std::vector<Recording> recordings_;
   std::uint64_t rate_windows_ = 0;
   std::int64_t duration_ = 0;
 };
@@ -121,10 +134,12 @@ class Trainer {
   /// @throw std::invalid_argument
   Trainer(Statistics& statistics, std::int64_t window);
 
-  /// Forgets what was seen: the next event belongs to a new recording.
+  /// Ends the recording: the next event belongs to a new one.
   void startRecording();
   /// @param event with an id of the statistics' vocabulary; in the order of the recording.
   void add(const Event& event);
+  /// Ends the last recording.
+  void finish() { startRecording(); }
 
  private:
   struct Seen {
@@ -136,6 +151,7 @@ class Trainer {
 
   Statistics& statistics_;
   std::int64_t window_;
+  Statistics::Recording recording_;         // the open one
   std::vector<Seen> last_seen_;             // by id
   std::optional<std::int64_t> last_stamp_;  // [ns]
   std::int64_t newest_stamp_ = 0;           // [ns], once something was seen

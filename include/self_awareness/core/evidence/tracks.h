@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "self_awareness/core/evidence/statistics.h"
+#include "self_awareness/core/verdict/source_graph.h"
 
 namespace self_awareness::core::evidence {
 
@@ -18,10 +19,11 @@ enum class Channel {
   kMore,       ///< more of them than usual
   kDelay,      ///< `to` at unusual delays after `from`, at present
   kSlowDelay,  ///< the same, with less drift; for the linker only
-  kAnswer      ///< `from` without the `to` that usually comes before the next `from`
+  kAnswer,     ///< `from` without the `to` that usually comes before the next `from`
+  kDeadline    ///< the `to` that `from` asks for does not come in time
 };
 
-/// The channel's name as people read it: overdue, rate, pairs or answers.
+/// The channel's name as people read it: overdue, rate, pairs, answers or deadlines.
 std::string channelName(Channel channel);
 
 /// One thing that is watched all the time. What is watched follows from the counts of training.
@@ -29,6 +31,16 @@ struct Track {
   Channel channel = Channel::kOverdue;
   EventId to = 0;
   EventId from = 0;  ///< same as `to` if the channel looks at one event type only
+};
+
+/// A relation between two event types, and what speaks for it (docs/method.md, section 3.6).
+struct Relation {
+  bool watched = false;     ///< what speaks for it is enough
+  bool reaches = false;     ///< messages of the one reach the node of the other
+  bool irregular = false;   ///< the one says more about the other than its own history does
+  double spread = 1;        ///< share of a period that the delays of all starts lie in, 0 to 1
+  std::size_t starts = 0;   ///< that show it
+  std::size_t starts_needed = 0;  ///< with which it would be watched; 0: it is, or no number helps
 };
 
 /// log P by bin [nat].
@@ -76,8 +88,9 @@ struct Watched {
 /// 3.2 to 3.5). Each half gets the event types that it lacks from the other.
 /// @param predecessors number of those of an event type that are watched, the most informative
 /// ones
+/// @param graph who hears whom; empty: not known
 Watched watch(const Statistics& first, const Statistics& second,
-              std::size_t predecessors = kPredecessors);
+              std::size_t predecessors = kPredecessors, const SourceGraph& graph = {});
 
 /// Checks tracks that come from outside.
 /// @param types number of event types

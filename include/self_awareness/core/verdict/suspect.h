@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 
 #include "self_awareness/core/stream/event.h"
@@ -31,27 +32,42 @@ struct Suspect {
     kUnusual,  ///< came at delays after the others that were rare or absent in training
     kRate,     ///< comes more or less often than it should
     kDelay,    ///< comes sooner or later after another event type than it should
-    kAnswer    ///< is left out after another event type more often than it should
+    kAnswer,   ///< is left out after another event type more often than it should
+    kUnanswered  ///< has not come since another event type asked for it
   };
+
+  static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
   EventId id = 0;
   Reason reason = Reason::kSilent;
-  double silence = 0;         ///< kSilent, kLate: time without such an event [s]
-  double usual_shortest = 0;  ///< kSilent, kLate: 1 % of the gaps in training are shorter [s];
-                              ///< kDelay: 5 % of the delays
-  double usual_longest = 0;   ///< kSilent, kLate: 1 % of the gaps in training are longer [s];
-                              ///< kDelay: 5 % of the delays
-  std::size_t events = 0;     ///< kUnknown, kUnusual: such events in the window; kRate: in the
-                              ///< last kRateSpan
-  double usual_fewest = 0;    ///< kRate: the mean of training minus two spreads
-  double usual_most = 0;      ///< kRate: the mean of training plus two spreads
-  double score = 0;           ///< kUnusual: their mean score
-  double usual_score = 0;     ///< kUnusual: the score to expect by training
-  std::string other;          ///< kDelay, kAnswer: the other event type; empty: its own
-  double delay = 0;           ///< kDelay: the last one [s]
+  double silence = kNone;         ///< kSilent, kLate: time without such an event [s]; kUnanswered:
+                                  ///< time since it was asked for; else NaN
+  double usual_shortest = kNone;  ///< kSilent, kLate: 1 % of the gaps in training are shorter [s];
+                                  ///< kDelay: 5 % of the delays; else NaN
+  double usual_longest = kNone;   ///< kSilent, kLate: 1 % of the gaps in training are longer [s];
+                                  ///< kDelay: 5 % of the delays; else NaN
+  double usual_gap = kNone;       ///< kSilent: mean gap in training [s]; NaN: not known
+  double longest_gap = kNone;     ///< kSilent: longest gap in training [s]; NaN: not known
+  std::size_t events = 0;         ///< kUnknown, kUnusual: such events in the window; kRate: in the
+                                  ///< last kRateSpan
+  double usual_fewest = 0;        ///< kRate: the mean of training minus two spreads
+  double usual_most = 0;          ///< kRate: the mean of training plus two spreads
+  double score = 0;               ///< kUnusual: their mean score
+  double usual_score = 0;         ///< kUnusual: the score to expect by training
+  std::string other;              ///< kDelay, kAnswer, kUnanswered: the other event type;
+                                  ///< empty: its own
+  double lasted = 0;              ///< kDelay, kAnswer: the numbers below are of the last so many s
+  std::size_t of = 0;             ///< kDelay: delays; kAnswer: events of the other type
+  std::size_t times = 0;   ///< kDelay: delays of them that were unusual; kAnswer: answers of
+                           ///< them that were left out
+  double delay = 0;        ///< kDelay: median of the unusual ones, or of all if none is [s]
+  double usual_delay = 0;  ///< kDelay: median before, or in training [s]
+  double scatter = kNone;  ///< kDelay: some were earlier than usual, some later, by so much
+                           ///< (median) [s]; NaN: nearly all of them on the same side
+  double usual_share = 0;  ///< kAnswer: share of the answers left out in training, 0 to 1
 };
 
-/// The reason in words and numbers: "silent for 2.31 s, usually every 0.070 to 0.090 s".
+/// The reason in words and numbers: "silent for 2.31 s, usually every 0.083 s, at most 0.104 s".
 std::string describe(const Suspect& suspect);
 
 }  // namespace self_awareness::core

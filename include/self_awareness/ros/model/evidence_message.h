@@ -5,7 +5,10 @@
 #include "self_awareness/Evidence.h"
 #include "self_awareness/EvidenceCalibration.h"
 #include "self_awareness/EvidencePairs.h"
+#include "self_awareness/RecordingFindings.h"
+#include "self_awareness/Relation.h"
 #include "self_awareness/Track.h"
+#include "self_awareness/core/evidence/limits.h"
 #include "self_awareness/core/evidence/model.h"
 #include "self_awareness/core/evidence/statistics.h"
 
@@ -28,6 +31,17 @@ void setPairs(const self_awareness::EvidencePairs& message,
 self_awareness::Track toMessage(const core::evidence::Track& track);
 /// @throw std::invalid_argument if the message's channel does not exist
 core::evidence::Track fromMessage(const self_awareness::Track& message);
+
+/// What a recording of the training showed.
+self_awareness::RecordingFindings toMessage(
+    const core::evidence::LimitFinder::Recording& recording);
+/// @param tracks, types numbers of the model's
+/// @throw std::invalid_argument names the contradiction in the message
+core::evidence::LimitFinder::Recording fromMessage(
+    const self_awareness::RecordingFindings& message, std::size_t tracks, std::size_t types);
+
+self_awareness::Relation toMessage(const core::evidence::Relation& relation);
+core::evidence::Relation fromMessage(const self_awareness::Relation& message);
 
 /// The limits of a calibration.
 core::evidence::Limits limitsOf(const self_awareness::EvidenceCalibration& message);

@@ -12,6 +12,7 @@
 #include "self_awareness/EvidenceCalibration.h"
 #include "self_awareness/Model.h"
 #include "self_awareness/Recording.h"
+#include "self_awareness/core/evidence/limits.h"
 #include "self_awareness/core/evidence/model.h"
 #include "self_awareness/core/paper/delay_statistics.h"
 #include "self_awareness/core/stream/windows.h"
@@ -44,6 +45,8 @@ struct TrainedModel {
   std::vector<self_awareness::Recording> recordings;       ///< that it was trained on
   std::optional<self_awareness::Calibration> calibration;  ///< of the paper's detector
   std::optional<self_awareness::EvidenceCalibration> evidence_calibration;
+  /// What the recordings of the training showed to each other; none: not looked at.
+  core::evidence::LimitFinder::Findings findings;
   ros::Time stamp;  ///< when it was trained
 
   const core::Vocabulary& vocabulary() const { return statistics.vocabulary(); }

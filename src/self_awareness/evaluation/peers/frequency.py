@@ -12,7 +12,8 @@ from typing import Dict, List, NamedTuple, Sequence
 import numpy as np
 
 from self_awareness import DEFAULT_WINDOW
-from self_awareness.evaluation.windowed_events import WindowedEvents
+from self_awareness.evaluation.peers.deviations import DeviationScorer
+from self_awareness.evaluation.windowed_events import WindowedEvents, stamps_by
 from self_awareness.stamps import SECOND_NS
 
 TOLERANCE = 0.1
@@ -23,6 +24,7 @@ SPAN = 5 * SECOND_NS
 
 _PERIODIC = 0.2  # largest coefficient of variation of the gaps of a periodic topic
 _FEWEST_GAPS = 10
+_NEVER = np.empty(0, dtype=np.int64)
 
 
 class Bounds(NamedTuple):
@@ -32,10 +34,11 @@ class Bounds(NamedTuple):
     most: float
 
 
-class _FrequencyMonitor:
+class _FrequencyMonitor(DeviationScorer):
     """What both monitors share: counting, and the deviation from the bounds."""
 
     def __init__(self) -> None:
+        super().__init__()
         self._bounds: Dict[str, Bounds] = {}
         self._sources: Dict[str, List[str]] = {}
 
@@ -52,39 +55,32 @@ class _FrequencyMonitor:
                 sources = self._sources.setdefault(event_type.scope, [])
                 if event_type.source not in sources:
                     sources.append(event_type.source)
+        by_topic = [_by_topic(recording) for recording in recordings]
         for topic in self._sources:
-            stamps = [_stamps(recording, topic) for recording in recordings]
+            stamps = [of_recording.get(topic, _NEVER) for of_recording in by_topic]
             gaps = np.concatenate([np.diff(part) for part in stamps])
             if len(gaps) >= _FEWEST_GAPS and gaps.std() <= _PERIODIC * gaps.mean():
                 bounds = self._bounds_of(recordings, stamps, gaps)
                 if bounds.fewest > 0:
                     self._bounds[topic] = bounds
 
-    def scores(self, recording: WindowedEvents) -> np.ndarray:
-        """Return the scores of the windows."""
-        deviations = self._deviations(recording)
-        return -deviations.max(axis=0) if len(deviations) else np.zeros(len(recording.starts()))
-
-    def suspects(self, recording: WindowedEvents, window: int) -> List[str]:
-        """Return the publishers of the topics beyond their bounds, the furthest first."""
-        deviations = self._deviations(recording)[:, window]
-        topics = list(self._bounds)
-        return list(dict.fromkeys(source for index in np.argsort(-deviations, kind='stable')
-                                  if deviations[index] > 0
-                                  for source in self._sources[topics[index]]))
-
     def _bounds_of(self, recordings: Sequence[WindowedEvents], stamps: Sequence[np.ndarray],
                    gaps: np.ndarray) -> Bounds:
         raise NotImplementedError
 
     def _deviations(self, recording: WindowedEvents) -> np.ndarray:
-        """Return by how much topics are beyond their bounds, [topic, window], 0 within them."""
+        """Return by how much topics are beyond their bounds."""
         ends = recording.starts() + DEFAULT_WINDOW
+        stamps = _by_topic(recording)
         rows = []
         for topic, (fewest, most) in self._bounds.items():
-            count = messages_in_span(_stamps(recording, topic), ends)
+            count = messages_in_span(stamps.get(topic, _NEVER), ends)
             rows.append(np.maximum((fewest - count) / fewest, (count - most) / most).clip(0.0))
         return np.array(rows).reshape(len(rows), len(ends))
+
+    def _blamed(self, row: int) -> List[str]:
+        """Return the publishers of a topic."""
+        return self._sources[list(self._bounds)[row]]
 
 
 class FrequencyMonitor(_FrequencyMonitor):
@@ -127,6 +123,5 @@ def _settled_counts(recording: WindowedEvents, stamps: np.ndarray) -> np.ndarray
     return messages_in_span(stamps, ends[full])
 
 
-def _stamps(recording: WindowedEvents, topic: str) -> np.ndarray:
-    of_topic = np.array([event_type.scope == topic for event_type in recording.event_types])
-    return recording.stamps[of_topic[recording.ids]]
+def _by_topic(recording: WindowedEvents) -> Dict[str, np.ndarray]:
+    return stamps_by(recording, lambda event_type: event_type.scope)

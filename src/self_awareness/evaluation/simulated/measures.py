@@ -68,7 +68,7 @@ def normal_row(system: str, training_share: float, seed: int, judged: Judged) ->
     counted = ~judged.settling
     return Row(system, training_share, seed, NORMAL, int(counted.sum()),
                int((judged.abnormal & counted).sum()), len(judged.alarms),
-               _beginnings(judged.noticed))
+               beginnings(judged.noticed))
 
 
 def fault_row(system: str, training_share: float, seed: int, kind: str, judged: Judged,
@@ -94,7 +94,7 @@ def fault_row(system: str, training_share: float, seed: int, kind: str, judged: 
         normal_windows=int(before.sum()),
         false_windows=int((judged.abnormal & before).sum()),
         false_alarms=sum(alarm.start <= onset for alarm in judged.alarms),
-        false_suspicions=_beginnings(judged.noticed & (judged.start + DEFAULT_WINDOW <= onset)),
+        false_suspicions=beginnings(judged.noticed & (judged.start + DEFAULT_WINDOW <= onset)),
         windows=int(after.sum()),
         missed_raw=int((after & ~judged.abnormal).sum()),
         missed=int((after & ~judged.abnormal & ~standing).sum()),
@@ -109,7 +109,8 @@ def fault_row(system: str, training_share: float, seed: int, kind: str, judged: 
         top3=None if suspects is None else bool(set(suspects[:3]) & set(culprits)))
 
 
-def _beginnings(noticed: np.ndarray) -> int:
+def beginnings(noticed: np.ndarray) -> int:
+    """Return how often something begins, by whether it is there in each window."""
     return int((np.diff(noticed.astype(np.int8), prepend=0) == 1).sum())
 
 

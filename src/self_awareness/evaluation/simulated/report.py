@@ -38,9 +38,10 @@ operation to count false alarms on, and one of {record_s:g} s for each fault, wh
 and as the faults. All systems learn from and judge the same records.
 
 Each system gives every window of {window_ms:g} ms a score. The threshold is chosen on the
-calibration record: a share of {rate:g} of its windows falls below. Two systems differ: `frequency`
-has bounds of its own, those of diagnostic_updater's FrequencyStatus, and `evidence` has the limits
-that `calibrate` finds on the same record for a budget of {budget:g} false alarms an hour. Three
+calibration record: a share of {rate:g} of its windows falls below. Three systems differ:
+`frequency` has bounds of its own, those of diagnostic_updater's FrequencyStatus; `gaps` has those
+of both training and calibration, wider by a quarter; and `evidence` has the limits that
+`calibrate` finds on the same record for a budget of {budget:g} false alarms an hour. Three
 abnormal windows of five raise the alarm, 2 s without one clear it, and none is raised in the first
 5 s, by the same code for all; `evidence` raises it at once for a silence that has lasted 0.1 s
 beyond its limit, and for the linker. `evidence` knows who subscribes to what, as after

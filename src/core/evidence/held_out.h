@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace self_awareness::core::evidence {
+
+/// A part of a recording.
+struct Part {
+  std::size_t start = 0;  ///< number of the robot's start that it belongs to, from 0
+  double hours = 0;
+};
+
+/// By how much a limit must lie above the largest value that was ever seen, so that a new
+/// recording exceeds it as seldom as is asked for (docs/method.md, section 5.2). It learns this by
+/// leaving out starts, and parts, in turn: the values that one shows beyond the others are a sample
+/// of what comes next. Tracks of one kind share what they show.
+class HeldOut {
+ public:
+  /// @param parts all that was looked at; none may be empty
+  explicit HeldOut(std::vector<Part> parts);
+
+  /// Takes in a track.
+  /// @param largest value in every part, 0 or more
+  /// @param least limit of the track: smaller values do not matter
+  void add(const std::vector<double>& largest, double least);
+
+  /// Margin: a limit is so many times the largest value that was seen.
+  /// @param rate exceedances an hour that are allowed to all tracks together
+  /// @param least margin
+  double margin(double rate, double least) const;
+  /// Exceedances an hour, of all tracks together, that are to be expected with a margin.
+  double rate(double margin) const;
+  /// By how much the largest value of a track exceeded those of all other starts; 1 if it did not,
+  /// or if there is nothing to compare it with.
+  double excess(const std::vector<double>& largest, double least) const;
+
+  /// Smallest value that counts, as a share of the least limit.
+  static constexpr double kLeastShare = 0.5;
+
+ private:
+  /// One way to leave out: groups of parts in turn.
+  struct Level {
+    std::vector<std::size_t> group_of;  // by part
+    std::vector<double> hours;          // by group
+    double eligible_hours = 0;          // of groups that the others can judge
+    double exceedances = 0;
+    double logarithms = 0;  // their sum, of by how much
+    double most = 0;        // the largest of them
+  };
+
+  static Level levelOf(const std::vector<Part>& parts, std::vector<std::size_t> group_of);
+  /// log of by how much the largest group exceeds the others; 0 if it does not.
+  static double exceedance(const Level& level, const std::vector<double>& largest, double least);
+  static double scale(const Level& level);
+
+  std::size_t tracks_ = 0;
+  std::vector<Level> levels_;  // by start first
+};
+
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,262 @@
+#include "core/evidence/relations.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+
+#include "core/evidence/log_bins.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+// Recordings with less than this between them [ns] are of one start.
+constexpr std::int64_t kSameStart = 60 * kNanosecondsPerSecond;
+// A start with a smaller share of the events says nothing about all of them.
+constexpr double kLeastShareOfStart = 0.02;
+constexpr std::uint64_t kFewestEventsOfStart = 20;
+// Delays that may lie anywhere: hiccups.
+constexpr double kMostOutliers = 0.1;
+
+// Chance of one relation among all that are looked at, where nothing else speaks for it.
+constexpr double kChanceOfAny = 0.1;
+// Chance of a relation that something else speaks for.
+constexpr double kChanceOfOne = 0.05;
+
+// Of a type with fewer gaps, nothing is known about how regular it is.
+constexpr std::uint64_t kFewestGapsOfPair = 30;
+// An event type is irregular for another if its gaps vary by more than this many times the delays.
+constexpr double kIrregular = 2;
+
+// If unrelated, `to` would be missing in this share of the gaps at least: else the gaps of `to`
+// alone say as much.
+constexpr double kLeastChanceMisses = 0.2;
+constexpr double kMostOfChanceMisses = 0.5;
+
+// Answers that take less than this share of the longest usual ones may as well come before.
+constexpr double kLeastOfLongest = 0.1;
+
+// A topic that so many nodes hear, and more than half of all, reaches everybody: that it does is no
+// reason.
+constexpr std::size_t kFewestOfBroadcast = 4;
+// /tf and /clock are for everybody, however many listen.
+const std::set<std::string> kBroadcasts{"/tf", "/tf_static", "/clock"};
+
+/// n log-likelihood ratios of shares that were observed and expected [nat].
+double divergence(double n, double observed, double expected) {
+  const auto term = [](double p, double q) { return p > 0 ? p * std::log(p / q) : 0; };
+  return n * (term(observed, expected) + term(1 - observed, 1 - expected));
+}
+
+}  // namespace
+
+std::size_t numberOfStarts(std::vector<Span> recordings) {
+  std::sort(recordings.begin(), recordings.end());
+  std::size_t starts = 0;
+  std::optional<std::int64_t> end;  // of the start [ns]
+  for (const auto& [first, last] : recordings) {
+    if (!end || first - *end >= kSameStart) {
+      ++starts;
+      end = last;
+    }
+    end = std::max(*end, last);
+  }
+  return starts;
+}
+
+Relations::Relations(const Statistics& counts, const SourceGraph& graph)
+    : counts_(counts), graph_(graph), broadcasts_(kBroadcasts), gaps_(counts.size()) {
+  double types = 0;
+  for (EventId id = 0; id < counts.size(); ++id) {
+    const Statistics::Type& type = counts.type(id);
+    mean_gaps_.push_back(type.gaps == 0 ? 0
+                                        : static_cast<double>(type.gap_sum) /
+                                              static_cast<double>(type.gaps));
+    types += type.gaps >= kFewestGapsOfPair ? 1 : 0;
+    const Statistics::Delays& delays = counts.delays(id, id);
+    const double longest =
+        type.longest_gaps.empty() ? 0 : static_cast<double>(type.longest_gaps.front());
+    for (std::size_t bin = 0; bin < delays.size(); ++bin) {
+      if (delays[bin] > 0) {
+        gaps_[id].push_back({std::min(log_bins::middle(bin), longest),
+                             delays[bin] / static_cast<double>(type.gaps)});
+      }
+    }
+    // The bin of the longest delays has no middle; their sum is known.
+    if (delays.back() > 0) {
+      double others = 0;
+      for (const Gap& gap : gaps_[id]) {
+        others += &gap == &gaps_[id].back() ? 0 : gap.length * gap.share;
+      }
+      Gap& last = gaps_[id].back();
+      last.length = std::max((mean_gaps_[id] - others) / last.share, last.length);
+    }
+  }
+  looked_at_ = std::max(types * (types - 1), 1.0);
+  std::map<std::string, std::set<std::string>> listeners;  // by topic
+  std::set<std::string> all;
+  for (const SourceGraph::Edge& edge : graph.edges()) {
+    listeners[edge.topic].insert(edge.subscriber);
+    all.insert(edge.subscriber);
+  }
+  for (const auto& [topic, subscribers] : listeners) {
+    if (subscribers.size() >= kFewestOfBroadcast && 2 * subscribers.size() > all.size()) {
+      broadcasts_.insert(topic);
+    }
+  }
+}
+
+bool Relations::reaches(EventId from, EventId to) const {
+  const EventType& asks = counts_.vocabulary().at(from);
+  const EventType& answers = counts_.vocabulary().at(to);
+  return asks.source == answers.source
+             ? !asks.source.empty()
+             : graph_.hears(answers.source, asks.source, asks.scope) &&
+                   broadcasts_.count(asks.scope) == 0;
+}
+
+bool Relations::isIrregular(EventId from, EventId to) const {
+  // As little as the gaps can vary by their bins, against as much as the delays can.
+  const auto range = [&](EventId first, EventId second, bool widest) {
+    const Statistics::Delays& delays = counts_.delays(first, second);
+    const double total = static_cast<double>(counts_.total(first, second));
+    double below = 0;
+    std::size_t low = 0;
+    std::size_t high = 0;
+    for (std::size_t bin = 0; bin < delays.size(); ++bin) {
+      low = below <= total * 0.05 ? bin : low;
+      high = below < total * 0.95 ? bin : high;
+      below += delays[bin];
+    }
+    const auto edge = [&](std::size_t bin) {
+      return bin < log_bins::kBins ? static_cast<double>(log_bins::lowerEdge(bin))
+                                   : std::numeric_limits<double>::infinity();
+    };
+    return widest ? edge(high + 1) - edge(low) : std::max(edge(high) - edge(low + 1), 0.0);
+  };
+  const double delays = range(from, to, true);
+  return std::min(range(from, from, false), range(to, to, false)) > kIrregular * delays;
+}
+
+double Relations::spread(EventId from, EventId to, double left_out) const {
+  const Statistics::Delays& delays = counts_.delays(from, to);
+  const double wanted = (1 - left_out) * static_cast<double>(counts_.total(from, to));
+  const double period = std::min(mean_gaps_[from], mean_gaps_[to]);
+  if (wanted <= 0 || period <= 0) {
+    return 1;
+  }
+  // Delays are phases: the last bin of a period is a neighbour of the first.
+  struct Arc {
+    double width = 0;  // [ns]
+    double count = 0;
+  };
+  std::vector<Arc> arcs;
+  for (std::size_t bin = 0; bin < delays.size(); ++bin) {
+    const auto low = static_cast<double>(log_bins::lowerEdge(bin));
+    if (low >= period) {
+      break;
+    }
+    const double high =
+        bin + 1 < delays.size() ? static_cast<double>(log_bins::lowerEdge(bin + 1)) : period;
+    arcs.push_back({std::min(high, period) - low, static_cast<double>(delays[bin])});
+  }
+  double narrowest = period;
+  double width = 0;
+  double count = 0;
+  std::size_t end = 0;  // the arc is [begin, end), around the circle
+  for (std::size_t begin = 0; begin < arcs.size(); ++begin) {
+    while (count < wanted && end < begin + arcs.size()) {
+      width += arcs[end % arcs.size()].width;
+      count += arcs[end % arcs.size()].count;
+      ++end;
+    }
+    if (count >= wanted) {
+      narrowest = std::min(narrowest, width);
+    }
+    width -= arcs[begin].width;
+    count -= arcs[begin].count;
+  }
+  return narrowest / period;
+}
+
+Relation Relations::delays(EventId from, EventId to, const std::vector<Span>& more) const {
+  Relation relation;
+  if (from == to) {
+    relation.watched = true;  // its own history needs no reason
+    return relation;
+  }
+  std::vector<Span> spans = more;
+  double least_share = 1;
+  const auto total = static_cast<double>(counts_.type(to).events);
+  for (const Statistics::Recording& recording : counts_.recordings()) {
+    const auto events = [&](EventId id) {
+      return id < recording.events.size() ? recording.events[id] : 0;
+    };
+    const double share = static_cast<double>(events(to)) / total;
+    if (share >= kLeastShareOfStart &&
+        std::min(events(from), events(to)) >= kFewestEventsOfStart) {
+      least_share = std::min(least_share, share);
+      spans.emplace_back(recording.start, recording.end);
+    }
+  }
+  relation.starts = numberOfStarts(spans);
+  relation.spread = spread(from, to, std::min(kMostOutliers, least_share / 2));
+  relation.reaches = reaches(from, to);
+  relation.irregular = isIrregular(from, to);
+  const double level = relation.reaches && relation.irregular ? 1
+                       : relation.reaches || relation.irregular
+                           ? kChanceOfOne
+                           : kChanceOfAny / looked_at_;
+  const double starts = std::max<double>(static_cast<double>(relation.starts), 1);
+  relation.watched = std::pow(relation.spread, starts - 1) <= level;
+  relation.starts_needed =
+      relation.watched || relation.spread >= 1
+          ? 0
+          : static_cast<std::size_t>(1 + std::ceil(std::log(level) / std::log(relation.spread)));
+  return relation;
+}
+
+double Relations::missRateByChance(EventId from, EventId to) const {
+  if (mean_gaps_[to] <= 0) {
+    return 0;
+  }
+  double misses = 0;
+  for (const Gap& asked : gaps_[from]) {
+    for (const Gap& gap : gaps_[to]) {
+      misses += asked.share * gap.share * std::max(gap.length - asked.length, 0.0);
+    }
+  }
+  return std::min(misses / mean_gaps_[to], 1.0);
+}
+
+Relation Relations::answers(EventId from, EventId to) const {
+  Relation relation;
+  const auto gaps = static_cast<double>(counts_.type(from).gaps);
+  const double misses = missRate(counts_.type(from).gaps, counts_.answers(from, to));
+  const double by_chance = missRateByChance(from, to);
+  relation.reaches = reaches(from, to);
+  relation.irregular = by_chance >= kLeastChanceMisses && misses <= kMostOfChanceMisses * by_chance;
+  relation.watched = relation.irregular && divergence(gaps, misses, by_chance) >
+                                               std::log(looked_at_ / kChanceOfAny);
+  return relation;
+}
+
+Relation Relations::deadline(EventId from, EventId to) const {
+  Relation relation = answers(from, to);
+  // Two that answer to the same come one after the other, now in this order, now in that.
+  const Statistics::Delays& delays = counts_.delays(from, to);
+  const auto total = static_cast<double>(counts_.total(from, to));
+  double below = 0;
+  double shortest = 0;
+  double longest = 0;
+  for (std::size_t bin = 0; bin < delays.size(); ++bin) {
+    shortest = below <= 0.05 * total ? log_bins::middle(bin) : shortest;
+    longest = below < 0.95 * total ? log_bins::middle(bin) : longest;
+    below += delays[bin];
+  }
+  relation.watched &= shortest >= kLeastOfLongest * longest && (graph_.empty() || relation.reaches);
+  return relation;
+}
+
+}  // namespace self_awareness::core::evidence

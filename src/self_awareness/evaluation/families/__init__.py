@@ -1,0 +1,1 @@
+"""Simulated robots as different as possible, each drawn by a seed, to evaluate detectors on."""

@@ -1,0 +1,285 @@
+"""The robots of the families: what is random in them, what is not, and what a fault does."""
+from __future__ import annotations
+
+from typing import Dict
+
+import numpy as np
+import pytest
+
+from self_awareness.evaluation.families.conditions import Conditions
+from self_awareness.evaluation.families.emissions import Answer, Feedback, Sporadic, Timer
+from self_awareness.evaluation.families.kinds import FAMILIES, draw
+from self_awareness.evaluation.families.robot import (CRASH, HALF_RATE, LATE, Fault, Output,
+                                                      Robot)
+from self_awareness.evaluation.windowed_events import WindowedEvents
+from self_awareness.stamps import SECOND_NS
+
+POINTS = 'sensor_msgs/PointCloud2'
+
+
+def small(jitter_s: float = 0.0003, ppm: float = 0.0) -> Robot:
+    """Return a robot of a timer at 10 Hz, what answers to it, what to that, and a slow timer."""
+    return Robot(7, (
+        Output('/driver', '/scan', POINTS, Timer(0.1, jitter_s, ppm=ppm)),
+        Output('/driver', '/info', POINTS, Answer(0, 0.0005)),
+        Output('/filter', '/map', POINTS, Answer(0, 0.02)),
+        Output('/planner', '/path', POINTS, Answer(2, 0.01)),
+        Output('/battery', '/charge', POINTS, Timer(1.0)),
+    ), subscriptions=frozenset({('/battery', '/planner')}))
+
+
+def stamps(recording: WindowedEvents) -> Dict[str, np.ndarray]:
+    """Return the seconds of the events since the full hour before, by topic."""
+    seconds = (recording.stamps - recording.stamps[0] // (3600 * SECOND_NS) * 3600 * SECOND_NS) \
+        / SECOND_NS
+    return {kind.scope: seconds[recording.ids == id_]
+            for id_, kind in enumerate(recording.event_types)}
+
+
+def same(first: WindowedEvents, second: WindowedEvents) -> bool:
+    """Return whether two recordings are the same."""
+    return (first.event_types == second.event_types and first.end == second.end
+            and np.array_equal(first.stamps, second.stamps)
+            and np.array_equal(first.ids, second.ids))
+
+
+@pytest.mark.parametrize('name', FAMILIES)
+def test_every_family_can_be_repeated_and_differs_by_seed_and_start(name: str) -> None:
+    recording = draw(name, 3).start(5, 60.0)
+    assert same(recording, draw(name, 3).start(5, 60.0))
+    assert not same(recording, draw(name, 4).start(5, 60.0))
+    other = draw(name, 3).start(6, 60.0)
+    # Starts are apart in time, by more than how long they may last.
+    assert other.stamps[0] > recording.end
+    assert not np.array_equal(other.stamps - other.end, recording.stamps - recording.end)
+
+
+@pytest.mark.parametrize('name', FAMILIES)
+def test_recordings_of_every_family_are_in_order_and_within_their_time(name: str) -> None:
+    robot = draw(name, 3)
+    recording = robot.start(5, 60.0, begin_s=100.0)
+    assert (np.diff(recording.stamps) >= 0).all()
+    assert recording.end - 60 * SECOND_NS <= recording.stamps[0] <= recording.stamps[-1] \
+        < recording.end
+    first = [int(np.flatnonzero(recording.ids == id_)[0])
+             for id_ in range(len(recording.event_types))]
+    assert first == sorted(first)
+    assert recording.ids.max() == len(recording.event_types) - 1
+    sources = {output.source for output in robot.outputs}
+    for publisher, subscribers in robot.graph.items():
+        assert publisher in sources and publisher not in subscribers and subscribers <= sources
+    assert set(robot.regular) <= sources and set(robot.answering) <= sources
+
+
+def test_families_are_as_large_and_as_fast_as_they_say() -> None:
+    large = draw('large', 1)
+    assert len({output.source for output in large.outputs}) == 60
+    assert len(large.outputs) == 250
+    assert 1200.0 < len(large.start(1, 20.0).stamps) / 20.0 < 2800.0
+    assert len(draw('events_only', 1).start(1, 600.0).stamps) / 600.0 < 5.0
+    assert all(15 <= len({output.source for output in draw('bursty', seed).outputs}) <= 40
+               for seed in range(1, 21))
+    names = {output.source.split('/')[1] for output in draw('two_robots', 1).outputs}
+    assert names == {'robot1', 'robot2'}
+
+
+def test_a_phase_holds_for_a_start() -> None:
+    phases = [stamps(small().start(start, 60.0, begin_s=begin))['/scan'] % 0.1
+              for start, begin in ((1, 0.0), (1, 600.0), (2, 0.0))]
+    assert abs(np.median(phases[0]) - np.median(phases[1])) < 0.0002
+    assert abs(np.median(phases[0]) - np.median(phases[2])) > 0.002
+    # But what is random is so again.
+    assert not np.array_equal(phases[0][:100], phases[1][:100])
+
+
+def test_a_clock_that_drifts_changes_the_phase() -> None:
+    scan = stamps(small(ppm=50.0).start(1, 3600.0))['/scan']
+    assert scan[-1] - scan[0] == pytest.approx((len(scan) - 1) * 0.1 * (1 + 50e-6), abs=0.01)
+
+
+def test_rates_wander_within_bounds() -> None:
+    robot = Robot(7, (Output('/driver', '/scan', POINTS, Timer(0.1, wander=0.05)),))
+    scan = stamps(robot.start(1, 7200.0))['/scan']
+    rates = [np.sum((scan >= begin) & (scan < begin + 60.0)) / 60.0
+             for begin in np.arange(scan[0], scan[-1] - 60.0, 60.0)]
+    assert 9.4 < min(rates) < 9.9 and 10.1 < max(rates) < 10.6
+    assert max(rates) - min(rates) > 0.3
+    assert np.abs(np.diff(rates)).max() < 0.1
+
+
+def test_periods_vary_without_a_grid() -> None:
+    robot = Robot(7, (Output('/driver', '/scan', POINTS, Timer(0.1, variation=0.02)),))
+    gaps = np.diff(stamps(robot.start(1, 600.0))['/scan'])
+    assert gaps.mean() == pytest.approx(0.1, rel=0.002)
+    assert gaps.std() == pytest.approx(0.002, rel=0.2)
+
+
+def test_answers_follow_what_they_answer_to() -> None:
+    recorded = stamps(small().start(1, 60.0))
+    delays = recorded['/map'][1:500] - recorded['/scan'][np.searchsorted(
+        recorded['/scan'], recorded['/map'][1:500]) - 1]
+    assert np.median(delays) == pytest.approx(0.02, abs=0.002)
+    assert 0.0005 < delays.std() < 0.005
+
+
+def test_the_graph_and_who_can_break() -> None:
+    robot = small()
+    assert robot.graph == {'/driver': {'/filter'}, '/filter': {'/planner'},
+                           '/battery': {'/planner'}}
+    assert robot.regular == ['/driver', '/filter', '/planner', '/battery']
+    assert robot.answering == ['/filter', '/planner']
+    events = draw('events_only', 1)
+    assert all('watchdog' in source for source in events.regular)
+    assert len(events.answering) == 9
+
+
+def of_fault(kind: str, source: str) -> Dict[str, np.ndarray]:
+    """Return how many messages come in 20 s before the onset, in the fault, and after it."""
+    recording = stamps(small().start(1, 60.0, Fault(kind, source, 20.0, 40.0)))
+    begin = np.floor(recording['/scan'][0])
+    return {topic: np.histogram(times - begin, [0.0, 20.0, 40.0, 60.0])[0]
+            for topic, times in recording.items()}
+
+
+@pytest.mark.parametrize('kind', [CRASH, HALF_RATE, LATE])
+@pytest.mark.parametrize('name', FAMILIES)
+def test_nothing_changes_before_the_onset(name: str, kind: str) -> None:
+    robot = draw(name, 2)
+    source = robot.answering[0]
+    normal = robot.start(1, 60.0)
+    faulty = robot.start(1, 60.0, Fault(kind, source, 30.0))
+    before = normal.stamps < normal.end - 30 * SECOND_NS
+    number = int(before.sum())
+    assert np.array_equal(normal.stamps[before], faulty.stamps[:number])
+    assert faulty.end == normal.end
+
+
+def test_a_crash_silences_who_answers() -> None:
+    counts = of_fault(CRASH, '/driver')
+    for topic in ('/scan', '/info', '/map', '/path'):
+        assert counts[topic].tolist() == [200, 0, 200], topic
+    assert counts['/charge'].tolist() == [20, 20, 20]
+    counts = of_fault(CRASH, '/filter')
+    assert counts['/scan'].tolist() == [200, 200, 200]
+    assert counts['/path'].tolist() == [200, 0, 200]
+
+
+def test_half_the_rate_is_that_of_who_answers_too() -> None:
+    counts = of_fault(HALF_RATE, '/driver')
+    for topic in ('/scan', '/info', '/map', '/path'):
+        assert counts[topic].tolist() == [200, 100, 200], topic
+    counts = of_fault(HALF_RATE, '/filter')
+    assert counts['/scan'].tolist() == [200, 200, 200]
+    assert counts['/path'].tolist() == [200, 100, 200]
+
+
+def test_late_answers_are_late_and_what_follows_too() -> None:
+    robot = small()
+    normal, late = (stamps(robot.start(1, 60.0, fault))
+                    for fault in (None, Fault(LATE, '/filter', 20.0)))
+    assert np.array_equal(normal['/scan'], late['/scan'])
+    for topic in ('/map', '/path'):
+        shift = late[topic][250:500] - normal[topic][250:500]
+        assert np.median(shift) == pytest.approx(0.06, abs=0.001), topic
+    assert np.array_equal(normal['/charge'], late['/charge'])
+
+
+def test_queues_lose_only_what_comes_soon_after_another() -> None:
+    conditions = Conditions(lost=0.1)
+    for gap_s, lost in ((0.1, 0.1), (0.2, 0.0)):
+        sent = np.arange(5000) * gap_s
+        received = conditions.received(sent, np.random.default_rng(1))
+        assert 1.0 - len(received) / len(sent) == pytest.approx(lost, abs=0.02)
+        assert np.isin(received, sent).all()
+
+
+def test_a_link_has_a_heavy_tail_and_nothing_overtakes() -> None:
+    sent = np.arange(20_000) * 0.1
+    conditions = Conditions(heavy=0.01)
+    delays, near = (conditions.transport(sent, over_link, np.random.default_rng(1)) - sent
+                    for over_link in (True, False))
+    assert np.median(near) < 0.0003 and 0.003 < np.median(delays) < 0.006
+    assert (delays > 5.0 * np.median(delays)).mean() == pytest.approx(0.01, abs=0.003)
+    fast = conditions.transport(np.arange(20_000) * 0.001, True, np.random.default_rng(1))
+    assert (np.diff(fast) >= 0.0).all()
+
+
+def test_a_load_makes_work_take_longer_and_shorter_again() -> None:
+    robot = Robot(7, small().outputs, Conditions(load_period_s=3600.0, most_load=3.0))
+    recorded = stamps(robot.start(1, 3600.0))
+    number = np.searchsorted(recorded['/scan'], recorded['/map'][1:]) - 1
+    delays = recorded['/map'][1:] - recorded['/scan'][number]
+    by_minute = [np.median(part) for part in np.array_split(delays, 60)]
+    assert min(by_minute) == pytest.approx(0.02, abs=0.001)
+    assert max(by_minute) == pytest.approx(0.06, abs=0.002)
+
+
+def test_who_drives_now_and_then_is_not_regular() -> None:
+    robot = draw('driving_docked', 1)
+    assert '/motion0' not in robot.regular and '/planner0' in robot.regular
+    recorded = stamps(robot.start(1, 3600.0))
+    gaps = np.diff(recorded['/motion0/data'])
+    pauses = gaps[gaps > 1.0]
+    assert 5 <= len(pauses) <= 30 and 40.0 < pauses.mean() < 300.0
+    # All that moves pauses at the same times.
+    assert abs((np.diff(recorded['/motion1/data']) > 1.0).sum() - len(pauses)) <= 1
+
+
+def test_feedback_comes_between_goal_and_result() -> None:
+    robot = Robot(7, (
+        Output('/client', '/goal', 'std_msgs/String', Sporadic(20.0)),
+        Output('/server', '/result', 'std_msgs/String', Answer(0, 1.05, 0.01)),
+        Output('/server', '/feedback', 'std_msgs/String', Feedback(1, 0.3)),
+    ))
+    recorded = stamps(robot.start(1, 3600.0))
+    goals, results, feedback = recorded['/goal'], recorded['/result'], recorded['/feedback']
+    assert len(goals) == pytest.approx(180, abs=50)
+    assert abs(len(results) - len(goals)) <= 1
+    assert len(feedback) == pytest.approx(3 * len(goals), abs=3)
+    since = feedback[3:] - goals[np.searchsorted(goals, feedback[3:]) - 1]
+    assert (since < 1.0).mean() > 0.95
+    # Sessions leave minutes of idleness, in which only heartbeats come.
+    idle = draw('events_only', 1).start(1, 3600.0)
+    asked = np.array(['watchdog' not in kind.source for kind in idle.event_types])
+    assert np.diff(idle.stamps[asked[idle.ids]]).max() > 60 * SECOND_NS
+
+
+def test_stalls_let_all_wait_and_come_at_once() -> None:
+    robot = draw('stalls', 1)
+    normal = stamps(draw('timers', 1).start(1, 3600.0))
+    recording = robot.start(1, 3600.0)
+    gaps = np.diff(recording.stamps) / SECOND_NS
+    stalls = np.flatnonzero(gaps > 0.09)
+    assert 1 <= len(stalls) <= 15
+    assert (gaps[stalls] < 0.61).all()
+    # Nothing is lost, and the phases are the same afterwards.
+    for topic, times in stamps(recording).items():
+        assert abs(len(times) - len(normal[topic])) <= 2
+        period = np.median(np.diff(times))
+        if period > 0.3 and 'driver' in topic:
+            turn = np.mod(times - normal[topic][:len(times)] + 0.2, period)
+            assert np.median(turn) == pytest.approx(0.2, abs=0.005)
+
+
+def test_loops_have_a_new_phase_after_a_stall() -> None:
+    robot, loops = draw('stalls', 1), draw('stalled_loops', 1)
+    moved = [(output.topic, output.emission.period_s) for output in loops.outputs
+             if isinstance(output.emission, Timer) and output.emission.loop]
+    assert moved and not any(isinstance(output.emission, Timer) and output.emission.loop
+                             for output in robot.outputs)
+    topic, period_s = moved[0]
+    phases = np.mod(stamps(loops.start(1, 3600.0))[topic], period_s)
+    early, late = phases[:50], phases[-50:]
+    assert abs(np.median(early) - np.median(late)) > 0.001
+
+
+def test_wrong_faults_and_times_are_refused() -> None:
+    robot = small()
+    with pytest.raises(ValueError, match='no such component'):
+        robot.start(1, 60.0, Fault(CRASH, '/nobody', 20.0))
+    with pytest.raises(ValueError, match='no such kind'):
+        robot.start(1, 60.0, Fault('slow', '/driver', 20.0))
+    with pytest.raises(ValueError, match='not in a start'):
+        robot.start(1, 60.0, begin_s=90_000.0)
+    with pytest.raises(ValueError, match='nothing happens'):
+        Robot(1, small().outputs[4:]).start(1, 0.001)
