@@ -81,6 +81,7 @@ inline Statistics countsOf(const std::vector<Events>& recordings,
       trainer.add(event);
     }
   }
+  trainer.finish();
   return statistics;
 }
 

@@ -33,7 +33,8 @@ struct Suspect {
     kRate,     ///< comes more or less often than it should
     kDelay,    ///< comes sooner or later after another event type than it should
     kAnswer,   ///< is left out after another event type more often than it should
-    kUnanswered  ///< has not come since another event type asked for it
+    kUnanswered,  ///< has not come since another event type asked for it
+    kNeverHeard   ///< has not come since the start, although it always does
   };
 
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -41,11 +42,14 @@ struct Suspect {
   EventId id = 0;
   Reason reason = Reason::kSilent;
   double silence = kNone;         ///< kSilent, kLate: time without such an event [s]; kUnanswered:
-                                  ///< time since it was asked for; else NaN
+                                  ///< time since it was asked for; kNeverHeard: since the
+                                  ///< start; else NaN
   double usual_shortest = kNone;  ///< kSilent, kLate: 1 % of the gaps in training are shorter [s];
-                                  ///< kDelay: 5 % of the delays; else NaN
+                                  ///< kDelay: 5 % of the delays; kNeverHeard: shortest time
+                                  ///< from the start to the first one; else NaN
   double usual_longest = kNone;   ///< kSilent, kLate: 1 % of the gaps in training are longer [s];
-                                  ///< kDelay: 5 % of the delays; else NaN
+                                  ///< kDelay: 5 % of the delays; kNeverHeard: longest time
+                                  ///< from the start to the first one; else NaN
   double usual_gap = kNone;       ///< kSilent: mean gap in training [s]; NaN: not known
   double longest_gap = kNone;     ///< kSilent: longest gap in training [s]; NaN: not known
   std::size_t events = 0;         ///< kUnknown, kUnusual: such events in the window; kRate: in the
