@@ -51,8 +51,8 @@ class Scorer {
             : stalled_at_ - stalled_from_;
     return numbers_.at(id) > 0 ? window_end_ - stamps_[id] - stall : 0;
   }
-  /// Time since the first request without an answer of a deadline track, at the end of the last
-  /// window [s].
+  /// Time since the first request without an answer of a deadline track [s], or the number of such
+  /// requests (Model::countsRequests()), at the end of the last window.
   double waiting(std::size_t track) const { return evidence_.at(track); }
   /// The most that the sum of a delay or answer track may be.
   double cap(std::size_t track) const;
