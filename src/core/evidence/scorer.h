@@ -178,10 +178,10 @@ struct Sum {
   double linker = 0;   ///< evidence of all event types together, not in units of its limit
 };
 
-/// Finds the largest evidence and the linker's (docs/method.md, sections 3.6 and 4.1). The
-/// linker's is a sum over event types: of the largest share of its limit, at most 1, that a slow
-/// delay or answer track of the type has reached. It links evidence that is too weak for an alarm
-/// in any one place (paper, section V-C).
+/// Finds the largest evidence and the linker's (docs/method.md, sections 3.8 and 4.1). The
+/// linker's is a sum over event types: of the largest share of its limit that a slow delay or
+/// answer track of the type has reached, from 0 at half the limit to 1 at the limit. It links
+/// evidence that is too weak for an alarm in any one place (paper, section V-C).
 Sum sumUp(const std::vector<double>& evidence, const Model& model, const Limits& limits);
 
 }  // namespace self_awareness::core::evidence
