@@ -89,8 +89,9 @@ void Detector::close(const Window& window, std::int64_t end) {
   verdict.score = judgement.score;
   verdict.threshold = judgement.threshold;
   verdict.abnormal = judgement.abnormal;
-  verdict.settling = starting || judgement.settling;
   const bool stood = persistence_.raised();
+  // What is new raises no alarm, but one that stands goes on as long as its cause does.
+  verdict.settling = starting || (judgement.settling && !stood);
   const bool was_suspicion = suspicion_;
   if (verdict.settling) {
     verdict.alarm = persistence_.leaveOut(windows_.length());
