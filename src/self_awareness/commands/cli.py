@@ -46,6 +46,11 @@ def run(parser: argparse.ArgumentParser, work: Callable[[argparse.Namespace], No
     return 0
 
 
+def stand_back() -> None:
+    """Let the other processes of this machine go first: they may be those of a running robot."""
+    os.nice(10)
+
+
 def warn(program: str, text: str) -> None:
     """Say something on standard error that does not stop the program."""
     print(f'{program}: warning: {text}', file=sys.stderr)

@@ -2,11 +2,17 @@
 from __future__ import annotations
 
 import math
+import os
+import subprocess
+import sys
+import threading
 from collections import Counter
+from pathlib import Path
 from typing import Callable, Dict, List, Tuple
+from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
-from conftest import robot
+from conftest import robot, wait_until
 
 from self_awareness import PREDECESSORS, EvidenceModel, Model, TrainedModel, stable_name
 from self_awareness.commands import train
@@ -156,6 +162,40 @@ def test_the_graph_needs_a_master(robot_bags: Bags, tmp_path, monkeypatch, capsy
     assert error.startswith('train: error: --graph: no master at http://127.0.0.1:1')
     assert 'ROS_MASTER_URI' in error and error.count('\n') == 1
     assert not (tmp_path / 'm').exists()
+
+
+def test_only_the_master_is_asked_for_the_graph(robot_bags: Bags, tmp_path, monkeypatch) -> None:
+    asked = []
+
+    class Master:
+        """Answers all calls, and remembers them."""
+
+        def _dispatch(self, method: str, _: Tuple) -> Tuple:
+            asked.append(method)
+            return (1, '', [[['/scan', ['/laser']]], [['/scan', ['/slam']]], []])
+
+    with SimpleXMLRPCServer(('127.0.0.1', 0), logRequests=False) as server:
+        server.register_instance(Master())
+        threading.Thread(target=server.serve_forever).start()
+        monkeypatch.setenv('ROS_MASTER_URI', f'http://127.0.0.1:{server.server_address[1]}')
+        assert train.main([robot_bags[0], '--graph', '-o', str(tmp_path / 'm')]) == 0
+        server.shutdown()
+    assert asked == ['getSystemState']  # neither registered, nor asked any node
+
+
+@pytest.mark.parametrize('program', [['train'], ['calibrate', '--model', 'm', '--normal']])
+def test_the_robots_nodes_go_first(program: List[str], model_file: str, tmp_path) -> None:
+    bag = tmp_path / 'never_ends.bag'
+    os.mkfifo(bag)  # who opens it waits
+    script = Path(__file__).resolve().parents[3] / 'scripts' / program[0]
+    arguments = [model_file if argument == 'm' else argument for argument in program[1:]]
+    with subprocess.Popen([sys.executable, str(script), *arguments, str(bag), '-o',
+                           str(tmp_path / 'm')], stderr=subprocess.DEVNULL) as process:
+        try:
+            own = os.getpriority(os.PRIO_PROCESS, 0)
+            wait_until(lambda: os.getpriority(os.PRIO_PROCESS, process.pid) > own, 'stands back')
+        finally:
+            process.kill()
 
 
 def test_the_graph_is_who_subscribes_to_whom(robot_bags: Bags, tmp_path, monkeypatch) -> None:
