@@ -8,7 +8,7 @@ from typing import List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from self_awareness import EVIDENCE_THRESHOLD, Model, Verdicts, recordings
+from self_awareness import (EVIDENCE_THRESHOLD, Alarm, Model, Suspect, Verdicts, recordings)
 from self_awareness.commands import cli
 from self_awareness.judging import evidence_judge, paper_judge
 from self_awareness.output_files import check_outputs, replacing
@@ -78,8 +78,15 @@ def _print(recording: RecordingEvents, verdicts: Verdicts, known: int,
         if not alarm.suspects:
             print('    no suspect stands out')
         for rank, suspect in enumerate(alarm.suspects, 1):
-            print(f'    {rank}. {recording.event_types[suspect.id]}: {suspect.describe()}')
+            print(f'    {rank}. {_words(recording, suspect)}')
+        for suspect in alarm.new_suspects:
+            print(f'    since {(suspect.since - origin) / SECOND_NS:.1f} s '
+                  f'{_words(recording, suspect)}')
     _print_unknown(recording, known)
+
+
+def _words(recording: RecordingEvents, suspect: Suspect) -> str:
+    return f'{recording.event_types[suspect.id]}: {suspect.describe()}'
 
 
 def _print_unknown(recording: RecordingEvents, known: int) -> None:

@@ -38,6 +38,19 @@ def test_the_alarm_names_its_evidence_and_its_suspect(
     assert re.search(r'^    1\. /laser /scan std_msgs/String: silent for ', out, re.MULTILINE)
 
 
+def test_a_fault_during_the_alarm_is_printed_with_its_time(
+        evidence_model: str, make_bag: Callable[..., str], capsys) -> None:
+    bag = make_bag('two.bag', [m for m in jittery_robot(3000.0, 60.0, 3)
+                               if not (m[0] >= 3012.0 and m[1] == '/laser')
+                               and not (m[0] >= 3040.0 and m[1] == '/battery')])
+    assert score.main([bag, '--model', evidence_model]) == 0
+    out = capsys.readouterr().out
+    assert len(alarms(out)) == 1
+    since, = re.findall(r'^    since ([\d.]+) s /battery /charge std_msgs/String: silent for ', out,
+                        re.MULTILINE)
+    assert 40.0 < float(since) < 43.0
+
+
 def test_normal_operation_is_no_alarm(evidence_model: str, make_bag: Callable[..., str],
                                       capsys) -> None:
     bag = make_bag('normal.bag', jittery_robot(7000.0, 60.0, 4))
