@@ -28,9 +28,9 @@ struct Alarm {
   std::int64_t start = 0;  // end of the window that raised it [ns]
   std::int64_t end = 0;    // end of the window that cleared it, or of the recording [ns]
   bool cleared = false;
-  std::string evidence;  // of the window that raised it
+  std::string evidence;  // of the window that raised it, or the first after it that has any
   double lowest_score = std::numeric_limits<double>::quiet_NaN();
-  std::vector<core::Suspect> suspects;      // of the window that raised it
+  std::vector<core::Suspect> suspects;      // of the same window
   std::vector<core::Suspect> new_suspects;  // of the windows after it
 };
 
@@ -54,13 +54,14 @@ void record(const core::Verdict& verdict, bool stands, std::int64_t end,
             std::vector<Alarm>& stretches) {
   const bool stood = !stretches.empty() && !stretches.back().cleared;
   if (stands && !stood) {
-    Alarm& alarm = stretches.emplace_back();
-    alarm.start = end;
-    alarm.evidence = verdict.evidence;
-    alarm.suspects = verdict.suspects;
+    stretches.emplace_back().start = end;
   }
   if (stands || stood) {
     Alarm& alarm = stretches.back();
+    if (stands && alarm.evidence.empty()) {  // a suspicion may be what is left of an alarm
+      alarm.evidence = verdict.evidence;
+      alarm.suspects = verdict.suspects;
+    }
     alarm.end = end;
     alarm.cleared = !stands;
     alarm.lowest_score = std::fmin(alarm.lowest_score, verdict.score.value_or(0));
@@ -178,7 +179,8 @@ void bindVerdicts(py::module& m) {
       .def_readonly("end", &Alarm::end, "[ns]")
       .def_readonly("cleared", &Alarm::cleared, "False: it stood until the end of the recording")
       .def_readonly("lowest_score", &Alarm::lowest_score)
-      .def_readonly("evidence", &Alarm::evidence, "what raised it, in words")
+      .def_readonly("evidence", &Alarm::evidence,
+                    "what raised it, in words; empty: a suspicion that an alarm left")
       .def_readonly("suspects", &Alarm::suspects, "of the window that raised it, best first")
       .def_readonly("new_suspects", &Alarm::new_suspects,
                     "of components that an alarm named later, each with its time (since)");

@@ -1,6 +1,7 @@
 """Recordings as they are named on the command line, and the events a model sees in them."""
 from __future__ import annotations
 
+import math
 import os
 import re
 from dataclasses import dataclass
@@ -33,15 +34,24 @@ class BagPart:
         return cls(match['path'], float(match['start']), None if end is None else float(end))
 
     def __str__(self) -> str:
-        if self.start is None:
+        if self.start is None and self.end is None:
             return self.path
-        return f'{self.path}@{self.start:g}' + ('' if self.end is None else f'-{self.end:g}')
+        return (f'{self.path}@{self.start or 0.0:g}'
+                + ('' if self.end is None else f'-{self.end:g}'))
+
+    def meets(self, other: BagPart) -> bool:
+        """Return whether two parts of one bag have more than a moment in common."""
+        return (self.start or 0.0) < _end(other) and (other.start or 0.0) < _end(self)
 
     def span(self, first: int, last: int) -> Tuple[int, int]:
         """Return start and end [ns] within a recording from `first` to `last` [ns]."""
         start = first + nanoseconds(self.start or 0.0)
         end = last if self.end is None else first + nanoseconds(self.end)
         return start, min(end, last)
+
+
+def _end(part: BagPart) -> float:
+    return math.inf if part.end is None else part.end
 
 
 @dataclass(frozen=True)

@@ -105,10 +105,10 @@ def train(parts: Sequence[BagPart], counting: Counting, workers: Optional[Worker
             for line in counted.lines:
                 tell(line)
             for trained_on, recording in counted.recordings():
-                path = trained_on.part.path
-                same = distinct.add(path, recording)
+                name = str(trained_on.part)
+                same = distinct.add(name, recording)
                 if same is not None:
-                    raise ValueError(f'{path}: the same recording as {same}; name it once')
+                    raise ValueError(f'{name}: the same recording as {same}; name it once')
             total.add(counted)
             if counted.error is not None:
                 raise ValueError(counted.error)
@@ -291,9 +291,9 @@ def _count(how: _How, part: BagPart) -> _Sum:
     except BagError as error:
         raise _BadBag(str(error)) from error
     except ValueError as error:
-        raise _BadBag(f'{part.path}: {error}') from error
+        raise _BadBag(f'{part}: {error}') from error
     seconds = (recording.end - recording.start) / SECOND_NS
-    line = f'{part.path}: {seconds:.1f} s, {recording.events} events'
+    line = f'{part}: {seconds:.1f} s, {recording.events} events'
     trained_on = TrainedOn(part, None if how.alone else 0, events)
     return _Sum(recording.events, model, [trained_on], [line])
 
