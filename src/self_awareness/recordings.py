@@ -5,7 +5,7 @@ import math
 import os
 import re
 from dataclasses import dataclass
-from typing import List, Optional, Tuple
+from typing import Dict, Iterable, List, Optional, Set, Tuple
 
 import numpy as np
 
@@ -66,6 +66,8 @@ class RecordingEvents:
         origin: stamp of the bag's first message [ns], where its time in seconds begins.
         end: stamp of the last message that was asked for, event or not [ns].
         fingerprint: of the whole bag.
+        one_sender_a_topic: the bag was written by a program that keeps only one (BagSummary).
+        copied: so it is, and it is a copy of a recording.
     """
 
     part: BagPart
@@ -75,6 +77,8 @@ class RecordingEvents:
     origin: int
     end: int
     fingerprint: int
+    one_sender_a_topic: bool = False
+    copied: bool = False
 
     @property
     def middle(self) -> int:
@@ -112,7 +116,37 @@ def read(model: TrainedModel, part: BagPart) -> RecordingEvents:
     _check(model, part, events)
     _, end = part.span(events.summary.start, events.summary.end)
     return RecordingEvents(part, events.event_types, events.stamps, events.ids,
-                           events.summary.start, end, events.summary.fingerprint)
+                           events.summary.start, end, events.summary.fingerprint,
+                           events.summary.one_sender_a_topic, events.summary.copied)
+
+
+def merged_senders(model: TrainedModel, recording: RecordingEvents) -> Optional[str]:
+    """Return what to tell of a bag that has one sender of topics where the model knows several."""
+    if not recording.one_sender_a_topic or model.encoding.source == 'none':
+        return None
+    known = _senders(model.event_types)
+    heard = _senders([recording.event_types[i] for i in np.unique(recording.ids)])
+    sources = set().union(*heard.values())
+
+    def are_merged(topic: str) -> bool:
+        others = known.get(topic, set()) - heard[topic]
+        # In a bag that is no copy, who is not heard on any topic may as well have been off.
+        return len(heard[topic]) == 1 and bool(others if recording.copied else others & sources)
+
+    merged = [f'{topic} (here {min(heard[topic])} only, in the model {len(known[topic])} senders)'
+              for topic in sorted(heard) if are_merged(topic)]
+    if not merged:
+        return None
+    return (f'{recording.part}: keeps only one sender of a topic, under whose name are all '
+            f'messages, as copies by rosbag filter, compress and decompress do: '
+            f'{", ".join(merged)}; use the bag as it was recorded')
+
+
+def _senders(event_types: Iterable[EventType]) -> Dict[str, Set[str]]:
+    senders: Dict[str, Set[str]] = {}
+    for kind in event_types:
+        senders.setdefault(kind.scope, set()).add(kind.source)
+    return senders
 
 
 def overlap(a: Recording, b: Recording) -> bool:

@@ -8,7 +8,7 @@ from typing import Iterator, List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from self_awareness import (EVIDENCE_THRESHOLD, Alarm, Model, Suspect, Verdicts, recordings)
+from self_awareness import EVIDENCE_THRESHOLD, Alarm, Model, Suspect, Verdicts
 from self_awareness.commands import cli
 from self_awareness.judging import evidence_judge, paper_judge
 from self_awareness.output_files import check_outputs, replacing
@@ -50,7 +50,7 @@ def _score(arguments: argparse.Namespace) -> None:
               '(rosrun self_awareness calibrate)')
     judged: List[Tuple[RecordingEvents, Verdicts]] = []
     for part in arguments.bags:
-        recording = recordings.read(trained, part)
+        recording = cli.read_recording('score', trained, part)
         verdicts = judge(recording.stamps, recording.ids, recording.end)
         judged.append((recording, verdicts))
         _print(recording, verdicts, len(trained.event_types), threshold)
