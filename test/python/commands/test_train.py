@@ -39,6 +39,29 @@ def test_it_says_what_it_learned(robot_bags: Bags, tmp_path, capsys) -> None:
     assert model.encoding.source == 'callerid'
 
 
+def test_parts_of_bags_are_trained_on(robot_bags: Bags, tmp_path, capsys) -> None:
+    output, (first, second) = str(tmp_path / 'm'), robot_bags
+    lines = said(capsys, [f'{first}@2-12', f'{first}@12.01-20', second, '--start', '5',
+                          '-o', output])
+    assert f'{first}@2-12: 10.0 s, 428 events' in lines
+    assert [line.split(':')[0] for line in lines[1:3]] == [f'{first}@12.01-20', f'{second}@5']
+    spans = [((each.start - origin) / 1e9, (each.end - origin) / 1e9)
+             for each, origin in zip(TrainedModel.load(output).recordings,
+                                     (1000 * 10**9, 1000 * 10**9, 2000_033 * 10**6))]
+    assert spans == [pytest.approx(span, abs=0.06) for span in ((2, 12), (12, 20), (5, 30))]
+
+
+@pytest.mark.parametrize('parts, same', [
+    (('@2-12', '@11-20'), ('@11-20', '@2-12')), (('', '@25'), ('@25', '')),
+    (('@3', '@2-4'), ('@2-4', '@3'))])
+def test_parts_that_overlap_are_refused(robot_bags: Bags, parts: Bags, same: Bags, tmp_path,
+                                        capsys) -> None:
+    bag = robot_bags[0]
+    assert train.main([bag + parts[0], bag + parts[1], '-o', str(tmp_path / 'm')]) == 1
+    assert (f'{bag}{same[0]}: the same recording as {bag}{same[1]}; name it once'
+            in capsys.readouterr().err)
+
+
 def test_types_too_rare_to_judge_are_listed(make_bag: Callable[..., str], tmp_path,
                                             capsys) -> None:
     bag = make_bag('rare.bag', sorted([*robot(10.0), (15.0, '/door', '/open'),

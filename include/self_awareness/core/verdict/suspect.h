@@ -40,6 +40,14 @@ struct Suspect {
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
   EventId id = 0;
+  std::string component;  ///< whose event type it is; empty: not known, as of unknown events
+  /// It alone would be abnormal: its evidence is beyond its limit, or it was never seen in
+  /// training. With the paper's detector, which knows no limit of a single event type, the latter
+  /// only.
+  bool abnormal = false;
+  /// When the alarm or the suspicion that stands first named its component: end of the window
+  /// [ns].
+  std::int64_t since = 0;
   Reason reason = Reason::kSilent;
   double silence = kNone;         ///< kSilent, kLate: time without such an event [s]; kUnanswered:
                                   ///< time since it was asked for; kNeverHeard: since the
@@ -61,7 +69,8 @@ struct Suspect {
   std::string other;              ///< kDelay, kAnswer, kUnanswered: the other event type;
                                   ///< empty: its own
   double lasted = 0;              ///< kDelay, kAnswer: the numbers below are of the last so many s
-  std::size_t of = 0;             ///< kDelay: delays; kAnswer: events of the other type
+  std::size_t of = 0;             ///< kDelay: delays; kAnswer: events of the other type;
+                           ///< kUnanswered: those without an answer, if they are counted
   std::size_t times = 0;   ///< kDelay: delays of them that were unusual; kAnswer: answers of
                            ///< them that were left out
   double delay = 0;        ///< kDelay: median of the unusual ones, or of all if none is [s]
