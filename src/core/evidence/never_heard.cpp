@@ -28,7 +28,7 @@ NeverHeard::NeverHeard(const Model& model, const Limits& limits,
     : vocabulary_(model.vocabulary()), graph_(std::move(graph)) {
   const Statistics& statistics = model.statistics();
   for (EventId id = 0; id < model.size(); ++id) {
-    Expected expected{id, std::numeric_limits<std::int64_t>::max(), 0, 0};
+    Expected expected{id, std::numeric_limits<std::int64_t>::max(), 0, 0, 0};
     bool always = !statistics.recordings().empty() && statistics.type(id).gaps >= kFewestGaps;
     for (const Statistics::Recording& recording : statistics.recordings()) {
       const std::int64_t first = id < recording.firsts.size() ? recording.firsts[id] : -1;
@@ -79,9 +79,10 @@ void NeverHeard::closeWindow(std::int64_t end, std::int64_t settle_time) {
     missing_ = rootFirst(std::move(missing_));
   }
   share_ = 0;
-  for (const Expected& expected : missing_) {
+  for (Expected& expected : missing_) {
     const std::int64_t limit = alarmDue(std::max(expected.due, settle_time));
-    share_ = std::max(share_, static_cast<double>(passed) / static_cast<double>(limit));
+    expected.share = static_cast<double>(passed) / static_cast<double>(limit);
+    share_ = std::max(share_, expected.share);
   }
 }
 
@@ -106,6 +107,8 @@ std::vector<Suspect> NeverHeard::suspects() const {
   for (const Expected& expected : missing_) {
     Suspect suspect;
     suspect.id = expected.id;
+    suspect.component = component(expected.id);
+    suspect.abnormal = expected.share > 1;
     suspect.reason = Suspect::Reason::kNeverHeard;
     suspect.silence = toSeconds(end_ - *start_);
     suspect.usual_shortest = toSeconds(expected.shortest);

@@ -40,6 +40,7 @@ class NeverHeard {
     std::int64_t shortest = 0;  // usual time from the start to its first event [ns]
     std::int64_t longest = 0;   // [ns]
     std::int64_t due = 0;       // after the start, if the settling is over [ns]
+    double share = 0;           // of its limit that its absence has reached, once it is due
   };
 
   const std::string& component(EventId id) const;

@@ -65,8 +65,11 @@ TEST_F(NeverHeardTest, WhatComesLateAsAlwaysIsNormalAndWhatDoesNotComeIsNot) {
   EXPECT_EQ(suspect.id, kC);
   EXPECT_EQ(describe(suspect), "not heard since the start, usually within 14.4 to 14.6 s");
   EXPECT_NEAR(suspect.silence, 34.3, 1e-9);
+  EXPECT_EQ(suspect.component, "/c");
+  EXPECT_FALSE(suspect.abnormal);
   EXPECT_LT(shareAt(never_heard, 136 * kSecond), 1);  // four times as late
   EXPECT_GT(shareAt(never_heard, 137 * kSecond), 1);
+  EXPECT_TRUE(never_heard.suspects().front().abnormal);
   never_heard.add({138 * kSecond, kC});
   EXPECT_EQ(shareAt(never_heard, 139 * kSecond), 0);
   EXPECT_TRUE(never_heard.suspects().empty());
