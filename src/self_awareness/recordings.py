@@ -175,7 +175,7 @@ def _check(model: TrainedModel, part: BagPart, events: RecordedEvents) -> None:
     known, heard = _known(model, events.ids)
     if known == 0:
         raise ValueError(f'{part}: the model knows none of the {heard} event types of this '
-                         'recording: it is that of another robot (info shows what it knows)')
+                         'recording: it was trained with another encoding or on another robot')
 
 
 def _known(model: TrainedModel, ids: np.ndarray) -> Tuple[int, int]:

@@ -25,7 +25,7 @@ from self_awareness.calibration.threshold_rule import ThresholdRule
 from self_awareness.commands import cli
 from self_awareness.judging import evidence_judge, paper_judge
 from self_awareness.output_files import check_outputs, replacing
-from self_awareness.recordings import BagPart, RecordingEvents
+from self_awareness.recordings import BagPart
 from self_awareness.reporting import evidence_report
 from self_awareness.reporting.plots import save_roc
 from self_awareness.stamps import SECOND_NS
@@ -83,7 +83,6 @@ def _calibrate(arguments: argparse.Namespace) -> None:
                                   part=part)
               for part in arguments.faulty]
     check_unseen(trained, normal + faulty)
-    _check_known(trained, normal)
     normal_runs = [normal_run(recording) for recording in normal]
     faulty_runs = ([recorded_fault(recording, trained.window) for recording in faulty]
                    + [injected_fault(recording, fault, trained.window)
@@ -122,13 +121,6 @@ def _check_options(arguments: argparse.Namespace) -> None:
         arguments.cutoff = ThresholdRule('youden')
     if arguments.budget is None:
         arguments.budget = limits.BUDGET
-
-
-def _check_known(trained: TrainedModel, normal: Sequence[RecordingEvents]) -> None:
-    for recording in normal:
-        if (recording.ids >= len(trained.event_types)).all():
-            raise ValueError(f'{recording.part}: the model knows none of its event types: it was '
-                             'trained with another encoding or on another robot')
 
 
 def _find_limits(arguments: argparse.Namespace, trained: TrainedModel,
