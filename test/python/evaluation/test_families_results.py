@@ -274,7 +274,8 @@ def test_the_csv_files_have_all_figures(written: Path) -> None:
     found = sum(row['latency_s'] != '' for row in crashes) / len(crashes)
     figure = next(row for row in rows if (row['family'], row['system']) == ('bursty', 'gaps')
                   and row['learning'].startswith('2'))
-    assert float(figure['crash_found']) == pytest.approx(found, abs=0.001)
+    assert float(figure['crash_found']) == pytest.approx(found, abs=0.005)
+    assert figure['half_found'] == ''  # there are no such records
 
 
 @pytest.mark.parametrize('wrong', [['--families', 'cars'], ['--starts', '0'], ['--starts', '17'],

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import csv
+import math
 from pathlib import Path
 from typing import Any, Dict, List, Sequence
 
@@ -134,7 +135,9 @@ def _of_fault(kind: str, found: Found) -> Dict[str, Any]:
 
 
 def _short(value: Any) -> Any:
-    return f'{value:.4g}' if isinstance(value, float) else value
+    if not isinstance(value, float):
+        return value
+    return '' if math.isnan(value) else f'{value:.3g}'
 
 
 def _flat(row: Any) -> Dict[str, Any]:
