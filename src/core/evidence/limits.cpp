@@ -26,7 +26,8 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLeastMargin = 1.25;
 // More would find nothing any more: where the data say so, the budget cannot be kept.
 constexpr double kMostMargin = 4;
-constexpr double kMostOwnMargin = 2;  // of one track
+constexpr double kMostGapMargin = 1.6;  // of the longest gaps: what is silent is to be found soon
+constexpr double kMostOwnMargin = 2;    // of one track
 // The linker depends on what the robot is doing, and that changes from hour to hour.
 constexpr double kLeastLinkerMargin = 1.5;
 constexpr double kLeastLinkerLimit = 2;  // event types
@@ -397,7 +398,7 @@ void LimitFinder::findLimits() {
       }
       std::vector<double> sorted = seen.largest;
       std::sort(sorted.rbegin(), sorted.rend());
-      const double second = sorted.size() > 1 ? sorted[1] : sorted[0];
+      const double second = sorted.size() > 1 && sorted[1] > 0 ? sorted[1] : sorted[0];
       const auto window = static_cast<double>(parameters_.window);
       pool = second - window >= kRegular * meanGap(to) ? Pool::kOthers
              : meanGap(to) < kFast * window            ? Pool::kFastTimers
@@ -427,14 +428,16 @@ void LimitFinder::findLimits() {
     }
     const double margin = std::min(
         held_out.margin(parameters_.false_alarms_per_hour / kShares, leastMargin(pool)),
-        kMostMargin);
+        gaps ? kMostGapMargin : kMostMargin);
     tracks_rate_ += pool == Pool::kSlowDelays ? 0 : held_out.rate(margin);
     for (const Seen& seen : tracks) {
       const auto& [channel, to, from] = model_->tracks()[seen.track];
       // A track that would have raised an alarm had its worst start been left out gets a wider
       // limit.
       const double own =
-          std::max(margin, std::min(held_out.excess(seen.largest, seen.least), kMostOwnMargin));
+          gaps ? margin
+               : std::max(margin,
+                          std::min(held_out.excess(seen.largest, seen.least), kMostOwnMargin));
       const double largest = *std::max_element(seen.largest.begin(), seen.largest.end());
       const double found =
           std::max(seen.least, own * std::max(largest, HeldOut::kLeastShare * seen.least));

@@ -46,7 +46,7 @@ class Scorer {
   /// While the whole robot is silent for a moment, nobody's silence grows.
   std::int64_t age(EventId id) const {
     const std::int64_t stall =
-        stall_ > 0 || stalled_at_ == 0 || stamps_.at(id) > stalled_from_
+        stall_ > 0 || window_end_ >= stalled_until_ + kRateSpan || stamps_.at(id) > stalled_from_
             ? stall_
             : stalled_at_ - stalled_from_;
     return numbers_.at(id) > 0 ? window_end_ - stamps_[id] - stall : 0;
