@@ -199,7 +199,7 @@ std::optional<std::int64_t> Scorer::add(const Event& event) {
 void Scorer::noteStall(std::int64_t stamp) {
   const std::int64_t silence = stamp - last_stamp_;
   if (number_ > 0 && silence > longest_silence_ && silence <= longest_silence_ + kLongestStall &&
-      stamp - stalled_at_ > kBetweenStalls) {
+      (stalled_at_ == 0 || stamp - stalled_at_ > kBetweenStalls)) {
     stalled_from_ = last_stamp_;
     stalled_at_ = stamp;
     stalled_until_ = stamp + silence;

@@ -20,7 +20,7 @@ constexpr double kCap = 30;
 // A comes irregularly, and B kUsual after it.
 Statistics followed(unsigned seed) {
   const Events asked = irregular(kA, 0, 100 * kSecond, kPeriod, seed);
-  return countsOf({together({asked, answers(kB, asked, kUsual)})}, 2);
+  return countsOf({later(together({asked, answers(kB, asked, kUsual)}), seed * kStart)}, 2);
 }
 
 class HindsightTest : public testing::Test {

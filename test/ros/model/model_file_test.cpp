@@ -18,7 +18,9 @@
 
 #include "core/paper/delay_trainer.h"
 #include "self_awareness/DelayHistograms.h"
+#include "self_awareness/core/evidence/limits.h"
 #include "self_awareness/core/evidence/model.h"
+#include "self_awareness/ros/model/evidence_message.h"
 #include "self_awareness/ros/model/model_bytes.h"
 
 namespace self_awareness::ros1 {
@@ -62,6 +64,7 @@ class ModelFileTest : public testing::Test {
         evidence.add(event);
       }
       trainer.startRecording();
+      evidence.finish();
     }
     model.watch();
     model.stamp = ros::Time(1700000000, 0);
@@ -84,7 +87,44 @@ class ModelFileTest : public testing::Test {
     model.evidence_calibration->budget = 0.25;
     model.evidence_calibration->windows = 1234;
     model.evidence_calibration->recordings = model.recordings;
+    model.evidence_calibration->false_alarms_per_hour = 0.125;
+    self_awareness::Relation relation;
+    relation.spread = 0.25;
+    relation.starts = 2;
+    relation.starts_needed = 3;
+    model.evidence_calibration->relations.assign(model.watched.tracks.size(), relation);
+    model.evidence_calibration->relations.at(1).watched = 1;
+    model.evidence_calibration->relations.at(1).reaches = 1;
+    model.evidence_calibration->relations.at(1).irregular = 1;
+    model.findings = someFindings(model);
     return model;
+  }
+
+  // What two recordings of the training showed, one of them in two parts.
+  static core::evidence::LimitFinder::Findings someFindings(const TrainedModel& model) {
+    using core::evidence::LimitFinder;
+    LimitFinder::Findings findings(2);
+    for (std::size_t k = 0; k < findings.size(); ++k) {
+      LimitFinder::Recording& recording = findings[k];
+      recording.start = 1000000000LL * static_cast<std::int64_t>(k + 1);
+      recording.end = recording.start + 123456789;
+      recording.trained_on = true;
+      for (std::size_t part = 0; part <= k; ++part) {
+        LimitFinder::Recording::Part& added = recording.parts.emplace_back();
+        added.windows = 100 * k + part;
+        recording.windows += added.windows;
+        for (std::size_t track = 0; track < model.watched.tracks.size(); ++track) {
+          added.evidence.push_back(static_cast<float>(track) + 0.5F * static_cast<float>(part));
+        }
+        for (std::size_t id = 0; id < model.vocabulary().size(); ++id) {
+          added.longest_gaps.push_back(static_cast<std::int64_t>(1000 * id + part));
+        }
+      }
+      for (std::size_t track = 0; track < model.watched.tracks.size(); ++track) {
+        recording.said.push_back(static_cast<LimitFinder::Said>((track + k) % 3));
+      }
+    }
+    return findings;
   }
 
   // Error on loading a model file whose messages a test has changed.
@@ -316,6 +356,87 @@ TEST_F(ModelFileTest, TheEvidenceItsLimitsAndTheGraphComeBackAsTheyWereSaved) {
                    .limits());
 }
 
+TEST_F(ModelFileTest, WhatTheTrainingShowedComesBackAsItWasSaved) {
+  const TrainedModel model = calibratedModel();
+  saveModel(model, path("m"));
+  for (const TrainedModel& loaded :
+       {loadModel(path("m")), loadModel(path("m"), ModelCounts::kWatched),
+        fromBytes(toBytes(model))}) {
+    ASSERT_EQ(loaded.findings.size(), 2U);
+    for (std::size_t k = 0; k < 2; ++k) {
+      const core::evidence::LimitFinder::Recording& saved = model.findings[k];
+      const core::evidence::LimitFinder::Recording& found = loaded.findings[k];
+      EXPECT_EQ(found.start, saved.start);
+      EXPECT_EQ(found.end, saved.end);
+      EXPECT_TRUE(found.trained_on);
+      EXPECT_EQ(found.windows, saved.windows);
+      EXPECT_EQ(found.said, saved.said);
+      ASSERT_EQ(found.parts.size(), saved.parts.size());
+      for (std::size_t part = 0; part < saved.parts.size(); ++part) {
+        EXPECT_EQ(found.parts[part].windows, saved.parts[part].windows);
+        EXPECT_EQ(found.parts[part].evidence, saved.parts[part].evidence);
+        EXPECT_EQ(found.parts[part].longest_gaps, saved.parts[part].longest_gaps);
+      }
+    }
+    // Recordings of the training, of each half one.
+    for (const core::evidence::Statistics& half : loaded.watched.halves) {
+      ASSERT_EQ(half.recordings().size(), 1U);
+      EXPECT_EQ(half.recordings()[0].end, 149 * 37000000LL);
+      EXPECT_EQ(half.recordings()[0].longest_silence, 37000000);
+      EXPECT_EQ(half.recordings()[0].events, (std::vector<std::uint64_t>{100, 50}));
+      EXPECT_EQ(half.recordings()[0].longest_gaps,
+                (std::vector<std::int64_t>{2 * 37000000, 3 * 37000000}));
+    }
+  }
+  EXPECT_TRUE(model.watched.halves[0] == loadModel(path("m")).watched.halves[0]);
+}
+
+TEST_F(ModelFileTest, WhatSpeaksForRelationsComesBackAsItWasSaved) {
+  const TrainedModel model = calibratedModel();
+  saveModel(model, path("m"));
+  const TrainedModel loaded = loadModel(path("m"));
+  EXPECT_EQ(loaded.evidence_calibration->false_alarms_per_hour, 0.125);
+  const std::vector<self_awareness::Relation>& relations = loaded.evidence_calibration->relations;
+  ASSERT_EQ(relations.size(), model.watched.tracks.size());
+  for (std::size_t track = 0; track < relations.size(); ++track) {
+    const core::evidence::Relation relation = fromMessage(relations[track]);
+    EXPECT_EQ(relation.watched, track == 1);
+    EXPECT_EQ(relation.reaches, track == 1);
+    EXPECT_EQ(relation.irregular, track == 1);
+    EXPECT_EQ(relation.spread, 0.25);
+    EXPECT_EQ(relation.starts, 2U);
+    EXPECT_EQ(relation.starts_needed, 3U);
+    EXPECT_EQ(toMessage(relation).starts_needed, 3U);
+  }
+}
+
+TEST_F(ModelFileTest, DamagedFindingsAreRefused) {
+  using Message = self_awareness::Model;
+  using Findings = self_awareness::RecordingFindings;
+  const std::string file = path("damaged") + ": a damaged model file: its findings ";
+  for (const auto change : std::vector<void (*)(Findings&)>{
+           [](Findings& f) { f.part_windows.push_back(1); },
+           [](Findings& f) { f.evidence.pop_back(); },
+           [](Findings& f) { f.longest_gaps.push_back(1); }, [](Findings& f) { f.said.pop_back(); }}) {
+    EXPECT_EQ(damagedModel([change](Message& model) { change(model.findings.at(1)); }),
+              file + "do not fit its tracks");
+  }
+  EXPECT_EQ(damagedModel([](Message& model) { model.findings.at(0).said.at(0) = 3; }),
+            file + "say what this version does not know");
+  const auto recording = [this](void (*change)(self_awareness::RecordingCounts&)) {
+    return damagedModel(
+        [change](Message& model) { change(model.watched.at(0).recordings.at(0)); });
+  };
+  const std::string told =
+      path("damaged") + ": a damaged model file: its recordings do not fit its event types";
+  EXPECT_EQ(recording([](self_awareness::RecordingCounts& r) { r.events.push_back(1); }), told);
+  EXPECT_EQ(recording([](self_awareness::RecordingCounts& r) {
+              r.events.push_back(1);
+              r.longest_gaps.push_back(1);
+            }),
+            told);
+}
+
 TEST_F(ModelFileTest, DamagedEvidenceIsRefused) {
   using Message = self_awareness::Model;
   using Evidence = self_awareness::Evidence;
@@ -350,7 +471,7 @@ TEST_F(ModelFileTest, DamagedEvidenceIsRefused) {
 TEST_F(ModelFileTest, ImpossibleTracksAreRefused) {
   using Message = self_awareness::Model;
   const std::string file = path("damaged") + ": a damaged model file: it watches ";
-  EXPECT_EQ(damagedModel([](Message& m) { m.tracks.at(0).channel = 6; }),
+  EXPECT_EQ(damagedModel([](Message& m) { m.tracks.at(0).channel = self_awareness::Track::DEADLINE + 1; }),
             file + "what this version does not know");
   EXPECT_EQ(damagedModel([](Message& m) { m.tracks.at(0).to_id = 2; }),
             file + "an event type that it does not have");
