@@ -7,9 +7,7 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-// What is believed before anything is seen: values exceed by so much on average (a logarithm), as
-// if so many had done so.
-constexpr double kPriorScale = 0.2;
+// What is believed before anything is seen counts as so many exceedances.
 constexpr double kPriorExceedances = 5;
 // As if so many exceedances had been seen where there were none.
 constexpr double kFewest = 0.5;
@@ -21,7 +19,7 @@ const double kBeyond = std::log(1.25);
 
 }  // namespace
 
-HeldOut::HeldOut(std::vector<Part> parts) {
+HeldOut::HeldOut(const std::vector<Part>& parts, double scale) : prior_scale_(scale) {
   std::vector<std::size_t> by_start;
   std::vector<std::size_t> by_part;
   for (const Part& part : parts) {
@@ -67,8 +65,8 @@ double HeldOut::exceedance(const Level& level, const std::vector<double>& larges
   return std::log(most / std::max(second, kLeastShare * least));
 }
 
-double HeldOut::scale(const Level& level) {
-  return (level.logarithms + kPriorScale * kPriorExceedances) /
+double HeldOut::scale(const Level& level) const {
+  return (level.logarithms + prior_scale_ * kPriorExceedances) /
          (level.exceedances + kPriorExceedances);
 }
 

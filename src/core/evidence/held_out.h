@@ -18,7 +18,9 @@ struct Part {
 class HeldOut {
  public:
   /// @param parts all that was looked at; none may be empty
-  explicit HeldOut(std::vector<Part> parts);
+  /// @param scale by how much values exceed others on average (a logarithm), as is believed before
+  /// anything is seen
+  HeldOut(const std::vector<Part>& parts, double scale);
 
   /// Takes in a track.
   /// @param largest value in every part, 0 or more
@@ -52,8 +54,9 @@ class HeldOut {
   static Level levelOf(const std::vector<Part>& parts, std::vector<std::size_t> group_of);
   /// log of by how much the largest group exceeds the others; 0 if it does not.
   static double exceedance(const Level& level, const std::vector<double>& largest, double least);
-  static double scale(const Level& level);
+  double scale(const Level& level) const;
 
+  double prior_scale_;
   std::size_t tracks_ = 0;
   std::vector<Level> levels_;  // by start first
 };

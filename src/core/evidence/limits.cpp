@@ -31,6 +31,9 @@ constexpr double kLeastLinkerMargin = 1.5;
 constexpr double kLeastLinkerLimit = 2;  // event types
 // An answer may take so many times the longest wait that was seen.
 constexpr double kLeastDeadlineMargin = 2;
+// By how much recordings exceed each other on average (a logarithm), as long as little is known.
+constexpr double kScale = 0.2;
+constexpr double kScaleOfTimers = 0.05;
 // A gap shorter than this many mean gaps is one of a timer that lost nothing.
 constexpr double kRegular = 1.5;
 
@@ -366,10 +369,15 @@ void LimitFinder::findLimits() {
       for (const Recording::Part* part : gap_parts) {
         seen.largest.push_back(static_cast<double>(part->longest_gaps[to]));
       }
+      // Windows tell ages no better than this, and hiccups of a host add to a gap, however long.
+      for (double& gap : seen.largest) {
+        gap += static_cast<double>(parameters_.window);
+      }
       std::vector<double> sorted = seen.largest;
       std::sort(sorted.rbegin(), sorted.rend());
       const double second = sorted.size() > 1 ? sorted[1] : sorted[0];
-      pool = second < kRegular * meanGap(to) ? Pool::kTimers : Pool::kOthers;
+      pool = second - static_cast<double>(parameters_.window) < kRegular * meanGap(to) ? Pool::kTimers
+                                                                                   : Pool::kOthers;
     } else {
       for (const Recording::Part* part : judged_parts) {
         seen.largest.push_back(part->evidence[track]);
@@ -384,7 +392,7 @@ void LimitFinder::findLimits() {
   tracks_rate_ = 0;
   for (const auto& [pool, tracks] : pools) {
     const bool gaps = pool == Pool::kTimers || pool == Pool::kOthers;
-    HeldOut held_out(gaps ? with_gaps : judged);
+    HeldOut held_out(gaps ? with_gaps : judged, pool == Pool::kTimers ? kScaleOfTimers : kScale);
     for (const Seen& seen : tracks) {
       held_out.add(seen.largest, seen.least);
     }
@@ -404,8 +412,9 @@ void LimitFinder::findLimits() {
       double& limit = limits_.tracks[seen.track];
       if (channel == Channel::kOverdue) {
         // What comes when something happens may stay away for as long as nothing does.
-        const bool irregular = found > kLongestWait && found > kMostMeanGaps * meanGap(to);
-        limit = irregular ? kNone : model_->overdue(to, std::llround(found));
+        const double age = found - static_cast<double>(parameters_.window);
+        const bool irregular = age > kLongestWait && age > kMostMeanGaps * meanGap(to);
+        limit = irregular ? kNone : model_->overdue(to, std::llround(age));
       } else if (channel == Channel::kDelay || channel == Channel::kSlowDelay) {
         limit = found > kMostDelayLimit ? kNone : found;
       } else if (channel == Channel::kAnswer) {
@@ -453,7 +462,7 @@ Limits LimitFinder::limits() const {
     throw std::logic_error("limits are known after the second pass");
   }
   const LinkerParts seen = linkerParts(linker_findings_, parameters_.window);
-  HeldOut held_out(seen.parts);
+  HeldOut held_out(seen.parts, kScale);
   held_out.add(seen.largest, kLeastLinkerLimit);
   const double margin =
       held_out.margin(parameters_.false_alarms_per_hour / kShares, kLeastLinkerMargin);
@@ -466,7 +475,7 @@ Limits LimitFinder::limits() const {
 
 double LimitFinder::expectedRate() const {
   const LinkerParts seen = linkerParts(linker_findings_, parameters_.window);
-  HeldOut held_out(seen.parts);
+  HeldOut held_out(seen.parts, kScale);
   held_out.add(seen.largest, kLeastLinkerLimit);
   return tracks_rate_ + held_out.rate(held_out.margin(
                             parameters_.false_alarms_per_hour / kShares, kLeastLinkerMargin));

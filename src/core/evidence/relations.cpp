@@ -139,10 +139,26 @@ bool Relations::isIrregular(EventId from, EventId to) const {
   return std::min(range(from, from, false), range(to, to, false)) > kIrregular * delays;
 }
 
+double Relations::period(EventId from, EventId to) const {
+  return std::min(mean_gaps_[from], mean_gaps_[to]);
+}
+
+double Relations::medianDelay(EventId from, EventId to) const {
+  const Statistics::Delays& delays = counts_.delays(from, to);
+  const auto total = static_cast<double>(counts_.total(from, to));
+  double below = 0;
+  std::size_t median = 0;
+  for (std::size_t bin = 0; bin < delays.size() && below < total / 2; ++bin) {
+    below += delays[bin];
+    median = bin;
+  }
+  return log_bins::middle(median);
+}
+
 double Relations::spread(EventId from, EventId to, double left_out) const {
   const Statistics::Delays& delays = counts_.delays(from, to);
   const double wanted = (1 - left_out) * static_cast<double>(counts_.total(from, to));
-  const double period = std::min(mean_gaps_[from], mean_gaps_[to]);
+  const double period = this->period(from, to);
   if (wanted <= 0 || period <= 0) {
     return 1;
   }
@@ -209,9 +225,11 @@ Relation Relations::delays(EventId from, EventId to, const std::vector<Span>& mo
                            ? kChanceOfOne
                            : kChanceOfAny / looked_at_;
   const double starts = std::max<double>(static_cast<double>(relation.starts), 1);
-  relation.watched = std::pow(relation.spread, starts - 1) <= level;
+  // Who comes in the second half of a period after another may as well be the one that it asks.
+  const bool late = !relation.reaches && medianDelay(from, to) > period(from, to) / 2;
+  relation.watched = !late && std::pow(relation.spread, starts - 1) <= level;
   relation.starts_needed =
-      relation.watched || relation.spread >= 1
+      relation.watched || late || relation.spread >= 1
           ? 0
           : static_cast<std::size_t>(1 + std::ceil(std::log(level) / std::log(relation.spread)));
   return relation;

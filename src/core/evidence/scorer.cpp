@@ -87,7 +87,7 @@ void Scorer::addTracks() {
     type.pairs_begin = static_cast<std::uint32_t>(pairs_.size());
     for (const std::size_t track : pairs[id]) {
       state_of_[track] = state_of_[track + 1] = pairs_.size();
-      pairs_.push_back({tracks[track].from, false, model_->surprises(track).data(), 0, none});
+      pairs_.push_back({tracks[track].from, tracks[track].from == id, false, model_->surprises(track).data(), 0, none});
     }
     type.pairs_end = static_cast<std::uint32_t>(pairs_.size());
     type.answers_begin = static_cast<std::uint32_t>(answers_.size());
@@ -211,6 +211,8 @@ void Scorer::armPair(std::size_t number, bool first, double surprise) {
   DelayPair& pair = pairs_[number];
   if (numbers_[pair.from] == 0) {
     pair.sums.values.setZero();
+  } else if (pair.own) {
+    pair.armed = true;  // the history of one event type has no phase that could be another one
   } else if (first) {
     pair.armed = arm(pairs_arming_[number], surprise, kUsualSurprise);
   }

@@ -82,6 +82,7 @@ class Scorer {
   /// State of the two delay tracks of a pair of event types.
   struct DelayPair {
     EventId from = 0;
+    bool own = false;  // `from` is `to`
     bool armed = false;
     const double* surprises = nullptr;  // by bin
     double regime = 0;                  // mean surprise of the last minutes, if it is above usual

@@ -92,6 +92,7 @@ def _calibrate(arguments: argparse.Namespace) -> None:
         measured = _find_limits(arguments, trained, parameters, normal_runs, faulty_runs)
         evidence_report.print_limits(trained, arguments.model)
         evidence_report.print_measured(measured.normal, measured.false_alarms)
+        evidence_report.print_expected(trained, measured.false_alarms)
         evidence_report.print_faults(measured.faulty)
     else:
         measured = _find_threshold(trained, parameters, arguments.cutoff, normal_runs, faulty_runs)
@@ -146,8 +147,6 @@ def _find_limits(arguments: argparse.Namespace, trained: TrainedModel,
     measured = _Measured(roc.at(EVIDENCE_THRESHOLD), roc, normal, faulty,
                          fault_results(normal_scores, faulty, EVIDENCE_THRESHOLD),
                          false_alarms(normal, trained.window))
-    found.false_alarms_per_hour = measured.false_alarms.per_hour
-    trained.evidence_calibration = found
     return measured
 
 

@@ -10,6 +10,7 @@ from self_awareness import FEWEST_GAPS, EventType, Model, TrainedModel
 from self_awareness.commands import cli
 from self_awareness.judging import EVIDENCE
 from self_awareness.reporting import histogram_text
+from self_awareness.reporting import relations_text
 from self_awareness.reporting.evidence_report import counts
 from self_awareness.reporting.model_summary import summarise
 from self_awareness.stamps import utc
@@ -97,8 +98,10 @@ def _print_evidence(evidence: Dict[str, Any]) -> None:
           f'hour, calibrated {utc(calibration["calibrated_ns"])} UTC')
     print(f'  of {counts(calibration["judged_tracks"])}, linker '
           f'{calibration["linker_limit"]:.4g}')
-    print(f'  {calibration["windows"]} windows, false alarms '
-          f'{_or_none(calibration["false_alarms_per_hour"])} an hour, after persistence')
+    print(f'  {calibration["windows"]} windows, false alarms to be expected: '
+          f'{_or_none(calibration["false_alarms_per_hour"])} an hour')
+    for line in relations_text.lines(calibration['relations']):
+        print(f'  {line}')
     print('  normal recordings')
     _print_recordings(calibration['normal'])
 

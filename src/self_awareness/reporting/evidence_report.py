@@ -8,6 +8,7 @@ from self_awareness import FEWEST_GAPS, TrainedModel
 from self_awareness.calibration import confidence
 from self_awareness.calibration.results import FalseAlarms
 from self_awareness.calibration.runs import RECORDED, JudgedRun
+from self_awareness.reporting import relations_text
 from self_awareness.reporting.model_summary import summarise_evidence
 from self_awareness.stamps import SECOND_NS
 
@@ -28,17 +29,30 @@ def print_limits(trained: TrainedModel, path: str) -> None:
     print(f'{path}: watched: {counts(judged)}')
     if any(dropped.values()):
         print(f'  left out, since they say nothing or too little: {counts(dropped)}')
+    for line in relations_text.lines(evidence['calibration']['relations']):
+        print(f'  {line}')
     if evidence['not_judged']:
         print(f'  not judged, fewer than {FEWEST_GAPS} gaps in training: '
               f'{"; ".join(evidence["not_judged"])}')
 
 
+def print_expected(trained: TrainedModel, alarms: FalseAlarms) -> None:
+    """Print how many false alarms are to be expected, and whether the budget can be kept."""
+    calibration = trained.evidence_calibration
+    expected, budget = calibration.false_alarms_per_hour, calibration.budget
+    low, high = confidence.poisson_rate(expected * alarms.hours, alarms.hours)
+    print(f'false alarms to be expected: {expected:.2g} an hour (95 %: {low:.2g} to {high:.2g}), '
+          'by leaving recordings out in turn')
+    if expected > budget:
+        needed = alarms.hours * expected / budget - alarms.hours
+        print(f'  the recordings cannot support a budget of {budget:g} an hour: that takes about '
+              f'{_hours(needed)} more of normal operation, in several starts of the robot')
+
+
 def print_measured(normal: Sequence[JudgedRun], alarms: FalseAlarms) -> None:
     """Print what the limits do on the recordings that they were found on."""
-    low, high = alarms.interval
     print(f'normal operation: {alarms.hours:.3f} h (recordings: {len(normal)}), alarms: '
-          f'{alarms.count}, {alarms.per_hour:.3g} an hour (95 %: {low:.3g} to {high:.3g}); the '
-          'limits were found on the same recordings, other ones will have more')
+          f'{alarms.count}; the limits were found on the same recordings')
     for run in normal:
         for alarm in run.verdicts.alarms:
             kinds = run.run.source.event_types
@@ -67,6 +81,10 @@ def print_faults(faulty: Sequence[JudgedRun]) -> None:
     found = sum(run.latency is not None for run in faulty)
     low, high = confidence.wilson(found, len(faulty))
     print(f'found {found} of {len(faulty)} (95 %: {low:.1%} to {high:.1%})')
+
+
+def _hours(hours: float) -> str:
+    return f'{hours:.2g} h' if hours >= 1.0 else f'{60.0 * hours:.0f} min'
 
 
 def _names(run: JudgedRun) -> Tuple[str, str]:

@@ -7,6 +7,7 @@ from typing import Any, Dict, List, Optional, Tuple
 
 from self_awareness import (FEWEST_GAPS, USUAL_SHARES, Calibration, EvidenceCalibration,
                             EvidenceModel, Recording, TrainedModel)
+from self_awareness.reporting import relations_text
 from self_awareness.judging import EVIDENCE, PAPER
 from self_awareness.stamps import SECOND_NS
 
@@ -78,6 +79,7 @@ def _evidence(model: TrainedModel, evidence: EvidenceModel) -> Dict[str, Any]:
                   if not math.isnan(limit)]
         summary['calibration'] = _evidence_calibration(model.evidence_calibration)
         summary['calibration']['judged_tracks'] = dict(Counter(each.channel for each in judged))
+        summary['calibration']['relations'] = relations_text.relations(model, evidence)
     return summary
 
 

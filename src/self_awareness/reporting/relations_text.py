@@ -1,0 +1,74 @@
+"""Says why relations between event types are watched, or what is missing (docs/method.md)."""
+from __future__ import annotations
+
+import math
+from typing import Any, Dict, List
+
+from self_awareness import EvidenceModel, TrainedModel
+
+RELATIONS = ('pairs', 'answers', 'deadlines')
+"""The channels that look at two event types."""
+
+_MOST_LINES = 10
+_MOST_STARTS = 50
+
+
+def relations(model: TrainedModel, evidence: EvidenceModel) -> List[Dict[str, Any]]:
+    """Return what speaks for each relation that might be watched; of a calibrated model.
+
+    The own history of an event type is no relation.
+    """
+    calibration = model.evidence_calibration
+    if calibration is None:
+        return []
+    found: Dict[Any, Dict[str, Any]] = {}
+    for track, limit, relation in zip(evidence.tracks, calibration.limits, calibration.relations):
+        if track.channel not in RELATIONS or track.from_id == track.to_id:
+            continue
+        key = (track.channel, track.from_id, track.to_id)
+        judged = not math.isnan(limit) or bool(found.get(key, {}).get('judged'))
+        found[key] = {
+            'channel': track.channel,
+            'from': str(model.event_types[track.from_id]),
+            'to': str(model.event_types[track.to_id]),
+            'judged': judged,
+            'watched': relation.watched,
+            'reaches': relation.reaches,
+            'irregular': relation.irregular,
+            'chance': relation.spread ** max(relation.starts - 1, 0),
+            'starts': relation.starts,
+            'starts_needed': relation.starts_needed,
+        }
+    return list(found.values())
+
+
+def reasons(relation: Dict[str, Any]) -> str:
+    """Return in words why a relation is watched."""
+    words = []
+    if relation['reaches']:
+        words.append('its messages get there')
+    if relation['irregular']:
+        words.append('it says more than the own history')
+    if relation['channel'] == 'pairs' and relation['starts'] > 1:
+        words.append(f'chance {relation["chance"]:.1g} in {relation["starts"]} starts')
+    return ', '.join(words)
+
+
+def lines(found: List[Dict[str, Any]]) -> List[str]:
+    """Return lines for people: what is watched and why, and what more starts would add."""
+    text = []
+    watched = [relation for relation in found if relation['judged']]
+    waiting = [relation for relation in found if not relation['watched']
+               and relation['starts'] < relation['starts_needed'] <= _MOST_STARTS]
+    for relation in watched[:_MOST_LINES]:
+        text.append(f'{relation["channel"]}: {relation["from"]} -> {relation["to"]}: '
+                    f'{reasons(relation)}')
+    if len(watched) > _MOST_LINES:
+        text.append(f'and {len(watched) - _MOST_LINES} more (info --json lists all)')
+    if waiting:
+        fewest = min(waiting, key=lambda each: each['starts_needed'] - each['starts'])
+        more = fewest['starts_needed'] - fewest['starts']
+        text.append(f'{len(waiting)} relations are not watched, since there were too few starts '
+                    f'of the robot: record after {more} more to watch late answers of '
+                    f'{fewest["to"]}; train with the graph (--graph) needs fewer')
+    return text
