@@ -183,6 +183,20 @@ TEST(Relations, HiccupsDoNotWidenAPhase) {
   EXPECT_LT(Relations(counts, kNoGraph).delays(kA, kB).spread, 0.1);
 }
 
+TEST(Relations, WhoComesLateInAPeriodMayBeTheOneThatAsks) {
+  const std::vector<std::int64_t> early(8, 30 * kMillisecond);
+  const std::vector<std::int64_t> late(8, 80 * kMillisecond);
+  const Statistics soon = timers(early);
+  const Statistics afterwards = timers(late);
+  EXPECT_TRUE(Relations(soon, kNoGraph).delays(kA, kB).watched);
+  EXPECT_FALSE(Relations(soon, kNoGraph).delays(kB, kA).watched);
+  const Relation relation = Relations(afterwards, kNoGraph).delays(kA, kB);
+  EXPECT_FALSE(relation.watched);
+  EXPECT_EQ(relation.starts_needed, 0U) << "no number of starts helps";
+  const SourceGraph graph = connected("/x");
+  EXPECT_TRUE(Relations(afterwards, graph).delays(kA, kB).watched);
+}
+
 TEST(Relations, AMessageThatGetsThereIsAReason) {
   const Statistics counts = timers({20 * kMillisecond, 20 * kMillisecond});
   ASSERT_FALSE(Relations(counts, kNoGraph).delays(kA, kB).watched);

@@ -67,16 +67,21 @@ def middle(index: int) -> float:
     return math.sqrt(EDGES[index - 1] * EDGES[index]) if index < BINS - 1 else EDGES[-1]
 
 
+def numbers_below(bins: Sequence[int]) -> List[int]:
+    """Return the number of delays below every bin."""
+    counts = [bins.count(index) for index in range(BINS)]
+    return [sum(counts[:index]) for index in range(BINS)]
+
+
 def bin_at_most(bins: Sequence[int], number: float) -> int:
     """Return the last bin that so many delays at most are below."""
-    return max(index for index in range(BINS)
-               if sum(other < index for other in bins) <= number)
+    return max(index for index, below in enumerate(numbers_below(bins)) if below <= number)
 
 
 def bin_below(bins: Sequence[int], number: float) -> int:
     """Return the last bin that fewer delays are below; -1: there is none."""
-    return max((index for index in range(BINS)
-                if sum(other < index for other in bins) < number), default=-1)
+    return max((index for index, below in enumerate(numbers_below(bins)) if below < number),
+               default=-1)
 
 
 def log_probabilities(bins: Sequence[int]) -> List[float]:
@@ -227,20 +232,22 @@ class ReferenceModel:
                     if held_out else 0.0)
         surprises = [min((-log - mean) / max(math.sqrt(variance), LEAST_DEVIATION), MOST_SURPRISE)
                      for log in log_probabilities(self.learned.delays[e_i, e_j])]
-        return [min(surprise, 0.0) if self._is_small_effect(e_i, e_j, index) else surprise
+        period = self.learned.mean_gap(e_i)
+        shortest, longest = self._harmless(e_i, e_j)
+        return [min(surprise, 0.0)
+                if any(lower_edge(index) + shift >= shortest
+                       and lower_edge(index + 1) + shift <= longest
+                       for shift in (0.0, period, -period)) else surprise
                 for index, surprise in enumerate(surprises)]
 
-    def _is_small_effect(self, e_i: str, e_j: str, index: int) -> bool:
+    def _harmless(self, e_i: str, e_j: str) -> Tuple[float, float]:
+        """Return the shortest and the longest delay that differ by little from the usual ones."""
         bins = self.learned.delays[e_i, e_j]
-        period = self.learned.mean_gap(e_i)
         in_ns, of_period = LEAST_EFFECT_ON_GAP if e_i == e_j else LEAST_EFFECT
-        effect = max(in_ns, of_period * period)
+        effect = max(in_ns, of_period * self.learned.mean_gap(e_i))
         shortest = lower_edge(bin_at_most(bins, (1 - USUAL) / 2 * len(bins)))
         last = bin_below(bins, (1 + USUAL) / 2 * len(bins))
-        longest = lower_edge(last + 1)  # 0 if there are no delays
-        return any(lower_edge(index + 1) + shift <= longest + effect
-                   and lower_edge(index) + shift >= shortest - effect
-                   for shift in (0.0, period, -period))
+        return shortest - effect, lower_edge(last + 1) + effect
 
     @staticmethod
     def _binned(gaps: Sequence[int]) -> List[float]:

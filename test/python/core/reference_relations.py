@@ -75,8 +75,9 @@ class ReferenceRelations:
         spread = self._spread(e_i, e_j, min(MOST_OUTLIERS, min(shares) / 2))
         irregular = self._is_irregular(e_i, e_j)
         level = CHANCE_OF_ONE if irregular else CHANCE_OF_ANY / self._looked_at
-        watched = spread ** (max(starts, 1) - 1) <= level
-        needed = (0 if watched or spread >= 1
+        late = self._is_late(e_i, e_j)
+        watched = not late and spread ** (max(starts, 1) - 1) <= level
+        needed = (0 if watched or late or spread >= 1
                   else 1 + math.ceil(math.log(level) / math.log(spread)))
         return Relation(watched, False, irregular, spread, starts, needed)
 
@@ -143,9 +144,18 @@ class ReferenceRelations:
         return (min(range_of(e_i, e_i, False), range_of(e_j, e_j, False))
                 > IRREGULAR * range_of(e_i, e_j, True))
 
+    def _period(self, e_i: str, e_j: str) -> float:
+        return min(self._counts.mean_gap(e_i), self._counts.mean_gap(e_j))
+
+    def _is_late(self, e_i: str, e_j: str) -> bool:
+        bins = self._counts.delays[e_i, e_j]
+        median = next(index for index in range(BINS)
+                      if not bins or sum(other <= index for other in bins) >= len(bins) / 2)
+        return middle(median) > self._period(e_i, e_j) / 2
+
     def _spread(self, e_i: str, e_j: str, left_out: float) -> float:
         bins = self._counts.delays[e_i, e_j]
-        period = min(self._counts.mean_gap(e_i), self._counts.mean_gap(e_j))
+        period = self._period(e_i, e_j)
         if not bins or period <= 0:
             return 1.0
         circle = [(min(lower_edge(index + 1), period) - lower_edge(index), bins.count(index))
