@@ -12,16 +12,20 @@
 #include "self_awareness/core/evidence/tracks.h"
 #include "self_awareness/core/training.h"
 #include "self_awareness/core/verdict/detector.h"
+#include "self_awareness/core/verdict/source_graph.h"
 #include "simulated_recording.h"
 
 namespace core = self_awareness::core;
 namespace evidence = self_awareness::core::evidence;
 
 int main() {
-  // Four recordings of normal operation, of 100 s each.
+  // Four recordings of normal operation, of 100 s each and ten minutes apart: of four starts.
   std::vector<std::vector<core::Event>> recordings;
   for (const unsigned seed : {1U, 2U, 3U, 4U}) {
     recordings.push_back(simulatedRecording(seed, 100, std::nullopt));
+    for (core::Event& event : recordings.back()) {
+      event.stamp += seed * 600 * core::kNanosecondsPerSecond;
+    }
   }
 
   // 1. Training counts what the recordings show.
@@ -38,12 +42,16 @@ int main() {
   }
   const core::TrainingCounts counts = training.finish();
 
-  // 2. The counts say what is worth watching, and what is usual.
-  const evidence::CrossFit models(evidence::watch(counts.halves[0], counts.halves[1]));
+  // 2. The counts say what is worth watching, and what is usual. Who hears whom is a reason to
+  // watch what two do together, and tells the root of a fault from its victims.
+  const auto graph = std::make_shared<core::SourceGraph>();
+  graph->connect("/laser", "/scan", "/slam");
+  const evidence::CrossFit models(
+      evidence::watch(counts.halves[0], counts.halves[1], evidence::kPredecessors, *graph));
 
   // 3. Limits say what is too unusual. The recordings come twice; who judges one has not learned
   // from it.
-  evidence::LimitFinder finder(models.model(), {});
+  evidence::LimitFinder finder(models.model(), {}, *graph);
   for (const bool second_pass : {false, true}) {
     if (second_pass) {
       finder.startSecondPass();
@@ -58,8 +66,6 @@ int main() {
   }
 
   // 4. The detector judges another recording, in which the laser dies after 60 s.
-  const auto graph = std::make_shared<core::SourceGraph>();
-  graph->connect("/laser", "/scan", "/slam");  // who hears whom tells the root from its victims
   const auto print = [&models](const core::Verdict& verdict) {
     if (verdict.changed && verdict.alarm) {
       std::cout << "alarm at " << core::toSeconds(verdict.window->start) << " s\n";

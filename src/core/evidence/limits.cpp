@@ -36,6 +36,8 @@ constexpr double kScale = 0.2;
 constexpr double kScaleOfTimers = 0.05;
 // A gap shorter than this many mean gaps is one of a timer that lost nothing.
 constexpr double kRegular = 1.5;
+// A timer with shorter mean gaps, in windows, exceeds them by the host's hiccups.
+constexpr double kFast = 2;
 
 // Evidence that takes longer than this [ns] after a component's death is of no use.
 constexpr double kLongestWait = 10e9;
@@ -46,9 +48,9 @@ constexpr double kMostDelayLimit = 100;
 constexpr double kMostMeanGaps = 3;
 
 /// Tracks whose values exceed those of other recordings in the same way share what they show.
-enum class Pool { kTimers, kOthers, kRates, kDelays, kSlowDelays, kAnswers, kDeadlines };
+enum class Pool { kFastTimers, kTimers, kOthers, kRates, kDelays, kSlowDelays, kAnswers, kDeadlines };
 // Each pool and the linker have an equal share of the budget, but slow delays, which raise no alarm.
-constexpr double kShares = 7;
+constexpr double kShares = 8;
 
 Pool poolOf(Channel channel) {
   switch (channel) {
@@ -371,13 +373,15 @@ void LimitFinder::findLimits() {
       }
       // Windows tell ages no better than this, and hiccups of a host add to a gap, however long.
       for (double& gap : seen.largest) {
-        gap += static_cast<double>(parameters_.window);
+        gap += gap > 0 ? static_cast<double>(parameters_.window) : 0;
       }
       std::vector<double> sorted = seen.largest;
       std::sort(sorted.rbegin(), sorted.rend());
       const double second = sorted.size() > 1 ? sorted[1] : sorted[0];
-      pool = second - static_cast<double>(parameters_.window) < kRegular * meanGap(to) ? Pool::kTimers
-                                                                                   : Pool::kOthers;
+      const auto window = static_cast<double>(parameters_.window);
+      pool = second - window >= kRegular * meanGap(to) ? Pool::kOthers
+             : meanGap(to) < kFast * window            ? Pool::kFastTimers
+                                                       : Pool::kTimers;
     } else {
       for (const Recording::Part* part : judged_parts) {
         seen.largest.push_back(part->evidence[track]);
@@ -391,8 +395,9 @@ void LimitFinder::findLimits() {
   limits_.tracks.assign(model_->tracks().size(), kNone);
   tracks_rate_ = 0;
   for (const auto& [pool, tracks] : pools) {
-    const bool gaps = pool == Pool::kTimers || pool == Pool::kOthers;
-    HeldOut held_out(gaps ? with_gaps : judged, pool == Pool::kTimers ? kScaleOfTimers : kScale);
+    const bool timers = pool == Pool::kTimers || pool == Pool::kFastTimers;
+    const bool gaps = timers || pool == Pool::kOthers;
+    HeldOut held_out(gaps ? with_gaps : judged, timers ? kScaleOfTimers : kScale);
     for (const Seen& seen : tracks) {
       held_out.add(seen.largest, seen.least);
     }

@@ -177,8 +177,9 @@ void Model::forgiveSmallEffects(EventId from, EventId to, Surprises& surprises) 
     below += delays[bin];
   }
   for (std::size_t bin = 0; bin < surprises.size(); ++bin) {
-    // A delay near 0 may wrap to a period, and a delay of a period to 0.
-    for (const double shift : {0.0, period, -period}) {
+    // A delay near 0 may wrap to a period, and a delay of a period to 0; a gap may not.
+    const double wrap = from == to ? 0 : period;
+    for (const double shift : {0.0, wrap, -wrap}) {
       if (upper(bin) + shift <= longest + effect && lower(bin) + shift >= shortest - effect) {
         surprises[bin] = std::min(surprises[bin], 0.0);
       }

@@ -30,7 +30,11 @@ Suspect Reasons::of(std::size_t track) const {
     case Channel::kDeadline:
       suspect.reason = Suspect::Reason::kUnanswered;
       suspect.other = toString(model_.vocabulary().at(model_.tracks()[track].from));
-      suspect.silence = scorer_.waiting(track);
+      if (model_.countsRequests(track)) {
+        suspect.of = static_cast<std::size_t>(scorer_.waiting(track));
+      } else {
+        suspect.silence = scorer_.waiting(track);
+      }
       break;
   }
   return suspect;

@@ -211,7 +211,7 @@ void Scorer::armPair(std::size_t number, bool first, double surprise) {
   DelayPair& pair = pairs_[number];
   if (numbers_[pair.from] == 0) {
     pair.sums.values.setZero();
-  } else if (pair.own) {
+  } else if (pair.own && pairs_arming_[number].failures == 0) {
     pair.armed = true;  // the history of one event type has no phase that could be another one
   } else if (first) {
     pair.armed = arm(pairs_arming_[number], surprise, kUsualSurprise);

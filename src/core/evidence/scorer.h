@@ -51,8 +51,8 @@ class Scorer {
             : stalled_at_ - stalled_from_;
     return numbers_.at(id) > 0 ? window_end_ - stamps_[id] - stall : 0;
   }
-  /// Time since the first request without an answer of a deadline track, at the end of the last
-  /// window [s].
+  /// Time since the first request without an answer of a deadline track [s], or the number of such
+  /// requests (Model::countsRequests()), at the end of the last window.
   double waiting(std::size_t track) const { return evidence_.at(track); }
   /// The most that the sum of a delay or answer track may be.
   double cap(std::size_t track) const;
@@ -178,10 +178,10 @@ struct Sum {
   double linker = 0;   ///< evidence of all event types together, not in units of its limit
 };
 
-/// Finds the largest evidence and the linker's (docs/method.md, sections 3.6 and 4.1). The
-/// linker's is a sum over event types: of the largest share of its limit, at most 1, that a slow
-/// delay or answer track of the type has reached. It links evidence that is too weak for an alarm
-/// in any one place (paper, section V-C).
+/// Finds the largest evidence and the linker's (docs/method.md, sections 3.8 and 4.1). The
+/// linker's is a sum over event types: of the largest share of its limit that a slow delay or
+/// answer track of the type has reached, from 0 at half the limit to 1 at the limit. It links
+/// evidence that is too weak for an alarm in any one place (paper, section V-C).
 Sum sumUp(const std::vector<double>& evidence, const Model& model, const Limits& limits);
 
 }  // namespace self_awareness::core::evidence

@@ -99,7 +99,11 @@ std::string describe(const Suspect& suspect) {
     case Suspect::Reason::kAnswer:
       return describeAnswer(suspect);
     case Suspect::Reason::kUnanswered:
-      std::snprintf(text, sizeof text, "has not come for %.2f s after ", suspect.silence);
+      if (suspect.of > 0) {
+        std::snprintf(text, sizeof text, "has not come after the last %zu ", suspect.of);
+      } else {
+        std::snprintf(text, sizeof text, "has not come for %.2f s after ", suspect.silence);
+      }
       return text + suspect.other;
   }
   return "";

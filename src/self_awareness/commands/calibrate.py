@@ -92,7 +92,7 @@ def _calibrate(arguments: argparse.Namespace) -> None:
         measured = _find_limits(arguments, trained, parameters, normal_runs, faulty_runs)
         evidence_report.print_limits(trained, arguments.model)
         evidence_report.print_measured(measured.normal, measured.false_alarms)
-        evidence_report.print_expected(trained, measured.false_alarms)
+        evidence_report.print_expected(trained)
         evidence_report.print_faults(measured.faulty)
     else:
         measured = _find_threshold(trained, parameters, arguments.cutoff, normal_runs, faulty_runs)

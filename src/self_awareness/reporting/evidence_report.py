@@ -36,15 +36,16 @@ def print_limits(trained: TrainedModel, path: str) -> None:
               f'{"; ".join(evidence["not_judged"])}')
 
 
-def print_expected(trained: TrainedModel, alarms: FalseAlarms) -> None:
+def print_expected(trained: TrainedModel) -> None:
     """Print how many false alarms are to be expected, and whether the budget can be kept."""
     calibration = trained.evidence_calibration
     expected, budget = calibration.false_alarms_per_hour, calibration.budget
-    low, high = confidence.poisson_rate(expected * alarms.hours, alarms.hours)
+    hours = calibration.windows * trained.window / SECOND_NS / 3600.0
+    low, high = confidence.poisson_rate(expected * hours, hours)
     print(f'false alarms to be expected: {expected:.2g} an hour (95 %: {low:.2g} to {high:.2g}), '
           'by leaving recordings out in turn')
     if expected > budget:
-        needed = alarms.hours * expected / budget - alarms.hours
+        needed = hours * expected / budget - hours
         print(f'  the recordings cannot support a budget of {budget:g} an hour: that takes about '
               f'{_hours(needed)} more of normal operation, in several starts of the robot')
 

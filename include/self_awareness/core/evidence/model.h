@@ -56,7 +56,7 @@ class Model {
   /// Longest time without any event in training [ns].
   std::int64_t longestSilence() const;
   /// Whether a deadline track counts requests without an answer, not seconds: requests come in
-  /// series (docs/method.md, section 3.6).
+  /// series (docs/method.md, section 3.5).
   bool countsRequests(std::size_t track) const;
   /// Mean gap between two events of the type in training [ns]; 0 if there was none.
   double meanGap(EventId id) const;

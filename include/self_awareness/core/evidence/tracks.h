@@ -85,7 +85,7 @@ struct Watched {
 };
 
 /// Chooses what to watch by the counts of the two halves of the training (docs/method.md, sections
-/// 3.2 to 3.5). Each half gets the event types that it lacks from the other.
+/// 3.2 to 3.6). Each half gets the event types that it lacks from the other.
 /// @param predecessors number of those of an event type that are watched, the most informative
 /// ones
 /// @param graph who hears whom; empty: not known

@@ -57,7 +57,8 @@ struct Suspect {
   std::string other;              ///< kDelay, kAnswer, kUnanswered: the other event type;
                                   ///< empty: its own
   double lasted = 0;              ///< kDelay, kAnswer: the numbers below are of the last so many s
-  std::size_t of = 0;             ///< kDelay: delays; kAnswer: events of the other type
+  std::size_t of = 0;             ///< kDelay: delays; kAnswer: events of the other type;
+                           ///< kUnanswered: those without an answer, if they are counted
   std::size_t times = 0;   ///< kDelay: delays of them that were unusual; kAnswer: answers of
                            ///< them that were left out
   double delay = 0;        ///< kDelay: median of the unusual ones, or of all if none is [s]
