@@ -258,9 +258,13 @@ void LimitFinder::startSecondPass() {
                                 std::to_string(kFewestGaps) +
                                 " gaps in its training: train it on more");
   }
+  // What the training showed does not replace recordings that it has never seen.
+  const bool held_out =
+      std::any_of(findings_.begin(), findings_.end(),
+                  [](const Recording& recording) { return !recording.trained_on; });
   std::uint64_t windows = 0;
   for (const Recording& recording : findings_) {
-    windows += recording.windows;
+    windows += recording.trained_on && held_out ? 0 : recording.windows;
   }
   if (static_cast<std::int64_t>(windows) * parameters_.window < kLeastTime) {
     throw std::invalid_argument("too little normal operation to find limits: at least " +

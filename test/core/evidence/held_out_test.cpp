@@ -35,6 +35,7 @@ TEST(HeldOut, WhatStaysBelowTheLeastLimitDoesNotMatter) {
   EXPECT_DOUBLE_EQ(held_out.excess({3, 0, 0}, 1), 3 / HeldOut::kLeastShare);
   EXPECT_DOUBLE_EQ(held_out.excess({3, 0.9, 0}, 1), 3 / 0.9);
   EXPECT_DOUBLE_EQ(held_out.excess({0, 0, 0}, 0), 1);
+  EXPECT_DOUBLE_EQ(held_out.excess({0, 7, 0}, 0), 1) << "the others know nothing of it";
 }
 
 TEST(HeldOut, WhatIsLongerThanTheRestIsNotJudgedByIt) {

@@ -12,6 +12,7 @@
 
 #include "core/evidence/scorer.h"
 #include "recordings.h"
+#include "self_awareness/core/evidence/cross_fit.h"
 
 namespace self_awareness::core::evidence {
 namespace {
@@ -53,7 +54,8 @@ class LimitFinderTest : public testing::Test {
     return limits.tracks.at(track);
   }
 
-  std::shared_ptr<const Model> model_ = modelOf(robot(100 * kSecond, 1), later(robot(100 * kSecond, 2)));
+  std::shared_ptr<const Model> model_ =
+      modelOf(robot(100 * kSecond, 1), later(robot(100 * kSecond, 2)));
 };
 
 TEST_F(LimitFinderTest, AreFiniteAndAboveAllThatWasSeen) {
@@ -141,6 +143,17 @@ TEST_F(LimitFinderTest, LessThanTheLeastTimeIsTooLittle) {
   feed(finder, model_, later(robot(LimitFinder::kLeastTime / 2 + 4 * kSecond, 4)));
   EXPECT_THROW(finder.startSecondPass(), std::invalid_argument);
   feed(finder, model_, later(robot(9 * kSecond, 5), 2 * kStart));
+  EXPECT_NO_THROW(finder.startSecondPass());
+}
+
+TEST_F(LimitFinderTest, WhatTheTrainingShowedDoesNotReplaceOtherRecordings) {
+  const CrossFit models(
+      watch(countsOf({robot(100 * kSecond, 1)}), countsOf({later(robot(100 * kSecond, 2))})));
+  LimitFinder finder(models.model(), {kWindow, 5 * kSecond, 0.5});
+  feed(finder, models.judging(0), robot(100 * kSecond, 1));
+  feed(finder, models.judging({}), later(robot(20 * kSecond, 3), 2 * kStart));
+  EXPECT_THROW(finder.startSecondPass(), std::invalid_argument);
+  feed(finder, models.judging({}), later(robot(60 * kSecond, 4), 3 * kStart));
   EXPECT_NO_THROW(finder.startSecondPass());
 }
 

@@ -208,7 +208,8 @@ TEST(EvidenceModel, SmallEffectsAreNoFault) {
   // B comes 1 ms after A, which comes at random, about every 200 ms.
   const auto start = [](unsigned seed) {
     const Events asked = irregular(kA, 0, 100 * kSecond, 200 * kMillisecond, seed);
-    return countsOf({later(together({asked, answers(kB, asked, kMillisecond)}), seed * kStart)}, 2);
+    return countsOf({later(together({asked, answers(kB, asked, kMillisecond)}), seed * kStart)},
+                    2);
   };
   const Model model(watch(start(1), start(2)));
   const std::size_t track = indexOf(model.tracks(), Channel::kDelay, kB, kA);

@@ -127,10 +127,9 @@ TEST(Quiet, ADeadTimerIsStillFound) {
   for (EventId dead = 0; dead < kTimers; ++dead) {
     Events events = exactTimers(40 + dead, 60 * kSecond);
     const std::int64_t fault = events.front().stamp + 40 * kSecond;
-    events.erase(std::remove_if(events.begin(), events.end(),
-                                [&](const Event& event) {
-                                  return event.id == dead && event.stamp > fault;
-                                }),
+    events.erase(std::remove_if(
+                     events.begin(), events.end(),
+                     [&](const Event& event) { return event.id == dead && event.stamp > fault; }),
                  events.end());
     EXPECT_EQ(learned.alarms(events), 1) << dead;
   }

@@ -28,8 +28,8 @@ Statistics timers(const std::vector<std::int64_t>& phases) {
 }
 
 // A comes at random, and B so much after it, in so many starts.
-Statistics followed(unsigned starts, const std::vector<EventType>& types = {kTypes[kA],
-                                                                             kTypes[kB]}) {
+Statistics followed(unsigned starts,
+                    const std::vector<EventType>& types = {kTypes[kA], kTypes[kB]}) {
   std::vector<Events> recordings;
   for (unsigned start = 0; start < starts; ++start) {
     const Events asked = irregular(kA, 0, kLength, 2 * kPeriod, start + 1);
@@ -126,9 +126,9 @@ TEST(Relations, OneStartThatDiffersCountsHoweverManyAgree) {
 TEST(Relations, RecordingsOfOneStartAreNoNewEvidence) {
   std::vector<Events> recordings;
   for (int part = 0; part < 6; ++part) {
-    recordings.push_back(later(together({timer(kA, 0, kLength, kPeriod),
-                                         timer(kB, 20 * kMillisecond, kLength, kPeriod)}),
-                               part * (kLength + 30 * kSecond)));
+    recordings.push_back(later(
+        together({timer(kA, 0, kLength, kPeriod), timer(kB, 20 * kMillisecond, kLength, kPeriod)}),
+        part * (kLength + 30 * kSecond)));
   }
   const Statistics counts = countsOf(recordings, 2);
   const Relation relation = Relations(counts, kNoGraph).delays(kA, kB);
@@ -149,8 +149,8 @@ TEST(Relations, RecordingsThatWereNotTrainedOnCountIfTheyAreOfOtherStarts) {
 }
 
 TEST(Relations, AStartWithFewEventsSaysNothing) {
-  const Events full = together(
-      {timer(kA, 0, kLength, kPeriod), timer(kB, 20 * kMillisecond, kLength, kPeriod)});
+  const Events full =
+      together({timer(kA, 0, kLength, kPeriod), timer(kB, 20 * kMillisecond, kLength, kPeriod)});
   Events few;
   for (const Event& event : full) {
     if (event.stamp < kSecond) {
@@ -211,8 +211,7 @@ TEST(Relations, AMessageThatGetsThereIsAReason) {
 
 TEST(Relations, WhatOneNodePublishesIsAReason) {
   const Statistics counts = countsOf(
-      {together({timer(kA, 0, kLength, kPeriod),
-                 timer(kB, 20 * kMillisecond, kLength, kPeriod)})},
+      {together({timer(kA, 0, kLength, kPeriod), timer(kB, 20 * kMillisecond, kLength, kPeriod)})},
       {{"/a", "/x", "T"}, {"/a", "/y", "T"}});
   EXPECT_TRUE(Relations(counts, kNoGraph).delays(kA, kB).reaches);
   const Statistics unknown = countsOf({}, {{"", "/x", "T"}, {"", "/y", "T"}});
@@ -249,9 +248,9 @@ TEST(Relations, AnIrregularTriggerIsAReason) {
 }
 
 TEST(Relations, UnrelatedEventsAreNotIrregularForEachOther) {
-  const Statistics counts = countsOf({together({irregular(kA, 0, kLength, kPeriod, 1),
-                                                irregular(kB, 0, kLength, kPeriod, 2)})},
-                                     2);
+  const Statistics counts = countsOf(
+      {together({irregular(kA, 0, kLength, kPeriod, 1), irregular(kB, 0, kLength, kPeriod, 2)})},
+      2);
   EXPECT_FALSE(Relations(counts, kNoGraph).delays(kA, kB).irregular);
 }
 
@@ -293,9 +292,9 @@ TEST(Relations, ATimersOwnPeriodSaysAsMuchAsWhatItAnswersTo) {
 }
 
 TEST(Relations, WhatComesAsOftenAsByChanceIsNoAnswer) {
-  const Statistics counts = countsOf({together({irregular(kA, 0, kLength, kPeriod, 1),
-                                                irregular(kB, 0, kLength, kPeriod, 2)})},
-                                     2);
+  const Statistics counts = countsOf(
+      {together({irregular(kA, 0, kLength, kPeriod, 1), irregular(kB, 0, kLength, kPeriod, 2)})},
+      2);
   EXPECT_FALSE(Relations(counts, kNoGraph).answers(kA, kB).watched);
 }
 

@@ -112,7 +112,7 @@ TEST_F(ScorerChangesTest, WhatWasAcceptedIsHarderToArmAgain) {
   scorer_.restart();
   askUsually(kArming);
   std::int64_t accepted_at = 0;
-  for (; evidence_[pair_] <= kLimit; ) {
+  for (; evidence_[pair_] <= kLimit;) {
     ask(kUnusual);
   }
   for (; evidence_[pair_] > 0;) {

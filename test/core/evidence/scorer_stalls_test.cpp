@@ -57,10 +57,9 @@ class ScorerStallsTest : public testing::Test {
   // Time from kFault until a type is overdue [ns], if these events do not come any more.
   std::int64_t foundAfter(EventId id, const std::function<bool(EventId)>& dead) const {
     Events events = robot(2 * kFault);
-    events.erase(std::remove_if(events.begin(), events.end(),
-                                [&](const Event& event) {
-                                  return event.stamp >= kFault && dead(event.id);
-                                }),
+    events.erase(std::remove_if(
+                     events.begin(), events.end(),
+                     [&](const Event& event) { return event.stamp >= kFault && dead(event.id); }),
                  events.end());
     const std::size_t overdue = indexOf(model_->tracks(), Channel::kOverdue, id, id);
     for (std::int64_t until = kFault + kWindow; until < 2 * kFault; until += kWindow) {

@@ -121,7 +121,7 @@ TEST_F(EvidenceScorerTest, DelaysCountOnceTheyWereAsInTraining) {
     ask(kUnusual);
   }
   askUsually(2 * kArming - 1);  // after a failure it takes twice as many
-  ask(kUsual);  // armed with this one
+  ask(kUsual);                  // armed with this one
   for (int i = 0; i < 10; ++i) {
     ask(kUnusual);
   }

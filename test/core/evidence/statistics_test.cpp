@@ -147,13 +147,13 @@ TEST(EvidenceTrainer, SaysWhatEveryRecordingShowed) {
   EXPECT_EQ(first.start, kSecond);
   EXPECT_EQ(first.end, 1900 * kMillisecond);
   EXPECT_EQ(first.longest_silence, 750 * kMillisecond);
-  EXPECT_EQ(first.events, (std::vector<std::uint64_t>{3, 1, 0}));
-  EXPECT_EQ(first.longest_gaps, (std::vector<std::int64_t>{750 * kMillisecond, 0, 0}));
+  EXPECT_EQ(first.events, (std::vector<std::uint64_t>{3, 1}));
+  EXPECT_EQ(first.longest_gaps, (std::vector<std::int64_t>{750 * kMillisecond, 0}));
   const Statistics::Recording& second = counts.recordings()[1];
   EXPECT_EQ(second.start, 5 * kSecond);
   EXPECT_EQ(second.longest_silence, 400 * kMillisecond);
-  EXPECT_EQ(second.events, (std::vector<std::uint64_t>{1, 2, 0}));
-  EXPECT_EQ(second.longest_gaps, (std::vector<std::int64_t>{0, 400 * kMillisecond, 0}));
+  EXPECT_EQ(second.events, (std::vector<std::uint64_t>{1, 2}));
+  EXPECT_EQ(second.longest_gaps, (std::vector<std::int64_t>{0, 400 * kMillisecond}));
 }
 
 TEST(EvidenceTrainer, TheLastRecordingCountsOnceItHasEnded) {

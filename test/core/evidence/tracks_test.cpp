@@ -32,7 +32,8 @@ Statistics twoTimers(std::int64_t phase) {
 // A comes at random, and B follows it.
 Statistics followed(unsigned seed) {
   const Events asked = irregular(kA, 0, kLength, 200 * kMillisecond, seed);
-  return countsOf({later(together({asked, answers(kB, asked, 20 * kMillisecond)}), seed * kStart)}, 2);
+  return countsOf({later(together({asked, answers(kB, asked, 20 * kMillisecond)}), seed * kStart)},
+                  2);
 }
 
 Statistics gapsOf(EventId id, std::int64_t gaps) {

@@ -5,7 +5,7 @@ import math
 from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
-from reference_evidence import DELAYS, SECOND, Counts, Event, ReferenceModel, Track, gain
+from reference_evidence import DELAYS, SECOND, Counts, Event, ReferenceModel, Seen, Track, gain
 from reference_relations import ReferenceRelations, Relation, Span, starts_of
 from reference_scorer import ReferenceScorer
 
@@ -15,16 +15,18 @@ LEAST_MARGIN = {'deadlines': 2.0, 'linker': 1.5}
 """By pool; 1.25 elsewhere."""
 MOST_MARGIN = 4.0
 MOST_OWN_MARGIN = 2.0
-SCALE = {'timers': 0.05}
+SCALE = {'timers': 0.05, 'fast timers': 0.05}
 """By pool; 0.2 elsewhere."""
 LEAST_LINKER_LIMIT = 2.0
 LEAST_LINKED = 0.5
 REGULAR = 1.5
+FAST = 2
+"""Windows."""
 LONGEST_WAIT = 10 * SECOND
 LONGEST_DEADLINE = 20.0
 MOST_DELAY_LIMIT = 100.0
 MOST_MEAN_GAPS = 3.0
-SHARES = 7
+SHARES = 8
 POOLS = {'fewer': 'rates', 'more': 'rates', 'delay': 'delays', 'slow delay': 'slow delays',
          'answer': 'answers', 'deadline': 'deadlines'}
 CHUNK = 100 * SECOND
@@ -87,7 +89,8 @@ class HeldOut:
         if of_group[worst] <= least or not self._is_eligible(groups, worst):
             return 0.0
         second = max((value for group, value in of_group.items() if group != worst), default=0.0)
-        return math.log(of_group[worst] / max(second, LEAST_SHARE * least))
+        known = max(second, LEAST_SHARE * least)
+        return math.log(of_group[worst] / known) if known > 0 else 0.0
 
     def excess(self, largest: Sequence[float], least: float) -> float:
         """Return by how much the worst start exceeds the others."""
@@ -153,7 +156,7 @@ class ReferenceLimits:
         starts = starts_of([recording.span for recording in recordings])
         self.linker = self._find_linker(starts)
 
-    def _training(self) -> List[Counts]:
+    def _training(self) -> List[Seen]:
         return sorted(self._model.both.recordings, key=lambda seen: (seen.start, seen.end))
 
     def _settled(self, recording: Judged, limits: Sequence[float]) -> List[List[float]]:
@@ -212,7 +215,7 @@ class ReferenceLimits:
         for number, recording in enumerate(self._recordings):
             if not recording.trained_on:
                 longest += self._longest_gaps_of_parts(number, kind)
-        return [gap + self._window for gap in longest]
+        return [gap + self._window if gap else 0.0 for gap in longest]
 
     def _longest_gaps_of_parts(self, number: int, kind: str) -> List[float]:
         # A gap belongs to the part of the window that was closed last.
@@ -238,7 +241,10 @@ class ReferenceLimits:
         if channel != 'overdue':
             return POOLS[channel]
         second = sorted(self._longest_gaps(kind))[-2] - self._window
-        return 'timers' if second < REGULAR * self._model.both.mean_gap(kind) else 'others'
+        mean = self._model.both.mean_gap(kind)
+        if second >= REGULAR * mean:
+            return 'others'
+        return 'fast timers' if mean < FAST * self._window else 'timers'
 
     def _find(self) -> List[float]:
         with_gaps = [Part(start, (seen.end - seen.start) / HOUR)
@@ -254,7 +260,7 @@ class ReferenceLimits:
                 pools.setdefault(self._pool(index), []).append(index)
         limits = [math.nan] * len(self._model.tracks)
         for pool, tracks in pools.items():
-            of_gaps = pool in ('timers', 'others')
+            of_gaps = pool in ('fast timers', 'timers', 'others')
             seen = [(self._longest_gaps(self._model.tracks[index][1]) if of_gaps
                      else self._largest(index), self._model.least_limit(self._model.tracks[index]))
                     for index in tracks]
@@ -302,7 +308,8 @@ class ReferenceLimits:
     def _linker(self, row: Sequence[float]) -> float:
         shares: Dict[str, float] = {}
         for (channel, kind, _), value, limit in zip(self._model.tracks, row, self.tracks):
-            if channel in ('slow delay', 'answer') and value / limit > 0:  # never so where it is NaN
+            # Never so where the limit is NaN.
+            if channel in ('slow delay', 'answer') and value / limit > 0:
                 share = min((value / limit - LEAST_LINKED) / (1 - LEAST_LINKED), 1.0)
                 shares[kind] = max(shares.get(kind, 0.0), share)
         return sum(shares.values())

@@ -164,7 +164,7 @@ class ReferenceScorer:
             pair.add([surprise - max(pair.regime, 0.0) - drift for drift in DELAYS.values()])
             elapsed = min(max(t - own[0], 0), REGIME) if own is not None else 0
             pair.regime += (surprise - pair.regime) * elapsed / REGIME
-        if to == other:
+        if to == other and pair.arming.failures == 0:
             pair.arming.armed = True
         else:
             pair.arming.add(surprise, USUAL_SURPRISE)
