@@ -20,37 +20,9 @@ print(s.getsockname()[1])')
 export ROS_MASTER_URI=http://127.0.0.1:$port ROS_IP=127.0.0.1 ROS_LOG_DIR=$out/log
 unset ROS_HOSTNAME
 
-started=()
-start() {  # LOG COMMAND...
-  local log=$1
-  shift
-  setsid "$@" > "$out/$log" 2>&1 < /dev/null &
-  started+=($!)
-}
-stop_all() {
-  local pid
-  for pid in ${started[@]+"${started[@]}"}; do kill -INT -- "-$pid" 2> /dev/null || true; done
-  for pid in ${started[@]+"${started[@]}"}; do
-    for _ in $(seq 100); do
-      kill -0 -- "-$pid" 2> /dev/null || break
-      sleep 0.1
-    done
-    kill -KILL -- "-$pid" 2> /dev/null || true
-  done
-}
+source "$(dirname "${BASH_SOURCE[0]}")/processes.sh"
 trap stop_all EXIT
 
-await() {  # SECONDS DESCRIPTION COMMAND...
-  local seconds=$1 description=$2 deadline=$((SECONDS + $1))
-  shift 2
-  until "$@" > /dev/null 2>&1; do
-    if [ $SECONDS -ge $deadline ]; then
-      echo "demo: error: not within $seconds s: $description" >&2
-      exit 1
-    fi
-    sleep 0.2
-  done
-}
 heard() { timeout 5 rostopic echo -n 1 "$1"; }
 
 record() {  # NAME SECONDS
@@ -60,11 +32,13 @@ record() {  # NAME SECONDS
   local recorder=$!
   /usr/bin/python3 -c "
 from self_awareness.progress import waiting
-for _ in waiting($2, '$1'): pass"
-  wait $recorder
+for _ in waiting($2, '$1'): pass" &
+  local bar=$!
+  watch $recorder || fail_with_log "$1.log" "rosbag record failed"
+  wait $bar
 }
 
-rm -f "$out"/*.bag "$out"/*.active "$out"/*.model "$out"/*.png "$out"/*.csv
+rm -f "$out"/*.bag "$out"/*.active "$out"/*.model "$out"/*.yaml "$out"/*.png "$out"/*.csv
 
 say "Starting the simulated robot (launch/follow_me.launch)"
 start roscore.log roscore -p "$port"
@@ -75,10 +49,11 @@ for topic in odom scan pose tracks faces joint_states battery task/state; do
 done
 
 say "Recording four normal runs of $run_seconds s"
+start graph.log rosrun self_awareness record_graph "$out/normal"
 for run in normal_1 normal_2 normal_3 normal_4; do record $run $run_seconds; done
 
 say "Training on two of them, calibrating on the others"
-rosrun self_awareness train "$out/normal_1.bag" "$out/normal_2.bag" --graph -o "$out/trained.model"
+rosrun self_awareness train "$out/normal_1.bag" "$out/normal_2.bag" -o "$out/trained.model"
 rosrun self_awareness calibrate --model "$out/trained.model" \
   --normal "$out/normal_3.bag" "$out/normal_4.bag" \
   --inject 'crash:*' slow:/motors:2 starve \
@@ -91,7 +66,8 @@ rosbag record --all --exclude '/rosout_agg|/self_awareness/.*|/diagnostics.*' --
   --output-name "$out/fault.bag" __name:=record > "$out/fault.log" 2>&1 &
 recorder=$!
 verdict=0
-rosrun self_awareness demo_fault || verdict=$?
+rosrun self_awareness demo_fault &
+watch $! || verdict=$?
 kill -INT $recorder
 wait $recorder || true
 

@@ -1,29 +1,17 @@
 #include "alarm_state.h"
 
-#include <ros/time.h>
-
-#include <algorithm>
 #include <limits>
 
 #include "self_awareness/core/stream/event.h"
 #include "verdict_message.h"
 
 namespace self_awareness {
-namespace {
-
-ros::Time toRosTime(std::int64_t nanoseconds) {
-  ros::Time time;
-  time.fromNSec(static_cast<std::uint64_t>(std::max<std::int64_t>(nanoseconds, 0)));
-  return time;
-}
-
-}  // namespace
 
 void AlarmState::add(const core::Verdict& verdict, const core::Vocabulary& vocabulary,
                      std::int64_t window) {
   const std::int64_t end = verdict.window->start + window;
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  if (verdict.changed) {
+  if (levelOf(verdict) != message_.level) {
     level_since_ = end;
   }
   message_.level = levelOf(verdict);
@@ -33,7 +21,8 @@ void AlarmState::add(const core::Verdict& verdict, const core::Vocabulary& vocab
   if (!verdict.evidence.empty() || !stands()) {
     message_.evidence = verdict.evidence;
   }
-  message_.message = wording(verdict, message_.evidence, message_.suspects);
+  message_.message = wording(verdict, message_.evidence, message_.suspects,
+                             toMessages(verdict.new_suspects, vocabulary));
   message_.header.stamp = toRosTime(end);
   message_.window_start = toRosTime(verdict.window->start);
   message_.window.fromNSec(window);

@@ -116,7 +116,7 @@ void Diagnostics::monitor(Status& status) const {
   status.add("dropped messages", state_.heard.dropped);
   status.add("subscriptions", state_.subscriptions);
   status.add("publishers heard", state_.connections);
-  status.add("share of a core spent", number(state_.heard.processing_share));
+  status.add("share of a core spent", number(state_.heard.cpu_share));
   status.add("times the clock was set", state_.heard.clock_steps);
 }
 

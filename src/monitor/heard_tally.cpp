@@ -41,30 +41,28 @@ void HeardTally::onClockStep() {
 }
 
 double HeardTally::sinceReport(std::int64_t now) const {
-  return core::toSeconds(now - reported_at_);
+  return core::toSeconds(now - reported_at_.steady);
 }
 
-HeardReport HeardTally::report(std::int64_t ros_now, std::int64_t steady_now,
-                               std::uint64_t dropped) {
-  const double period = std::max(sinceReport(steady_now), kShortestPeriod);
+HeardReport HeardTally::report(const Moment& now, std::uint64_t dropped) {
+  const double period = std::max(sinceReport(now.steady), kShortestPeriod);
   HeardReport report;
   for (Component& component : components_) {
     HeardReport::Component& reported = report.components[component.name];
     if (component.last_heard) {
-      reported.last_heard = core::toSeconds(ros_now - *component.last_heard);
+      reported.last_heard = core::toSeconds(now.ros - *component.last_heard);
     }
     reported.rate = static_cast<double>(component.events) / period;
     component.events = 0;
   }
   report.rate = static_cast<double>(events_) / period;
-  report.processing_share = core::toSeconds(processing_) / period;
+  report.cpu_share = core::toSeconds(now.cpu - reported_at_.cpu) / period;
   report.dropped = dropped;
   report.newly_dropped = dropped - reported_drops_;
   report.clock_steps = clock_steps_;
   events_ = 0;
-  processing_ = 0;
   reported_drops_ = dropped;
-  reported_at_ = steady_now;
+  reported_at_ = now;
   return report;
 }
 

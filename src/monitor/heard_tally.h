@@ -20,7 +20,7 @@ struct HeardReport {
 
   std::map<std::string, Component> components;  ///< of the model, by core::componentOf()
   double rate = 0;                              ///< events a second, since the last report
-  double processing_share = 0;      ///< share of one core spent on events and windows, 0 to 1
+  double cpu_share = 0;  ///< processor time of the whole process, in cores, since the last report
   std::uint64_t dropped = 0;        ///< messages, since the start
   std::uint64_t newly_dropped = 0;  ///< messages, since the last report
   std::uint64_t clock_steps = 0;    ///< times that ROS time was set, since the start
@@ -29,16 +29,20 @@ struct HeardReport {
 /// Counts what is heard, for one report after the other.
 class HeardTally {
  public:
-  /// @param now steady time [ns]
-  explicit HeardTally(std::int64_t now) : reported_at_(now) {}
+  /// What the clocks say at one moment [ns].
+  struct Moment {
+    std::int64_t ros = 0;
+    std::int64_t steady = 0;
+    std::int64_t cpu = 0;  ///< of all threads of the process: CLOCK_PROCESS_CPUTIME_ID
+  };
+
+  explicit HeardTally(const Moment& now) : reported_at_(now) {}
 
   /// From now on events are those of another model: nothing was heard of its components yet.
   /// @param types of the model, by their ids
   void setTypes(const std::vector<core::EventType>& types);
   /// An event was heard. An id that the model does not know counts for no component.
   void add(const core::Event& event);
-  /// So much time [ns] was spent on events and windows.
-  void addProcessing(std::int64_t time) { processing_ += time; }
   /// ROS time was set: when a component was last heard means nothing any more.
   void onClockStep();
 
@@ -47,9 +51,8 @@ class HeardTally {
   /// Seconds since the last report. @param now steady time [ns]
   double sinceReport(std::int64_t now) const;
   /// Reports, and begins to count for the next report.
-  /// @param ros_now, steady_now both clocks at this moment [ns]
   /// @param dropped messages since the start
-  HeardReport report(std::int64_t ros_now, std::int64_t steady_now, std::uint64_t dropped);
+  HeardReport report(const Moment& now, std::uint64_t dropped);
 
  private:
   struct Component {
@@ -61,10 +64,9 @@ class HeardTally {
   std::vector<Component> components_;
   std::vector<std::size_t> component_of_;  // index of the component, by event id of the model
   std::uint64_t events_ = 0;               // since the last report
-  std::int64_t processing_ = 0;            // since the last report [ns]
   std::uint64_t clock_steps_ = 0;
   std::uint64_t reported_drops_ = 0;
-  std::int64_t reported_at_;  // steady time [ns]
+  Moment reported_at_;
 };
 
 }  // namespace self_awareness

@@ -3,6 +3,7 @@
 #include <ros/console.h>
 #include <ros/this_node.h>
 
+#include <ctime>
 #include <stdexcept>
 #include <utility>
 
@@ -28,6 +29,12 @@ std::int64_t steadyNow() {
   return static_cast<std::int64_t>(ros::SteadyTime::now().toNSec());
 }
 
+HeardTally::Moment momentNow() {
+  timespec cpu{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
+  return {rosNow(), steadyNow(), cpu.tv_sec * core::kNanosecondsPerSecond + cpu.tv_nsec};
+}
+
 }  // namespace
 
 Monitor::Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& private_node_handle,
@@ -37,7 +44,7 @@ Monitor::Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& priv
       parameters_(MonitorParameters::load(private_node_handle)),
       diagnostics_(node_handle, private_node_handle, name, parameters_.hardware_id,
                    parameters_.source_diagnostics),
-      heard_(steadyNow()),
+      heard_(momentNow()),
       spinner_(1, &queue_) {
   node_handle_.setCallbackQueue(&queue_);
   private_node_handle_.setCallbackQueue(&queue_);
@@ -127,10 +134,8 @@ void Monitor::startSession(std::unique_ptr<Session> session) {
 }
 
 void Monitor::onArrivals() {
-  const std::int64_t begin = steadyNow();
   watchClock();
   live_events_->deliver();
-  heard_.addProcessing(steadyNow() - begin);
 }
 
 void Monitor::onEvent(const core::Event& event) {
@@ -145,13 +150,11 @@ void Monitor::onEvent(const core::Event& event) {
 }
 
 void Monitor::onTick(const ros::SteadyTimerEvent& /*tick*/) {
-  const std::int64_t begin = steadyNow();
   const std::int64_t now = watchClock();
   live_events_->deliver();
   if (session_) {
     session_->detector().advance(now - kGrace);
   }
-  heard_.addProcessing(steadyNow() - begin);
   if (heard_.sinceReport(steadyNow()) >= diagnostics_.period()) {
     live_events_->forgetClosedConnections();
     publishDiagnostics();
@@ -210,15 +213,15 @@ void Monitor::refreshGraph(const std::shared_ptr<const ros1::Graph>& graph) {
 void Monitor::publishDiagnostics() {
   const Discovery::State discovered = discovery_->state();
   refreshGraph(discovered.graph);
-  const std::int64_t now = rosNow();
+  const HeardTally::Moment moment = momentNow();
   MonitorState state;
   state.model = parameters_.model;
   state.model_error = model_error_;
   state.calibrated = session_ && session_->calibrated();
   state.started = session_ && alarm_.spoken();
   state.last = alarm_.message();
-  state.level_for = alarm_.standsFor(now);
-  state.heard = heard_.report(now, steadyNow(), live_events_->dropped());
+  state.level_for = alarm_.standsFor(moment.ros);
+  state.heard = heard_.report(moment, live_events_->dropped());
   state.subscriptions = discovered.subscriptions;
   state.connections = live_events_->connections();
   state.master_answers = discovered.master_answers;

@@ -1,8 +1,16 @@
 #include "verdict_message.h"
 
+#include <algorithm>
+
 #include "self_awareness/SelfAwareness.h"
 
 namespace self_awareness {
+
+ros::Time toRosTime(std::int64_t nanoseconds) {
+  ros::Time time;
+  time.fromNSec(static_cast<std::uint64_t>(std::max<std::int64_t>(nanoseconds, 0)));
+  return time;
+}
 
 std::uint8_t levelOf(const core::Verdict& verdict) {
   if (verdict.alarm) {
@@ -22,6 +30,7 @@ std::vector<self_awareness::Suspect> toMessages(const std::vector<core::Suspect>
     message.scope = type.scope;
     message.type = type.type;
     message.reason = core::describe(suspect);
+    message.since = toRosTime(suspect.since);
     message.silence = suspect.silence;
     message.usual_shortest = suspect.usual_shortest;
     message.usual_longest = suspect.usual_longest;
@@ -41,7 +50,8 @@ std::string describe(const self_awareness::Suspect& suspect) {
 }
 
 std::string wording(const core::Verdict& verdict, const std::string& evidence,
-                    const std::vector<self_awareness::Suspect>& suspects) {
+                    const std::vector<self_awareness::Suspect>& suspects,
+                    const std::vector<self_awareness::Suspect>& new_suspects) {
   if (!verdict.threshold) {
     return "not calibrated: find limits with rosrun self_awareness calibrate";
   }
@@ -53,6 +63,9 @@ std::string wording(const core::Verdict& verdict, const std::string& evidence,
     }
     if (suspects.size() > 1) {
       message += " (and " + std::to_string(suspects.size() - 1) + " more)";
+    }
+    for (const self_awareness::Suspect& suspect : new_suspects) {
+      message += "; now also " + describe(suspect);
     }
     return message;
   }

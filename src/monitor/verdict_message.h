@@ -1,5 +1,7 @@
 #pragma once
 
+#include <ros/time.h>
+
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -9,6 +11,9 @@
 #include "self_awareness/core/verdict/detector.h"
 
 namespace self_awareness {
+
+/// @param nanoseconds since 1970; what is earlier counts as 1970
+ros::Time toRosTime(std::int64_t nanoseconds);
 
 /// Level of SelfAwareness.msg: ERROR for an alarm, WARN for a suspicion.
 std::uint8_t levelOf(const core::Verdict& verdict);
@@ -26,7 +31,9 @@ std::string describe(const self_awareness::Suspect& suspect);
 
 /// The verdict in words.
 /// @param evidence, suspects those of the last window that had any, while the level is not OK
+/// @param new_suspects those of this window
 std::string wording(const core::Verdict& verdict, const std::string& evidence,
-                    const std::vector<self_awareness::Suspect>& suspects);
+                    const std::vector<self_awareness::Suspect>& suspects,
+                    const std::vector<self_awareness::Suspect>& new_suspects);
 
 }  // namespace self_awareness

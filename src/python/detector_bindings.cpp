@@ -23,14 +23,15 @@
 namespace self_awareness::python {
 namespace {
 
-/// A stretch of time in which the alarm stood.
+/// A stretch of time in which the alarm stood, or a suspicion.
 struct Alarm {
   std::int64_t start = 0;  // end of the window that raised it [ns]
   std::int64_t end = 0;    // end of the window that cleared it, or of the recording [ns]
   bool cleared = false;
-  std::string evidence;  // of the window that raised it
+  std::string evidence;  // of the window that raised it, or the first after it that has any
   double lowest_score = std::numeric_limits<double>::quiet_NaN();
-  std::vector<core::Suspect> suspects;  // of the window that raised it
+  std::vector<core::Suspect> suspects;      // of the same window
+  std::vector<core::Suspect> new_suspects;  // of the windows after it
 };
 
 /// The verdicts on all windows of a recording, one entry a window.
@@ -43,7 +44,31 @@ struct Verdicts {
   std::vector<bool> settling;
   std::vector<bool> suspicion;
   std::vector<Alarm> alarms;
+  std::vector<Alarm> suspicions;
 };
+
+/// Goes on with the stretches of one level.
+/// @param stands whether it stands with this window
+/// @param end of the window [ns]
+void record(const core::Verdict& verdict, bool stands, std::int64_t end,
+            std::vector<Alarm>& stretches) {
+  const bool stood = !stretches.empty() && !stretches.back().cleared;
+  if (stands && !stood) {
+    stretches.emplace_back().start = end;
+  }
+  if (stands || stood) {
+    Alarm& alarm = stretches.back();
+    if (stands && alarm.evidence.empty()) {  // a suspicion may be what is left of an alarm
+      alarm.evidence = verdict.evidence;
+      alarm.suspects = verdict.suspects;
+    }
+    alarm.end = end;
+    alarm.cleared = !stands;
+    alarm.lowest_score = std::fmin(alarm.lowest_score, verdict.score.value_or(0));
+    alarm.new_suspects.insert(alarm.new_suspects.end(), verdict.new_suspects.begin(),
+                              verdict.new_suspects.end());
+  }
+}
 
 void record(const core::Verdict& verdict, std::int64_t window, Verdicts& verdicts) {
   const std::int64_t end = verdict.window->start + window;
@@ -54,20 +79,8 @@ void record(const core::Verdict& verdict, std::int64_t window, Verdicts& verdict
   verdicts.abnormal.push_back(verdict.abnormal);
   verdicts.settling.push_back(verdict.settling);
   verdicts.suspicion.push_back(verdict.suspicion);
-  const bool stood = !verdicts.alarms.empty() && !verdicts.alarms.back().cleared;
-  if (verdict.alarm && !stood) {
-    Alarm alarm;
-    alarm.start = end;
-    alarm.evidence = verdict.evidence;
-    alarm.suspects = verdict.suspects;
-    verdicts.alarms.push_back(alarm);
-  }
-  if (verdict.alarm || stood) {
-    Alarm& alarm = verdicts.alarms.back();
-    alarm.end = end;
-    alarm.cleared = !verdict.alarm;
-    alarm.lowest_score = std::fmin(alarm.lowest_score, verdict.score.value_or(0));
-  }
+  record(verdict, verdict.alarm, end, verdicts.alarms);
+  record(verdict, verdict.suspicion, end, verdicts.suspicions);
 }
 
 Verdicts judge(std::unique_ptr<core::Judge> judge, std::int64_t window,
@@ -118,9 +131,11 @@ std::vector<double> scoreEvents(const std::shared_ptr<core::paper::Model>& model
 void bindVerdicts(py::module& m) {
   py::class_<core::Suspect>(m, "Suspect", "An event type that may have made a window abnormal.")
       .def_readonly("id", &core::Suspect::id)
-      .def_readonly("silence", &core::Suspect::silence, "[s]")
-      .def_readonly("usual_shortest", &core::Suspect::usual_shortest, "[s]")
-      .def_readonly("usual_longest", &core::Suspect::usual_longest, "[s]")
+      .def_readonly("since", &core::Suspect::since,
+                    "when the alarm or the suspicion first named its component [ns]")
+      .def_readonly("silence", &core::Suspect::silence, "[s]; NaN: that is not the reason")
+      .def_readonly("usual_shortest", &core::Suspect::usual_shortest, "[s], NaN like silence")
+      .def_readonly("usual_longest", &core::Suspect::usual_longest, "[s], NaN like silence")
       .def("describe", &core::describe, "the reason in words and numbers");
 
   py::enum_<core::UnknownEvents>(m, "UnknownEvents",
@@ -159,13 +174,16 @@ void bindVerdicts(py::module& m) {
            "Takes in the next window; end: of the window [ns]. Returns whether the alarm stands.")
       .def("clear", &core::Persistence::clear, "Forgets all windows and the alarm.");
 
-  py::class_<Alarm>(m, "Alarm", "A stretch of time in which the alarm stood.")
+  py::class_<Alarm>(m, "Alarm", "A stretch of time in which the alarm stood, or a suspicion.")
       .def_readonly("start", &Alarm::start, "[ns]")
       .def_readonly("end", &Alarm::end, "[ns]")
       .def_readonly("cleared", &Alarm::cleared, "False: it stood until the end of the recording")
       .def_readonly("lowest_score", &Alarm::lowest_score)
-      .def_readonly("evidence", &Alarm::evidence, "what raised it, in words")
-      .def_readonly("suspects", &Alarm::suspects, "of the window that raised it, best first");
+      .def_readonly("evidence", &Alarm::evidence,
+                    "what raised it, in words; empty: a suspicion that an alarm left")
+      .def_readonly("suspects", &Alarm::suspects, "of the window that raised it, best first")
+      .def_readonly("new_suspects", &Alarm::new_suspects,
+                    "of components that an alarm named later, each with its time (since)");
 
   py::class_<Verdicts>(m, "Verdicts", "One entry a window of a recording, and the alarms.")
       .def_property_readonly(
@@ -184,7 +202,8 @@ void bindVerdicts(py::module& m) {
       .def_property_readonly(
           "suspicion", [](const Verdicts& self) { return toArray(self.suspicion); },
           "WARN: no alarm, but something was abnormal recently")
-      .def_readonly("alarms", &Verdicts::alarms);
+      .def_readonly("alarms", &Verdicts::alarms)
+      .def_readonly("suspicions", &Verdicts::suspicions, "level WARN, each an Alarm");
 
   py::class_<core::paper::Model, std::shared_ptr<core::paper::Model>>(
       m, "Model", "Probabilities, entropies and weights, computed from a TrainedModel's counts.")

@@ -164,7 +164,11 @@ void bindBags(py::module& m) {
       .def_readonly("end", &ros1::BagSummary::end, "stamp of the last message [ns]")
       .def_readonly("messages", &ros1::BagSummary::messages)
       .def_readonly("fingerprint", &ros1::BagSummary::fingerprint)
-      .def_readonly("has_sources", &ros1::BagSummary::has_sources);
+      .def_readonly("has_sources", &ros1::BagSummary::has_sources)
+      .def_readonly("one_sender_a_topic", &ros1::BagSummary::one_sender_a_topic,
+                    "Python's rosbag wrote it; further senders are under the name of the first")
+      .def_readonly("copied", &ros1::BagSummary::copied,
+                    "the same of a recording: by rosbag filter, compress or decompress");
   m.def(
       "summarise_bag", [](const std::string& path) { return ros1::BagReader(path).summary(); },
       py::arg("path"), "BagSummary of a bag. Raises BagError.");

@@ -1,10 +1,11 @@
 """Recordings as they are named on the command line, and the events a model sees in them."""
 from __future__ import annotations
 
+import math
 import os
 import re
 from dataclasses import dataclass
-from typing import List, Optional, Tuple
+from typing import Dict, Iterable, List, Optional, Set, Tuple
 
 import numpy as np
 
@@ -33,15 +34,24 @@ class BagPart:
         return cls(match['path'], float(match['start']), None if end is None else float(end))
 
     def __str__(self) -> str:
-        if self.start is None:
+        if self.start is None and self.end is None:
             return self.path
-        return f'{self.path}@{self.start:g}' + ('' if self.end is None else f'-{self.end:g}')
+        return (f'{self.path}@{self.start or 0.0:g}'
+                + ('' if self.end is None else f'-{self.end:g}'))
+
+    def meets(self, other: BagPart) -> bool:
+        """Return whether two parts of one bag have more than a moment in common."""
+        return (self.start or 0.0) < _end(other) and (other.start or 0.0) < _end(self)
 
     def span(self, first: int, last: int) -> Tuple[int, int]:
         """Return start and end [ns] within a recording from `first` to `last` [ns]."""
         start = first + nanoseconds(self.start or 0.0)
         end = last if self.end is None else first + nanoseconds(self.end)
         return start, min(end, last)
+
+
+def _end(part: BagPart) -> float:
+    return math.inf if part.end is None else part.end
 
 
 @dataclass(frozen=True)
@@ -56,6 +66,8 @@ class RecordingEvents:
         origin: stamp of the bag's first message [ns], where its time in seconds begins.
         end: stamp of the last message that was asked for, event or not [ns].
         fingerprint: of the whole bag.
+        one_sender_a_topic: the bag was written by a program that keeps only one (BagSummary).
+        copied: so it is, and it is a copy of a recording.
     """
 
     part: BagPart
@@ -65,6 +77,8 @@ class RecordingEvents:
     origin: int
     end: int
     fingerprint: int
+    one_sender_a_topic: bool = False
+    copied: bool = False
 
     @property
     def middle(self) -> int:
@@ -102,7 +116,37 @@ def read(model: TrainedModel, part: BagPart) -> RecordingEvents:
     _check(model, part, events)
     _, end = part.span(events.summary.start, events.summary.end)
     return RecordingEvents(part, events.event_types, events.stamps, events.ids,
-                           events.summary.start, end, events.summary.fingerprint)
+                           events.summary.start, end, events.summary.fingerprint,
+                           events.summary.one_sender_a_topic, events.summary.copied)
+
+
+def merged_senders(model: TrainedModel, recording: RecordingEvents) -> Optional[str]:
+    """Return what to tell of a bag that has one sender of topics where the model knows several."""
+    if not recording.one_sender_a_topic or model.encoding.source == 'none':
+        return None
+    known = _senders(model.event_types)
+    heard = _senders([recording.event_types[i] for i in np.unique(recording.ids)])
+    sources = set().union(*heard.values())
+
+    def are_merged(topic: str) -> bool:
+        others = known.get(topic, set()) - heard[topic]
+        # In a bag that is no copy, who is not heard on any topic may as well have been off.
+        return len(heard[topic]) == 1 and bool(others if recording.copied else others & sources)
+
+    merged = [f'{topic} (here {min(heard[topic])} only, in the model {len(known[topic])} senders)'
+              for topic in sorted(heard) if are_merged(topic)]
+    if not merged:
+        return None
+    return (f'{recording.part}: keeps only one sender of a topic, under whose name are all '
+            f'messages, as copies by rosbag filter, compress and decompress do: '
+            f'{", ".join(merged)}; use the bag as it was recorded')
+
+
+def _senders(event_types: Iterable[EventType]) -> Dict[str, Set[str]]:
+    senders: Dict[str, Set[str]] = {}
+    for kind in event_types:
+        senders.setdefault(kind.scope, set()).add(kind.source)
+    return senders
 
 
 def overlap(a: Recording, b: Recording) -> bool:

@@ -115,6 +115,33 @@ TEST_F(AlarmStateTest, CountsHowLongTheLevelHasStood) {
   EXPECT_DOUBLE_EQ(alarm_.standsFor(window_.start), 0);
 }
 
+TEST_F(AlarmStateTest, NewSuspectsAreNamedInWordsWithTheWindowThatNamesThem) {
+  vocabulary_.intern({"/arm", "/joints", "std_msgs/String"});
+  add(verdict(Level::kAlarm, true, "overdue"));
+  const std::int64_t raised = window_.start;
+  add(verdict(Level::kAlarm, false, "overdue"));
+  const std::string before = alarm_.message().message;
+  core::Verdict second = verdict(Level::kAlarm, true, "overdue, rate");
+  core::Suspect arm;
+  arm.id = 1;
+  arm.reason = core::Suspect::Reason::kUnknown;
+  arm.events = 2;
+  arm.since = window_.start + kWindow;
+  second.new_suspects = {arm};
+  second.suspects.push_back(arm);
+  add(second);
+  EXPECT_EQ(
+      alarm_.message().message,
+      "abnormal communication (overdue, rate), /player on /scan: " +
+          alarm_.message().suspects[0].reason +
+          " (and 1 more); now also /arm on /joints: never seen in training, 2 in this window");
+  EXPECT_EQ(alarm_.message().suspects[1].since.toNSec(),
+            static_cast<std::uint64_t>(window_.start));
+  EXPECT_DOUBLE_EQ(alarm_.standsFor(raised + 3 * kWindow), 0.3) << "the alarm is the same";
+  add(verdict(Level::kAlarm, false, "overdue"));
+  EXPECT_EQ(alarm_.message().message, before);
+}
+
 TEST_F(AlarmStateTest, StandsDownWithAReason) {
   add(verdict(Level::kAlarm, true, "overdue"));
   EXPECT_TRUE(alarm_.standDown("cleared by hand", kStart + 42));

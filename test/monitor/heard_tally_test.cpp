@@ -21,10 +21,11 @@ class HeardTallyTest : public testing::Test {
 
   HeardReport report(double seconds, std::uint64_t dropped = 0) {
     const auto later = static_cast<std::int64_t>(seconds * kSecond);
-    return tally_.report(kRos + later, kSteady + later, dropped);
+    return tally_.report({kRos + later, kSteady + later, cpu_}, dropped);
   }
 
-  HeardTally tally_{kSteady};
+  std::int64_t cpu_ = 7 * kSecond;  // processor time of the process
+  HeardTally tally_{{kRos, kSteady, cpu_}};
 };
 
 TEST_F(HeardTallyTest, CountsByComponent) {
@@ -54,10 +55,9 @@ TEST_F(HeardTallyTest, AnUnknownEventCountsForNoComponent) {
 
 TEST_F(HeardTallyTest, EachReportCountsFromTheOneBefore) {
   tally_.add({kRos, 0});
-  tally_.addProcessing(kSecond / 4);
-  tally_.addProcessing(kSecond / 4);
+  cpu_ += kSecond / 2;
   const HeardReport first = report(1, 5);
-  EXPECT_DOUBLE_EQ(first.processing_share, 0.5);
+  EXPECT_DOUBLE_EQ(first.cpu_share, 0.5);
   EXPECT_EQ(first.dropped, 5U);
   EXPECT_EQ(first.newly_dropped, 5U);
   EXPECT_DOUBLE_EQ(tally_.sinceReport(kSteady + 4 * kSecond), 3);
@@ -66,7 +66,7 @@ TEST_F(HeardTallyTest, EachReportCountsFromTheOneBefore) {
   EXPECT_EQ(second.rate, 0);
   EXPECT_EQ(second.components.at("/player").rate, 0);
   EXPECT_DOUBLE_EQ(second.components.at("/player").last_heard.value(), 3);
-  EXPECT_EQ(second.processing_share, 0);
+  EXPECT_EQ(second.cpu_share, 0);
   EXPECT_EQ(second.dropped, 7U);
   EXPECT_EQ(second.newly_dropped, 2U);
 }

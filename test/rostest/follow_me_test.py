@@ -12,8 +12,7 @@ import unittest
 from collections import deque
 from functools import partial
 from statistics import median
-from typing import Any, Callable, Deque, Dict, Optional, Set, Tuple
-from xmlrpc.client import ServerProxy
+from typing import Callable, Deque, Dict, Optional, Set, Tuple
 
 import rosgraph
 import rospy
@@ -21,6 +20,7 @@ import rostest
 from actionlib_msgs.msg import GoalStatus
 from std_msgs.msg import Header
 
+from live_system import pid_of
 from self_awareness.commands import induce
 from self_awareness.follow_me import induction
 from self_awareness.follow_me.effects import Starvation
@@ -34,13 +34,6 @@ _POLL_S = 0.05
 _STAMPED = ('camera/image', 'legs')
 # Generous: 15 processes start on a machine that may be busy with other things.
 _DEADLINE_S = 90.0
-
-
-def pid_of(node: str) -> int:
-    """Ask a node for its process id, as `induce` does."""
-    uri = rosgraph.Master(rospy.get_name()).lookupNode(node)
-    answer: Any = ServerProxy(uri).getPid(rospy.get_name())
-    return int(answer[2])
 
 
 def wait_for(condition: Callable[[], bool], what: str) -> None:

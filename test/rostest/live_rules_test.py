@@ -3,7 +3,10 @@
 
 import os
 import re
-from typing import Dict
+import statistics
+import time
+from contextlib import ExitStack
+from typing import Dict, Tuple
 
 import rospkg
 import rospy
@@ -15,9 +18,17 @@ from std_msgs.msg import Float64, String
 from visualization_msgs.msg import Marker
 
 import self_awareness
-from live_system import MonitorListener, Process, again_if_clock_was_set, await_condition
+from live_system import (MonitorListener, Process, again_if_clock_was_set, await_condition,
+                         pid_of)
 from monitor_case import MonitorCase, Talker, forget_parameters, subscribers
 from self_awareness.msg import SelfAwareness
+
+
+def cpu_s(pid: int) -> float:
+    """Processor time of a process until now [s], in steps of 10 ms."""
+    with open('/proc/{}/stat'.format(pid)) as stat:
+        user, system = stat.read().rsplit(')', 1)[1].split()[11:13]
+    return (int(user) + int(system)) / os.sysconf('SC_CLK_TCK')
 
 
 class LiveRulesTest(MonitorCase):
@@ -172,6 +183,35 @@ class LiveRulesTest(MonitorCase):
             self.assertEqual(levels[raised - 1:raised + 2],
                              [SelfAwareness.WARN, SelfAwareness.ERROR, SelfAwareness.OK])
             self.assertEqual(levels.count(SelfAwareness.ERROR), 1)
+
+    @again_if_clock_was_set
+    def test_the_processor_time_is_that_of_the_whole_process(self) -> None:
+        topics = ['/topic{}'.format(number) for number in range(25)]
+        with ExitStack() as busy, self.monitor(self.model(topics=topics)), \
+                MonitorListener() as listener:
+            for topic in topics:
+                busy.enter_context(Talker(topic))
+            listener.await_settled()
+            pid = pid_of('/self_awareness')
+
+            def await_report() -> Tuple[float, float]:
+                """Time and processor time [s] right after the next report."""
+                seen = len(listener.heartbeats)
+                await_condition('a report', lambda: len(listener.heartbeats) > seen, 20)
+                return time.monotonic(), cpu_s(pid)
+
+            begin, spent_before = await_report()
+            first = len(listener.diagnostics('monitor'))
+            await_condition('8 reports', lambda: (
+                len(listener.diagnostics('monitor')) > first + 8), 30)
+            end, spent = await_report()
+            reports = listener.diagnostics('monitor')[first:]
+            told = statistics.mean(float(pair.value) for report in reports
+                                   for pair in report.values
+                                   if pair.key == 'share of a core spent')
+            share = (spent - spent_before) / (end - begin)
+            self.assertGreater(share, 0.005, 'too little to measure')
+            self.assertAlmostEqual(told, share, delta=0.3 * share)
 
     @again_if_clock_was_set
     def test_the_alarm_is_latched(self) -> None:

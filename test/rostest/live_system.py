@@ -9,9 +9,12 @@ import tempfile
 import threading
 import time
 import unittest
-from typing import Callable, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple, TypeVar
+from typing import (Any, Callable, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple,
+                    TypeVar)
+from xmlrpc.client import ServerProxy
 
 import rosbag
+import rosgraph
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from std_msgs.msg import String
@@ -37,6 +40,13 @@ def await_condition(what: str, condition: Callable[[], Optional[T]], timeout: fl
         if rospy.is_shutdown():
             raise AssertionError('interrupted while waiting: {}'.format(what))
         time.sleep(0.02)
+
+
+def pid_of(node: str) -> int:
+    """Asks a node for its process id, as `induce` does; needs rospy.init_node()."""
+    uri = rosgraph.Master(rospy.get_name()).lookupNode(node)
+    answer = ServerProxy(uri).getPid(rospy.get_name())  # type: Any
+    return int(answer[2])
 
 
 def again_if_clock_was_set(test: Callable) -> Callable:

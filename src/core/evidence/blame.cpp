@@ -19,6 +19,17 @@ constexpr double kNearLimit = 0.75;
 // Of an unusual delay between two event types, the later one is a little more to blame.
 constexpr double kShareOfEarlier = 0.9;
 
+Suspect unknown(EventId id, const Window& window) {
+  Suspect suspect;
+  suspect.id = id;
+  suspect.abnormal = true;
+  suspect.reason = Suspect::Reason::kUnknown;
+  suspect.events = static_cast<std::size_t>(
+      std::count_if(window.events.begin(), window.events.end(),
+                    [id](const ObservedEvent& other) { return other.event.id == id; }));
+  return suspect;
+}
+
 }  // namespace
 
 Blame::Blame(std::shared_ptr<const Model> model, std::shared_ptr<const SourceGraph> graph)
@@ -33,23 +44,28 @@ std::vector<Suspect> Blame::suspects(const std::vector<double>& shares, const Sc
 
   std::vector<Suspect> suspects;
   std::set<EventId> named;
-  const auto isNamed = [&](EventId id) {
-    return suspects.size() < kMostSuspects && named.insert(id).second;
+  std::set<std::string> components;
+  const auto add = [&](const Candidate& candidate) {
+    Suspect suspect = reasons.of(candidate.track);
+    suspect.component = component(suspect.id);
+    suspect.abnormal = shares[candidate.track] > 1;
+    components.insert(suspect.component);
+    suspects.push_back(std::move(suspect));
   };
   for (const Candidate& candidate : candidates) {
-    if (isNamed(model_->tracks()[candidate.track].to)) {
-      suspects.push_back(reasons.of(candidate.track));
+    if (suspects.size() < kMostSuspects && named.insert(toOf(candidate)).second) {
+      add(candidate);
     }
   }
   for (const ObservedEvent& observed : window.events) {
-    if (observed.unknown && isNamed(observed.event.id)) {
-      Suspect suspect;
-      suspect.id = observed.event.id;
-      suspect.reason = Suspect::Reason::kUnknown;
-      suspect.events = static_cast<std::size_t>(std::count_if(
-          window.events.begin(), window.events.end(),
-          [&](const ObservedEvent& other) { return other.event.id == observed.event.id; }));
-      suspects.push_back(suspect);
+    if (observed.unknown && suspects.size() < kMostSuspects &&
+        named.insert(observed.event.id).second) {
+      suspects.push_back(unknown(observed.event.id, window));
+    }
+  }
+  for (const Candidate& candidate : candidates) {
+    if (shares[candidate.track] > 1 && components.count(component(toOf(candidate))) == 0) {
+      add(candidate);
     }
   }
   return suspects;
@@ -90,12 +106,9 @@ std::vector<Blame::Candidate> Blame::silent(const std::vector<double>& shares,
 // a candidate, but there are few components.
 std::vector<Blame::Candidate> Blame::rootFirst(std::vector<Candidate> candidates) const {
   std::stable_sort(candidates.begin(), candidates.end(), likelier);
-  const auto sourceOf = [&](const Candidate& candidate) {
-    return component(model_->tracks()[candidate.track].to);
-  };
   std::map<std::string, std::vector<std::size_t>> by_component;  // indexes of candidates
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    by_component[sourceOf(candidates[i])].push_back(i);
+    by_component[component(toOf(candidates[i]))].push_back(i);
   }
   std::vector<std::size_t> upstream(candidates.size(), 0);  // number of those left that are
   std::map<std::string, std::vector<std::size_t>> downstream;
@@ -117,7 +130,7 @@ std::vector<Blame::Candidate> Blame::rootFirst(std::vector<Candidate> candidates
         std::min_element(left.begin(), left.end(),
                          [&](std::size_t a, std::size_t b) { return upstream[a] < upstream[b]; });
     ordered.push_back(candidates[*root]);
-    for (const std::size_t victim : downstream[sourceOf(candidates[*root])]) {
+    for (const std::size_t victim : downstream[component(toOf(candidates[*root]))]) {
       --upstream[victim];
     }
     left.erase(root);

@@ -25,7 +25,8 @@ class Blame {
   /// @param shares of their limits that the tracks of the model have reached
   /// @param hindsight of the scorer's recording
   /// @param window that the scorer closed last
-  /// @return at most kMostSuspects, the most likely first, each event type once
+  /// @return at most kMostSuspects, the most likely first, each event type once; after them, of
+  /// each further component whose evidence alone is abnormal the most likely event type
   std::vector<Suspect> suspects(const std::vector<double>& shares, const Scorer& scorer,
                                 const Hindsight& hindsight, const Window& window) const;
 
@@ -41,6 +42,7 @@ class Blame {
   std::vector<Candidate> unusual(const std::vector<double>& shares, const Reasons& reasons) const;
   double logSurvival(EventId id, const Reasons& reasons) const;
   std::size_t trackOfSilence(EventId id, const std::vector<double>& shares) const;
+  EventId toOf(const Candidate& candidate) const { return model_->tracks()[candidate.track].to; }
   const std::string& component(EventId id) const;
 
   std::shared_ptr<const Model> model_;

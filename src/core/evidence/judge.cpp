@@ -36,12 +36,15 @@ class Judge : public core::Judge {
   void restart() override;
 
  private:
+  /// Takes back that there are too few events, in a window that ended with the recording.
+  void leaveOutFewer(std::vector<double>& evidence) const;
   /// Takes back what the tracks say of event types that settle.
   void leaveOutNew(std::int64_t now, std::vector<double>& evidence) const;
   bool isSilent() const;
 
   std::shared_ptr<const Model> model_;
   std::optional<Limits> limits_;
+  std::int64_t window_;  // length of a whole one [ns]
   Scorer scorer_;
   Hindsight hindsight_;
   Blame blame_;
@@ -54,6 +57,7 @@ Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, s
              std::shared_ptr<const SourceGraph> graph)
     : model_(std::move(model)),
       limits_(std::move(limits)),
+      window_(window),
       scorer_(model_, window),
       hindsight_(model_),
       blame_(model_, std::move(graph)),
@@ -82,6 +86,14 @@ void Judge::restart() {
   all_settled_at_ = std::numeric_limits<std::int64_t>::min();
 }
 
+void Judge::leaveOutFewer(std::vector<double>& evidence) const {
+  for (std::size_t track = 0; track < evidence.size(); ++track) {
+    if (model_->tracks()[track].channel == Channel::kFewer) {
+      evidence[track] = 0;
+    }
+  }
+}
+
 void Judge::leaveOutNew(std::int64_t now, std::vector<double>& evidence) const {
   if (now >= all_settled_at_) {
     return;
@@ -99,6 +111,9 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
   std::vector<double> evidence = scorer_.closeWindow(end);
   if (!limits_) {
     return judgement;
+  }
+  if (end < window.start + window_) {
+    leaveOutFewer(evidence);
   }
   leaveOutNew(window.start, evidence);
   std::set<std::string> channels;

@@ -19,7 +19,7 @@ class Reasons {
 
   /// Time since the last event of a type at the end of the window [ns].
   std::int64_t age(EventId id) const;
-  /// The suspect that a track of the model names.
+  /// The event type that a track of the model watches, as a suspect; Blame says the rest.
   Suspect of(std::size_t track) const;
 
  private:

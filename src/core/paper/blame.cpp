@@ -49,6 +49,16 @@ Blame::Blame(std::shared_ptr<const Model> model) : model_(std::move(model)) {
   }
 }
 
+Suspect Blame::suspectOf(EventId id) const {
+  Suspect suspect;
+  suspect.id = id;
+  if (id < model_->size()) {
+    const EventType& type = model_->vocabulary().at(id);
+    suspect.component = componentOf(type.source, type.scope);
+  }
+  return suspect;
+}
+
 std::vector<Suspect> Blame::suspects(const Window& window, const std::vector<double>& scores,
                                      const std::vector<std::optional<std::int64_t>>& last_seen,
                                      std::int64_t end) const {
@@ -68,8 +78,7 @@ std::vector<Suspect> Blame::suspects(const Window& window, const std::vector<dou
     if (log_survival > kRareSilence) {
       continue;
     }
-    Suspect suspect;
-    suspect.id = id;
+    Suspect suspect = suspectOf(id);
     suspect.reason = age >= gap ? Suspect::Reason::kSilent : Suspect::Reason::kLate;
     suspect.silence = toSeconds(std::max(age, gap));
     suspect.usual_shortest = usual_[id].shortest;
@@ -78,11 +87,11 @@ std::vector<Suspect> Blame::suspects(const Window& window, const std::vector<dou
     seen.erase(id);
   }
   for (const auto& [id, type] : seen) {
-    Suspect suspect;
-    suspect.id = id;
+    Suspect suspect = suspectOf(id);
     suspect.events = type.events;
     if (type.unknown) {
       suspect.reason = Suspect::Reason::kUnknown;
+      suspect.abnormal = true;
       unknown.emplace_back(-static_cast<double>(type.events), suspect);
       continue;
     }

@@ -34,6 +34,8 @@ class Blame {
     double score = 0;     // expected s_j
   };
 
+  Suspect suspectOf(EventId id) const;
+
   std::shared_ptr<const Model> model_;
   std::vector<Usual> usual_;  // by id
 };

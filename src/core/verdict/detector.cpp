@@ -1,5 +1,6 @@
 #include "self_awareness/core/verdict/detector.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -54,6 +55,7 @@ void Detector::onClockStep() {
 void Detector::clearAlarm() {
   persistence_.clear();
   suspicion_ = false;
+  named_.clear();
 }
 
 ObservedEvent Detector::observe(const Event& event) {
@@ -89,8 +91,9 @@ void Detector::close(const Window& window, std::int64_t end) {
   verdict.score = judgement.score;
   verdict.threshold = judgement.threshold;
   verdict.abnormal = judgement.abnormal;
-  verdict.settling = starting || judgement.settling;
   const bool stood = persistence_.raised();
+  // What is new raises no alarm, but one that stands goes on as long as its cause does.
+  verdict.settling = starting || (judgement.settling && !stood);
   const bool was_suspicion = suspicion_;
   if (verdict.settling) {
     verdict.alarm = persistence_.leaveOut(windows_.length());
@@ -103,7 +106,32 @@ void Detector::close(const Window& window, std::int64_t end) {
   }
   verdict.suspicion = suspicion_ && !verdict.alarm;
   verdict.changed = verdict.alarm != stood || verdict.suspicion != (was_suspicion && !stood);
+  if (verdict.changed) {
+    named_.clear();
+  }
+  const std::vector<Suspect> named_first = name(verdict.suspects, verdict.changed, window_end);
+  if (verdict.alarm && !verdict.changed && !named_first.empty()) {
+    verdict.new_suspects = named_first;
+    verdict.changed = true;
+  }
+  verdict.suspects.resize(std::min(verdict.suspects.size(), kMostSuspects));
   handler_(verdict);
+}
+
+std::vector<Suspect> Detector::name(std::vector<Suspect>& suspects, bool begins,
+                                    std::int64_t end) {
+  std::vector<Suspect> named_first;
+  for (Suspect& suspect : suspects) {
+    const std::pair<std::string, EventId> owner(suspect.component,
+                                                suspect.component.empty() ? suspect.id : 0);
+    const auto named = named_.find(owner);
+    suspect.since = named == named_.end() ? end : named->second;
+    if (named == named_.end() && (begins || suspect.abnormal)) {
+      named_.emplace(owner, end);
+      named_first.push_back(suspect);
+    }
+  }
+  return named_first;
 }
 
 void Detector::count(const Judgement& judgement, std::int64_t end) {

@@ -84,10 +84,13 @@ class IndexReader {
     const std::string_view record = takeHeader(bytes, Op::kConnection);
     std::string_view fields = takeBlock(bytes);
     ros::M_string header;
+    bool in_order = true;
     while (!fields.empty()) {
       const auto [name, value] = takeField(fields);
+      in_order &= header.empty() || header.rbegin()->first < name;
       header.emplace(name, value);
     }
+    index_.recorded |= in_order && header.count("latching") > 0;
     if (ids_.emplace(number<std::uint32_t>(record, "conn"), ids_.size()).second) {
       index_.connections.push_back(connectionFrom(header, std::string(field(record, "topic"))));
     }
@@ -112,7 +115,9 @@ class IndexReader {
     index_.entries.reserve(std::min(messages_, file_.size() / kIndexEntryBytes));
     for (const ChunkInfo& chunk : chunks_) {
       const auto first = static_cast<std::ptrdiff_t>(index_.entries.size());
-      std::uint64_t position = Chunk(file_, chunk.position).end;
+      const Chunk header(file_, chunk.position);
+      index_.by_python |= header.by_python;
+      std::uint64_t position = header.end;
       // Reads all records at once, with the header of the next chunk, which follows.
       file_.at(position, chunk.connections * kIndexHeaderBytes + chunk.messages * kIndexEntryBytes,
                2 * kHeaderBytes);

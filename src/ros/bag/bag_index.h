@@ -25,6 +25,8 @@ struct BagIndex {
   /// In the order of the recording: by time, and in the order of the file where that is the same.
   std::vector<BagIndexEntry> entries;
   bool by_rosbag = false;  ///< only rosbag can read this bag
+  bool by_python = false;  ///< rosbag's Python library wrote it
+  bool recorded = false;   ///< its connections have headers as `rosbag record` writes them
 };
 
 /// @throw rosbag::BagException if the bag has no index or it is damaged

@@ -6,6 +6,7 @@
 #include <boost/filesystem/operations.hpp>
 #include <cmath>
 #include <fstream>
+#include <set>
 #include <vector>
 
 #include "bag_index.h"
@@ -45,6 +46,13 @@ std::uint64_t fingerprint(const BagIndex& index) {
     sum += mix(topics[entry.connection] + static_cast<std::uint64_t>(entry.stamp));
   }
   return sum;
+}
+
+bool topicsAreDistinct(const BagIndex& index) {
+  std::set<std::string> topics;
+  return std::all_of(
+      index.connections.begin(), index.connections.end(),
+      [&](const Connection& connection) { return topics.insert(connection.topic).second; });
 }
 
 std::string reindexHint(const std::string& path) {
@@ -115,6 +123,8 @@ BagReader::BagReader(const std::string& path)
   summary_.has_sources =
       std::any_of(index_->connections.begin(), index_->connections.end(),
                   [](const Connection& connection) { return !connection.callerid.empty(); });
+  summary_.one_sender_a_topic = index_->by_python && topicsAreDistinct(*index_);
+  summary_.copied = summary_.one_sender_a_topic && index_->recorded;
 }
 
 BagReader::~BagReader() = default;

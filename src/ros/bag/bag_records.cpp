@@ -31,6 +31,10 @@ Chunk::Chunk(PiecesOfFile& file, std::uint64_t position) {
   std::string_view bytes = file.at(position, kHeaderBytes);
   const std::size_t all = bytes.size();
   const std::string_view header = takeHeader(bytes, Op::kChunk);
+  // The format leaves the order of the fields open. Python's rosbag begins with the operation;
+  // that in C++ writes them in alphabetical order.
+  std::string_view fields = header;
+  by_python = takeField(fields).first == "op";
   compression = field(header, "compression");
   unpacked_bytes = number<std::uint32_t>(header, "size");
   const auto size = takeNumber<std::uint32_t>(bytes);

@@ -116,6 +116,7 @@ struct Chunk {
   /// @throw FormatError if there is none
   Chunk(PiecesOfFile& file, std::uint64_t position);
 
+  bool by_python = false;            ///< rosbag's Python library wrote it, not that in C++
   std::string compression;           ///< "none", "bz2" or "lz4"
   std::uint32_t unpacked_bytes = 0;  ///< of the data
   std::uint64_t begin = 0;           ///< of the data in the file [bytes]

@@ -12,7 +12,7 @@ from typing import List, NamedTuple, Optional, Sequence, Tuple
 import numpy as np
 
 from self_awareness import (EVIDENCE_THRESHOLD, Calibration, DetectorParameters, Model, Roc,
-                            RocPoint, TrainedModel, recordings)
+                            RocPoint, TrainedModel)
 from self_awareness.calibration import confidence, limits
 from self_awareness.calibration.fault_injection import (FORMS, InjectedFault, check_source,
                                                         of_each_source)
@@ -78,8 +78,9 @@ def _calibrate(arguments: argparse.Namespace) -> None:
     for fault in arguments.inject:
         check_source(fault, trained.event_types)
 
-    normal = [recordings.read(trained, part) for part in arguments.normal]
-    faulty = [dataclasses.replace(recordings.read(trained, BagPart(part.path)), part=part)
+    normal = [cli.read_recording('calibrate', trained, part) for part in arguments.normal]
+    faulty = [dataclasses.replace(cli.read_recording('calibrate', trained, BagPart(part.path)),
+                                  part=part)
               for part in arguments.faulty]
     check_unseen(trained, normal + faulty)
     _check_known(trained, normal)

@@ -9,7 +9,8 @@ import sys
 from typing import Callable, Optional, Sequence, TypeVar
 
 from self_awareness import (BagError, DetectorParameters, ModelFileError, TrainedModel,
-                            UnknownEvents)
+                            UnknownEvents, recordings)
+from self_awareness.recordings import BagPart, RecordingEvents
 from self_awareness.stamps import SECOND_NS, nanoseconds
 
 _Value = TypeVar('_Value')
@@ -44,6 +45,11 @@ def run(parser: argparse.ArgumentParser, work: Callable[[argparse.Namespace], No
         file = f'{error.filename}: ' if error.filename else ''
         return _fail(parser.prog, f'{file}{error.strerror or error}')
     return 0
+
+
+def stand_back() -> None:
+    """Let the other processes of this machine go first: they may be those of a running robot."""
+    os.nice(10)
 
 
 def warn(program: str, text: str) -> None:
@@ -121,6 +127,19 @@ def load_model(path: str, detector: str, watched_only: bool = False) -> TrainedM
     except ValueError as error:
         raise ValueError(f'{path}: {error}') from error
     return model
+
+
+def read_recording(program: str, model: TrainedModel, part: BagPart) -> RecordingEvents:
+    """Return the events of a bag, or of a part of it; warn if a copy has lost senders.
+
+    Raises:
+        BagError, ValueError: as recordings.read().
+    """
+    recording = recordings.read(model, part)
+    merged = recordings.merged_senders(model, recording)
+    if merged is not None:
+        warn(program, merged)
+    return recording
 
 
 def add_detector_arguments(parser: argparse.ArgumentParser) -> None:

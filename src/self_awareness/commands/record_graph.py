@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import glob
-import os
 import sys
 import time
 from typing import Optional, Sequence, Set
@@ -31,19 +30,15 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 
 def _record(arguments: argparse.Namespace) -> None:
-    written: Set[str] = set()
-    current: Set[str] = set()  # of these, the files that hold all that is known
+    complete: Set[str] = set()  # files that hold all that is known
     graph = RobotGraph()
     while True:
         if _learn(graph):
-            current.clear()
-        for bag in glob.glob(f'{glob.escape(arguments.prefix)}*.bag.active'):
-            path = graph_file(bag)
-            # What lies there already belongs to a bag that was not finished, of another time.
-            if path not in current and (path in written or not os.path.exists(path)):
-                graph.save(path)
-                written.add(path)
-                current.add(path)
+            complete.clear()
+        bags = glob.glob(f'{glob.escape(arguments.prefix)}*.bag.active')
+        for path in {graph_file(bag) for bag in bags} - complete:
+            graph.save(path)
+            complete.add(path)
         time.sleep(_PERIOD_S)
 
 

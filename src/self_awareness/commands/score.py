@@ -4,11 +4,11 @@ from __future__ import annotations
 import argparse
 import csv
 import math
-from typing import List, Optional, Sequence, Tuple
+from typing import Iterator, List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from self_awareness import EVIDENCE_THRESHOLD, Model, Verdicts, recordings
+from self_awareness import EVIDENCE_THRESHOLD, Alarm, Model, Suspect, Verdicts
 from self_awareness.commands import cli
 from self_awareness.judging import evidence_judge, paper_judge
 from self_awareness.output_files import check_outputs, replacing
@@ -19,6 +19,9 @@ from self_awareness.stamps import SECOND_NS, utc
 _COLUMNS = ('bag', 'window_start_ns', 'events', 'unknown', 'score', 'threshold', 'abnormal')
 
 _EPILOG = """\
+BAG@START-END stands for a part of a recording, in s from its first message. Times that are printed
+count from there, too. A suspicion (level WARN) is something abnormal that is too little for an
+alarm, or an event that training never saw.
 The CSV has one row a window: score and threshold are empty where there is none, abnormal is 1
 where the score lies below the threshold, also while settling. With the paper's detector a window
 without events has no score and counts as 0.
@@ -31,7 +34,8 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 
 def _score(arguments: argparse.Namespace) -> None:
-    check_outputs([arguments.csv, arguments.plot], arguments.bags + [arguments.model])
+    check_outputs([arguments.csv, arguments.plot],
+                  [part.path for part in arguments.bags] + [arguments.model])
     parameters = cli.detector_parameters(arguments)
     paper = arguments.detector == 'paper'
     trained = cli.load_model(arguments.model, arguments.detector, watched_only=not paper)
@@ -45,8 +49,8 @@ def _score(arguments: argparse.Namespace) -> None:
         print(f'{arguments.model}: not calibrated: windows are scored, none is called abnormal '
               '(rosrun self_awareness calibrate)')
     judged: List[Tuple[RecordingEvents, Verdicts]] = []
-    for path in arguments.bags:
-        recording = recordings.read(trained, BagPart(path))
+    for part in arguments.bags:
+        recording = cli.read_recording('score', trained, part)
         verdicts = judge(recording.stamps, recording.ids, recording.end)
         judged.append((recording, verdicts))
         _print(recording, verdicts, len(trained.event_types), threshold)
@@ -59,27 +63,43 @@ def _score(arguments: argparse.Namespace) -> None:
 
 def _print(recording: RecordingEvents, verdicts: Verdicts, known: int,
            threshold: Optional[float]) -> None:
-    origin = recording.origin
     windows = len(verdicts.start)
-    line = (f'{recording.part}: {(recording.end - origin) / SECOND_NS:.1f} s, '
+    start, end = recording.part.span(recording.origin, recording.end)
+    line = (f'{recording.part}: {(end - start) / SECOND_NS:.1f} s, '
             f'{len(recording.stamps)} events, {windows} windows')
     if threshold is not None:
         abnormal = int((verdicts.abnormal & ~verdicts.settling).sum())
         line += (f', {abnormal} abnormal ({abnormal / windows:.1%}; settling left out), '
-                 f'alarms: {len(verdicts.alarms)}')
+                 f'alarms: {len(verdicts.alarms)}, suspicions: {len(verdicts.suspicions)}')
     print(line)
-    for alarm in verdicts.alarms:
-        end = '' if alarm.cleared else ' (to the end of the recording)'
-        print(f'  {(alarm.start - origin) / SECOND_NS:.1f} - '
-              f'{(alarm.end - origin) / SECOND_NS:.1f} s{end}, '
-              f'{utc(alarm.start)} - {utc(alarm.end)} UTC: '
-              f'lowest score {alarm.lowest_score:.4g}, threshold {threshold:.4g}, '
-              f'{alarm.evidence}')
-        if not alarm.suspects:
-            print('    no suspect stands out')
-        for rank, suspect in enumerate(alarm.suspects, 1):
-            print(f'    {rank}. {recording.event_types[suspect.id]}: {suspect.describe()}')
+    levels = ([('', alarm) for alarm in verdicts.alarms]
+              + [('suspicion: ', suspicion) for suspicion in verdicts.suspicions])
+    for level, alarm in sorted(levels, key=lambda each: each[1].start):
+        for text in _lines(recording, level, alarm, threshold):
+            print(text)
     _print_unknown(recording, known)
+
+
+def _lines(recording: RecordingEvents, level: str, alarm: Alarm,
+           threshold: Optional[float]) -> Iterator[str]:
+    def seconds(stamp: int) -> str:
+        return f'{(stamp - recording.origin) / SECOND_NS:.1f}'
+
+    end = '' if alarm.cleared else ' (to the end of the recording)'
+    yield (f'  {level}{seconds(alarm.start)} - {seconds(alarm.end)} s{end}, '
+           f'{utc(alarm.start)} - {utc(alarm.end)} UTC: '
+           f'lowest score {alarm.lowest_score:.4g}, threshold {threshold:.4g}, '
+           f'{alarm.evidence or "what is left of the alarm"}')
+    if not alarm.suspects and alarm.evidence:
+        yield '    no suspect stands out'
+    for rank, suspect in enumerate(alarm.suspects, 1):
+        yield f'    {rank}. {_words(recording, suspect)}'
+    for suspect in alarm.new_suspects:
+        yield f'    since {seconds(suspect.since)} s {_words(recording, suspect)}'
+
+
+def _words(recording: RecordingEvents, suspect: Suspect) -> str:
+    return f'{recording.event_types[suspect.id]}: {suspect.describe()}'
 
 
 def _print_unknown(recording: RecordingEvents, known: int) -> None:
@@ -128,7 +148,8 @@ def _plot(recording: RecordingEvents, verdicts: Verdicts, window: int,
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog='score', description=__doc__.split(': ', 1)[1], epilog=_EPILOG)
-    parser.add_argument('bags', nargs='+', metavar='BAG', help='a recording')
+    parser.add_argument('bags', type=BagPart.parse, nargs='+', metavar='BAG',
+                        help='a recording')
     parser.add_argument('--model', required=True, help='file written by train or calibrate')
     cli.add_detector_argument(parser)
     parser.add_argument('--csv', metavar='FILE', help='write the score of every window')

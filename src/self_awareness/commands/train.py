@@ -4,7 +4,8 @@ from __future__ import annotations
 import argparse
 import os
 from contextlib import closing
-from typing import Dict, Optional, Sequence, Set, Tuple
+from dataclasses import replace
+from typing import Dict, List, Optional, Sequence, Set, Tuple
 
 from self_awareness import PREDECESSORS, BagError, TrainedModel, encoding_file, progress
 from self_awareness.calibration.limits import TooLittleError
@@ -22,10 +23,12 @@ _OF_THE_MODEL = ('detector', 'bin', 'window', 'horizon', 'encoding', 'predecesso
 
 _EPILOG = """\
 The recordings should show all that is normal, but not the start-up: leave it out with --start.
+BAG@START-END stands for a part of a recording, in s from its first message.
 The model is the same with any --jobs, and with --scheduler.
 examples:
   train monday.bag tuesday.bag -o robot.model
   train run.bag --start 20 -o robot.model      from 20 s after the recording's first message on
+  train run.bag@20-600 run.bag@660 -o robot.model
   train --add-to robot.model friday.bag -o robot.model
   train /nfs/bags/*.bag --scheduler 10.0.0.1:8786 --skip-bad -o fleet.model
 """
@@ -37,16 +40,17 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 
 def _train(arguments: argparse.Namespace) -> None:
-    check_outputs([arguments.output], arguments.bags + [arguments.encoding])
+    parts = _parts(arguments)
+    bags = [part.path for part in parts]
+    check_outputs([arguments.output], bags + [arguments.encoding])
     check_replaces_model(arguments.output)
     base = None if arguments.add_to is None else TrainedModel.load(arguments.add_to)
     counting = _counting(arguments, base)
-    _check_distinct(arguments.bags)
+    _check_distinct(parts)
     graph = _live_graph(base) if arguments.graph else set()  # first: counting may take hours
-    # The workers of a cluster have working directories of their own.
-    paths = map(os.path.abspath, arguments.bags) if arguments.scheduler else arguments.bags
-    parts = [BagPart(path, arguments.start, arguments.end) for path in paths]
-    with closing(_workers(arguments)) as workers:
+    if arguments.scheduler:  # the workers of a cluster have working directories of their own
+        parts = [replace(part, path=os.path.abspath(part.path)) for part in parts]
+    with closing(_workers(arguments, bags)) as workers:
         trained = many_bags.train(parts, counting, workers, base, arguments.skip_bad, progress.say)
         model = trained.model
         if counting.encoding is None and model.encoding.source == 'none':
@@ -109,12 +113,18 @@ def _counting(arguments: argparse.Namespace, base: Optional[TrainedModel]) -> Co
                     arguments.detector or Counting.detector)
 
 
-def _workers(arguments: argparse.Namespace) -> Workers:
+def _parts(arguments: argparse.Namespace) -> List[BagPart]:
+    """Return what is named; --start and --end are for bags that are named without a part."""
+    return [BagPart(part.path, arguments.start, arguments.end)
+            if part.start is None else part for part in arguments.bags]
+
+
+def _workers(arguments: argparse.Namespace, bags: Sequence[str]) -> Workers:
     if arguments.scheduler is not None:
         return Cluster(arguments.scheduler)
     if not arguments.skip_bad:
-        _check_exist(arguments.bags)
-    jobs = min(arguments.jobs or _cores(), len(arguments.bags))
+        _check_exist(bags)
+    jobs = min(arguments.jobs or _cores(), len(bags))
     return InProcess() if jobs == 1 else Processes(jobs)
 
 
@@ -125,13 +135,14 @@ def _check_exist(paths: Sequence[str]) -> None:
             raise ValueError(f'{path}: no such file')
 
 
-def _check_distinct(paths: Sequence[str]) -> None:
-    known: Dict[str, str] = {}
-    for path in paths:
-        real = os.path.realpath(path)
-        if real in known:
-            raise ValueError(f'{path}: the same recording as {known[real]}; name it once')
-        known[real] = path
+def _check_distinct(parts: Sequence[BagPart]) -> None:
+    known: Dict[str, List[BagPart]] = {}
+    for part in parts:
+        others = known.setdefault(os.path.realpath(part.path), [])
+        for other in others:
+            if part.meets(other):
+                raise ValueError(f'{part}: the same recording as {other}; name it once')
+        others.append(part)
 
 
 def _cores() -> int:
@@ -142,7 +153,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog='train', description=__doc__.split(': ', 1)[1], epilog=_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('bags', nargs='+', metavar='BAG',
+    parser.add_argument('bags', type=BagPart.parse, nargs='+', metavar='BAG',
                         help='a recording of normal operation; delays never cross from one to the '
                              'next')
     parser.add_argument('-o', '--output', required=True, metavar='MODEL', help='file to write')
@@ -167,7 +178,8 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('--encoding', metavar='FILE',
                         help='how messages become events (example: config/encoding.yaml)')
     parser.add_argument('--start', type=cli.offset, metavar='S',
-                        help='use each recording from this time on, in s from its first message')
+                        help='use each recording that is named without a part from this time '
+                             'on, in s from its first message')
     parser.add_argument('--end', type=cli.offset, metavar='S', help='and up to this one')
     parser.add_argument('--add-to', metavar='MODEL',
                         help='add to what this model learned, in its encoding, bins and windows; '

@@ -105,10 +105,10 @@ def train(parts: Sequence[BagPart], counting: Counting, workers: Optional[Worker
             for line in counted.lines:
                 tell(line)
             for trained_on, recording in counted.recordings():
-                path = trained_on.part.path
-                same = distinct.add(path, recording)
+                name = str(trained_on.part)
+                same = distinct.add(name, recording)
                 if same is not None:
-                    raise ValueError(f'{path}: the same recording as {same}; name it once')
+                    raise ValueError(f'{name}: the same recording as {same}; name it once')
             total.add(counted)
             if counted.error is not None:
                 raise ValueError(counted.error)
@@ -254,6 +254,11 @@ _NAMELESS = ('no connection of this bag names its sender, and sources are to be 
              'the bag out, or use "source: none" for all (--encoding)')
 
 
+_COPIED = ('warning: a copy that rosbag filter, compress or decompress made: if several nodes '
+           'publish on a topic, all their messages are under the name of one. Use the bag as it '
+           'was recorded, and leave topics out by the encoding (exclude_topics)')
+
+
 class _BadBag(ValueError):
     """Something is wrong with a bag by itself."""
 
@@ -291,11 +296,13 @@ def _count(how: _How, part: BagPart) -> _Sum:
     except BagError as error:
         raise _BadBag(str(error)) from error
     except ValueError as error:
-        raise _BadBag(f'{part.path}: {error}') from error
+        raise _BadBag(f'{part}: {error}') from error
     seconds = (recording.end - recording.start) / SECOND_NS
-    line = f'{part.path}: {seconds:.1f} s, {recording.events} events'
+    lines = [f'{part}: {seconds:.1f} s, {recording.events} events']
+    if events.copied and encoding.source != 'none':
+        lines.append(f'{part}: {_COPIED}')
     trained_on = TrainedOn(part, None if how.alone else 0, events)
-    return _Sum(recording.events, model, [trained_on], [line])
+    return _Sum(recording.events, model, [trained_on], lines)
 
 
 def _graph(part: BagPart) -> Set[Tuple[str, str, str]]:
@@ -314,7 +321,8 @@ def _read(counting: Counting, part: BagPart) -> Tuple[RecordingEvents, EncodingR
         encoding.source = 'none'  # what was read stays the same
     _, end = part.span(read.summary.start, read.summary.end)
     events = RecordingEvents(part, read.event_types, read.stamps, read.ids, read.summary.start,
-                             end, read.summary.fingerprint)
+                             end, read.summary.fingerprint,
+                             read.summary.one_sender_a_topic, read.summary.copied)
     if len(events.stamps) == 0:
         raise ValueError('no message is an event by the encoding; a recording of "rosbag play" '
                          'needs "source: none" (--encoding), and a part that is too short another '

@@ -111,8 +111,10 @@ TEST_F(EvidenceBlameTest, InALoopTheShorterWayDecides) {
 TEST_F(EvidenceBlameTest, ARootThatIsNearItsLimitIsNamedAlready) {
   graph_->connect("/a", "/a/out", "/b");
   const std::int64_t end = last_ + 5 * kSecond;
-  EXPECT_EQ(ids(suspects({{overdue(kA), 0.8}, {overdue(kB), 1.5}}, end)),
-            (std::vector<EventId>{kA, kB}));
+  const std::vector<Suspect> named = suspects({{overdue(kA), 0.8}, {overdue(kB), 1.5}}, end);
+  EXPECT_EQ(ids(named), (std::vector<EventId>{kA, kB}));
+  EXPECT_FALSE(named[0].abnormal);
+  EXPECT_TRUE(named[1].abnormal);
 }
 
 TEST_F(EvidenceBlameTest, ASilentOneIsWordedByTheTrackThatSpeaksAgainstIt) {
@@ -208,6 +210,36 @@ TEST_F(EvidenceBlameTest, NoMoreThanFiveAreNamed) {
     window.events.push_back({{last_, id}, true, std::nullopt});
   }
   EXPECT_EQ(suspects({}, last_ + kWindow, window).size(), kMostSuspects);
+}
+
+TEST_F(EvidenceBlameTest, FurtherComponentsFollowIfTheirEvidenceAloneIsAbnormal) {
+  Statistics counts;
+  for (const std::string name : {"/a", "/b", "/c", "/d", "/e", "/e", "/f", "/g"}) {
+    counts.intern({name, "/topic" + std::to_string(counts.size()), "T"});
+  }
+  Events events;
+  for (EventId id = 0; id < counts.size(); ++id) {
+    events = together({events, timer(id, 0, 100 * kSecond, (90 + 10 * id) * kMillisecond)});
+  }
+  Trainer trainer(counts, kWindow);
+  for (const Event& event : events) {
+    trainer.add(event);
+  }
+  model_ = std::make_shared<Model>(watch(counts, {}));
+  scorer_ = Scorer(model_, kWindow);
+  hindsight_ = Hindsight(model_);
+  for (const Event& event : events) {
+    add(event);
+  }
+  std::vector<std::pair<Track, double>> reached;
+  for (EventId id = 0; id < counts.size(); ++id) {
+    reached.emplace_back(overdue(id), id == 6 ? 0.9 : 1.5);
+  }
+  // The shortest gaps first; 5 is another type of a component that is named, 6 is near its limit.
+  const std::vector<Suspect> named = suspects(reached, last_ + 3 * kSecond);
+  EXPECT_EQ(ids(named), (std::vector<EventId>{0, 1, 2, 3, 4, 7}));
+  EXPECT_EQ(named.back().component, "/g");
+  EXPECT_TRUE(named.back().abnormal);
 }
 
 TEST_F(EvidenceBlameTest, ATopicIsNamedIfItsSenderIsNotKnown) {

@@ -99,6 +99,22 @@ TEST_F(EvidenceJudgeTest, LateAnswersAreAbnormalButNotCertain) {
   EXPECT_EQ(judgement.suspects.front().id, kB);
 }
 
+TEST_F(EvidenceJudgeTest, AWindowThatEndsWithTheRecordingHasNotTooFewEvents) {
+  limits_.tracks[track(Channel::kFewer, kA, kA)] = 1;
+  std::vector<bool> abnormal;
+  Detector detector(newJudge(limits_), kWindow, {},
+                    [&](const Verdict& verdict) { abnormal.push_back(verdict.abnormal); });
+  std::int64_t now = 0;
+  for (; now < 10 * kSecond; now += kPeriod / 4) {  // more often than in training
+    detector.add({now, kA});
+  }
+  detector.advance(now += 3 * kSecond);  // none for longer than the span
+  EXPECT_TRUE(abnormal.back());
+  detector.advance(now + kWindow / 2);
+  detector.finish();
+  EXPECT_FALSE(abnormal.back()) << "half a window";
+}
+
 TEST_F(EvidenceJudgeTest, NamesSuspectsOnlyWhereTheyAreAskedFor) {
   limits_.tracks[track(Channel::kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);

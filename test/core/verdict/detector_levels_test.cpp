@@ -31,7 +31,11 @@ class ToldJudge : public Judge {
     Judgement judgement = *told_;
     if (suspects == NameSuspects::kAlways ||
         (suspects == NameSuspects::kIfUnusual && (judgement.abnormal || judgement.suspicious))) {
-      judgement.suspects = {Suspect{}};
+      if (judgement.suspects.empty()) {
+        judgement.suspects = {Suspect{}};
+      }
+    } else {
+      judgement.suspects.clear();
     }
     return judgement;
   }
@@ -73,6 +77,23 @@ class DetectorLevelsTest : public testing::Test {
     for (int i = 0; i < number; ++i) {
       window();
     }
+  }
+  // A suspect of the component, whose evidence alone is abnormal or not.
+  static Suspect suspect(const std::string& component, EventId id, bool abnormal = true) {
+    Suspect suspect;
+    suspect.component = component;
+    suspect.id = id;
+    suspect.abnormal = abnormal;
+    return suspect;
+  }
+  // Passes one certainly abnormal window with these suspects.
+  const Verdict& alarmWindow(std::vector<Suspect> suspects) {
+    told_->certain = true;
+    told_->suspects = std::move(suspects);
+    abnormalWindow();
+    told_->certain = false;
+    told_->suspects.clear();
+    return verdict_;
   }
   const Verdict& abnormalWindow() {
     told_->abnormal = true;
@@ -163,6 +184,73 @@ TEST_F(DetectorLevelsTest, WhatIsCertainRaisesTheAlarmAtOnce) {
   EXPECT_FALSE(verdict_.alarm);  // certain, but not abnormal
   EXPECT_TRUE(abnormalWindow().alarm);
   EXPECT_FALSE(verdict_.suspicion);
+}
+
+TEST_F(DetectorLevelsTest, AStandingAlarmTellsOfNewSuspects) {
+  start();
+  alarmWindow({suspect("/a", 0), suspect("/b", 1, false)});
+  const std::int64_t raised = now_;
+  EXPECT_TRUE(verdict_.changed);
+  EXPECT_TRUE(verdict_.new_suspects.empty()) << "it names all of them";
+  EXPECT_FALSE(alarmWindow({suspect("/a", 0), suspect("/b", 1)}).changed);
+  EXPECT_FALSE(alarmWindow({suspect("/a", 2)}).changed) << "another topic of a component";
+  EXPECT_FALSE(alarmWindow({suspect("/c", 3, false)}).changed) << "weak evidence is no news";
+  alarmWindow({suspect("/a", 0), suspect("/c", 3), suspect("/c", 4)});
+  EXPECT_TRUE(verdict_.changed);
+  EXPECT_TRUE(verdict_.alarm);
+  ASSERT_EQ(verdict_.new_suspects.size(), 1U);
+  EXPECT_EQ(verdict_.new_suspects[0].id, 3U);
+  EXPECT_EQ(verdict_.new_suspects[0].since, now_);
+  EXPECT_EQ(verdict_.suspects[0].since, raised);
+  EXPECT_EQ(verdict_.suspects[2].since, now_);
+  EXPECT_FALSE(alarmWindow({suspect("/c", 3)}).changed);
+  EXPECT_LT(verdict_.suspects[0].since, now_);
+  EXPECT_EQ(changes_, 2);
+}
+
+TEST_F(DetectorLevelsTest, ANewAlarmNamesEverybodyAnew) {
+  start();
+  alarmWindow({suspect("/a", 0)});
+  windows(30);
+  EXPECT_FALSE(verdict_.alarm);
+  changes_ = 0;
+  alarmWindow({suspect("/a", 0)});
+  EXPECT_EQ(verdict_.suspects[0].since, now_);
+  EXPECT_EQ(alarmWindow({suspect("/b", 1)}).new_suspects.size(), 1U);
+  detector_->clearAlarm();
+  EXPECT_TRUE(alarmWindow({suspect("/b", 1)}).new_suspects.empty());
+  EXPECT_EQ(verdict_.suspects[0].since, now_);
+}
+
+TEST_F(DetectorLevelsTest, EventTypesWhoseComponentIsNotKnownAreNewOneByOne) {
+  start();
+  alarmWindow({suspect("", 8)});
+  EXPECT_FALSE(alarmWindow({suspect("", 8)}).changed);
+  EXPECT_EQ(alarmWindow({suspect("", 8), suspect("", 9)}).new_suspects.at(0).id, 9U);
+}
+
+TEST_F(DetectorLevelsTest, NewSuspectsMayComeAfterTheBestFive) {
+  start();
+  std::vector<Suspect> suspects;
+  for (EventId id = 0; id < 7; ++id) {
+    suspects.push_back(suspect("/" + std::to_string(id), id));
+  }
+  EXPECT_EQ(alarmWindow(suspects).suspects.size(), kMostSuspects);
+  suspects.push_back(suspect("/late", 7));
+  alarmWindow(suspects);
+  EXPECT_EQ(verdict_.suspects.size(), kMostSuspects);
+  ASSERT_EQ(verdict_.new_suspects.size(), 1U);
+  EXPECT_EQ(verdict_.new_suspects[0].id, 7U);
+}
+
+TEST_F(DetectorLevelsTest, ASuspicionTellsOfNoNewSuspects) {
+  start();
+  told_->suspicious = true;
+  told_->suspects = {suspect("/a", 0)};
+  window();
+  told_->suspects = {suspect("/b", 1)};
+  EXPECT_FALSE(window().changed);
+  EXPECT_TRUE(verdict_.suspicion);
 }
 
 TEST_F(DetectorLevelsTest, UnknownEventsAreASuspicionByDefault) {

@@ -38,6 +38,49 @@ def test_the_alarm_names_its_evidence_and_its_suspect(
     assert re.search(r'^    1\. /laser /scan std_msgs/String: silent for ', out, re.MULTILINE)
 
 
+def test_a_fault_during_the_alarm_is_printed_with_its_time(
+        evidence_model: str, make_bag: Callable[..., str], capsys) -> None:
+    bag = make_bag('two.bag', [m for m in jittery_robot(3000.0, 60.0, 3)
+                               if not (m[0] >= 3012.0 and m[1] == '/laser')
+                               and not (m[0] >= 3040.0 and m[1] == '/battery')])
+    assert score.main([bag, '--model', evidence_model]) == 0
+    out = capsys.readouterr().out
+    assert len(alarms(out)) == 1
+    since, = re.findall(r'^    since ([\d.]+) s /battery /charge std_msgs/String: silent for ',
+                        out, re.MULTILINE)
+    assert 40.0 < float(since) < 43.0
+
+
+def test_a_suspicion_is_printed_with_its_reason(
+        evidence_model: str, make_bag: Callable[..., str], capsys) -> None:
+    bag = make_bag('new.bag', sorted([*jittery_robot(3000.0, 30.0, 5), (3010.02, '/new', '/a')]))
+    assert score.main([bag, '--model', evidence_model]) == 0
+    out = capsys.readouterr().out
+    assert ', alarms: 0, suspicions: 1\n' in out
+    assert re.search(r'^  suspicion: 10\.1 - 12\.\d s, .* UTC: lowest score \S+, threshold -1, '
+                     r'unknown events\n    1\. /new /a std_msgs/String: never seen in training, '
+                     r'1 in this window$', out, re.MULTILINE)
+
+
+def test_a_part_is_judged_by_itself(evidence_model: str, make_bag: Callable[..., str], tmp_path,
+                                    capsys) -> None:
+    bag, table = make_bag('dead.bag', without_laser(3000.0)), tmp_path / 'w.csv'
+    assert score.main([f'{bag}@0-11', f'{bag}@11', f'{bag}@2-25', '--model', evidence_model,
+                       '--csv', str(table)]) == 0
+    out = capsys.readouterr().out
+    before, after, both = re.split(f'^{bag}', out, flags=re.MULTILINE)[1:]
+    assert before.startswith('@0-11: 11.0 s, ') and alarms(before) == []
+    # Times count from the bag's first message; the part settles until 16 s.
+    assert after.startswith('@11: 19.0 s, ')
+    assert [start for start, _, _ in alarms(after)] == [pytest.approx(16.1, abs=0.21)]
+    assert both.startswith('@2-25: 23.0 s, ')
+    assert [start for start, _, _ in alarms(both)] == [pytest.approx(12.3, abs=0.21)]
+    with open(table, newline='') as file:
+        rows = list(csv.DictReader(file))
+    starts = [int(row['window_start_ns']) for row in rows if row['bag'] == f'{bag}@2-25']
+    assert (min(starts), max(starts)) == (3002 * 10**9, 3025 * 10**9)
+
+
 def test_normal_operation_is_no_alarm(evidence_model: str, make_bag: Callable[..., str],
                                       capsys) -> None:
     bag = make_bag('normal.bag', jittery_robot(7000.0, 60.0, 4))

@@ -2,11 +2,17 @@
 from __future__ import annotations
 
 import math
+import os
+import subprocess
+import sys
+import threading
 from collections import Counter
+from pathlib import Path
 from typing import Callable, Dict, List, Tuple
+from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
-from conftest import robot
+from conftest import robot, wait_until
 
 from self_awareness import PREDECESSORS, EvidenceModel, Model, TrainedModel, stable_name
 from self_awareness.commands import train
@@ -31,6 +37,29 @@ def test_it_says_what_it_learned(robot_bags: Bags, tmp_path, capsys) -> None:
     assert model.bin_size == 10_000_000 and model.window == 100_000_000
     assert model.horizon_bins == 0 and model.threshold is None
     assert model.encoding.source == 'callerid'
+
+
+def test_parts_of_bags_are_trained_on(robot_bags: Bags, tmp_path, capsys) -> None:
+    output, (first, second) = str(tmp_path / 'm'), robot_bags
+    lines = said(capsys, [f'{first}@2-12', f'{first}@12.01-20', second, '--start', '5',
+                          '-o', output])
+    assert f'{first}@2-12: 10.0 s, 428 events' in lines
+    assert [line.split(':')[0] for line in lines[1:3]] == [f'{first}@12.01-20', f'{second}@5']
+    spans = [((each.start - origin) / 1e9, (each.end - origin) / 1e9)
+             for each, origin in zip(TrainedModel.load(output).recordings,
+                                     (1000 * 10**9, 1000 * 10**9, 2000_033 * 10**6))]
+    assert spans == [pytest.approx(span, abs=0.06) for span in ((2, 12), (12, 20), (5, 30))]
+
+
+@pytest.mark.parametrize('parts, same', [
+    (('@2-12', '@11-20'), ('@11-20', '@2-12')), (('', '@25'), ('@25', '')),
+    (('@3', '@2-4'), ('@2-4', '@3'))])
+def test_parts_that_overlap_are_refused(robot_bags: Bags, parts: Bags, same: Bags, tmp_path,
+                                        capsys) -> None:
+    bag = robot_bags[0]
+    assert train.main([bag + parts[0], bag + parts[1], '-o', str(tmp_path / 'm')]) == 1
+    assert (f'{bag}{same[0]}: the same recording as {bag}{same[1]}; name it once'
+            in capsys.readouterr().err)
 
 
 def test_types_too_rare_to_judge_are_listed(make_bag: Callable[..., str], tmp_path,
@@ -156,6 +185,40 @@ def test_the_graph_needs_a_master(robot_bags: Bags, tmp_path, monkeypatch, capsy
     assert error.startswith('train: error: --graph: no master at http://127.0.0.1:1')
     assert 'ROS_MASTER_URI' in error and error.count('\n') == 1
     assert not (tmp_path / 'm').exists()
+
+
+def test_only_the_master_is_asked_for_the_graph(robot_bags: Bags, tmp_path, monkeypatch) -> None:
+    asked = []
+
+    class Master:
+        """Answers all calls, and remembers them."""
+
+        def _dispatch(self, method: str, _: Tuple) -> Tuple:
+            asked.append(method)
+            return (1, '', [[['/scan', ['/laser']]], [['/scan', ['/slam']]], []])
+
+    with SimpleXMLRPCServer(('127.0.0.1', 0), logRequests=False) as server:
+        server.register_instance(Master())
+        threading.Thread(target=server.serve_forever).start()
+        monkeypatch.setenv('ROS_MASTER_URI', f'http://127.0.0.1:{server.server_address[1]}')
+        assert train.main([robot_bags[0], '--graph', '-o', str(tmp_path / 'm')]) == 0
+        server.shutdown()
+    assert asked == ['getSystemState']  # neither registered, nor asked any node
+
+
+@pytest.mark.parametrize('program', [['train'], ['calibrate', '--model', 'm', '--normal']])
+def test_the_robots_nodes_go_first(program: List[str], model_file: str, tmp_path) -> None:
+    bag = tmp_path / 'never_ends.bag'
+    os.mkfifo(bag)  # who opens it waits
+    script = Path(__file__).resolve().parents[3] / 'scripts' / program[0]
+    arguments = [model_file if argument == 'm' else argument for argument in program[1:]]
+    with subprocess.Popen([sys.executable, str(script), *arguments, str(bag), '-o',
+                           str(tmp_path / 'm')], stderr=subprocess.DEVNULL) as process:
+        try:
+            own = os.getpriority(os.PRIO_PROCESS, 0)
+            wait_until(lambda: os.getpriority(os.PRIO_PROCESS, process.pid) > own, 'stands back')
+        finally:
+            process.kill()
 
 
 def test_the_graph_is_who_subscribes_to_whom(robot_bags: Bags, tmp_path, monkeypatch) -> None:

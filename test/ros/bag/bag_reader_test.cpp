@@ -182,6 +182,8 @@ TEST_F(BagReaderTest, TheSummaryNamesTheRecordingHoweverItIsCompressed) {
   EXPECT_EQ(plain.start, 100 * core::kNanosecondsPerSecond);
   EXPECT_EQ(plain.end, 109900 * (core::kNanosecondsPerSecond / 1000));
   EXPECT_TRUE(plain.has_sources);
+  EXPECT_FALSE(plain.one_sender_a_topic) << "rosbag record keeps them all";
+  EXPECT_FALSE(plain.copied);
   for (const auto compression : {rosbag::compression::BZ2, rosbag::compression::LZ4}) {
     const BagSummary packed = BagReader(writeBag("packed.bag", compression)).summary();
     EXPECT_EQ(packed.fingerprint, plain.fingerprint);

@@ -2,9 +2,11 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "self_awareness/core/stream/windows.h"
@@ -22,9 +24,13 @@ struct Verdict {
   bool settling = false;            ///< too early to say anything; the window does not count
   bool alarm = false;               ///< the alarm stands
   bool suspicion = false;           ///< no alarm, but something was abnormal recently
-  bool changed = false;             ///< the alarm or the suspicion began or ended with this window
-  std::string evidence;             ///< what made the window abnormal or suspicious, once settled
-  std::vector<Suspect> suspects;    ///< of an abnormal window that is not settling, best first
+  /// The alarm or the suspicion began or ended with this window, or there are new suspects.
+  bool changed = false;
+  std::string evidence;           ///< what made the window abnormal or suspicious, once settled
+  std::vector<Suspect> suspects;  ///< of an abnormal window that is not settling, best first
+  /// Those of components that an alarm which stood before names for the first time: there may be
+  /// another fault. One for each component.
+  std::vector<Suspect> new_suspects;
 };
 
 /// What an event type means that training never saw (docs/method.md, section 4.5): somebody may
@@ -76,6 +82,12 @@ class Detector : private WindowObserver {
   /// Takes a window that is not settling into account for the alarm and the suspicion.
   /// @param end of the window [ns]
   void count(const Judgement& judgement, std::int64_t end);
+  /// Says of suspects since when their components are named.
+  /// @param begins whether the alarm or the suspicion that stands began with this window: it names
+  /// all of them; later only what is abnormal is named
+  /// @param end of the window [ns]
+  /// @return the first of each component that was not named before
+  std::vector<Suspect> name(std::vector<Suspect>& suspects, bool begins, std::int64_t end);
 
   std::unique_ptr<Judge> judge_;
   Parameters parameters_;
@@ -86,6 +98,9 @@ class Detector : private WindowObserver {
   std::int64_t suspicious_at_ = 0;  // end of the last suspicious window [ns], while it stands
   std::int64_t settled_at_ = 0;     // [ns], valid once started
   std::vector<bool> heard_;         // since the start, by id
+  // When the alarm or the suspicion that stands named a component, or an event type whose
+  // component is not known: end of the window [ns].
+  std::map<std::pair<std::string, EventId>, std::int64_t> named_;
 };
 
 }  // namespace self_awareness::core

@@ -19,7 +19,9 @@ struct Judgement {
   bool suspicious = false;          ///< not abnormal, but on the way to it
   bool settling = false;            ///< too much is new to say anything of the whole window
   std::string evidence;             ///< what made the window abnormal or suspicious, in words
-  std::vector<Suspect> suspects;    ///< if they were asked for; the most likely first
+  /// If they were asked for; the most likely first. After kMostSuspects, further components whose
+  /// evidence alone is abnormal may follow.
+  std::vector<Suspect> suspects;
 };
 
 /// Of which windows a judge names suspects: naming them takes time.

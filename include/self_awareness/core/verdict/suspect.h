@@ -39,6 +39,14 @@ struct Suspect {
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
   EventId id = 0;
+  std::string component;  ///< whose event type it is; empty: not known, as of unknown events
+  /// It alone would be abnormal: its evidence is beyond its limit, or it was never seen in
+  /// training. With the paper's detector, which knows no limit of a single event type, the latter
+  /// only.
+  bool abnormal = false;
+  /// When the alarm or the suspicion that stands first named its component: end of the window
+  /// [ns].
+  std::int64_t since = 0;
   Reason reason = Reason::kSilent;
   double silence = kNone;         ///< kSilent, kLate: time without such an event [s]; kUnanswered:
                                   ///< time since it was asked for; else NaN

@@ -38,6 +38,11 @@ struct BagSummary {
   /// the program that wrote the messages again.
   std::uint64_t fingerprint = 0;
   bool has_sources = false;  ///< at least one connection names its publisher
+  /// rosbag's Python library wrote the bag: it keeps one connection a topic. If several nodes
+  /// published there, all messages are under the name of the first.
+  bool one_sender_a_topic = false;
+  /// It is so of a recording that was copied: by `rosbag filter`, `compress` or `decompress`.
+  bool copied = false;
 };
 
 struct BagIndex;

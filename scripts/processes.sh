@@ -1,0 +1,64 @@
+# Sourced by demo.sh: processes in the background, each with its log in the folder $out. If one of
+# them ends by itself, its last lines are shown at once, and the script ends.
+
+started=()  # log by process id
+
+start() {  # LOG COMMAND...
+  local log=$1
+  shift
+  setsid "$@" > "$out/$log" 2>&1 < /dev/null &
+  started[$!]=$log
+}
+
+# Ends all that runs in the background, and kills what is left of it after 10 s. By SIGTERM: a script
+# lets what it puts in the background ignore SIGINT.
+stop_all() {
+  local pid
+  for pid in $(jobs -p); do
+    [ -n "${started[$pid]:-}" ] || { kill "$pid" && wait "$pid"; } 2> /dev/null || true
+  done
+  for pid in "${!started[@]}"; do kill -- "-$pid" 2> /dev/null || true; done
+  for pid in "${!started[@]}"; do
+    for _ in $(seq 100); do
+      kill -0 -- "-$pid" 2> /dev/null || break
+      sleep 0.1
+    done
+    kill -KILL -- "-$pid" 2> /dev/null || true
+    wait "$pid" 2> /dev/null || true
+  done
+}
+
+fail_with_log() {  # LOG WHAT
+  echo "demo: error: $2; the end of $out/$1:" >&2
+  tail -n 20 "$out/$1" >&2
+  exit 1
+}
+
+check_started() {
+  local pid
+  for pid in "${!started[@]}"; do
+    kill -0 "$pid" 2> /dev/null || fail_with_log "${started[$pid]}" "a process ended by itself"
+  done
+}
+
+await() {  # SECONDS DESCRIPTION COMMAND...
+  local seconds=$1 description=$2 deadline=$((SECONDS + $1))
+  shift 2
+  until "$@" > /dev/null 2>&1; do
+    check_started
+    if [ $SECONDS -ge $deadline ]; then
+      echo "demo: error: not within $seconds s: $description; see $out/*.log" >&2
+      exit 1
+    fi
+    sleep 0.2
+  done
+}
+
+# Waits for a process of this shell that was not started by start(); returns its exit code.
+watch() {  # PID
+  while kill -0 "$1" 2> /dev/null; do
+    check_started
+    sleep 0.2
+  done
+  wait "$1"
+}
