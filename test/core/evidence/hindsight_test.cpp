@@ -152,6 +152,28 @@ TEST_F(HindsightTest, SeesTheAnswersSinceTheSumWasZero) {
   EXPECT_FALSE(answers());
 }
 
+TEST_F(HindsightTest, ABurstIsOneQuestionAndWhatComesBackWasNotMissed) {
+  askUsually(50);
+  for (const bool answered : {false, true}) {
+    for (int i = 0; i < 20; ++i) {
+      hindsight_.add({now_ + i * 1000, kA});
+    }
+    if (answered) {
+      hindsight_.add({now_ + kUsual, kB});
+      hindsight_.add({now_ + kUsual + 1000, kB});
+    }
+    now_ += kPeriod;
+    hindsight_.add({now_, kA});
+    if (answered) {
+      EXPECT_FALSE(answers()) << "the one that was missing has come";
+    } else {
+      EXPECT_EQ(answers().value().asked, 1U);
+      EXPECT_EQ(answers().value().missed, 1U);
+    }
+    now_ += kUsual / 2;  // too soon for another question
+  }
+}
+
 TEST_F(HindsightTest, TheSumsAreThoseOfTheScorer) {
   Scorer scorer(model_, kWindow);
   const auto add = [&](const Event& event) {

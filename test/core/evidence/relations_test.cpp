@@ -16,15 +16,17 @@ constexpr std::int64_t kLength = 60 * kSecond;
 constexpr std::int64_t kPeriod = 100 * kMillisecond;
 const SourceGraph kNoGraph;
 
-// Two exact timers of one period; the second is later by a phase, one in every start.
+// Two exact timers of one period, and another type at random; the second timer is later by a
+// phase, one in every start.
 Statistics timers(const std::vector<std::int64_t>& phases) {
   std::vector<Events> recordings;
   for (const std::int64_t phase : phases) {
     recordings.push_back(
-        later(together({timer(kA, 0, kLength, kPeriod), timer(kB, phase, kLength, kPeriod)}),
+        later(together({timer(kA, 0, kLength, kPeriod), timer(kB, phase, kLength, kPeriod),
+                        irregular(kC, 0, kLength, kPeriod, 1)}),
               static_cast<std::int64_t>(recordings.size()) * kStart));
   }
-  return countsOf(recordings, 2);
+  return countsOf(recordings);
 }
 
 // A comes at random, and B so much after it, in so many starts.

@@ -136,8 +136,9 @@ TEST_F(ScorerStallsTest, ATopicThatBeginsLateIsJudgedAfterItsOwnSpan) {
   const std::size_t fewer = indexOf(model_->tracks(), Channel::kFewer, kC, kC);
   const std::int64_t start = 10 * kSecond;
   for (const std::int64_t period : {kPeriod, 4 * kPeriod}) {
-    const Events events =
-        together({timer(kA, 0, 2 * start, kPeriod), timer(kC, start, 2 * start, period)});
+    const Events events = together({timer(kA, 0, 2 * start, kPeriod),
+                                    timer(kB, 33 * kMillisecond, 2 * start, kPeriod),
+                                    timer(kC, start + 66 * kMillisecond, 2 * start, period)});
     Scorer scorer(model_, kWindow);
     auto event = events.begin();
     for (std::int64_t end = kWindow; end <= 2 * start; end += kWindow) {
@@ -145,7 +146,7 @@ TEST_F(ScorerStallsTest, ATopicThatBeginsLateIsJudgedAfterItsOwnSpan) {
         scorer.add(*event);
       }
       const double evidence = scorer.closeWindow(end)[fewer];
-      if (end < start + kRateSpan) {
+      if (end < start + 66 * kMillisecond + kRateSpan) {
         EXPECT_EQ(evidence, 0) << end;
       } else if (period == kPeriod) {
         EXPECT_LT(evidence, model_->leastLimit(fewer)) << end;

@@ -233,12 +233,15 @@ class ReferenceModel:
         surprises = [min((-log - mean) / max(math.sqrt(variance), LEAST_DEVIATION), MOST_SURPRISE)
                      for log in log_probabilities(self.learned.delays[e_i, e_j])]
         period = self.learned.mean_gap(e_i)
-        shifts = (0.0, period, -period) if e_i != e_j else (0.0,)
         shortest, longest = self._harmless(e_i, e_j)
-        return [min(surprise, 0.0)
-                if any(lower_edge(index) + shift >= shortest
-                       and lower_edge(index + 1) + shift <= longest
-                       for shift in shifts) else surprise
+        shifts = (0.0, period, -period) if e_i != e_j else (0.0,)
+        harmless = {index for index in range(BINS) for shift in shifts
+                    if lower_edge(index) + shift >= shortest
+                    and lower_edge(index + 1) + shift <= longest}
+        if e_i != e_j and shortest <= 0.0:  # and so is the bin that a period lies in
+            harmless |= {index for index in range(BINS)
+                         if lower_edge(index) < period <= lower_edge(index + 1)}
+        return [min(surprise, 0.0) if index in harmless else surprise
                 for index, surprise in enumerate(surprises)]
 
     def _harmless(self, e_i: str, e_j: str) -> Tuple[float, float]:

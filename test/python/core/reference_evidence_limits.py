@@ -221,7 +221,8 @@ class ReferenceLimits:
         # A gap belongs to the part of the window that was closed last.
         recording = self._recordings[number]
         longest = [0.0] * len(self._in_parts(self._rows[number]))
-        newest, last = recording.events[0][0], None
+        newest = recording.events[0][0]
+        last: Optional[int] = None
         for t, other in recording.events:
             newest = max(newest, t)
             if other == kind:
