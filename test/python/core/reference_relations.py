@@ -5,9 +5,9 @@ The graph is not known here: no message reaches anybody.
 from __future__ import annotations
 
 import math
-from typing import List, NamedTuple, Sequence, Tuple
+from typing import Dict, List, NamedTuple, Sequence, Tuple
 
-from reference_evidence import (ASKED, BINS, DEADLINES, DELAYS, FEWEST_ANSWERS,
+from reference_evidence import (ASKED, BINS, DEADLINES, DELAYS, EDGES, FEWEST_ANSWERS,
                                 FEWEST_DELAYS_OF_PAIR, FEWEST_GAPS, FEWEST_GAPS_OF_ANSWERS,
                                 LEAST_GAIN, LEAST_RATE, MOST_MISSES, MOST_MISSES_OF_DEADLINE,
                                 PREDECESSORS, SECOND, Counts, Track, bin_at_most, bin_below, gain,
@@ -24,6 +24,7 @@ IRREGULAR = 2.0
 LEAST_CHANCE_MISSES = 0.2
 MOST_OF_CHANCE_MISSES = 0.5
 LEAST_OF_LONGEST = 0.1
+TAIL_POINTS = 8
 
 Span = Tuple[int, int]
 
@@ -109,23 +110,26 @@ class ReferenceRelations:
         mean = self._counts.mean_gap(e_j)
         if mean <= 0:
             return 0.0
-        left = math.fsum(max(gap - asked, 0.0) for asked in self._lengths(e_i)
-                         for gap in self._lengths(e_j))
-        pairs = len(self._counts.gaps[e_i]) * len(self._counts.gaps[e_j])
-        return min(left / pairs / mean, 1.0)
+        left = math.fsum(asked_share * share * max(gap - asked, 0.0)
+                         for asked, asked_share in self._lengths(e_i).items()
+                         for gap, share in self._lengths(e_j).items())
+        return min(left / mean, 1.0)
 
-    def _lengths(self, kind: str) -> List[float]:
+    def _lengths(self, kind: str) -> Dict[float, float]:
+        """Return what stands for the gaps, and the share of them that each length stands for."""
         gaps = self._counts.gaps[kind]
-        longest = max(gaps, default=0)
-        bins = [log_bin(gap) for gap in gaps]
-        lengths = [min(middle(index), longest) for index in bins]
-        beyond = bins.count(BINS - 1)
+        beyond = [gap for gap in gaps if log_bin(gap) == BINS - 1]
+        others = [min(middle(log_bin(gap)), max(gaps)) for gap in gaps
+                  if log_bin(gap) < BINS - 1]
+        shares = {length: others.count(length) / len(gaps) for length in set(others)}
         if beyond:  # that bin has no middle, but all gaps together are known
-            others = math.fsum(length for index, length in zip(bins, lengths) if index < BINS - 1)
-            own = max((sum(gaps) - others) / beyond, lengths[bins.index(BINS - 1)])
-            lengths = [own if index == BINS - 1 else length
-                       for index, length in zip(bins, lengths)]
-        return lengths
+            mean = max((sum(gaps) - math.fsum(others)) / len(beyond) - EDGES[-1], 0.0)
+            quantiles = [-math.log(1 - (k + 0.5) / TAIL_POINTS) for k in range(TAIL_POINTS)]
+            for quantile in quantiles:
+                length = EDGES[-1] + mean * quantile / (sum(quantiles) / TAIL_POINTS)
+                shares[length] = (shares.get(length, 0.0)
+                                  + len(beyond) / len(gaps) / TAIL_POINTS)
+        return shares
 
     def _divergence(self, e_i: str, observed: float, expected: float) -> float:
         return len(self._counts.gaps[e_i]) * (
