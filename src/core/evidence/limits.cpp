@@ -48,8 +48,18 @@ constexpr double kMostDelayLimit = 100;
 constexpr double kMostMeanGaps = 3;
 
 /// Tracks whose values exceed those of other recordings in the same way share what they show.
-enum class Pool { kFastTimers, kTimers, kOthers, kRates, kDelays, kSlowDelays, kAnswers, kDeadlines };
-// Each pool and the linker have an equal share of the budget, but slow delays, which raise no alarm.
+enum class Pool {
+  kFastTimers,
+  kTimers,
+  kOthers,
+  kRates,
+  kDelays,
+  kSlowDelays,
+  kAnswers,
+  kDeadlines
+};
+// Each pool and the linker have an equal share of the budget, but slow delays, which raise no
+// alarm.
 constexpr double kShares = 8;
 
 Pool poolOf(Channel channel) {
@@ -78,7 +88,7 @@ double leastMargin(Pool pool) {
 /// A track and its largest values.
 struct Seen {
   std::size_t track = 0;
-  double least = 0;  // limit
+  double least = 0;             // limit
   std::vector<double> largest;  // by part
 };
 
@@ -133,7 +143,8 @@ void LimitFinder::startScoring() {
   }
   recording_ = {};
   recording_.trained_on = judging_ != model_;
-  part_windows_ = static_cast<std::uint64_t>(std::max<std::int64_t>(kShortestPart / parameters_.window, 1));
+  part_windows_ =
+      static_cast<std::uint64_t>(std::max<std::int64_t>(kShortestPart / parameters_.window, 1));
 }
 
 void LimitFinder::add(const Event& event) {
@@ -228,8 +239,8 @@ void LimitFinder::close(const Window& window, std::int64_t end) {
   ++part.windows;
   ++recording_.windows;
   if (second_pass_) {
-    part.linker = std::max(part.linker,
-                           static_cast<float>(sumUp(evidence, *judging_, limits_).linker));
+    part.linker =
+        std::max(part.linker, static_cast<float>(sumUp(evidence, *judging_, limits_).linker));
     return;
   }
   for (std::size_t track = 0; track < evidence.size(); ++track) {
@@ -347,7 +358,8 @@ void LimitFinder::findLimits() {
   }
   const std::vector<std::size_t> starts = startsOf(spans);
   for (std::size_t k = 0; k < training.size(); ++k) {
-    with_gaps.push_back({starts[k], static_cast<double>(training[k].end - training[k].start) / kHour});
+    with_gaps.push_back(
+        {starts[k], static_cast<double>(training[k].end - training[k].start) / kHour});
   }
   for (std::size_t k = 0; k < findings_.size(); ++k) {
     for (const Recording::Part& part : findings_[k].parts) {
@@ -405,9 +417,9 @@ void LimitFinder::findLimits() {
     for (const Seen& seen : tracks) {
       held_out.add(seen.largest, seen.least);
     }
-    const double margin = std::min(
-        held_out.margin(parameters_.false_alarms_per_hour / kShares, leastMargin(pool)),
-        kMostMargin);
+    const double margin =
+        std::min(held_out.margin(parameters_.false_alarms_per_hour / kShares, leastMargin(pool)),
+                 kMostMargin);
     tracks_rate_ += pool == Pool::kSlowDelays ? 0 : held_out.rate(margin);
     for (const Seen& seen : tracks) {
       const auto& [channel, to, from] = model_->tracks()[seen.track];
@@ -429,8 +441,9 @@ void LimitFinder::findLimits() {
       } else if (channel == Channel::kAnswer) {
         limit = found / model_->missed(seen.track) * meanGap(from) > kLongestWait ? kNone : found;
       } else if (channel == Channel::kDeadline) {
-        const double seconds =
-            model_->countsRequests(seen.track) ? found * model_->usualDelay(from, from, 0.5) : found;
+        const double seconds = model_->countsRequests(seen.track)
+                                   ? found * model_->usualDelay(from, from, 0.5)
+                                   : found;
         limit = seconds > kLongestDeadline ? kNone : found;
       } else {
         limit = found;
@@ -456,8 +469,8 @@ LinkerParts linkerParts(const LimitFinder::Findings& findings, std::int64_t wind
   const std::vector<std::size_t> starts = startsOf(spans);
   for (std::size_t k = 0; k < findings.size(); ++k) {
     for (const LimitFinder::Recording::Part& part : findings[k].parts) {
-      all.parts.push_back({starts[k], static_cast<double>(part.windows) *
-                                          static_cast<double>(window) / kHour});
+      all.parts.push_back(
+          {starts[k], static_cast<double>(part.windows) * static_cast<double>(window) / kHour});
       all.largest.push_back(part.linker);
     }
   }
@@ -486,8 +499,8 @@ double LimitFinder::expectedRate() const {
   const LinkerParts seen = linkerParts(linker_findings_, parameters_.window);
   HeldOut held_out(seen.parts, kScale);
   held_out.add(seen.largest, kLeastLinkerLimit);
-  return tracks_rate_ + held_out.rate(held_out.margin(
-                            parameters_.false_alarms_per_hour / kShares, kLeastLinkerMargin));
+  return tracks_rate_ + held_out.rate(held_out.margin(parameters_.false_alarms_per_hour / kShares,
+                                                      kLeastLinkerMargin));
 }
 
 }  // namespace self_awareness::core::evidence
