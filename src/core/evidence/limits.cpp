@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -46,6 +47,8 @@ constexpr double kLongestDeadline = 20;  // [s]
 constexpr double kMostDelayLimit = 100;
 // An event type that may wait longer than this many mean gaps comes when something happens.
 constexpr double kMostMeanGaps = 3;
+// The gaps of what comes irregularly have a tail of their own.
+constexpr std::size_t kTailGaps = 20;
 
 /// Tracks whose values exceed those of other recordings in the same way share what they show.
 enum class Pool {
@@ -91,6 +94,23 @@ struct Seen {
   double least = 0;             // limit
   std::vector<double> largest;  // by part
 };
+
+/// Age [ns] that gaps between two events of a type reach less often than a rate says: the excess of
+/// the longest gaps over the shortest of them is taken for exponential, and extrapolated
+/// (docs/method.md, section 5.3).
+/// @param longest_gaps [ns], the longest first, at least one
+/// @param hours in which they were the longest
+/// @param rate of such gaps an hour
+double tailOfGaps(const std::vector<std::int64_t>& longest_gaps, double hours, double rate) {
+  const std::size_t number = std::min(longest_gaps.size(), kTailGaps);
+  const auto shortest = static_cast<double>(longest_gaps[number - 1]);
+  const double mean = std::accumulate(longest_gaps.begin(),
+                                      longest_gaps.begin() + static_cast<std::ptrdiff_t>(number),
+                                      0.0) /
+                      static_cast<double>(number);
+  const double expected = static_cast<double>(number) / (hours * rate);
+  return shortest + (mean - shortest) * std::max(std::log(expected), 0.0);
+}
 
 /// Numbers the starts that recordings belong to.
 std::vector<std::size_t> startsOf(const std::vector<Span>& recordings) {
@@ -408,6 +428,10 @@ void LimitFinder::findLimits() {
     }
   }
 
+  double hours_with_gaps = 0;
+  for (const Part& part : with_gaps) {
+    hours_with_gaps += part.hours;
+  }
   limits_.tracks.assign(model_->tracks().size(), kNone);
   tracks_rate_ = 0;
   for (const auto& [pool, tracks] : pools) {
@@ -433,7 +457,16 @@ void LimitFinder::findLimits() {
       double& limit = limits_.tracks[seen.track];
       if (channel == Channel::kOverdue) {
         // What comes when something happens may stay away for as long as nothing does.
-        const double age = found - static_cast<double>(parameters_.window);
+        double age = found - static_cast<double>(parameters_.window);
+        if (pool == Pool::kOthers) {
+          Statistics::Type gaps = model_->statistics().type(to);
+          for (const Recording::Part* part : gap_parts) {
+            gaps.addGap(part->longest_gaps[to]);
+          }
+          const double rate = parameters_.false_alarms_per_hour / kShares /
+                              static_cast<double>(tracks.size());
+          age = std::max(age, tailOfGaps(gaps.longest_gaps, hours_with_gaps, rate));
+        }
         const bool irregular = age > kLongestWait && age > kMostMeanGaps * meanGap(to);
         limit = irregular ? kNone : model_->overdue(to, std::llround(age));
       } else if (channel == Channel::kDelay || channel == Channel::kSlowDelay) {
