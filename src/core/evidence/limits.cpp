@@ -95,8 +95,8 @@ struct Seen {
   std::vector<double> largest;  // by part
 };
 
-/// Age [ns] that gaps between two events of a type reach less often than a rate says: the excess of
-/// the longest gaps over the shortest of them is taken for exponential, and extrapolated
+/// Age [ns] that gaps between two events of a type reach less often than a rate says: the excess
+/// of the longest gaps over the shortest of them is taken for exponential, and extrapolated
 /// (docs/method.md, section 5.3).
 /// @param longest_gaps [ns], the longest first, at least one
 /// @param hours in which they were the longest
@@ -104,10 +104,10 @@ struct Seen {
 double tailOfGaps(const std::vector<std::int64_t>& longest_gaps, double hours, double rate) {
   const std::size_t number = std::min(longest_gaps.size(), kTailGaps);
   const auto shortest = static_cast<double>(longest_gaps[number - 1]);
-  const double mean = std::accumulate(longest_gaps.begin(),
-                                      longest_gaps.begin() + static_cast<std::ptrdiff_t>(number),
-                                      0.0) /
-                      static_cast<double>(number);
+  const double mean =
+      std::accumulate(longest_gaps.begin(),
+                      longest_gaps.begin() + static_cast<std::ptrdiff_t>(number), 0.0) /
+      static_cast<double>(number);
   const double expected = static_cast<double>(number) / (hours * rate);
   return shortest + (mean - shortest) * std::max(std::log(expected), 0.0);
 }
@@ -463,8 +463,8 @@ void LimitFinder::findLimits() {
           for (const Recording::Part* part : gap_parts) {
             gaps.addGap(part->longest_gaps[to]);
           }
-          const double rate = parameters_.false_alarms_per_hour / kShares /
-                              static_cast<double>(tracks.size());
+          const double rate =
+              parameters_.false_alarms_per_hour / kShares / static_cast<double>(tracks.size());
           age = std::max(age, tailOfGaps(gaps.longest_gaps, hours_with_gaps, rate));
         }
         const bool irregular = age > kLongestWait && age > kMostMeanGaps * meanGap(to);

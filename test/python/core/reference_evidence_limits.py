@@ -26,6 +26,7 @@ LONGEST_WAIT = 10 * SECOND
 LONGEST_DEADLINE = 20.0
 MOST_DELAY_LIMIT = 100.0
 MOST_MEAN_GAPS = 3.0
+TAIL_GAPS = 20
 SHARES = 8
 POOLS = {'fewer': 'rates', 'more': 'rates', 'delay': 'delays', 'slow delay': 'slow delays',
          'answer': 'answers', 'deadline': 'deadlines'}
@@ -271,8 +272,23 @@ class ReferenceLimits:
             for index, (largest, least) in zip(tracks, seen):
                 own = max(margin, min(held_out.excess(largest, least), MOST_OWN_MARGIN))
                 found = max(least, own * max(*largest, LEAST_SHARE * least))
-                limits[index] = self._limit(self._model.tracks[index], found)
+                track = self._model.tracks[index]
+                if pool == 'others':
+                    hours = sum(part.hours for part in with_gaps)
+                    tail = self._tail(track[1], hours, self._rate / len(tracks))
+                    found = max(found, tail + self._window)
+                limits[index] = self._limit(track, found)
         return limits
+
+    def _tail(self, kind: str, hours: float, rate: float) -> float:
+        """Return the gap that is exceeded so often an hour, by the longest ones that were seen."""
+        gaps = list(self._model.both.gaps[kind])
+        for number, recording in enumerate(self._recordings):
+            if not recording.trained_on:
+                gaps += [int(gap) for gap in self._longest_gaps_of_parts(number, kind)]
+        longest = sorted(gaps)[-TAIL_GAPS:]
+        excess = sum(gap - longest[0] for gap in longest) / len(longest)
+        return longest[0] + excess * max(math.log(len(longest) / hours / rate), 0.0)
 
     def _limit(self, track: Track, found: float) -> float:
         channel, kind, other = track
