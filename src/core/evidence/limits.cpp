@@ -52,8 +52,18 @@ constexpr double kMostMeanGaps = 3;
 constexpr std::size_t kTailGaps = 20;
 
 /// Tracks whose values exceed those of other recordings in the same way share what they show.
-enum class Pool { kFastTimers, kTimers, kOthers, kRates, kDelays, kSlowDelays, kAnswers, kDeadlines };
-// Each pool and the linker have an equal share of the budget, but slow delays, which raise no alarm.
+enum class Pool {
+  kFastTimers,
+  kTimers,
+  kOthers,
+  kRates,
+  kDelays,
+  kSlowDelays,
+  kAnswers,
+  kDeadlines
+};
+// Each pool and the linker have an equal share of the budget, but slow delays, which raise no
+// alarm.
 constexpr double kShares = 8;
 
 Pool poolOf(Channel channel) {
@@ -82,12 +92,12 @@ double leastMargin(Pool pool) {
 /// A track and its largest values.
 struct Seen {
   std::size_t track = 0;
-  double least = 0;  // limit
+  double least = 0;             // limit
   std::vector<double> largest;  // by part
 };
 
-/// Age [ns] that gaps between two events of a type reach less often than a rate says: the excess of
-/// the longest gaps over the shortest of them is taken for exponential, and extrapolated
+/// Age [ns] that gaps between two events of a type reach less often than a rate says: the excess
+/// of the longest gaps over the shortest of them is taken for exponential, and extrapolated
 /// (docs/method.md, section 5.3).
 /// @param longest_gaps [ns], the longest first, at least one
 /// @param hours in which they were the longest
@@ -95,10 +105,10 @@ struct Seen {
 double tailOfGaps(const std::vector<std::int64_t>& longest_gaps, double hours, double rate) {
   const std::size_t number = std::min(longest_gaps.size(), kTailGaps);
   const auto shortest = static_cast<double>(longest_gaps[number - 1]);
-  const double mean = std::accumulate(longest_gaps.begin(),
-                                      longest_gaps.begin() + static_cast<std::ptrdiff_t>(number),
-                                      0.0) /
-                      static_cast<double>(number);
+  const double mean =
+      std::accumulate(longest_gaps.begin(),
+                      longest_gaps.begin() + static_cast<std::ptrdiff_t>(number), 0.0) /
+      static_cast<double>(number);
   const double expected = static_cast<double>(number) / (hours * rate);
   return shortest + (mean - shortest) * std::max(std::log(expected), 0.0);
 }
@@ -154,7 +164,8 @@ void LimitFinder::startScoring() {
   }
   recording_ = {};
   recording_.trained_on = judging_ != model_;
-  part_windows_ = static_cast<std::uint64_t>(std::max<std::int64_t>(kShortestPart / parameters_.window, 1));
+  part_windows_ =
+      static_cast<std::uint64_t>(std::max<std::int64_t>(kShortestPart / parameters_.window, 1));
 }
 
 void LimitFinder::add(const Event& event) {
@@ -249,8 +260,8 @@ void LimitFinder::close(const Window& window, std::int64_t end) {
   ++part.windows;
   ++recording_.windows;
   if (second_pass_) {
-    part.linker = std::max(part.linker,
-                           static_cast<float>(sumUp(evidence, *judging_, limits_).linker));
+    part.linker =
+        std::max(part.linker, static_cast<float>(sumUp(evidence, *judging_, limits_).linker));
     return;
   }
   for (std::size_t track = 0; track < evidence.size(); ++track) {
@@ -279,9 +290,13 @@ void LimitFinder::startSecondPass() {
                                 std::to_string(kFewestGaps) +
                                 " gaps in its training: train it on more");
   }
+  // What the training showed does not replace recordings that it has never seen.
+  const bool held_out =
+      std::any_of(findings_.begin(), findings_.end(),
+                  [](const Recording& recording) { return !recording.trained_on; });
   std::uint64_t windows = 0;
   for (const Recording& recording : findings_) {
-    windows += recording.windows;
+    windows += recording.trained_on && held_out ? 0 : recording.windows;
   }
   if (static_cast<std::int64_t>(windows) * parameters_.window < kLeastTime) {
     throw std::invalid_argument("too little normal operation to find limits: at least " +
@@ -364,7 +379,8 @@ void LimitFinder::findLimits() {
   }
   const std::vector<std::size_t> starts = startsOf(spans);
   for (std::size_t k = 0; k < training.size(); ++k) {
-    with_gaps.push_back({starts[k], static_cast<double>(training[k].end - training[k].start) / kHour});
+    with_gaps.push_back(
+        {starts[k], static_cast<double>(training[k].end - training[k].start) / kHour});
   }
   for (std::size_t k = 0; k < findings_.size(); ++k) {
     for (const Recording::Part& part : findings_[k].parts) {
@@ -450,8 +466,8 @@ void LimitFinder::findLimits() {
           for (const Recording::Part* part : gap_parts) {
             gaps.addGap(part->longest_gaps[to]);
           }
-          const double rate = parameters_.false_alarms_per_hour / kShares /
-                              static_cast<double>(tracks.size());
+          const double rate =
+              parameters_.false_alarms_per_hour / kShares / static_cast<double>(tracks.size());
           age = std::max(age, tailOfGaps(gaps.longest_gaps, hours_with_gaps, rate));
         }
         const bool irregular = age > kLongestWait && age > kMostMeanGaps * meanGap(to);
@@ -461,8 +477,9 @@ void LimitFinder::findLimits() {
       } else if (channel == Channel::kAnswer) {
         limit = found / model_->missed(seen.track) * meanGap(from) > kLongestWait ? kNone : found;
       } else if (channel == Channel::kDeadline) {
-        const double seconds =
-            model_->countsRequests(seen.track) ? found * model_->usualDelay(from, from, 0.5) : found;
+        const double seconds = model_->countsRequests(seen.track)
+                                   ? found * model_->usualDelay(from, from, 0.5)
+                                   : found;
         limit = seconds > kLongestDeadline ? kNone : found;
       } else {
         limit = found;
@@ -488,8 +505,8 @@ LinkerParts linkerParts(const LimitFinder::Findings& findings, std::int64_t wind
   const std::vector<std::size_t> starts = startsOf(spans);
   for (std::size_t k = 0; k < findings.size(); ++k) {
     for (const LimitFinder::Recording::Part& part : findings[k].parts) {
-      all.parts.push_back({starts[k], static_cast<double>(part.windows) *
-                                          static_cast<double>(window) / kHour});
+      all.parts.push_back(
+          {starts[k], static_cast<double>(part.windows) * static_cast<double>(window) / kHour});
       all.largest.push_back(part.linker);
     }
   }
@@ -518,8 +535,8 @@ double LimitFinder::expectedRate() const {
   const LinkerParts seen = linkerParts(linker_findings_, parameters_.window);
   HeldOut held_out(seen.parts, kScale);
   held_out.add(seen.largest, kLeastLinkerLimit);
-  return tracks_rate_ + held_out.rate(held_out.margin(
-                            parameters_.false_alarms_per_hour / kShares, kLeastLinkerMargin));
+  return tracks_rate_ + held_out.rate(held_out.margin(parameters_.false_alarms_per_hour / kShares,
+                                                      kLeastLinkerMargin));
 }
 
 }  // namespace self_awareness::core::evidence

@@ -20,7 +20,7 @@ constexpr double kCap = 30;
 // A comes irregularly, and B kUsual after it.
 Statistics followed(unsigned seed) {
   const Events asked = irregular(kA, 0, 100 * kSecond, kPeriod, seed);
-  return countsOf({together({asked, answers(kB, asked, kUsual)})}, 2);
+  return countsOf({later(together({asked, answers(kB, asked, kUsual)}), seed * kStart)}, 2);
 }
 
 class HindsightTest : public testing::Test {
@@ -150,6 +150,28 @@ TEST_F(HindsightTest, SeesTheAnswersSinceTheSumWasZero) {
   EXPECT_EQ(found.missed, 3U);
   askUsually(50);
   EXPECT_FALSE(answers());
+}
+
+TEST_F(HindsightTest, ABurstIsOneQuestionAndWhatComesBackWasNotMissed) {
+  askUsually(50);
+  for (const bool answered : {false, true}) {
+    for (int i = 0; i < 20; ++i) {
+      hindsight_.add({now_ + i * 1000, kA});
+    }
+    if (answered) {
+      hindsight_.add({now_ + kUsual, kB});
+      hindsight_.add({now_ + kUsual + 1000, kB});
+    }
+    now_ += kPeriod;
+    hindsight_.add({now_, kA});
+    if (answered) {
+      EXPECT_FALSE(answers()) << "the one that was missing has come";
+    } else {
+      EXPECT_EQ(answers().value().asked, 1U);
+      EXPECT_EQ(answers().value().missed, 1U);
+    }
+    now_ += kUsual / 2;  // too soon for another question
+  }
 }
 
 TEST_F(HindsightTest, TheSumsAreThoseOfTheScorer) {

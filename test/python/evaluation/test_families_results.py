@@ -5,7 +5,7 @@ import csv
 import math
 import re
 from pathlib import Path
-from typing import List, Optional
+from typing import List, Optional, Set, Tuple
 
 import numpy as np
 import pytest
@@ -192,7 +192,7 @@ def test_the_detector_gets_the_graph_of_the_robot_and_the_budget(
     class Told(Evidence):
         """Remembers what it was told."""
 
-        def __init__(self, graph: dict, budget: float) -> None:
+        def __init__(self, graph: Set[Tuple[str, str, str]], budget: float) -> None:
             super().__init__(graph, budget=budget)
             made.append((graph, budget))
 
@@ -201,7 +201,7 @@ def test_the_detector_gets_the_graph_of_the_robot_and_the_budget(
                 (0.5, 5.0), 0.1, ())
     results = experiment.run_robot(plan, ('events_only', 1))
     graph = Records('events_only', 1).robot.graph
-    assert made == [(graph, 0.5), (graph, 5.0), ({}, 0.5), ({}, 5.0)]
+    assert made == [(graph, 0.5), (graph, 5.0), (set(), 0.5), (set(), 5.0)]
     assert [(row.subject.system, row.subject.budget) for row in results.normal] == [
         ('evidence', 0.5), ('evidence', 5.0), ('evidence_no_graph', 0.5),
         ('evidence_no_graph', 5.0), ('gaps', None)]

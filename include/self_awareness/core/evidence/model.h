@@ -106,7 +106,7 @@ class Model {
   struct Steps {
     double answered = 0;
     double missed = 0;
-    double usual = 0;  // share that is missed
+    double usual = 0;        // share that is missed
     std::int64_t delay = 0;  // that answers usually take [ns]
   };
 
