@@ -325,18 +325,17 @@ TEST_F(DetectorLevelsTest, AStandingSuspicionStandsWhileItSettles) {
   EXPECT_FALSE(verdict_.suspicion);
 }
 
-TEST_F(DetectorLevelsTest, AStandingAlarmStandsWhileItSettles) {
+TEST_F(DetectorLevelsTest, AStandingAlarmGoesOnAsLongAsItsCauseWhileItSettles) {
   start();
   told_->abnormal = true;
   windows(3);
   EXPECT_TRUE(verdict_.alarm);
-  told_->abnormal = false;
   told_->settling = true;
   windows(30);
   EXPECT_TRUE(verdict_.alarm);
-  EXPECT_TRUE(verdict_.settling);
+  EXPECT_FALSE(verdict_.settling);
   EXPECT_EQ(changes_, 2);
-  told_->settling = false;
+  told_->abnormal = false;
   windows(19);
   EXPECT_TRUE(verdict_.alarm);
   windows(1);
