@@ -442,9 +442,9 @@ void LimitFinder::findLimits() {
     for (const Seen& seen : tracks) {
       held_out.add(seen.largest, seen.least);
     }
-    const double margin = std::min(
-        held_out.margin(parameters_.false_alarms_per_hour / kShares, leastMargin(pool)),
-        gaps ? kMostGapMargin : kMostMargin);
+    const double margin =
+        std::min(held_out.margin(parameters_.false_alarms_per_hour / kShares, leastMargin(pool)),
+                 gaps ? kMostGapMargin : kMostMargin);
     tracks_rate_ += pool == Pool::kSlowDelays ? 0 : held_out.rate(margin);
     for (const Seen& seen : tracks) {
       const auto& [channel, to, from] = model_->tracks()[seen.track];

@@ -204,15 +204,28 @@ TEST_F(HindsightTest, TheSumsAreThoseOfTheScorer) {
 }
 
 TEST_F(HindsightTest, RemembersTheLastEventsOnly) {
-  for (std::size_t i = 0; i < Hindsight::kMostEvents; ++i) {
-    ask(kLate);
+  askUsually(100);
+  for (std::size_t i = 0; i < Hindsight::kMostEvents + 100; ++i) {
+    ask(std::nullopt);
   }
-  EXPECT_EQ(delays().number, Hindsight::kMostEvents / 2);
+  EXPECT_EQ(answers().value().asked, Hindsight::kMostEvents - 1);
   for (std::size_t i = 0; i < Hindsight::kMostEvents; ++i) {
     hindsight_.add({now_, kC});  // the model does not know it
   }
-  EXPECT_EQ(delays().number, Hindsight::kMostEvents / 2);
+  EXPECT_EQ(answers().value().asked, Hindsight::kMostEvents - 1);
   askUsually(2 * static_cast<int>(Hindsight::kMostEvents));
+  EXPECT_FALSE(answers());
+}
+
+TEST_F(HindsightTest, WhatHasBeenLateForMinutesIsTheRegime) {
+  askUsually(50);
+  for (int i = 0; i < 20; ++i) {
+    ask(kLate);
+  }
+  EXPECT_EQ(delays().unusual, 20U);
+  for (int i = 0; i < 3000; ++i) {  // ten minutes
+    ask(kLate);
+  }
   EXPECT_EQ(delays().unusual, 0U);
 }
 

@@ -17,9 +17,10 @@ constexpr std::int64_t kPeriod = 100 * kMillisecond;
 constexpr std::int64_t kStall = 500 * kMillisecond;
 constexpr std::int64_t kFault = 20 * kSecond;
 
-// Three timers; the phases are the same in every start.
+// Three timers, one of them a fast one; the phases are the same in every start.
 Events robot(std::int64_t length) {
-  return together({timer(kA, 0, length, kPeriod), timer(kB, 33 * kMillisecond, length, kPeriod),
+  return together({timer(kA, 0, length, kPeriod / 5),
+                   timer(kB, 33 * kMillisecond, length, kPeriod),
                    timer(kC, 66 * kMillisecond, length, kPeriod)});
 }
 
@@ -136,7 +137,7 @@ TEST_F(ScorerStallsTest, ATopicThatBeginsLateIsJudgedAfterItsOwnSpan) {
   const std::size_t fewer = indexOf(model_->tracks(), Channel::kFewer, kC, kC);
   const std::int64_t start = 10 * kSecond;
   for (const std::int64_t period : {kPeriod, 4 * kPeriod}) {
-    const Events events = together({timer(kA, 0, 2 * start, kPeriod),
+    const Events events = together({timer(kA, 0, 2 * start, kPeriod / 5),
                                     timer(kB, 33 * kMillisecond, 2 * start, kPeriod),
                                     timer(kC, start + 66 * kMillisecond, 2 * start, period)});
     Scorer scorer(model_, kWindow);

@@ -325,7 +325,7 @@ TEST_F(DetectorLevelsTest, AStandingSuspicionStandsWhileItSettles) {
   EXPECT_FALSE(verdict_.suspicion);
 }
 
-TEST_F(DetectorLevelsTest, AStandingAlarmStandsAsLongAsItsCauseWhileItSettles) {
+TEST_F(DetectorLevelsTest, AStandingAlarmGoesOnAsLongAsItsCauseWhileItSettles) {
   start();
   told_->abnormal = true;
   windows(3);
@@ -333,6 +333,8 @@ TEST_F(DetectorLevelsTest, AStandingAlarmStandsAsLongAsItsCauseWhileItSettles) {
   told_->settling = true;
   windows(100);
   EXPECT_TRUE(verdict_.alarm);
+  EXPECT_FALSE(verdict_.settling);
+  EXPECT_EQ(changes_, 2);
   told_->abnormal = false;
   windows(19);
   EXPECT_TRUE(verdict_.alarm);

@@ -65,6 +65,27 @@ def test_the_budget_is_used(run, tmp_path) -> None:
     assert any(strict > lax for strict, lax in pairs)
 
 
+def test_a_budget_that_so_few_recordings_cannot_support_is_told(run) -> None:
+    code, out, _ = run('--budget', '0.001')
+    assert code == 0
+    line = next(line for line in out.splitlines() if 'cannot support' in line)
+    assert 'a budget of 0.001 an hour' in line and 'more of normal operation' in line
+    assert 'cannot support' not in run('--budget', '1000')[1]
+
+
+def test_relations_are_told_with_their_reasons_or_what_is_missing(run, tmp_path) -> None:
+    _, out, _ = run()
+    model = TrainedModel.load(str(tmp_path / 'm'))
+    relations = [relation for relation, track in zip(model.evidence_calibration.relations,
+                                                     EvidenceModel(model).tracks)
+                 if track.channel == 'pairs' and track.from_id != track.to_id]
+    assert relations  # /slam answers to /laser, as a timer may
+    waiting = [relation for relation in relations if not relation.watched
+               and relation.starts < relation.starts_needed]
+    assert waiting and 'since there were too few starts' in out
+    assert re.search(r'record after \d+ more to watch late answers of /', out)
+
+
 def test_faults_are_told_in_a_table_by_source(run) -> None:
     code, out, _ = run('--inject', 'crash:*')
     assert code == 0
