@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "self_awareness/core/stream/event.h"
+#include "self_awareness/core/stream/vocabulary.h"
 #include "verdict_message.h"
 
 namespace self_awareness {
@@ -68,6 +69,14 @@ void Diagnostics::communication(Status& status) const {
     // Not an alarm, but an operator who relies on one must know that none can come.
     const std::uint8_t uncalibrated = DiagnosticStatus::WARN;
     status.summary(state_.calibrated ? last.level : uncalibrated, last.message);
+    const std::size_t heard = state_.heard.known_types + state_.heard.unknown_types;
+    if (!last.settling && static_cast<double>(state_.heard.known_types) <
+                              core::kLeastKnown * static_cast<double>(heard)) {
+      status.mergeSummary(DiagnosticStatus::WARN,
+                          "the model knows " + std::to_string(state_.heard.known_types) +
+                              " of the " + std::to_string(heard) +
+                              " event types that were heard: is it of this robot?");
+    }
     status.add("score", number(last.score));
     status.add("threshold", number(last.threshold));
     status.add("events in the window", last.events);

@@ -13,6 +13,8 @@ constexpr double kShortestPeriod = 1e-3;  // [s]
 void HeardTally::setTypes(const std::vector<core::EventType>& types) {
   components_.clear();
   component_of_.clear();
+  heard_types_.clear();
+  known_types_ = unknown_types_ = 0;
   std::map<std::string, std::size_t> indices;
   for (const core::EventType& type : types) {
     const std::string name = core::componentOf(type.source, type.scope);
@@ -26,7 +28,15 @@ void HeardTally::setTypes(const std::vector<core::EventType>& types) {
 
 void HeardTally::add(const core::Event& event) {
   ++events_;
-  if (event.id < component_of_.size()) {
+  const bool known = event.id < component_of_.size();
+  if (event.id >= heard_types_.size()) {
+    heard_types_.resize(event.id + 1, false);
+  }
+  if (!heard_types_[event.id]) {
+    heard_types_[event.id] = true;
+    ++(known ? known_types_ : unknown_types_);
+  }
+  if (known) {
     Component& component = components_[component_of_[event.id]];
     component.last_heard = event.stamp;
     ++component.events;
@@ -58,6 +68,8 @@ HeardReport HeardTally::report(const Moment& now, std::uint64_t dropped) {
   report.rate = static_cast<double>(events_) / period;
   report.cpu_share = core::toSeconds(now.cpu - reported_at_.cpu) / period;
   report.dropped = dropped;
+  report.known_types = known_types_;
+  report.unknown_types = unknown_types_;
   report.newly_dropped = dropped - reported_drops_;
   report.clock_steps = clock_steps_;
   events_ = 0;

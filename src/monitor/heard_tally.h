@@ -20,6 +20,8 @@ struct HeardReport {
 
   std::map<std::string, Component> components;  ///< of the model, by core::componentOf()
   double rate = 0;                              ///< events a second, since the last report
+  std::size_t known_types = 0;    ///< event types of the model that were heard since it was loaded
+  std::size_t unknown_types = 0;  ///< others that were heard since then
   double cpu_share = 0;  ///< processor time of the whole process, in cores, since the last report
   std::uint64_t dropped = 0;        ///< messages, since the start
   std::uint64_t newly_dropped = 0;  ///< messages, since the last report
@@ -63,7 +65,10 @@ class HeardTally {
 
   std::vector<Component> components_;
   std::vector<std::size_t> component_of_;  // index of the component, by event id of the model
-  std::uint64_t events_ = 0;               // since the last report
+  std::vector<bool> heard_types_;          // by event id
+  std::size_t known_types_ = 0;
+  std::size_t unknown_types_ = 0;
+  std::uint64_t events_ = 0;  // since the last report
   std::uint64_t clock_steps_ = 0;
   std::uint64_t reported_drops_ = 0;
   Moment reported_at_;

@@ -247,6 +247,7 @@ void bindVerdicts(py::module& m) {
   m.attr("EVIDENCE_THRESHOLD") = core::evidence::kThreshold;
   m.attr("DEFAULT_WINDOW") = core::kDefaultWindow;  // [ns]
   m.attr("FEWEST_GAPS") = core::kFewestGaps;
+  m.attr("LEAST_KNOWN") = core::kLeastKnown;
   m.attr("PREDECESSORS") = core::evidence::kPredecessors;
   m.attr("USUAL_SHARES") = py::make_tuple(core::kUsualFrom, core::kUsualTo);
 }

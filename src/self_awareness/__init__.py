@@ -9,6 +9,7 @@ from self_awareness._core import (  # noqa: F401
     DEFAULT_WINDOW,
     EVIDENCE_THRESHOLD,
     FEWEST_GAPS,
+    LEAST_KNOWN,
     PREDECESSORS,
     USUAL_SHARES,
     Alarm,

@@ -9,8 +9,8 @@ from typing import Dict, Iterable, List, Optional, Set, Tuple
 
 import numpy as np
 
-from self_awareness import (EventType, RecordedEvents, Recording, TrainedModel, progress,
-                            read_events)
+from self_awareness import (LEAST_KNOWN, EventType, RecordedEvents, Recording, TrainedModel,
+                            progress, read_events)
 from self_awareness.stamps import nanoseconds
 
 _PART = re.compile(r'(?P<path>.+)@(?P<start>\d+(\.\d+)?)(-(?P<end>\d+(\.\d+)?))?')
@@ -105,7 +105,7 @@ def read(model: TrainedModel, part: BagPart) -> RecordingEvents:
     Raises:
         BagError: the bag cannot be read.
         ValueError: the time range is empty, the bag does not name the senders that the model tells
-            apart, or no message of it is an event.
+            apart, no message of it is an event, or the model knows none of its event types.
     """
     with progress.messages(os.path.basename(part.path)) as update:
         try:
@@ -118,6 +118,15 @@ def read(model: TrainedModel, part: BagPart) -> RecordingEvents:
     return RecordingEvents(part, events.event_types, events.stamps, events.ids,
                            events.summary.start, end, events.summary.fingerprint,
                            events.summary.one_sender_a_topic, events.summary.copied)
+
+
+def few_known(model: TrainedModel, recording: RecordingEvents) -> Optional[str]:
+    """Return what to tell of a recording that the model knows little of."""
+    known, heard = _known(model, recording.ids)
+    if known >= LEAST_KNOWN * heard:
+        return None
+    return (f'{recording.part}: the model knows {known} of the {heard} event types of this '
+            'recording, and says nothing of the others: is it of this robot?')
 
 
 def merged_senders(model: TrainedModel, recording: RecordingEvents) -> Optional[str]:
@@ -163,3 +172,13 @@ def _check(model: TrainedModel, part: BagPart, events: RecordedEvents) -> None:
         raise ValueError(f'{part}: no message is an event by the encoding of the model (info '
                          'shows it); a recording of "rosbag play" needs a model with '
                          '"source: none"')
+    known, heard = _known(model, events.ids)
+    if known == 0:
+        raise ValueError(f'{part}: the model knows none of the {heard} event types of this '
+                         'recording: it is that of another robot (info shows what it knows)')
+
+
+def _known(model: TrainedModel, ids: np.ndarray) -> Tuple[int, int]:
+    """Return how many of the event types of a recording a model knows, and how many there are."""
+    heard = np.unique(ids)
+    return int((heard < len(model.event_types)).sum()), len(heard)

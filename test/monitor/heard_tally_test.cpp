@@ -53,6 +53,20 @@ TEST_F(HeardTallyTest, AnUnknownEventCountsForNoComponent) {
   }
 }
 
+TEST_F(HeardTallyTest, CountsTheEventTypesThatTheModelKnowsAndTheOthers) {
+  for (const core::EventId id : {0U, 0U, 2U, 4U, 9U, 9U}) {
+    tally_.add({kRos, id});
+  }
+  report(1);
+  tally_.add({kRos, 0});
+  tally_.add({kRos, 5});
+  const HeardReport heard = report(2);
+  EXPECT_EQ(heard.known_types, 2U);
+  EXPECT_EQ(heard.unknown_types, 3U);
+  tally_.setTypes(kTypes);
+  EXPECT_EQ(report(3).known_types + report(3).unknown_types, 0U);
+}
+
 TEST_F(HeardTallyTest, EachReportCountsFromTheOneBefore) {
   tally_.add({kRos, 0});
   cpu_ += kSecond / 2;

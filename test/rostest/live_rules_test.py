@@ -240,6 +240,25 @@ class LiveRulesTest(MonitorCase):
             self.assertIn('not calibrated', status.message)
 
     @again_if_clock_was_set
+    def test_a_model_of_another_robot_is_said(self) -> None:
+        model = self.model(topics=('/theirs', '/a'))
+        with ExitStack() as robot, self.monitor(model, subscribe='all'), \
+                MonitorListener() as listener:
+            for topic in ('/a', '/b'):
+                robot.enter_context(Talker(topic))
+            listener.await_settled()
+            await_condition('both are heard', lambda: (
+                listener.value('monitor', 'publishers heard') == '2'), 20)
+            self.assertNotIn('this robot', listener.diagnostics('communication')[-1].message)
+            robot.enter_context(Talker('/c'))
+            status = await_condition('it is said', lambda: next(
+                (s for s in listener.diagnostics('communication') if 'this robot' in s.message),
+                None), 20)
+            self.assertEqual(status.level, DiagnosticStatus.WARN)
+            self.assertIn('the model knows 1 of the 3 event types that were heard: is it of this '
+                          'robot?', status.message)
+
+    @again_if_clock_was_set
     def test_a_model_that_is_missing_is_said_and_can_be_loaded_later(self) -> None:
         with self.monitor(self.path('later')), MonitorListener() as listener, Talker('/a'):
             status = await_condition('the error in the diagnostics', lambda: next(

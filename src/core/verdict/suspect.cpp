@@ -106,8 +106,7 @@ std::string describe(const Suspect& suspect) {
       }
       return text + suspect.other;
     case Suspect::Reason::kNeverHeard:
-      std::snprintf(text, sizeof text,
-                    "not heard since the start, usually within %.3g to %.3g s",
+      std::snprintf(text, sizeof text, "not heard since the start, usually within %.3g to %.3g s",
                     suspect.usual_shortest, suspect.usual_longest);
       return text;
   }

@@ -130,15 +130,18 @@ def load_model(path: str, detector: str, watched_only: bool = False) -> TrainedM
 
 
 def read_recording(program: str, model: TrainedModel, part: BagPart) -> RecordingEvents:
-    """Return the events of a bag, or of a part of it; warn if a copy has lost senders.
+    """Return the events of a bag, or of a part of it.
+
+    Warns if a copy has lost senders, or the model knows little of the recording.
 
     Raises:
         BagError, ValueError: as recordings.read().
     """
     recording = recordings.read(model, part)
-    merged = recordings.merged_senders(model, recording)
-    if merged is not None:
-        warn(program, merged)
+    for warning in (recordings.merged_senders(model, recording),
+                    recordings.few_known(model, recording)):
+        if warning is not None:
+            warn(program, warning)
     return recording
 
 

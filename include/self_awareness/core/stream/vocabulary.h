@@ -9,6 +9,9 @@
 
 namespace self_awareness::core {
 
+/// A model that knows a smaller share of the event types of a stream is hardly that of its robot.
+constexpr double kLeastKnown = 0.5;
+
 /// The set U_E of event types, each with a dense id in the order of first appearance
 /// (docs/method.md, section 1.1).
 class Vocabulary {

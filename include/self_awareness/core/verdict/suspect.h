@@ -26,13 +26,13 @@ constexpr std::size_t kMostSuspects = 5;
 /// Who may have made a window abnormal, and why (docs/method.md, sections 2.5 and 6).
 struct Suspect {
   enum class Reason {
-    kSilent,   ///< has not come, although it should have by now
-    kLate,     ///< came after an unusually long silence
-    kUnknown,  ///< was never seen in training
-    kUnusual,  ///< came at delays after the others that were rare or absent in training
-    kRate,     ///< comes more or less often than it should
-    kDelay,    ///< comes sooner or later after another event type than it should
-    kAnswer,   ///< is left out after another event type more often than it should
+    kSilent,      ///< has not come, although it should have by now
+    kLate,        ///< came after an unusually long silence
+    kUnknown,     ///< was never seen in training
+    kUnusual,     ///< came at delays after the others that were rare or absent in training
+    kRate,        ///< comes more or less often than it should
+    kDelay,       ///< comes sooner or later after another event type than it should
+    kAnswer,      ///< is left out after another event type more often than it should
     kUnanswered,  ///< has not come since another event type asked for it
     kNeverHeard   ///< has not come since the start, although it always does
   };
