@@ -38,20 +38,26 @@ EventId Training::intern(const EventType& type) {
   return id;
 }
 
-std::size_t Training::startRecording() {
+std::size_t Training::startRecording(std::optional<std::int64_t> since) {
   half_ = recordings_++ % counts_.halves.size();
   middle_.reset();
   trainers_->paper.startRecording();
-  trainers_->evidence.at(half_).startRecording();
+  trainers_->evidence.at(half_).startRecording(since);
   return half_;
 }
 
-void Training::startOnlyRecording(std::int64_t middle) {
+void Training::startOnlyRecording(std::int64_t middle, std::optional<std::int64_t> since) {
   if (recordings_ > 0) {
     throw std::logic_error("a recording that is to be cut in two is not the first one");
   }
-  startRecording();
+  startRecording(since);
   middle_ = middle;
+}
+
+void Training::addBefore(const Event& event) {
+  if (parameters_.evidence) {
+    trainers_->evidence.at(half_).addBefore(event);
+  }
 }
 
 void Training::add(const Event& event) {

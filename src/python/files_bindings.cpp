@@ -276,6 +276,7 @@ void bindModel(py::module& m) {
             }
           },
           "what speaks for watching each track; by track")
+      .def_readwrite("firsts", &EvidenceCalibration::firsts)
       .def_readwrite("budget", &EvidenceCalibration::budget)
       .def_readwrite("false_alarms_per_hour", &EvidenceCalibration::false_alarms_per_hour)
       .def_readwrite("windows", &EvidenceCalibration::windows)

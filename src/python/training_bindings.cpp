@@ -28,12 +28,20 @@ class Training {
 
   void addEvents(const std::vector<core::EventType>& types, const Stamps& stamps, const Ids& ids,
                  std::optional<std::int64_t> middle,
-                 const std::optional<self_awareness::Recording>& recording) {
+                 const std::optional<self_awareness::Recording>& recording,
+                 const std::optional<std::pair<Stamps, Ids>>& before) {
     checkNotEnded();
+    std::optional<std::int64_t> since;
+    if (before && before->first.size() > 0) {
+      since = before->first.at(0);
+    }
     if (middle) {
-      training_.startOnlyRecording(*middle);
+      training_.startOnlyRecording(*middle, since);
     } else {
-      training_.startRecording();
+      training_.startRecording(since);
+    }
+    if (before) {
+      addBefore(types, *before);
     }
     std::vector<std::optional<core::EventId>> here(types.size());
     const py::gil_scoped_release release;
@@ -68,6 +76,17 @@ class Training {
   }
 
  private:
+  void addBefore(const std::vector<core::EventType>& types, const std::pair<Stamps, Ids>& before) {
+    for (const core::EventType& type : types) {
+      intern(type);  // first, so that ids are in the order of the part
+    }
+    forEachEvent(before.first, before.second, [&](const core::Event& event) {
+      if (event.id < types.size()) {
+        training_.addBefore({event.stamp, intern(types[event.id])});
+      }
+    });
+  }
+
   void checkNotEnded() const {
     if (ended_) {
       throw std::invalid_argument("the training has handed out its model, and is over");
@@ -113,9 +132,12 @@ void bindTraining(py::module& m) {
            "evidence detector watches of an event type")
       .def("add_events", &Training::addEvents, py::arg("event_types"), py::arg("stamps"),
            py::arg("ids"), py::arg("middle") = py::none(), py::arg("recording") = py::none(),
+           py::arg("before") = py::none(),
            "Trains on one recording given as arrays; ids are indices of event_types.\n"
            "middle [ns]: the recording is the only one; events before it are one half of the\n"
            "training, the others the other half. recording: what the model says about it.\n"
+           "before: stamps and ids of the events of the recording before these, which only say\n"
+           "when event types came first; ids from len(event_types) on are of no type of these.\n"
            "After a ValueError the training is incomplete: do not use it any more.")
       .def(
           "model", &Training::model, py::arg("watch") = true,

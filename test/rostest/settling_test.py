@@ -87,15 +87,19 @@ class SettlingTest(MonitorCase):
 
     # By the default detector: what is new settles, and nothing else.
 
-    @again_if_clock_was_set
-    def test_an_alarm_stands_whoever_starts_meanwhile(self) -> None:
+    def evidence_model(self) -> str:
+        """A model of three nodes, with limits."""
         bags = [write_bag(self.path('{}.bag'.format(seed)), operation(
             [('/driver', '/scan', 0.08), ('/base', '/odom', 0.1), ('/late', '/late', 0.1)],
             120, seed)) for seed in (1, 2)]
         subprocess.run(['rosrun', 'self_awareness', 'train', *bags, '-o', self.path('model')],
                        check=True, stdout=subprocess.DEVNULL)
+        return self.path('model')
+
+    @again_if_clock_was_set
+    def test_an_alarm_stands_whoever_starts_meanwhile(self) -> None:
         with talker('driver', '/scan', 12.5) as driver, talker('base', '/odom', 10), \
-                self.monitor(self.path('model'), detector='evidence', unknown='warn',
+                self.monitor(self.evidence_model(), detector='evidence', unknown='warn',
                              settle_time=3, hold_time=0.3), MonitorListener() as listener:
             listener.await_settled()
             driver.send(signal.SIGKILL)
@@ -116,6 +120,25 @@ class SettlingTest(MonitorCase):
             self.assertEqual({status.level for status
                               in listener.diagnostics('communication')[reports:]},
                              {DiagnosticStatus.ERROR})
+
+    @again_if_clock_was_set
+    def test_what_does_not_come_after_the_start_is_said(self) -> None:
+        with talker('driver', '/scan', 12.5), talker('base', '/odom', 10), \
+                self.monitor(self.evidence_model(), detector='evidence', unknown='warn'), \
+                MonitorListener() as listener:
+            listener.await_settled()
+            await_condition('it is missing', lambda: any(
+                'never heard' in s.evidence for s in listener.statuses), 20)
+            status = await_condition('it is named', lambda: next(
+                (x for x in listener.diagnostics('/late') if x.level != DiagnosticStatus.OK),
+                None), 20)
+            self.assertEqual(status.level, DiagnosticStatus.WARN)
+            self.assertRegex(status.message,
+                             r'^/late: not heard since the start, usually within \S+ to \S+ s$')
+            with late():
+                await_condition('it is over', lambda: (
+                    'never heard' not in listener.statuses[-1].evidence
+                    and listener.diagnostics('/late')[-1].message == 'heard'), 20)
 
     # ~reload
 

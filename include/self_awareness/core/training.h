@@ -47,13 +47,17 @@ class Training {
 
   /// Starts a recording: the next events belong to it. Recordings belong to the two halves in
   /// turn.
+  /// @param since when the recording began [ns], if not all of it is trained on
   /// @return the half that this one belongs to, 0 or 1
-  std::size_t startRecording();
+  std::size_t startRecording(std::optional<std::int64_t> since = std::nullopt);
   /// Starts the only recording of a training, which is cut in two: events before `middle` [ns]
   /// belong to the first half, the others to the second. So what holds in one part only is not
   /// taken for information.
   /// @throw std::logic_error if a recording was started before
-  void startOnlyRecording(std::int64_t middle);
+  void startOnlyRecording(std::int64_t middle, std::optional<std::int64_t> since = std::nullopt);
+  /// An event of the recording before those that are trained on: it only says when its type comes
+  /// first.
+  void addBefore(const Event& event);
   /// @param event with an id from intern(); in the order of the recording
   void add(const Event& event);
   /// Ends the training and gives its counts away: with many event types, a copy of them may fill

@@ -11,6 +11,7 @@
 
 #include "core/evidence/blame.h"
 #include "core/evidence/hindsight.h"
+#include "core/evidence/never_heard.h"
 #include "core/evidence/scorer.h"
 
 namespace self_awareness::core::evidence {
@@ -29,6 +30,7 @@ class Judge : public core::Judge {
 
   ObservedEvent add(const Event& event) override {
     hindsight_.add(event);
+    never_heard_.add(event);
     return {event, !model_->knows(event.id), scorer_.add(event)};
   }
   void settle(const Event& first, std::int64_t settle_time) override;
@@ -41,6 +43,9 @@ class Judge : public core::Judge {
   /// Takes back what the tracks say of event types that settle.
   void leaveOutNew(std::int64_t now, std::vector<double>& evidence) const;
   bool isSilent() const;
+  /// The suspects of a window.
+  /// @param silent_first whether those come before what was never heard that tracks speak against
+  std::vector<Suspect> namedIn(const Window& window, bool silent_first) const;
 
   std::shared_ptr<const Model> model_;
   std::optional<Limits> limits_;
@@ -48,6 +53,8 @@ class Judge : public core::Judge {
   Scorer scorer_;
   Hindsight hindsight_;
   Blame blame_;
+  NeverHeard never_heard_;
+  std::int64_t settle_time_ = 0;          // [ns]
   std::vector<double> shares_;            // of its limit that each track has reached
   std::vector<std::int64_t> settled_at_;  // [ns], by id
   std::int64_t all_settled_at_ = std::numeric_limits<std::int64_t>::min();  // the latest of them
@@ -60,7 +67,8 @@ Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, s
       window_(window),
       scorer_(model_, window),
       hindsight_(model_),
-      blame_(model_, std::move(graph)),
+      blame_(model_, graph),
+      never_heard_(*model_, limits_.value_or(Limits{}), std::move(graph)),
       shares_(model_->tracks().size(), 0),
       settled_at_(model_->size(), std::numeric_limits<std::int64_t>::min()) {
   if (limits_ && (limits_->tracks.size() != model_->tracks().size() ||
@@ -73,6 +81,7 @@ Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, s
 }
 
 void Judge::settle(const Event& first, std::int64_t settle_time) {
+  settle_time_ = settle_time;
   if (model_->knows(first.id)) {
     settled_at_[first.id] = first.stamp + settle_time;
     all_settled_at_ = std::max(all_settled_at_, settled_at_[first.id]);
@@ -82,6 +91,7 @@ void Judge::settle(const Event& first, std::int64_t settle_time) {
 void Judge::restart() {
   scorer_.restart();
   hindsight_.restart();
+  never_heard_.restart();
   std::fill(settled_at_.begin(), settled_at_.end(), std::numeric_limits<std::int64_t>::min());
   all_settled_at_ = std::numeric_limits<std::int64_t>::min();
 }
@@ -126,22 +136,41 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
   }
   const Sum sum = sumUp(evidence, *model_, *limits_);
   const double linker = sum.linker / limits_->linker;
-  judgement.score = -std::max(sum.largest, linker);
+  never_heard_.closeWindow(end, settle_time_);
+  judgement.score = -std::max({sum.largest, linker, never_heard_.share()});
   judgement.threshold = kThreshold;
   judgement.abnormal = *judgement.score < kThreshold;
-  judgement.certain = linker > 1 || isSilent();
-  judgement.suspicious = linker > kSuspicious;
-  if (judgement.suspicious) {
+  judgement.certain = linker > 1 || never_heard_.share() > 1 || isSilent();
+  judgement.suspicious = linker > kSuspicious || never_heard_.share() > 0;
+  if (linker > kSuspicious) {
     channels.insert("linker");
+  }
+  if (never_heard_.share() > 0) {
+    channels.insert("never heard");
   }
   for (const std::string& channel : channels) {
     judgement.evidence += (judgement.evidence.empty() ? "" : ", ") + channel;
   }
   if (suspects == NameSuspects::kAlways ||
       (suspects == NameSuspects::kIfUnusual && (judgement.abnormal || judgement.suspicious))) {
-    judgement.suspects = blame_.suspects(shares_, scorer_, hindsight_, window);
+    judgement.suspects = namedIn(window, std::max(sum.largest, linker) > 1);
   }
   return judgement;
+}
+
+std::vector<Suspect> Judge::namedIn(const Window& window, bool silent_first) const {
+  std::vector<Suspect> first = blame_.suspects(shares_, scorer_, hindsight_, window);
+  std::vector<Suspect> second = never_heard_.suspects();
+  if (!silent_first) {
+    std::swap(first, second);
+  }
+  for (const Suspect& suspect : second) {
+    if (std::none_of(first.begin(), first.end(),
+                     [&](const Suspect& other) { return other.id == suspect.id; })) {
+      first.push_back(suspect);
+    }
+  }
+  return first;
 }
 
 bool Judge::isSilent() const {

@@ -74,10 +74,13 @@ bool isSame(const Statistics::Recording& a, const Statistics::Recording& b, std:
   const auto at = [](const auto& counts, EventId id) {
     return id < counts.size() ? counts[id] : 0;
   };
+  const auto first = [](const Statistics::Recording& recording, EventId id) {
+    return id < recording.firsts.size() ? recording.firsts[id] : -1;
+  };
   bool same = a.start == b.start && a.end == b.end && a.longest_silence == b.longest_silence;
   for (EventId id = 0; same && id < types; ++id) {
-    same =
-        at(a.events, id) == at(b.events, id) && at(a.longest_gaps, id) == at(b.longest_gaps, id);
+    same = at(a.events, id) == at(b.events, id) &&
+           at(a.longest_gaps, id) == at(b.longest_gaps, id) && first(a, id) == first(b, id);
   }
   return same;
 }
@@ -141,11 +144,12 @@ void Statistics::merge(const Statistics& other) {
     partners_[here[id]] = sum(partners_[here[id]], partners);
   }
   for (const Recording& theirs : other.recordings_) {
-    Recording ours{theirs.start, theirs.end, theirs.longest_silence,
-                   std::vector<std::uint64_t>(size(), 0), std::vector<std::int64_t>(size(), 0)};
+    Recording ours{theirs.start, theirs.end, theirs.longest_silence, std::vector<std::uint64_t>(size(), 0),
+                   std::vector<std::int64_t>(size(), 0), std::vector<std::int64_t>(size(), -1)};
     for (EventId id = 0; id < theirs.events.size(); ++id) {
       ours.events[here[id]] = theirs.events[id];
       ours.longest_gaps[here[id]] = theirs.longest_gaps[id];
+      ours.firsts[here[id]] = theirs.firsts[id];
     }
     addRecording(std::move(ours));
   }
@@ -161,6 +165,7 @@ void Statistics::addRecording(Recording recording) {
   }
   recording.events.resize(seen);
   recording.longest_gaps.resize(seen);
+  recording.firsts.resize(seen, -1);
   const auto place =
       std::upper_bound(recordings_.begin(), recordings_.end(), recording, startsEarlier);
   recordings_.insert(place, std::move(recording));
@@ -285,16 +290,32 @@ bool operator==(const Statistics& a, const Statistics& b) {
 Trainer::Trainer(Statistics& statistics, std::int64_t window)
     : statistics_(statistics), window_(window), counts_(0, rateWindows(window)) {}
 
-void Trainer::startRecording() {
+void Trainer::startRecording(std::optional<std::int64_t> since) {
   if (last_stamp_) {
     recording_.end = newest_stamp_;
     statistics_.addRecording(std::move(recording_));
-    recording_ = {};
   }
+  recording_ = {};
+  since_ = since;
   last_seen_.clear();
   last_stamp_.reset();
   number_ = 0;
   counts_.restart();
+}
+
+void Trainer::resizeRecording() {
+  recording_.events.resize(statistics_.size());
+  recording_.longest_gaps.resize(statistics_.size());
+  recording_.firsts.resize(statistics_.size(), -1);
+}
+
+void Trainer::addBefore(const Event& event) {
+  resizeRecording();
+  since_ = since_.value_or(event.stamp);
+  std::int64_t& first = recording_.firsts.at(event.id);
+  if (first < 0) {
+    first = std::max<std::int64_t>(event.stamp - *since_, 0);
+  }
 }
 
 void Trainer::add(const Event& event) {
@@ -302,8 +323,7 @@ void Trainer::add(const Event& event) {
     startRecording();
   }
   last_seen_.resize(statistics_.size());
-  recording_.events.resize(statistics_.size());
-  recording_.longest_gaps.resize(statistics_.size());
+  addBefore(event);
   counts_.resize(statistics_.size());
   if (last_stamp_) {
     closeWindows(event.stamp);

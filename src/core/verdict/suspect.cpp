@@ -105,6 +105,11 @@ std::string describe(const Suspect& suspect) {
         std::snprintf(text, sizeof text, "has not come for %.2f s after ", suspect.silence);
       }
       return text + suspect.other;
+    case Suspect::Reason::kNeverHeard:
+      std::snprintf(text, sizeof text,
+                    "not heard since the start, usually within %.3g to %.3g s",
+                    suspect.usual_shortest, suspect.usual_longest);
+      return text;
   }
   return "";
 }

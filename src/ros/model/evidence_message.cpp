@@ -76,6 +76,7 @@ self_awareness::Evidence toMessage(const evidence::Statistics& statistics) {
     counts.longest_silence = recording.longest_silence;
     counts.events = recording.events;
     counts.longest_gaps = recording.longest_gaps;
+    counts.firsts = recording.firsts;
     message.recordings.push_back(counts);
   }
   message.longest_offsets.push_back(0);
@@ -126,10 +127,12 @@ evidence::Statistics fromMessage(const self_awareness::Evidence& message,
   statistics.addRateWindows(message.rate_windows);
   statistics.addDuration(message.duration);
   for (const self_awareness::RecordingCounts& counts : message.recordings) {
-    check(counts.events.size() <= n && counts.events.size() == counts.longest_gaps.size(),
+    check(counts.events.size() <= n && counts.events.size() == counts.longest_gaps.size() &&
+              counts.events.size() == counts.firsts.size(),
           "its recordings do not fit its event types");
     statistics.addRecording({nanoseconds(counts.start), nanoseconds(counts.end),
-                             counts.longest_silence, counts.events, counts.longest_gaps});
+                             counts.longest_silence, counts.events, counts.longest_gaps,
+                             counts.firsts});
   }
   for (core::EventId id = 0; id < n; ++id) {
     statistics.type(id) = typeOf(message, id);
@@ -244,7 +247,7 @@ evidence::Relation fromMessage(const self_awareness::Relation& message) {
 }
 
 evidence::Limits limitsOf(const self_awareness::EvidenceCalibration& message) {
-  return {message.limits, message.linker_limit};
+  return {message.limits, message.linker_limit, message.firsts};
 }
 
 }  // namespace self_awareness::ros1

@@ -9,7 +9,7 @@ from __future__ import annotations
 import time
 from contextlib import closing
 from dataclasses import dataclass
-from typing import Any, Iterable, Optional, Sequence, Tuple
+from typing import Any, Iterable, List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -126,6 +126,24 @@ def cross_fit(trained: TrainedModel, trained_on: Sequence[TrainedOn], settle_tim
     return calibration
 
 
+def _latest_firsts(types: int, found_in: Sequence[HeldOut]) -> List[int]:
+    """Return how long after the start of a recording a type came at the latest, by id [ns].
+
+    -1: it did not come in one of them. Empty: there is no recording.
+    """
+    if not found_in:
+        return []
+    latest = np.zeros(types, np.int64)
+    for recording in found_in:
+        firsts = np.full(types, -1, np.int64)
+        ids, where = np.unique(recording.ids, return_index=True)
+        known = ids < types
+        after = recording.stamps[where] - recording.stamps[0]
+        firsts[ids[known]] = np.maximum(after[known], 0)
+        latest = np.where((latest < 0) | (firsts < 0), -1, np.maximum(latest, firsts))
+    return [int(first) for first in latest]
+
+
 def find(trained: TrainedModel, settle_time: int, budget: float, tasks: Sequence[Any],
          workers: Optional[Workers] = None, keep_findings: bool = False) -> EvidenceCalibration:
     """Return limits by recordings; without the method and the recordings, which the caller adds.
@@ -159,6 +177,8 @@ def find(trained: TrainedModel, settle_time: int, budget: float, tasks: Sequence
     calibration.budget = budget
     calibration.false_alarms_per_hour = judging.finder.expected_rate()
     calibration.windows = judging.finder.windows
+    calibration.firsts = _latest_firsts(len(trained.event_types),
+                                        [task for task in tasks if isinstance(task, HeldOut)])
     calibration.stamp = int(time.time()) * SECOND_NS
     return calibration
 

@@ -12,6 +12,8 @@ from contextlib import closing
 from dataclasses import dataclass, field, replace
 from typing import Callable, Dict, Iterable, List, Optional, Sequence, Set, Tuple
 
+import numpy as np
+
 from self_awareness import (DEFAULT_WINDOW, PREDECESSORS, BagError, DetectorParameters,
                             EncodingRules, Recording, TrainedModel, Training, progress,
                             read_events)
@@ -290,7 +292,8 @@ def _count(how: _How, part: BagPart) -> _Sum:
                             counting.predecessors, counting.detector in (EVIDENCE, BOTH),
                             counting.detector in (PAPER, BOTH))
         training.add_events(events.event_types, events.stamps, events.ids,
-                            events.middle if how.alone else None, recording)
+                            events.middle if how.alone else None, recording,
+                            _before(encoding, events))
         model = training.model(watch=False)
         model.graph = _graph(part)
     except BagError as error:
@@ -303,6 +306,18 @@ def _count(how: _How, part: BagPart) -> _Sum:
         lines.append(f'{part}: {_COPIED}')
     trained_on = TrainedOn(part, None if how.alone else 0, events)
     return _Sum(recording.events, model, [trained_on], lines)
+
+
+def _before(encoding: EncodingRules,
+            events: RecordingEvents) -> Optional[Tuple[np.ndarray, np.ndarray]]:
+    """Return stamps and ids of what a bag holds before a part; None: the part is its beginning.
+
+    How long a component takes to start is learned from it.
+    """
+    if not events.part.start:
+        return None
+    read = read_events(events.part.path, encoding, events.event_types, None, events.part.start)
+    return read.stamps, read.ids
 
 
 def _graph(part: BagPart) -> Set[Tuple[str, str, str]]:

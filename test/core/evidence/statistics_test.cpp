@@ -173,6 +173,56 @@ TEST(EvidenceTrainer, RefusesAWindowOfNoLength) {
   EXPECT_THROW(Trainer(counts, -kWindow), std::invalid_argument);
 }
 
+TEST(EvidenceTrainer, TellsWhenEachTypeCameFirst) {
+  const Statistics counts = countsOf(
+      {inMilliseconds({{1000, kB}, {1010, kA}, {1020, kB}}), inMilliseconds({{5000, kA}})});
+  ASSERT_EQ(counts.recordings().size(), 2U);
+  EXPECT_EQ(counts.recordings()[0].firsts, (std::vector<std::int64_t>{10 * kMillisecond, 0, -1}));
+  EXPECT_EQ(counts.recordings()[1].firsts, (std::vector<std::int64_t>{0, -1, -1}));
+}
+
+TEST(EvidenceTrainer, WhatCameBeforeOnlyTellsWhenItCameFirst) {
+  Statistics counts = countsOf({});
+  Trainer trainer(counts, kWindow);
+  trainer.startRecording(kSecond);
+  trainer.addBefore({3 * kSecond, kB});
+  trainer.addBefore({4 * kSecond, kB});
+  for (const Event& event : timer(kA, 20 * kSecond, 30 * kSecond, kSecond)) {
+    trainer.add(event);
+    trainer.add({event.stamp, kB});
+  }
+  trainer.finish();
+  Statistics same = countsOf({together({timer(kA, 20 * kSecond, 30 * kSecond, kSecond),
+                                        timer(kB, 20 * kSecond, 30 * kSecond, kSecond)})});
+  EXPECT_EQ(counts.type(kB).gaps, same.type(kB).gaps);
+  EXPECT_EQ(counts.delays(kA, kB), same.delays(kA, kB));
+  EXPECT_EQ(counts.duration(), same.duration());
+  ASSERT_EQ(counts.recordings().size(), 1U);
+  EXPECT_EQ(counts.recordings()[0].start, 20 * kSecond);
+  EXPECT_EQ(counts.recordings()[0].firsts,
+            (std::vector<std::int64_t>{19 * kSecond, 2 * kSecond, -1}));
+  EXPECT_FALSE(counts == same);
+}
+
+TEST(EvidenceTrainer, AfterAStepOfTheClockTheStartIsAnother) {
+  const Statistics counts =
+      countsOf({inMilliseconds({{1000, kA}, {1010, kA}, {10, kB}, {30, kA}})});
+  ASSERT_EQ(counts.recordings().size(), 2U);
+  EXPECT_EQ(counts.recordings()[0].firsts, (std::vector<std::int64_t>{20 * kMillisecond, 0, -1}));
+}
+
+TEST(EvidenceStatistics, FirstTimesMeetTheirTypes) {
+  Statistics other;
+  other.intern(kTypes[kC]);
+  other.intern(kTypes[kA]);
+  other.addRecording({7, 9, 0, {1, 1}, {0, 0}, {5, 3}});
+  Statistics counts = countsOf({inMilliseconds({{1000, kB}})});
+  counts.merge(other);
+  ASSERT_EQ(counts.recordings().size(), 2U);
+  EXPECT_EQ(counts.recordings()[0].firsts, (std::vector<std::int64_t>{3, -1, 5}));
+  EXPECT_EQ(counts.recordings()[1].firsts, (std::vector<std::int64_t>{-1, 0, -1}));
+}
+
 TEST(EvidenceStatistics, KeepTheLongestGaps) {
   Statistics::Type type;
   std::vector<std::int64_t> gaps(40);

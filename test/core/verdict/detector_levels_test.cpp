@@ -325,13 +325,13 @@ TEST_F(DetectorLevelsTest, AStandingSuspicionStandsWhileItSettles) {
   EXPECT_FALSE(verdict_.suspicion);
 }
 
-TEST_F(DetectorLevelsTest, AStandingAlarmGoesOnAsLongAsItsCauseWhileItSettles) {
+TEST_F(DetectorLevelsTest, AStandingAlarmStandsAsLongAsItsCauseWhileItSettles) {
   start();
   told_->abnormal = true;
   windows(3);
   EXPECT_TRUE(verdict_.alarm);
   told_->settling = true;
-  windows(30);
+  windows(100);
   EXPECT_TRUE(verdict_.alarm);
   EXPECT_FALSE(verdict_.settling);
   EXPECT_EQ(changes_, 2);
@@ -339,6 +339,10 @@ TEST_F(DetectorLevelsTest, AStandingAlarmGoesOnAsLongAsItsCauseWhileItSettles) {
   windows(19);
   EXPECT_TRUE(verdict_.alarm);
   windows(1);
+  EXPECT_FALSE(verdict_.alarm);
+  told_->abnormal = true;
+  windows(100);
+  EXPECT_TRUE(verdict_.settling);
   EXPECT_FALSE(verdict_.alarm);
 }
 

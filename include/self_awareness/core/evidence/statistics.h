@@ -66,6 +66,9 @@ class Statistics {
     /// By id; 0 for ids beyond. addRecording() leaves out the zeros at the end.
     std::vector<std::uint64_t> events;
     std::vector<std::int64_t> longest_gaps;  ///< [ns] by id, as long as events; 0: no gap
+    /// From the start of the whole recording to the first event [ns] by id, as long as events; -1:
+    /// it did not come.
+    std::vector<std::int64_t> firsts;
   };
   /// An ordered pair of event types, `from` before `to`.
   struct Pair {
@@ -136,7 +139,11 @@ class Trainer {
   Trainer(Statistics& statistics, std::int64_t window);
 
   /// Ends the recording: the next event belongs to a new one.
-  void startRecording();
+  /// @param since when that one began [ns], if not all of it is counted
+  void startRecording(std::optional<std::int64_t> since = std::nullopt);
+  /// An event of the recording before those that are counted: it only says when its type came
+  /// first.
+  void addBefore(const Event& event);
   /// @param event with an id of the statistics' vocabulary; in the order of the recording.
   void add(const Event& event);
   /// Ends the last recording.
@@ -148,11 +155,13 @@ class Trainer {
     std::uint64_t number = 0;  // of the event in the recording, from 1; 0: never seen
   };
 
+  void resizeRecording();
   void closeWindows(std::int64_t now);
 
   Statistics& statistics_;
   std::int64_t window_;
   Statistics::Recording recording_;         // the open one
+  std::optional<std::int64_t> since_;       // when it began [ns]; none: with its first event
   std::vector<Seen> last_seen_;             // by id
   std::optional<std::int64_t> last_stamp_;  // [ns]
   std::int64_t newest_stamp_ = 0;           // [ns], once something was seen

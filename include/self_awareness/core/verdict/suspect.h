@@ -26,14 +26,15 @@ constexpr std::size_t kMostSuspects = 5;
 /// Who may have made a window abnormal, and why (docs/method.md, sections 2.5 and 6).
 struct Suspect {
   enum class Reason {
-    kSilent,     ///< has not come, although it should have by now
-    kLate,       ///< came after an unusually long silence
-    kUnknown,    ///< was never seen in training
-    kUnusual,    ///< came at delays after the others that were rare or absent in training
-    kRate,       ///< comes more or less often than it should
-    kDelay,      ///< comes sooner or later after another event type than it should
-    kAnswer,     ///< is left out after another event type more often than it should
-    kUnanswered  ///< has not come since another event type asked for it
+    kSilent,   ///< has not come, although it should have by now
+    kLate,     ///< came after an unusually long silence
+    kUnknown,  ///< was never seen in training
+    kUnusual,  ///< came at delays after the others that were rare or absent in training
+    kRate,     ///< comes more or less often than it should
+    kDelay,    ///< comes sooner or later after another event type than it should
+    kAnswer,   ///< is left out after another event type more often than it should
+    kUnanswered,  ///< has not come since another event type asked for it
+    kNeverHeard   ///< has not come since the start, although it always does
   };
 
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -49,11 +50,14 @@ struct Suspect {
   std::int64_t since = 0;
   Reason reason = Reason::kSilent;
   double silence = kNone;         ///< kSilent, kLate: time without such an event [s]; kUnanswered:
-                                  ///< time since it was asked for; else NaN
+                                  ///< time since it was asked for; kNeverHeard: since the
+                                  ///< start; else NaN
   double usual_shortest = kNone;  ///< kSilent, kLate: 1 % of the gaps in training are shorter [s];
-                                  ///< kDelay: 5 % of the delays; else NaN
+                                  ///< kDelay: 5 % of the delays; kNeverHeard: shortest time
+                                  ///< from the start to the first one; else NaN
   double usual_longest = kNone;   ///< kSilent, kLate: 1 % of the gaps in training are longer [s];
-                                  ///< kDelay: 5 % of the delays; else NaN
+                                  ///< kDelay: 5 % of the delays; kNeverHeard: longest time
+                                  ///< from the start to the first one; else NaN
   double usual_gap = kNone;       ///< kSilent: mean gap in training [s]; NaN: not known
   double longest_gap = kNone;     ///< kSilent: longest gap in training [s]; NaN: not known
   std::size_t events = 0;         ///< kUnknown, kUnusual: such events in the window; kRate: in the
