@@ -325,7 +325,7 @@ TEST_F(DetectorLevelsTest, AStandingSuspicionStandsWhileItSettles) {
   EXPECT_FALSE(verdict_.suspicion);
 }
 
-TEST_F(DetectorLevelsTest, AStandingAlarmGoesOnAsLongAsItsCauseWhileItSettles) {
+TEST_F(DetectorLevelsTest, AStandingAlarmStandsAsLongAsItsCauseWhileItSettles) {
   start();
   told_->abnormal = true;
   windows(3);
