@@ -144,8 +144,12 @@ void Statistics::merge(const Statistics& other) {
     partners_[here[id]] = sum(partners_[here[id]], partners);
   }
   for (const Recording& theirs : other.recordings_) {
-    Recording ours{theirs.start, theirs.end, theirs.longest_silence, std::vector<std::uint64_t>(size(), 0),
-                   std::vector<std::int64_t>(size(), 0), std::vector<std::int64_t>(size(), -1)};
+    Recording ours{theirs.start,
+                   theirs.end,
+                   theirs.longest_silence,
+                   std::vector<std::uint64_t>(size(), 0),
+                   std::vector<std::int64_t>(size(), 0),
+                   std::vector<std::int64_t>(size(), -1)};
     for (EventId id = 0; id < theirs.events.size(); ++id) {
       ours.events[here[id]] = theirs.events[id];
       ours.longest_gaps[here[id]] = theirs.longest_gaps[id];

@@ -2,7 +2,7 @@
 
 Every record has a seed of its own, derived from the evaluation's seed and the record's name alone:
 it stays the same whatever else is evaluated. So does the onset of its fault. Every record is a
-start of the robot, hours away from the others: what agrees in all of them had the chance to differ.
+start of the robot, hours away from the others: what agrees in all of them could have differed.
 """
 from __future__ import annotations
 
