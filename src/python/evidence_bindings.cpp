@@ -142,7 +142,7 @@ void bindEvidence(py::module& m) {
   py::class_<Track>(m, "Track", "One thing that the evidence detector watches.")
       .def_property_readonly(
           "channel", [](const Track& self) { return evidence::channelName(self.channel); },
-          "overdue, rate, pairs or answers")
+          "overdue, rate, pairs, answers or deadlines")
       .def_readonly("to_id", &Track::to)
       .def_readonly("from_id", &Track::from,
                     "same as to_id if the channel looks at one event type");
@@ -185,6 +185,7 @@ void bindEvidence(py::module& m) {
 
   py::class_<Findings>(m, "LimitFindings",
                        "What a LimitFinder learned from recordings; may go to another process.")
+      .def(py::init<>(), "Of no recording.")
       .def(py::pickle([](const Findings& self) { return stateOf(self); },
                       [](const FindingsState& state) { return fromState(state); }));
 

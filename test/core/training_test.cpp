@@ -77,6 +77,7 @@ TEST(Training, CountsWhatItsTrainersDo) {
       }
     }
   }
+  trainer.finish();
   EXPECT_TRUE(counts.delays == delays);
   EXPECT_TRUE(counts.halves[0] == half);
 }

@@ -13,7 +13,7 @@ import rosbag
 import rospy
 from std_msgs.msg import Header, String
 
-from self_awareness import TrainedModel
+from self_awareness import LimitFindings, TrainedModel
 
 Message = Tuple[float, str, str]
 """Stamp [s], source, topic."""
@@ -83,6 +83,7 @@ def learned(model: TrainedModel, calibrations: bool = False) -> bytes:
     model = copy.copy(model)
     if not calibrations:
         model.calibration = model.evidence_calibration = None
+        model.findings = LimitFindings()  # what limits are made of
     limits = model.evidence_calibration
     if limits is not None:
         limits.stamp = 0

@@ -61,8 +61,8 @@ double HeldOut::exceedance(const Level& level, const std::vector<double>& larges
   }
   const double most = *first;
   *first = 0;
-  const double second = std::max(*std::max_element(of_group.begin(), of_group.end()),
-                                 kLeastShare * least);
+  const double second =
+      std::max(*std::max_element(of_group.begin(), of_group.end()), kLeastShare * least);
   if (second <= 0) {
     return 0;  // the others know nothing of it
   }

@@ -13,8 +13,8 @@ struct Part {
 
 /// By how much a limit must lie above the largest value that was ever seen, so that a new
 /// recording exceeds it as seldom as is asked for (docs/method.md, section 5.2). It learns this by
-/// leaving out starts, and parts, in turn: the values that one shows beyond the others are a sample
-/// of what comes next. Tracks of one kind share what they show.
+/// leaving out starts, and parts, in turn: the values that one shows beyond the others are a
+/// sample of what comes next. Tracks of one kind share what they show.
 class HeldOut {
  public:
   /// @param parts all that was looked at; none may be empty

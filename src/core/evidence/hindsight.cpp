@@ -114,12 +114,19 @@ std::optional<Hindsight::Delays> Hindsight::delays(std::size_t track, double cap
   const Model::Surprises& surprises = model_->surprises(track);
   SeenDelays seen;
   std::optional<std::int64_t> since;  // stamp of the last `from`, until a `to` comes after it
+  std::optional<std::int64_t> last;   // stamp of the last `to`
+  double regime = 0;
   for (const Event& event : eventsOf(from, to)) {
     if (event.id == to && since) {
       const std::int64_t delay = std::max<std::int64_t>(event.stamp - *since, 0);
+      const double surprise = surprises[log_bins::bin(delay)];
       seen.push_back(
-          {event.stamp, static_cast<double>(delay), surprises[log_bins::bin(delay)] - kDrift});
+          {event.stamp, static_cast<double>(delay), surprise - std::max(regime, 0.0) - kDrift});
+      regime += (surprise - regime) * shareOfRegime(last ? event.stamp - *last : 0);
       since.reset();
+    }
+    if (event.id == to) {
+      last = event.stamp;
     }
     if (event.id == from) {
       since = event.stamp;
@@ -147,24 +154,32 @@ std::optional<Hindsight::Answers> Hindsight::answers(std::size_t track, double c
   const EventId from = model_->tracks().at(track).from;
   Answers found;
   double sum = 0;
-  std::optional<std::int64_t> asked;  // stamp of the last `from`
-  bool answered = false;              // since then
+  std::optional<std::int64_t> asked;  // stamp of the last question
+  std::size_t came = 0;               // answers since then
+  std::size_t owed = 0;               // answers that may still come back
   for (const Event& event : eventsOf(from, to)) {
-    if (event.id == from && asked) {
+    if (event.id == to) {
+      ++came;
+      continue;
+    }
+    if (asked && event.stamp - *asked < model_->usualAnswer(track)) {
+      continue;  // a burst is one question
+    }
+    if (asked) {
       if (sum == 0) {
         found = {*asked, 0, 0};
       }
+      const std::size_t late = came > 0 ? std::min(came - 1, owed) : 0;
+      owed = came > 0 ? owed - late : owed + 1;
       ++found.asked;
-      found.missed += answered ? 0 : 1;
-      const double step = answered ? model_->answered(track) : model_->missed(track);
+      found.missed = came > 0 ? found.missed - std::min(found.missed, late) : found.missed + 1;
+      const double step =
+          came > 0 ? model_->answered(track) - static_cast<double>(late) * model_->missed(track)
+                   : model_->missed(track);
       sum = std::clamp(sum + step, 0.0, cap);
     }
-    if (event.id == from) {
-      asked = event.stamp;
-      answered = false;
-    } else if (event.id == to) {
-      answered = true;
-    }
+    asked = event.stamp;
+    came = 0;
   }
   return sum > 0 ? std::optional<Answers>(found) : std::nullopt;
 }

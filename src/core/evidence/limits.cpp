@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -25,7 +26,8 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 constexpr double kLeastMargin = 1.25;
 // More would find nothing any more: where the data say so, the budget cannot be kept.
 constexpr double kMostMargin = 4;
-constexpr double kMostOwnMargin = 2;  // of one track
+constexpr double kMostGapMargin = 1.6;  // of the longest gaps: what is silent is to be found soon
+constexpr double kMostOwnMargin = 2;    // of one track
 // The linker depends on what the robot is doing, and that changes from hour to hour.
 constexpr double kLeastLinkerMargin = 1.5;
 constexpr double kLeastLinkerLimit = 2;  // event types
@@ -46,10 +48,22 @@ constexpr double kLongestDeadline = 20;  // [s]
 constexpr double kMostDelayLimit = 100;
 // An event type that may wait longer than this many mean gaps comes when something happens.
 constexpr double kMostMeanGaps = 3;
+// The gaps of what comes irregularly have a tail of their own.
+constexpr std::size_t kTailGaps = 20;
 
 /// Tracks whose values exceed those of other recordings in the same way share what they show.
-enum class Pool { kFastTimers, kTimers, kOthers, kRates, kDelays, kSlowDelays, kAnswers, kDeadlines };
-// Each pool and the linker have an equal share of the budget, but slow delays, which raise no alarm.
+enum class Pool {
+  kFastTimers,
+  kTimers,
+  kOthers,
+  kRates,
+  kDelays,
+  kSlowDelays,
+  kAnswers,
+  kDeadlines
+};
+// Each pool and the linker have an equal share of the budget, but slow delays, which raise no
+// alarm.
 constexpr double kShares = 8;
 
 Pool poolOf(Channel channel) {
@@ -78,9 +92,26 @@ double leastMargin(Pool pool) {
 /// A track and its largest values.
 struct Seen {
   std::size_t track = 0;
-  double least = 0;  // limit
+  double least = 0;             // limit
   std::vector<double> largest;  // by part
 };
+
+/// Age [ns] that gaps between two events of a type reach less often than a rate says: the excess
+/// of the longest gaps over the shortest of them is taken for exponential, and extrapolated
+/// (docs/method.md, section 5.3).
+/// @param longest_gaps [ns], the longest first, at least one
+/// @param hours in which they were the longest
+/// @param rate of such gaps an hour
+double tailOfGaps(const std::vector<std::int64_t>& longest_gaps, double hours, double rate) {
+  const std::size_t number = std::min(longest_gaps.size(), kTailGaps);
+  const auto shortest = static_cast<double>(longest_gaps[number - 1]);
+  const double mean =
+      std::accumulate(longest_gaps.begin(),
+                      longest_gaps.begin() + static_cast<std::ptrdiff_t>(number), 0.0) /
+      static_cast<double>(number);
+  const double expected = static_cast<double>(number) / (hours * rate);
+  return shortest + (mean - shortest) * std::max(std::log(expected), 0.0);
+}
 
 /// Numbers the starts that recordings belong to.
 std::vector<std::size_t> startsOf(const std::vector<Span>& recordings) {
@@ -133,7 +164,8 @@ void LimitFinder::startScoring() {
   }
   recording_ = {};
   recording_.trained_on = judging_ != model_;
-  part_windows_ = static_cast<std::uint64_t>(std::max<std::int64_t>(kShortestPart / parameters_.window, 1));
+  part_windows_ =
+      static_cast<std::uint64_t>(std::max<std::int64_t>(kShortestPart / parameters_.window, 1));
 }
 
 void LimitFinder::add(const Event& event) {
@@ -228,8 +260,8 @@ void LimitFinder::close(const Window& window, std::int64_t end) {
   ++part.windows;
   ++recording_.windows;
   if (second_pass_) {
-    part.linker = std::max(part.linker,
-                           static_cast<float>(sumUp(evidence, *judging_, limits_).linker));
+    part.linker =
+        std::max(part.linker, static_cast<float>(sumUp(evidence, *judging_, limits_).linker));
     return;
   }
   for (std::size_t track = 0; track < evidence.size(); ++track) {
@@ -258,9 +290,13 @@ void LimitFinder::startSecondPass() {
                                 std::to_string(kFewestGaps) +
                                 " gaps in its training: train it on more");
   }
+  // What the training showed does not replace recordings that it has never seen.
+  const bool held_out =
+      std::any_of(findings_.begin(), findings_.end(),
+                  [](const Recording& recording) { return !recording.trained_on; });
   std::uint64_t windows = 0;
   for (const Recording& recording : findings_) {
-    windows += recording.windows;
+    windows += recording.trained_on && held_out ? 0 : recording.windows;
   }
   if (static_cast<std::int64_t>(windows) * parameters_.window < kLeastTime) {
     throw std::invalid_argument("too little normal operation to find limits: at least " +
@@ -343,7 +379,8 @@ void LimitFinder::findLimits() {
   }
   const std::vector<std::size_t> starts = startsOf(spans);
   for (std::size_t k = 0; k < training.size(); ++k) {
-    with_gaps.push_back({starts[k], static_cast<double>(training[k].end - training[k].start) / kHour});
+    with_gaps.push_back(
+        {starts[k], static_cast<double>(training[k].end - training[k].start) / kHour});
   }
   for (std::size_t k = 0; k < findings_.size(); ++k) {
     for (const Recording::Part& part : findings_[k].parts) {
@@ -377,7 +414,7 @@ void LimitFinder::findLimits() {
       }
       std::vector<double> sorted = seen.largest;
       std::sort(sorted.rbegin(), sorted.rend());
-      const double second = sorted.size() > 1 ? sorted[1] : sorted[0];
+      const double second = sorted.size() > 1 && sorted[1] > 0 ? sorted[1] : sorted[0];
       const auto window = static_cast<double>(parameters_.window);
       pool = second - window >= kRegular * meanGap(to) ? Pool::kOthers
              : meanGap(to) < kFast * window            ? Pool::kFastTimers
@@ -392,6 +429,10 @@ void LimitFinder::findLimits() {
     }
   }
 
+  double hours_with_gaps = 0;
+  for (const Part& part : with_gaps) {
+    hours_with_gaps += part.hours;
+  }
   limits_.tracks.assign(model_->tracks().size(), kNone);
   tracks_rate_ = 0;
   for (const auto& [pool, tracks] : pools) {
@@ -401,23 +442,34 @@ void LimitFinder::findLimits() {
     for (const Seen& seen : tracks) {
       held_out.add(seen.largest, seen.least);
     }
-    const double margin = std::min(
-        held_out.margin(parameters_.false_alarms_per_hour / kShares, leastMargin(pool)),
-        kMostMargin);
+    const double margin =
+        std::min(held_out.margin(parameters_.false_alarms_per_hour / kShares, leastMargin(pool)),
+                 gaps ? kMostGapMargin : kMostMargin);
     tracks_rate_ += pool == Pool::kSlowDelays ? 0 : held_out.rate(margin);
     for (const Seen& seen : tracks) {
       const auto& [channel, to, from] = model_->tracks()[seen.track];
       // A track that would have raised an alarm had its worst start been left out gets a wider
       // limit.
       const double own =
-          std::max(margin, std::min(held_out.excess(seen.largest, seen.least), kMostOwnMargin));
+          gaps ? margin
+               : std::max(margin,
+                          std::min(held_out.excess(seen.largest, seen.least), kMostOwnMargin));
       const double largest = *std::max_element(seen.largest.begin(), seen.largest.end());
       const double found =
           std::max(seen.least, own * std::max(largest, HeldOut::kLeastShare * seen.least));
       double& limit = limits_.tracks[seen.track];
       if (channel == Channel::kOverdue) {
         // What comes when something happens may stay away for as long as nothing does.
-        const double age = found - static_cast<double>(parameters_.window);
+        double age = found - static_cast<double>(parameters_.window);
+        if (pool == Pool::kOthers) {
+          Statistics::Type gaps = model_->statistics().type(to);
+          for (const Recording::Part* part : gap_parts) {
+            gaps.addGap(part->longest_gaps[to]);
+          }
+          const double rate =
+              parameters_.false_alarms_per_hour / kShares / static_cast<double>(tracks.size());
+          age = std::max(age, tailOfGaps(gaps.longest_gaps, hours_with_gaps, rate));
+        }
         const bool irregular = age > kLongestWait && age > kMostMeanGaps * meanGap(to);
         limit = irregular ? kNone : model_->overdue(to, std::llround(age));
       } else if (channel == Channel::kDelay || channel == Channel::kSlowDelay) {
@@ -425,8 +477,9 @@ void LimitFinder::findLimits() {
       } else if (channel == Channel::kAnswer) {
         limit = found / model_->missed(seen.track) * meanGap(from) > kLongestWait ? kNone : found;
       } else if (channel == Channel::kDeadline) {
-        const double seconds =
-            model_->countsRequests(seen.track) ? found * model_->usualDelay(from, from, 0.5) : found;
+        const double seconds = model_->countsRequests(seen.track)
+                                   ? found * model_->usualDelay(from, from, 0.5)
+                                   : found;
         limit = seconds > kLongestDeadline ? kNone : found;
       } else {
         limit = found;
@@ -452,8 +505,8 @@ LinkerParts linkerParts(const LimitFinder::Findings& findings, std::int64_t wind
   const std::vector<std::size_t> starts = startsOf(spans);
   for (std::size_t k = 0; k < findings.size(); ++k) {
     for (const LimitFinder::Recording::Part& part : findings[k].parts) {
-      all.parts.push_back({starts[k], static_cast<double>(part.windows) *
-                                          static_cast<double>(window) / kHour});
+      all.parts.push_back(
+          {starts[k], static_cast<double>(part.windows) * static_cast<double>(window) / kHour});
       all.largest.push_back(part.linker);
     }
   }
@@ -482,8 +535,8 @@ double LimitFinder::expectedRate() const {
   const LinkerParts seen = linkerParts(linker_findings_, parameters_.window);
   HeldOut held_out(seen.parts, kScale);
   held_out.add(seen.largest, kLeastLinkerLimit);
-  return tracks_rate_ + held_out.rate(held_out.margin(
-                            parameters_.false_alarms_per_hour / kShares, kLeastLinkerMargin));
+  return tracks_rate_ + held_out.rate(held_out.margin(parameters_.false_alarms_per_hour / kShares,
+                                                      kLeastLinkerMargin));
 }
 
 }  // namespace self_awareness::core::evidence

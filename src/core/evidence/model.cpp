@@ -41,9 +41,9 @@ constexpr double kLeastRateLimit = 3;
 // One late event makes two unusual delays, one too long and one too short: they must not be
 // enough.
 constexpr double kLeastDelayLimit = 2 * kMostSurprise + 1;
-constexpr double kLeastDeadline = 0.5;         // [s]
-constexpr double kLeastRequests = 3;           // without an answer
-constexpr double kLongestGapOfSeries = 2;      // [s]
+constexpr double kLeastDeadline = 0.5;     // [s]
+constexpr double kLeastRequests = 3;       // without an answer
+constexpr double kLongestGapOfSeries = 2;  // [s]
 constexpr double kLeastMisses = 4;
 constexpr double kLeastAnswerLimit = 5;  // [nat]
 
@@ -159,8 +159,8 @@ void Model::forgiveSmallEffects(EventId from, EventId to, Surprises& surprises) 
   const Statistics::Delays& delays = learned().delays(from, to);
   const auto total = static_cast<double>(learned().total(from, to));
   const Statistics::Type& asking = learned().type(from);
-  const double period =
-      static_cast<double>(asking.gap_sum) / static_cast<double>(std::max<std::uint64_t>(asking.gaps, 1));
+  const double period = static_cast<double>(asking.gap_sum) /
+                        static_cast<double>(std::max<std::uint64_t>(asking.gaps, 1));
   const double effect = from == to
                             ? std::max(kLeastEffectOnGap, kLeastEffectOnGapOfPeriod * period)
                             : std::max(kLeastEffect, kLeastEffectOfPeriod * period);
@@ -176,13 +176,17 @@ void Model::forgiveSmallEffects(EventId from, EventId to, Surprises& surprises) 
     longest = below < (1 + kUsual) / 2 * total ? upper(bin) : longest;
     below += delays[bin];
   }
+  const auto isNear = [&](std::size_t bin, double shift) {
+    return upper(bin) + shift <= longest + effect && lower(bin) + shift >= shortest - effect;
+  };
   for (std::size_t bin = 0; bin < surprises.size(); ++bin) {
-    // A delay near 0 may wrap to a period, and a delay of a period to 0; a gap may not.
-    const double wrap = from == to ? 0 : period;
-    for (const double shift : {0.0, wrap, -wrap}) {
-      if (upper(bin) + shift <= longest + effect && lower(bin) + shift >= shortest - effect) {
-        surprises[bin] = std::min(surprises[bin], 0.0);
-      }
+    // A delay near 0 may wrap to a period, and a delay of a period to 0; a gap may not. The bin
+    // that a period lies in is wide: what is near the period counts.
+    const bool ends_period = lower(bin) < period && period <= upper(bin);
+    const bool wraps = from != to && (isNear(bin, period) || isNear(bin, -period) ||
+                                      (ends_period && shortest <= effect));
+    if (isNear(bin, 0) || wraps) {
+      surprises[bin] = std::min(surprises[bin], 0.0);
     }
   }
 }

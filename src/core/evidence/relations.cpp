@@ -33,12 +33,14 @@ constexpr double kIrregular = 2;
 // alone say as much.
 constexpr double kLeastChanceMisses = 0.2;
 constexpr double kMostOfChanceMisses = 0.5;
+// So many lengths, each as probable, stand for the gaps beyond the last bin edge.
+constexpr int kTailPoints = 8;
 
 // Answers that take less than this share of the longest usual ones may as well come before.
 constexpr double kLeastOfLongest = 0.1;
 
-// A topic that so many nodes hear, and more than half of all, reaches everybody: that it does is no
-// reason.
+// A topic that so many nodes hear, and more than half of all, reaches everybody: that it does is
+// no reason.
 constexpr std::size_t kFewestOfBroadcast = 4;
 // /tf and /clock are for everybody, however many listen.
 const std::set<std::string> kBroadcasts{"/tf", "/tf_static", "/clock"};
@@ -70,9 +72,8 @@ Relations::Relations(const Statistics& counts, const SourceGraph& graph)
   double types = 0;
   for (EventId id = 0; id < counts.size(); ++id) {
     const Statistics::Type& type = counts.type(id);
-    mean_gaps_.push_back(type.gaps == 0 ? 0
-                                        : static_cast<double>(type.gap_sum) /
-                                              static_cast<double>(type.gaps));
+    mean_gaps_.push_back(
+        type.gaps == 0 ? 0 : static_cast<double>(type.gap_sum) / static_cast<double>(type.gaps));
     types += type.gaps >= kFewestGapsOfPair ? 1 : 0;
     const Statistics::Delays& delays = counts.delays(id, id);
     const double longest =
@@ -83,14 +84,26 @@ Relations::Relations(const Statistics& counts, const SourceGraph& graph)
                              delays[bin] / static_cast<double>(type.gaps)});
       }
     }
-    // The bin of the longest delays has no middle; their sum is known.
+    // The bin of the longest delays has no middle. Their sum is known, and they are taken to be
+    // exponential: what happens seldom has short and long waits.
     if (delays.back() > 0) {
       double others = 0;
       for (const Gap& gap : gaps_[id]) {
         others += &gap == &gaps_[id].back() ? 0 : gap.length * gap.share;
       }
       Gap& last = gaps_[id].back();
-      last.length = std::max((mean_gaps_[id] - others) / last.share, last.length);
+      const double edge = last.length;
+      const double beyond = std::max((mean_gaps_[id] - others) / last.share - edge, 0.0);
+      const double share = last.share / kTailPoints;
+      gaps_[id].pop_back();
+      double mean = 0;  // of the points below
+      for (int point = 0; point < kTailPoints; ++point) {
+        mean -= std::log1p(-(point + 0.5) / kTailPoints) / kTailPoints;
+      }
+      for (int point = 0; point < kTailPoints; ++point) {
+        const double quantile = -std::log1p(-(point + 0.5) / kTailPoints) / mean;
+        gaps_[id].push_back({edge + beyond * quantile, share});
+      }
     }
   }
   looked_at_ = std::max(types * (types - 1), 1.0);
@@ -110,10 +123,9 @@ Relations::Relations(const Statistics& counts, const SourceGraph& graph)
 bool Relations::reaches(EventId from, EventId to) const {
   const EventType& asks = counts_.vocabulary().at(from);
   const EventType& answers = counts_.vocabulary().at(to);
-  return asks.source == answers.source
-             ? !asks.source.empty()
-             : graph_.hears(answers.source, asks.source, asks.scope) &&
-                   broadcasts_.count(asks.scope) == 0;
+  return asks.source == answers.source ? !asks.source.empty()
+                                       : graph_.hears(answers.source, asks.source, asks.scope) &&
+                                             broadcasts_.count(asks.scope) == 0;
 }
 
 bool Relations::isIrregular(EventId from, EventId to) const {
@@ -220,10 +232,9 @@ Relation Relations::delays(EventId from, EventId to, const std::vector<Span>& mo
   relation.spread = spread(from, to, std::min(kMostOutliers, least_share / 2));
   relation.reaches = reaches(from, to);
   relation.irregular = isIrregular(from, to);
-  const double level = relation.reaches && relation.irregular ? 1
-                       : relation.reaches || relation.irregular
-                           ? kChanceOfOne
-                           : kChanceOfAny / looked_at_;
+  const double level = relation.reaches && relation.irregular   ? 1
+                       : relation.reaches || relation.irregular ? kChanceOfOne
+                                                                : kChanceOfAny / looked_at_;
   const double starts = std::max<double>(static_cast<double>(relation.starts), 1);
   // Who comes in the second half of a period after another may as well be the one that it asks.
   const bool late = !relation.reaches && medianDelay(from, to) > period(from, to) / 2;
@@ -254,9 +265,10 @@ Relation Relations::answers(EventId from, EventId to) const {
   const double misses = missRate(counts_.type(from).gaps, counts_.answers(from, to));
   const double by_chance = missRateByChance(from, to);
   relation.reaches = reaches(from, to);
-  relation.irregular = by_chance >= kLeastChanceMisses && misses <= kMostOfChanceMisses * by_chance;
-  relation.watched = relation.irregular && divergence(gaps, misses, by_chance) >
-                                               std::log(looked_at_ / kChanceOfAny);
+  relation.irregular =
+      by_chance >= kLeastChanceMisses && misses <= kMostOfChanceMisses * by_chance;
+  relation.watched = relation.irregular &&
+                     divergence(gaps, misses, by_chance) > std::log(looked_at_ / kChanceOfAny);
   return relation;
 }
 
@@ -273,7 +285,8 @@ Relation Relations::deadline(EventId from, EventId to) const {
     longest = below < 0.95 * total ? log_bins::middle(bin) : longest;
     below += delays[bin];
   }
-  relation.watched &= shortest >= kLeastOfLongest * longest && (graph_.empty() || relation.reaches);
+  relation.watched &=
+      shortest >= kLeastOfLongest * longest && (graph_.empty() || relation.reaches);
   return relation;
 }
 

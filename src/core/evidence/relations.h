@@ -60,10 +60,10 @@ class Relations {
 
   const Statistics& counts_;
   const SourceGraph& graph_;
-  std::set<std::string> broadcasts_;     // topics that everybody hears
-  double looked_at_ = 1;                 // number of pairs
-  std::vector<std::vector<Gap>> gaps_;   // by id
-  std::vector<double> mean_gaps_;        // [ns] by id
+  std::set<std::string> broadcasts_;    // topics that everybody hears
+  double looked_at_ = 1;                // number of pairs
+  std::vector<std::vector<Gap>> gaps_;  // by id
+  std::vector<double> mean_gaps_;       // [ns] by id
 };
 
 }  // namespace self_awareness::core::evidence

@@ -15,9 +15,9 @@ constexpr double kSlowDrift = 0.5;
 // they have once been as in training, and again so when one of the event types comes back after it
 // was gone (docs/method.md, section 3.7).
 constexpr std::uint32_t kArmingEvents = 30;
-constexpr double kUsualSurprise = 0.3;  // standard deviations above the mean of training
-constexpr double kUsualMisses = 0.15;   // share of the gaps above that of training
-constexpr std::int64_t kGoneGaps = 5;   // times the longest gap in training
+constexpr double kUsualSurprise = 0.3;       // standard deviations above the mean of training
+constexpr double kUsualMisses = 0.15;        // share of the gaps above that of training
+constexpr std::int64_t kGoneGaps = 5;        // times the longest gap in training
 constexpr std::uint32_t kMostFailures = 10;  // to arm, that count
 constexpr double kMostEvidence = 200;        // while limits are not known
 constexpr double kMostOfLimit = 1.5;         // in units of the limit
@@ -27,8 +27,6 @@ constexpr double kLeastLinked = 0.5;
 // changed: it is news once (docs/method.md, section 3.7).
 constexpr std::int64_t kAcceptAfter = 60 * kNanosecondsPerSecond;
 
-// Delays count relative to those of the last minutes [ns]: load changes with the time of day.
-constexpr std::int64_t kRegime = 120 * kNanosecondsPerSecond;
 // A stall of the whole robot, beyond what is usual [ns]; more often, it is something else.
 constexpr std::int64_t kShortestStall = kNanosecondsPerSecond / 20;
 constexpr std::int64_t kLongestStall = kNanosecondsPerSecond * 7 / 10;
@@ -87,7 +85,8 @@ void Scorer::addTracks() {
     type.pairs_begin = static_cast<std::uint32_t>(pairs_.size());
     for (const std::size_t track : pairs[id]) {
       state_of_[track] = state_of_[track + 1] = pairs_.size();
-      pairs_.push_back({tracks[track].from, tracks[track].from == id, false, model_->surprises(track).data(), 0, none});
+      pairs_.push_back({tracks[track].from, tracks[track].from == id, false,
+                        model_->surprises(track).data(), 0, none});
     }
     type.pairs_end = static_cast<std::uint32_t>(pairs_.size());
     type.answers_begin = static_cast<std::uint32_t>(answers_.size());
@@ -164,8 +163,7 @@ std::optional<std::int64_t> Scorer::add(const Event& event) {
     const double surprise = pair->surprises[log_bins::bin(delay)];
     const double count = first && !stalled ? 1.0 : 0.0;
     pair->sums.add((surprise - std::max(pair->regime, 0.0) - drifts) * count);
-    const double elapsed = static_cast<double>(std::min(event.stamp - last_stamp, kRegime)) / static_cast<double>(kRegime);
-    pair->regime += (surprise - pair->regime) * std::max(elapsed, 0.0) * count;
+    pair->regime += (surprise - pair->regime) * shareOfRegime(event.stamp - last_stamp) * count;
     if (!pair->armed) {
       armPair(static_cast<std::size_t>(pair - pairs_.data()), first, surprise);
     }
@@ -199,7 +197,7 @@ std::optional<std::int64_t> Scorer::add(const Event& event) {
 void Scorer::noteStall(std::int64_t stamp) {
   const std::int64_t silence = stamp - last_stamp_;
   if (number_ > 0 && silence > longest_silence_ && silence <= longest_silence_ + kLongestStall &&
-      stamp - stalled_at_ > kBetweenStalls) {
+      (stalled_at_ == 0 || stamp - stalled_at_ > kBetweenStalls)) {
     stalled_from_ = last_stamp_;
     stalled_at_ = stamp;
     stalled_until_ = stamp + silence;
@@ -243,8 +241,8 @@ void Scorer::ask(std::size_t number, std::int64_t stamp) {
   answer.sum += came > 0 ? answer.answered - late * answer.missed : answer.missed;
   answer.sum = std::max(std::min(answer.sum, answer.cap), 0.0);
   if (!answer.armed) {
-    answer.armed = arm(answers_arming_[number], (came > 0 ? -late : 1) - answer.usual,
-                       kUsualMisses);
+    answer.armed =
+        arm(answers_arming_[number], (came > 0 ? -late : 1) - answer.usual, kUsualMisses);
   }
 }
 
@@ -359,8 +357,8 @@ const std::vector<double>& Scorer::closeWindow(std::int64_t end) {
       case Channel::kMore: {
         const double sign = channel == Channel::kMore ? 1 : -1;
         // A topic that began within the span has too few for that reason alone.
-        const bool valid = counts_.full() && seen && end - first_stamps_[id] >= kRateSpan &&
-                           !stalled;
+        const bool valid =
+            counts_.full() && seen && end - first_stamps_[id] >= kRateSpan && !stalled;
         const double more = valid ? model_->rate(id, counts_.counts()[id]) : 0;
         evidence_[track] = std::max(sign * more, 0.0);
         break;
@@ -379,8 +377,8 @@ const std::vector<double>& Scorer::closeWindow(std::int64_t end) {
       case Channel::kDeadline: {
         const Deadline& deadline = deadlines_[state_of_[track]];
         evidence_[track] = deadline.requests == 0 || !seen ? 0
-                           : deadline.in_requests           ? deadline.requests
-                                                            : toSeconds(end - deadline.since);
+                           : deadline.in_requests          ? deadline.requests
+                                                           : toSeconds(end - deadline.since);
         break;
       }
     }

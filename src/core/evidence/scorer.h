@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -16,6 +17,14 @@ namespace self_awareness::core::evidence {
 /// What every delay takes from the sum of its track, in standard deviations: a large drift finds
 /// strong evidence without false alarms.
 constexpr double kDrift = 1;
+/// Delays count relative to those of the last minutes [ns], their regime: load changes with the
+/// time of day.
+constexpr std::int64_t kRegime = 120 * kNanosecondsPerSecond;
+/// Share of the regime's mean that a delay makes, which came so long [ns] after the one before.
+constexpr double shareOfRegime(std::int64_t elapsed) {
+  return static_cast<double>(std::clamp<std::int64_t>(elapsed, 0, kRegime)) /
+         static_cast<double>(kRegime);
+}
 
 /// Collects the evidence of every track from the events of one recording (docs/method.md, sections
 /// 3.2 to 3.5 and 3.7). Delays and answers are summed up as in Page's CUSUM test: what is usual
@@ -46,7 +55,7 @@ class Scorer {
   /// While the whole robot is silent for a moment, nobody's silence grows.
   std::int64_t age(EventId id) const {
     const std::int64_t stall =
-        stall_ > 0 || stalled_at_ == 0 || stamps_.at(id) > stalled_from_
+        stall_ > 0 || window_end_ >= stalled_until_ + kRateSpan || stamps_.at(id) > stalled_from_
             ? stall_
             : stalled_at_ - stalled_from_;
     return numbers_.at(id) > 0 ? window_end_ - stamps_[id] - stall : 0;
@@ -99,14 +108,14 @@ class Scorer {
     double owed = 0;               // answers that did not come, and may still come back
     double answered = 0;           // steps of the sum
     double missed = 0;
-    double usual = 0;              // share that is missed
+    double usual = 0;  // share that is missed
     double sum = 0;
     double cap = 0;
   };
   /// State of a deadline track.
   struct Deadline {
     EventId to = 0;
-    bool in_requests = false;  // else in seconds
+    bool in_requests = false;    // else in seconds
     std::uint32_t requests = 0;  // without an answer
     std::int64_t since = 0;      // stamp of the first of them [ns], if there is one
   };
@@ -145,23 +154,23 @@ class Scorer {
   void accept(std::int64_t end);
 
   std::shared_ptr<const Model> model_;
-  std::vector<OfType> types_;                        // by id
-  std::vector<DelayPair> pairs_;                     // by `to`
-  std::vector<Answer> answers_;                      // by `from`
-  std::vector<Deadline> deadlines_;                  // by `from`
-  std::vector<Arming> pairs_arming_;                 // by number of the pair
-  std::vector<Arming> answers_arming_;               // by number of the answer
-  std::vector<std::int64_t> pairs_abnormal_since_;   // [ns] by number of the pair; 0: it is normal
+  std::vector<OfType> types_;                       // by id
+  std::vector<DelayPair> pairs_;                    // by `to`
+  std::vector<Answer> answers_;                     // by `from`
+  std::vector<Deadline> deadlines_;                 // by `from`
+  std::vector<Arming> pairs_arming_;                // by number of the pair
+  std::vector<Arming> answers_arming_;              // by number of the answer
+  std::vector<std::int64_t> pairs_abnormal_since_;  // [ns] by number of the pair; 0: it is normal
   std::vector<std::int64_t> answers_abnormal_since_;  // [ns] by number of the answer; 0: likewise
-  std::vector<std::size_t> state_of_;                // number of its pair, answer..., by track
-  std::vector<std::vector<std::size_t>> tracks_of_;  // delay and answer tracks, by id
+  std::vector<std::size_t> state_of_;                 // number of its pair, answer..., by track
+  std::vector<std::vector<std::size_t>> tracks_of_;   // delay and answer tracks, by id
   bool has_limits_ = false;
-  std::int64_t longest_silence_ = 0;  // that is usual [ns]
-  std::int64_t last_stamp_ = 0;       // [ns], once there was an event
-  std::int64_t stall_ = 0;            // that goes on at the end of the last window [ns]
-  std::int64_t stalled_from_ = 0;     // begin of the last stall [ns]
-  std::int64_t stalled_at_ = 0;       // end of the last stall [ns]; 0: none
-  std::int64_t stalled_until_ = 0;    // what waited has come by then [ns]
+  std::int64_t longest_silence_ = 0;        // that is usual [ns]
+  std::int64_t last_stamp_ = 0;             // [ns], once there was an event
+  std::int64_t stall_ = 0;                  // that goes on at the end of the last window [ns]
+  std::int64_t stalled_from_ = 0;           // begin of the last stall [ns]
+  std::int64_t stalled_at_ = 0;             // end of the last stall [ns]; 0: none
+  std::int64_t stalled_until_ = 0;          // what waited has come by then [ns]
   std::vector<std::int64_t> stamps_;        // of the last event [ns], by id
   std::vector<std::int64_t> first_stamps_;  // of the first event since the start [ns], by id
   std::vector<std::uint64_t> numbers_;      // of the last event in the recording, by id; 0: none

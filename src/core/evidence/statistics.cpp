@@ -144,8 +144,12 @@ void Statistics::merge(const Statistics& other) {
     partners_[here[id]] = sum(partners_[here[id]], partners);
   }
   for (const Recording& theirs : other.recordings_) {
-    Recording ours{theirs.start, theirs.end, theirs.longest_silence, std::vector<std::uint64_t>(size(), 0),
-                   std::vector<std::int64_t>(size(), 0), std::vector<std::int64_t>(size(), -1)};
+    Recording ours{theirs.start,
+                   theirs.end,
+                   theirs.longest_silence,
+                   std::vector<std::uint64_t>(size(), 0),
+                   std::vector<std::int64_t>(size(), 0),
+                   std::vector<std::int64_t>(size(), -1)};
     for (EventId id = 0; id < theirs.events.size(); ++id) {
       ours.events[here[id]] = theirs.events[id];
       ours.longest_gaps[here[id]] = theirs.longest_gaps[id];
@@ -158,7 +162,16 @@ void Statistics::merge(const Statistics& other) {
 }
 
 void Statistics::addRecording(Recording recording) {
-  const auto place = std::upper_bound(recordings_.begin(), recordings_.end(), recording, startsEarlier);
+  // The same recording looks the same, whatever event types other ones had.
+  std::size_t seen = recording.events.size();
+  while (seen > 0 && recording.events[seen - 1] == 0) {
+    --seen;
+  }
+  recording.events.resize(seen);
+  recording.longest_gaps.resize(seen);
+  recording.firsts.resize(seen, -1);
+  const auto place =
+      std::upper_bound(recordings_.begin(), recordings_.end(), recording, startsEarlier);
   recordings_.insert(place, std::move(recording));
 }
 
@@ -255,7 +268,8 @@ bool operator==(const Statistics& a, const Statistics& b) {
   if (a.vocabulary().types() != b.vocabulary().types() || a.rateWindows() != b.rateWindows() ||
       a.duration() != b.duration() ||
       !std::equal(a.recordings().begin(), a.recordings().end(), b.recordings().begin(),
-                  b.recordings().end(), [&](const auto& x, const auto& y) { return isSame(x, y, a.size()); })) {
+                  b.recordings().end(),
+                  [&](const auto& x, const auto& y) { return isSame(x, y, a.size()); })) {
     return false;
   }
   const auto counted = [](const Partners& partners) {
@@ -317,8 +331,7 @@ void Trainer::add(const Event& event) {
   counts_.resize(statistics_.size());
   if (last_stamp_) {
     closeWindows(event.stamp);
-    recording_.longest_silence =
-        std::max(recording_.longest_silence, event.stamp - *last_stamp_);
+    recording_.longest_silence = std::max(recording_.longest_silence, event.stamp - *last_stamp_);
     statistics_.addDuration(std::max<std::int64_t>(event.stamp - newest_stamp_, 0));
     newest_stamp_ = std::max(newest_stamp_, event.stamp);
   } else {

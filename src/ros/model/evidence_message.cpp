@@ -207,8 +207,8 @@ evidence::LimitFinder::Recording fromMessage(const self_awareness::RecordingFind
                     static_cast<int>(LimitFinder::Said::kMisleading) == Findings::MISLEADING,
                 "the message says what the core says");
   const std::size_t parts = message.part_windows.size();
-  check(message.evidence.size() == parts * tracks && message.longest_gaps.size() == parts * types &&
-            message.said.size() == tracks,
+  check(message.evidence.size() == parts * tracks &&
+            message.longest_gaps.size() == parts * types && message.said.size() == tracks,
         "its findings do not fit its tracks");
   LimitFinder::Recording recording;
   recording.start = nanoseconds(message.start);
@@ -242,8 +242,8 @@ self_awareness::Relation toMessage(const evidence::Relation& relation) {
 }
 
 evidence::Relation fromMessage(const self_awareness::Relation& message) {
-  return {message.watched != 0, message.reaches != 0, message.irregular != 0, message.spread,
-          message.starts, message.starts_needed};
+  return {message.watched != 0, message.reaches != 0, message.irregular != 0,
+          message.spread,       message.starts,       message.starts_needed};
 }
 
 evidence::Limits limitsOf(const self_awareness::EvidenceCalibration& message) {

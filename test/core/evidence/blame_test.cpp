@@ -55,7 +55,7 @@ class EvidenceBlameTest : public testing::Test {
   static Track overdue(EventId id) { return {Channel::kOverdue, id, id}; }
 
   std::shared_ptr<const Model> model_ = std::make_shared<Model>(
-      watch(countsOf({robot(100 * kSecond, 1)}), countsOf({robot(100 * kSecond, 2)})));
+      watch(countsOf({robot(100 * kSecond, 1)}), countsOf({later(robot(100 * kSecond, 2))})));
   std::shared_ptr<SourceGraph> graph_ = std::make_shared<SourceGraph>();
   Scorer scorer_{model_, kWindow};
   Hindsight hindsight_{model_};

@@ -20,7 +20,7 @@ constexpr double kCap = 30;
 // A comes irregularly, and B kUsual after it.
 Statistics followed(unsigned seed) {
   const Events asked = irregular(kA, 0, 100 * kSecond, kPeriod, seed);
-  return countsOf({together({asked, answers(kB, asked, kUsual)})}, 2);
+  return countsOf({later(together({asked, answers(kB, asked, kUsual)}), seed * kStart)}, 2);
 }
 
 class HindsightTest : public testing::Test {
@@ -152,6 +152,28 @@ TEST_F(HindsightTest, SeesTheAnswersSinceTheSumWasZero) {
   EXPECT_FALSE(answers());
 }
 
+TEST_F(HindsightTest, ABurstIsOneQuestionAndWhatComesBackWasNotMissed) {
+  askUsually(50);
+  for (const bool answered : {false, true}) {
+    for (int i = 0; i < 20; ++i) {
+      hindsight_.add({now_ + i * 1000, kA});
+    }
+    if (answered) {
+      hindsight_.add({now_ + kUsual, kB});
+      hindsight_.add({now_ + kUsual + 1000, kB});
+    }
+    now_ += kPeriod;
+    hindsight_.add({now_, kA});
+    if (answered) {
+      EXPECT_FALSE(answers()) << "the one that was missing has come";
+    } else {
+      EXPECT_EQ(answers().value().asked, 1U);
+      EXPECT_EQ(answers().value().missed, 1U);
+    }
+    now_ += kUsual / 2;  // too soon for another question
+  }
+}
+
 TEST_F(HindsightTest, TheSumsAreThoseOfTheScorer) {
   Scorer scorer(model_, kWindow);
   const auto add = [&](const Event& event) {
@@ -182,15 +204,28 @@ TEST_F(HindsightTest, TheSumsAreThoseOfTheScorer) {
 }
 
 TEST_F(HindsightTest, RemembersTheLastEventsOnly) {
-  for (std::size_t i = 0; i < Hindsight::kMostEvents; ++i) {
-    ask(kLate);
+  askUsually(100);
+  for (std::size_t i = 0; i < Hindsight::kMostEvents + 100; ++i) {
+    ask(std::nullopt);
   }
-  EXPECT_EQ(delays().number, Hindsight::kMostEvents / 2);
+  EXPECT_EQ(answers().value().asked, Hindsight::kMostEvents - 1);
   for (std::size_t i = 0; i < Hindsight::kMostEvents; ++i) {
     hindsight_.add({now_, kC});  // the model does not know it
   }
-  EXPECT_EQ(delays().number, Hindsight::kMostEvents / 2);
+  EXPECT_EQ(answers().value().asked, Hindsight::kMostEvents - 1);
   askUsually(2 * static_cast<int>(Hindsight::kMostEvents));
+  EXPECT_FALSE(answers());
+}
+
+TEST_F(HindsightTest, WhatHasBeenLateForMinutesIsTheRegime) {
+  askUsually(50);
+  for (int i = 0; i < 20; ++i) {
+    ask(kLate);
+  }
+  EXPECT_EQ(delays().unusual, 20U);
+  for (int i = 0; i < 3000; ++i) {  // ten minutes
+    ask(kLate);
+  }
   EXPECT_EQ(delays().unusual, 0U);
 }
 

@@ -21,7 +21,8 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 Statistics followed(unsigned seed) {
   const Events asked = irregular(kA, 0, 100 * kSecond, kPeriod, seed);
-  return countsOf({together({asked, answers(kB, asked, 20 * kMillisecond)})}, 2);
+  return countsOf({later(together({asked, answers(kB, asked, 20 * kMillisecond)}), seed * kStart)},
+                  2);
 }
 
 class EvidenceJudgeTest : public testing::Test {

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <random>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -13,6 +12,7 @@
 
 #include "core/evidence/scorer.h"
 #include "recordings.h"
+#include "self_awareness/core/evidence/cross_fit.h"
 
 namespace self_awareness::core::evidence {
 namespace {
@@ -28,14 +28,6 @@ Events robot(std::int64_t length, unsigned seed, std::int64_t delay = 20 * kMill
 
 std::shared_ptr<const Model> modelOf(const Events& first, const Events& second) {
   return std::make_shared<Model>(watch(countsOf({first}), countsOf({second})));
-}
-
-BlockMaxima maximaOf(const std::vector<double>& values) {
-  BlockMaxima maxima;
-  for (const double value : values) {
-    maxima.add(value);
-  }
-  return maxima;
 }
 
 class LimitFinderTest : public testing::Test {
@@ -62,57 +54,9 @@ class LimitFinderTest : public testing::Test {
     return limits.tracks.at(track);
   }
 
-  std::shared_ptr<const Model> model_ = modelOf(robot(100 * kSecond, 1), robot(100 * kSecond, 2));
+  std::shared_ptr<const Model> model_ =
+      modelOf(robot(100 * kSecond, 1), later(robot(100 * kSecond, 2)));
 };
-
-TEST(GumbelLimit, IsFittedByLMoments) {
-  // Of 1, 2, 4: l1 = 7/3, b1 = (0 * 1 + 1/2 * 2 + 1 * 4) / 3 = 5/3, l2 = 2 b1 - l1 = 1.
-  const double scale = 1 / std::log(2.0);
-  const double location = 7.0 / 3 - 0.5772156649015329 * scale;
-  for (const double probability : {0.5, 0.01, 1e-6}) {
-    const double expected = location - scale * std::log(-std::log(1 - probability));
-    EXPECT_NEAR(gumbelLimit(maximaOf({4, 1, 2}), probability), expected, 1e-9);  // in any order
-  }
-}
-
-TEST(GumbelLimit, FindsTheQuantilesOfAGumbelDistribution) {
-  std::mt19937 random(1);
-  std::extreme_value_distribution<double> gumbel(5, 2);
-  BlockMaxima maxima;
-  for (int k = 0; k < 20000; ++k) {
-    maxima.add(std::max(gumbel(random), 0.0));
-  }
-  for (const double probability : {0.5, 0.1, 0.001, 1e-6}) {
-    const double expected = 5 - 2 * std::log(-std::log1p(-probability));
-    EXPECT_NEAR(gumbelLimit(maxima, probability), expected, 0.02 * expected) << probability;
-  }
-}
-
-TEST(GumbelLimit, OfMaximaThatNeverVaryIsTheirValue) {
-  EXPECT_NEAR(gumbelLimit(maximaOf({3, 3, 3, 3}), 1e-6), 3, 1e-9);
-}
-
-TEST(OverdueAge, ExtrapolatesTheExcessOverTheShortestOfTheLongestGaps) {
-  // Three gaps in 1000 ns, and one in 10000 ns allowed: 30 times rarer, with a mean excess of 2
-  // ns.
-  EXPECT_NEAR(overdueAge({10, 8, 6}, 1000, 1e-4), 6 + 2 * std::log(30), 1e-9);
-}
-
-TEST(OverdueAge, IsBeyondTheLongestGapThatWasSeen) {
-  EXPECT_NEAR(overdueAge({10, 8, 6}, 1000, 1.0), 11, 1e-9);
-  EXPECT_NEAR(overdueAge({100, 2, 1}, 1000, 1e-3), 110, 1e-9);
-}
-
-TEST(OverdueAge, LooksAtTheTwentyLongestGaps) {
-  std::vector<std::int64_t> gaps;
-  for (std::int64_t gap = 40; gap > 20; --gap) {
-    gaps.push_back(gap);
-  }
-  const double of_twenty = overdueAge(gaps, 1000, 1e-4);
-  EXPECT_NEAR(of_twenty, 21 + 9.5 * std::log(200), 1e-9);
-  gaps.push_back(1);
-  EXPECT_EQ(overdueAge(gaps, 1000, 1e-4), of_twenty);
-}
 
 TEST_F(LimitFinderTest, AreFiniteAndAboveAllThatWasSeen) {
   const Events normal = robot(200 * kSecond, 3);
@@ -186,20 +130,30 @@ TEST_F(LimitFinderTest, AnAnswerThatIsAskedForTooSeldomIsNotJudged) {
       const Events asked = irregular(kA, 0, 110 * p, p, seed);
       return together({asked, answers(kB, asked, 20 * kMillisecond)});
     };
-    model_ = modelOf(slow(1), slow(2));
+    model_ = modelOf(slow(1), later(slow(2)));
     const double found = limit(limitsOf(model_, slow(3)), Channel::kAnswer, kB, kA);
     EXPECT_EQ(std::isfinite(found), judged) << period;
   }
 }
 
-TEST_F(LimitFinderTest, LessThanFiveBlocksAreTooLittle) {
+TEST_F(LimitFinderTest, LessThanTheLeastTimeIsTooLittle) {
   LimitFinder finder(model_, {kWindow, 5 * kSecond, 0.5});
-  // Two recordings, each with 5 s to settle, 20 s that count, and a rest that is shorter than a
-  // block.
-  feed(finder, model_, robot(34 * kSecond, 3));
-  feed(finder, model_, robot(34 * kSecond, 4));
+  // Two recordings, each with 5 s to settle: together they are a little too short.
+  feed(finder, model_, robot(LimitFinder::kLeastTime / 2 + 4 * kSecond, 3));
+  feed(finder, model_, later(robot(LimitFinder::kLeastTime / 2 + 4 * kSecond, 4)));
   EXPECT_THROW(finder.startSecondPass(), std::invalid_argument);
-  feed(finder, model_, robot(16 * kSecond, 5));
+  feed(finder, model_, later(robot(9 * kSecond, 5), 2 * kStart));
+  EXPECT_NO_THROW(finder.startSecondPass());
+}
+
+TEST_F(LimitFinderTest, WhatTheTrainingShowedDoesNotReplaceOtherRecordings) {
+  const CrossFit models(
+      watch(countsOf({robot(100 * kSecond, 1)}), countsOf({later(robot(100 * kSecond, 2))})));
+  LimitFinder finder(models.model(), {kWindow, 5 * kSecond, 0.5});
+  feed(finder, models.judging(0), robot(100 * kSecond, 1));
+  feed(finder, models.judging({}), later(robot(20 * kSecond, 3), 2 * kStart));
+  EXPECT_THROW(finder.startSecondPass(), std::invalid_argument);
+  feed(finder, models.judging({}), later(robot(60 * kSecond, 4), 3 * kStart));
   EXPECT_NO_THROW(finder.startSecondPass());
 }
 
@@ -280,39 +234,45 @@ TEST_F(LimitFinderTest, WhatRecordingsSayElsewhereAddsUp) {
 
 TEST_F(LimitFinderTest, FindingsDoNotGrowWithTheRecording) {
   LimitFinder finder(model_, {kWindow, 5 * kSecond, 0.5});
-  const Events normal = robot(136 * kSecond, 3);  // 13 blocks
-  const auto cells = [&] {
-    std::size_t number = 0;
-    for (const BlockMaxima& maxima : finder.findings().maxima) {
-      number += maxima.cells().size();
+  for (const std::int64_t parts : {1, 4, 16, 17, 40}) {
+    feed(finder, model_, robot(parts * LimitFinder::kShortestPart + 5 * kSecond, 3));
+    const LimitFinder::Recording& recording = finder.findings().back();
+    EXPECT_LE(recording.parts.size(), LimitFinder::kMostParts);
+    EXPECT_GE(2 * recording.parts.size(), std::min<std::size_t>(parts, LimitFinder::kMostParts));
+    std::uint64_t windows = 0;
+    for (const LimitFinder::Recording::Part& part : recording.parts) {
+      // All are of one length, but the last one.
+      EXPECT_TRUE(&part == &recording.parts.back() ||
+                  part.windows == recording.parts.front().windows);
+      EXPECT_LE(part.windows, recording.parts.front().windows);
+      EXPECT_EQ(part.evidence.size(), model_->tracks().size());
+      EXPECT_EQ(part.longest_gaps.size(), model_->size());
+      windows += part.windows;
     }
-    return number;
-  };
-  feed(finder, model_, normal);
-  EXPECT_EQ(finder.findings().blocks, 13U);
-  const std::size_t of_one = cells();
-  EXPECT_GT(of_one, 0U);
-  for (int k = 0; k < 9; ++k) {
-    feed(finder, model_, normal);
-  }
-  const LimitFinder::Findings findings = finder.findings();
-  EXPECT_EQ(findings.blocks, 130U);
-  EXPECT_EQ(cells(), of_one);
-  for (std::size_t track = 0; track < findings.maxima.size(); ++track) {
-    const bool overdue = model_->tracks()[track].channel == Channel::kOverdue;
-    EXPECT_EQ(findings.maxima[track].number(), overdue ? 0U : 130U) << track;
-  }
-  for (const std::vector<std::int64_t>& gaps : findings.longest_gaps) {
-    EXPECT_LE(gaps.size(), Statistics::kLongestGaps);
+    EXPECT_EQ(windows, recording.windows);
+    EXPECT_EQ(recording.said.size(), model_->tracks().size());
   }
 }
 
-TEST_F(LimitFinderTest, WhatWasFoundForAnotherModelIsRefused) {
-  LimitFinder finder(model_, {kWindow, 5 * kSecond, 0.5});
-  const auto other = modelOf(timer(kA, 0, 100 * kSecond, kPeriod), {});
-  const LimitFinder of_other(other, {kWindow, 5 * kSecond, 0.5});
-  EXPECT_THROW(finder.merge(of_other.findings()), std::invalid_argument);
-  EXPECT_THROW(finder.startSecondPass(Limits{{1.0}, 1.0}), std::invalid_argument);
+TEST_F(LimitFinderTest, PartsTogetherSayWhatTheRecordingDoes) {
+  const auto largestOf = [&](std::int64_t length) {
+    LimitFinder finder(model_, {kWindow, 5 * kSecond, 0.5});
+    Events events = robot(length, 3);
+    events.erase(std::remove_if(events.begin(), events.end(),  // A is gone for a second
+                                [](const Event& event) {
+                                  return event.id == kA && event.stamp > 50 * kSecond &&
+                                         event.stamp < 51 * kSecond;
+                                }),
+                 events.end());
+    feed(finder, model_, events);
+    std::int64_t longest = 0;
+    for (const LimitFinder::Recording::Part& part : finder.findings().at(0).parts) {
+      longest = std::max(longest, part.longest_gaps[kA]);
+    }
+    return longest;
+  };
+  EXPECT_GE(largestOf(60 * kSecond), kSecond);
+  EXPECT_GE(largestOf(40 * LimitFinder::kShortestPart), largestOf(60 * kSecond));
 }
 
 TEST_F(LimitFinderTest, AStepOfTheClockIsTheStartOfAnotherRecording) {
@@ -340,6 +300,73 @@ TEST_F(LimitFinderTest, AStepOfTheClockIsTheStartOfAnotherRecording) {
                 (std::isnan(a.tracks[track]) && std::isnan(b.tracks[track])))
         << track;
   }
+}
+
+TEST_F(LimitFinderTest, WithoutAReasonNoRelationIsJudged) {
+  // All of one start: the answers may be chance, but a message can get from A to B.
+  const Events normal = robot(200 * kSecond, 3);
+  const auto delay = [&](const SourceGraph& graph) {
+    const auto model = std::make_shared<Model>(
+        watch(countsOf({robot(100 * kSecond, 1)}), countsOf({robot(100 * kSecond, 2)})));
+    LimitFinder finder(model, {kWindow, 5 * kSecond, 0.5}, graph);
+    for (const bool first : {true, false}) {
+      feed(finder, model, normal);
+      if (first) {
+        finder.startSecondPass();
+      }
+    }
+    const std::size_t track = indexOf(model->tracks(), Channel::kDelay, kB, kA);
+    EXPECT_LT(track, model->tracks().size());
+    EXPECT_EQ(finder.relations().at(track).watched,
+              std::isfinite(finder.limits().tracks.at(track)));
+    for (std::size_t k = 0; k < model->tracks().size(); ++k) {
+      if (model->tracks()[k].to == model->tracks()[k].from) {
+        EXPECT_TRUE(finder.relations()[k].watched) << "the own history needs no reason";
+      }
+    }
+    return finder.relations().at(track);
+  };
+  const Relation alone = delay({});
+  EXPECT_FALSE(alone.watched);
+  EXPECT_EQ(alone.starts, 1U);
+  EXPECT_EQ(alone.starts_needed, 2U) << "it is irregular";
+  SourceGraph graph;
+  graph.connect("/a", "/x", "/b");
+  const Relation reached = delay(graph);
+  EXPECT_TRUE(reached.watched);
+  EXPECT_TRUE(reached.reaches && reached.irregular);
+  EXPECT_EQ(reached.starts_needed, 0U);
+}
+
+TEST_F(LimitFinderTest, RecordingsThatWereNotTrainedOnCountAsStarts) {
+  const auto model = std::make_shared<Model>(
+      watch(countsOf({robot(100 * kSecond, 1)}), countsOf({robot(100 * kSecond, 2)})));
+  LimitFinder finder(model, {kWindow, 5 * kSecond, 0.5});
+  feed(finder, model, later(robot(100 * kSecond, 3)));
+  finder.startSecondPass();
+  const std::size_t track = indexOf(model->tracks(), Channel::kDelay, kB, kA);
+  EXPECT_EQ(finder.relations().at(track).starts, 2U);
+  EXPECT_TRUE(finder.relations().at(track).watched);
+}
+
+TEST_F(LimitFinderTest, MoreFalseAlarmsAreExpectedOfALargerBudget) {
+  const auto expected = [&](double budget) {
+    LimitFinder finder(model_, {kWindow, 5 * kSecond, budget});
+    for (const bool first : {true, false}) {
+      for (unsigned seed = 3; seed < 9; ++seed) {
+        feed(finder, model_, later(robot(200 * kSecond, seed), seed * kStart));
+      }
+      if (first) {
+        finder.startSecondPass();
+      }
+    }
+    return finder.expectedRate();
+  };
+  const double little = expected(0.05);
+  const double much = expected(50);
+  EXPECT_GT(little, 0);
+  EXPECT_LT(little, much);
+  EXPECT_LE(much, 50);
 }
 
 TEST_F(LimitFinderTest, RefusesImpossibleValues) {

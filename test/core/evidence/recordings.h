@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <initializer_list>
 #include <random>
@@ -15,6 +16,8 @@ namespace self_awareness::core::evidence {
 constexpr std::int64_t kMillisecond = 1000000;
 constexpr std::int64_t kSecond = 1000 * kMillisecond;
 constexpr std::int64_t kWindow = 100 * kMillisecond;
+/// Time between two starts of a robot.
+constexpr std::int64_t kStart = 1000 * kSecond;
 
 /// Ids in the recordings below, and the event types they stand for.
 constexpr EventId kA = 0;
@@ -67,12 +70,20 @@ inline Events answers(EventId id, const Events& asked, std::int64_t delay) {
   return events;
 }
 
-/// Counts of recordings, with the first so many of kTypes.
+/// A recording of another start of the robot: the same events later.
+inline Events later(Events events, std::int64_t by = kStart) {
+  for (Event& event : events) {
+    event.stamp += by;
+  }
+  return events;
+}
+
+/// Counts of recordings with these event types.
 inline Statistics countsOf(const std::vector<Events>& recordings,
-                           std::size_t types = kTypes.size()) {
+                           const std::vector<EventType>& types) {
   Statistics statistics;
-  for (std::size_t id = 0; id < types; ++id) {
-    statistics.intern(kTypes[id]);
+  for (const EventType& type : types) {
+    statistics.intern(type);
   }
   Trainer trainer(statistics, kWindow);
   for (const Events& events : recordings) {
@@ -83,6 +94,13 @@ inline Statistics countsOf(const std::vector<Events>& recordings,
   }
   trainer.finish();
   return statistics;
+}
+
+/// Counts of recordings, with the first so many of kTypes.
+inline Statistics countsOf(const std::vector<Events>& recordings,
+                           std::size_t types = kTypes.size()) {
+  return countsOf(recordings,
+                  {kTypes.begin(), kTypes.begin() + static_cast<std::ptrdiff_t>(types)});
 }
 
 /// Index of a track; the number of tracks if it is not watched.

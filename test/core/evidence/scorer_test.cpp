@@ -24,7 +24,7 @@ constexpr int kArming = 30;  // events
 // A comes irregularly, and B kUsual after it.
 Statistics followed(unsigned seed) {
   const Events asked = irregular(kA, 0, 100 * kSecond, kPeriod, seed);
-  return countsOf({together({asked, answers(kB, asked, kUsual)})}, 2);
+  return countsOf({later(together({asked, answers(kB, asked, kUsual)}), seed * kStart)}, 2);
 }
 
 class EvidenceScorerTest : public testing::Test {
@@ -62,10 +62,23 @@ TEST_F(EvidenceScorerTest, DelaysAddUpAsInACusumTest) {
     askUsually(kArming);
     double sum = evidence(pair);
     EXPECT_EQ(sum, 0);  // usual delays do not let it fall below 0
-    for (const std::int64_t delay : {kUnusual, kUnusual, kUsual, kUnusual, kUsual, kUsual}) {
+    double regime = 0;  // of the last two minutes
+    std::optional<std::int64_t> last;
+    const auto add = [&](std::int64_t delay) {
+      const std::int64_t stamp = now_ + delay;
+      const double surprise = model_->surprises(pair)[log_bins::bin(delay)];
+      sum = std::max(sum + surprise - std::max(regime, 0.0) - drift, 0.0);
+      regime += (surprise - regime) * toSeconds(last ? stamp - *last : 0) / 120;
+      last = stamp;
       ask(delay);
-      sum = std::max(sum + model_->surprises(pair)[log_bins::bin(delay)] - drift, 0.0);
-      EXPECT_DOUBLE_EQ(evidence(pair), sum);
+    };
+    scorer_.restart();
+    for (int i = 0; i < kArming; ++i) {
+      add(kUsual);
+    }
+    for (const std::int64_t delay : {kUnusual, kUnusual, kUsual, kUnusual, kUsual, kUsual}) {
+      add(delay);
+      EXPECT_NEAR(evidence(pair), sum, 1e-12);
     }
     EXPECT_GT(sum, 0);
   }
@@ -107,8 +120,8 @@ TEST_F(EvidenceScorerTest, DelaysCountOnceTheyWereAsInTraining) {
   for (int i = 0; i < kArming; ++i) {
     ask(kUnusual);
   }
-  askUsually(kArming - 1);
-  ask(kUsual);  // armed with this one
+  askUsually(2 * kArming - 1);  // after a failure it takes twice as many
+  ask(kUsual);                  // armed with this one
   for (int i = 0; i < 10; ++i) {
     ask(kUnusual);
   }
@@ -140,7 +153,7 @@ TEST_F(EvidenceScorerTest, WhatWasGoneMustBeArmedAgain) {
       ask(kUnusual);
     }
     EXPECT_EQ(evidence(pair), 0) << gone;
-    askUsually(kArming);
+    askUsually(2 * kArming);
     ask(kUnusual);
     EXPECT_GT(evidence(pair), 0) << gone;
   }
@@ -189,7 +202,7 @@ TEST_F(EvidenceScorerTest, AnswersThatNeverCameAsInTrainingSayNothing) {
     ask(i % 2 == 0 ? std::optional<std::int64_t>(kUsual) : std::nullopt);
   }
   EXPECT_EQ(evidence(answer), 0);
-  askUsually(2 * kArming);
+  askUsually(8 * kArming);  // after three failures
   ask(std::nullopt);
   ask(std::nullopt);
   EXPECT_GT(evidence(answer), 0);
@@ -212,10 +225,13 @@ TEST_F(EvidenceScorerTest, OverdueGoesByTheTimeSinceTheLastOne) {
   EXPECT_EQ(scorer_.closeWindow(now_)[overdue], 0);  // never seen since the start
   scorer_.add({now_, kA});
   for (const std::int64_t age : {kMillisecond, kSecond, 100 * kSecond}) {
+    scorer_.add({now_ + age, kB});  // the robot is not silent
     EXPECT_EQ(scorer_.closeWindow(now_ + age)[overdue], model_->overdue(kA, age));
     EXPECT_EQ(scorer_.windowEnd(), now_ + age);
   }
   EXPECT_EQ(scorer_.lastSeen(kA), now_);
+  scorer_.restart();
+  scorer_.add({now_, kA});
   EXPECT_EQ(scorer_.lastSeen(kB), std::nullopt);
 }
 
@@ -276,16 +292,18 @@ TEST_F(EvidenceScorerTest, TheLinkerAddsUpTheLargestShareOfEveryEventType) {
   evidence[track(Channel::kOverdue, kA, kA)] = 7;
   evidence[track(Channel::kDelay, kB, kA)] = 8;
   evidence[track(Channel::kSlowDelay, kB, kA)] = 30;  // at most 1
-  evidence[track(Channel::kAnswer, kB, kA)] = 4;      // less than that
-  evidence[track(Channel::kSlowDelay, kA, kA)] = 2;
+  evidence[track(Channel::kAnswer, kB, kA)] = 8;      // less than that
+  evidence[track(Channel::kSlowDelay, kA, kA)] = 6;   // half of a limit says nothing
   Sum sum = sumUp(evidence, *model_, limits);
   EXPECT_DOUBLE_EQ(sum.largest, 0.8);
   EXPECT_DOUBLE_EQ(sum.linker, 1.2);
+  evidence[track(Channel::kSlowDelay, kA, kA)] = 5;
+  EXPECT_DOUBLE_EQ(sumUp(evidence, *model_, limits).linker, 1);
 
   limits.tracks[track(Channel::kDelay, kB, kA)] = std::numeric_limits<double>::quiet_NaN();
   limits.tracks[track(Channel::kSlowDelay, kB, kA)] = std::numeric_limits<double>::quiet_NaN();
   sum = sumUp(evidence, *model_, limits);
-  EXPECT_DOUBLE_EQ(sum.largest, 0.7);
+  EXPECT_DOUBLE_EQ(sum.largest, 0.8);
   EXPECT_DOUBLE_EQ(sum.linker, 0.6);
 }
 

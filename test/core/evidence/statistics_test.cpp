@@ -138,6 +138,35 @@ TEST(EvidenceTrainer, AStepOfTheClockStartsAnotherRecording) {
   }
 }
 
+TEST(EvidenceTrainer, SaysWhatEveryRecordingShowed) {
+  const Statistics counts =
+      countsOf({inMilliseconds({{5000, kB}, {5400, kB}, {5500, kA}}),
+                inMilliseconds({{1000, kA}, {1100, kB}, {1150, kA}, {1900, kA}})});
+  ASSERT_EQ(counts.recordings().size(), 2U);
+  const Statistics::Recording& first = counts.recordings()[0];  // in the order of their start
+  EXPECT_EQ(first.start, kSecond);
+  EXPECT_EQ(first.end, 1900 * kMillisecond);
+  EXPECT_EQ(first.longest_silence, 750 * kMillisecond);
+  EXPECT_EQ(first.events, (std::vector<std::uint64_t>{3, 1}));
+  EXPECT_EQ(first.longest_gaps, (std::vector<std::int64_t>{750 * kMillisecond, 0}));
+  const Statistics::Recording& second = counts.recordings()[1];
+  EXPECT_EQ(second.start, 5 * kSecond);
+  EXPECT_EQ(second.longest_silence, 400 * kMillisecond);
+  EXPECT_EQ(second.events, (std::vector<std::uint64_t>{1, 2}));
+  EXPECT_EQ(second.longest_gaps, (std::vector<std::int64_t>{0, 400 * kMillisecond}));
+}
+
+TEST(EvidenceTrainer, TheLastRecordingCountsOnceItHasEnded) {
+  Statistics counts = countsOf({}, 1);
+  Trainer trainer(counts, kWindow);
+  trainer.add({0, kA});
+  EXPECT_TRUE(counts.recordings().empty());
+  trainer.finish();
+  EXPECT_EQ(counts.recordings().size(), 1U);
+  trainer.finish();
+  EXPECT_EQ(counts.recordings().size(), 1U);
+}
+
 TEST(EvidenceTrainer, RefusesAWindowOfNoLength) {
   Statistics counts;
   EXPECT_THROW(Trainer(counts, 0), std::invalid_argument);
@@ -228,6 +257,7 @@ TEST(EvidenceStatistics, MergingCommutesUpToTheIds) {
   for (const Event& event : randomEvents(2, 0, 1)) {
     trainer.add(event);
   }
+  trainer.finish();
   Statistics one = first;
   one.merge(second);
   Statistics other = second;
@@ -235,6 +265,20 @@ TEST(EvidenceStatistics, MergingCommutesUpToTheIds) {
   EXPECT_FALSE(one == other);
   EXPECT_TRUE(reordered(one) == reordered(other));
   EXPECT_GT(one.total(kA, kB), 0U);
+}
+
+TEST(EvidenceStatistics, MergingKeepsTheRecordingsOfBothByTheirIds) {
+  Statistics counts = countsOf({inMilliseconds({{9000, kA}, {9100, kA}, {9100, kB}})}, 2);
+  const Statistics other =
+      countsOf({inMilliseconds({{1000, 0}, {1300, 0}, {1350, 1}})}, {kTypes[kC], kTypes[kA]});
+  counts.merge(other);
+  ASSERT_EQ(counts.recordings().size(), 2U);
+  EXPECT_EQ(counts.recordings()[0].events, (std::vector<std::uint64_t>{1, 0, 2}));
+  EXPECT_EQ(counts.recordings()[0].longest_gaps,
+            (std::vector<std::int64_t>{0, 0, 300 * kMillisecond}));
+  EXPECT_EQ(counts.recordings()[0].longest_silence, 300 * kMillisecond);
+  EXPECT_EQ(counts.recordings()[1].events, (std::vector<std::uint64_t>{2, 1}));
+  EXPECT_EQ(counts.only({}).recordings().size(), 2U);
 }
 
 TEST(EvidenceStatistics, CountsDoNotWrapAround) {

@@ -333,6 +333,8 @@ TEST_F(DetectorLevelsTest, AStandingAlarmStandsAsLongAsItsCauseWhileItSettles) {
   told_->settling = true;
   windows(100);
   EXPECT_TRUE(verdict_.alarm);
+  EXPECT_FALSE(verdict_.settling);
+  EXPECT_EQ(changes_, 2);
   told_->abnormal = false;
   windows(19);
   EXPECT_TRUE(verdict_.alarm);

@@ -1,4 +1,4 @@
-"""The evidence detector, literally and slowly: docs/method.md, sections 3 and 4, and the headers.
+"""The evidence detector, literally and slowly: docs/method.md, section 3, and the headers.
 
 Nothing here is shared with the package: it is what the core is compared with. Stamps in ns. An
 event type is a letter, a track a triple (channel, to, from).
@@ -7,25 +7,57 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from typing import Dict, Iterable, List, Sequence, Tuple
+from typing import Dict, Iterable, List, NamedTuple, Sequence, Tuple
 
 Event = Tuple[int, str]
 Pair = Tuple[str, str]
 Track = Tuple[str, str, str]
 
 SECOND = 10 ** 9
+MS = 10 ** 6
 EDGES = [round(2.5e6 * 2.0 ** (k / 4)) for k in range(49)]
 BINS = 50
 DELAYS = {'delay': 1.0, 'slow delay': 0.5}
 """Channels of delays, and what usual delays take from their sum."""
 KINDS = {'overdue': 'overdue', 'fewer': 'rate', 'more': 'rate', 'delay': 'pairs',
-         'slow delay': 'pairs', 'answer': 'answers'}
+         'slow delay': 'pairs', 'answer': 'answers', 'deadline': 'deadlines'}
 """What people call the channels."""
+
+FEWEST_GAPS = 30
+LEAST_GAIN = 0.3
+FEWEST_DELAYS_OF_GAIN = 50
+FEWEST_DELAYS_OF_PAIR = 200
+PREDECESSORS = 3
+LEAST_RATE = 1.5
+ASKED = 8
+FEWEST_GAPS_OF_ANSWERS = 100
+MOST_MISSES = 0.6
+DEADLINES = 3
+FEWEST_ANSWERS = 30
+MOST_MISSES_OF_DEADLINE = 0.1
+
+MOST_SURPRISE = 6.0
+LEAST_DEVIATION = 0.5
+USUAL = 0.9
+LEAST_EFFECT = (10e6, 0.03)
+"""On delays: [ns], and the share of the period."""
+LEAST_EFFECT_ON_GAP = (20e6, 0.3)
+LEAST_RATE_EFFECT = 0.04
+LOST = 0.5
+MISS_RATES = (0.1, 0.95)
+LONGEST_GAP_OF_SERIES = 2.0
 
 
 def log_bin(delay: int) -> int:
     """Return the bin: the number of edges at or below the delay."""
     return sum(edge <= delay for edge in EDGES)
+
+
+def lower_edge(index: int) -> float:
+    """Return where a bin begins; where the one after the last does: nowhere."""
+    if index == BINS:
+        return math.inf
+    return float(EDGES[index - 1]) if index > 0 else 0.0
 
 
 def middle(index: int) -> float:
@@ -35,9 +67,36 @@ def middle(index: int) -> float:
     return math.sqrt(EDGES[index - 1] * EDGES[index]) if index < BINS - 1 else EDGES[-1]
 
 
+def numbers_below(bins: Sequence[int]) -> List[int]:
+    """Return the number of delays below every bin."""
+    counts = [bins.count(index) for index in range(BINS)]
+    return [sum(counts[:index]) for index in range(BINS)]
+
+
+def bin_at_most(bins: Sequence[int], number: float) -> int:
+    """Return the last bin that so many delays at most are below."""
+    return max(index for index, below in enumerate(numbers_below(bins)) if below <= number)
+
+
+def bin_below(bins: Sequence[int], number: float) -> int:
+    """Return the last bin that fewer delays are below; -1: there is none."""
+    return max((index for index, below in enumerate(numbers_below(bins)) if below < number),
+               default=-1)
+
+
 def log_probabilities(bins: Sequence[int]) -> List[float]:
     """Return log P of every bin, with one more count in each."""
     return [math.log((bins.count(index) + 1) / (len(bins) + BINS)) for index in range(BINS)]
+
+
+class Seen(NamedTuple):
+    """What one recording showed."""
+
+    start: int
+    end: int
+    longest_silence: int
+    events: Dict[str, int]
+    longest_gaps: Dict[str, int]
 
 
 class Counts:
@@ -50,12 +109,12 @@ class Counts:
         self.delays: Dict[Pair, List[int]] = defaultdict(list)
         self.answers: Dict[Pair, int] = defaultdict(int)
         self.rates: Dict[str, List[int]] = defaultdict(list)
-        self.duration = 0
+        self.recordings: List[Seen] = []
         for events in recordings:
             self._count_delays(events)
             self._count_answers(events)
             self._count_rates(events, window)
-            self.duration += max(t for t, _ in events) - events[0][0]
+            self._count_recording(events)
 
     def _count_delays(self, events: Sequence[Event]) -> None:
         last: Dict[str, int] = {}
@@ -85,20 +144,53 @@ class Counts:
             for kind in self.types:
                 self.rates[kind].append(inside.count(kind))
 
+    def _count_recording(self, events: Sequence[Event]) -> None:
+        stamps = [t for t, _ in events]
+        of_kind = {kind: [t for t, other in events if other == kind] for kind in self.types}
+        self.recordings.append(Seen(
+            stamps[0], max(stamps), longest_gap(stamps),
+            {kind: len(own) for kind, own in of_kind.items()},
+            {kind: longest_gap(own) for kind, own in of_kind.items()}))
+
     def miss_rate(self, asking: str, answer: str) -> float:
         """Return the share of the gaps of `asking` without the other."""
         gaps = len(self.gaps[asking])
         return (gaps - self.answers[asking, answer] + 0.5) / (gaps + 1)
 
     def mean_gap(self, kind: str) -> float:
-        """Return the mean gap [ns]."""
-        return sum(self.gaps[kind]) / len(self.gaps[kind])
+        """Return the mean gap [ns]; 0 if there is none."""
+        return sum(self.gaps[kind]) / max(len(self.gaps[kind]), 1)
+
+    def usual_delay(self, e_i: str, e_j: str, share: float) -> float:
+        """Return the delay [s] that this share of the delays did not exceed."""
+        bins = self.delays[e_i, e_j]
+        wanted = share * len(bins)
+        longest = float(EDGES[-1])
+        if e_i == e_j and self.gaps[e_j]:
+            gaps = sorted(self.gaps[e_j], reverse=True)
+            longer = int(len(gaps) - wanted)
+            if longer < min(len(gaps), 32):
+                return gaps[longer] / SECOND
+            longest = float(gaps[0])
+        for index in sorted(set(bins)):
+            below = sum(other < index for other in bins)
+            if below + bins.count(index) >= wanted:
+                lower = lower_edge(index)
+                upper = lower_edge(index + 1) if index + 1 < BINS else longest
+                width = min(upper, max(longest, lower)) - lower
+                return (lower + width * (wanted - below) / bins.count(index)) * 1e-9
+        return 0.0
+
+
+def longest_gap(stamps: Sequence[int]) -> int:
+    """Return the longest time from one stamp to the next, 0 or more."""
+    return max((b - a for a, b in zip(stamps, stamps[1:]) if b > a), default=0)
 
 
 def gain(learned: Counts, measured: Counts, e_i: str, e_j: str) -> float:
     """Return the mean of log P_ij - log Q_i over the delays of other recordings [nat]."""
     delays = measured.delays[e_i, e_j]
-    if not learned.delays[e_i, e_j] or len(delays) < 50:
+    if not learned.delays[e_i, e_j] or len(delays) < FEWEST_DELAYS_OF_GAIN:
         return 0.0
     p_ij = log_probabilities(learned.delays[e_i, e_j])
     q_i = log_probabilities([b for k in learned.types for b in learned.delays[e_i, k]])
@@ -109,49 +201,24 @@ class ReferenceModel:
     """What normal operation lets expect.
 
     Args:
+        tracks: what is watched.
         first, second: counts of the two halves of the training.
         both: counts of all of it.
         learned: those that probabilities are taken from.
     """
 
-    def __init__(self, first: Counts, second: Counts, both: Counts, learned: Counts) -> None:
+    def __init__(self, tracks: Sequence[Track], first: Counts, second: Counts, both: Counts,
+                 learned: Counts) -> None:
+        self.tracks = tracks
         self.both = both
         self.learned = learned
         self.types = both.types
         self._halves = (first, second)
-        self.gains = {(i, j): (gain(first, second, i, j) + gain(second, first, i, j)) / 2
-                      for i in self.types for j in self.types}
-        self.tracks: List[Track] = []
-        for kind in self.types:
-            if len(both.gaps[kind]) >= 30:
-                often = sum(both.rates[kind]) >= 1.5 * len(both.rates[kind])
-                self.tracks += [(channel, kind, kind) for channel in
-                                (('overdue', 'fewer', 'more') if often else ('overdue',))]
-        for kind in self.types:
-            self.tracks += [(channel, kind, other) for other in self._predecessors(kind)
-                            for channel in DELAYS]
-        for kind in self.types:
-            self.tracks += [('answer', kind, other) for other in self._asking(kind)]
         self.longest = {kind: max(both.gaps[kind], default=0) for kind in self.types}
+        self.longest_silence = max(seen.longest_silence for seen in both.recordings)
         self._gaps = {kind: self._binned(learned.gaps[kind]) for kind in self.types}
         self._surprises = {track: self._standardised(track[2], track[1])
-                           for track in self.tracks if track[0] in DELAYS}
-
-    def _predecessors(self, e_j: str) -> List[str]:
-        good = [i for i in self.types
-                if self.gains[i, e_j] >= 0.3 and len(self.both.delays[i, e_j]) >= 200]
-        return sorted(good, key=lambda i: -self.gains[i, e_j])[:3]
-
-    def _asking(self, answer: str) -> List[str]:
-        def time_of_a_miss(kind: str) -> float:
-            return self.both.mean_gap(kind) / (1 - self.both.miss_rate(kind, answer))
-
-        return sorted([kind for kind in self.types
-                       if kind != answer and len(self.both.gaps[kind]) >= 100
-                       and len(self.both.gaps[answer]) >= 100
-                       and self.both.miss_rate(kind, answer) <= 0.6
-                       and self.gains[answer, kind] <= self.gains[kind, answer] + 0.3],
-                      key=time_of_a_miss)[:8]
+                           for track in tracks if track[0] in DELAYS}
 
     def _standardised(self, e_i: str, e_j: str) -> List[float]:
         first, second = (half.delays[e_i, e_j] for half in self._halves)
@@ -163,8 +230,28 @@ class ReferenceModel:
         mean = math.fsum(held_out) / len(held_out) if held_out else 0.0
         variance = (math.fsum((s - mean) ** 2 for s in held_out) / len(held_out)
                     if held_out else 0.0)
-        return [min((-log - mean) / max(math.sqrt(variance), 0.5), 6.0)
-                for log in log_probabilities(self.learned.delays[e_i, e_j])]
+        surprises = [min((-log - mean) / max(math.sqrt(variance), LEAST_DEVIATION), MOST_SURPRISE)
+                     for log in log_probabilities(self.learned.delays[e_i, e_j])]
+        period = self.learned.mean_gap(e_i)
+        shortest, longest = self._harmless(e_i, e_j)
+        shifts = (0.0, period, -period) if e_i != e_j else (0.0,)
+        harmless = {index for index in range(BINS) for shift in shifts
+                    if lower_edge(index) + shift >= shortest
+                    and lower_edge(index + 1) + shift <= longest}
+        if e_i != e_j and shortest <= 0.0:  # and so is the bin that a period lies in
+            harmless |= {index for index in range(BINS)
+                         if lower_edge(index) < period <= lower_edge(index + 1)}
+        return [min(surprise, 0.0) if index in harmless else surprise
+                for index, surprise in enumerate(surprises)]
+
+    def _harmless(self, e_i: str, e_j: str) -> Tuple[float, float]:
+        """Return the shortest and the longest delay that differ by little from the usual ones."""
+        bins = self.learned.delays[e_i, e_j]
+        in_ns, of_period = LEAST_EFFECT_ON_GAP if e_i == e_j else LEAST_EFFECT
+        effect = max(in_ns, of_period * self.learned.mean_gap(e_i))
+        shortest = lower_edge(bin_at_most(bins, (1 - USUAL) / 2 * len(bins)))
+        last = bin_below(bins, (1 + USUAL) / 2 * len(bins))
+        return shortest - effect, lower_edge(last + 1) + effect
 
     @staticmethod
     def _binned(gaps: Sequence[int]) -> List[float]:
@@ -188,7 +275,8 @@ class ReferenceModel:
         counts = self.learned.rates[kind]
         mean = sum(counts) / max(len(counts), 1)
         variance = sum((n - mean) ** 2 for n in counts) / max(len(counts), 1)
-        return (count - mean) / math.sqrt(variance + min(1.0, mean / 4) + 0.25)
+        drift = LEAST_RATE_EFFECT * mean
+        return (count - mean) / math.sqrt(variance + min(1.0, mean / 4) + 0.25 + drift ** 2)
 
     def surprise(self, track: Track, delay: int) -> float:
         """Return how unusual a delay is [standard deviations]."""
@@ -196,108 +284,30 @@ class ReferenceModel:
 
     def usual_misses(self, track: Track) -> float:
         """Return the share of answers that are usually left out."""
-        return min(max(self.learned.miss_rate(track[2], track[1]), 0.1), 0.95)
+        least, most = MISS_RATES
+        return min(max(self.learned.miss_rate(track[2], track[1]), least), most)
 
     def answer_step(self, track: Track, missed: bool) -> float:
         """Return the log-likelihood ratio of half of the answers being taken away."""
         usual = self.usual_misses(track)
-        faulty = usual + (1 - usual) / 2
+        faulty = usual + (1 - usual) * LOST
         return math.log(faulty / usual if missed else (1 - faulty) / (1 - usual))
 
+    def usual_answer(self, track: Track) -> int:
+        """Return the time that the answer usually takes [ns]."""
+        return round(self.learned.usual_delay(track[2], track[1], 0.5) * 1e9)
 
-class Cusum:
-    """A sum from 0 to a cap that counts once events were as in training."""
+    def counts_requests(self, track: Track) -> bool:
+        """Return whether a deadline counts requests, not seconds."""
+        return self.learned.usual_delay(track[2], track[2], 0.5) < LONGEST_GAP_OF_SERIES
 
-    def __init__(self, cap: float) -> None:
-        self.sum = 0.0
-        self._cap = cap
-        self._armed = False
-        self._excesses: List[float] = []
-
-    def add(self, step: float, excess: float, usual: float) -> None:
-        """Add an event whose excess over training is usual up to a mean."""
-        self.sum = min(max(self.sum + step, 0.0), self._cap)
-        self._excesses.append(excess)
-        if len(self._excesses) == 30:
-            self._armed = self._armed or sum(self._excesses) / 30 <= usual
-            self._excesses = []
-
-    @property
-    def evidence(self) -> float:
-        """The sum, once armed."""
-        return self.sum if self._armed else 0.0
-
-
-class ReferenceScorer:
-    """Evidence of one recording: `rows` holds that of all tracks for every window.
-
-    Args:
-        model: that judges.
-        events: of the recording.
-        window: [ns].
-        limits: of the tracks; none: not known.
-    """
-
-    def __init__(self, model: ReferenceModel, events: Sequence[Event], window: int,
-                 limits: Sequence[float] = ()) -> None:
-        self._model = model
-        self._window = window
-        self._last: Dict[str, Tuple[int, int]] = {}  # stamp and number of the event
-        self._in_window: Dict[str, List[int]] = defaultdict(list)
-        self._caps = {track: 1.5 * limit for track, limit in zip(model.tracks, limits)
-                      if limit > 0.0}
-        self._sums = {track: self._cusum(track) for track in model.tracks}
-        self.rows: List[List[float]] = []
-        self._first = index = events[0][0] // window
-        for number, (t, kind) in enumerate(events):
-            while (index + 1) * window <= t:
-                self.rows.append(self._row(index))
-                index += 1
-            if kind in model.types:
-                self._add(t, kind)
-                self._last[kind] = (t, number)
-                self._in_window[kind].append(index)
-        self.rows.append(self._row(index))
-
-    def _cusum(self, track: Track) -> Cusum:
-        return Cusum(self._caps.get(track, 200.0))
-
-    def _add(self, t: int, kind: str) -> None:
-        own = self._last.get(kind)
-        for track in self._model.tracks:
-            channel, to, other = track
-            if channel in DELAYS and to == kind:
-                before = self._last.get(other)
-                if before is not None and (own is None or before[1] >= own[1]):
-                    surprise = self._model.surprise(track, t - before[0])
-                    self._sums[track].add(surprise - DELAYS[channel], surprise, 0.3)
-            if channel == 'answer' and other == kind:
-                answer = self._last.get(to)
-                if own is not None and answer is not None:
-                    missed = answer[1] < own[1]
-                    self._sums[track].add(self._model.answer_step(track, missed),
-                                          missed - self._model.usual_misses(track), 0.15)
-        if own is not None and t - own[0] > 5 * self._model.longest[kind]:
-            for track in self._model.tracks:
-                if kind in track[1:]:
-                    self._sums[track] = self._cusum(track)
-
-    def _row(self, index: int) -> List[float]:
-        end = (index + 1) * self._window
-        span = max(2 * SECOND // self._window, 1)
-        row = []
-        for track in self._model.tracks:
-            channel, kind, _ = track
-            last = self._last.get(kind)
-            value = 0.0
-            if channel == 'overdue' and last is not None:
-                value = self._model.overdue(kind, max(end - last[0], 0))
-            elif channel in ('fewer', 'more'):
-                if last is not None and index - self._first + 1 >= span:
-                    count = sum(n > index - span for n in self._in_window[kind])
-                    more = self._model.rate(kind, count)
-                    value = max(more if channel == 'more' else -more, 0.0)
-            elif channel in DELAYS or channel == 'answer':
-                value = self._sums[track].evidence
-            row.append(value)
-        return row
+    def least_limit(self, track: Track) -> float:
+        """Return the least limit that the track may have."""
+        channel = track[0]
+        if channel == 'overdue':
+            return 0.0
+        if channel == 'answer':
+            return max(4 * self.answer_step(track, True), 5.0)
+        if channel == 'deadline':
+            return 3.0 if self.counts_requests(track) else 0.5
+        return 2 * MOST_SURPRISE + 1 if channel in DELAYS else 3.0

@@ -2,131 +2,331 @@
 from __future__ import annotations
 
 import math
-from typing import Dict, List, Sequence, Tuple
+from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple
 
-from reference_evidence import (DELAYS, KINDS, SECOND, Counts, Event, Pair, ReferenceModel,
-                                ReferenceScorer, Track, gain)
+import numpy as np
+from reference_evidence import DELAYS, SECOND, Counts, Event, ReferenceModel, Seen, Track, gain
+from reference_relations import ReferenceRelations, Relation, Span, starts_of
+from reference_scorer import ReferenceScorer
+
+HOUR = 3600 * SECOND
+PART = 30 * SECOND
+LEAST_MARGIN = {'deadlines': 2.0, 'linker': 1.5}
+"""By pool; 1.25 elsewhere."""
+MOST_MARGIN = 4.0
+MOST_OWN_MARGIN = 2.0
+SCALE = {'timers': 0.05, 'fast timers': 0.05}
+"""By pool; 0.2 elsewhere."""
+LEAST_LINKER_LIMIT = 2.0
+LEAST_LINKED = 0.5
+REGULAR = 1.5
+FAST = 2
+"""Windows."""
+LONGEST_WAIT = 10 * SECOND
+LONGEST_DEADLINE = 20.0
+MOST_DELAY_LIMIT = 100.0
+MOST_MEAN_GAPS = 3.0
+TAIL_GAPS = 20
+SHARES = 8
+POOLS = {'fewer': 'rates', 'more': 'rates', 'delay': 'delays', 'slow delay': 'slow delays',
+         'answer': 'answers', 'deadline': 'deadlines'}
+CHUNK = 100 * SECOND
+LEAST_GAIN_LEFT = 0.7
+
+LEAST_SHARE = 0.5
+PRIOR_EXCEEDANCES = 5
+FEWEST_EXCEEDANCES = 0.5
+LEAST_EXCESS = math.log(1.1)
+MANY_TRACKS = 20
+BEYOND = math.log(1.25)
 
 
-def rounded(maximum: float) -> float:
-    """Return the nearest of 256 values between two powers of two."""
-    if maximum < 1 / 1024:
-        return 0.0
-    step = 2.0 ** math.floor(math.log2(maximum)) / 256
-    return math.floor(maximum / step + 0.5) * step
+def single(value: float) -> float:
+    """Return the nearest number of single precision."""
+    return float(np.float32(value))
 
 
-def gumbel_limit(maxima: Sequence[float], probability: float) -> float:
-    """Return what maxima exceed with the probability, by L-moments taken pair by pair."""
-    n = len(maxima)
-    mean = math.fsum(maxima) / n
-    differences = [abs(a - b) for k, a in enumerate(maxima) for b in maxima[:k]]
-    scale = math.fsum(differences) / len(differences) / 2 / math.log(2.0)
-    location = mean - 0.57721566490153286 * scale
-    return location - scale * math.log(-math.log(1.0 - probability))
+class Part(NamedTuple):
+    """A part of a recording: the start that it belongs to, and its length."""
+
+    start: int
+    hours: float
+
+
+class HeldOut:
+    """What parts show beyond the others.
+
+    Args:
+        parts: all of them.
+        tracks: the largest values of every track by part, and its least limit.
+        scale: that is believed before anything is seen.
+    """
+
+    def __init__(self, parts: Sequence[Part], tracks: Sequence[Tuple[Sequence[float], float]],
+                 scale: float) -> None:
+        self._parts = parts
+        self._many = len(tracks) >= MANY_TRACKS
+        self._levels = []  # eligible hours, logarithms of the exceedances, their scale
+        for groups in ([part.start for part in parts], list(range(len(parts)))):
+            found = [self._exceedance(groups, largest, least) for largest, least in tracks]
+            logs = [log for log in found if log > LEAST_EXCESS]
+            believed = ((sum(log - LEAST_EXCESS for log in logs) + scale * PRIOR_EXCEEDANCES)
+                        / (len(logs) + PRIOR_EXCEEDANCES))
+            eligible = sum(self._hours(groups, group) for group in set(groups)
+                           if self._is_eligible(groups, group))
+            if eligible > 0:
+                self._levels.append((eligible, logs, believed))
+
+    def _hours(self, groups: Sequence[int], group: int) -> float:
+        return sum(part.hours for part, other in zip(self._parts, groups) if other == group)
+
+    def _is_eligible(self, groups: Sequence[int], group: int) -> bool:
+        return self._hours(groups, group) <= sum(part.hours for part in self._parts) / 2
+
+    def _exceedance(self, groups: Sequence[int], largest: Sequence[float], least: float) -> float:
+        of_group = {group: max(value for value, other in zip(largest, groups) if other == group)
+                    for group in sorted(set(groups))}
+        worst = max(of_group, key=lambda group: of_group[group])
+        if of_group[worst] <= least or not self._is_eligible(groups, worst):
+            return 0.0
+        second = max((value for group, value in of_group.items() if group != worst), default=0.0)
+        known = max(second, LEAST_SHARE * least)
+        return math.log(of_group[worst] / known) if known > 0 else 0.0
+
+    def excess(self, largest: Sequence[float], least: float) -> float:
+        """Return by how much the worst start exceeds the others."""
+        return math.exp(self._exceedance([part.start for part in self._parts], largest, least))
+
+    def margin(self, rate: float, least: float) -> float:
+        """Return the margin that is exceeded so often an hour."""
+        margin = least
+        for hours, logs, scale in self._levels:
+            expected = max(len(logs), FEWEST_EXCEEDANCES) / (hours * rate)
+            log = LEAST_EXCESS + scale * max(math.log(expected), 0.0)
+            if self._many:
+                log = min(log, max(logs, default=0.0) + BEYOND)
+            margin = max(margin, math.exp(log))
+        return margin
+
+    def rate(self, margin: float) -> float:
+        """Return how often an hour a margin is exceeded."""
+        beyond = max(math.log(margin) - LEAST_EXCESS, 0.0)
+        return max((max(len(logs), FEWEST_EXCEEDANCES) / hours * math.exp(-beyond / scale)
+                    for hours, logs, scale in self._levels), default=0.0)
+
+
+class Judged(NamedTuple):
+    """A recording of normal operation, and the model that judges it."""
+
+    events: Sequence[Event]
+    judging: ReferenceModel
+    trained_on: bool
+
+    @property
+    def span(self) -> Span:
+        """First and last stamp."""
+        return self.events[0][0], self.events[-1][0]
 
 
 class ReferenceLimits:
-    """Limits by recordings of normal operation, each with the model that judges it.
+    """Limits by recordings of normal operation.
 
     Args:
         model: whose limits they are.
-        recordings: events, and the model that judges them.
+        recordings: of normal operation.
         window, settle_time: [ns].
         budget: false alarms an hour.
     """
 
-    def __init__(self, model: ReferenceModel,
-                 recordings: Sequence[Tuple[Sequence[Event], ReferenceModel]], window: int,
+    def __init__(self, model: ReferenceModel, recordings: Sequence[Judged], window: int,
                  settle_time: int, budget: float) -> None:
         self._model = model
         self._recordings = recordings
         self._window = window
-        self._budget = budget
         self._settle_time = settle_time
-        self.windows = sum(len(self._settled(*recording, ())) for recording in recordings)
-        self._blocks = self._in_blocks(())
-        self._misleading = self._misleading_pairs()
-        self.tracks = [self._limit(n) for n in range(len(model.tracks))]
-        linked = [rounded(max(self._linker(row) for row in block))
-                  for block in self._in_blocks(self.tracks)]
-        self.linker = max(1.0, 1.5 * max(linked),
-                          gumbel_limit(linked, min(budget * 10 / 3600, 0.5)))
+        self._rate = budget / SHARES
+        spans = [(seen.start, seen.end) for seen in self._training()]
+        starts = starts_of(spans + [recording.span for recording in recordings])
+        self._starts_of_training = starts[:len(spans)]
+        self._starts = starts[len(spans):]
+        self._rows = [self._settled(recording, ()) for recording in recordings]
+        self.windows = sum(len(rows) for rows in self._rows)
+        self.relations = [self._relation(track) for track in model.tracks]
+        self.expected_rate = 0.0
+        self.tracks = self._find()
+        starts = starts_of([recording.span for recording in recordings])
+        self.linker = self._find_linker(starts)
 
-    def _settled(self, events: Sequence[Event], judging: ReferenceModel,
-                 limits: Sequence[float]) -> List[List[float]]:
+    def _training(self) -> List[Seen]:
+        return sorted(self._model.both.recordings, key=lambda seen: (seen.start, seen.end))
+
+    def _settled(self, recording: Judged, limits: Sequence[float]) -> List[List[float]]:
         # The last window lasts longer than the recording.
-        rows = ReferenceScorer(judging, events, self._window, limits).rows[:-1]
-        first = events[0][0] // self._window
-        return [row for n, row in enumerate(rows)
-                if (first + n) * self._window >= events[0][0] + self._settle_time]
+        rows = ReferenceScorer(recording.judging, recording.events, self._window, limits).rows[:-1]
+        return rows[self._unsettled(recording):]
 
-    def _in_blocks(self, limits: Sequence[float]) -> List[List[List[float]]]:
-        length = 10 * SECOND // self._window
-        blocks = []
-        for recording in self._recordings:
-            settled = self._settled(*recording, limits)
-            blocks += [settled[begin:begin + length]
-                       for begin in range(0, len(settled) - length + 1, length)]
-        return blocks
+    def _unsettled(self, recording: Judged) -> int:
+        """Return the number of windows that begin before the detector has settled."""
+        first = recording.events[0][0]
+        return -(-(first + self._settle_time) // self._window) - first // self._window
 
-    def _misleading_pairs(self) -> List[Pair]:
-        pairs = []
-        for events, _ in self._recordings:
-            for chunk in self._chunks(events):
-                now = Counts([chunk], self._model.types, self._window)
-                pairs += [(i, j) for i in self._model.types for j in self._model.types
-                          if len(now.delays[i, j]) >= 50 and gain(self._model.both, now, i, j)
-                          < 0.7 * gain(self._model.both, self._model.both, i, j)]
-        return pairs
+    def _in_parts(self, rows: Sequence[List[float]]) -> List[Sequence[List[float]]]:
+        length = PART // self._window
+        return [rows[begin:begin + length] for begin in range(0, len(rows), length)]
 
-    @staticmethod
-    def _chunks(events: Sequence[Event]) -> List[List[Event]]:
+    def _parts_of(self, number: int, start: int) -> List[Part]:
+        return [Part(start, len(part) * self._window / HOUR)
+                for part in self._in_parts(self._rows[number])]
+
+    def _relation(self, track: Track) -> Relation:
+        channel, to, other = track
+        relations = ReferenceRelations(self._model.both)
+        if channel == 'answer':
+            return relations.answers(other, to)
+        if channel == 'deadline':
+            return relations.deadline(other, to)
+        if to == other:
+            return Relation(True)
+        said = [self._said(recording, other, to) for recording in self._recordings]
+        as_usual = [recording.span for recording, what in zip(self._recordings, said)
+                    if what is True and not recording.trained_on]
+        relation = relations.delays(other, to, as_usual)
+        return relation._replace(watched=relation.watched and False not in said)
+
+    def _said(self, recording: Judged, e_i: str, e_j: str) -> Optional[bool]:
+        """Return whether delays say as much as in training; None: there are too few."""
+        known = [event for event in recording.events if event[1] in self._model.types]
         chunks: List[List[Event]] = [[]]
-        for event in events:
+        for event in known:
             chunks[-1].append(event)
-            if event[0] - chunks[-1][0][0] >= 100 * SECOND:
+            if event[0] - chunks[-1][0][0] >= CHUNK:
                 chunks.append([])
-        return [chunk for chunk in chunks if chunk]
+        both = self._model.both
+        found = []
+        for chunk in filter(None, chunks):
+            now = Counts([chunk], self._model.types, self._window)
+            if len(now.delays[e_i, e_j]) >= 50:
+                found.append(gain(both, now, e_i, e_j)
+                             >= LEAST_GAIN_LEFT * gain(both, both, e_i, e_j))
+        return all(found) if found else None
 
-    def _limit(self, index: int) -> float:
-        channel, kind, other = track = self._model.tracks[index]
-        of_kind = [t for t in self._model.tracks if KINDS[t[0]] == KINDS[channel]]
-        per_hour = self._budget / 4 / len(of_kind)
-        if channel == 'overdue':
-            age = self._overdue_age(kind, per_hour)
-            irregular = age > 10 * SECOND and age > 3 * self._model.both.mean_gap(kind)
-            return math.nan if irregular else self._model.overdue(kind, round(age))
-        maxima = [rounded(max(row[index] for row in block)) for block in self._blocks]
-        found = max(self._least(track), 1.25 * max(maxima),
-                    gumbel_limit(maxima, min(per_hour * 10 / 3600, 0.5)))
-        if channel in DELAYS:
-            useless = (other, kind) in self._misleading or found > 100
-        else:
-            useless = channel == 'answer' and (found / self._model.answer_step(track, True)
-                                               * self._model.both.mean_gap(other) > 10 * SECOND)
-        return math.nan if useless else found
+    def _longest_gaps(self, kind: str) -> List[float]:
+        """Return the longest gaps of the recordings of the training, and of parts of others."""
+        longest = [float(seen.longest_gaps[kind]) for seen in self._training()]
+        for number, recording in enumerate(self._recordings):
+            if not recording.trained_on:
+                longest += self._longest_gaps_of_parts(number, kind)
+        return [gap + self._window if gap else 0.0 for gap in longest]
 
-    def _least(self, track: Track) -> float:
-        if track[0] == 'answer':
-            return max(4 * self._model.answer_step(track, True), 5.0)
-        return 13.0 if track[0] in DELAYS else 3.0
+    def _longest_gaps_of_parts(self, number: int, kind: str) -> List[float]:
+        # A gap belongs to the part of the window that was closed last.
+        recording = self._recordings[number]
+        longest = [0.0] * len(self._in_parts(self._rows[number]))
+        newest = recording.events[0][0]
+        last: Optional[int] = None
+        for t, other in recording.events:
+            newest = max(newest, t)
+            if other == kind:
+                closed = (newest // self._window - recording.events[0][0] // self._window
+                          - self._unsettled(recording))
+                part = max(closed - 1, 0) // (PART // self._window)
+                longest[part] = max(longest[part], t - last if last is not None else 0)
+                last = t
+        return longest
 
-    def _overdue_age(self, kind: str, per_hour: float) -> float:
+    def _largest(self, index: int) -> List[float]:
+        return [single(max(row[index] for row in part))
+                for rows in self._rows for part in self._in_parts(rows)]
+
+    def _pool(self, index: int) -> str:
+        channel, kind, _ = self._model.tracks[index]
+        if channel != 'overdue':
+            return POOLS[channel]
+        second = sorted(self._longest_gaps(kind))[-2] - self._window
+        mean = self._model.both.mean_gap(kind)
+        if second >= REGULAR * mean:
+            return 'others'
+        return 'fast timers' if mean < FAST * self._window else 'timers'
+
+    def _find(self) -> List[float]:
+        with_gaps = [Part(start, (seen.end - seen.start) / HOUR)
+                     for seen, start in zip(self._training(), self._starts_of_training)]
+        judged: List[Part] = []
+        for number, (recording, start) in enumerate(zip(self._recordings, self._starts)):
+            parts = self._parts_of(number, start)
+            judged += parts
+            with_gaps += [] if recording.trained_on else parts
+        pools: Dict[str, List[int]] = {}
+        for index, relation in enumerate(self.relations):
+            if relation.watched:
+                pools.setdefault(self._pool(index), []).append(index)
+        limits = [math.nan] * len(self._model.tracks)
+        for pool, tracks in pools.items():
+            of_gaps = pool in ('fast timers', 'timers', 'others')
+            seen = [(self._longest_gaps(self._model.tracks[index][1]) if of_gaps
+                     else self._largest(index), self._model.least_limit(self._model.tracks[index]))
+                    for index in tracks]
+            held_out = HeldOut(with_gaps if of_gaps else judged, seen, SCALE.get(pool, 0.2))
+            margin = min(held_out.margin(self._rate, LEAST_MARGIN.get(pool, 1.25)), MOST_MARGIN)
+            self.expected_rate += held_out.rate(margin) if pool != 'slow delays' else 0.0
+            for index, (largest, least) in zip(tracks, seen):
+                own = max(margin, min(held_out.excess(largest, least), MOST_OWN_MARGIN))
+                found = max(least, own * max(*largest, LEAST_SHARE * least))
+                track = self._model.tracks[index]
+                if pool == 'others':
+                    hours = sum(part.hours for part in with_gaps)
+                    tail = self._tail(track[1], hours, self._rate / len(tracks))
+                    found = max(found, tail + self._window)
+                limits[index] = self._limit(track, found)
+        return limits
+
+    def _tail(self, kind: str, hours: float, rate: float) -> float:
+        """Return the gap that is exceeded so often an hour, by the longest ones that were seen."""
         gaps = list(self._model.both.gaps[kind])
-        duration = self._model.both.duration
-        for events, _ in self._recordings:
-            own = [t for t, other in events if other == kind]
-            gaps += [b - a for a, b in zip(own, own[1:])]
-            duration += events[-1][0] - events[0][0]
-        longest = sorted(gaps)[-20:]
+        for number, recording in enumerate(self._recordings):
+            if not recording.trained_on:
+                gaps += [int(gap) for gap in self._longest_gaps_of_parts(number, kind)]
+        longest = sorted(gaps)[-TAIL_GAPS:]
         excess = sum(gap - longest[0] for gap in longest) / len(longest)
-        rarer = len(longest) / (duration / SECOND) / (per_hour / 3600)
-        return max(longest[0] + excess * max(math.log(rarer), 0.0), 1.1 * longest[-1])
+        return longest[0] + excess * max(math.log(len(longest) / hours / rate), 0.0)
+
+    def _limit(self, track: Track, found: float) -> float:
+        channel, kind, other = track
+        if channel == 'overdue':
+            age = found - self._window
+            irregular = (age > LONGEST_WAIT
+                         and age > MOST_MEAN_GAPS * self._model.both.mean_gap(kind))
+            return math.nan if irregular else self._model.overdue(kind, round(age))
+        if channel in DELAYS:
+            return math.nan if found > MOST_DELAY_LIMIT else found
+        if channel == 'answer':
+            wait = (found / self._model.answer_step(track, True)
+                    * self._model.both.mean_gap(other))
+            return math.nan if wait > LONGEST_WAIT else found
+        if channel == 'deadline':
+            seconds = (found * self._model.learned.usual_delay(other, other, 0.5)
+                       if self._model.counts_requests(track) else found)
+            return math.nan if seconds > LONGEST_DEADLINE else found
+        return found
+
+    def _find_linker(self, starts: Sequence[int]) -> float:
+        parts: List[Part] = []
+        largest: List[float] = []
+        for number, (recording, start) in enumerate(zip(self._recordings, starts)):
+            parts += self._parts_of(number, start)
+            largest += [single(max(self._linker(row) for row in part))
+                        for part in self._in_parts(self._settled(recording, self.tracks))]
+        held_out = HeldOut(parts, [(largest, LEAST_LINKER_LIMIT)], 0.2)
+        margin = held_out.margin(self._rate, LEAST_MARGIN['linker'])
+        self.expected_rate += held_out.rate(margin)
+        return max(LEAST_LINKER_LIMIT,
+                   margin * max(*largest, LEAST_SHARE * LEAST_LINKER_LIMIT))
 
     def _linker(self, row: Sequence[float]) -> float:
         shares: Dict[str, float] = {}
         for (channel, kind, _), value, limit in zip(self._model.tracks, row, self.tracks):
-            if channel in ('slow delay', 'answer') and not math.isnan(limit):
-                shares[kind] = max(shares.get(kind, 0.0), min(value / limit, 1.0))
+            # Never so where the limit is NaN.
+            if channel in ('slow delay', 'answer') and value / limit > 0:
+                share = min((value / limit - LEAST_LINKED) / (1 - LEAST_LINKED), 1.0)
+                shares[kind] = max(shares.get(kind, 0.0), share)
         return sum(shares.values())

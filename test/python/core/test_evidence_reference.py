@@ -7,8 +7,10 @@ from typing import Dict, List, Optional, Tuple
 
 import numpy as np
 import pytest
-from reference_evidence import (KINDS, Counts, Event, ReferenceModel, ReferenceScorer)
-from reference_evidence_limits import ReferenceLimits
+from reference_evidence import KINDS, Counts, Event, ReferenceModel
+from reference_evidence_limits import Judged, ReferenceLimits
+from reference_relations import ReferenceRelations, number_of_starts, watched
+from reference_scorer import ReferenceScorer
 
 from self_awareness import (EncodingRules, EventType, EvidenceModel, LimitFinder, TrainedModel,
                             Training)
@@ -18,21 +20,24 @@ MS = 1_000_000
 WINDOW = 100 * MS
 SETTLE = 5 * SECOND_NS
 BUDGET = 0.5
-LETTERS = 'ABCDEFG'
+LETTERS = 'ABCDEFGHI'
 SEEDS = (1, 2)
 
 
 def robot(chance: random.Random, seconds: float, fault_s: float = math.inf) -> List[Event]:
-    """A timer, two that answer it, a slow and an irregular one, and one that is rare.
+    """A trigger, two that answer it, a timer, an irregular one, requests, and one that is rare.
 
-    From the fault on, the answers come later and often not at all, the slow one comes often, the
-    irregular one is gone for a while, and something unknown comes. Some stamps are equal, some
-    late.
+    From the fault on, the answers come later and often not at all, requests get none, the timer
+    comes often, the irregular one is gone for a while, and something unknown comes. Once, the
+    whole robot stops for a moment. Some stamps are equal, some late.
     """
-    start = chance.randrange(10 ** 12)
+    start = chance.randrange(10 ** 15)
+    stall_s = chance.uniform(0.4, 0.6) * seconds
     found: List[Tuple[float, int, str]] = []
 
     def put(at: float, kind: str, late: float = 0.0) -> None:
+        if stall_s <= at < stall_s + 0.8:
+            at, late = stall_s + 0.8, 0.0
         stamp = start + round((at - late) * 1000) * MS
         found.append((at, stamp, kind))
 
@@ -45,13 +50,15 @@ def robot(chance: random.Random, seconds: float, fault_s: float = math.inf) -> L
             put(answer, 'B')
             if chance.random() < 0.7:
                 put(answer + chance.choice([0.0, 0.006]), 'C')
-        at += chance.uniform(0.19, 0.23)
-    for kind, gap in (('D', 0.7), ('E', 0.25), ('F', 9.0), ('G', 2.0)):
+        at += 0.001 if chance.random() < 0.05 else chance.uniform(0.05, 0.6)
+    for kind, gap in (('D', 0.7), ('E', 0.25), ('F', 4.0), ('G', 2.0), ('H', 20.0)):
         at = chance.uniform(0.0, gap)
         while at < seconds:
             gone = kind == 'E' and fault_s <= at < fault_s + 10.0
             if not gone and (kind != 'G' or at >= fault_s):
                 put(at, kind)
+                if kind == 'F' and at < fault_s:
+                    put(at + chance.uniform(0.4, 0.5), 'I')
             often = 4.0 if kind == 'D' and at >= fault_s else 1.0
             spread = 0.1 if kind == 'D' else 0.8
             at += gap / often * chance.uniform(1.0 - spread, 1.0 + spread)
@@ -68,8 +75,9 @@ class Robot:
         types = list(dict.fromkeys(kind for events in everything for _, kind in events))
         first, second, both = (Counts(recordings, types, WINDOW)
                                for recordings in (*self.halves, everything))
-        self.reference = ReferenceModel(first, second, both, both)
-        self.reference_of_half = [ReferenceModel(first, second, both, other)
+        tracks = watched(first, second, both)
+        self.reference = ReferenceModel(tracks, first, second, both, both)
+        self.reference_of_half = [ReferenceModel(tracks, first, second, both, other)
                                   for other in (second, first)]
         self.trained = self._trained(everything)
         self.model = EvidenceModel(self.trained)
@@ -112,6 +120,18 @@ def test_overdue_is_the_literal_sum(learned: Robot) -> None:
                 learned.reference.overdue(kind, age), abs=1e-9)
 
 
+def test_starts_are_told_apart() -> None:
+    spans = [(0, 100), (150, 200), (260, 300), (300, 310), (400, 410)]
+    assert number_of_starts([(a * SECOND_NS, b * SECOND_NS) for a, b in spans]) == 3
+
+
+def test_some_relations_have_a_reason_and_others_have_none(learned: Robot) -> None:
+    relations = ReferenceRelations(learned.reference.both)
+    found = [relations.delays(other, to).watched
+             for to in learned.ids for other in learned.ids if to != other]
+    assert any(found) and not all(found)
+
+
 @pytest.mark.parametrize('fault_s', [math.inf, 25.0])
 def test_the_evidence_of_all_channels(learned: Robot, fault_s: float) -> None:
     events = robot(random.Random(str(fault_s)), 60.0, fault_s)
@@ -143,12 +163,22 @@ def test_the_limits(learned: Robot, held_out: bool) -> None:
             finder.start_second_pass()
     expected = ReferenceLimits(
         learned.reference,
-        [(events, learned.reference if half is None else learned.reference_of_half[half])
-         for events, half in parts], WINDOW, SETTLE, BUDGET)
+        [Judged(events, learned.reference if half is None else learned.reference_of_half[half],
+                half is not None) for events, half in parts], WINDOW, SETTLE, BUDGET)
     limits = finder.limits()
     assert finder.windows == expected.windows
+    for found, relation in zip(finder.relations(), expected.relations):
+        assert (found.watched, found.reaches, found.irregular, found.starts,
+                found.starts_needed) == (relation.watched, relation.reaches, relation.irregular,
+                                         relation.starts, relation.starts_needed)
+        assert found.spread == pytest.approx(relation.spread, abs=1e-9)
     assert limits.tracks == pytest.approx(expected.tracks, abs=1e-9, nan_ok=True)
-    pairs = [limit for limit, track in zip(limits.tracks, learned.reference.tracks)
-             if KINDS[track[0]] == 'pairs']
-    assert any(map(math.isfinite, pairs)) and any(map(math.isnan, pairs)) == held_out
+    pairs = [(limit, track[2], track[1]) for limit, track in
+             zip(limits.tracks, learned.reference.tracks) if KINDS[track[0]] == 'pairs']
+    assert any(math.isfinite(limit) for limit, _, _ in pairs)
+    # Relations without a reason are not judged; of the others, those that mislead.
+    relations = ReferenceRelations(learned.reference.both)
+    assert any(math.isnan(limit) and relations.delays(other, to).watched
+               for limit, other, to in pairs) == held_out
     assert limits.linker == pytest.approx(expected.linker, abs=1e-9)
+    assert finder.expected_rate() == pytest.approx(expected.expected_rate, abs=1e-9)

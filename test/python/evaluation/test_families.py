@@ -66,8 +66,9 @@ def test_recordings_of_every_family_are_in_order_and_within_their_time(name: str
     assert first == sorted(first)
     assert recording.ids.max() == len(recording.event_types) - 1
     sources = {output.source for output in robot.outputs}
-    for publisher, subscribers in robot.graph.items():
-        assert publisher in sources and publisher not in subscribers and subscribers <= sources
+    topics = {(output.source, output.topic) for output in robot.outputs}
+    for publisher, topic, subscriber in robot.graph:
+        assert (publisher, topic) in topics and subscriber in sources - {publisher}
     assert set(robot.regular) <= sources and set(robot.answering) <= sources
 
 
@@ -124,8 +125,8 @@ def test_answers_follow_what_they_answer_to() -> None:
 
 def test_the_graph_and_who_can_break() -> None:
     robot = small()
-    assert robot.graph == {'/driver': {'/filter'}, '/filter': {'/planner'},
-                           '/battery': {'/planner'}}
+    assert robot.graph == {('/driver', '/scan', '/filter'), ('/filter', '/map', '/planner'),
+                           ('/battery', '/charge', '/planner')}
     assert robot.regular == ['/driver', '/filter', '/planner', '/battery']
     assert robot.answering == ['/filter', '/planner']
     events = draw('events_only', 1)

@@ -4,120 +4,23 @@
 
 #include <gtest/gtest.h>
 #include <rosbag/bag.h>
-#include <rosbag/view.h>
 #include <std_msgs/String.h>
 
 #include <boost/filesystem.hpp>
 #include <cmath>
 #include <fstream>
-#include <functional>
-#include <limits>
 #include <map>
 #include <string>
 #include <vector>
 
-#include "core/paper/delay_trainer.h"
+#include "model_file_case.h"
 #include "self_awareness/DelayHistograms.h"
-#include "self_awareness/core/evidence/model.h"
 #include "self_awareness/ros/model/model_bytes.h"
 
 namespace self_awareness::ros1 {
 namespace {
 
 namespace fs = boost::filesystem;
-
-class ModelFileTest : public testing::Test {
- protected:
-  ModelFileTest()
-      : folder_(fs::temp_directory_path() / fs::unique_path("self_awareness-%%%%%%%%")) {
-    fs::create_directory(folder_);
-  }
-  ~ModelFileTest() override { fs::remove_all(folder_); }
-
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
-  static std::string modelError(const std::string& file) {
-    try {
-      loadModel(file);
-    } catch (const ModelFileError& error) {
-      return error.what();
-    }
-    return "";
-  }
-
-  static TrainedModel someModel() {
-    TrainedModel model;
-    model.encoding = EncodingRules::defaults();
-    model.statistics = core::paper::DelayStatistics(core::paper::Binning{5000000, 20});
-    const core::EventId a = model.statistics.intern({"/a", "/x", "T"});
-    const core::EventId b = model.statistics.intern({"/b", "/y", "T[action=1]"});
-    core::paper::DelayTrainer trainer(model.statistics);
-    for (core::evidence::Statistics& half : model.evidence) {
-      half.intern(model.statistics.vocabulary().at(a));
-      half.intern(model.statistics.vocabulary().at(b));
-      core::evidence::Trainer evidence(half, model.window);
-      for (int i = 0; i < 150; ++i) {
-        const core::Event event{i * 37000000LL, i % 3 == 0 ? b : a};
-        trainer.add(event);
-        evidence.add(event);
-      }
-      trainer.startRecording();
-    }
-    model.watch();
-    model.stamp = ros::Time(1700000000, 0);
-    self_awareness::Recording recording;
-    recording.bag = "normal.bag";
-    recording.events = 300;
-    recording.fingerprint = 0xfedcba9876543210;
-    model.recordings = {recording};
-    return model;
-  }
-
-  // Limits for everything that the model watches; the first track is not judged.
-  static TrainedModel calibratedModel() {
-    TrainedModel model = someModel();
-    model.evidence_calibration = self_awareness::EvidenceCalibration();
-    model.evidence_calibration->method = self_awareness::EvidenceCalibration::HELD_OUT;
-    model.evidence_calibration->limits.assign(model.watched.tracks.size(), 2.5);
-    model.evidence_calibration->limits.at(0) = std::numeric_limits<double>::quiet_NaN();
-    model.evidence_calibration->linker_limit = 1.5;
-    model.evidence_calibration->budget = 0.25;
-    model.evidence_calibration->windows = 1234;
-    model.evidence_calibration->recordings = model.recordings;
-    return model;
-  }
-
-  // Error on loading a model file whose messages a test has changed.
-  std::string damagedFile(
-      const std::function<void(rosbag::Bag&, const rosbag::MessageInstance&)>& write) {
-    saveModel(calibratedModel(), path("whole"));
-    const rosbag::Bag whole(path("whole"), rosbag::bagmode::Read);
-    rosbag::Bag damaged(path("damaged"), rosbag::bagmode::Write);
-    for (const rosbag::MessageInstance& message : rosbag::View(whole)) {
-      write(damaged, message);
-    }
-    damaged.close();
-    return modelError(path("damaged"));
-  }
-  template <typename Message, typename Change>
-  std::string damagedMessages(const std::string& topic, Change change) {
-    return damagedFile([&](rosbag::Bag& damaged, const rosbag::MessageInstance& message) {
-      if (message.getTopic() == topic) {
-        const auto changed = message.instantiate<Message>();
-        change(*changed);
-        damaged.write(topic, message.getTime(), *changed);
-      } else {
-        damaged.write(message.getTopic(), message.getTime(), message);
-      }
-    });
-  }
-  template <typename Change>
-  std::string damagedModel(Change change) {
-    return damagedMessages<self_awareness::Model>("/model", change);
-  }
-
-  fs::path folder_;
-};
 
 TEST_F(ModelFileTest, AModelComesBackAsItWasSaved) {
   TrainedModel model = someModel();
@@ -278,101 +181,6 @@ TEST_F(ModelFileTest, NoMoreIsReadThanIsAskedFor) {
   const TrainedModel delays = loadModel(path("m"), ModelCounts::kDelays);
   EXPECT_TRUE(delays.statistics == model.statistics);
   EXPECT_EQ(delays.evidence[0].size(), 0U);
-}
-
-TEST_F(ModelFileTest, TheEvidenceItsLimitsAndTheGraphComeBackAsTheyWereSaved) {
-  TrainedModel model = calibratedModel();
-  model.graph.connect("/a", "/x", "/b");
-  model.graph.connect("/a", "/y", "/c");
-  ASSERT_GE(model.evidence_calibration->limits.size(), 6U);
-  saveModel(model, path("m"));
-  const TrainedModel loaded = loadModel(path("m"));
-  EXPECT_TRUE(loaded.evidence[0] == model.evidence[0]);
-  EXPECT_TRUE(loaded.evidence[1] == model.evidence[1]);
-  EXPECT_TRUE(loaded.watched.halves[0] == model.watched.halves[0]);
-  EXPECT_TRUE(loaded.watched.halves[1] == model.watched.halves[1]);
-  ASSERT_EQ(loaded.watched.tracks.size(), model.watched.tracks.size());
-  for (std::size_t track = 0; track < loaded.watched.tracks.size(); ++track) {
-    EXPECT_EQ(loaded.watched.tracks[track].channel, model.watched.tracks[track].channel);
-    EXPECT_EQ(loaded.watched.tracks[track].to, model.watched.tracks[track].to);
-    EXPECT_EQ(loaded.watched.tracks[track].from, model.watched.tracks[track].from);
-  }
-  EXPECT_EQ(loaded.predecessors, model.predecessors);
-  EXPECT_EQ(loaded.graph.edges().size(), 2U);
-  EXPECT_TRUE(loaded.graph.edges() == model.graph.edges());
-  const core::evidence::Limits limits = loaded.limits().value();
-  ASSERT_EQ(limits.tracks.size(), model.evidence_calibration->limits.size());
-  EXPECT_TRUE(std::isnan(limits.tracks[0]));
-  EXPECT_EQ(limits.tracks[1], 2.5);
-  EXPECT_EQ(limits.linker, 1.5);
-  EXPECT_EQ(loaded.evidence_calibration->method, "held-out");
-  EXPECT_EQ(loaded.evidence_calibration->budget, 0.25);
-  EXPECT_EQ(loaded.evidence_calibration->windows, 1234U);
-  EXPECT_EQ(loaded.evidence_calibration->recordings.at(0).bag, "normal.bag");
-  EXPECT_FALSE(loadModel([this] {
-                 saveModel(someModel(), path("bare"));
-                 return path("bare");
-               }())
-                   .limits());
-}
-
-TEST_F(ModelFileTest, DamagedEvidenceIsRefused) {
-  using Message = self_awareness::Model;
-  using Evidence = self_awareness::Evidence;
-  const auto error = [this](void (*change)(Evidence&)) {
-    return damagedModel([change](Message& model) { change(model.watched.at(1)); });
-  };
-  const std::string file = path("damaged") + ": a damaged model file: its evidence ";
-  for (const auto change : std::vector<void (*)(Evidence&)>{
-           [](Evidence& e) { e.events.pop_back(); }, [](Evidence& e) { e.gaps.push_back(1); },
-           [](Evidence& e) { e.gap_sums.clear(); }, [](Evidence& e) { e.rate_sums.pop_back(); },
-           [](Evidence& e) { e.rate_squares.pop_back(); },
-           [](Evidence& e) { e.longest_offsets.clear(); },
-           [](Evidence& e) { e.longest_offsets.at(1) = 1000000; },
-           [](Evidence& e) { e.longest_gaps.pop_back(); },
-           [](Evidence& e) { e.left_out.pop_back(); }, [](Evidence& e) { e.pairs.pop_back(); },
-           [](Evidence& e) { e.pairs.at(0).id = 1; },
-           [](Evidence& e) { e.pairs.at(0).offsets.at(0) = 1; },
-           [](Evidence& e) { e.pairs.at(0).offsets.at(1) = 1000; },
-           [](Evidence& e) { e.pairs.at(0).counts.pop_back(); },
-           [](Evidence& e) { e.pairs.at(0).answers.push_back(1); }}) {
-    EXPECT_EQ(error(change), file + "does not fit its event types");
-  }
-  EXPECT_EQ(error([](Evidence& e) { e.duration = -1; }), file + "has a negative duration");
-  EXPECT_EQ(error([](Evidence& e) { e.gap_sums.at(0) = -1; }), file + "has impossible gaps");
-  EXPECT_EQ(error([](Evidence& e) { e.gaps.at(0) = 0; }), file + "has impossible gaps");
-  EXPECT_EQ(error([](Evidence& e) { e.pairs.at(0).bins.at(0) = 255; }),
-            file + "has an impossible bin");
-  EXPECT_EQ(damagedModel([](Message& model) { model.watched.pop_back(); }),
-            file + "has not two halves");
-}
-
-TEST_F(ModelFileTest, ImpossibleTracksAreRefused) {
-  using Message = self_awareness::Model;
-  const std::string file = path("damaged") + ": a damaged model file: it watches ";
-  EXPECT_EQ(damagedModel([](Message& m) { m.tracks.at(0).channel = 6; }),
-            file + "what this version does not know");
-  EXPECT_EQ(damagedModel([](Message& m) { m.tracks.at(0).to_id = 2; }),
-            file + "an event type that it does not have");
-  EXPECT_EQ(
-      damagedModel([](Message& m) { m.tracks.at(0).channel = self_awareness::Track::DELAY; }),
-      file + "delays, but not both at present and for longer");
-}
-
-TEST_F(ModelFileTest, LimitsOfAnotherModelAreRefused) {
-  using Message = self_awareness::Model;
-  const std::string told =
-      path("damaged") + ": a damaged model file: its limits are not those of its evidence";
-  for (const auto change : std::vector<void (*)(self_awareness::EvidenceCalibration&)>{
-           [](self_awareness::EvidenceCalibration& c) { c.limits.pop_back(); },
-           [](self_awareness::EvidenceCalibration& c) { c.limits.push_back(1); },
-           [](self_awareness::EvidenceCalibration& c) { c.limits.clear(); },
-           [](self_awareness::EvidenceCalibration& c) { c.linker_limit = std::nan(""); },
-           [](self_awareness::EvidenceCalibration& c) { c.linker_limit = 0; }}) {
-    const std::string error =
-        damagedModel([change](Message& model) { change(model.evidence_calibration.at(0)); });
-    EXPECT_EQ(error.rfind(told, 0), 0U) << error;
-  }
 }
 
 }  // namespace

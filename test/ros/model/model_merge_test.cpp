@@ -33,6 +33,7 @@ void trainOn(TrainedModel& model, const Types& types, std::int64_t start, std::s
     trainer.add(event);
     evidence.add(event);
   }
+  evidence.finish();
   self_awareness::Recording recording;
   recording.fingerprint = static_cast<std::uint64_t>(start);
   model.recordings.push_back(recording);
@@ -127,6 +128,13 @@ TEST_F(ModelMergeTest, SaysWhatDoesNotFitAndLeavesTheModelAsItWas) {
             encoding + "exclude_sources differs");
   EXPECT_EQ(errorOf([](TrainedModel& model) { model.encoding.type_fields["T"] = "status"; }),
             encoding + "type_fields differs");
+}
+
+TEST_F(ModelMergeTest, WhatRecordingsShowedToEachOtherHoldsForOneModelOnly) {
+  first_.findings.resize(2);
+  second_.findings.resize(3);
+  merge(first_, second_);
+  EXPECT_TRUE(first_.findings.empty());
 }
 
 TEST_F(ModelMergeTest, AFieldHasOnlySoManyValuesTogether) {

@@ -36,10 +36,10 @@ class LimitFinder : private WindowObserver {
   };
   /// What one recording says. It is cut into at most kMostParts parts of one length.
   struct Recording {
-    std::int64_t start = 0;      ///< stamp of the first event [ns]
-    std::int64_t end = 0;        ///< stamp of the last one [ns]
-    bool trained_on = false;     ///< it was judged by what the other half of the training says
-    std::uint64_t windows = 0;   ///< looked at
+    std::int64_t start = 0;     ///< stamp of the first event [ns]
+    std::int64_t end = 0;       ///< stamp of the last one [ns]
+    bool trained_on = false;    ///< it was judged by what the other half of the training says
+    std::uint64_t windows = 0;  ///< looked at
     /// A part of it.
     struct Part {
       std::uint64_t windows = 0;               ///< looked at
@@ -89,8 +89,8 @@ class LimitFinder : private WindowObserver {
   /// in turn.
   /// @throw std::logic_error as limits()
   double expectedRate() const;
-  /// What speaks for the relation that a track watches, from the second pass on; the own history of
-  /// an event type is always watched.
+  /// What speaks for the relation that a track watches, from the second pass on; the own history
+  /// of an event type is always watched.
   const std::vector<Relation>& relations() const { return relations_; }
 
   const Parameters& parameters() const { return parameters_; }

@@ -19,8 +19,8 @@ struct Limits {
   /// misleading.
   std::vector<double> tracks;
   double linker = std::numeric_limits<double>::quiet_NaN();
-  /// From the start of a recording to the first event of a type, the latest of all recordings [ns],
-  /// by id; -1: it did not come in one. Empty: what training says is all that is known.
+  /// From the start of a recording to the first event of a type, the latest of all recordings
+  /// [ns], by id; -1: it did not come in one. Empty: what training says is all that is known.
   std::vector<std::int64_t> firsts{};
 };
 
@@ -109,7 +109,7 @@ class Model {
   struct Steps {
     double answered = 0;
     double missed = 0;
-    double usual = 0;  // share that is missed
+    double usual = 0;        // share that is missed
     std::int64_t delay = 0;  // that answers usually take [ns]
   };
 

@@ -60,11 +60,12 @@ class Statistics {
   /// What one recording said of every event type. The independent sample of what is normal is a
   /// recording, not an event: what did not vary in one may differ in the next.
   struct Recording {
-    std::int64_t start = 0;  ///< stamp of the first event [ns]
-    std::int64_t end = 0;    ///< latest stamp [ns]
+    std::int64_t start = 0;            ///< stamp of the first event [ns]
+    std::int64_t end = 0;              ///< latest stamp [ns]
     std::int64_t longest_silence = 0;  ///< between two events in a row, of any types [ns]
-    std::vector<std::uint64_t> events;        ///< by id; 0 for ids beyond
-    std::vector<std::int64_t> longest_gaps;   ///< [ns] by id, as long as events; 0: no gap
+    /// By id; 0 for ids beyond. addRecording() leaves out the zeros at the end.
+    std::vector<std::uint64_t> events;
+    std::vector<std::int64_t> longest_gaps;  ///< [ns] by id, as long as events; 0: no gap
     /// From the start of the whole recording to the first event [ns] by id, as long as events; -1:
     /// it did not come.
     std::vector<std::int64_t> firsts;

@@ -35,11 +35,11 @@ struct Track {
 
 /// A relation between two event types, and what speaks for it (docs/method.md, section 3.6).
 struct Relation {
-  bool watched = false;     ///< what speaks for it is enough
-  bool reaches = false;     ///< messages of the one reach the node of the other
-  bool irregular = false;   ///< the one says more about the other than its own history does
-  double spread = 1;        ///< share of a period that the delays of all starts lie in, 0 to 1
-  std::size_t starts = 0;   ///< that show it
+  bool watched = false;    ///< what speaks for it is enough
+  bool reaches = false;    ///< messages of the one reach the node of the other
+  bool irregular = false;  ///< the one says more about the other than its own history does
+  double spread = 1;       ///< share of a period that the delays of all starts lie in, 0 to 1
+  std::size_t starts = 0;  ///< that show it
   std::size_t starts_needed = 0;  ///< with which it would be watched; 0: it is, or no number helps
 };
 

@@ -2,12 +2,10 @@
 from __future__ import annotations
 
 import math
-import multiprocessing
+from contextlib import closing
 from dataclasses import dataclass, field
-from functools import partial
 from typing import Iterator, List, Optional, Tuple
 
-from self_awareness import progress
 from self_awareness.evaluation import catalogue
 from self_awareness.evaluation.detectors import Evidence
 from self_awareness.evaluation.families.measures import (FaultRow, NormalRow, Subject, fault_row,
@@ -15,6 +13,7 @@ from self_awareness.evaluation.families.measures import (FaultRow, NormalRow, Su
 from self_awareness.evaluation.families.protocol import Learning, Records, check_hours
 from self_awareness.evaluation.families.robot import Robot
 from self_awareness.evaluation.systems import System
+from self_awareness.workers import Processes
 
 WITH_GRAPH, WITHOUT_GRAPH = 'evidence', 'evidence_no_graph'
 
@@ -71,13 +70,11 @@ def run(plan: Plan, jobs: int) -> Results:
     check_hours(plan.families, plan.hours)
     robots = [(family, seed) for family in plan.families for seed in plan.seeds]
     results = Results()
-    with multiprocessing.Pool(jobs) as pool, \
-            progress.items(len(robots), 'evaluating') as one_done:
-        # In the order of the robots, so that the same command writes the same files.
-        for part in pool.imap(partial(run_robot, plan), robots):
+    # In the order of the robots, so that the same command writes the same files.
+    with closing(Processes(jobs).map(run_robot, plan, robots, 'evaluating')) as parts:
+        for part in parts:
             results.normal += part.normal
             results.faults += part.faults
-            one_done()
     return results
 
 

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import csv
+import math
 from pathlib import Path
 from typing import Any, Dict, List, Sequence
 
@@ -34,23 +35,23 @@ Simulated robots that differ in what decides on false alarms, each drawn by its 
 
 {families}
 
-Each robot is recorded to learn from: {learnings} (starts to train on + further starts to calibrate
-on). In other starts {hours:g} h of normal operation are watched, in recordings of {watched_s:g} s,
-and in recordings of their own every regular component crashes, halves its rate, or answers 60 ms
-later ({after_s:g} s after the onset), and every component that speaks only when it is asked dies
-({death_s:g} s; its latency counts from the first message that is missing). With every start all
-timers have new phases; where a family is recorded or watched in one start, its line says so. All
-systems judge the same recordings; alarms while a detector settles (the first {settle_s:g} s of a
-recording) are left out with their time.
+Each robot is recorded to learn from (starts to train on + further starts to calibrate on):
+{learnings}. In other starts {hours:g} h of normal operation are watched, in recordings of
+{watched_s:g} s, and in recordings of their own every regular component crashes, halves its rate,
+or answers 60 ms later (the recording goes on for {after_s:g} s after the onset), and every
+component that speaks only when it is asked dies ({death_s:g} s; the latency counts from the first
+message that is missing). With every start all timers have new phases; where a family is recorded
+or watched in one start, its line says so. All systems judge the same recordings; the first
+{settle_s:g} s of each, while a detector settles, are left out.
 
 The table is about `{system}` with limits for a budget of {budget:g} false alarms an hour. It
 begins with the false alarms an hour by what was learned from, with their 95 % interval (alarms
-come in clusters: it is the wider the more the robots differ); `from` says what raised most of
-them, and beside them are those of other systems. All columns without a number of starts are about
-{main}, those of late answers about {late}. Half rates, late answers and deaths: share of
-the records with an alarm after the onset, and the median latency. `first`: share of these alarms
-that name the guilty component first. A system with many false alarms finds faults by chance, and
-one whose false alarm stands at the onset raises none for the fault: read all together.
+come in clusters: it is the wider the more the robots differ), and those of other systems beside
+them. All columns without a number of starts are about {main}, that of late answers about
+{late}. Half rates, late answers and deaths: share of the records with an alarm after
+the onset, its median latency, and how many of these alarms name the guilty component first. The
+last column says what raised most of the false alarms. A system with many of them finds faults by
+chance, and one whose false alarm stands at the onset raises none for the fault: read all together.
 
 All figures, also of the other systems: [{name}.csv]({name}.csv).
 """
@@ -134,7 +135,9 @@ def _of_fault(kind: str, found: Found) -> Dict[str, Any]:
 
 
 def _short(value: Any) -> Any:
-    return f'{value:.4g}' if isinstance(value, float) else value
+    if not isinstance(value, float):
+        return value
+    return '' if math.isnan(value) else f'{value:.3g}'
 
 
 def _flat(row: Any) -> Dict[str, Any]:

@@ -16,6 +16,7 @@ _NONE = '–'
 _STARTS_OF_TABLE = 2
 _STARTS_OF_LATE = 4
 _MOST_SOURCES = 2
+_WITHIN_S = (1.0, 5.0, 50.0)
 
 
 def main_learning(plan: Plan) -> Learning:
@@ -40,22 +41,21 @@ def families_table(plan: Plan, results: Results) -> List[str]:
     system, learning = main_system(plan), main_learning(plan)
     others = [name for name in plan.systems if name != system]
     head = ['family', *(f'false alarms/h, {_started(plan, each)}' for each in plan.learnings),
-            'from', *(f'{name}, {_started(plan, learning)}' for name in others), 'alarm stands',
-            'WARN/h', 'crash, within 1 / 5 / 50 s', 'first', 'half rate', 'late answers', 'first',
-            'deaths when asked', 'first']
+            *(f'{name}, {_started(plan, learning)}' for name in others), 'alarm stands', 'WARN/h',
+            'crash, within 1 / 5 / 50 s', 'half rate', 'late answers', 'deaths when asked',
+            'false alarms from']
     body = []
     for family in _with_all(plan.families):
         of_family = _Row(plan, results, normal, family)
         quiet = of_family.quiet(learning, system)
-        crash, death = (of_family.found(learning, system, kind) for kind in (CRASH, DEATH))
-        late = of_family.found(late_learning(plan), system, LATE)
+        half, death = (of_family.found(learning, system, kind) for kind in (HALF_RATE, DEATH))
         body.append([
             family, *(_rate(of_family.quiet(each, system)) for each in plan.learnings),
-            _sources(quiet), *(_rate(of_family.quiet(learning, name)) for name in others),
-            percent(quiet.standing), f'{quiet.warnings_per_hour:.2f}',
-            ' / '.join(percent(crash.within(within_s)) for within_s in (1.0, 5.0, 50.0)),
-            percent(crash.first), _found(of_family.found(learning, system, HALF_RATE)),
-            _found(late), percent(late.first), _found(death), percent(death.first)])
+            *(_rate(of_family.quiet(learning, name)) for name in others),
+            percent(quiet.standing), _number(quiet.warnings_per_hour),
+            _crashes(of_family.found(learning, system, CRASH)), _found(half),
+            _found(of_family.found(late_learning(plan), system, LATE)), _found(death),
+            _sources(quiet)])
     return table(head, body)
 
 
@@ -67,9 +67,8 @@ def budgets_table(plan: Plan, results: Results) -> List[str]:
         for budget in sorted(plan.budgets):
             rows = normal[Group(ALL, str(learning), main_system(plan), budget)]
             quiet = summary.quiet(rows)
-            expected = quiet.expected_per_hour
             body.append([_started(plan, learning), f'{budget:g}',
-                         _NONE if math.isnan(expected) else f'{expected:.2f}', _rate(quiet),
+                         _number(quiet.expected_per_hour), _rate(quiet),
                          percent(summary.kept(rows, budget))])
     return table(['learned from', 'budget', 'expected', 'came', 'robots within the budget'], body)
 
@@ -114,13 +113,33 @@ def _with_all(families: Sequence[str]) -> List[str]:
 
 def _rate(quiet: Quiet) -> str:
     low, high = quiet.interval
-    return f'{quiet.per_hour:.2f} ({low:.2f} to {high:.2f})'
+    return f'{_number(quiet.per_hour)} ({_number(low)} to {_number(high)})'
+
+
+def _number(value: float) -> str:
+    """Return a rate with as many digits as are worth reading; a dash for NaN."""
+    if math.isnan(value):
+        return _NONE
+    return f'{value:.0f}' if value >= 9.95 else f'{value:.2g}'
 
 
 def _sources(quiet: Quiet) -> str:
-    return ', '.join(f'{text} {number}' for text, number in quiet.evidence[:_MOST_SOURCES]) \
+    return '; '.join(f'{text} {number}' for text, number in quiet.evidence[:_MOST_SOURCES]) \
         or _NONE
 
 
+def _crashes(found: Found) -> str:
+    if not found.records:
+        return _NONE
+    shares = ' / '.join(f'{100.0 * found.within(within_s):.0f}' for within_s in _WITHIN_S)
+    return f'{shares} %{_blame(found)}'
+
+
 def _found(found: Found) -> str:
-    return f'{percent(found.within())}, {seconds(found.median_s)}' if found.records else _NONE
+    if not found.records:
+        return _NONE
+    return f'{100.0 * found.within():.0f} %, {seconds(found.median_s)}{_blame(found)}'
+
+
+def _blame(found: Found) -> str:
+    return '' if math.isnan(found.first) else f', first {100.0 * found.first:.0f} %'

@@ -1,7 +1,8 @@
 """The records of one seed of the evaluation in simulated time.
 
 Every record has a seed of its own, derived from the evaluation's seed and the record's name alone:
-it stays the same whatever else is evaluated. So does the onset of its fault.
+it stays the same whatever else is evaluated. So does the onset of its fault. Every record is a
+start of the robot, hours away from the others: what agrees in all of them could have differed.
 """
 from __future__ import annotations
 
@@ -31,6 +32,8 @@ CALIBRATION_NAME = 'calibration'
 NORMAL_NAMES = (*TRAINING_NAMES, CALIBRATION_NAME, NORMAL)
 """What the records of normal operation are called; those of faults are called as the faults."""
 
+_HOUR_S = 3600.0
+_HOURS = 1 << 15  # that a record may begin at
 _ONSET_S = 50.0
 _ONSET_SPREAD_S = 2.0  # the onset must have no fixed phase to the windows and the robot's timers
 
@@ -75,8 +78,9 @@ def fault_record(scenario: Scenario, seed: int, kind: str) -> FaultRecord:
     """
     spread = random.Random(f'{seed}/{kind}/onset').uniform(0.0, _ONSET_SPREAD_S)
     fault = InducedFault(kind, _ONSET_S + spread)
-    recording = _recorded(scenario, _derived_seed(seed, kind), RECORD_S, fault)
-    onset = nanoseconds(START_S + fault.onset_s)
+    derived = _derived_seed(seed, kind)
+    recording = _recorded(scenario, derived, RECORD_S, fault)
+    onset = nanoseconds(_start_s(derived) + fault.onset_s)
     return FaultRecord(kind, recording, onset, effect_of(scenario, kind).culprits)
 
 
@@ -110,8 +114,13 @@ def encode(recorded: List[Event], scenario: Scenario, end: int) -> WindowedEvent
 
 def _recorded(scenario: Scenario, seed: int, duration_s: float,
               fault: Optional[InducedFault]) -> WindowedEvents:
-    end = nanoseconds(START_S + duration_s)
-    return encode(list(events(duration_s, seed, fault, scenario)), scenario, end)
+    start_s = _start_s(seed)
+    end = nanoseconds(start_s + duration_s)
+    return encode(list(events(duration_s, seed, fault, scenario, start_s)), scenario, end)
+
+
+def _start_s(seed: int) -> float:
+    return START_S + _HOUR_S * (seed % _HOURS)
 
 
 def _derived_seed(seed: int, name: str) -> int:

@@ -1,0 +1,196 @@
+// Tests what a model file keeps for the evidence detector.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "model_file_case.h"
+#include "self_awareness/Model.h"
+#include "self_awareness/ros/model/evidence_message.h"
+#include "self_awareness/ros/model/model_bytes.h"
+
+namespace self_awareness::ros1 {
+namespace {
+
+TEST_F(ModelFileTest, TheEvidenceItsLimitsAndTheGraphComeBackAsTheyWereSaved) {
+  TrainedModel model = calibratedModel();
+  model.graph.connect("/a", "/x", "/b");
+  model.graph.connect("/a", "/y", "/c");
+  ASSERT_GE(model.evidence_calibration->limits.size(), 6U);
+  saveModel(model, path("m"));
+  const TrainedModel loaded = loadModel(path("m"));
+  EXPECT_TRUE(loaded.evidence[0] == model.evidence[0]);
+  EXPECT_TRUE(loaded.evidence[1] == model.evidence[1]);
+  EXPECT_TRUE(loaded.watched.halves[0] == model.watched.halves[0]);
+  EXPECT_TRUE(loaded.watched.halves[1] == model.watched.halves[1]);
+  ASSERT_EQ(loaded.watched.tracks.size(), model.watched.tracks.size());
+  for (std::size_t track = 0; track < loaded.watched.tracks.size(); ++track) {
+    EXPECT_EQ(loaded.watched.tracks[track].channel, model.watched.tracks[track].channel);
+    EXPECT_EQ(loaded.watched.tracks[track].to, model.watched.tracks[track].to);
+    EXPECT_EQ(loaded.watched.tracks[track].from, model.watched.tracks[track].from);
+  }
+  EXPECT_EQ(loaded.predecessors, model.predecessors);
+  EXPECT_EQ(loaded.graph.edges().size(), 2U);
+  EXPECT_TRUE(loaded.graph.edges() == model.graph.edges());
+  const core::evidence::Limits limits = loaded.limits().value();
+  ASSERT_EQ(limits.tracks.size(), model.evidence_calibration->limits.size());
+  EXPECT_TRUE(std::isnan(limits.tracks[0]));
+  EXPECT_EQ(limits.tracks[1], 2.5);
+  EXPECT_EQ(limits.linker, 1.5);
+  EXPECT_EQ(loaded.evidence_calibration->method, "held-out");
+  EXPECT_EQ(loaded.evidence_calibration->budget, 0.25);
+  EXPECT_EQ(loaded.evidence_calibration->windows, 1234U);
+  EXPECT_EQ(loaded.evidence_calibration->recordings.at(0).bag, "normal.bag");
+  EXPECT_FALSE(loadModel([this] {
+                 saveModel(someModel(), path("bare"));
+                 return path("bare");
+               }())
+                   .limits());
+}
+
+TEST_F(ModelFileTest, WhatTheTrainingShowedComesBackAsItWasSaved) {
+  const TrainedModel model = calibratedModel();
+  saveModel(model, path("m"));
+  for (const TrainedModel& loaded :
+       {loadModel(path("m")), loadModel(path("m"), ModelCounts::kWatched),
+        fromBytes(toBytes(model))}) {
+    ASSERT_EQ(loaded.findings.size(), 2U);
+    for (std::size_t k = 0; k < 2; ++k) {
+      const core::evidence::LimitFinder::Recording& saved = model.findings[k];
+      const core::evidence::LimitFinder::Recording& found = loaded.findings[k];
+      EXPECT_EQ(found.start, saved.start);
+      EXPECT_EQ(found.end, saved.end);
+      EXPECT_TRUE(found.trained_on);
+      EXPECT_EQ(found.windows, saved.windows);
+      EXPECT_EQ(found.said, saved.said);
+      ASSERT_EQ(found.parts.size(), saved.parts.size());
+      for (std::size_t part = 0; part < saved.parts.size(); ++part) {
+        EXPECT_EQ(found.parts[part].windows, saved.parts[part].windows);
+        EXPECT_EQ(found.parts[part].evidence, saved.parts[part].evidence);
+        EXPECT_EQ(found.parts[part].longest_gaps, saved.parts[part].longest_gaps);
+      }
+    }
+    // Recordings of the training, of each half one.
+    for (const core::evidence::Statistics& half : loaded.watched.halves) {
+      ASSERT_EQ(half.recordings().size(), 1U);
+      EXPECT_EQ(half.recordings()[0].end, 149 * 37000000LL);
+      EXPECT_EQ(half.recordings()[0].longest_silence, 37000000);
+      EXPECT_EQ(half.recordings()[0].events, (std::vector<std::uint64_t>{100, 50}));
+      EXPECT_EQ(half.recordings()[0].longest_gaps,
+                (std::vector<std::int64_t>{2 * 37000000, 3 * 37000000}));
+    }
+  }
+  EXPECT_TRUE(model.watched.halves[0] == loadModel(path("m")).watched.halves[0]);
+}
+
+TEST_F(ModelFileTest, WhatSpeaksForRelationsComesBackAsItWasSaved) {
+  const TrainedModel model = calibratedModel();
+  saveModel(model, path("m"));
+  const TrainedModel loaded = loadModel(path("m"));
+  EXPECT_EQ(loaded.evidence_calibration->false_alarms_per_hour, 0.125);
+  const std::vector<self_awareness::Relation>& relations = loaded.evidence_calibration->relations;
+  ASSERT_EQ(relations.size(), model.watched.tracks.size());
+  for (std::size_t track = 0; track < relations.size(); ++track) {
+    const core::evidence::Relation relation = fromMessage(relations[track]);
+    EXPECT_EQ(relation.watched, track == 1);
+    EXPECT_EQ(relation.reaches, track == 1);
+    EXPECT_EQ(relation.irregular, track == 1);
+    EXPECT_EQ(relation.spread, 0.25);
+    EXPECT_EQ(relation.starts, 2U);
+    EXPECT_EQ(relation.starts_needed, 3U);
+    EXPECT_EQ(toMessage(relation).starts_needed, 3U);
+  }
+}
+
+TEST_F(ModelFileTest, DamagedFindingsAreRefused) {
+  using Message = self_awareness::Model;
+  using Findings = self_awareness::RecordingFindings;
+  const std::string file = path("damaged") + ": a damaged model file: its findings ";
+  for (const auto change :
+       std::vector<void (*)(Findings&)>{[](Findings& f) { f.part_windows.push_back(1); },
+                                        [](Findings& f) { f.evidence.pop_back(); },
+                                        [](Findings& f) { f.longest_gaps.push_back(1); },
+                                        [](Findings& f) { f.said.pop_back(); }}) {
+    EXPECT_EQ(damagedModel([change](Message& model) { change(model.findings.at(1)); }),
+              file + "do not fit its tracks");
+  }
+  EXPECT_EQ(damagedModel([](Message& model) { model.findings.at(0).said.at(0) = 3; }),
+            file + "say what this version does not know");
+  const auto recording = [this](void (*change)(self_awareness::RecordingCounts&)) {
+    return damagedModel(
+        [change](Message& model) { change(model.watched.at(0).recordings.at(0)); });
+  };
+  const std::string told =
+      path("damaged") + ": a damaged model file: its recordings do not fit its event types";
+  EXPECT_EQ(recording([](self_awareness::RecordingCounts& r) { r.events.push_back(1); }), told);
+  EXPECT_EQ(recording([](self_awareness::RecordingCounts& r) {
+              r.events.push_back(1);
+              r.longest_gaps.push_back(1);
+            }),
+            told);
+}
+
+TEST_F(ModelFileTest, DamagedEvidenceIsRefused) {
+  using Message = self_awareness::Model;
+  using Evidence = self_awareness::Evidence;
+  const auto error = [this](void (*change)(Evidence&)) {
+    return damagedModel([change](Message& model) { change(model.watched.at(1)); });
+  };
+  const std::string file = path("damaged") + ": a damaged model file: its evidence ";
+  for (const auto change : std::vector<void (*)(Evidence&)>{
+           [](Evidence& e) { e.events.pop_back(); }, [](Evidence& e) { e.gaps.push_back(1); },
+           [](Evidence& e) { e.gap_sums.clear(); }, [](Evidence& e) { e.rate_sums.pop_back(); },
+           [](Evidence& e) { e.rate_squares.pop_back(); },
+           [](Evidence& e) { e.longest_offsets.clear(); },
+           [](Evidence& e) { e.longest_offsets.at(1) = 1000000; },
+           [](Evidence& e) { e.longest_gaps.pop_back(); },
+           [](Evidence& e) { e.left_out.pop_back(); }, [](Evidence& e) { e.pairs.pop_back(); },
+           [](Evidence& e) { e.pairs.at(0).id = 1; },
+           [](Evidence& e) { e.pairs.at(0).offsets.at(0) = 1; },
+           [](Evidence& e) { e.pairs.at(0).offsets.at(1) = 1000; },
+           [](Evidence& e) { e.pairs.at(0).counts.pop_back(); },
+           [](Evidence& e) { e.pairs.at(0).answers.push_back(1); }}) {
+    EXPECT_EQ(error(change), file + "does not fit its event types");
+  }
+  EXPECT_EQ(error([](Evidence& e) { e.duration = -1; }), file + "has a negative duration");
+  EXPECT_EQ(error([](Evidence& e) { e.gap_sums.at(0) = -1; }), file + "has impossible gaps");
+  EXPECT_EQ(error([](Evidence& e) { e.gaps.at(0) = 0; }), file + "has impossible gaps");
+  EXPECT_EQ(error([](Evidence& e) { e.pairs.at(0).bins.at(0) = 255; }),
+            file + "has an impossible bin");
+  EXPECT_EQ(damagedModel([](Message& model) { model.watched.pop_back(); }),
+            file + "has not two halves");
+}
+
+TEST_F(ModelFileTest, ImpossibleTracksAreRefused) {
+  using Message = self_awareness::Model;
+  const std::string file = path("damaged") + ": a damaged model file: it watches ";
+  EXPECT_EQ(damagedModel(
+                [](Message& m) { m.tracks.at(0).channel = self_awareness::Track::DEADLINE + 1; }),
+            file + "what this version does not know");
+  EXPECT_EQ(damagedModel([](Message& m) { m.tracks.at(0).to_id = 2; }),
+            file + "an event type that it does not have");
+  EXPECT_EQ(
+      damagedModel([](Message& m) { m.tracks.at(0).channel = self_awareness::Track::DELAY; }),
+      file + "delays, but not both at present and for longer");
+}
+
+TEST_F(ModelFileTest, LimitsOfAnotherModelAreRefused) {
+  using Message = self_awareness::Model;
+  const std::string told =
+      path("damaged") + ": a damaged model file: its limits are not those of its evidence";
+  for (const auto change : std::vector<void (*)(self_awareness::EvidenceCalibration&)>{
+           [](self_awareness::EvidenceCalibration& c) { c.limits.pop_back(); },
+           [](self_awareness::EvidenceCalibration& c) { c.limits.push_back(1); },
+           [](self_awareness::EvidenceCalibration& c) { c.limits.clear(); },
+           [](self_awareness::EvidenceCalibration& c) { c.linker_limit = std::nan(""); },
+           [](self_awareness::EvidenceCalibration& c) { c.linker_limit = 0; }}) {
+    const std::string error =
+        damagedModel([change](Message& model) { change(model.evidence_calibration.at(0)); });
+    EXPECT_EQ(error.rfind(told, 0), 0U) << error;
+  }
+}
+
+}  // namespace
+}  // namespace self_awareness::ros1

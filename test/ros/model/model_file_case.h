@@ -1,0 +1,153 @@
+#pragma once
+
+#include <gtest/gtest.h>
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+
+#include <boost/filesystem.hpp>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+
+#include "core/paper/delay_trainer.h"
+#include "self_awareness/core/evidence/limits.h"
+#include "self_awareness/core/evidence/model.h"
+#include "self_awareness/ros/model/model_file.h"
+
+namespace self_awareness::ros1 {
+
+/// Model files in a folder of their own.
+class ModelFileTest : public testing::Test {
+ protected:
+  ModelFileTest()
+      : folder_(boost::filesystem::temp_directory_path() /
+                boost::filesystem::unique_path("self_awareness-%%%%%%%%")) {
+    boost::filesystem::create_directory(folder_);
+  }
+  ~ModelFileTest() override { boost::filesystem::remove_all(folder_); }
+
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  static std::string modelError(const std::string& file) {
+    try {
+      loadModel(file);
+    } catch (const ModelFileError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  static TrainedModel someModel() {
+    TrainedModel model;
+    model.encoding = EncodingRules::defaults();
+    model.statistics = core::paper::DelayStatistics(core::paper::Binning{5000000, 20});
+    const core::EventId a = model.statistics.intern({"/a", "/x", "T"});
+    const core::EventId b = model.statistics.intern({"/b", "/y", "T[action=1]"});
+    core::paper::DelayTrainer trainer(model.statistics);
+    for (core::evidence::Statistics& half : model.evidence) {
+      half.intern(model.statistics.vocabulary().at(a));
+      half.intern(model.statistics.vocabulary().at(b));
+      core::evidence::Trainer evidence(half, model.window);
+      for (int i = 0; i < 150; ++i) {
+        const core::Event event{i * 37000000LL, i % 3 == 0 ? b : a};
+        trainer.add(event);
+        evidence.add(event);
+      }
+      trainer.startRecording();
+      evidence.finish();
+    }
+    model.watch();
+    model.stamp = ros::Time(1700000000, 0);
+    self_awareness::Recording recording;
+    recording.bag = "normal.bag";
+    recording.events = 300;
+    recording.fingerprint = 0xfedcba9876543210;
+    model.recordings = {recording};
+    return model;
+  }
+
+  // Limits for everything that the model watches; the first track is not judged.
+  static TrainedModel calibratedModel() {
+    TrainedModel model = someModel();
+    model.evidence_calibration = self_awareness::EvidenceCalibration();
+    model.evidence_calibration->method = self_awareness::EvidenceCalibration::HELD_OUT;
+    model.evidence_calibration->limits.assign(model.watched.tracks.size(), 2.5);
+    model.evidence_calibration->limits.at(0) = std::numeric_limits<double>::quiet_NaN();
+    model.evidence_calibration->linker_limit = 1.5;
+    model.evidence_calibration->budget = 0.25;
+    model.evidence_calibration->windows = 1234;
+    model.evidence_calibration->recordings = model.recordings;
+    model.evidence_calibration->false_alarms_per_hour = 0.125;
+    self_awareness::Relation relation;
+    relation.spread = 0.25;
+    relation.starts = 2;
+    relation.starts_needed = 3;
+    model.evidence_calibration->relations.assign(model.watched.tracks.size(), relation);
+    model.evidence_calibration->relations.at(1).watched = 1;
+    model.evidence_calibration->relations.at(1).reaches = 1;
+    model.evidence_calibration->relations.at(1).irregular = 1;
+    model.findings = someFindings(model);
+    return model;
+  }
+
+  // What two recordings of the training showed, one of them in two parts.
+  static core::evidence::LimitFinder::Findings someFindings(const TrainedModel& model) {
+    using core::evidence::LimitFinder;
+    LimitFinder::Findings findings(2);
+    for (std::size_t k = 0; k < findings.size(); ++k) {
+      LimitFinder::Recording& recording = findings[k];
+      recording.start = 1000000000LL * static_cast<std::int64_t>(k + 1);
+      recording.end = recording.start + 123456789;
+      recording.trained_on = true;
+      for (std::size_t part = 0; part <= k; ++part) {
+        LimitFinder::Recording::Part& added = recording.parts.emplace_back();
+        added.windows = 100 * k + part;
+        recording.windows += added.windows;
+        for (std::size_t track = 0; track < model.watched.tracks.size(); ++track) {
+          added.evidence.push_back(static_cast<float>(track) + 0.5F * static_cast<float>(part));
+        }
+        for (std::size_t id = 0; id < model.vocabulary().size(); ++id) {
+          added.longest_gaps.push_back(static_cast<std::int64_t>(1000 * id + part));
+        }
+      }
+      for (std::size_t track = 0; track < model.watched.tracks.size(); ++track) {
+        recording.said.push_back(static_cast<LimitFinder::Said>((track + k) % 3));
+      }
+    }
+    return findings;
+  }
+
+  // Error on loading a model file whose messages a test has changed.
+  std::string damagedFile(
+      const std::function<void(rosbag::Bag&, const rosbag::MessageInstance&)>& write) {
+    saveModel(calibratedModel(), path("whole"));
+    const rosbag::Bag whole(path("whole"), rosbag::bagmode::Read);
+    rosbag::Bag damaged(path("damaged"), rosbag::bagmode::Write);
+    for (const rosbag::MessageInstance& message : rosbag::View(whole)) {
+      write(damaged, message);
+    }
+    damaged.close();
+    return modelError(path("damaged"));
+  }
+  template <typename Message, typename Change>
+  std::string damagedMessages(const std::string& topic, Change change) {
+    return damagedFile([&](rosbag::Bag& damaged, const rosbag::MessageInstance& message) {
+      if (message.getTopic() == topic) {
+        const auto changed = message.instantiate<Message>();
+        change(*changed);
+        damaged.write(topic, message.getTime(), *changed);
+      } else {
+        damaged.write(message.getTopic(), message.getTime(), message);
+      }
+    });
+  }
+  template <typename Change>
+  std::string damagedModel(Change change) {
+    return damagedMessages<self_awareness::Model>("/model", change);
+  }
+
+  boost::filesystem::path folder_;
+};
+
+}  // namespace self_awareness::ros1
