@@ -18,7 +18,8 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from live_system import MonitorListener, Process, again_if_clock_was_set, await_condition
 from self_awareness.msg import SelfAwareness
 
-RECORDING_S = 60
+TRAINING_S = 60
+CALIBRATION_S = 120
 
 
 def kill(node: str) -> None:
@@ -72,11 +73,14 @@ class MonitorTest(unittest.TestCase):
     @again_if_clock_was_set
     def test_from_recordings_to_an_alarm(self) -> None:
         self.await_components()
-        trained_on = self.record('train.bag', RECORDING_S)
-        normal = self.record('normal.bag', RECORDING_S)
+        trained_on = self.record('train.bag', TRAINING_S)
+        normal = self.record('normal.bag', CALIBRATION_S)
         self.run_program('train', trained_on, '--graph', '-o', self.path('model'))
+        # Limits of two minutes are narrow, and a busy machine delays messages: few false alarms
+        # are allowed. What the test looks for is a silence, which is found all the same.
         self.run_program('calibrate', '--model', self.path('model'), '--normal', normal,
-                         '--inject', 'crash:/player', '-o', self.path('model'))
+                         '--budget', '0.01', '--inject', 'crash:/player',
+                         '-o', self.path('model'))
 
         # The recorder comes first, so that the bag lacks nothing that the monitor heard.
         with Process('rosbag', 'record', '-a', '-O', self.path('live.bag'), '__name:=record'):
