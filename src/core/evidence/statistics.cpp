@@ -164,12 +164,13 @@ void Statistics::merge(const Statistics& other) {
 void Statistics::addRecording(Recording recording) {
   // The same recording looks the same, whatever event types other ones had.
   std::size_t seen = recording.events.size();
-  while (seen > 0 && recording.events[seen - 1] == 0) {
+  recording.firsts.resize(seen, -1);
+  while (seen > 0 && recording.events[seen - 1] == 0 && recording.firsts[seen - 1] < 0) {
     --seen;
   }
   recording.events.resize(seen);
   recording.longest_gaps.resize(seen);
-  recording.firsts.resize(seen, -1);
+  recording.firsts.resize(seen);
   const auto place =
       std::upper_bound(recordings_.begin(), recordings_.end(), recording, startsEarlier);
   recordings_.insert(place, std::move(recording));

@@ -63,7 +63,7 @@ class Statistics {
     std::int64_t start = 0;            ///< stamp of the first event [ns]
     std::int64_t end = 0;              ///< latest stamp [ns]
     std::int64_t longest_silence = 0;  ///< between two events in a row, of any types [ns]
-    /// By id; 0 for ids beyond. addRecording() leaves out the zeros at the end.
+    /// By id; 0 for ids beyond. addRecording() leaves out what never came at the end.
     std::vector<std::uint64_t> events;
     std::vector<std::int64_t> longest_gaps;  ///< [ns] by id, as long as events; 0: no gap
     /// From the start of the whole recording to the first event [ns] by id, as long as events; -1:
