@@ -1,135 +1,17 @@
 #include "self_awareness/core/evidence/limits.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <map>
-#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
-#include "core/evidence/held_out.h"
+#include "core/evidence/limit_search.h"
 #include "core/evidence/misleading_pairs.h"
 #include "core/evidence/relations.h"
 #include "core/evidence/scorer.h"
 #include "self_awareness/core/verdict/suspect.h"
 
 namespace self_awareness::core::evidence {
-namespace {
-
-constexpr double kHour = 3600e9;  // [ns]
-constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-// What was seen once in normal operation is normal, and so is a little more (docs/method.md,
-// section 5.2).
-constexpr double kLeastMargin = 1.25;
-// More would find nothing any more: where the data say so, the budget cannot be kept.
-constexpr double kMostMargin = 4;
-constexpr double kMostGapMargin = 1.6;  // of the longest gaps: what is silent is to be found soon
-constexpr double kMostOwnMargin = 2;    // of one track
-// The linker depends on what the robot is doing, and that changes from hour to hour.
-constexpr double kLeastLinkerMargin = 1.5;
-constexpr double kLeastLinkerLimit = 2;  // event types
-// An answer may take so many times the longest wait that was seen.
-constexpr double kLeastDeadlineMargin = 2;
-// By how much recordings exceed each other on average (a logarithm), as long as little is known.
-constexpr double kScale = 0.2;
-constexpr double kScaleOfTimers = 0.05;
-// A gap shorter than this many mean gaps is one of a timer that lost nothing.
-constexpr double kRegular = 1.5;
-// A timer with shorter mean gaps, in windows, exceeds them by the host's hiccups.
-constexpr double kFast = 2;
-
-// Evidence that takes longer than this [ns] after a component's death is of no use.
-constexpr double kLongestWait = 10e9;
-constexpr double kLongestDeadline = 20;  // [s]
-// A pair with a larger limit would need 20 or more improbable delays in a row.
-constexpr double kMostDelayLimit = 100;
-// An event type that may wait longer than this many mean gaps comes when something happens.
-constexpr double kMostMeanGaps = 3;
-// The gaps of what comes irregularly have a tail of their own.
-constexpr std::size_t kTailGaps = 20;
-
-/// Tracks whose values exceed those of other recordings in the same way share what they show.
-enum class Pool {
-  kFastTimers,
-  kTimers,
-  kOthers,
-  kRates,
-  kDelays,
-  kSlowDelays,
-  kAnswers,
-  kDeadlines
-};
-// Each pool and the linker have an equal share of the budget, but slow delays, which raise no
-// alarm.
-constexpr double kShares = 8;
-
-Pool poolOf(Channel channel) {
-  switch (channel) {
-    case Channel::kOverdue:
-      return Pool::kOthers;
-    case Channel::kFewer:
-    case Channel::kMore:
-      return Pool::kRates;
-    case Channel::kDelay:
-      return Pool::kDelays;
-    case Channel::kSlowDelay:
-      return Pool::kSlowDelays;
-    case Channel::kAnswer:
-      return Pool::kAnswers;
-    case Channel::kDeadline:
-      break;
-  }
-  return Pool::kDeadlines;
-}
-
-double leastMargin(Pool pool) {
-  return pool == Pool::kDeadlines ? kLeastDeadlineMargin : kLeastMargin;
-}
-
-/// A track and its largest values.
-struct Seen {
-  std::size_t track = 0;
-  double least = 0;             // limit
-  std::vector<double> largest;  // by part
-};
-
-/// Age [ns] that gaps between two events of a type reach less often than a rate says: the excess
-/// of the longest gaps over the shortest of them is taken for exponential, and extrapolated
-/// (docs/method.md, section 5.3).
-/// @param longest_gaps [ns], the longest first, at least one
-/// @param hours in which they were the longest
-/// @param rate of such gaps an hour
-double tailOfGaps(const std::vector<std::int64_t>& longest_gaps, double hours, double rate) {
-  const std::size_t number = std::min(longest_gaps.size(), kTailGaps);
-  const auto shortest = static_cast<double>(longest_gaps[number - 1]);
-  const double mean =
-      std::accumulate(longest_gaps.begin(),
-                      longest_gaps.begin() + static_cast<std::ptrdiff_t>(number), 0.0) /
-      static_cast<double>(number);
-  const double expected = static_cast<double>(number) / (hours * rate);
-  return shortest + (mean - shortest) * std::max(std::log(expected), 0.0);
-}
-
-/// Numbers the starts that recordings belong to.
-std::vector<std::size_t> startsOf(const std::vector<Span>& recordings) {
-  std::vector<std::size_t> starts;
-  for (const Span& recording : recordings) {
-    std::vector<Span> before;
-    for (const Span& other : recordings) {
-      if (other <= recording) {
-        before.push_back(other);
-      }
-    }
-    starts.push_back(numberOfStarts(before) - 1);
-  }
-  return starts;
-}
-
-}  // namespace
-
 void LimitFinder::Parameters::validate() const {
   if (window <= 0 || settle_time < 0) {
     throw std::invalid_argument("window must be more than 0 ns, settle_time 0 or more");
@@ -279,10 +161,6 @@ std::uint64_t LimitFinder::windows() const {
   return windows;
 }
 
-double LimitFinder::hoursOf(std::uint64_t windows) const {
-  return static_cast<double>(windows) * static_cast<double>(parameters_.window) / kHour;
-}
-
 void LimitFinder::startSecondPass() {
   finish();
   if (model_->tracks().empty()) {
@@ -304,7 +182,9 @@ void LimitFinder::startSecondPass() {
                                 " s are needed after the first seconds of every recording");
   }
   findRelations();
-  findLimits();
+  const LimitSearch search(*model_, findings_, relations_, parameters_);
+  limits_.tracks = search.limits();
+  tracks_rate_ = search.rate();
   second_pass_ = true;
 }
 
@@ -328,11 +208,6 @@ void LimitFinder::merge(const Findings& other) {
   }
   Findings& mine = second_pass_ ? linker_findings_ : findings_;
   mine.insert(mine.end(), other.begin(), other.end());
-}
-
-double LimitFinder::meanGap(EventId id) const {
-  const Statistics::Type& type = model_->statistics().type(id);
-  return static_cast<double>(type.gap_sum) / static_cast<double>(type.gaps);
 }
 
 void LimitFinder::findRelations() {
@@ -362,181 +237,20 @@ void LimitFinder::findRelations() {
   }
 }
 
-void LimitFinder::findLimits() {
-  // Of the training, the gaps of each recording are known; the other evidence only where its
-  // recordings were judged by each other.
-  std::vector<Part> judged;
-  std::vector<Part> with_gaps;
-  std::vector<const Recording::Part*> judged_parts;
-  std::vector<const Recording::Part*> gap_parts;
-  std::vector<Span> spans;
-  const std::vector<Statistics::Recording>& training = model_->statistics().recordings();
-  for (const Statistics::Recording& recording : training) {
-    spans.emplace_back(recording.start, recording.end);
-  }
-  for (const Recording& recording : findings_) {
-    spans.emplace_back(recording.start, recording.end);
-  }
-  const std::vector<std::size_t> starts = startsOf(spans);
-  for (std::size_t k = 0; k < training.size(); ++k) {
-    with_gaps.push_back(
-        {starts[k], static_cast<double>(training[k].end - training[k].start) / kHour});
-  }
-  for (std::size_t k = 0; k < findings_.size(); ++k) {
-    for (const Recording::Part& part : findings_[k].parts) {
-      const Part hours{starts[training.size() + k], hoursOf(part.windows)};
-      judged.push_back(hours);
-      judged_parts.push_back(&part);
-      if (!findings_[k].trained_on) {
-        with_gaps.push_back(hours);
-        gap_parts.push_back(&part);
-      }
-    }
-  }
-
-  std::map<Pool, std::vector<Seen>> pools;
-  for (std::size_t track = 0; track < model_->tracks().size(); ++track) {
-    const auto& [channel, to, from] = model_->tracks()[track];
-    Seen seen{track, model_->leastLimit(track), {}};
-    Pool pool = poolOf(channel);
-    if (channel == Channel::kOverdue) {
-      for (const Statistics::Recording& recording : training) {
-        seen.largest.push_back(to < recording.longest_gaps.size()
-                                   ? static_cast<double>(recording.longest_gaps[to])
-                                   : 0);
-      }
-      for (const Recording::Part* part : gap_parts) {
-        seen.largest.push_back(static_cast<double>(part->longest_gaps[to]));
-      }
-      // Windows tell ages no better than this, and hiccups of a host add to a gap, however long.
-      for (double& gap : seen.largest) {
-        gap += gap > 0 ? static_cast<double>(parameters_.window) : 0;
-      }
-      std::vector<double> sorted = seen.largest;
-      std::sort(sorted.rbegin(), sorted.rend());
-      const double second = sorted.size() > 1 && sorted[1] > 0 ? sorted[1] : sorted[0];
-      const auto window = static_cast<double>(parameters_.window);
-      pool = second - window >= kRegular * meanGap(to) ? Pool::kOthers
-             : meanGap(to) < kFast * window            ? Pool::kFastTimers
-                                                       : Pool::kTimers;
-    } else {
-      for (const Recording::Part* part : judged_parts) {
-        seen.largest.push_back(part->evidence[track]);
-      }
-    }
-    if (relations_[track].watched) {
-      pools[pool].push_back(std::move(seen));
-    }
-  }
-
-  double hours_with_gaps = 0;
-  for (const Part& part : with_gaps) {
-    hours_with_gaps += part.hours;
-  }
-  limits_.tracks.assign(model_->tracks().size(), kNone);
-  tracks_rate_ = 0;
-  for (const auto& [pool, tracks] : pools) {
-    const bool timers = pool == Pool::kTimers || pool == Pool::kFastTimers;
-    const bool gaps = timers || pool == Pool::kOthers;
-    HeldOut held_out(gaps ? with_gaps : judged, timers ? kScaleOfTimers : kScale);
-    for (const Seen& seen : tracks) {
-      held_out.add(seen.largest, seen.least);
-    }
-    const double margin =
-        std::min(held_out.margin(parameters_.false_alarms_per_hour / kShares, leastMargin(pool)),
-                 gaps ? kMostGapMargin : kMostMargin);
-    tracks_rate_ += pool == Pool::kSlowDelays ? 0 : held_out.rate(margin);
-    for (const Seen& seen : tracks) {
-      const auto& [channel, to, from] = model_->tracks()[seen.track];
-      // A track that would have raised an alarm had its worst start been left out gets a wider
-      // limit.
-      const double own =
-          gaps ? margin
-               : std::max(margin,
-                          std::min(held_out.excess(seen.largest, seen.least), kMostOwnMargin));
-      const double largest = *std::max_element(seen.largest.begin(), seen.largest.end());
-      const double found =
-          std::max(seen.least, own * std::max(largest, HeldOut::kLeastShare * seen.least));
-      double& limit = limits_.tracks[seen.track];
-      if (channel == Channel::kOverdue) {
-        // What comes when something happens may stay away for as long as nothing does.
-        double age = found - static_cast<double>(parameters_.window);
-        if (pool == Pool::kOthers) {
-          Statistics::Type gaps = model_->statistics().type(to);
-          for (const Recording::Part* part : gap_parts) {
-            gaps.addGap(part->longest_gaps[to]);
-          }
-          const double rate =
-              parameters_.false_alarms_per_hour / kShares / static_cast<double>(tracks.size());
-          age = std::max(age, tailOfGaps(gaps.longest_gaps, hours_with_gaps, rate));
-        }
-        const bool irregular = age > kLongestWait && age > kMostMeanGaps * meanGap(to);
-        limit = irregular ? kNone : model_->overdue(to, std::llround(age));
-      } else if (channel == Channel::kDelay || channel == Channel::kSlowDelay) {
-        limit = found > kMostDelayLimit ? kNone : found;
-      } else if (channel == Channel::kAnswer) {
-        limit = found / model_->missed(seen.track) * meanGap(from) > kLongestWait ? kNone : found;
-      } else if (channel == Channel::kDeadline) {
-        const double seconds = model_->countsRequests(seen.track)
-                                   ? found * model_->usualDelay(from, from, 0.5)
-                                   : found;
-        limit = seconds > kLongestDeadline ? kNone : found;
-      } else {
-        limit = found;
-      }
-    }
-  }
-}
-
-namespace {
-
-/// The linker's largest values in all parts.
-struct LinkerParts {
-  std::vector<Part> parts;
-  std::vector<double> largest;
-};
-
-LinkerParts linkerParts(const LimitFinder::Findings& findings, std::int64_t window) {
-  LinkerParts all;
-  std::vector<Span> spans;
-  for (const LimitFinder::Recording& recording : findings) {
-    spans.emplace_back(recording.start, recording.end);
-  }
-  const std::vector<std::size_t> starts = startsOf(spans);
-  for (std::size_t k = 0; k < findings.size(); ++k) {
-    for (const LimitFinder::Recording::Part& part : findings[k].parts) {
-      all.parts.push_back(
-          {starts[k], static_cast<double>(part.windows) * static_cast<double>(window) / kHour});
-      all.largest.push_back(part.linker);
-    }
-  }
-  return all;
-}
-
-}  // namespace
-
 Limits LimitFinder::limits() const {
   if (linker_findings_.empty()) {
     throw std::logic_error("limits are known after the second pass");
   }
-  const LinkerParts seen = linkerParts(linker_findings_, parameters_.window);
-  HeldOut held_out(seen.parts, kScale);
-  held_out.add(seen.largest, kLeastLinkerLimit);
-  const double margin =
-      held_out.margin(parameters_.false_alarms_per_hour / kShares, kLeastLinkerMargin);
-  const double largest = *std::max_element(seen.largest.begin(), seen.largest.end());
   Limits limits = limits_;
-  limits.linker = std::max(kLeastLinkerLimit,
-                           margin * std::max(largest, HeldOut::kLeastShare * kLeastLinkerLimit));
+  limits.linker = LimitSearch::linker(linker_findings_, parameters_).limit;
   return limits;
 }
 
 double LimitFinder::expectedRate() const {
-  const LinkerParts seen = linkerParts(linker_findings_, parameters_.window);
-  HeldOut held_out(seen.parts, kScale);
-  held_out.add(seen.largest, kLeastLinkerLimit);
-  return tracks_rate_ + held_out.rate(held_out.margin(parameters_.false_alarms_per_hour / kShares,
-                                                      kLeastLinkerMargin));
+  if (linker_findings_.empty()) {
+    throw std::logic_error("the expected rate is known after the second pass");
+  }
+  return tracks_rate_ + LimitSearch::linker(linker_findings_, parameters_).rate;
 }
 
 }  // namespace self_awareness::core::evidence

@@ -27,7 +27,8 @@ constexpr double kLeastLinked = 0.5;
 // changed: it is news once (docs/method.md, section 3.7).
 constexpr std::int64_t kAcceptAfter = 60 * kNanosecondsPerSecond;
 
-// A stall of the whole robot, beyond what is usual [ns]; more often, it is something else.
+// A stall of the whole robot, where that is longer than usual [ns]; more often, it is something
+// else.
 constexpr std::int64_t kShortestStall = kNanosecondsPerSecond / 20;
 constexpr std::int64_t kLongestStall = kNanosecondsPerSecond * 7 / 10;
 constexpr std::int64_t kBetweenStalls = 30 * kNanosecondsPerSecond;
@@ -196,7 +197,7 @@ std::optional<std::int64_t> Scorer::add(const Event& event) {
 
 void Scorer::noteStall(std::int64_t stamp) {
   const std::int64_t silence = stamp - last_stamp_;
-  if (number_ > 0 && silence > longest_silence_ && silence <= longest_silence_ + kLongestStall &&
+  if (number_ > 0 && silence > longest_silence_ && silence <= kLongestStall &&
       (stalled_at_ == 0 || stamp - stalled_at_ > kBetweenStalls)) {
     stalled_from_ = last_stamp_;
     stalled_at_ = stamp;
@@ -342,9 +343,8 @@ const std::vector<double>& Scorer::closeWindow(std::int64_t end) {
   }
   // While all are silent, none is more so than the others.
   const std::int64_t silence = number_ > 0 ? end - last_stamp_ : 0;
-  stall_ = silence > longest_silence_ ? std::min(silence, kLongestStall) : 0;
-  const bool stalled = (stall_ > 0 && stall_ < kLongestStall) ||
-                       (stalled_at_ > 0 && end < stalled_until_ + kRateSpan);
+  stall_ = silence > longest_silence_ && silence <= kLongestStall ? silence : 0;
+  const bool stalled = stall_ > 0 || (stalled_at_ > 0 && end < stalled_until_ + kRateSpan);
   const std::vector<Track>& tracks = model_->tracks();
   for (std::size_t track = 0; track < tracks.size(); ++track) {
     const auto& [channel, id, from] = tracks[track];

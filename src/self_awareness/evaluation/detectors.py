@@ -134,6 +134,6 @@ def _judged(encoded: WindowedEvents, verdicts: Verdicts, threshold: float) -> Ju
 def scenario_graph() -> Set[Tuple[str, str, str]]:
     """Return who listens to whom in the robot that comes with the package."""
     components = load_scenario().components
-    return {(f'/{publisher.name}', topic, f'/{listener.name}')
+    return {(f'/{publisher.name}', f'/{topic}', f'/{listener.name}')
             for publisher in components for listener in components
             for topic in set(publisher.outputs()) & set(listener.inputs())}

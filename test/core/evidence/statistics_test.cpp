@@ -199,8 +199,7 @@ TEST(EvidenceTrainer, WhatCameBeforeOnlyTellsWhenItCameFirst) {
   EXPECT_EQ(counts.duration(), same.duration());
   ASSERT_EQ(counts.recordings().size(), 1U);
   EXPECT_EQ(counts.recordings()[0].start, 20 * kSecond);
-  EXPECT_EQ(counts.recordings()[0].firsts,
-            (std::vector<std::int64_t>{19 * kSecond, 2 * kSecond}));
+  EXPECT_EQ(counts.recordings()[0].firsts, (std::vector<std::int64_t>{19 * kSecond, 2 * kSecond}));
   EXPECT_FALSE(counts == same);
 }
 

@@ -114,10 +114,7 @@ class LimitFinder : private WindowObserver {
   void startPart();
   /// Joins neighbouring parts: they then last twice as long.
   void joinParts();
-  double meanGap(EventId id) const;  // of training [ns]
-  double hoursOf(std::uint64_t windows) const;
   void findRelations();
-  void findLimits();
 
   std::shared_ptr<const Model> model_;
   Parameters parameters_;
