@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace self_awareness::core::evidence {
+
+/// How often an event type that comes irregularly stays away for how long: the excess of its
+/// longest gaps over the shortest of them is taken for exponential (docs/method.md, section 5.3).
+class GapTail {
+ public:
+  /// @param longest_gaps [ns], the longest first, at least one
+  /// @param hours in which they were the longest, more than 0
+  GapTail(const std::vector<std::int64_t>& longest_gaps, double hours);
+
+  /// Age [ns] that gaps reach at a rate.
+  /// @param rate of such gaps an hour, more than 0
+  double age(double rate) const;
+  /// Gaps an hour that reach an age [ns].
+  double rate(double age) const;
+
+ private:
+  double shortest_ = 0;     // of the longest gaps [ns]
+  double mean_excess_ = 0;  // over it [ns]
+  double all_ = 0;          // rate of gaps above the shortest one
+};
+
+}  // namespace self_awareness::core::evidence

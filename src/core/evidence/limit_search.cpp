@@ -1,0 +1,299 @@
+#include "core/evidence/limit_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <utility>
+
+#include "core/evidence/gap_tail.h"
+#include "core/evidence/relations.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+constexpr double kHour = 3600e9;  // [ns]
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+// What was seen once in normal operation is normal, and so is a little more (docs/method.md,
+// section 5.2).
+constexpr double kLeastMargin = 1.25;
+// More would find nothing any more: where the data say so, the budget cannot be kept.
+constexpr double kMostMargin = 4;
+constexpr double kMostGapMargin = 1.6;  // of the longest gaps: what is silent is to be found soon
+constexpr double kMostOwnMargin = 2;    // of one track
+constexpr double kMostTailMargin = 2;   // of the longest gap of what comes irregularly
+// The linker depends on what the robot is doing, and that changes from hour to hour.
+constexpr double kLeastLinkerMargin = 1.5;
+constexpr double kLeastLinkerLimit = 2;  // event types
+// An answer may take so many times the longest wait that was seen.
+constexpr double kLeastDeadlineMargin = 2;
+// By how much recordings exceed each other on average (a logarithm), as long as little is known.
+constexpr double kScale = 0.2;
+constexpr double kScaleOfTimers = 0.05;
+// A gap shorter than this many mean gaps is one of a timer that lost nothing.
+constexpr double kRegular = 1.5;
+// A timer with shorter mean gaps, in windows, exceeds them by the host's hiccups.
+constexpr double kFast = 2;
+
+// Each pool and the linker have an equal share of the budget, but slow delays, which raise no
+// alarm.
+constexpr double kShares = 8;
+
+// Evidence that takes longer than this [ns] after a component's death is of no use.
+constexpr double kLongestWait = 10e9;
+constexpr double kLongestDeadline = 20;  // [s]
+// A pair with a larger limit would need 20 or more improbable delays in a row.
+constexpr double kMostDelayLimit = 100;
+// An event type that may wait longer than this many mean gaps comes when something happens.
+constexpr double kMostMeanGaps = 3;
+
+double hoursOf(std::uint64_t windows, std::int64_t window) {
+  return static_cast<double>(windows) * static_cast<double>(window) / kHour;
+}
+
+double sumOf(const std::vector<Part>& parts) {
+  double hours = 0;
+  for (const Part& part : parts) {
+    hours += part.hours;
+  }
+  return hours;
+}
+
+/// Numbers the starts that recordings belong to.
+std::vector<std::size_t> startsOf(const std::vector<Span>& recordings) {
+  std::vector<std::size_t> starts;
+  for (const Span& recording : recordings) {
+    std::vector<Span> before;
+    for (const Span& other : recordings) {
+      if (other <= recording) {
+        before.push_back(other);
+      }
+    }
+    starts.push_back(numberOfStarts(before) - 1);
+  }
+  return starts;
+}
+
+/// False alarms an hour that limits are made for. By the training alone, limits can promise no
+/// less than one in the time that was seen.
+double budgetOf(const LimitFinder::Findings& findings, const LimitFinder::Parameters& parameters) {
+  std::uint64_t windows = 0;
+  for (const LimitFinder::Recording& recording : findings) {
+    if (!recording.trained_on) {
+      return parameters.false_alarms_per_hour;
+    }
+    windows += recording.windows;
+  }
+  return std::max(parameters.false_alarms_per_hour, 1 / hoursOf(windows, parameters.window));
+}
+
+}  // namespace
+
+LimitSearch::LimitSearch(const Model& model, const LimitFinder::Findings& findings,
+                         const std::vector<Relation>& relations,
+                         const LimitFinder::Parameters& parameters)
+    : model_(model), parameters_(parameters), limits_(model.tracks().size(), kNone) {
+  share_ = budgetOf(findings, parameters) / kShares;
+  gatherParts(findings);
+  std::map<Pool, std::vector<Seen>> pools;
+  for (std::size_t track = 0; track < model_.tracks().size(); ++track) {
+    if (!relations[track].watched) {
+      continue;
+    }
+    Pool pool = poolOf(model_.tracks()[track].channel);
+    Seen seen{track, model_.leastLimit(track), {}};
+    if (pool == Pool::kOthers) {
+      seen = gapsOf(track);
+      pool = poolOfGaps(seen);
+    } else {
+      for (const LimitFinder::Recording::Part* part : judged_parts_) {
+        seen.largest.push_back(part->evidence[track]);
+      }
+    }
+    pools[pool].push_back(std::move(seen));
+  }
+  for (const auto& [pool, tracks] : pools) {
+    search(pool, tracks);
+  }
+}
+
+void LimitSearch::gatherParts(const LimitFinder::Findings& findings) {
+  const std::vector<Statistics::Recording>& training = model_.statistics().recordings();
+  std::vector<Span> spans;
+  for (const Statistics::Recording& recording : training) {
+    spans.emplace_back(recording.start, recording.end);
+  }
+  for (const LimitFinder::Recording& recording : findings) {
+    spans.emplace_back(recording.start, recording.end);
+  }
+  const std::vector<std::size_t> starts = startsOf(spans);
+  for (std::size_t k = 0; k < training.size(); ++k) {
+    with_gaps_.push_back(
+        {starts[k], static_cast<double>(training[k].end - training[k].start) / kHour});
+  }
+  for (std::size_t k = 0; k < findings.size(); ++k) {
+    for (const LimitFinder::Recording::Part& part : findings[k].parts) {
+      const Part hours{starts[training.size() + k], hoursOf(part.windows, parameters_.window)};
+      judged_.push_back(hours);
+      judged_parts_.push_back(&part);
+      if (!findings[k].trained_on) {
+        with_gaps_.push_back(hours);
+        gap_parts_.push_back(&part);
+      }
+    }
+  }
+}
+
+LimitSearch::Pool LimitSearch::poolOf(Channel channel) {
+  switch (channel) {
+    case Channel::kOverdue:
+      return Pool::kOthers;
+    case Channel::kFewer:
+    case Channel::kMore:
+      return Pool::kRates;
+    case Channel::kDelay:
+      return Pool::kDelays;
+    case Channel::kSlowDelay:
+      return Pool::kSlowDelays;
+    case Channel::kAnswer:
+      return Pool::kAnswers;
+    case Channel::kDeadline:
+      break;
+  }
+  return Pool::kDeadlines;
+}
+
+double LimitSearch::leastMargin(Pool pool) {
+  return pool == Pool::kDeadlines ? kLeastDeadlineMargin : kLeastMargin;
+}
+
+LimitSearch::Seen LimitSearch::gapsOf(std::size_t track) const {
+  const EventId id = model_.tracks()[track].to;
+  Seen seen{track, model_.leastLimit(track), {}};
+  for (const Statistics::Recording& recording : model_.statistics().recordings()) {
+    seen.largest.push_back(
+        id < recording.longest_gaps.size() ? static_cast<double>(recording.longest_gaps[id]) : 0);
+  }
+  for (const LimitFinder::Recording::Part* part : gap_parts_) {
+    seen.largest.push_back(static_cast<double>(part->longest_gaps[id]));
+  }
+  // Windows tell ages no better than this, and hiccups of a host add to a gap, however long.
+  for (double& gap : seen.largest) {
+    gap += gap > 0 ? window() : 0;
+  }
+  return seen;
+}
+
+LimitSearch::Pool LimitSearch::poolOfGaps(const Seen& seen) const {
+  const double mean_gap = meanGap(model_.tracks()[seen.track].to);
+  std::vector<double> sorted = seen.largest;
+  std::sort(sorted.rbegin(), sorted.rend());
+  const double second = sorted.size() > 1 && sorted[1] > 0 ? sorted[1] : sorted[0];
+  return second - window() >= kRegular * mean_gap ? Pool::kOthers
+         : mean_gap < kFast * window()            ? Pool::kFastTimers
+                                                  : Pool::kTimers;
+}
+
+void LimitSearch::search(Pool pool, const std::vector<Seen>& tracks) {
+  const bool timers = pool == Pool::kTimers || pool == Pool::kFastTimers;
+  const bool gaps = timers || pool == Pool::kOthers;
+  HeldOut held_out(gaps ? with_gaps_ : judged_, timers ? kScaleOfTimers : kScale);
+  for (const Seen& seen : tracks) {
+    held_out.add(seen.largest, seen.least);
+  }
+  const double margin =
+      std::min(held_out.margin(share_, leastMargin(pool)), gaps ? kMostGapMargin : kMostMargin);
+  // What comes irregularly has a tail of its own, and slow delays raise no alarm.
+  rate_ += pool == Pool::kSlowDelays || pool == Pool::kOthers ? 0 : held_out.rate(margin);
+  for (const Seen& seen : tracks) {
+    // A track that would have raised an alarm had its worst start been left out gets a wider
+    // limit.
+    const double own = gaps ? margin
+                            : std::max(margin, std::min(held_out.excess(seen.largest, seen.least),
+                                                        kMostOwnMargin));
+    const double largest = *std::max_element(seen.largest.begin(), seen.largest.end());
+    const double found =
+        std::max(seen.least, own * std::max(largest, HeldOut::kLeastShare * seen.least));
+    double& limit = limits_[seen.track];
+    if (pool == Pool::kOthers) {
+      limit = limitOfOther(seen, found, share_ / static_cast<double>(tracks.size()));
+    } else {
+      limit = limitOf(seen.track, found);
+    }
+  }
+}
+
+double LimitSearch::limitOf(std::size_t track, double found) const {
+  const auto& [channel, to, from] = model_.tracks()[track];
+  switch (channel) {
+    case Channel::kOverdue:
+      return limitOfAge(to, found - window());
+    case Channel::kDelay:
+    case Channel::kSlowDelay:
+      return found > kMostDelayLimit ? kNone : found;
+    case Channel::kAnswer:
+      return found / model_.missed(track) * meanGap(from) > kLongestWait ? kNone : found;
+    case Channel::kDeadline: {
+      const double usual =
+          model_.countsRequests(track) ? model_.usualDelay(from, from, 0.5) : 1;  // [s]
+      return found * usual > kLongestDeadline ? kNone : found;
+    }
+    default:
+      return found;
+  }
+}
+
+double LimitSearch::limitOfAge(EventId id, double age) const {
+  // What comes when something happens may stay away for as long as nothing does.
+  const bool irregular = age > kLongestWait && age > kMostMeanGaps * meanGap(id);
+  return irregular ? kNone : model_.overdue(id, std::llround(age));
+}
+
+double LimitSearch::limitOfOther(const Seen& seen, double found, double rate) {
+  const EventId id = model_.tracks()[seen.track].to;
+  Statistics::Type gaps = model_.statistics().type(id);
+  for (const LimitFinder::Recording::Part* part : gap_parts_) {
+    gaps.addGap(part->longest_gaps[id]);
+  }
+  const GapTail tail(gaps.longest_gaps, sumOf(with_gaps_));
+  const auto longest = static_cast<double>(gaps.longest_gaps.front());
+  const double age =
+      std::max(found - window(), std::min(tail.age(rate), kMostTailMargin * longest));
+  const double limit = limitOfAge(id, age);
+  rate_ += std::isnan(limit) ? 0 : tail.rate(age);
+  return limit;
+}
+
+double LimitSearch::meanGap(EventId id) const {
+  const Statistics::Type& type = model_.statistics().type(id);
+  return static_cast<double>(type.gap_sum) / static_cast<double>(type.gaps);
+}
+
+LimitSearch::Linker LimitSearch::linker(const LimitFinder::Findings& findings,
+                                        const LimitFinder::Parameters& parameters) {
+  std::vector<Span> spans;
+  for (const LimitFinder::Recording& recording : findings) {
+    spans.emplace_back(recording.start, recording.end);
+  }
+  const std::vector<std::size_t> starts = startsOf(spans);
+  std::vector<Part> parts;
+  std::vector<double> largest;
+  for (std::size_t k = 0; k < findings.size(); ++k) {
+    for (const LimitFinder::Recording::Part& part : findings[k].parts) {
+      parts.push_back({starts[k], hoursOf(part.windows, parameters.window)});
+      largest.push_back(part.linker);
+    }
+  }
+  HeldOut held_out(parts, kScale);
+  held_out.add(largest, kLeastLinkerLimit);
+  const double margin =
+      held_out.margin(budgetOf(findings, parameters) / kShares, kLeastLinkerMargin);
+  const double most = *std::max_element(largest.begin(), largest.end());
+  return {std::max(kLeastLinkerLimit,
+                   margin * std::max(most, HeldOut::kLeastShare * kLeastLinkerLimit)),
+          held_out.rate(margin)};
+}
+
+}  // namespace self_awareness::core::evidence
