@@ -104,8 +104,8 @@ double HeldOut::rate(double margin) const {
   for (const Level& level : levels_) {
     if (level.eligible_hours > 0) {
       const double beyond = std::max(std::log(margin) - kLeastExcess, 0.0);
-      rate = std::max(rate, std::max(level.exceedances, kFewest) / level.eligible_hours *
-                                std::exp(-beyond / scale(level)));
+      rate = std::max(rate,
+                      level.exceedances / level.eligible_hours * std::exp(-beyond / scale(level)));
     }
   }
   return rate;
