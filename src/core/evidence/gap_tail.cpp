@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <numeric>
 
 namespace self_awareness::core::evidence {
@@ -12,17 +13,22 @@ constexpr std::size_t kTailGaps = 20;
 
 }  // namespace
 
-GapTail::GapTail(const std::vector<std::int64_t>& longest_gaps, double hours) {
-  const std::size_t number = std::min(longest_gaps.size(), kTailGaps);
-  const auto end = longest_gaps.begin() + static_cast<std::ptrdiff_t>(number);
-  shortest_ = static_cast<double>(longest_gaps[number - 1]);
-  mean_excess_ =
-      std::accumulate(longest_gaps.begin(), end, 0.0) / static_cast<double>(number) - shortest_;
+GapTail::GapTail(const std::vector<std::int64_t>& longest_gaps, double hours, double usual) {
+  const auto end = std::find_if(
+      longest_gaps.begin(),
+      longest_gaps.begin() + static_cast<std::ptrdiff_t>(std::min(longest_gaps.size(), kTailGaps)),
+      [&](std::int64_t gap) { return static_cast<double>(gap) <= usual; });
+  const auto number = static_cast<std::size_t>(end - longest_gaps.begin());
+  shortest_ = number == kTailGaps ? static_cast<double>(*std::prev(end)) : usual;
   all_ = static_cast<double>(number) / hours;
+  if (number > 0) {
+    mean_excess_ =
+        std::accumulate(longest_gaps.begin(), end, 0.0) / static_cast<double>(number) - shortest_;
+  }
 }
 
 double GapTail::age(double rate) const {
-  return shortest_ + mean_excess_ * std::max(std::log(all_ / rate), 0.0);
+  return shortest_ + mean_excess_ * std::log(std::max(all_ / rate, 1.0));
 }
 
 double GapTail::rate(double age) const {

@@ -7,11 +7,13 @@ namespace self_awareness::core::evidence {
 
 /// How often an event type that comes irregularly stays away for how long: the excess of its
 /// longest gaps over the shortest of them is taken for exponential (docs/method.md, section 5.3).
+/// Gaps in which nothing was left out say nothing about that.
 class GapTail {
  public:
   /// @param longest_gaps [ns], the longest first, at least one
   /// @param hours in which they were the longest, more than 0
-  GapTail(const std::vector<std::int64_t>& longest_gaps, double hours);
+  /// @param usual gaps are no longer than this [ns]
+  GapTail(const std::vector<std::int64_t>& longest_gaps, double hours, double usual);
 
   /// Age [ns] that gaps reach at a rate.
   /// @param rate of such gaps an hour, more than 0
@@ -20,9 +22,9 @@ class GapTail {
   double rate(double age) const;
 
  private:
-  double shortest_ = 0;     // of the longest gaps [ns]
+  double shortest_ = 0;     // of the longest gaps, but more than the usual ones [ns]
   double mean_excess_ = 0;  // over it [ns]
-  double all_ = 0;          // rate of gaps above the shortest one
+  double all_ = 0;          // gaps an hour from the shortest one on
 };
 
 }  // namespace self_awareness::core::evidence

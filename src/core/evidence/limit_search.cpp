@@ -7,7 +7,6 @@
 #include <map>
 #include <utility>
 
-#include "core/evidence/gap_tail.h"
 #include "core/evidence/relations.h"
 
 namespace self_awareness::core::evidence {
@@ -205,8 +204,7 @@ void LimitSearch::search(Pool pool, const std::vector<Seen>& tracks) {
   }
   const double margin =
       std::min(held_out.margin(share_, leastMargin(pool)), gaps ? kMostGapMargin : kMostMargin);
-  // What comes irregularly has a tail of its own, and slow delays raise no alarm.
-  rate_ += pool == Pool::kSlowDelays || pool == Pool::kOthers ? 0 : held_out.rate(margin);
+  double rate_of_tails = 0;
   for (const Seen& seen : tracks) {
     // A track that would have raised an alarm had its worst start been left out gets a wider
     // limit.
@@ -218,10 +216,19 @@ void LimitSearch::search(Pool pool, const std::vector<Seen>& tracks) {
         std::max(seen.least, own * std::max(largest, HeldOut::kLeastShare * seen.least));
     double& limit = limits_[seen.track];
     if (pool == Pool::kOthers) {
-      limit = limitOfOther(seen, found, share_ / static_cast<double>(tracks.size()));
+      const GapTail tail = tailOf(seen);
+      const double age = std::max(found - window(),
+                                  std::min(tail.age(share_ / static_cast<double>(tracks.size())),
+                                           kMostTailMargin * (largest - window())));
+      limit = limitOfAge(seen.track, age);
+      rate_of_tails += std::isnan(limit) ? 0 : tail.rate(age);
     } else {
       limit = limitOf(seen.track, found);
     }
+  }
+  if (pool != Pool::kSlowDelays) {  // they raise no alarm
+    const double rate = held_out.rate(margin);
+    rate_ += pool == Pool::kOthers ? std::min(rate, rate_of_tails) : rate;
   }
 }
 
@@ -229,7 +236,7 @@ double LimitSearch::limitOf(std::size_t track, double found) const {
   const auto& [channel, to, from] = model_.tracks()[track];
   switch (channel) {
     case Channel::kOverdue:
-      return limitOfAge(to, found - window());
+      return limitOfAge(track, found - window());
     case Channel::kDelay:
     case Channel::kSlowDelay:
       return found > kMostDelayLimit ? kNone : found;
@@ -245,25 +252,20 @@ double LimitSearch::limitOf(std::size_t track, double found) const {
   }
 }
 
-double LimitSearch::limitOfAge(EventId id, double age) const {
+double LimitSearch::limitOfAge(std::size_t track, double age) const {
+  const EventId id = model_.tracks()[track].to;
   // What comes when something happens may stay away for as long as nothing does.
   const bool irregular = age > kLongestWait && age > kMostMeanGaps * meanGap(id);
   return irregular ? kNone : model_.overdue(id, std::llround(age));
 }
 
-double LimitSearch::limitOfOther(const Seen& seen, double found, double rate) {
+GapTail LimitSearch::tailOf(const Seen& seen) const {
   const EventId id = model_.tracks()[seen.track].to;
   Statistics::Type gaps = model_.statistics().type(id);
   for (const LimitFinder::Recording::Part* part : gap_parts_) {
     gaps.addGap(part->longest_gaps[id]);
   }
-  const GapTail tail(gaps.longest_gaps, sumOf(with_gaps_));
-  const auto longest = static_cast<double>(gaps.longest_gaps.front());
-  const double age =
-      std::max(found - window(), std::min(tail.age(rate), kMostTailMargin * longest));
-  const double limit = limitOfAge(id, age);
-  rate_ += std::isnan(limit) ? 0 : tail.rate(age);
-  return limit;
+  return {gaps.longest_gaps, sumOf(with_gaps_), kRegular * meanGap(id)};
 }
 
 double LimitSearch::meanGap(EventId id) const {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "core/evidence/gap_tail.h"
 #include "core/evidence/held_out.h"
 #include "self_awareness/core/evidence/limits.h"
 #include "self_awareness/core/evidence/model.h"
@@ -58,9 +59,10 @@ class LimitSearch {
   Pool poolOfGaps(const Seen& seen) const;
   void search(Pool pool, const std::vector<Seen>& tracks);
   double limitOf(std::size_t track, double found) const;
-  double limitOfAge(EventId id, double age) const;
-  /// Limit of an event type that comes irregularly; adds its rate.
-  double limitOfOther(const Seen& seen, double found, double rate);
+  /// Limit of a silence [ns].
+  double limitOfAge(std::size_t track, double age) const;
+  /// Of the gaps of training and of the recordings.
+  GapTail tailOf(const Seen& seen) const;
   double meanGap(EventId id) const;  // of training [ns]
   double window() const { return static_cast<double>(parameters_.window); }
 
