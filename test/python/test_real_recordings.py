@@ -88,22 +88,23 @@ def test_evidence_finds_the_outage_and_the_rest_is_quiet(wheeled_robot: Path, tm
     assert 'preliminary' in capsys.readouterr().out
     assert score.main([str(wheeled_robot / 'feb13_outage.bag'), '--model', model]) == 0
     alarms = alarms_of(capsys.readouterr().out)
-    # It is raised a little early, by what the start-up left behind, and stays until 52.6 s: a
-    # weakness that docs/evaluation/recordings.md tells of.
-    assert any(alarm.start < 29.0 and alarm.end > 36.0 for alarm in alarms)
-    assert all(alarm.end < 55.0 for alarm in alarms)
+    outage, = alarms
+    assert 28.0 < outage.start < 29.0 and 36.0 < outage.end < 41.0
 
 
 def test_evidence_finds_that_the_laser_is_gone(wheeled_robot: Path, tmp_path: Path,
                                                capsys) -> None:
-    """From 42 s on all nodes stall now and then; until then, all is quiet."""
+    """From 42 s on all nodes stall now and then; the laser is gone from 67.9 s on.
+
+    Its longest gap in training is 1.1 s, in a recording of 71 s: twice that is not normal.
+    """
     model = str(tmp_path / 'm')
     _train(model, str(wheeled_robot / 'jan17_normal.bag'), '--start', '15')
     capsys.readouterr()
     assert score.main([str(wheeled_robot / 'jan17_outage.bag'), '--model', model]) == 0
     alarms = alarms_of(capsys.readouterr().out)
     assert all(alarm.start > 42.0 for alarm in alarms)
-    assert alarms[-1].start < 70.0 and alarms[-1].end > 120.0
+    assert alarms[-1].start < 70.3 and alarms[-1].end > 120.0
 
 
 @pytest.mark.parametrize('session', ['101', '102', '103'])

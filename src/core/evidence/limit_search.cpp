@@ -75,8 +75,9 @@ std::vector<std::size_t> startsOf(const std::vector<Span>& recordings) {
   return starts;
 }
 
-/// False alarms an hour that limits are made for. By the training alone, limits can promise no
-/// less than one in the time that was seen.
+/// False alarms an hour that limits are made for. By the training alone, they promise one in so
+/// many times the time that was seen at best.
+constexpr double kMostOfTraining = 10;
 double budgetOf(const LimitFinder::Findings& findings, const LimitFinder::Parameters& parameters) {
   std::uint64_t windows = 0;
   for (const LimitFinder::Recording& recording : findings) {
@@ -85,7 +86,8 @@ double budgetOf(const LimitFinder::Findings& findings, const LimitFinder::Parame
     }
     windows += recording.windows;
   }
-  return std::max(parameters.false_alarms_per_hour, 1 / hoursOf(windows, parameters.window));
+  return std::max(parameters.false_alarms_per_hour,
+                  1 / (kMostOfTraining * hoursOf(windows, parameters.window)));
 }
 
 }  // namespace

@@ -14,7 +14,9 @@ PART = 30 * SECOND
 LEAST_MARGIN = {'deadlines': 2.0, 'linker': 1.5}
 """By pool; 1.25 elsewhere."""
 MOST_MARGIN = 4.0
+MOST_GAP_MARGIN = 1.6
 MOST_OWN_MARGIN = 2.0
+MOST_TAIL_MARGIN = 2.0
 SCALE = {'timers': 0.05, 'fast timers': 0.05}
 """By pool; 0.2 elsewhere."""
 LEAST_LINKER_LIMIT = 2.0
@@ -111,8 +113,26 @@ class HeldOut:
     def rate(self, margin: float) -> float:
         """Return how often an hour a margin is exceeded."""
         beyond = max(math.log(margin) - LEAST_EXCESS, 0.0)
-        return max((max(len(logs), FEWEST_EXCEEDANCES) / hours * math.exp(-beyond / scale)
+        return max((len(logs) / hours * math.exp(-beyond / scale)
                     for hours, logs, scale in self._levels), default=0.0)
+
+
+class Tail(NamedTuple):
+    """The longest gaps: the shortest of them, the others' mean excess, and how many an hour."""
+
+    shortest: float
+    excess: float
+    all: float
+
+    def gap(self, rate: float) -> float:
+        """Return the gap that is reached so often an hour."""
+        return self.shortest + self.excess * math.log(max(self.all / rate, 1.0))
+
+    def rate(self, gap: float) -> float:
+        """Return how often an hour a gap is reached."""
+        if gap <= self.shortest:
+            return self.all
+        return self.all * math.exp((self.shortest - gap) / self.excess) if self.excess else 0.0
 
 
 class Judged(NamedTuple):
@@ -144,13 +164,16 @@ class ReferenceLimits:
         self._recordings = recordings
         self._window = window
         self._settle_time = settle_time
-        self._rate = budget / SHARES
         spans = [(seen.start, seen.end) for seen in self._training()]
         starts = starts_of(spans + [recording.span for recording in recordings])
         self._starts_of_training = starts[:len(spans)]
         self._starts = starts[len(spans):]
         self._rows = [self._settled(recording, ()) for recording in recordings]
         self.windows = sum(len(rows) for rows in self._rows)
+        if all(recording.trained_on for recording in recordings):
+            # The training alone promises no less than one in ten times the time that was seen.
+            budget = max(budget, HOUR / (10 * self.windows * window))
+        self._rate = budget / SHARES
         self.relations = [self._relation(track) for track in model.tracks]
         self.expected_rate = 0.0
         self.tracks = self._find()
@@ -242,7 +265,8 @@ class ReferenceLimits:
         channel, kind, _ = self._model.tracks[index]
         if channel != 'overdue':
             return POOLS[channel]
-        second = sorted(self._longest_gaps(kind))[-2] - self._window
+        longest = sorted(gap for gap in self._longest_gaps(kind) if gap > 0)
+        second = longest[-2:][0] - self._window
         mean = self._model.both.mean_gap(kind)
         if second >= REGULAR * mean:
             return 'others'
@@ -267,28 +291,39 @@ class ReferenceLimits:
                      else self._largest(index), self._model.least_limit(self._model.tracks[index]))
                     for index in tracks]
             held_out = HeldOut(with_gaps if of_gaps else judged, seen, SCALE.get(pool, 0.2))
-            margin = min(held_out.margin(self._rate, LEAST_MARGIN.get(pool, 1.25)), MOST_MARGIN)
-            self.expected_rate += held_out.rate(margin) if pool != 'slow delays' else 0.0
+            margin = min(held_out.margin(self._rate, LEAST_MARGIN.get(pool, 1.25)),
+                         MOST_GAP_MARGIN if of_gaps else MOST_MARGIN)
+            rate_of_tails = 0.0
             for index, (largest, least) in zip(tracks, seen):
-                own = max(margin, min(held_out.excess(largest, least), MOST_OWN_MARGIN))
+                own = (margin if of_gaps else
+                       max(margin, min(held_out.excess(largest, least), MOST_OWN_MARGIN)))
                 found = max(least, own * max(*largest, LEAST_SHARE * least))
                 track = self._model.tracks[index]
                 if pool == 'others':
                     hours = sum(part.hours for part in with_gaps)
-                    tail = self._tail(track[1], hours, self._rate / len(tracks))
-                    found = max(found, tail + self._window)
+                    tail = self._tail(track[1], hours)
+                    longest = max(largest) - self._window
+                    found = max(found, self._window + min(tail.gap(self._rate / len(tracks)),
+                                                          MOST_TAIL_MARGIN * longest))
                 limits[index] = self._limit(track, found)
+                if pool == 'others' and not math.isnan(limits[index]):
+                    rate_of_tails += tail.rate(found - self._window)
+            if pool == 'others':
+                self.expected_rate += min(held_out.rate(margin), rate_of_tails)
+            elif pool != 'slow delays':
+                self.expected_rate += held_out.rate(margin)
         return limits
 
-    def _tail(self, kind: str, hours: float, rate: float) -> float:
-        """Return the gap that is exceeded so often an hour, by the longest ones that were seen."""
+    def _tail(self, kind: str, hours: float) -> Tail:
         gaps = list(self._model.both.gaps[kind])
         for number, recording in enumerate(self._recordings):
             if not recording.trained_on:
                 gaps += [int(gap) for gap in self._longest_gaps_of_parts(number, kind)]
-        longest = sorted(gaps)[-TAIL_GAPS:]
-        excess = sum(gap - longest[0] for gap in longest) / len(longest)
-        return longest[0] + excess * max(math.log(len(longest) / hours / rate), 0.0)
+        usual = REGULAR * self._model.both.mean_gap(kind)
+        longest = [gap for gap in sorted(gaps)[-TAIL_GAPS:] if gap > usual]
+        shortest = float(longest[0]) if len(longest) == TAIL_GAPS else usual
+        excess = sum(gap - shortest for gap in longest) / max(len(longest), 1)
+        return Tail(shortest, excess, len(longest) / hours)
 
     def _limit(self, track: Track, found: float) -> float:
         channel, kind, other = track

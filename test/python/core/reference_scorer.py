@@ -126,7 +126,7 @@ class ReferenceScorer:
     def _note_stall(self, t: int) -> None:
         if self._newest is not None:
             silence = t - self._newest
-            if (self._usual_silence < silence <= self._usual_silence + LONGEST_STALL
+            if (self._usual_silence < silence <= LONGEST_STALL
                     and (self._stall is None or t - self._stall[1] > BETWEEN_STALLS)):
                 self._stall = (self._newest, t)
         self._newest = max(t, self._newest or t)
@@ -203,9 +203,8 @@ class ReferenceScorer:
         if self._has_limits:
             self._accept(end)
         silence = end - self._newest if self._newest is not None else 0
-        stall = min(silence, LONGEST_STALL) if silence > self._usual_silence else 0
-        stalled = (0 < stall < LONGEST_STALL
-                   or self._has_waited(end - 2 * SECOND))
+        stall = silence if self._usual_silence < silence <= LONGEST_STALL else 0
+        stalled = stall > 0 or self._has_waited(end - 2 * SECOND)
         return [self._evidence(track, index, end, stall, stalled)
                 for track in self._model.tracks]
 
