@@ -58,6 +58,11 @@ std::string describeDelay(const Suspect& suspect) {
          " than usual " + timesOf(suspect) + usual;
 }
 
+/// Seconds, rounded: microseconds after a start mean nothing.
+double toMilliseconds(double seconds) {
+  return std::round(seconds * 1e3) / 1e3;
+}
+
 std::string describeAnswer(const Suspect& suspect) {
   if (suspect.of == 0) {
     return "left out too often after " + suspect.other;
@@ -107,7 +112,7 @@ std::string describe(const Suspect& suspect) {
       return text + suspect.other;
     case Suspect::Reason::kNeverHeard:
       std::snprintf(text, sizeof text, "not heard since the start, usually within %.3g to %.3g s",
-                    suspect.usual_shortest, suspect.usual_longest);
+                    toMilliseconds(suspect.usual_shortest), toMilliseconds(suspect.usual_longest));
       return text;
   }
   return "";

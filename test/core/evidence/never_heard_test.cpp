@@ -125,7 +125,7 @@ TEST_F(NeverHeardTest, TooFewGapsSayNothing) {
 }
 
 TEST_F(NeverHeardTest, RecordingsOfTheCalibrationCountToo) {
-  train({start(0, 1)}, {start(0, 7)});
+  train({start(7180, 1)}, {start(0, 7)});
   Limits limits;
   limits.firsts = {0, -1, 20 * kSecond};  // in one, B did not come
   NeverHeard never_heard = neverHeard(limits);
