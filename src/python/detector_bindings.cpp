@@ -113,9 +113,11 @@ Verdicts judgeByPaper(const std::shared_ptr<core::paper::Model>& model, std::int
 Verdicts judgeByEvidence(const ros1::TrainedModel& trained,
                          const std::shared_ptr<core::evidence::Model>& model,
                          const core::Detector::Parameters& parameters, const Stamps& stamps,
-                         const Ids& ids, std::optional<std::int64_t> end) {
+                         const Ids& ids, std::optional<std::int64_t> end,
+                         const std::vector<core::EventType>& event_types) {
   return judge(core::evidence::makeJudge(model, trained.limits(), trained.window,
-                                         std::make_shared<core::SourceGraph>(trained.graph)),
+                                         std::make_shared<core::SourceGraph>(trained.graph),
+                                         std::make_shared<core::Vocabulary>(event_types)),
                trained.window, parameters, stamps, ids, end);
 }
 
@@ -243,7 +245,10 @@ void bindVerdicts(py::module& m) {
            "with the last event.");
   m.def("judge_by_evidence", &judgeByEvidence, py::arg("trained"), py::arg("model"),
         py::arg("parameters"), py::arg("stamps"), py::arg("ids"), py::arg("end") = py::none(),
-        "Verdicts on a recording by the EvidenceModel of a TrainedModel, like Model.judge.");
+        py::arg("event_types") = std::vector<core::EventType>(),
+        "Verdicts on a recording by the EvidenceModel of a TrainedModel, like Model.judge.\n"
+        "event_types: by id, those of the model first; empty: those of unknown events are not\n"
+        "known.");
   m.attr("EVIDENCE_THRESHOLD") = core::evidence::kThreshold;
   m.attr("DEFAULT_WINDOW") = core::kDefaultWindow;  // [ns]
   m.attr("FEWEST_GAPS") = core::kFewestGaps;

@@ -8,6 +8,8 @@
 #include <set>
 #include <utility>
 
+#include "core/evidence/strangers.h"
+
 namespace self_awareness::core::evidence {
 namespace {
 
@@ -17,17 +19,6 @@ constexpr double kMostShare = 2;
 constexpr double kNearLimit = 0.75;
 // Of an unusual delay between two event types, the other one is a little less to blame.
 constexpr double kShareOfOther = 0.9;
-
-Suspect unknown(EventId id, const Window& window) {
-  Suspect suspect;
-  suspect.id = id;
-  suspect.abnormal = true;
-  suspect.reason = Suspect::Reason::kUnknown;
-  suspect.events = static_cast<std::size_t>(
-      std::count_if(window.events.begin(), window.events.end(),
-                    [id](const ObservedEvent& other) { return other.event.id == id; }));
-  return suspect;
-}
 
 }  // namespace
 
@@ -62,7 +53,7 @@ std::vector<Suspect> Blame::suspects(const std::vector<double>& shares, const Sc
   for (const ObservedEvent& observed : window.events) {
     if (observed.unknown && suspects.size() < kMostSuspects &&
         named.insert(observed.event.id).second) {
-      suspects.push_back(unknown(observed.event.id, window));
+      suspects.push_back(unknownSuspect(observed.event.id, window));
     }
   }
   for (const Candidate& candidate : candidates) {

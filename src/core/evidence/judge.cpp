@@ -13,6 +13,7 @@
 #include "core/evidence/hindsight.h"
 #include "core/evidence/never_heard.h"
 #include "core/evidence/scorer.h"
+#include "core/evidence/strangers.h"
 
 namespace self_awareness::core::evidence {
 namespace {
@@ -26,11 +27,12 @@ constexpr std::int64_t kConfirmation = kNanosecondsPerSecond / 10;
 class Judge : public core::Judge {
  public:
   Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, std::int64_t window,
-        std::shared_ptr<const SourceGraph> graph);
+        std::shared_ptr<const SourceGraph> graph, std::shared_ptr<const Vocabulary> heard);
 
   ObservedEvent add(const Event& event) override {
     hindsight_.add(event);
     never_heard_.add(event);
+    strangers_.add(event);
     return {event, !model_->knows(event.id), scorer_.add(event)};
   }
   void settle(const Event& first, std::int64_t settle_time) override;
@@ -54,6 +56,7 @@ class Judge : public core::Judge {
   Hindsight hindsight_;
   Blame blame_;
   NeverHeard never_heard_;
+  Strangers strangers_;
   std::int64_t settle_time_ = 0;          // [ns]
   std::vector<double> shares_;            // of its limit that each track has reached
   std::vector<std::int64_t> settled_at_;  // [ns], by id
@@ -61,7 +64,7 @@ class Judge : public core::Judge {
 };
 
 Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, std::int64_t window,
-             std::shared_ptr<const SourceGraph> graph)
+             std::shared_ptr<const SourceGraph> graph, std::shared_ptr<const Vocabulary> heard)
     : model_(std::move(model)),
       limits_(std::move(limits)),
       window_(window),
@@ -69,6 +72,7 @@ Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, s
       hindsight_(model_),
       blame_(model_, graph),
       never_heard_(*model_, limits_.value_or(Limits{}), std::move(graph)),
+      strangers_(*model_, std::move(heard)),
       shares_(model_->tracks().size(), 0),
       settled_at_(model_->size(), std::numeric_limits<std::int64_t>::min()) {
   if (limits_ && (limits_->tracks.size() != model_->tracks().size() ||
@@ -92,6 +96,7 @@ void Judge::restart() {
   scorer_.restart();
   hindsight_.restart();
   never_heard_.restart();
+  strangers_.restart();
   std::fill(settled_at_.begin(), settled_at_.end(), std::numeric_limits<std::int64_t>::min());
   all_settled_at_ = std::numeric_limits<std::int64_t>::min();
 }
@@ -164,13 +169,16 @@ std::vector<Suspect> Judge::namedIn(const Window& window, bool silent_first) con
   if (!silent_first) {
     std::swap(first, second);
   }
-  for (const Suspect& suspect : second) {
-    if (std::none_of(first.begin(), first.end(),
-                     [&](const Suspect& other) { return other.id == suspect.id; })) {
-      first.push_back(suspect);
+  std::vector<Suspect> named = strangers_.suspects(window, scorer_);
+  for (const std::vector<Suspect>& suspects : {first, second}) {
+    for (const Suspect& suspect : suspects) {
+      if (std::none_of(named.begin(), named.end(),
+                       [&](const Suspect& other) { return other.id == suspect.id; })) {
+        named.push_back(suspect);
+      }
     }
   }
-  return first;
+  return named;
 }
 
 bool Judge::isSilent() const {
@@ -189,8 +197,10 @@ bool Judge::isSilent() const {
 
 std::unique_ptr<core::Judge> makeJudge(std::shared_ptr<const Model> model,
                                        std::optional<Limits> limits, std::int64_t window,
-                                       std::shared_ptr<const SourceGraph> graph) {
-  return std::make_unique<Judge>(std::move(model), std::move(limits), window, std::move(graph));
+                                       std::shared_ptr<const SourceGraph> graph,
+                                       std::shared_ptr<const Vocabulary> heard) {
+  return std::make_unique<Judge>(std::move(model), std::move(limits), window, std::move(graph),
+                                 std::move(heard));
 }
 
 }  // namespace self_awareness::core::evidence

@@ -51,7 +51,8 @@ def _score(arguments: argparse.Namespace) -> None:
     judged: List[Tuple[RecordingEvents, Verdicts]] = []
     for part in arguments.bags:
         recording = cli.read_recording('score', trained, part)
-        verdicts = judge(recording.stamps, recording.ids, recording.end)
+        verdicts = judge(recording.stamps, recording.ids, recording.end,
+                         recording.event_types)
         judged.append((recording, verdicts))
         _print(recording, verdicts, len(trained.event_types), threshold)
     if arguments.csv is not None:
