@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/evidence/blame.h"
+#include "core/evidence/busy_machine.h"
 #include "core/evidence/hindsight.h"
 #include "core/evidence/never_heard.h"
 #include "core/evidence/scorer.h"
@@ -20,6 +21,8 @@ namespace {
 
 // Above this share of its limit, the linker is suspicious.
 constexpr double kSuspicious = 0.75;
+// The score of a busy machine whose evidence is within all limits: just abnormal.
+constexpr double kStillBusy = 1.01 * kThreshold;
 // An event type that was overdue this long ago [ns] already is silent: further windows would say
 // nothing new.
 constexpr std::int64_t kConfirmation = kNanosecondsPerSecond / 10;
@@ -57,6 +60,7 @@ class Judge : public core::Judge {
   Blame blame_;
   NeverHeard never_heard_;
   Strangers strangers_;
+  BusyMachine busy_machine_;
   std::int64_t settle_time_ = 0;          // [ns]
   std::vector<double> shares_;            // of its limit that each track has reached
   std::vector<std::int64_t> settled_at_;  // [ns], by id
@@ -73,6 +77,7 @@ Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, s
       blame_(model_, graph),
       never_heard_(*model_, limits_.value_or(Limits{}), std::move(graph)),
       strangers_(*model_, std::move(heard)),
+      busy_machine_(model_),
       shares_(model_->tracks().size(), 0),
       settled_at_(model_->size(), std::numeric_limits<std::int64_t>::min()) {
   if (limits_ && (limits_->tracks.size() != model_->tracks().size() ||
@@ -97,6 +102,7 @@ void Judge::restart() {
   hindsight_.restart();
   never_heard_.restart();
   strangers_.restart();
+  busy_machine_.restart();
   std::fill(settled_at_.begin(), settled_at_.end(), std::numeric_limits<std::int64_t>::min());
   all_settled_at_ = std::numeric_limits<std::int64_t>::min();
 }
@@ -144,6 +150,12 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
   never_heard_.closeWindow(end, settle_time_);
   judgement.score = -std::max({sum.largest, linker, never_heard_.share()});
   judgement.threshold = kThreshold;
+  judgement.busy = busy_machine_.closeWindow(shares_, scorer_, *judgement.score < kThreshold);
+  if (judgement.busy) {
+    // An alarm lasts as long as its cause, though none of the sums may be beyond its limit now.
+    judgement.score = std::min(*judgement.score, kStillBusy);
+    channels.insert("busy");
+  }
   judgement.abnormal = *judgement.score < kThreshold;
   judgement.certain = linker > 1 || never_heard_.share() > 1 || isSilent();
   judgement.suspicious = linker > kSuspicious || never_heard_.share() > 0;

@@ -91,6 +91,8 @@ def _lines(recording: RecordingEvents, level: str, alarm: Alarm,
            f'{utc(alarm.start)} - {utc(alarm.end)} UTC: '
            f'lowest score {alarm.lowest_score:.4g}, threshold {threshold:.4g}, '
            f'{alarm.evidence or "what is left of the alarm"}')
+    if alarm.busy is not None:
+        yield f'    {alarm.busy}'
     if not alarm.suspects and alarm.evidence:
         yield '    no suspect stands out'
     for rank, suspect in enumerate(alarm.suspects, 1):
