@@ -8,7 +8,7 @@
 namespace self_awareness {
 
 void AlarmState::add(const core::Verdict& verdict, const core::Vocabulary& vocabulary,
-                     std::int64_t window) {
+                     std::int64_t window, const std::string& load) {
   const std::int64_t end = verdict.window->start + window;
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   if (levelOf(verdict) != message_.level) {
@@ -20,9 +20,10 @@ void AlarmState::add(const core::Verdict& verdict, const core::Vocabulary& vocab
   }
   if (!verdict.evidence.empty() || !stands()) {
     message_.evidence = verdict.evidence;
+    busy_ = verdict.busy ? core::describe(*verdict.busy, load) : "";
   }
   message_.message = wording(verdict, message_.evidence, message_.suspects,
-                             toMessages(verdict.new_suspects, vocabulary));
+                             toMessages(verdict.new_suspects, vocabulary), busy_);
   message_.header.stamp = toRosTime(end);
   message_.window_start = toRosTime(verdict.window->start);
   message_.window.fromNSec(window);
@@ -41,6 +42,7 @@ bool AlarmState::standDown(const std::string& message, std::int64_t now) {
   message_.abnormal = false;
   message_.suspects.clear();
   message_.evidence.clear();
+  busy_.clear();
   message_.header.stamp = toRosTime(now);
   return stood;
 }

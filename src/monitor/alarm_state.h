@@ -20,7 +20,9 @@ class AlarmState {
   /// last window that had any.
   /// @param vocabulary that the suspects' ids are of
   /// @param window length [ns]
-  void add(const core::Verdict& verdict, const core::Vocabulary& vocabulary, std::int64_t window);
+  /// @param load of the machine in words; empty: not known
+  void add(const core::Verdict& verdict, const core::Vocabulary& vocabulary, std::int64_t window,
+           const std::string& load = "");
   /// Takes back what stands, for another reason than a window: there is nothing abnormal any more.
   /// @param message the reason
   /// @param now ROS time [ns]
@@ -32,6 +34,8 @@ class AlarmState {
 
   /// Whether there is an alarm or a suspicion.
   bool stands() const { return message_.level != self_awareness::SelfAwareness::OK; }
+  /// What the machine is, in words, if it is too busy; else empty.
+  const std::string& busy() const { return busy_; }
   /// Whether anything was said since the start, or since forgetWindow().
   bool spoken() const { return !message_.message.empty(); }
   /// How long an alarm or a suspicion has stood [s], at the ROS time `now` [ns].
@@ -41,6 +45,7 @@ class AlarmState {
 
  private:
   self_awareness::SelfAwareness message_;
+  std::string busy_;              // of the last window that had evidence
   std::int64_t level_since_ = 0;  // end of the window with which the level changed last [ns]
 };
 

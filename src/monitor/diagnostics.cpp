@@ -99,7 +99,7 @@ void Diagnostics::component(const std::string& name, Status& status) const {
   for (std::size_t i = 0; i < suspects.size() && state_.last.level != DiagnosticStatus::OK; ++i) {
     if (core::componentOf(suspects[i].source, suspects[i].scope) == name) {
       // The most likely one is to blame; the others may well be its victims.
-      status.summary(i == 0 && state_.last.level == DiagnosticStatus::ERROR
+      status.summary(i == 0 && !state_.busy && state_.last.level == DiagnosticStatus::ERROR
                          ? DiagnosticStatus::ERROR
                          : DiagnosticStatus::WARN,
                      describeOnScope(suspects[i]));

@@ -19,6 +19,7 @@ struct MonitorState {
   bool calibrated = false;
   bool started = false;                ///< something was said of a window
   self_awareness::SelfAwareness last;  ///< the verdict on the last window, if started
+  bool busy = false;                   ///< the machine is to blame, no component
   double level_for = 0;                ///< how long it has had its level [s]
   HeardReport heard;
   std::size_t subscriptions = 0;

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "load.h"
 #include "self_awareness/SelfAwareness.h"
 #include "self_awareness/core/stream/event.h"
 
@@ -178,7 +179,8 @@ void Monitor::restart() {
 }
 
 void Monitor::onVerdict(const core::Verdict& verdict) {
-  alarm_.add(verdict, session_->vocabulary(), session_->window());
+  alarm_.add(verdict, session_->vocabulary(), session_->window(),
+             verdict.busy ? loadInWords() : "");
   const self_awareness::SelfAwareness& said = alarm_.message();
   status_publisher_.publish(said);
   if (verdict.changed) {
@@ -220,6 +222,7 @@ void Monitor::publishDiagnostics() {
   state.calibrated = session_ && session_->calibrated();
   state.started = session_ && alarm_.spoken();
   state.last = alarm_.message();
+  state.busy = !alarm_.busy().empty();
   state.level_for = alarm_.standsFor(moment.ros);
   state.heard = heard_.report(moment, live_events_->dropped());
   state.subscriptions = discovered.subscriptions;

@@ -14,7 +14,7 @@ Session::Session(ros1::TrainedModel trained, const MonitorParameters& parameters
                       ? trained_.calibration.has_value()
                       : trained_.evidence_calibration.has_value()),
       graph_(std::make_shared<core::SourceGraph>(trained_.graph)),
-      vocabulary_(trained_.vocabulary()),
+      vocabulary_(std::make_shared<core::Vocabulary>(trained_.vocabulary())),
       encoder_(std::make_shared<ros1::Encoder>(
           trained_.encoding, [this](const core::EventType& type) { return intern(type); })),
       detector_(makeJudge(parameters), trained_.window, parameters.detector, std::move(handler)) {
@@ -31,16 +31,16 @@ std::unique_ptr<core::Judge> Session::makeJudge(const MonitorParameters& paramet
   }
   trained_.requireWatched();
   return core::evidence::makeJudge(std::make_shared<core::evidence::Model>(trained_.watched),
-                                   trained_.limits(), trained_.window, graph_);
+                                   trained_.limits(), trained_.window, graph_, vocabulary_);
 }
 
 // A type field with ever new values must not fill the memory of a robot that runs for months.
 core::EventId Session::intern(const core::EventType& type) {
   const std::size_t known = trained_.vocabulary().size();
-  if (!vocabulary_.find(type) && vocabulary_.size() >= known + kMostUnknownTypes) {
-    return vocabulary_.intern({"", "(further topics)", "(further unknown events)"});
+  if (!vocabulary_->find(type) && vocabulary_->size() >= known + kMostUnknownTypes) {
+    return vocabulary_->intern({"", "(further topics)", "(further unknown events)"});
   }
-  return vocabulary_.intern(type);
+  return vocabulary_->intern(type);
 }
 
 std::set<std::string> Session::topics() const {

@@ -39,7 +39,7 @@ class Session {
   /// Event types of the model, by their ids.
   const std::vector<core::EventType>& types() const { return trained_.vocabulary().types(); }
   /// Event types of the model, and after them the unknown ones as they appeared.
-  const core::Vocabulary& vocabulary() const { return vocabulary_; }
+  const core::Vocabulary& vocabulary() const { return *vocabulary_; }
   const std::shared_ptr<const ros1::Encoder>& encoder() const { return encoder_; }
   core::Detector& detector() { return detector_; }
 
@@ -59,7 +59,7 @@ class Session {
   ros1::TrainedModel trained_;
   bool calibrated_;
   std::shared_ptr<core::SourceGraph> graph_;  // of training, and what addEdges() added
-  core::Vocabulary vocabulary_;
+  std::shared_ptr<core::Vocabulary> vocabulary_;
   std::shared_ptr<const ros1::Encoder> encoder_;
   core::Detector detector_;
 };

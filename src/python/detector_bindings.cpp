@@ -30,6 +30,7 @@ struct Alarm {
   bool cleared = false;
   std::string evidence;  // of the window that raised it, or the first after it that has any
   double lowest_score = std::numeric_limits<double>::quiet_NaN();
+  std::optional<core::Busy> busy;           // of the first window that says so
   std::vector<core::Suspect> suspects;      // of the same window
   std::vector<core::Suspect> new_suspects;  // of the windows after it
 };
@@ -61,6 +62,9 @@ void record(const core::Verdict& verdict, bool stands, std::int64_t end,
     if (stands && alarm.evidence.empty()) {  // a suspicion may be what is left of an alarm
       alarm.evidence = verdict.evidence;
       alarm.suspects = verdict.suspects;
+    }
+    if (verdict.busy && !alarm.busy) {
+      alarm.busy = verdict.busy;
     }
     alarm.end = end;
     alarm.cleared = !stands;
@@ -113,9 +117,11 @@ Verdicts judgeByPaper(const std::shared_ptr<core::paper::Model>& model, std::int
 Verdicts judgeByEvidence(const ros1::TrainedModel& trained,
                          const std::shared_ptr<core::evidence::Model>& model,
                          const core::Detector::Parameters& parameters, const Stamps& stamps,
-                         const Ids& ids, std::optional<std::int64_t> end) {
+                         const Ids& ids, std::optional<std::int64_t> end,
+                         const std::vector<core::EventType>& event_types) {
   return judge(core::evidence::makeJudge(model, trained.limits(), trained.window,
-                                         std::make_shared<core::SourceGraph>(trained.graph)),
+                                         std::make_shared<core::SourceGraph>(trained.graph),
+                                         std::make_shared<core::Vocabulary>(event_types)),
                trained.window, parameters, stamps, ids, end);
 }
 
@@ -136,7 +142,8 @@ void bindVerdicts(py::module& m) {
       .def_readonly("silence", &core::Suspect::silence, "[s]; NaN: that is not the reason")
       .def_readonly("usual_shortest", &core::Suspect::usual_shortest, "[s], NaN like silence")
       .def_readonly("usual_longest", &core::Suspect::usual_longest, "[s], NaN like silence")
-      .def("describe", &core::describe, "the reason in words and numbers");
+      .def("describe", py::overload_cast<const core::Suspect&>(&core::describe),
+           "the reason in words and numbers");
 
   py::enum_<core::UnknownEvents>(m, "UnknownEvents",
                                  "What an unknown event means: nothing, a suspicion, or an alarm.")
@@ -181,6 +188,13 @@ void bindVerdicts(py::module& m) {
       .def_readonly("lowest_score", &Alarm::lowest_score)
       .def_readonly("evidence", &Alarm::evidence,
                     "what raised it, in words; empty: a suspicion that an alarm left")
+      .def_property_readonly(
+          "busy",
+          [](const Alarm& self) {
+            return self.busy ? std::optional<std::string>(core::describe(*self.busy))
+                             : std::nullopt;
+          },
+          "in words, if the machine was too busy; None: it was not")
       .def_readonly("suspects", &Alarm::suspects, "of the window that raised it, best first")
       .def_readonly("new_suspects", &Alarm::new_suspects,
                     "of components that an alarm named later, each with its time (since)");
@@ -243,7 +257,10 @@ void bindVerdicts(py::module& m) {
            "with the last event.");
   m.def("judge_by_evidence", &judgeByEvidence, py::arg("trained"), py::arg("model"),
         py::arg("parameters"), py::arg("stamps"), py::arg("ids"), py::arg("end") = py::none(),
-        "Verdicts on a recording by the EvidenceModel of a TrainedModel, like Model.judge.");
+        py::arg("event_types") = std::vector<core::EventType>(),
+        "Verdicts on a recording by the EvidenceModel of a TrainedModel, like Model.judge.\n"
+        "event_types: by id, those of the model first; empty: those of unknown events are not\n"
+        "known.");
   m.attr("EVIDENCE_THRESHOLD") = core::evidence::kThreshold;
   m.attr("DEFAULT_WINDOW") = core::kDefaultWindow;  // [ns]
   m.attr("FEWEST_GAPS") = core::kFewestGaps;

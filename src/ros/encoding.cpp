@@ -28,6 +28,11 @@ bool anyMatches(const std::vector<std::regex>& patterns, const std::string& name
                      [&](const std::regex& pattern) { return std::regex_match(name, pattern); });
 }
 
+/// Whether a node is `rostopic pub`, in any namespace.
+bool isRostopic(const std::string& source) {
+  return source.substr(source.rfind('/') + 1) == "rostopic";
+}
+
 std::string headerField(const ros::M_string& header, const std::string& name) {
   const auto field = header.find(name);
   return field == header.end() ? "" : field->second;
@@ -45,7 +50,7 @@ EncodingRules EncodingRules::defaults() {
                           ".*/bond",
                           ".*/self_awareness/(status|alarm)"};
   rules.exclude_sources = {".*/self_awareness(_manager)?", "(.*/)?(play|record|recorder|rosbag.*)",
-                           "(.*/)?(rqt|rviz|rostopic|rosnode|rosservice|plotjuggler|foxglove).*"};
+                           "(.*/)?(rqt|rviz|rosnode|rosservice|plotjuggler|foxglove).*"};
   rules.type_fields = {{"actionlib_msgs/GoalStatus", "status"},
                        {"rosgraph_msgs/Log", "level"},
                        {"visualization_msgs/Marker", "action"}};
@@ -151,7 +156,7 @@ std::optional<ConnectionEncoder> Encoder::connect(const Connection& connection) 
   encoder.ids_ = ids_;
   encoder.type_.scope = connection.topic;
   encoder.type_.type = connection.datatype;
-  encoder.skip_next_ = connection.latching;
+  encoder.skip_next_ = connection.latching && !isRostopic(source);
   if (rules_.source == EncodingRules::Source::kCallerId) {
     encoder.type_.source = source;
   }

@@ -3,8 +3,6 @@ from __future__ import annotations
 
 from typing import Callable, Optional
 
-import numpy as np
-
 from self_awareness import (DetectorParameters, EvidenceModel, Model, TrainedModel, Verdicts,
                             judge_by_evidence)
 
@@ -13,15 +11,17 @@ PAPER = 'paper'
 BOTH = 'both'
 """The detectors that a model may be trained for."""
 
-Judge = Callable[[np.ndarray, np.ndarray, int], Verdicts]
-"""Judges stamps and ids of a recording, and the silence up to its end [ns]."""
+Judge = Callable[..., Verdicts]
+"""Judges stamps and ids of a recording, and the silence up to its end [ns]. A further argument are
+the event types by id, those of the model first: without it, those of unknown events are not
+known."""
 
 
 def paper_judge(trained: TrainedModel, model: Model, threshold: Optional[float],
                 parameters: DetectorParameters) -> Judge:
     """Return what judges by the paper's score; threshold None: scores only, no alarms."""
-    return lambda stamps, ids, end: model.judge(trained.window, threshold, parameters, stamps, ids,
-                                                end)
+    return lambda stamps, ids, end, event_types=(): model.judge(
+        trained.window, threshold, parameters, stamps, ids, end)
 
 
 def evidence_judge(trained: TrainedModel, parameters: DetectorParameters) -> Judge:
@@ -31,4 +31,5 @@ def evidence_judge(trained: TrainedModel, parameters: DetectorParameters) -> Jud
         ValueError: the limits are not those of the model.
     """
     model = EvidenceModel(trained)
-    return lambda stamps, ids, end: judge_by_evidence(trained, model, parameters, stamps, ids, end)
+    return lambda stamps, ids, end, event_types=(): judge_by_evidence(
+        trained, model, parameters, stamps, ids, end, list(event_types))

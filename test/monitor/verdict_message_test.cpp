@@ -64,5 +64,17 @@ TEST_F(VerdictMessageTest, SaysWhichValueOfATypeFieldItIsAbout) {
             "/rosout [level=8]: never seen in training, 3 in this window");
 }
 
+TEST_F(VerdictMessageTest, ABusyMachineIsNamedBeforeTheSuspects) {
+  core::Verdict verdict;
+  verdict.threshold = -1;
+  verdict.alarm = true;
+  EXPECT_EQ(
+      wording(verdict, "busy, pairs", {message(1, Reason::kUnknown)}, {},
+              core::describe(core::Busy{12, 26}, "load 7.9 on 2 cores")),
+      "abnormal communication (busy, pairs), the machine may be busy (load 7.9 on 2 cores): "
+      "12 of 26 components are late, /player on /rosout [level=8]: never seen in training, 3 "
+      "in this window");
+}
+
 }  // namespace
 }  // namespace self_awareness

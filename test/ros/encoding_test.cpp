@@ -208,17 +208,29 @@ TEST_F(EncoderTest, TheFirstMessageOfALatchingConnectionIsNoEvent) {
   EXPECT_TRUE(makeEncoder(EncodingRules()).connect(connection)->accept());
 }
 
+TEST_F(EncoderTest, TheOnlyMessageOfRostopicIsAnEvent) {
+  Connection connection = scan();
+  connection.latching = true;
+  connection.callerid = "/ns/rostopic_10263_1795206536731";
+  auto encoder = makeEncoder(EncodingRules::defaults()).connect(connection);
+  ASSERT_TRUE(encoder);
+  EXPECT_TRUE(encoder->accept());
+  EXPECT_EQ(vocabulary_.at(encoder->id()).source, "/ns/rostopic");
+  connection.callerid = "/not_rostopic";
+  EXPECT_FALSE(makeEncoder(EncodingRules::defaults()).connect(connection)->accept());
+}
+
 TEST_F(EncoderTest, DefaultsLeaveOutOnlookersAndKeepTheRobot) {
   const Encoder encoder = makeEncoder(EncodingRules::defaults());
   Connection connection = scan();
-  for (const char* node : {"/player", "/recorder_arm", "/replay_guard", "/base", "/ns/player"}) {
+  for (const char* node : {"/player", "/recorder_arm", "/replay_guard", "/base", "/ns/player",
+                           "/rostopic_10263_1795206536731"}) {
     connection.callerid = node;
     EXPECT_TRUE(encoder.connect(connection)) << node;
   }
-  for (const char* node :
-       {"/play_1795206538727453261", "/record_1795206538727453261", "/rqt_gui_py_node_17",
-        "/rviz_1430709709567731649", "/rostopic_10263_1795206536731", "/self_awareness",
-        "/robot1/self_awareness_manager", "/ns/rviz"}) {
+  for (const char* node : {"/play_1795206538727453261", "/record_1795206538727453261",
+                           "/rqt_gui_py_node_17", "/rviz_1430709709567731649", "/self_awareness",
+                           "/robot1/self_awareness_manager", "/ns/rviz"}) {
     connection.callerid = node;
     EXPECT_FALSE(encoder.connect(connection)) << node;
   }

@@ -108,6 +108,18 @@ class LiveRulesTest(MonitorCase):
                 self.assertEqual('unknown events' in status.evidence, policy != 'ignore')
 
     @again_if_clock_was_set
+    def test_what_is_sent_by_hand_is_a_suspicion_that_names_rostopic(self) -> None:
+        with Talker('/a'), self.monitor(self.model(), unknown='warn'), \
+                MonitorListener() as listener:
+            listener.await_settled()
+            with Process('rostopic', 'pub', '-1', '/a', 'std_msgs/String', 'data: by hand'):
+                status = await_condition('the only message is judged', lambda: next(
+                    (s for s in listener.statuses if s.unknown_events and not s.settling),
+                    None), 20)
+        self.assertEqual(status.level, SelfAwareness.WARN, status.message)
+        self.assertIn('/rostopic on /a: never seen in training, 1 in this window', status.message)
+
+    @again_if_clock_was_set
     def test_the_type_field_is_read_from_live_messages(self) -> None:
         types = {'visualization_msgs/Marker': 'action'}
         with Talker('/a'), Talker('/marker', Marker), \

@@ -71,8 +71,8 @@ using EventIds = std::function<core::EventId(const core::EventType&)>;
 class ConnectionEncoder {
  public:
   /// Whether the next message is an event. The first one on a latching connection is not: it came
-  /// because this program subscribed, not because it was published now. Call it once for every
-  /// message.
+  /// because this program subscribed, not because it was published now. But of `rostopic pub`,
+  /// which latches, it is: there may be no other. Call it once for every message.
   bool accept();
   /// Whether messages must be read; if not, all on this connection have one id.
   bool needsContent() const { return field_ != nullptr; }

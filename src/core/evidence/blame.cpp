@@ -1,46 +1,39 @@
 #include "core/evidence/blame.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
 #include <set>
 #include <utility>
 
+#include "core/evidence/strangers.h"
+
 namespace self_awareness::core::evidence {
 namespace {
 
-// Evidence below this share of its limit does not say who is involved.
-constexpr double kLeastShare = 0.3;
 // Of one track, no more than this share of its limit counts.
 constexpr double kMostShare = 2;
 // When a victim's evidence passes its limit, the root's may still be on the way.
 constexpr double kNearLimit = 0.75;
-// Of an unusual delay between two event types, the later one is a little more to blame.
-constexpr double kShareOfEarlier = 0.9;
-
-Suspect unknown(EventId id, const Window& window) {
-  Suspect suspect;
-  suspect.id = id;
-  suspect.abnormal = true;
-  suspect.reason = Suspect::Reason::kUnknown;
-  suspect.events = static_cast<std::size_t>(
-      std::count_if(window.events.begin(), window.events.end(),
-                    [id](const ObservedEvent& other) { return other.event.id == id; }));
-  return suspect;
-}
+// Of an unusual delay between two event types, the other one is a little less to blame.
+constexpr double kShareOfOther = 0.9;
 
 }  // namespace
 
 Blame::Blame(std::shared_ptr<const Model> model, std::shared_ptr<const SourceGraph> graph)
-    : model_(std::move(model)), graph_(std::move(graph)) {}
+    : model_(std::move(model)), graph_(std::move(graph)), followers_(model_) {}
 
 std::vector<Suspect> Blame::suspects(const std::vector<double>& shares, const Scorer& scorer,
                                      const Hindsight& hindsight, const Window& window) const {
   const Reasons reasons(scorer, hindsight);
-  std::vector<Candidate> candidates = silent(shares, reasons);
-  const std::vector<Candidate> others = unusual(shares, reasons);
-  candidates.insert(candidates.end(), others.begin(), others.end());
+  const Followers::Leads leads = followers_.leads(shares);
+  std::vector<Candidate> candidates = silent(shares, reasons, leads);
+  std::vector<Candidate> others = unusual(shares, reasons, leads);
+  const auto roots = rootsOfSilence(candidates, others, scorer, leads);
+  candidates.insert(candidates.begin(), others.begin(), roots);
+  candidates.insert(candidates.end(), roots, others.end());
 
   std::vector<Suspect> suspects;
   std::set<EventId> named;
@@ -60,7 +53,7 @@ std::vector<Suspect> Blame::suspects(const std::vector<double>& shares, const Sc
   for (const ObservedEvent& observed : window.events) {
     if (observed.unknown && suspects.size() < kMostSuspects &&
         named.insert(observed.event.id).second) {
-      suspects.push_back(unknown(observed.event.id, window));
+      suspects.push_back(unknownSuspect(observed.event.id, window));
     }
   }
   for (const Candidate& candidate : candidates) {
@@ -72,7 +65,8 @@ std::vector<Suspect> Blame::suspects(const std::vector<double>& shares, const Sc
 }
 
 std::vector<Blame::Candidate> Blame::silent(const std::vector<double>& shares,
-                                            const Reasons& reasons) const {
+                                            const Reasons& reasons,
+                                            const Followers::Leads& leads) const {
   std::set<EventId> missing;
   std::map<EventId, std::size_t> unanswered;  // tracks
   for (std::size_t track = 0; track < shares.size(); ++track) {
@@ -98,13 +92,47 @@ std::vector<Blame::Candidate> Blame::silent(const std::vector<double>& shares,
       candidates.push_back({track, std::min(survival, kRareSilence)});
     }
   }
-  return rootFirst(std::move(candidates));
+  return rootFirst(std::move(candidates), leads);
+}
+
+std::vector<Blame::Candidate>::iterator Blame::rootsOfSilence(
+    const std::vector<Candidate>& silent, std::vector<Candidate>& others, const Scorer& scorer,
+    const Followers::Leads& leads) const {
+  std::set<std::string> roots;
+  const auto isSilent = [&](const Candidate& other) {
+    return std::any_of(silent.begin(), silent.end(), [&](const Candidate& candidate) {
+      return component(toOf(other)) == component(toOf(candidate));
+    });
+  };
+  const auto answered = [&](const Candidate& other) {
+    return std::any_of(silent.begin(), silent.end(), [&](const Candidate& candidate) {
+      return leads.count({component(toOf(other)), component(toOf(candidate))}) > 0 &&
+             (scorer.lastSeen(toOf(candidate)) >= scorer.lastSeen(toOf(other)) ||
+              static_cast<double>(scorer.age(toOf(other))) < model_->meanGap(toOf(other)) / 2);
+    });
+  };
+  const auto leadsRoot = [&](const Candidate& other) {
+    return std::any_of(roots.begin(), roots.end(), [&](const std::string& root) {
+      return leads.count({component(toOf(other)), root}) > 0;
+    });
+  };
+  for (bool found = true; found;) {
+    found = false;
+    for (const Candidate& other : others) {
+      found |= other.own && !isSilent(other) && (answered(other) || leadsRoot(other)) &&
+               roots.insert(component(toOf(other))).second;
+    }
+  }
+  return std::stable_partition(others.begin(), others.end(), [&](const Candidate& other) {
+    return roots.count(component(toOf(other))) > 0;
+  });
 }
 
 // Upstream before downstream is no total order: the candidate with the fewest others upstream is
 // next. Sources are compared, not candidates: when a whole robot falls silent, every event type is
 // a candidate, but there are few components.
-std::vector<Blame::Candidate> Blame::rootFirst(std::vector<Candidate> candidates) const {
+std::vector<Blame::Candidate> Blame::rootFirst(std::vector<Candidate> candidates,
+                                               const Followers::Leads& leads) const {
   std::stable_sort(candidates.begin(), candidates.end(), likelier);
   std::map<std::string, std::vector<std::size_t>> by_component;  // indexes of candidates
   for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -114,7 +142,8 @@ std::vector<Blame::Candidate> Blame::rootFirst(std::vector<Candidate> candidates
   std::map<std::string, std::vector<std::size_t>> downstream;
   for (const auto& [source, members] : by_component) {
     for (const auto& [other, victims] : by_component) {
-      if (graph_->isUpstream(source, other)) {
+      if (graph_->isUpstream(source, other) ||
+          (leads.count({source, other}) > 0 && !graph_->isUpstream(other, source))) {
         downstream[source].insert(downstream[source].end(), victims.begin(), victims.end());
         for (const std::size_t victim : victims) {
           upstream[victim] += members.size();
@@ -139,14 +168,17 @@ std::vector<Blame::Candidate> Blame::rootFirst(std::vector<Candidate> candidates
 }
 
 std::vector<Blame::Candidate> Blame::unusual(const std::vector<double>& shares,
-                                             const Reasons& reasons) const {
+                                             const Reasons& reasons,
+                                             const Followers::Leads& leads) const {
   struct Involved {
     double sum = 0;
     std::size_t track = 0;  // with the largest share
     double largest = 0;
-    bool own = false;  // something is wrong with it, whatever the others do
+    bool own = false;   // something is wrong with it, whatever the others do
+    bool late = false;  // comes later after another one
   };
   std::map<std::string, Involved> components;
+  std::vector<std::size_t> late;  // tracks
   for (std::size_t track = 0; track < shares.size(); ++track) {
     const auto& [channel, to, from] = model_->tracks()[track];
     if (shares[track] < kLeastShare || channel == Channel::kSlowDelay ||
@@ -155,29 +187,47 @@ std::vector<Blame::Candidate> Blame::unusual(const std::vector<double>& shares,
       continue;
     }
     const double share = std::min(shares[track], kMostShare);
+    const bool other = channel == Channel::kDelay && component(from) != component(to);
+    const bool earlier = other && isEarlier(reasons.of(track));
     Involved& later = components[component(to)];
-    later.sum += share;
+    later.sum += earlier ? kShareOfOther * share : share;
+    if (other && !earlier) {
+      later.late = true;
+      late.push_back(track);
+    }
     later.own |= shares[track] > kNearLimit && channel != Channel::kOverdue &&
                  (channel != Channel::kDelay || from == to);
     if (share > later.largest) {
       later.largest = share;
       later.track = track;
     }
-    if (channel == Channel::kDelay && component(from) != component(to)) {
-      components[component(from)].sum += kShareOfEarlier * share;
+    if (other) {
+      components[component(from)].sum += earlier ? share : kShareOfOther * share;
     }
   }
-  std::vector<Candidate> roots;
-  std::vector<Candidate> others;
+  for (const std::size_t track : followers_.lateBefore(late, shares, reasons)) {
+    Involved& involved = components[component(model_->tracks()[track].to)];
+    involved.late = true;
+    if (involved.largest == 0) {
+      involved.largest = kLeastShare;
+      involved.track = track;
+    }
+  }
+  std::array<std::vector<Candidate>, 3> groups;
   for (const auto& [name, involved] : components) {
     if (involved.largest > 0) {
-      (involved.own ? roots : others).push_back({involved.track, -involved.sum});
+      groups[involved.own    ? 0
+             : involved.late ? 1
+                             : 2]
+          .push_back({involved.track, -involved.sum, involved.own});
     }
   }
-  roots = rootFirst(std::move(roots));
-  std::stable_sort(others.begin(), others.end(), likelier);
-  roots.insert(roots.end(), others.begin(), others.end());
-  return roots;
+  std::vector<Candidate> ordered;
+  for (std::vector<Candidate>& group : groups) {
+    group = rootFirst(std::move(group), leads);
+    ordered.insert(ordered.end(), group.begin(), group.end());
+  }
+  return ordered;
 }
 
 double Blame::logSurvival(EventId id, const Reasons& reasons) const {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/evidence/followers.h"
 #include "core/evidence/hindsight.h"
 #include "core/evidence/reasons.h"
 #include "core/evidence/scorer.h"
@@ -15,11 +16,12 @@
 namespace self_awareness::core::evidence {
 
 /// Names the event types that may have caused abnormal evidence (docs/method.md, section 6).
-/// Silent ones come first, a source upstream of the others before them, then the least probable
-/// silence. If none is silent, the source comes first that most of what is unusual involves.
+/// Silent ones come first, then those that are late or otherwise unusual. Of each kind, who is
+/// upstream of others, or followed by them as usual, comes before them; then the least probable
+/// silence, or who most of what is unusual involves.
 class Blame {
  public:
-  /// @param graph may be empty: the silences alone then decide
+  /// @param graph may be empty: only what usually follows what then says who is the root
   Blame(std::shared_ptr<const Model> model, std::shared_ptr<const SourceGraph> graph);
 
   /// @param shares of their limits that the tracks of the model have reached
@@ -34,12 +36,23 @@ class Blame {
   struct Candidate {
     std::size_t track = 0;  // that speaks against its `to`
     double rank = 0;        // the smaller, the more likely
+    bool own = false;       // something is wrong with it, whatever the others do
   };
 
   static bool likelier(const Candidate& a, const Candidate& b) { return a.rank < b.rank; }
-  std::vector<Candidate> rootFirst(std::vector<Candidate> candidates) const;
-  std::vector<Candidate> silent(const std::vector<double>& shares, const Reasons& reasons) const;
-  std::vector<Candidate> unusual(const std::vector<double>& shares, const Reasons& reasons) const;
+  std::vector<Candidate> rootFirst(std::vector<Candidate> candidates,
+                                   const Followers::Leads& leads) const;
+  std::vector<Candidate> silent(const std::vector<double>& shares, const Reasons& reasons,
+                                const Followers::Leads& leads) const;
+  std::vector<Candidate> unusual(const std::vector<double>& shares, const Reasons& reasons,
+                                 const Followers::Leads& leads) const;
+  /// Moves to the front of `others` those whose followers are silent, although they answered the
+  /// last one: at half the rate of what they follow, say.
+  /// @return the end of these
+  std::vector<Candidate>::iterator rootsOfSilence(const std::vector<Candidate>& silent,
+                                                  std::vector<Candidate>& others,
+                                                  const Scorer& scorer,
+                                                  const Followers::Leads& leads) const;
   double logSurvival(EventId id, const Reasons& reasons) const;
   std::size_t trackOfSilence(EventId id, const std::vector<double>& shares) const;
   EventId toOf(const Candidate& candidate) const { return model_->tracks()[candidate.track].to; }
@@ -47,6 +60,7 @@ class Blame {
 
   std::shared_ptr<const Model> model_;
   std::shared_ptr<const SourceGraph> graph_;
+  Followers followers_;
 };
 
 }  // namespace self_awareness::core::evidence

@@ -10,15 +10,19 @@
 #include <vector>
 
 #include "core/evidence/blame.h"
+#include "core/evidence/busy_machine.h"
 #include "core/evidence/hindsight.h"
 #include "core/evidence/never_heard.h"
 #include "core/evidence/scorer.h"
+#include "core/evidence/strangers.h"
 
 namespace self_awareness::core::evidence {
 namespace {
 
 // Above this share of its limit, the linker is suspicious.
 constexpr double kSuspicious = 0.75;
+// The score of a busy machine whose evidence is within all limits: just abnormal.
+constexpr double kStillBusy = 1.01 * kThreshold;
 // An event type that was overdue this long ago [ns] already is silent: further windows would say
 // nothing new.
 constexpr std::int64_t kConfirmation = kNanosecondsPerSecond / 10;
@@ -26,11 +30,12 @@ constexpr std::int64_t kConfirmation = kNanosecondsPerSecond / 10;
 class Judge : public core::Judge {
  public:
   Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, std::int64_t window,
-        std::shared_ptr<const SourceGraph> graph);
+        std::shared_ptr<const SourceGraph> graph, std::shared_ptr<const Vocabulary> heard);
 
   ObservedEvent add(const Event& event) override {
     hindsight_.add(event);
     never_heard_.add(event);
+    strangers_.add(event);
     return {event, !model_->knows(event.id), scorer_.add(event)};
   }
   void settle(const Event& first, std::int64_t settle_time) override;
@@ -54,6 +59,8 @@ class Judge : public core::Judge {
   Hindsight hindsight_;
   Blame blame_;
   NeverHeard never_heard_;
+  Strangers strangers_;
+  BusyMachine busy_machine_;
   std::int64_t settle_time_ = 0;          // [ns]
   std::vector<double> shares_;            // of its limit that each track has reached
   std::vector<std::int64_t> settled_at_;  // [ns], by id
@@ -61,7 +68,7 @@ class Judge : public core::Judge {
 };
 
 Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, std::int64_t window,
-             std::shared_ptr<const SourceGraph> graph)
+             std::shared_ptr<const SourceGraph> graph, std::shared_ptr<const Vocabulary> heard)
     : model_(std::move(model)),
       limits_(std::move(limits)),
       window_(window),
@@ -69,6 +76,8 @@ Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, s
       hindsight_(model_),
       blame_(model_, graph),
       never_heard_(*model_, limits_.value_or(Limits{}), std::move(graph)),
+      strangers_(*model_, std::move(heard)),
+      busy_machine_(model_),
       shares_(model_->tracks().size(), 0),
       settled_at_(model_->size(), std::numeric_limits<std::int64_t>::min()) {
   if (limits_ && (limits_->tracks.size() != model_->tracks().size() ||
@@ -92,6 +101,8 @@ void Judge::restart() {
   scorer_.restart();
   hindsight_.restart();
   never_heard_.restart();
+  strangers_.restart();
+  busy_machine_.restart();
   std::fill(settled_at_.begin(), settled_at_.end(), std::numeric_limits<std::int64_t>::min());
   all_settled_at_ = std::numeric_limits<std::int64_t>::min();
 }
@@ -139,6 +150,12 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
   never_heard_.closeWindow(end, settle_time_);
   judgement.score = -std::max({sum.largest, linker, never_heard_.share()});
   judgement.threshold = kThreshold;
+  judgement.busy = busy_machine_.closeWindow(shares_, scorer_, *judgement.score < kThreshold);
+  if (judgement.busy) {
+    // An alarm lasts as long as its cause, though none of the sums may be beyond its limit now.
+    judgement.score = std::min(*judgement.score, kStillBusy);
+    channels.insert("busy");
+  }
   judgement.abnormal = *judgement.score < kThreshold;
   judgement.certain = linker > 1 || never_heard_.share() > 1 || isSilent();
   judgement.suspicious = linker > kSuspicious || never_heard_.share() > 0;
@@ -164,13 +181,16 @@ std::vector<Suspect> Judge::namedIn(const Window& window, bool silent_first) con
   if (!silent_first) {
     std::swap(first, second);
   }
-  for (const Suspect& suspect : second) {
-    if (std::none_of(first.begin(), first.end(),
-                     [&](const Suspect& other) { return other.id == suspect.id; })) {
-      first.push_back(suspect);
+  std::vector<Suspect> named = strangers_.suspects(window, scorer_);
+  for (const std::vector<Suspect>& suspects : {first, second}) {
+    for (const Suspect& suspect : suspects) {
+      if (std::none_of(named.begin(), named.end(),
+                       [&](const Suspect& other) { return other.id == suspect.id; })) {
+        named.push_back(suspect);
+      }
     }
   }
-  return first;
+  return named;
 }
 
 bool Judge::isSilent() const {
@@ -189,8 +209,10 @@ bool Judge::isSilent() const {
 
 std::unique_ptr<core::Judge> makeJudge(std::shared_ptr<const Model> model,
                                        std::optional<Limits> limits, std::int64_t window,
-                                       std::shared_ptr<const SourceGraph> graph) {
-  return std::make_unique<Judge>(std::move(model), std::move(limits), window, std::move(graph));
+                                       std::shared_ptr<const SourceGraph> graph,
+                                       std::shared_ptr<const Vocabulary> heard) {
+  return std::make_unique<Judge>(std::move(model), std::move(limits), window, std::move(graph),
+                                 std::move(heard));
 }
 
 }  // namespace self_awareness::core::evidence

@@ -100,6 +100,7 @@ void Detector::close(const Window& window, std::int64_t end) {
     suspicious_at_ += windows_.length();
   } else {
     verdict.evidence = judgement.evidence;
+    verdict.busy = judgement.busy;
     verdict.suspects = std::move(judgement.suspects);
     count(judgement, window_end);
     verdict.alarm = persistence_.raised();

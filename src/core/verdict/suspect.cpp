@@ -87,6 +87,11 @@ std::string describe(const Suspect& suspect) {
       std::snprintf(text, sizeof text, "came after %.2f s, ", suspect.silence);
       return text + usualGap(suspect);
     case Suspect::Reason::kUnknown:
+      if (suspect.events == 0) {
+        std::snprintf(text, sizeof text, "never seen in training, the last one %.1f s ago",
+                      suspect.silence);
+        return text;
+      }
       std::snprintf(text, sizeof text, "never seen in training, %zu in this window",
                     suspect.events);
       return text;

@@ -51,7 +51,8 @@ def _score(arguments: argparse.Namespace) -> None:
     judged: List[Tuple[RecordingEvents, Verdicts]] = []
     for part in arguments.bags:
         recording = cli.read_recording('score', trained, part)
-        verdicts = judge(recording.stamps, recording.ids, recording.end)
+        verdicts = judge(recording.stamps, recording.ids, recording.end,
+                         recording.event_types)
         judged.append((recording, verdicts))
         _print(recording, verdicts, len(trained.event_types), threshold)
     if arguments.csv is not None:
@@ -90,6 +91,8 @@ def _lines(recording: RecordingEvents, level: str, alarm: Alarm,
            f'{utc(alarm.start)} - {utc(alarm.end)} UTC: '
            f'lowest score {alarm.lowest_score:.4g}, threshold {threshold:.4g}, '
            f'{alarm.evidence or "what is left of the alarm"}')
+    if alarm.busy is not None:
+        yield f'    {alarm.busy}'
     if not alarm.suspects and alarm.evidence:
         yield '    no suspect stands out'
     for rank, suspect in enumerate(alarm.suspects, 1):

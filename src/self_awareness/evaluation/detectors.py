@@ -49,7 +49,7 @@ class Paper:
         # - 1, because the window in which the recording ends is the last one.
         model: Model = required(self._model, self.name, 'train')
         return model.judge(DEFAULT_WINDOW, self._threshold, DetectorParameters(),
-                           encoded.stamps, encoded.ids, encoded.end - 1)
+                           encoded.stamps, encoded.ids, encoded.end - 1, encoded.event_types)
 
 
 class Evidence:
@@ -110,7 +110,7 @@ class Evidence:
         encoded = recording.encoded(trained.event_types)
         # - 1, because the window in which the recording ends is the last one.
         return judge_by_evidence(trained, self._model, parameters, encoded.stamps,
-                                 encoded.ids, encoded.end - 1)
+                                 encoded.ids, encoded.end - 1, encoded.event_types)
 
 
 def _counted(recordings: Sequence[WindowedEvents], predecessors: int = PREDECESSORS,

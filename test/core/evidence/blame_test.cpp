@@ -162,6 +162,76 @@ TEST_F(EvidenceBlameTest, ALateAnswererIsNamedBeforeTheOneThatAsks) {
   EXPECT_NEAR(named.front().usual_shortest, 0.020, 0.004);
 }
 
+// A asks, B answers after 20 ms, and C answers B after 30 ms.
+Events chain(std::int64_t start, std::int64_t length, std::int64_t delay, unsigned seed) {
+  const Events asked = irregular(kA, start, start + length, 200 * kMillisecond, seed);
+  const Events relayed = answers(kB, asked, delay);
+  return together({asked, relayed, answers(kC, relayed, 30 * kMillisecond)});
+}
+
+class EvidenceBlameOfAChainTest : public EvidenceBlameTest {
+ protected:
+  EvidenceBlameOfAChainTest() {
+    Watched watched = watch(countsOf({chain(0, 100 * kSecond, 20 * kMillisecond, 1)}),
+                            countsOf({chain(kStart, 100 * kSecond, 20 * kMillisecond, 2)}));
+    model_ = std::make_shared<Model>(watched);
+    scorer_ = Scorer(model_, kWindow);
+    hindsight_ = Hindsight(model_);
+    for (const Event& event : chain(0, 20 * kSecond, 20 * kMillisecond, 3)) {
+      add(event);
+    }
+  }
+  void addLate() {
+    for (const Event& event :
+         chain(last_ + 100 * kMillisecond, 2 * kSecond, 80 * kMillisecond, 4)) {
+      add(event);
+    }
+  }
+  static Track delay(EventId to, EventId from) { return {Channel::kDelay, to, from}; }
+};
+
+TEST_F(EvidenceBlameOfAChainTest, TheOneWhoseDelayGrewComesBeforeWhoFollowsItAsUsual) {
+  addLate();
+  const std::vector<Suspect> named =
+      suspects({{delay(kB, kA), 1.1}, {delay(kC, kA), 1.9}}, last_ + kMillisecond);
+  EXPECT_EQ(ids(named), (std::vector<EventId>{kB, kC}));
+}
+
+TEST_F(EvidenceBlameOfAChainTest, WhoDoesNotFollowAsUsualIsToBlameItself) {
+  addLate();
+  const std::vector<Suspect> named = suspects(
+      {{delay(kB, kA), 1.1}, {delay(kC, kA), 1.9}, {delay(kC, kB), 1.5}}, last_ + kMillisecond);
+  EXPECT_EQ(ids(named), (std::vector<EventId>{kC, kB}));
+}
+
+TEST_F(EvidenceBlameOfAChainTest, TheOneBetweenIsNamedEvenIfItsOwnDelaysAreNotJudged) {
+  addLate();
+  const std::vector<Suspect> named = suspects({{delay(kC, kA), 1.5}}, last_ + kMillisecond);
+  ASSERT_EQ(ids(named), (std::vector<EventId>{kB, kC}));
+  EXPECT_FALSE(named[0].abnormal);
+  EXPECT_EQ(named[0].other, toString(kTypes[kA]));
+  EXPECT_NEAR(named[0].delay, 0.080, 1e-9);
+}
+
+TEST_F(EvidenceBlameOfAChainTest, WhoIsInTimeIsNotNamedBetween) {
+  const std::vector<Suspect> named = suspects({{delay(kC, kA), 1.5}}, last_ + kMillisecond);
+  EXPECT_EQ(ids(named), std::vector<EventId>{kC});
+}
+
+TEST_F(EvidenceBlameOfAChainTest, WithoutAGraphTheRootOfTheSilentIsWhoIsFollowed) {
+  const std::vector<Suspect> named =
+      suspects({{overdue(kC), 3}, {overdue(kB), 1.5}, {overdue(kA), 1.1}}, last_ + 5 * kSecond);
+  EXPECT_EQ(ids(named), (std::vector<EventId>{kA, kB, kC}));
+}
+
+TEST_F(EvidenceBlameOfAChainTest, WhoIsToBlameForASilenceComesBeforeIt) {
+  // A goes on, at another rate, and C has answered.
+  const std::int64_t end = *scorer_.lastSeen(kC) + 2 * model_->longestGap(kC);
+  const std::vector<Suspect> named =
+      suspects({{overdue(kC), 0.9}, {{Channel::kFewer, kB, kB}, 1.5}}, end);
+  EXPECT_EQ(ids(named), (std::vector<EventId>{kB, kC}));
+}
+
 TEST_F(EvidenceBlameTest, AComponentThatLeavesAnswersOutIsNamed) {
   const std::vector<Suspect> named =
       suspects({{{Channel::kAnswer, kB, kA}, 1.5}}, last_ + kWindow);

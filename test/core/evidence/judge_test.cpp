@@ -252,5 +252,65 @@ TEST_F(EvidenceJudgeTest, RefusesLimitsOfAnotherModel) {
   }
 }
 
+class EvidenceJudgeOfStrangersTest : public EvidenceJudgeTest {
+ protected:
+  // A is silent, and is suspected; before, an unknown sender was heard.
+  std::vector<Suspect> suspectsAfter(const EventType& unknown, std::int64_t ago,
+                                     bool usual_sender = true) {
+    heard_ = std::make_shared<Vocabulary>(model_->vocabulary());
+    const EventId id = heard_->intern(unknown);
+    limits_.tracks[track(Channel::kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
+    const std::unique_ptr<core::Judge> judge =
+        makeJudge(model_, limits_, kWindow, std::make_shared<SourceGraph>(), heard_);
+    const std::int64_t end = 5 * kSecond;
+    judge->add({kSecond, kA});
+    if (usual_sender) {
+      judge->add({kSecond, kB});
+    }
+    const Event event{end - ago, id};
+    Window window;
+    window.start = end - kWindow;
+    const ObservedEvent observed = judge->add(event);
+    if (ago <= kWindow) {
+      window.events.push_back(observed);
+    }
+    return judge->judge(window, end, NameSuspects::kIfUnusual).suspects;
+  }
+  std::shared_ptr<Vocabulary> heard_;
+};
+
+TEST_F(EvidenceJudgeOfStrangersTest, AnUnknownSenderOnAKnownTopicIsTheFirstSuspect) {
+  const std::vector<Suspect> named = suspectsAfter({"/rostopic", "/y", "T"}, 50 * kMillisecond);
+  ASSERT_EQ(named.size(), 2U);
+  EXPECT_EQ(heard_->at(named[0].id).source, "/rostopic");
+  EXPECT_EQ(describe(named[0]), "never seen in training, 1 in this window");
+  EXPECT_EQ(named[1].id, kA);
+}
+
+TEST_F(EvidenceJudgeOfStrangersTest, ItIsSoForAsLongAsRatesCount) {
+  const std::vector<Suspect> named = suspectsAfter({"/rostopic", "/y", "T"}, kSecond);
+  ASSERT_EQ(named.size(), 2U);
+  EXPECT_EQ(describe(named[0]), "never seen in training, the last one 1.0 s ago");
+  EXPECT_EQ(suspectsAfter({"/rostopic", "/y", "T"}, 3 * kSecond).size(), 1U);
+}
+
+TEST_F(EvidenceJudgeOfStrangersTest, OtherUnknownEventsAreNamedLast) {
+  for (const EventType& type :
+       std::vector<EventType>{{"/rostopic", "/new", "T"},   // a topic that nobody knows
+                              {"/b", "/y", "T[level=8]"}})  // a sender that is known
+  {
+    const std::vector<Suspect> named = suspectsAfter(type, 50 * kMillisecond);
+    ASSERT_EQ(named.size(), 2U) << type.scope;
+    EXPECT_EQ(named[0].id, kA) << type.scope;
+  }
+}
+
+TEST_F(EvidenceJudgeOfStrangersTest, WhoTakesThePlaceOfAnotherIsNoStranger) {
+  // A node with another name in every start.
+  const std::vector<Suspect> named = suspectsAfter({"/b_17", "/y", "T"}, 50 * kMillisecond, false);
+  ASSERT_EQ(named.size(), 2U);
+  EXPECT_EQ(named[0].id, kA);
+}
+
 }  // namespace
 }  // namespace self_awareness::core::evidence

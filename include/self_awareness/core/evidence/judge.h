@@ -20,9 +20,12 @@ constexpr double kThreshold = -1;
 /// @param limits none: not calibrated, windows have no score and are never abnormal
 /// @param window length [ns]
 /// @param graph who is upstream of whom; shared, so it may grow meanwhile
+/// @param heard event types by id, those of the model first, then those that it does not know;
+/// shared, so it may grow meanwhile. None: of unknown events, only the number is known
 /// @throw std::invalid_argument if the limits are not those of the model
 std::unique_ptr<core::Judge> makeJudge(std::shared_ptr<const Model> model,
                                        std::optional<Limits> limits, std::int64_t window,
-                                       std::shared_ptr<const SourceGraph> graph);
+                                       std::shared_ptr<const SourceGraph> graph,
+                                       std::shared_ptr<const Vocabulary> heard = nullptr);
 
 }  // namespace self_awareness::core::evidence

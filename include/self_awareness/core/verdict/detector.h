@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "self_awareness/core/stream/windows.h"
+#include "self_awareness/core/verdict/busy.h"
 #include "self_awareness/core/verdict/judge.h"
 #include "self_awareness/core/verdict/persistence.h"
 
@@ -27,6 +28,7 @@ struct Verdict {
   /// The alarm or the suspicion began or ended with this window, or there are new suspects.
   bool changed = false;
   std::string evidence;           ///< what made the window abnormal or suspicious, once settled
+  std::optional<Busy> busy;       ///< of such a window: the machine, not the suspects
   std::vector<Suspect> suspects;  ///< of an abnormal window that is not settling, best first
   /// Those of components that an alarm which stood before names for the first time: there may be
   /// another fault. One for each component.

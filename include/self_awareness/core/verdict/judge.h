@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "self_awareness/core/stream/windows.h"
+#include "self_awareness/core/verdict/busy.h"
 #include "self_awareness/core/verdict/suspect.h"
 
 namespace self_awareness::core {
@@ -19,6 +20,8 @@ struct Judgement {
   bool suspicious = false;          ///< not abnormal, but on the way to it
   bool settling = false;            ///< too much is new to say anything of the whole window
   std::string evidence;             ///< what made the window abnormal or suspicious, in words
+  /// Set if many components are late at once: the suspects are hardly to blame.
+  std::optional<Busy> busy;
   /// If they were asked for; the most likely first. After kMostSuspects, further components whose
   /// evidence alone is abnormal may follow.
   std::vector<Suspect> suspects;

@@ -51,7 +51,8 @@ struct Suspect {
   Reason reason = Reason::kSilent;
   double silence = kNone;         ///< kSilent, kLate: time without such an event [s]; kUnanswered:
                                   ///< time since it was asked for; kNeverHeard: since the
-                                  ///< start; else NaN
+                                  ///< start; kUnknown: since the last one, if there is none in
+                                  ///< the window; else NaN
   double usual_shortest = kNone;  ///< kSilent, kLate: 1 % of the gaps in training are shorter [s];
                                   ///< kDelay: 5 % of the delays; kNeverHeard: shortest time
                                   ///< from the start to the first one; else NaN
