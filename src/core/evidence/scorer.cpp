@@ -23,6 +23,9 @@ constexpr double kMostEvidence = 200;        // while limits are not known
 constexpr double kMostOfLimit = 1.5;         // in units of the limit
 // Smaller shares of a limit are what normal operation is made of: they link nothing.
 constexpr double kLeastLinked = 0.5;
+// A type whose message waited has gaps that are too long, and then too short ones: it catches up.
+// It is behind by so many of its mean gaps at most.
+constexpr double kMostBehind = 3;
 // A relation that has been abnormal for so long [ns], while both its event types come, has
 // changed: it is news once (docs/method.md, section 3.7).
 constexpr std::int64_t kAcceptAfter = 60 * kNanosecondsPerSecond;
@@ -83,6 +86,7 @@ void Scorer::addTracks() {
   for (EventId id = 0; id < model_->size(); ++id) {
     OfType type;
     type.gone_after = kGoneGaps * model_->longestGap(id);
+    type.mean_gap = model_->meanGap(id);
     type.pairs_begin = static_cast<std::uint32_t>(pairs_.size());
     for (const std::size_t track : pairs[id]) {
       state_of_[track] = state_of_[track + 1] = pairs_.size();
@@ -118,6 +122,7 @@ void Scorer::addTracks() {
 void Scorer::restart() {
   stamps_.assign(model_->size(), 0);
   first_stamps_.assign(model_->size(), 0);
+  behind_.assign(model_->size(), 0);
   numbers_.assign(model_->size(), 0);
   seen_.assign(model_->size(), 0);
   number_ = 0;
@@ -153,6 +158,7 @@ std::optional<std::int64_t> Scorer::add(const Event& event) {
   noteStall(event.stamp);
   const bool stalled = event.stamp < stalled_until_;
   const std::int64_t last_stamp = last > 0 ? stamps[event.id] : event.stamp;
+  const bool catches_up = last > 0 && catchUp(event);
   // Pairs with a type that was never seen are not armed: arming takes back what is added to their
   // sums here. So the many others need no check.
   DelayPair* const pairs_end = pairs_.data() + type.pairs_end;
@@ -163,7 +169,8 @@ std::optional<std::int64_t> Scorer::add(const Event& event) {
     const std::int64_t delay = event.stamp - stamps[pair->from];
     const double surprise = pair->surprises[log_bins::bin(delay)];
     const double count = first && !stalled ? 1.0 : 0.0;
-    pair->sums.add((surprise - std::max(pair->regime, 0.0) - drifts) * count);
+    const double sign = pair->own && catches_up && surprise > 0 ? -1.0 : 1.0;
+    pair->sums.add((surprise - std::max(pair->regime, 0.0) - drifts) * (sign * count));
     pair->regime += (surprise - pair->regime) * shareOfRegime(event.stamp - last_stamp) * count;
     if (!pair->armed) {
       armPair(static_cast<std::size_t>(pair - pairs_.data()), first, surprise);
@@ -193,6 +200,15 @@ std::optional<std::int64_t> Scorer::add(const Event& event) {
   numbers_[event.id] = ++number_;
   ++seen_[event.id];
   return gap;
+}
+
+bool Scorer::catchUp(const Event& event) {
+  const double mean = types_[event.id].mean_gap;
+  const double late = static_cast<double>(event.stamp - stamps_[event.id]) - mean;
+  double& behind = behind_[event.id];
+  const bool catches_up = late < 0 && -late < 2 * behind;
+  behind = std::clamp(behind + late, 0.0, kMostBehind * mean);
+  return catches_up;
 }
 
 void Scorer::noteStall(std::int64_t stamp) {

@@ -131,6 +131,7 @@ class Scorer {
     std::uint32_t deadlines_end = 0;
     std::vector<std::uint32_t> answered_deadlines;  // whose `to` it is
     std::int64_t gone_after = 0;
+    double mean_gap = 0;  // [ns]
   };
 
   /// Takes in one event of a track that is not armed.
@@ -147,6 +148,10 @@ class Scorer {
   void disarm(EventId id);
   void disarmPair(std::size_t number);
   void disarmAnswer(std::size_t number);
+  /// Takes in the gap before an event that is not the first of its type: how far the type is
+  /// behind its own mean gaps.
+  /// @return whether the gap is shorter for that reason
+  bool catchUp(const Event& event);
   /// Takes in the time since the last event of any type: a whole robot that stops for a moment and
   /// goes on has a busy machine, and no component is to blame.
   void noteStall(std::int64_t stamp);
@@ -173,6 +178,7 @@ class Scorer {
   std::int64_t stalled_until_ = 0;          // what waited has come by then [ns]
   std::vector<std::int64_t> stamps_;        // of the last event [ns], by id
   std::vector<std::int64_t> first_stamps_;  // of the first event since the start [ns], by id
+  std::vector<double> behind_;              // its mean gaps [ns], by id
   std::vector<std::uint64_t> numbers_;      // of the last event in the recording, by id; 0: none
   std::vector<std::uint64_t> seen_;         // events since the start, by id
   std::uint64_t number_ = 0;

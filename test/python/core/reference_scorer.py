@@ -11,6 +11,8 @@ MOST_FAILURES = 10
 USUAL_SURPRISE = 0.3
 USUAL_MISSES = 0.15
 GONE_GAPS = 5
+MOST_BEHIND = 3.0
+"""Mean gaps."""
 MOST_EVIDENCE = 200.0
 MOST_OF_LIMIT = 1.5
 ACCEPT_AFTER = 60 * SECOND
@@ -96,6 +98,7 @@ class ReferenceScorer:
         self._last: Dict[str, Tuple[int, int]] = {}  # stamp and number of the event
         self._first_stamps: Dict[str, int] = {}
         self._number: Dict[str, int] = defaultdict(int)  # of events, by type
+        self._behind: Dict[str, float] = defaultdict(float)  # [ns]
         self._in_window: Dict[str, List[int]] = defaultdict(list)
         self._requests: Dict[Track, List[int]] = defaultdict(list)  # without an answer
         self._pairs = {track[1:]: Watch([self._cap((channel, *track[1:])) for channel in DELAYS])
@@ -137,9 +140,10 @@ class ReferenceScorer:
 
     def _add(self, t: int, kind: str) -> None:
         own = self._last.get(kind)
+        catches_up = own is not None and self._catches_up(t - own[0], kind)
         for (to, other), pair in self._pairs.items():
             if to == kind:
-                self._add_delay(pair, t, to, other)
+                self._add_delay(pair, t, to, other, catches_up)
         for (to, other), answer in self._answers.items():
             if other == kind:
                 self._ask(answer, t, ('answer', to, other))
@@ -155,13 +159,22 @@ class ReferenceScorer:
                     if kind in types:
                         watch.disarm()
 
-    def _add_delay(self, pair: Watch, t: int, to: str, other: str) -> None:
+    def _catches_up(self, gap: int, kind: str) -> bool:
+        """Return whether a gap is short because the type was behind its mean gaps."""
+        mean = self._model.both.mean_gap(kind)
+        catches_up = mean - 2 * self._behind[kind] < gap < mean
+        self._behind[kind] = min(max(self._behind[kind] + gap - mean, 0.0), MOST_BEHIND * mean)
+        return catches_up
+
+    def _add_delay(self, pair: Watch, t: int, to: str, other: str, catches_up: bool) -> None:
         own, before = self._last.get(to), self._last.get(other)
         if before is None or (own is not None and before[1] < own[1]):
             return
         surprise = self._model.surprise(('delay', to, other), t - before[0])
         if not self._has_waited(t):
-            pair.add([surprise - max(pair.regime, 0.0) - drift for drift in DELAYS.values()])
+            sign = -1.0 if to == other and catches_up and surprise > 0.0 else 1.0
+            pair.add([sign * (surprise - max(pair.regime, 0.0) - drift)
+                      for drift in DELAYS.values()])
             elapsed = min(max(t - own[0], 0), REGIME) if own is not None else 0
             pair.regime += (surprise - pair.regime) * elapsed / REGIME
         if to == other and pair.arming.failures == 0:
