@@ -1,7 +1,6 @@
 #include "core/evidence/busy_machine.h"
 
 #include <algorithm>
-#include <map>
 #include <utility>
 
 namespace self_awareness::core::evidence {
@@ -20,29 +19,20 @@ constexpr std::size_t kOneIn = 3;
 }  // namespace
 
 BusyMachine::BusyMachine(std::shared_ptr<const Model> model)
-    : model_(std::move(model)), followers_(model_) {
-  std::map<std::string, std::size_t> numbers;
-  for (const EventType& type : model_->vocabulary().types()) {
-    const std::string& name = componentOf(type.source, type.scope);
-    const auto [number, is_new] = numbers.emplace(name, names_.size());
-    if (is_new) {
-      names_.push_back(name);
-    }
-    component_of_.push_back(number->second);
-  }
-}
+    : model_(std::move(model)), followers_(model_) {}
 
 std::optional<Busy> BusyMachine::closeWindow(const std::vector<double>& shares,
                                              const Scorer& scorer, bool abnormal) {
   if (!abnormal && !busy_) {
     return std::nullopt;
   }
-  std::vector<bool> heard(names_.size(), false);
-  std::vector<bool> silent(names_.size(), false);
-  std::vector<double> largest(names_.size(), 0);  // share of what is not silence
+  const std::vector<std::string>& names = model_->components();
+  std::vector<bool> heard(names.size(), false);
+  std::vector<bool> silent(names.size(), false);
+  std::vector<double> largest(names.size(), 0);  // share of what is not silence
   for (std::size_t track = 0; track < shares.size(); ++track) {
     const EventId id = model_->tracks()[track].to;
-    const std::size_t component = component_of_[id];
+    const std::size_t component = model_->component(id);
     heard[component] = heard[component] || scorer.lastSeen(id).has_value();
     if (model_->tracks()[track].channel == Channel::kOverdue) {
       silent[component] = silent[component] || shares[track] > 1;
@@ -55,17 +45,17 @@ std::optional<Busy> BusyMachine::closeWindow(const std::vector<double>& shares,
     return !silent[component] && largest[component] > (busy_ ? kStillLate : kLate);
   };
   // Who follows as usual one that is late or silent is only its victim.
-  std::vector<bool> led(names_.size(), false);
-  for (std::size_t follower = 0; follower < names_.size() && !busy_; ++follower) {
-    for (std::size_t leader = 0; leader < names_.size() && isLate(follower); ++leader) {
+  std::vector<bool> led(names.size(), false);
+  for (std::size_t follower = 0; follower < names.size() && !busy_; ++follower) {
+    for (std::size_t leader = 0; leader < names.size() && isLate(follower); ++leader) {
       led[follower] = led[follower] || ((isLate(leader) || silent[leader]) &&
-                                        leads.count({names_[leader], names_[follower]}) > 0);
+                                        leads.count({names[leader], names[follower]}) > 0);
     }
   }
   Busy busy;
   std::size_t roots = 0;
   std::size_t silences = 0;
-  for (std::size_t component = 0; component < names_.size(); ++component) {
+  for (std::size_t component = 0; component < names.size(); ++component) {
     busy.components += heard[component] ? 1 : 0;
     busy.late += isLate(component) ? 1 : 0;
     roots += isLate(component) && !led[component] ? 1 : 0;

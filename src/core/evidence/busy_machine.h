@@ -2,7 +2,6 @@
 
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "core/evidence/followers.h"
@@ -31,8 +30,6 @@ class BusyMachine {
  private:
   std::shared_ptr<const Model> model_;
   Followers followers_;
-  std::vector<std::size_t> component_of_;  // its number, by id
-  std::vector<std::string> names_;         // of components, by number
   bool busy_ = false;
 };
 

@@ -25,7 +25,7 @@ constexpr double kMostOwnMargin = 2;    // of one track
 constexpr double kMostTailMargin = 2;   // of the longest gap of what comes irregularly
 // The linker depends on what the robot is doing, and that changes from hour to hour.
 constexpr double kLeastLinkerMargin = 1.5;
-constexpr double kLeastLinkerLimit = 2;  // event types
+constexpr double kLeastLinkerLimit = 2;  // components
 // An answer may take so many times the longest wait that was seen.
 constexpr double kLeastDeadlineMargin = 2;
 // By how much recordings exceed each other on average (a logarithm), as long as little is known.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <stdexcept>
 #include <utility>
 
@@ -91,10 +92,23 @@ Model::Model(const Watched& watched, Learned learned)
   if (learned != Learned::kBoth) {
     half_ = watched.halves.at(learned == Learned::kFirst ? 0 : 1);
   }
+  numberComponents();
   learnGaps();
   learnRates();
   learnDelays(watched.halves);
   learnAnswers();
+}
+
+void Model::numberComponents() {
+  std::map<std::string, std::size_t> numbers;
+  for (const EventType& type : vocabulary().types()) {
+    const std::string& name = componentOf(type.source, type.scope);
+    const auto [number, is_new] = numbers.emplace(name, components_.size());
+    if (is_new) {
+      components_.push_back(name);
+    }
+    component_of_.push_back(number->second);
+  }
 }
 
 void Model::learnGaps() {

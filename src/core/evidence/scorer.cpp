@@ -408,7 +408,7 @@ std::optional<std::int64_t> Scorer::lastSeen(EventId id) const {
 
 Sum sumUp(const std::vector<double>& evidence, const Model& model, const Limits& limits) {
   Sum sum;
-  std::vector<double> linked(model.size(), 0);
+  std::vector<double> linked(model.components().size(), 0);
   for (std::size_t track = 0; track < evidence.size(); ++track) {
     const double share = evidence[track] / limits.tracks[track];
     const Channel channel = model.tracks()[track].channel;
@@ -416,8 +416,9 @@ Sum sumUp(const std::vector<double>& evidence, const Model& model, const Limits&
       sum.largest = share;
     }
     if ((channel == Channel::kSlowDelay || channel == Channel::kAnswer) && share > 0) {
-      double& of_type = linked[model.tracks()[track].to];
-      of_type = std::max(of_type, std::min((share - kLeastLinked) / (1 - kLeastLinked), 1.0));
+      double& of_component = linked[model.component(model.tracks()[track].to)];
+      of_component =
+          std::max(of_component, std::min((share - kLeastLinked) / (1 - kLeastLinked), 1.0));
     }
   }
   for (const double share : linked) {

@@ -190,12 +190,12 @@ class Scorer {
 /// The evidence of a window, summed up.
 struct Sum {
   double largest = 0;  ///< of the tracks, in units of their limits
-  double linker = 0;   ///< evidence of all event types together, not in units of its limit
+  double linker = 0;   ///< evidence of all components together, not in units of its limit
 };
 
 /// Finds the largest evidence and the linker's (docs/method.md, sections 3.8 and 4.1). The
-/// linker's is a sum over event types: of the largest share of its limit that a slow delay or
-/// answer track of the type has reached, from 0 at half the limit to 1 at the limit. It links
+/// linker's is a sum over components: of the largest share of its limit that a slow delay or
+/// answer track of the component has reached, from 0 at half the limit to 1 at the limit. It links
 /// evidence that is too weak for an alarm in any one place (paper, section V-C).
 Sum sumUp(const std::vector<double>& evidence, const Model& model, const Limits& limits);
 

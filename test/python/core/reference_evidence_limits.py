@@ -365,7 +365,7 @@ class ReferenceLimits:
                    margin * max(*largest, LEAST_SHARE * LEAST_LINKER_LIMIT))
 
     def _linker(self, row: Sequence[float]) -> float:
-        shares: Dict[str, float] = {}
+        shares: Dict[str, float] = {}  # every event type is a component of its own here
         for (channel, kind, _), value, limit in zip(self._model.tracks, row, self.tracks):
             # Never so where the limit is NaN.
             if channel in ('slow delay', 'answer') and value / limit > 0:

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "self_awareness/core/evidence/statistics.h"
@@ -46,6 +47,10 @@ class Model {
   /// What is watched; the same for all values of Learned. The two delay tracks of a pair are
   /// neighbours, the slow one after the other.
   const std::vector<Track>& tracks() const { return tracks_; }
+  /// Names of the components: sources, or topics where the sources are not known.
+  const std::vector<std::string>& components() const { return components_; }
+  /// Index of the component that an event type comes from.
+  std::size_t component(EventId id) const { return component_of_.at(id); }
 
   /// Evidence of channel overdue [nat]: -log of the probability, at a random moment of normal
   /// operation, of an age of at least `age` [ns] (docs/method.md, section 3.2).
@@ -113,6 +118,7 @@ class Model {
     std::int64_t delay = 0;  // that answers usually take [ns]
   };
 
+  void numberComponents();
   void learnGaps();
   void learnRates();
   void learnDelays(const std::array<Statistics, 2>& halves);
@@ -126,6 +132,8 @@ class Model {
   Statistics statistics_;           // of both halves
   std::optional<Statistics> half_;  // the one that is learned from, with the same ids
   std::vector<Track> tracks_;
+  std::vector<std::string> components_;
+  std::vector<std::size_t> component_of_;  // by id
   std::vector<Gaps> gaps_;                 // by id
   std::vector<Rate> rates_;                // by id
   std::vector<Surprises> surprises_;       // of pairs
