@@ -129,7 +129,7 @@ def _folder(given: Optional[Path]) -> Iterator[Path]:
             yield Path(temporary)
         return
     given.mkdir(parents=True, exist_ok=True)
-    if any(given.glob('session.*')):
+    if any(given.glob('session*')):
         raise ValueError(f'--recordings {given}: holds a session already; name another folder')
     yield given.resolve()
 

@@ -8,7 +8,7 @@ from typing import Dict, List, Sequence, Tuple
 import rospy
 from std_srvs.srv import Trigger
 
-from self_awareness.evaluation.live.processes import LiveError, await_condition
+from self_awareness.evaluation.live.processes import LiveError, await_condition, becomes_true
 from self_awareness.evaluation.live.samples import ERROR, Status
 from self_awareness.evaluation.systems import distinct
 from self_awareness.msg import SelfAwareness
@@ -87,16 +87,11 @@ def reset_until_quiet(monitor: MonitorListener) -> str:
     """
     await_condition('the monitor says something', lambda: bool(monitor.statuses),
                     STARTED_WITHIN_S)
-    resets = 0
-    while True:
+    for resets in range(1, _MOST_RESETS + 1):
         monitor.reset()
-        resets += 1
-        try:
-            await_condition('no alarm', lambda: monitor.quiet_for() >= QUIET_S, _QUIET_WITHIN_S)
+        if becomes_true(lambda: monitor.quiet_for() >= QUIET_S, _QUIET_WITHIN_S):
             return '' if resets == 1 else f'no alarm only after {resets} times ~reset'
-        except LiveError:
-            if resets == _MOST_RESETS:
-                return f'the alarm stood after {resets} times ~reset'
+    return f'the alarm stood after {_MOST_RESETS} times ~reset'
 
 
 class RobotListener:

@@ -14,7 +14,6 @@ from self_awareness.evaluation.live.listeners import (STARTED_WITHIN_S, MonitorL
 from self_awareness.evaluation.live.master import own_master
 from self_awareness.evaluation.live.passing import say, stretch, wait
 from self_awareness.evaluation.live.processes import LiveError, Processes, await_condition
-from self_awareness.evaluation.live.recorder import start_recorder
 from self_awareness.evaluation.live.samples import Status, Stretch
 from self_awareness.evaluation.simulated.measures import NORMAL
 from self_awareness.follow_me import induction
@@ -31,6 +30,7 @@ FAULTS_S: Dict[str, float] = {
 _REGULAR = ('odom', 'scan', 'pose', 'obstacles', 'legs', 'tracks', 'task/state', 'battery',
             'camera/image', 'faces', 'joint_states')
 _SHARED = 'cmd_vel'  # where the intruder publishes
+_EXCLUDED = '/rosout_agg|/self_awareness/.*|/diagnostics.*'
 _WARM_UP_S = 10.0  # after the robot's start, which is no normal operation
 
 
@@ -101,7 +101,7 @@ class _Session:
         model = self._folder / 'live.model'
         learn(self._processes, model, training, [calibration], '--graph')
         recording = self._folder / 'session.bag'
-        recorder = start_recorder(self._processes, recording)
+        recorder = self._start_recorder(recording)
         self._processes.start('monitor', 'roslaunch', '--wait', 'self_awareness', 'monitor.launch',
                               f'model:={model}', f'config:={self._config()}')
         for number in range(1, self._plan.rounds + 1):
@@ -183,13 +183,21 @@ class _Session:
         bag = self._folder / f'{name}.bag'
         if bag.exists():
             return bag
-        recorder = start_recorder(self._processes, bag)
+        recorder = self._start_recorder(bag)
         wait(length_s, f'recording {name}')
         self._processes.end(recorder)
         if not bag.exists():
             raise LiveError(f'{bag}: rosbag record has not written it, see '
                             f'{self._folder / "record.log"}')
         return bag
+
+    def _start_recorder(self, bag: Path) -> subprocess.Popen:
+        recorder = self._processes.start('record', 'rosbag', 'record', '--all', '--exclude',
+                                         _EXCLUDED, '--output-name', str(bag), '__name:=record')
+        active = Path(f'{bag}.active')
+        await_condition(f'rosbag writes {bag.name}',
+                        lambda: active.exists() and active.stat().st_size > 0, STARTED_WITHIN_S)
+        return recorder
 
     def _config(self) -> Path:
         path = self._folder / 'monitor.yaml'

@@ -9,7 +9,8 @@ from typing import Any, Dict, List, Optional, Sequence
 
 from self_awareness.calibration import confidence
 from self_awareness.evaluation.nodes.measures import UNDISTURBED, Row
-from self_awareness.evaluation.nodes.session import QUIET_AFTER_S, RECOVERED_WITHIN_S, SessionPlan
+from self_awareness.evaluation.nodes.session import (APART_S, QUIET_AFTER_S,
+                                                     RECOVERED_WITHIN_S, SessionPlan)
 from self_awareness.evaluation.nodes.system import NODES, RELAY
 from self_awareness.evaluation.simulated.tables import table
 from self_awareness.output_files import replacing
@@ -27,16 +28,17 @@ Written by `{command}`; do not edit.
 {packages}
 
 A relay of this project (`{relay}`) is one more, because no packaged one can come late. PCL's
-nodelets are not there: Debian 12 has their libraries without the description that a nodelet
-manager looks for. Nor are joystick, laser and GPS drivers: `rosbag play` replays small bags, whose
-periods vary by 2 %, under their names. `scripts/packaged_nodes_env.sh` installs everything;
+nodelets are left out: the list of them comes only with PCL's development packages, 750 MB. Debian
+12 has no drivers of lasers, IMUs or GPS receivers: `rosbag play` replays small bags, whose periods
+vary by 2 %, under their names. `scripts/packaged_nodes_env.sh` installs everything;
 `src/self_awareness/evaluation/nodes/system.py` lists nodes and faults.
 
 `record.launch` recorded them in {starts} starts for {training_s:g} s each, for `train`, and in
-{calibrations} more for {calibration_s:g} s, for `calibrate`, with default options. After another
-start, the monitor of `monitor.launch` watched. First nothing was wrong; then came one fault after
-the other. Before each, the monitor's ~reset was called, and it had settled and not alarmed for
-some seconds. After each, there had been no alarm for {quiet_s:g} s; the wait for that was
+{calibrations} more for {calibration_s:g} s, for `calibrate`, with default options; {apart_s:g} s
+passed between two recordings, since those within a minute count as one start. After another start,
+the monitor of `monitor.launch` watched. First nothing was wrong; then came one fault after the
+other. Before each, the monitor's ~reset was called, and it had settled and not alarmed for some
+seconds. After each, there had been no alarm for {quiet_s:g} s; the wait for that was
 {within_s:g} s at most.
 
 Latencies count from the onset to the end of the window whose status was WARN or ERROR; `none` was
@@ -106,8 +108,8 @@ def page(plan: SessionPlan, rows: Sequence[Row], command: str) -> str:
         command=command, nodes=len(packaged), relay=RELAY.name,
         topics=len({topic for node in packaged for topic in node.topics}),
         packages='\n'.join(_packages()), starts=plan.starts, training_s=plan.training_s,
-        calibrations=plan.calibrations, calibration_s=plan.calibration_s, quiet_s=QUIET_AFTER_S,
-        within_s=RECOVERED_WITHIN_S, low=min(row.load for row in rows),
+        calibrations=plan.calibrations, calibration_s=plan.calibration_s, apart_s=APART_S,
+        quiet_s=QUIET_AFTER_S, within_s=RECOVERED_WITHIN_S, low=min(row.load for row in rows),
         high=max(row.load for row in rows))]
     lines += table(['', 'lasted', 'WARN', 'ERROR', 'guilty first', 'cleared',
                     'what the monitor said'],

@@ -1,7 +1,7 @@
 """One session beside the nodes: recordings of several starts, model, monitor, and faults."""
 from __future__ import annotations
 
-import contextlib
+import subprocess
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,8 +13,8 @@ from self_awareness.evaluation.live.listeners import (STARTED_WITHIN_S, MonitorL
                                                       reset_until_quiet)
 from self_awareness.evaluation.live.master import own_master
 from self_awareness.evaluation.live.passing import say, stretch, wait
-from self_awareness.evaluation.live.processes import LiveError, Processes, await_condition
-from self_awareness.evaluation.live.recorder import start_recorder
+from self_awareness.evaluation.live.processes import (LiveError, Processes, await_condition,
+                                                      becomes_true)
 from self_awareness.evaluation.live.samples import Stretch
 from self_awareness.evaluation.nodes import drivers, measures
 from self_awareness.evaluation.nodes.measures import UNDISTURBED, Row
@@ -27,6 +27,11 @@ QUIET_AFTER_S = 10.0
 
 RECOVERED_WITHIN_S = 60.0
 """An alarm that stands for longer after the fault was undone does not clear [s]."""
+
+APART_S = 70.0
+"""From the end of one recording to the beginning of the next one [s].
+
+Recordings that follow each other within a minute count as one start."""
 
 _WARM_UP_S = 10.0  # after the start, which is no normal operation
 _PIECE_S = 600.0  # of normal operation, so that little is lost if the session fails
@@ -76,6 +81,7 @@ class _Session:
         self._told = told
         self._system = RunningSystem(folder, processes)
         self._monitor = MonitorListener()
+        self._recorded_until = -APART_S  # by time.monotonic()
 
     def run(self) -> None:
         training = [self._recorded(f'training_{number}', self._plan.training_s)
@@ -85,7 +91,7 @@ class _Session:
         model = self._folder / 'nodes.model'
         learn(self._processes, model, training, normal)
         self._start_system()
-        recorder = start_recorder(self._processes, self._folder / 'session.bag', '--lz4')
+        recorder = self._start_recorder('session')  # for score, should there be an alarm
         self._processes.start('monitor', 'roslaunch', '--wait', 'self_awareness', 'monitor.launch',
                               f'model:={model}')
         await_condition('the monitor says something', lambda: bool(self._monitor.statuses),
@@ -114,9 +120,8 @@ class _Session:
             with stretch(1, fault.kind, fault.culprits, note, onset, over.append):
                 wait(fault.lasts_s, f'{fault.node or "the machine"} {fault.kind}')
         recovered = time.time()
-        with contextlib.suppress(LiveError):  # then the alarm has not cleared, which the row tells
-            await_condition('no alarm any longer', lambda: self._is_over(recovered),
-                            RECOVERED_WITHIN_S)
+        # Where it does not clear in time, the row tells it.
+        becomes_true(lambda: self._is_over(recovered), RECOVERED_WITHIN_S)
         self._told(measures.of_fault(fault, over[0], recovered, self._monitor.statuses))
 
     def _is_over(self, recovered: float) -> bool:
@@ -134,19 +139,27 @@ class _Session:
         if found is not None:
             return found
         self._start_system()
-        output = self._folder / name
-        recorder = self._processes.start(
-            name, 'roslaunch', '--wait', 'self_awareness', 'record.launch', f'output:={output}')
-        await_condition(f'rosbag writes {name}',
-                        lambda: any(self._folder.glob(f'{name}_*.bag.active')), STARTED_WITHIN_S)
+        apart_s = self._recorded_until + APART_S - time.monotonic()
+        if apart_s > 0.0:
+            wait(apart_s, 'so that this start counts as another one')
+        recorder = self._start_recorder(name)
         wait(length_s, f'recording {name}')
         self._processes.end(recorder)
+        self._recorded_until = time.monotonic()
         self._system.end()
         found = self._bag(name)
         if found is None or not Path(graph_file(str(found))).exists():
-            raise LiveError(f'{output}: record.launch has written no bag with its graph, see '
-                            f'{output}.log')
+            raise LiveError(f'{name}: record.launch has written no bag with its graph, see '
+                            f'{self._folder / name}.log')
         return found
+
+    def _start_recorder(self, name: str) -> subprocess.Popen:
+        recorder = self._processes.start(
+            name, 'roslaunch', '--wait', 'self_awareness', 'record.launch',
+            f'output:={self._folder / name}')
+        await_condition(f'rosbag writes {name}',
+                        lambda: any(self._folder.glob(f'{name}_*.bag.active')), STARTED_WITHIN_S)
+        return recorder
 
     def _bag(self, name: str) -> Optional[Path]:
         return next(iter(sorted(self._folder.glob(f'{name}_*.bag'))), None)
