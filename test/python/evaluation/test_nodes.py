@@ -77,6 +77,13 @@ def test_what_began_earlier_is_not_counted_again() -> None:
     assert (row.alarms, row.suspicions) == (1, 0)
 
 
+def test_a_suspicion_between_two_alarms_is_none_of_its_own() -> None:
+    row = of_quiet(QUIET, 0.4, statuses((1.0, WARN), (1.5, ERROR), (3.0, WARN), (4.0, ERROR),
+                                        (5.0, WARN), (6.0, 0), (7.0, WARN)))
+    assert (row.alarms, row.suspicions) == (2, 1)
+    assert row.said == 'ERROR: level 2 at 1.5; ERROR: level 2 at 4; WARN: level 1 at 7'
+
+
 def test_time_in_which_the_monitor_settles_is_not_judged() -> None:
     assert of_quiet(QUIET, 0.4, statuses(settled_after_s=4.0)).lasted_s == pytest.approx(6.0)
 
@@ -104,8 +111,9 @@ def test_a_fault_under_a_standing_alarm_does_not_count() -> None:
 
 PLAN = SessionPlan(3, 150.0, 1, 250.0, 60.0)
 ROWS = [
-    Row(UNDISTURBED, '', 1800.0, 1, 2, 9.0, 0.5, said='ERROR: this', load=2.0),
-    Row(UNDISTURBED, '', 1800.0, 0, 1, 0.0, 0.5, said='WARN: that', load=4.0),
+    Row(UNDISTURBED, '', 1800.0, 1, 2, 9.0, 0.5,
+        said='ERROR: this: 1 s; WARN: that: 2 s; ERROR: this: 3 s', load=2.0),
+    Row(UNDISTURBED, '', 1800.0, 0, 1, 0.0, 0.5, load=4.0),
     Row(KILL, 'lidar', 10.0, suspicion_s=0.2, latency_s=0.3, first=True, among_three=True,
         cleared_s=2.5, said='silent', suspects='/lidar'),
     Row(LATE, 'late_relay', 20.0, suspicion_s=0.4, note='twice'),
@@ -120,8 +128,8 @@ def test_page_has_a_line_for_normal_operation_and_one_for_each_fault(tmp_path: P
     text = paths[1].read_text(encoding='utf-8')
     assert 'the command' in text and 'load average was 0.0 to 4.0' in text
     assert ('| **undisturbed** | 60 min | 3 (3.0 an hour) | 1 (95 %: 0.2 to 5.7 an hour; expected '
-            'by calibrate: 0.5) | – | an alarm stood for 9 s (0.25 % of the time) | ERROR: this; '
-            'WARN: that |') in text
+            'by calibrate: 0.5) | – | an alarm stood for 9 s (0.25 % of the time) | '
+            'ERROR: this (2x); WARN: that (1x) |') in text
     assert '| `lidar` killed (kill -9) | 10 s | 0.20 s | 0.30 s | yes | 2.5 s | silent |' in text
     assert '| `late_relay` relays 60 ms late | 20 s | 0.40 s | none | – | – | – |' in text
     assert '| none | 1.00 s | no | did not clear | a/b |' in text

@@ -11,6 +11,9 @@ from self_awareness.evaluation.nodes.system import Fault
 UNDISTURBED = 'undisturbed'
 """The name of normal operation in the column of faults."""
 
+SEPARATOR = '; '
+"""Between what was said of one alarm or suspicion, and of the next one."""
+
 
 @dataclass(frozen=True)
 class Row:
@@ -75,8 +78,9 @@ def of_quiet(stretch: Stretch, expected: float, statuses: Sequence[Status]) -> R
                suspicions=sum(status.level == WARN for status in begun),
                standing_s=length_s * _share(inside, lambda status: status.level >= ERROR),
                expected=expected,
-               said='; '.join(f'{"ERROR" if status.level >= ERROR else "WARN"}: {status.message}'
-                              for status in begun),
+               said=SEPARATOR.join(
+                   f'{"ERROR" if status.level >= ERROR else "WARN"}: {status.message}'
+                   for status in begun),
                note=stretch.note, load=stretch.load)
 
 
@@ -100,16 +104,20 @@ def of_fault(fault: Fault, stretch: Stretch, recovered: float, statuses: Sequenc
 
 
 def _begun(before: Sequence[Status], inside: Sequence[Status]) -> List[Status]:
-    """Return the first status of every alarm, and of every suspicion that became none."""
+    """Return the first status of every alarm, and of every suspicion beside them.
+
+    A suspicion before an alarm, or after it until all is well, is part of it.
+    """
     found: List[Status] = []
-    level = before[-1].level if before else 0
+    level = highest = before[-1].level if before else 0
     for status in inside:
-        if level < ERROR <= status.level:
-            if level >= WARN and found:
-                found.pop()  # the suspicion became this alarm
+        if status.level < WARN:
+            highest = 0
+        elif level < ERROR <= status.level or highest < WARN:
+            if found and highest == WARN and found[-1].level == WARN:
+                found.pop()  # it became this alarm
             found.append(status)
-        elif level < WARN <= status.level:
-            found.append(status)
+        highest = max(highest, status.level)
         level = status.level
     return found
 

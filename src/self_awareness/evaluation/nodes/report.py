@@ -3,12 +3,13 @@ from __future__ import annotations
 
 import csv
 import math
+from collections import Counter
 from dataclasses import asdict, fields
 from pathlib import Path
 from typing import Any, Dict, List, Optional, Sequence
 
 from self_awareness.calibration import confidence
-from self_awareness.evaluation.nodes.measures import UNDISTURBED, Row
+from self_awareness.evaluation.nodes.measures import SEPARATOR, UNDISTURBED, Row
 from self_awareness.evaluation.nodes.session import (APART_S, QUIET_AFTER_S,
                                                      RECOVERED_WITHIN_S, SessionPlan)
 from self_awareness.evaluation.nodes.system import NODES, RELAY
@@ -141,7 +142,13 @@ def _quiet(rows: Sequence[Row]) -> List[str]:
             f'{alarms:.0f} (95 %: {low:.1f} to {high:.1f} an hour; expected by calibrate: '
             f'{rows[0].expected:.2g})', _NONE,
             f'an alarm stood for {standing_s:.0f} s ({standing_s / hours / 36.0:.2g} % of the '
-            'time)', _text('; '.join(row.said for row in rows if row.said))]
+            'time)', _text(_counted([said for row in rows for said in row.said.split(SEPARATOR)]))]
+
+
+def _counted(said: Sequence[str]) -> str:
+    """Return how often the same was said of the same topic, whatever the numbers."""
+    kinds = Counter(': '.join(text.split(': ')[:2]) for text in said if text)
+    return '; '.join(f'{kind} ({number}x)' for kind, number in sorted(kinds.items()))
 
 
 def _fault(row: Row) -> List[str]:
