@@ -2,12 +2,15 @@
 from __future__ import annotations
 
 import math
+import re
+import shlex
 from pathlib import Path
 from typing import List, Tuple
 
 import pytest
 import rosbag
 
+from self_awareness.evaluation import evaluate
 from self_awareness.evaluation.live.samples import ERROR, WARN, Status, Stretch
 from self_awareness.evaluation.nodes import drivers, report
 from self_awareness.evaluation.nodes.measures import UNDISTURBED, Row, of_fault, of_quiet
@@ -15,6 +18,7 @@ from self_awareness.evaluation.nodes.session import SessionPlan
 from self_awareness.evaluation.nodes.system import (CAMERAS_HZ, FAULTS, HALF_RATE, KILL, LATE,
                                                     NODES, Fault)
 
+PAGES = Path(__file__).resolve().parents[3] / 'docs' / 'evaluation'
 ONSET = 1000.0
 QUIET = Stretch(1, UNDISTURBED, ONSET, ONSET + 10.0, load=1.5)
 KILLED = Fault(KILL, 'lidar', 5.0)
@@ -147,3 +151,11 @@ def _with_floats(row: Row) -> Row:
     """Return a row whose counts are floats, as they are read."""
     return Row(**{name: float(value) if type(value) is int else value
                   for name, value in vars(row).items()})
+
+
+def test_the_page_in_the_repository_is_that_of_its_rows() -> None:
+    text = (PAGES / 'nodes.md').read_text(encoding='utf-8')
+    command = re.search('`(rosrun self_awareness evaluate (nodes.*))`', text)
+    assert command is not None
+    plan = evaluate.nodes_plan(evaluate.parser().parse_args(shlex.split(command[2])))
+    assert text == report.page(plan, report.load_csv(PAGES / 'nodes.csv'), command[1])

@@ -34,21 +34,24 @@ nodelets are left out: the list of them comes only with PCL's development packag
 vary by 2 %, under their names. `scripts/packaged_nodes_env.sh` installs everything;
 `src/self_awareness/evaluation/nodes/system.py` lists nodes and faults.
 
-`record.launch` recorded them in {starts} starts for {training_s:g} s each, for `train`, and in
-{calibrations} more for {calibration_s:g} s, for `calibrate`, with default options; {apart_s:g} s
-passed between two recordings, since those within a minute count as one start. After another start,
-the monitor of `monitor.launch` watched. First nothing was wrong; then came one fault after the
-other. Before each, the monitor's ~reset was called, and it had settled and not alarmed for some
-seconds. After each, there had been no alarm for {quiet_s:g} s; the wait for that was
-{within_s:g} s at most.
+`record.launch` recorded {starts} starts of them for {training_s:g} s each, for `train`, and
+{calibrations} more for {calibration_s:g} s, for `calibrate`, all with default options.
+{apart_s:g} s passed between two recordings: those within a minute count as one start. After
+another start, the monitor of `monitor.launch` watched. First nothing was wrong; then came one
+fault after the other. Before each, the monitor's ~reset was called, and it had settled and not
+alarmed for some seconds. After each there was no alarm for {quiet_s:g} s; where one stood, the
+wait for that was {within_s:g} s at most.
 
-Latencies count from the onset to the end of the window whose status was WARN or ERROR; `none` was
-none while the fault lasted. "Guilty first": the node that was broken, the manager where it was a
-nodelet, is the first suspect of the alarm, or among the first three. "Cleared": time from when the
-node was as before (a restarted one has published on all its topics) to the end of the alarm.
+Latencies count from the onset to the end of the window whose status was WARN or ERROR; `none`:
+none while the fault lasted. "Guilty first": the node that was broken (the manager, if it holds
+nodelets) is the first suspect of the alarm. "Cleared": from the end of the fault, when the node
+had published on all its topics again, to the end of the alarm; 0 where the alarm was over
+before. The relay's 60 ms are a period and 10 ms of its topic of 20 Hz: it comes 10 ms after the
+message before.
 
-The machine did other work on all of its cores: its load average was {low:.1f} to {high:.1f}, that
-of the nodes included.
+The machine did other work on all of its cores: its load average was {low:.1f} to {high:.1f},
+that of the nodes included. Other work makes messages late, and swaps those that come at the same
+time.
 """
 
 
