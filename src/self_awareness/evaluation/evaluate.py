@@ -9,7 +9,7 @@ import signal
 import sys
 import tempfile
 from pathlib import Path
-from typing import Iterator, Optional, Sequence
+from typing import TYPE_CHECKING, Iterator, Optional, Sequence
 
 from self_awareness.calibration.limits import BUDGET
 from self_awareness.commands import cli
@@ -23,6 +23,9 @@ from self_awareness.evaluation.simulated.experiment import Plan
 from self_awareness.evaluation.simulated.records import default_faults
 from self_awareness.follow_me.faults import effect_of
 from self_awareness.follow_me.scenario import load_scenario
+
+if TYPE_CHECKING:
+    from self_awareness.evaluation.nodes import session as nodes_session
 
 _SHORT = Learning(2, 30.0, 1, 60.0)
 _FAULTS = tuple(kind.split()[0] for kind in KINDS)
@@ -38,7 +41,7 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
     """Run the program; return its exit code (see cli.run)."""
     given = sys.argv[1:] if argv is None else argv
     command = f'rosrun self_awareness evaluate {shlex.join(given)}'
-    return cli.run(_parser(), lambda arguments: arguments.work(arguments, command), argv)
+    return cli.run(parser(), lambda arguments: arguments.work(arguments, command), argv)
 
 
 def _simulated(arguments: argparse.Namespace, command: str) -> None:
@@ -83,11 +86,9 @@ def _families(arguments: argparse.Namespace, command: str) -> None:
 
 
 def _live(arguments: argparse.Namespace, command: str) -> None:
-    # ROS is imported only here: the other parts do not need it.
+    # ROS is imported only here and in _nodes: the other parts do not need it.
     from self_awareness.evaluation.live import evaluation, session
-    # A termination must clean up like Ctrl-C, which shells let be ignored in the background.
-    for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, signal.default_int_handler)
+    _clean_up_when_terminated()
     plan = session.SessionPlan(arguments.rounds, arguments.training, arguments.calibration,
                                arguments.normal)
     arguments.output.mkdir(parents=True, exist_ok=True)
@@ -95,6 +96,29 @@ def _live(arguments: argparse.Namespace, command: str) -> None:
         paths = evaluation.evaluate(plan, folder, arguments.output, command)
     for path in paths:
         print(f'written: {path}')
+
+
+def _nodes(arguments: argparse.Namespace, command: str) -> None:
+    from self_awareness.evaluation.nodes import evaluation
+    _clean_up_when_terminated()
+    arguments.output.mkdir(parents=True, exist_ok=True)
+    with _folder(arguments.recordings) as folder:
+        paths = evaluation.evaluate(nodes_plan(arguments), folder, arguments.output, command)
+    for path in paths:
+        print(f'written: {path}')
+
+
+def nodes_plan(arguments: argparse.Namespace) -> nodes_session.SessionPlan:
+    """Return the plan that the arguments of `nodes` ask for."""
+    from self_awareness.evaluation.nodes.session import SessionPlan
+    return SessionPlan(arguments.starts, arguments.training, arguments.calibrations,
+                       arguments.calibration, arguments.minutes)
+
+
+def _clean_up_when_terminated() -> None:
+    """Let a termination clean up like Ctrl-C, which shells let be ignored in the background."""
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.default_int_handler)
 
 
 @contextlib.contextmanager
@@ -105,12 +129,13 @@ def _folder(given: Optional[Path]) -> Iterator[Path]:
             yield Path(temporary)
         return
     given.mkdir(parents=True, exist_ok=True)
-    if any(given.glob('session.*')):
+    if any(given.glob('session*')):
         raise ValueError(f'--recordings {given}: holds a session already; name another folder')
     yield given.resolve()
 
 
-def _parser() -> argparse.ArgumentParser:
+def parser() -> argparse.ArgumentParser:
+    """Return what parses the arguments."""
     parser = argparse.ArgumentParser(
         prog='evaluate', description=__doc__.split(': ', 1)[1], epilog=_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter)
@@ -131,6 +156,12 @@ def _parser() -> argparse.ArgumentParser:
         description='Starts master and robot, records, trains and calibrates, starts the monitor, '
         'and induces fault after fault in rounds; a round takes about 5 minutes. Other systems '
         'judge the recording of it afterwards.'))
+    _add_nodes(parts.add_parser(
+        'nodes', help='a system of nodes of Debian packages, and the monitor',
+        description='Starts the nodes several times and records them, trains and calibrates, '
+        'starts them once more, with the monitor, watches them undisturbed, and then breaks one '
+        'after the other; with the default options, this takes an hour and a half. '
+        'scripts/packaged_nodes_env.sh installs the nodes and runs this.'))
     return parser
 
 
@@ -159,10 +190,31 @@ def _add_live(parser: argparse.ArgumentParser) -> None:
                         '[s] (default: 240)')
     parser.add_argument('--normal', type=cli.checked(_calibration_s), default=20.0, metavar='S',
                         help='normal operation in each round [s] (default: 20)')
+    _add_folder(parser)
+
+
+def _add_folder(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--recordings', type=Path, metavar='DIR',
                         help='folder to keep recordings, model and logs in; recordings of normal '
                         'operation that it holds already are used again (default: all are removed '
                         'at the end)')
+
+
+def _add_nodes(parser: argparse.ArgumentParser) -> None:
+    parser.set_defaults(work=_nodes)
+    _add_output(parser, 'the page and the CSV file')
+    parser.add_argument('--starts', type=cli.count, default=3, metavar='N',
+                        help='starts of the nodes to learn from (default: 3)')
+    parser.add_argument('--training', type=cli.checked(_calibration_s), default=150.0, metavar='S',
+                        help='length of the recording of each of them [s] (default: 150)')
+    parser.add_argument('--calibrations', type=cli.count, default=1, metavar='N',
+                        help='further starts that the limits are found by (default: 1)')
+    parser.add_argument('--calibration', type=cli.checked(_calibration_s), default=250.0,
+                        metavar='S', help='length of the recording of each of them [s] '
+                        '(default: 250)')
+    parser.add_argument('--minutes', type=cli.checked(_minutes), default=60.0, metavar='MIN',
+                        help='normal operation that is watched (default: 60)')
+    _add_folder(parser)
 
 
 def _add_simulated(parser: argparse.ArgumentParser) -> None:
@@ -241,6 +293,10 @@ def _starts(text: str) -> int:
     if not 1 <= value <= MOST_STARTS:
         raise ValueError(f'expected starts from 1 to {MOST_STARTS}, not {text}')
     return value
+
+
+def _minutes(text: str) -> float:
+    return 60.0 * _hours(str(float(text) / 60.0))
 
 
 def _hours(text: str) -> float:

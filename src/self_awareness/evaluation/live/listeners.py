@@ -8,14 +8,22 @@ from typing import Dict, List, Sequence, Tuple
 import rospy
 from std_srvs.srv import Trigger
 
-from self_awareness.evaluation.live.processes import LiveError
+from self_awareness.evaluation.live.processes import LiveError, await_condition, becomes_true
 from self_awareness.evaluation.live.samples import ERROR, Status
 from self_awareness.evaluation.systems import distinct
 from self_awareness.msg import SelfAwareness
 
+QUIET_S = 3.0
+"""The monitor has settled, and there is no alarm, for so long before the next fault [s]."""
+
+STARTED_WITHIN_S = 90.0
+"""What is started, robot or monitor, has said something after so long at the latest [s]."""
+
 _MONITOR = '/self_awareness'
 _NO_STATUS_S = 15.0  # a starved CPU takes its time
 _SERVICE_WITHIN_S = 10.0
+_QUIET_WITHIN_S = 15.0
+_MOST_RESETS = 3
 
 
 class MonitorListener:
@@ -63,7 +71,8 @@ class MonitorListener:
     def _on_status(self, message: SelfAwareness) -> None:
         status = Status(message.header.stamp.to_sec(), time.time(), message.level,
                         message.settling, message.evidence,
-                        tuple(distinct([suspect.source for suspect in message.suspects])))
+                        tuple(distinct([suspect.source for suspect in message.suspects])),
+                        message.message)
         with self._lock:
             self._statuses.append(status)
             self._heard_at = time.monotonic()
@@ -71,14 +80,33 @@ class MonitorListener:
                 self._quiet_since = self._heard_at
 
 
+def reset_until_quiet(monitor: MonitorListener) -> str:
+    """Reset the monitor and wait until it is quiet; return a note if that took long or failed.
+
+    The alarm of one fault must not stand at the onset of the next one.
+    """
+    await_condition('the monitor says something', lambda: bool(monitor.statuses),
+                    STARTED_WITHIN_S)
+    for resets in range(1, _MOST_RESETS + 1):
+        monitor.reset()
+        if becomes_true(lambda: monitor.quiet_for() >= QUIET_S, _QUIET_WITHIN_S):
+            return '' if resets == 1 else f'no alarm only after {resets} times ~reset'
+    return f'the alarm stood after {_MOST_RESETS} times ~reset'
+
+
 class RobotListener:
-    """Remembers when each node was first and last heard on each topic [s since 1970]."""
+    """Remembers when each node was last heard on each topic [s since 1970]."""
 
     def __init__(self, topics: Sequence[str]) -> None:
         self._lock = threading.Lock()
         self._last: Dict[Tuple[str, str], float] = {}  # Guarded by _lock.
-        for topic in topics:
-            rospy.Subscriber(f'/{topic}', rospy.AnyMsg, self._on_message, topic, queue_size=100)
+        self._subscribers = [rospy.Subscriber(f'/{topic}', rospy.AnyMsg, self._on_message, topic,
+                                              queue_size=100) for topic in topics]
+
+    def close(self) -> None:
+        """Listen no longer."""
+        for subscriber in self._subscribers:
+            subscriber.unregister()
 
     def last(self, source: str, topic: str) -> float:
         """Return when a node was last heard on a topic; 0: never."""

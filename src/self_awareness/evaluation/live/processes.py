@@ -30,11 +30,18 @@ def await_condition(what: str, condition: Callable[[], bool], within_s: float) -
     Raises:
         LiveError: it still does not after the limit [s].
     """
+    if not becomes_true(condition, within_s):
+        raise LiveError(f'not within {within_s:g} s: {what}')
+
+
+def becomes_true(condition: Callable[[], bool], within_s: float) -> bool:
+    """Wait until a condition holds, and return whether it did before the limit [s]."""
     deadline = time.monotonic() + within_s
     while not condition():
         if time.monotonic() > deadline:
-            raise LiveError(f'not within {within_s:g} s: {what}')
+            return False
         time.sleep(_POLL_S)
+    return True
 
 
 class Processes:

@@ -10,8 +10,9 @@ from typing import List, Optional, Sequence
 
 from self_awareness.calibration import confidence
 from self_awareness.evaluation.live import offline
+from self_awareness.evaluation.live.listeners import QUIET_S
 from self_awareness.evaluation.live.samples import Sample, of_system
-from self_awareness.evaluation.live.session import FAULTS_S, QUIET_S, SessionPlan
+from self_awareness.evaluation.live.session import FAULTS_S, SessionPlan
 from self_awareness.evaluation.simulated import summary
 from self_awareness.evaluation.simulated.measures import NORMAL
 from self_awareness.evaluation.simulated.tables import percent, seconds, table

@@ -26,6 +26,7 @@ class Status:
         settling: whether it is too early for an alarm.
         evidence: what is abnormal.
         suspects: sources, the most likely first, each once.
+        message: the same in words.
     """
 
     stamp: float
@@ -34,6 +35,7 @@ class Status:
     settling: bool
     evidence: str = ''
     suspects: Tuple[str, ...] = ()
+    message: str = ''
 
 
 @dataclass(frozen=True)

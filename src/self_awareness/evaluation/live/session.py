@@ -2,19 +2,18 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import subprocess
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Callable, Dict, Iterator, List, Optional, Sequence, Tuple
+from typing import Callable, Dict, Iterator, List, Optional, Sequence
 
-import rospy
-
-from self_awareness import progress
-from self_awareness.evaluation.live.listeners import MonitorListener, RobotListener
-from self_awareness.evaluation.live.processes import (LiveError, Processes, await_condition,
-                                                      free_port)
+from self_awareness.evaluation.live.learning import learn
+from self_awareness.evaluation.live.listeners import (STARTED_WITHIN_S, MonitorListener,
+                                                      RobotListener, reset_until_quiet)
+from self_awareness.evaluation.live.master import own_master
+from self_awareness.evaluation.live.passing import say, stretch, wait
+from self_awareness.evaluation.live.processes import LiveError, Processes, await_condition
 from self_awareness.evaluation.live.samples import Status, Stretch
 from self_awareness.evaluation.simulated.measures import NORMAL
 from self_awareness.follow_me import induction
@@ -27,18 +26,11 @@ FAULTS_S: Dict[str, float] = {
     'extra': 8.0, 'rs': 20.0, 'ac': 35.0, 'cc1': 6.0, 'cc2': 6.0, 'silence': 6.0}
 """How long each fault lasts in a round [s], in their order; the last one ends the robot."""
 
-QUIET_S = 3.0
-"""The monitor has settled, and there is no alarm, for so long before the next fault [s]."""
-
 # One regular topic of each component that has one.
 _REGULAR = ('odom', 'scan', 'pose', 'obstacles', 'legs', 'tracks', 'task/state', 'battery',
             'camera/image', 'faces', 'joint_states')
 _SHARED = 'cmd_vel'  # where the intruder publishes
 _EXCLUDED = '/rosout_agg|/self_awareness/.*|/diagnostics.*'
-_STARTED_WITHIN_S = 90.0
-_MODEL_WITHIN_S = 180.0
-_QUIET_WITHIN_S = 15.0
-_MOST_RESETS = 3
 _WARM_UP_S = 10.0  # after the robot's start, which is no normal operation
 
 
@@ -84,25 +76,8 @@ def run(plan: SessionPlan, folder: Path,
         LiveError: a program failed, or something does not happen in time.
         InduceError: a fault cannot be induced.
     """
-    port = free_port()
-    os.environ.update(ROS_MASTER_URI=f'http://127.0.0.1:{port}', ROS_IP='127.0.0.1',
-                      ROS_LOG_DIR=str(folder / 'log'))
-    os.environ.pop('ROS_HOSTNAME', None)
-    with Processes(folder) as processes:
-        processes.start('roscore', 'roscore', '-p', str(port))
-        await_condition('the master answers', _master_answers, _STARTED_WITHIN_S)
-        # What it logs would be heard by the monitor.
-        rospy.init_node('evaluate', disable_signals=True, disable_rosout=True)
-        try:
-            return _Session(plan, folder, processes, told).run()
-        finally:
-            rospy.signal_shutdown('the evaluation is over')
-
-
-def _master_answers() -> bool:
-    """Return whether the master answers."""
-    return subprocess.run(['rosnode', 'list'], stdout=subprocess.DEVNULL,
-                          stderr=subprocess.DEVNULL, check=False).returncode == 0
+    with own_master(folder) as processes:
+        return _Session(plan, folder, processes, told).run()
 
 
 class _Session:
@@ -122,15 +97,9 @@ class _Session:
         self._start_robot(seed=0)
         training = [self._record(f'training_{number}', length)
                     for number, length in enumerate(self._plan.training, 1)]
-        model = self._folder / 'live.model'
-        _say('training')
-        self._processes.run('train', _MODEL_WITHIN_S, 'rosrun', 'self_awareness', 'train',
-                            *map(str, training), '--graph', '-o', str(model))
         calibration = self._record('calibration', self._plan.calibration_s)
-        _say('calibrating')
-        self._processes.run('calibrate', _MODEL_WITHIN_S, 'rosrun', 'self_awareness', 'calibrate',
-                            '--model', str(model), '--normal', str(calibration),
-                            '-o', str(model))
+        model = self._folder / 'live.model'
+        learn(self._processes, model, training, [calibration], '--graph')
         recording = self._folder / 'session.bag'
         recorder = self._start_recorder(recording)
         self._processes.start('monitor', 'roslaunch', '--wait', 'self_awareness', 'monitor.launch',
@@ -144,15 +113,15 @@ class _Session:
     def _round(self, number: int) -> None:
         if number > 1:
             self._start_robot(seed=number)
-        note = self._reset()
-        with self._stretch(number, NORMAL, (), note, time.time()):
-            _wait(self._plan.normal_s, f'round {number}: normal operation')
+        note = reset_until_quiet(self._monitor)
+        with stretch(number, NORMAL, (), note, time.time(), self._over):
+            wait(self._plan.normal_s, f'round {number}: normal operation')
         for kind, length in FAULTS_S.items():
-            note = self._reset()
+            note = reset_until_quiet(self._monitor)
             effect = effect_of(self._scenario, kind)
             with self._induced(kind, effect) as onset, \
-                    self._stretch(number, kind, effect.culprits, note, onset):
-                _wait(length, f'round {number}: {kind}')
+                    stretch(number, kind, effect.culprits, note, onset, self._over):
+                wait(length, f'round {number}: {kind}')
             if isinstance(effect, Crash):
                 self._start_component(effect.component, seed=number)
 
@@ -175,55 +144,26 @@ class _Session:
                 source, = effect.culprits
                 await_condition(f'{source} publishes',
                                 lambda: self._robot.last(source, _SHARED) > begin,
-                                _STARTED_WITHIN_S)
+                                STARTED_WITHIN_S)
                 yield self._robot.last(source, _SHARED)
         else:
             with induction.disturbed(kind):
                 yield time.time()
 
-    @contextlib.contextmanager
-    def _stretch(self, number: int, kind: str, culprits: Tuple[str, ...],
-                 note: str, onset: float) -> Iterator[None]:
-        """Note the stretch when it is over, and by how much the clock was set in it."""
-        ahead, load = time.time() - time.monotonic(), os.getloadavg()[0]
-        yield
-        end = time.time()
-        stretch = Stretch(number, kind, onset, end, culprits, end - time.monotonic() - ahead, note,
-                          load)
-        self._stretches.append(stretch)
-        self._told(stretch, self._monitor.statuses)
-
-    def _reset(self) -> str:
-        """Reset the monitor and wait until it is quiet; return a note if that took long or failed.
-
-        The alarm of one fault must not stand at the onset of the next one.
-        """
-        await_condition('the monitor says something', lambda: bool(self._monitor.statuses),
-                        _STARTED_WITHIN_S)
-        resets = 0
-        while True:
-            self._monitor.reset()
-            resets += 1
-            try:
-                await_condition('no alarm', self._is_quiet, _QUIET_WITHIN_S)
-                return '' if resets == 1 else f'no alarm only after {resets} times ~reset'
-            except LiveError:
-                if resets == _MOST_RESETS:
-                    return f'the alarm stood after {resets} times ~reset'
-
-    def _is_quiet(self) -> bool:
-        return self._monitor.quiet_for() >= QUIET_S
+    def _over(self, done: Stretch) -> None:
+        self._stretches.append(done)
+        self._told(done, self._monitor.statuses)
 
     def _start_robot(self, seed: int) -> None:
         if self._robot_process is not None:
             self._processes.end(self._robot_process)
-        _say('starting the robot')
+        say('starting the robot')
         begin = time.time()
         self._robot_process = self._processes.start(
             'robot', 'roslaunch', '--wait', 'self_awareness', 'follow_me.launch', f'seed:={seed}')
         for topic in _REGULAR:
             self._await_heard(topic, begin)
-        _wait(_WARM_UP_S, 'warming up')
+        wait(_WARM_UP_S, 'warming up')
 
     def _start_component(self, name: str, seed: int) -> None:
         """Start a node that was killed as the launch file does."""
@@ -237,14 +177,14 @@ class _Session:
         source = next(f'/{spec.name}' for spec in self._scenario.components
                       if topic in spec.outputs())
         await_condition(f'{source} publishes /{topic}',
-                        lambda: self._robot.last(source, topic) > after, _STARTED_WITHIN_S)
+                        lambda: self._robot.last(source, topic) > after, STARTED_WITHIN_S)
 
     def _record(self, name: str, length_s: float) -> Path:
         bag = self._folder / f'{name}.bag'
         if bag.exists():
             return bag
         recorder = self._start_recorder(bag)
-        _wait(length_s, f'recording {name}')
+        wait(length_s, f'recording {name}')
         self._processes.end(recorder)
         if not bag.exists():
             raise LiveError(f'{bag}: rosbag record has not written it, see '
@@ -256,20 +196,10 @@ class _Session:
                                          _EXCLUDED, '--output-name', str(bag), '__name:=record')
         active = Path(f'{bag}.active')
         await_condition(f'rosbag writes {bag.name}',
-                        lambda: active.exists() and active.stat().st_size > 0, _STARTED_WITHIN_S)
+                        lambda: active.exists() and active.stat().st_size > 0, STARTED_WITHIN_S)
         return recorder
 
     def _config(self) -> Path:
         path = self._folder / 'monitor.yaml'
         path.write_text('detector: evidence\n', encoding='utf-8')
         return path
-
-
-def _wait(seconds: float, what: str) -> None:
-    _say(f'{what} ({seconds:g} s)')
-    for _ in progress.waiting(seconds, what):
-        pass
-
-
-def _say(text: str) -> None:
-    progress.say(f'{time.strftime("%H:%M:%S")} {text}')
