@@ -111,7 +111,6 @@ std::vector<Event> Hindsight::eventsOf(EventId a, EventId b) const {
 std::optional<Hindsight::Delays> Hindsight::delays(std::size_t track, double cap) const {
   const EventId to = model_->tracks().at(track).to;
   const EventId from = model_->tracks().at(track).from;
-  const Model::Surprises& surprises = model_->surprises(track);
   SeenDelays seen;
   std::optional<std::int64_t> since;  // stamp of the last `from`, until a `to` comes after it
   std::optional<std::int64_t> last;   // stamp of the last `to`
@@ -119,7 +118,7 @@ std::optional<Hindsight::Delays> Hindsight::delays(std::size_t track, double cap
   for (const Event& event : eventsOf(from, to)) {
     if (event.id == to && since) {
       const std::int64_t delay = std::max<std::int64_t>(event.stamp - *since, 0);
-      const double surprise = surprises[log_bins::bin(delay)];
+      const double surprise = model_->surprise(track, delay);
       seen.push_back(
           {event.stamp, static_cast<double>(delay), surprise - std::max(regime, 0.0) - kDrift});
       regime += (surprise - regime) * shareOfRegime(last ? event.stamp - *last : 0);

@@ -23,6 +23,8 @@ constexpr double kLeastDeviation = 0.5;  // [nat]
 // such a share of the period.
 constexpr double kLeastEffect = 10e6;  // [ns]
 constexpr double kLeastEffectOfPeriod = 0.03;
+// Of that, where a delay wraps to a period: it was heard in another order by less.
+constexpr double kWrapEffect = 0.5;
 // The same for the gaps of one event type.
 constexpr double kLeastEffectOnGap = 20e6;  // [ns]
 constexpr double kLeastEffectOnGapOfPeriod = 0.3;
@@ -79,6 +81,26 @@ Statistics sum(const std::array<Statistics, 2>& halves) {
   Statistics both = halves[0];
   both.merge(halves[1]);
   return both;
+}
+
+double lowerEdge(std::size_t bin) {
+  return static_cast<double>(log_bins::lowerEdge(bin));
+}
+
+double upperEdge(std::size_t bin) {
+  return bin + 1 < log_bins::kBins ? lowerEdge(bin + 1) : std::numeric_limits<double>::infinity();
+}
+
+/// Whether all delays of a bin are harmless for one reason.
+bool isHarmless(std::size_t bin, const Model::Harmless& harmless) {
+  const auto lies = [&](double shift) {
+    return lowerEdge(bin) + shift >= harmless.shortest &&
+           upperEdge(bin) + shift <= harmless.longest;
+  };
+  // The bin that a period lies in is wide.
+  const bool ends_period = lowerEdge(bin) < harmless.period && harmless.period <= upperEdge(bin);
+  return lies(0) || (harmless.period > 0 && (lies(harmless.period) || lies(-harmless.period) ||
+                                             (ends_period && harmless.shortest <= 0)));
 }
 
 }  // namespace
@@ -165,11 +187,16 @@ void Model::learnDelays(const std::array<Statistics, 2>& halves) {
     std::transform(logs.begin(), logs.end(), surprises.begin(), [&](double log) {
       return std::min((-log - usual.mean()) / usual.deviation(), kMostSurprise);
     });
-    forgiveSmallEffects(from, to, surprises);
+    const Harmless harmless = harmless_.emplace_back(learnHarmless(from, to));
+    for (std::size_t bin = 0; bin < surprises.size(); ++bin) {
+      if (isHarmless(bin, harmless)) {
+        surprises[bin] = std::min(surprises[bin], 0.0);
+      }
+    }
   }
 }
 
-void Model::forgiveSmallEffects(EventId from, EventId to, Surprises& surprises) const {
+Model::Harmless Model::learnHarmless(EventId from, EventId to) const {
   const Statistics::Delays& delays = learned().delays(from, to);
   const auto total = static_cast<double>(learned().total(from, to));
   const Statistics::Type& asking = learned().type(from);
@@ -178,31 +205,24 @@ void Model::forgiveSmallEffects(EventId from, EventId to, Surprises& surprises) 
   const double effect = from == to
                             ? std::max(kLeastEffectOnGap, kLeastEffectOnGapOfPeriod * period)
                             : std::max(kLeastEffect, kLeastEffectOfPeriod * period);
-  const auto lower = [](std::size_t bin) { return static_cast<double>(log_bins::lowerEdge(bin)); };
-  const auto upper = [&](std::size_t bin) {
-    return bin + 1 < log_bins::kBins ? lower(bin + 1) : std::numeric_limits<double>::infinity();
-  };
-  double shortest = 0;  // of the usual delays [ns]
-  double longest = 0;
+  Harmless harmless;
+  harmless.period = from == to ? 0 : period;  // a gap does not wrap
   double below = 0;
   for (std::size_t bin = 0; bin < delays.size(); ++bin) {
-    shortest = below <= (1 - kUsual) / 2 * total ? lower(bin) : shortest;
-    longest = below < (1 + kUsual) / 2 * total ? upper(bin) : longest;
+    harmless.shortest = below <= (1 - kUsual) / 2 * total ? lowerEdge(bin) : harmless.shortest;
+    harmless.longest = below < (1 + kUsual) / 2 * total ? upperEdge(bin) : harmless.longest;
     below += delays[bin];
   }
-  const auto isNear = [&](std::size_t bin, double shift) {
-    return upper(bin) + shift <= longest + effect && lower(bin) + shift >= shortest - effect;
-  };
-  for (std::size_t bin = 0; bin < surprises.size(); ++bin) {
-    // A delay near 0 may wrap to a period, and a delay of a period to 0; a gap may not. The bin
-    // that a period lies in is wide: what is near the period counts.
-    const bool ends_period = lower(bin) < period && period <= upper(bin);
-    const bool wraps = from != to && (isNear(bin, period) || isNear(bin, -period) ||
-                                      (ends_period && shortest <= effect));
-    if (isNear(bin, 0) || wraps) {
-      surprises[bin] = std::min(surprises[bin], 0.0);
-    }
-  }
+  harmless.shortest -= effect;
+  harmless.longest += effect;
+  harmless.less = (1 - kWrapEffect) * effect;
+  return harmless;
+}
+
+double Model::surprise(std::size_t track, std::int64_t delay) const {
+  const double surprise = surprises(track)[log_bins::bin(delay)];
+  return surprise > kSurprising && harmless(track).contains(static_cast<double>(delay)) ? 0
+                                                                                        : surprise;
 }
 
 void Model::learnAnswers() {

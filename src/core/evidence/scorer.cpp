@@ -92,6 +92,7 @@ void Scorer::addTracks() {
       state_of_[track] = state_of_[track + 1] = pairs_.size();
       pairs_.push_back({tracks[track].from, tracks[track].from == id, false,
                         model_->surprises(track).data(), 0, none});
+      harmless_.push_back(&model_->harmless(track));
     }
     type.pairs_end = static_cast<std::uint32_t>(pairs_.size());
     type.answers_begin = static_cast<std::uint32_t>(answers_.size());
@@ -167,7 +168,12 @@ std::optional<std::int64_t> Scorer::add(const Event& event) {
     // one pause many times. No branch, since the processor cannot predict which one is first.
     const bool first = numbers[pair->from] >= last;
     const std::int64_t delay = event.stamp - stamps[pair->from];
-    const double surprise = pair->surprises[log_bins::bin(delay)];
+    double surprise = pair->surprises[log_bins::bin(delay)];
+    if (surprise > Model::kSurprising &&  // seldom
+        harmless_[static_cast<std::size_t>(pair - pairs_.data())]->contains(
+            static_cast<double>(delay))) {
+      surprise = 0;
+    }
     const double count = first && !stalled ? 1.0 : 0.0;
     const double sign = pair->own && catches_up && surprise > 0 ? -1.0 : 1.0;
     pair->sums.add((surprise - std::max(pair->regime, 0.0) - drifts) * (sign * count));

@@ -161,6 +161,7 @@ class Scorer {
   std::shared_ptr<const Model> model_;
   std::vector<OfType> types_;                       // by id
   std::vector<DelayPair> pairs_;                    // by `to`
+  std::vector<const Model::Harmless*> harmless_;    // by number of the pair
   std::vector<Answer> answers_;                     // by `from`
   std::vector<Deadline> deadlines_;                 // by `from`
   std::vector<Arming> pairs_arming_;                // by number of the pair

@@ -38,6 +38,7 @@ def relations(model: TrainedModel, evidence: EvidenceModel) -> List[Dict[str, An
             'chance': relation.spread ** max(relation.starts - 1, 0),
             'starts': relation.starts,
             'starts_needed': relation.starts_needed,
+            'graph': bool(model.graph),
         }
     return list(found.values())
 
@@ -65,10 +66,14 @@ def lines(found: List[Dict[str, Any]]) -> List[str]:
                     f'{reasons(relation)}')
     if len(watched) > _MOST_LINES:
         text.append(f'and {len(watched) - _MOST_LINES} more (info --json lists all)')
+    if found and max(relation['starts'] for relation in found) == 1:
+        text.append('all recordings are taken for one start of the robot: starts are told apart by '
+                    'a minute or more between recordings')
     if waiting:
         fewest = min(waiting, key=lambda each: each['starts_needed'] - each['starts'])
         more = fewest['starts_needed'] - fewest['starts']
         text.append(f'{len(waiting)} relations are not watched, since there were too few starts '
                     f'of the robot: record after {more} more to watch late answers of '
-                    f'{fewest["to"]}; train with the graph (--graph) needs fewer')
+                    f'{fewest["to"]}'
+                    + ('' if fewest['graph'] else '; train with the graph (--graph) needs fewer'))
     return text

@@ -66,7 +66,7 @@ TEST_F(EvidenceScorerTest, DelaysAddUpAsInACusumTest) {
     std::optional<std::int64_t> last;
     const auto add = [&](std::int64_t delay) {
       const std::int64_t stamp = now_ + delay;
-      const double surprise = model_->surprises(pair)[log_bins::bin(delay)];
+      const double surprise = model_->surprise(pair, delay);
       sum = std::max(sum + surprise - std::max(regime, 0.0) - drift, 0.0);
       regime += (surprise - regime) * toSeconds(last ? stamp - *last : 0) / 120;
       last = stamp;

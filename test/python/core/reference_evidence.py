@@ -238,9 +238,6 @@ class ReferenceModel:
         harmless = {index for index in range(BINS) for shift in shifts
                     if lower_edge(index) + shift >= shortest
                     and lower_edge(index + 1) + shift <= longest}
-        if e_i != e_j and shortest <= 0.0:  # and so is the bin that a period lies in
-            harmless |= {index for index in range(BINS)
-                         if lower_edge(index) < period <= lower_edge(index + 1)}
         return [min(surprise, 0.0) if index in harmless else surprise
                 for index, surprise in enumerate(surprises)]
 
@@ -280,7 +277,13 @@ class ReferenceModel:
 
     def surprise(self, track: Track, delay: int) -> float:
         """Return how unusual a delay is [standard deviations]."""
-        return self._surprises[track][log_bin(delay)]
+        _, e_j, e_i = track
+        surprise = self._surprises[track][log_bin(delay)]
+        period = self.learned.mean_gap(e_i)
+        shortest, longest = self._harmless(e_i, e_j)
+        shifts = (0.0, period, -period) if e_i != e_j else (0.0,)
+        harmless = any(shortest <= delay + shift <= longest for shift in shifts)
+        return 0.0 if surprise > 0.5 and harmless else surprise
 
     def usual_misses(self, track: Track) -> float:
         """Return the share of answers that are usually left out."""

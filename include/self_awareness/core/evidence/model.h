@@ -81,8 +81,33 @@ class Model {
   /// How surprising a delay is, by its bin, in standard deviations from the mean: z of
   /// docs/method.md, section 3.4.
   using Surprises = std::array<double, kDelayBins>;
-  /// Surprises of a delay track; the same object for the two tracks of a pair.
+  /// Surprises of a delay track; the same object for the two tracks of a pair. A bin that is
+  /// harmless as a whole has none; of the others, harmless() tells which delays are.
   const Surprises& surprises(std::size_t track) const { return surprises_[surprises_of_[track]]; }
+  /// Delays that differ too little from the usual ones to be a fault (docs/method.md,
+  /// section 3.4).
+  struct Harmless {
+    double shortest = 0;  ///< [ns]
+    double longest = 0;   ///< [ns]
+    double period =
+        0;  ///< [ns]; delays near 0 wrap to it, and the other way round; 0: they do not
+
+    double less = 0;  ///< where a delay wraps, shortest and longest are so much nearer [ns]
+
+    bool contains(double delay) const {
+      const auto lies = [&](double shifted, double nearer) {
+        return shortest + nearer <= shifted && shifted <= longest - nearer;
+      };
+      return lies(delay, 0) ||
+             (period > 0 && (lies(delay - period, less) || lies(delay + period, less)));
+    }
+  };
+  /// Of a delay track; the same object for the two tracks of a pair.
+  const Harmless& harmless(std::size_t track) const { return harmless_[surprises_of_[track]]; }
+  /// Surprise of a delay [ns] of a delay track, 0 if it is harmless.
+  double surprise(std::size_t track, std::int64_t delay) const;
+  /// Smaller surprises add to no sum, so that it does not matter whether the delay is harmless.
+  static constexpr double kSurprising = 0.5;
   /// What an answer that came adds to the evidence of an answer track [nat] (docs/method.md,
   /// section 3.5): log((1 - q) / (1 - p)).
   double answered(std::size_t track) const { return steps_[track].answered; }
@@ -122,8 +147,7 @@ class Model {
   void learnGaps();
   void learnRates();
   void learnDelays(const std::array<Statistics, 2>& halves);
-  /// Takes the surprise from delays that differ from the usual ones by little.
-  void forgiveSmallEffects(EventId from, EventId to, Surprises& surprises) const;
+  Harmless learnHarmless(EventId from, EventId to) const;
   void learnAnswers();
 
   /// What the probabilities are learned from.
@@ -137,6 +161,7 @@ class Model {
   std::vector<Gaps> gaps_;                 // by id
   std::vector<Rate> rates_;                // by id
   std::vector<Surprises> surprises_;       // of pairs
+  std::vector<Harmless> harmless_;         // of pairs
   std::vector<std::size_t> surprises_of_;  // index of its surprises, by delay track
   std::vector<Steps> steps_;               // by answer track
 };
