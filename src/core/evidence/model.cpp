@@ -18,13 +18,6 @@ constexpr double kMostSurprise = 6;
 // Delays that all fall into one bin vary by nothing.
 constexpr double kLeastDeviation = 0.5;  // [nat]
 
-// Delays that differ by less than this from the usual ones are no fault: so many milliseconds, or
-// such a share of the period.
-constexpr double kLeastEffect = 10e6;  // [ns]
-constexpr double kLeastEffectOfPeriod = 0.03;
-// The same for the gaps of one event type.
-constexpr double kLeastEffectOnGap = 20e6;  // [ns]
-constexpr double kLeastEffectOnGapOfPeriod = 0.3;
 constexpr double kUsual = 0.9;  // share of the delays that are usual
 
 // A rate that changes by this share is no fault: clocks and loads differ from day to day.
@@ -83,11 +76,14 @@ Statistics sum(const std::array<Statistics, 2>& halves) {
 }  // namespace
 
 Model::Model(const Watched& watched, Learned learned)
-    : statistics_(sum(watched.halves)), tracks_(watched.tracks) {
+    : statistics_(sum(watched.halves)),
+      tracks_(watched.tracks),
+      least_effect_(watched.least_effect) {
   if (size() == 0) {
     throw std::invalid_argument("a model needs at least one event");
   }
   checkTracks(tracks_, size());
+  least_effect_.validate();
   if (learned != Learned::kBoth) {
     half_ = watched.halves.at(learned == Learned::kFirst ? 0 : 1);
   }
@@ -161,9 +157,7 @@ void Model::forgiveSmallEffects(EventId from, EventId to, Surprises& surprises) 
   const Statistics::Type& asking = learned().type(from);
   const double period = static_cast<double>(asking.gap_sum) /
                         static_cast<double>(std::max<std::uint64_t>(asking.gaps, 1));
-  const double effect = from == to
-                            ? std::max(kLeastEffectOnGap, kLeastEffectOnGapOfPeriod * period)
-                            : std::max(kLeastEffect, kLeastEffectOfPeriod * period);
+  const double effect = from == to ? least_effect_.onGap(period) : least_effect_.onDelay(period);
   const auto lower = [](std::size_t bin) { return static_cast<double>(log_bins::lowerEdge(bin)); };
   const auto upper = [&](std::size_t bin) {
     return bin + 1 < log_bins::kBins ? lower(bin + 1) : std::numeric_limits<double>::infinity();
