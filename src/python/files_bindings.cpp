@@ -311,6 +311,7 @@ void bindModel(py::module& m) {
           "A small copy, with only the counts that the evidence detector judges by.")
       .def_readonly("predecessors", &TrainedModel::predecessors,
                     "most that are watched of an event type")
+      .def_readonly("least_effect", &TrainedModel::least_effect)
       .def(
           "swap_halves", [](TrainedModel& self) { std::swap(self.evidence[0], self.evidence[1]); },
           "Exchanges the two halves of the training; not for a model with a calibration.")

@@ -22,6 +22,7 @@ from self_awareness._core import (  # noqa: F401
     EvidenceCalibration,
     EvidenceLimits,
     EvidenceModel,
+    LeastEffect,
     LimitFinder,
     LimitFindings,
     Model,

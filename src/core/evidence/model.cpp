@@ -19,15 +19,8 @@ constexpr double kMostSurprise = 6;
 // Delays that all fall into one bin vary by nothing.
 constexpr double kLeastDeviation = 0.5;  // [nat]
 
-// Delays that differ by less than this from the usual ones are no fault: so many milliseconds, or
-// such a share of the period.
-constexpr double kLeastEffect = 10e6;  // [ns]
-constexpr double kLeastEffectOfPeriod = 0.03;
-// Of that, where a delay wraps to a period: it was heard in another order by less.
+// Of the least effect, where a delay wraps to a period: it was heard in another order by less.
 constexpr double kWrapEffect = 0.5;
-// The same for the gaps of one event type.
-constexpr double kLeastEffectOnGap = 20e6;  // [ns]
-constexpr double kLeastEffectOnGapOfPeriod = 0.3;
 constexpr double kUsual = 0.9;  // share of the delays that are usual
 
 // A rate that changes by this share is no fault: clocks and loads differ from day to day.
@@ -106,11 +99,14 @@ bool isHarmless(std::size_t bin, const Model::Harmless& harmless) {
 }  // namespace
 
 Model::Model(const Watched& watched, Learned learned)
-    : statistics_(sum(watched.halves)), tracks_(watched.tracks) {
+    : statistics_(sum(watched.halves)),
+      tracks_(watched.tracks),
+      least_effect_(watched.least_effect) {
   if (size() == 0) {
     throw std::invalid_argument("a model needs at least one event");
   }
   checkTracks(tracks_, size());
+  least_effect_.validate();
   if (learned != Learned::kBoth) {
     half_ = watched.halves.at(learned == Learned::kFirst ? 0 : 1);
   }
@@ -202,9 +198,7 @@ Model::Harmless Model::learnHarmless(EventId from, EventId to) const {
   const Statistics::Type& asking = learned().type(from);
   const double period = static_cast<double>(asking.gap_sum) /
                         static_cast<double>(std::max<std::uint64_t>(asking.gaps, 1));
-  const double effect = from == to
-                            ? std::max(kLeastEffectOnGap, kLeastEffectOnGapOfPeriod * period)
-                            : std::max(kLeastEffect, kLeastEffectOfPeriod * period);
+  const double effect = from == to ? least_effect_.onGap(period) : least_effect_.onDelay(period);
   Harmless harmless;
   harmless.period = from == to ? 0 : period;  // a gap does not wrap
   double below = 0;

@@ -199,6 +199,7 @@ std::size_t TrainedModel::pairs() const {
 void TrainedModel::watch() {
   check(hasEvidence(), "loaded without its counts");
   watched = core::evidence::watch(evidence[0], evidence[1], predecessors, graph);
+  watched.least_effect = least_effect;
 }
 
 void TrainedModel::dropCounts() {
@@ -235,6 +236,8 @@ self_awareness::Model toMessage(const TrainedModel& model) {
     message.event_types.push_back(event_type);
   }
   message.predecessors = static_cast<std::uint32_t>(model.predecessors);
+  message.least_effect = model.least_effect.time;
+  message.least_effect_of_period = model.least_effect.of_period;
   for (const core::evidence::Track& track : model.watched.tracks) {
     message.tracks.push_back(toMessage(track));
   }
@@ -267,6 +270,9 @@ TrainedModel fromMessage(const self_awareness::Model& message) {
   check(model.window > 0, "its windows have no length");
   model.statistics = eventTypesOf(message);
   model.predecessors = message.predecessors;
+  model.least_effect = {message.least_effect, message.least_effect_of_period};
+  model.least_effect.validate();
+  model.watched.least_effect = model.least_effect;
   for (const self_awareness::Track& track : message.tracks) {
     model.watched.tracks.push_back(fromMessage(track));
   }

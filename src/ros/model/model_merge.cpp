@@ -29,6 +29,13 @@ void requireSame(const std::string& what, std::int64_t one, std::int64_t other,
   }
 }
 
+std::string text(const core::evidence::LeastEffect& effect) {
+  std::ostringstream text;
+  text << std::setprecision(12) << effect.time * 1e-6 << " ms or " << effect.of_period
+       << " of the period";
+  return text.str();
+}
+
 void requireSameEncoding(const EncodingRules& one, const EncodingRules& other) {
   const auto require = [](const std::string& what, bool same) {
     if (!same) {
@@ -61,6 +68,11 @@ void merge(TrainedModel& model, const TrainedModel& other) {
     throw std::invalid_argument(
         "another number of watched predecessors: " + std::to_string(other.predecessors) +
         ", not " + std::to_string(model.predecessors));
+  }
+  const core::evidence::LeastEffect& effect = model.least_effect;
+  if (effect.time != other.least_effect.time || effect.of_period != other.least_effect.of_period) {
+    throw std::invalid_argument("another least effect: " + text(other.least_effect) + ", not " +
+                                text(effect));
   }
   if (model.hasEvidence() != other.hasEvidence() || model.hasDelays() != other.hasDelays()) {
     throw std::invalid_argument("trained for another detector: " + other.detectors() + ", not " +

@@ -90,6 +90,9 @@ def _print_evidence(evidence: Dict[str, Any]) -> None:
     print(f'evidence     tracks: {counts(evidence["tracks"])}')
     if evidence['not_judged']:
         print(f'  not judged: {"; ".join(evidence["not_judged"])}')
+    effect = evidence['least_effect']
+    print(f'  least effect on delays: {effect["time"] * 1000:g} ms, or {effect["of_period"]:g} of '
+          'the period')
     calibration = evidence['calibration']
     if calibration is None:
         print('limits       not calibrated (rosrun self_awareness calibrate)')

@@ -72,6 +72,10 @@ def _evidence(model: TrainedModel, evidence: EvidenceModel) -> Dict[str, Any]:
         'tracks': dict(Counter(track.channel for track in tracks)),
         'not_judged': [str(kind) for index, kind in enumerate(model.event_types)
                        if index not in watched],
+        'least_effect': {
+            'time': model.least_effect.time / SECOND_NS,
+            'of_period': model.least_effect.of_period,
+        },
         'calibration': None,
     }
     if model.evidence_calibration is not None:

@@ -15,8 +15,8 @@ from typing import Callable, Dict, Iterable, List, Optional, Sequence, Set, Tupl
 import numpy as np
 
 from self_awareness import (DEFAULT_WINDOW, PREDECESSORS, BagError, DetectorParameters,
-                            EncodingRules, Recording, TrainedModel, Training, progress,
-                            read_events)
+                            EncodingRules, LeastEffect, Recording, TrainedModel, Training,
+                            progress, read_events)
 from self_awareness.calibration import limits
 from self_awareness.calibration.limits import TrainedOn
 from self_awareness.judging import BOTH, EVIDENCE, PAPER
@@ -43,6 +43,7 @@ class Counting:
         predecessors: of an event type that are watched at most.
         detector: who is counted for: evidence, paper or both. The paper's counts take three
             quarters of the time, and most of the file.
+        least_effect: that a changed delay must have to be a fault.
     """
 
     encoding: Optional[EncodingRules] = None
@@ -51,12 +52,13 @@ class Counting:
     horizon_bins: int = 0
     predecessors: int = PREDECESSORS
     detector: str = EVIDENCE
+    least_effect: LeastEffect = LeastEffect()
 
     @classmethod
     def of(cls, model: TrainedModel) -> Counting:
         """Return how the bags of a model were counted."""
         return cls(copy.copy(model.encoding), model.bin_size, model.window, model.horizon_bins,
-                   model.predecessors, model.detectors)
+                   model.predecessors, model.detectors, model.least_effect)
 
 
 @dataclass
@@ -290,7 +292,7 @@ def _count(how: _How, part: BagPart) -> _Sum:
         recording.fingerprint = events.fingerprint
         training = Training(encoding, counting.bin_size, counting.window, counting.horizon_bins,
                             counting.predecessors, counting.detector in (EVIDENCE, BOTH),
-                            counting.detector in (PAPER, BOTH))
+                            counting.detector in (PAPER, BOTH), counting.least_effect)
         training.add_events(events.event_types, events.stamps, events.ids,
                             events.middle if how.alone else None, recording,
                             _before(encoding, events))

@@ -61,6 +61,7 @@ def test_json_holds_the_evidence(evidence_model: str, capsys) -> None:
     assert found['tracks']['overdue'] == 3 and found['tracks']['rate'] == 6
     assert sum(found['tracks'].values()) == len(EvidenceModel(model).tracks)
     assert found['not_judged'] == []
+    assert found['least_effect'] == {'time': 0.01, 'of_period': 0.03}
     calibration = found['calibration']
     assert (calibration['method'], calibration['budget']) == ('held-out', 0.5)
     assert calibration['windows'] == stored.windows
@@ -92,6 +93,20 @@ def test_json_holds_preliminary_limits_and_the_graph(long_bags, tmp_path, capsys
     assert 'sources that somebody listens to: 1, connections: 2' in capsys.readouterr().out
 
 
+def test_the_least_effect_of_the_training_stays_and_is_shown(long_bags, tmp_path, capsys) -> None:
+    output = str(tmp_path / 'm')
+    assert train.main([long_bags[0], '--least-effect', '2.5', '--least-effect-of-period', '0.005',
+                       '-o', output]) == 0
+    assert calibrate.main(['--model', output, '--normal', long_bags[1], '-o', output]) == 0
+    capsys.readouterr()
+    evidence = as_json(capsys, output)['evidence']
+    assert evidence['calibration']['method'] == 'held-out'
+    assert evidence['least_effect'] == {'time': 0.0025, 'of_period': 0.005}
+    assert info.main([output]) == 0
+    assert ('\n  least effect on delays: 2.5 ms, or 0.005 of the period\n'
+            in capsys.readouterr().out)
+
+
 def test_types_that_are_not_judged_are_named(make_bag, tmp_path, capsys) -> None:
     output = str(tmp_path / 'm')
     bag = make_bag('rare.bag', sorted([*robot(10.0), (15.0, '/door', '/open')]))
@@ -107,8 +122,10 @@ def test_types_that_are_not_judged_are_named(make_bag, tmp_path, capsys) -> None
 def test_people_read_the_evidence(evidence_model: str, capsys) -> None:
     assert info.main([evidence_model]) == 0
     text = capsys.readouterr().out
-    for part in ('evidence     tracks: overdue 3, rate 6', 'limits       held-out, for 0.5 false',
-                 'graph        none', 'tuesday.bag', 'linker '):
+    for part in ('evidence     tracks: overdue 3, rate 6',
+                 'least effect on delays: 10 ms, or 0.03 of the period',
+                 'limits       held-out, for 0.5 false', 'graph        none', 'tuesday.bag',
+                 'linker '):
         assert part in text
 
 

@@ -75,6 +75,8 @@ def test_the_graph_is_that_of_all(model_file: str, evidence_model: str, tmp_path
     (['--bin', '0.02'], 'another bin size: 0.02 s, not 0.01 s'),
     (['--window', '0.25'], 'another length of the windows: 0.25 s, not 0.1 s'),
     (['--horizon', '10'], 'another horizon: 10 s, not none'),
+    (['--least-effect', '3', '--least-effect-of-period', '0.01'],
+     'another least effect: 3 ms or 0.01 of the period, not 10 ms or 0.03 of the period'),
     (['--encoding', 'source'], 'another encoding: source differs'),
     (['--encoding', 'exclude_topics'], 'another encoding: exclude_topics differs')])
 def test_what_does_not_fit_is_told(options: List[str], told: str, model_file: str, robot_bags,
@@ -87,6 +89,16 @@ def test_what_does_not_fit_is_told(options: List[str], told: str, model_file: st
     error = error_of([model_file, other, '-o', str(tmp_path / 'm')], capsys)
     assert f'{other}: does not fit {model_file}: {told}' in error
     assert not (tmp_path / 'm').exists()
+
+
+def test_models_of_the_same_least_effect_add_up(robot_bags, trained: Callable[..., str],
+                                                tmp_path: Path) -> None:
+    options = ['--least-effect', '3', '--least-effect-of-period', '0.01']
+    paths = [trained(str(number), bag, *options) for number, bag in enumerate(robot_bags)]
+    output = str(tmp_path / 'm')
+    assert merge.main([*paths, '-o', output]) == 0
+    effect = TrainedModel.load(output).least_effect
+    assert (effect.time, effect.of_period) == (3e6, 0.01)
 
 
 def test_a_recording_does_not_count_twice(robot_bags, model_file: str, trained, tmp_path: Path,

@@ -14,7 +14,8 @@ from xmlrpc.server import SimpleXMLRPCServer
 import pytest
 from conftest import robot, wait_until
 
-from self_awareness import PREDECESSORS, EvidenceModel, Model, TrainedModel, stable_name
+from self_awareness import (PREDECESSORS, EvidenceModel, LeastEffect, Model, TrainedModel,
+                            stable_name)
 from self_awareness.commands import train
 
 Bags = Tuple[str, str]
@@ -100,6 +101,39 @@ def test_no_more_predecessors_are_watched_than_asked_for(robot_bags: Bags, tmp_p
     assert max(of_types('--predecessors', '1').values()) == 2
     assert 2 < max(of_types('--predecessors', '2').values()) <= 4
     assert max(of_types().values()) <= 2 * PREDECESSORS
+
+
+def test_the_least_effect_is_that_of_the_options(robot_bags: Bags, long_bags: Bags, tmp_path,
+                                                 capsys) -> None:
+    output, added = str(tmp_path / 'm'), str(tmp_path / 'added')
+    default = LeastEffect()
+    options = ['--least-effect', '2.5', '--least-effect-of-period', '0.25']
+    for number, expected in ((0, (default.time, default.of_period)),
+                             (2, (2.5e6, default.of_period)), (4, (2.5e6, 0.25))):
+        said(capsys, [*robot_bags, '-o', output, '--jobs', '2', *options[:number]])
+        found = TrainedModel.load(output).least_effect
+        assert (found.time, found.of_period) == expected
+    said(capsys, ['--add-to', output, long_bags[0], '-o', added])
+    found = TrainedModel.load(added).least_effect
+    assert (found.time, found.of_period) == (2.5e6, 0.25)
+    for option in ('--least-effect', '--least-effect-of-period'):
+        assert train.main(['--add-to', output, long_bags[0], '-o', added, option, '0.1']) == 1
+        assert f'{option}: is that of {output} (--add-to)' in capsys.readouterr().err
+
+
+@pytest.mark.parametrize('option, wrong, told', [
+    ('--least-effect', '-1', 'must be a finite time of 0 ms or more, not -1 ms'),
+    ('--least-effect', 'inf', 'must be a finite time of 0 ms or more, not inf ms'),
+    ('--least-effect', 'short', "not a number: 'short'"),
+    ('--least-effect-of-period', '-0.1', 'must be a share of the period from 0 to below 1'),
+    ('--least-effect-of-period', '1', 'must be a share of the period from 0 to below 1, not 1'),
+    ('--least-effect-of-period', 'nan', 'must be a share of the period from 0 to below 1')])
+def test_impossible_least_effects_are_refused(option: str, wrong: str, told: str,
+                                              robot_bags: Bags, tmp_path, capsys) -> None:
+    assert train.main([robot_bags[0], '-o', str(tmp_path / 'm'), f'{option}={wrong}']) == 2
+    error = capsys.readouterr().err
+    assert f'argument {option}: ' in error and told in error
+    assert not (tmp_path / 'm').exists()
 
 
 def test_what_is_watched_can_be_loaded_alone(robot_bags: Bags, tmp_path, capsys) -> None:

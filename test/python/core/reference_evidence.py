@@ -40,8 +40,9 @@ MOST_SURPRISE = 6.0
 LEAST_DEVIATION = 0.5
 USUAL = 0.9
 LEAST_EFFECT = (10e6, 0.03)
-"""On delays: [ns], and the share of the period."""
-LEAST_EFFECT_ON_GAP = (20e6, 0.3)
+"""On delays, by default: [ns], and the share of the period."""
+GAPS_TO_DELAYS = (2.0, 10.0)
+"""Least effects on gaps, in those on delays."""
 LEAST_RATE_EFFECT = 0.04
 LOST = 0.5
 MISS_RATES = (0.1, 0.95)
@@ -205,15 +206,17 @@ class ReferenceModel:
         first, second: counts of the two halves of the training.
         both: counts of all of it.
         learned: those that probabilities are taken from.
+        least_effect: on delays, [ns] and the share of the period.
     """
 
     def __init__(self, tracks: Sequence[Track], first: Counts, second: Counts, both: Counts,
-                 learned: Counts) -> None:
+                 learned: Counts, least_effect: Tuple[float, float] = LEAST_EFFECT) -> None:
         self.tracks = tracks
         self.both = both
         self.learned = learned
         self.types = both.types
         self._halves = (first, second)
+        self._least_effect = least_effect
         self.longest = {kind: max(both.gaps[kind], default=0) for kind in self.types}
         self.longest_silence = max(seen.longest_silence for seen in both.recordings)
         self._gaps = {kind: self._binned(learned.gaps[kind]) for kind in self.types}
@@ -244,7 +247,8 @@ class ReferenceModel:
     def _harmless(self, e_i: str, e_j: str) -> Tuple[float, float]:
         """Return the shortest and the longest delay that differ by little from the usual ones."""
         bins = self.learned.delays[e_i, e_j]
-        in_ns, of_period = LEAST_EFFECT_ON_GAP if e_i == e_j else LEAST_EFFECT
+        in_ns, of_period = (effect * (times if e_i == e_j else 1.0)
+                            for effect, times in zip(self._least_effect, GAPS_TO_DELAYS))
         effect = max(in_ns, of_period * self.learned.mean_gap(e_i))
         shortest = lower_edge(bin_at_most(bins, (1 - USUAL) / 2 * len(bins)))
         last = bin_below(bins, (1 + USUAL) / 2 * len(bins))

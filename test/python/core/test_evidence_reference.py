@@ -7,13 +7,13 @@ from typing import Dict, List, Optional, Tuple
 
 import numpy as np
 import pytest
-from reference_evidence import KINDS, Counts, Event, ReferenceModel
+from reference_evidence import KINDS, LEAST_EFFECT, Counts, Event, ReferenceModel
 from reference_evidence_limits import Judged, ReferenceLimits
 from reference_relations import ReferenceRelations, number_of_starts, watched
 from reference_scorer import ReferenceScorer
 
-from self_awareness import (EncodingRules, EventType, EvidenceModel, LimitFinder, TrainedModel,
-                            Training)
+from self_awareness import (EncodingRules, EventType, EvidenceModel, LeastEffect, LimitFinder,
+                            TrainedModel, Training)
 from self_awareness.stamps import SECOND_NS
 
 MS = 1_000_000
@@ -68,7 +68,7 @@ def robot(chance: random.Random, seconds: float, fault_s: float = math.inf) -> L
 class Robot:
     """A robot that both the core and the reference have learned from."""
 
-    def __init__(self, seed: int) -> None:
+    def __init__(self, seed: int, least_effect: Tuple[float, float] = LEAST_EFFECT) -> None:
         self.chance = random.Random(seed)
         self.halves = [[robot(self.chance, 90.0)], [robot(self.chance, 80.0)]]
         everything = self.halves[0] + self.halves[1]
@@ -76,18 +76,18 @@ class Robot:
         first, second, both = (Counts(recordings, types, WINDOW)
                                for recordings in (*self.halves, everything))
         tracks = watched(first, second, both)
-        self.reference = ReferenceModel(tracks, first, second, both, both)
-        self.reference_of_half = [ReferenceModel(tracks, first, second, both, other)
-                                  for other in (second, first)]
-        self.trained = self._trained(everything)
+        self.reference, *self.reference_of_half = (
+            ReferenceModel(tracks, first, second, both, learned, least_effect)
+            for learned in (both, second, first))
+        self.trained = self._trained(everything, LeastEffect(*least_effect))
         self.model = EvidenceModel(self.trained)
         self.ids: Dict[str, int] = {
             kind.scope: index for index, kind in enumerate(self.trained.event_types)}
         assert list(self.ids) == types
 
     @staticmethod
-    def _trained(recordings: List[List[Event]]) -> TrainedModel:
-        training = Training(EncodingRules(), window=WINDOW, paper=True)
+    def _trained(recordings: List[List[Event]], least_effect: LeastEffect) -> TrainedModel:
+        training = Training(EncodingRules(), window=WINDOW, paper=True, least_effect=least_effect)
         every_type = [EventType('', letter, '') for letter in LETTERS]
         for events in recordings:
             training.add_events(every_type, np.array([t for t, _ in events]),
@@ -144,6 +144,19 @@ def test_the_evidence_of_all_channels(learned: Robot, fault_s: float) -> None:
         for kind in KINDS:
             assert max(value for value, track in zip(largest, learned.reference.tracks)
                        if track[0] == kind) > 3.0, kind
+
+
+def test_the_evidence_with_other_least_effects() -> None:
+    events = robot(random.Random(5), 60.0, 25.0)
+    pairs = []
+    for least_effect in ((1e6, 0.001), (100e6, 0.1)):
+        learned = Robot(1, least_effect)
+        expected = np.array(ReferenceScorer(learned.reference, events, WINDOW).rows)
+        found = learned.model.evidence(WINDOW, *learned.arrays(events))
+        np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-9)
+        pairs.append(found[:, [KINDS[track[0]] == 'pairs' for track in learned.reference.tracks]])
+    little, much = pairs
+    assert (little >= much).mean() > 0.9 and little.sum() > 1.5 * much.sum()
 
 
 @pytest.mark.parametrize('held_out', [True, False])

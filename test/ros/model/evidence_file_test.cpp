@@ -18,6 +18,7 @@ TEST_F(ModelFileTest, TheEvidenceItsLimitsAndTheGraphComeBackAsTheyWereSaved) {
   TrainedModel model = calibratedModel();
   model.graph.connect("/a", "/x", "/b");
   model.graph.connect("/a", "/y", "/c");
+  model.least_effect = {3e6, 0.01};
   ASSERT_GE(model.evidence_calibration->limits.size(), 6U);
   saveModel(model, path("m"));
   const TrainedModel loaded = loadModel(path("m"));
@@ -32,6 +33,10 @@ TEST_F(ModelFileTest, TheEvidenceItsLimitsAndTheGraphComeBackAsTheyWereSaved) {
     EXPECT_EQ(loaded.watched.tracks[track].from, model.watched.tracks[track].from);
   }
   EXPECT_EQ(loaded.predecessors, model.predecessors);
+  EXPECT_EQ(loaded.least_effect.time, 3e6);
+  EXPECT_EQ(loaded.least_effect.of_period, 0.01);
+  EXPECT_EQ(loaded.watched.least_effect.time, 3e6);
+  EXPECT_EQ(loaded.watched.least_effect.of_period, 0.01);
   EXPECT_EQ(loaded.graph.edges().size(), 2U);
   EXPECT_TRUE(loaded.graph.edges() == model.graph.edges());
   const core::evidence::Limits limits = loaded.limits().value();
@@ -161,6 +166,15 @@ TEST_F(ModelFileTest, DamagedEvidenceIsRefused) {
             file + "has an impossible bin");
   EXPECT_EQ(damagedModel([](Message& model) { model.watched.pop_back(); }),
             file + "has not two halves");
+}
+
+TEST_F(ModelFileTest, ImpossibleLeastEffectsAreRefused) {
+  using Message = self_awareness::Model;
+  const std::string file = path("damaged") + ": a damaged model file: the least effect must be a ";
+  EXPECT_EQ(damagedModel([](Message& m) { m.least_effect = -1e6; }),
+            file + "finite time of 0 ms or more, not -1 ms");
+  EXPECT_EQ(damagedModel([](Message& m) { m.least_effect_of_period = 1.5; }),
+            file + "share of the period from 0 to below 1, not 1.5");
 }
 
 TEST_F(ModelFileTest, ImpossibleTracksAreRefused) {

@@ -95,6 +95,20 @@ TEST_F(ModelMergeTest, EdgesAreThoseOfBothAndTheStampTheLater) {
   EXPECT_EQ(first_.stamp, ros::Time(3));
 }
 
+TEST_F(ModelMergeTest, TheLeastEffectIsKept) {
+  for (TrainedModel* model : {&first_, &second_}) {
+    model->least_effect = {3e6, 0.01};
+  }
+  first_.watch();
+  merge(first_, second_);
+  first_.watch();
+  for (const core::evidence::LeastEffect& kept :
+       {first_.least_effect, first_.watched.least_effect}) {
+    EXPECT_EQ(kept.time, 3e6);
+    EXPECT_EQ(kept.of_period, 0.01);
+  }
+}
+
 TEST_F(ModelMergeTest, CalibrationsAreDropped) {
   first_.calibration = self_awareness::Calibration();
   first_.evidence_calibration = self_awareness::EvidenceCalibration();
@@ -114,6 +128,10 @@ TEST_F(ModelMergeTest, SaysWhatDoesNotFitAndLeavesTheModelAsItWas) {
   EXPECT_EQ(errorOf(bins(5000000, 0)), "another horizon: none, not 0.1 s");
   EXPECT_EQ(errorOf([](TrainedModel& model) { model.window = 200000000; }),
             "another length of the windows: 0.2 s, not 0.1 s");
+  EXPECT_EQ(errorOf([](TrainedModel& model) { model.least_effect.time = 2.5e6; }),
+            "another least effect: 2.5 ms or 0.03 of the period, not 10 ms or 0.03 of the period");
+  EXPECT_EQ(errorOf([](TrainedModel& model) { model.least_effect.of_period = 0.05; }),
+            "another least effect: 10 ms or 0.05 of the period, not 10 ms or 0.03 of the period");
   const std::string encoding = "another encoding: ";
   EXPECT_EQ(
       errorOf([](TrainedModel& model) { model.encoding.source = EncodingRules::Source::kNone; }),

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "self_awareness/core/evidence/least_effect.h"
 #include "self_awareness/core/evidence/statistics.h"
 #include "self_awareness/core/evidence/tracks.h"
 
@@ -33,8 +34,8 @@ class Model {
   /// shows what a model of both will do on new data.
   enum class Learned { kBoth, kFirst, kSecond };
 
-  /// @throw std::invalid_argument if there is no event type, or the tracks do not fit the event
-  /// types
+  /// @throw std::invalid_argument if there is no event type, the tracks do not fit the event
+  /// types, or the least effect is out of its range
   explicit Model(const Watched& watched, Learned learned = Learned::kBoth);
 
   const Vocabulary& vocabulary() const { return statistics_.vocabulary(); }
@@ -156,6 +157,7 @@ class Model {
   Statistics statistics_;           // of both halves
   std::optional<Statistics> half_;  // the one that is learned from, with the same ids
   std::vector<Track> tracks_;
+  LeastEffect least_effect_;
   std::vector<std::string> components_;
   std::vector<std::size_t> component_of_;  // by id
   std::vector<Gaps> gaps_;                 // by id

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "self_awareness/core/evidence/least_effect.h"
 #include "self_awareness/core/evidence/statistics.h"
 #include "self_awareness/core/verdict/source_graph.h"
 
@@ -82,6 +83,7 @@ constexpr std::size_t kPredecessors = 3;
 struct Watched {
   std::vector<Track> tracks;
   std::array<Statistics, 2> halves;  ///< of the training, with the same event types
+  LeastEffect least_effect{};  ///< that a changed delay must have; watch() does not choose it
 };
 
 /// Chooses what to watch by the counts of the two halves of the training (docs/method.md, sections
