@@ -19,8 +19,6 @@ constexpr double kMostSurprise = 6;
 // Delays that all fall into one bin vary by nothing.
 constexpr double kLeastDeviation = 0.5;  // [nat]
 
-// Of the least effect, where a delay wraps to a period: it was heard in another order by less.
-constexpr double kWrapEffect = 0.5;
 constexpr double kUsual = 0.9;  // share of the delays that are usual
 
 // A rate that changes by this share is no fault: clocks and loads differ from day to day.
@@ -209,7 +207,6 @@ Model::Harmless Model::learnHarmless(EventId from, EventId to) const {
   }
   harmless.shortest -= effect;
   harmless.longest += effect;
-  harmless.less = (1 - kWrapEffect) * effect;
   return harmless;
 }
 

@@ -61,7 +61,7 @@ def test_json_holds_the_evidence(evidence_model: str, capsys) -> None:
     assert found['tracks']['overdue'] == 3 and found['tracks']['rate'] == 6
     assert sum(found['tracks'].values()) == len(EvidenceModel(model).tracks)
     assert found['not_judged'] == []
-    assert found['least_effect'] == {'time': 0.01, 'of_period': 0.03}
+    assert found['least_effect'] == {'time': 0.005, 'of_period': 0.02}
     calibration = found['calibration']
     assert (calibration['method'], calibration['budget']) == ('held-out', 0.5)
     assert calibration['windows'] == stored.windows
@@ -123,7 +123,7 @@ def test_people_read_the_evidence(evidence_model: str, capsys) -> None:
     assert info.main([evidence_model]) == 0
     text = capsys.readouterr().out
     for part in ('evidence     tracks: overdue 3, rate 6',
-                 'least effect on delays: 10 ms, or 0.03 of the period',
+                 'least effect on delays: 5 ms, or 0.02 of the period',
                  'limits       held-out, for 0.5 false', 'graph        none', 'tuesday.bag',
                  'linker '):
         assert part in text

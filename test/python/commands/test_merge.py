@@ -76,7 +76,7 @@ def test_the_graph_is_that_of_all(model_file: str, evidence_model: str, tmp_path
     (['--window', '0.25'], 'another length of the windows: 0.25 s, not 0.1 s'),
     (['--horizon', '10'], 'another horizon: 10 s, not none'),
     (['--least-effect', '3', '--least-effect-of-period', '0.01'],
-     'another least effect: 3 ms or 0.01 of the period, not 10 ms or 0.03 of the period'),
+     'another least effect: 3 ms or 0.01 of the period, not 5 ms or 0.02 of the period'),
     (['--encoding', 'source'], 'another encoding: source differs'),
     (['--encoding', 'exclude_topics'], 'another encoding: exclude_topics differs')])
 def test_what_does_not_fit_is_told(options: List[str], told: str, model_file: str, robot_bags,

@@ -39,7 +39,7 @@ MOST_MISSES_OF_DEADLINE = 0.1
 MOST_SURPRISE = 6.0
 LEAST_DEVIATION = 0.5
 USUAL = 0.9
-LEAST_EFFECT = (10e6, 0.03)
+LEAST_EFFECT = (5e6, 0.02)
 """On delays, by default: [ns], and the share of the period."""
 GAPS_TO_DELAYS = (2.0, 10.0)
 """Least effects on gaps, in those on delays."""
@@ -241,6 +241,9 @@ class ReferenceModel:
         harmless = {index for index in range(BINS) for shift in shifts
                     if lower_edge(index) + shift >= shortest
                     and lower_edge(index + 1) + shift <= longest}
+        if e_i != e_j and shortest <= 0.0:  # and so is the bin that a period lies in
+            harmless |= {index for index in range(BINS)
+                         if lower_edge(index) < period <= lower_edge(index + 1)}
         return [min(surprise, 0.0) if index in harmless else surprise
                 for index, surprise in enumerate(surprises)]
 

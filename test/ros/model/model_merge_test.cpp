@@ -129,9 +129,9 @@ TEST_F(ModelMergeTest, SaysWhatDoesNotFitAndLeavesTheModelAsItWas) {
   EXPECT_EQ(errorOf([](TrainedModel& model) { model.window = 200000000; }),
             "another length of the windows: 0.2 s, not 0.1 s");
   EXPECT_EQ(errorOf([](TrainedModel& model) { model.least_effect.time = 2.5e6; }),
-            "another least effect: 2.5 ms or 0.03 of the period, not 10 ms or 0.03 of the period");
+            "another least effect: 2.5 ms or 0.02 of the period, not 5 ms or 0.02 of the period");
   EXPECT_EQ(errorOf([](TrainedModel& model) { model.least_effect.of_period = 0.05; }),
-            "another least effect: 10 ms or 0.05 of the period, not 10 ms or 0.03 of the period");
+            "another least effect: 5 ms or 0.05 of the period, not 5 ms or 0.02 of the period");
   const std::string encoding = "another encoding: ";
   EXPECT_EQ(
       errorOf([](TrainedModel& model) { model.encoding.source = EncodingRules::Source::kNone; }),

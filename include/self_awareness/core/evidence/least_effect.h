@@ -5,8 +5,8 @@ namespace self_awareness::core::evidence {
 /// What a delay must differ by from the usual ones to be a fault: the larger of a time and a share
 /// of the period (docs/method.md, section 3.4). The defaults are measured (section 7.4 there).
 struct LeastEffect {
-  double time = 10e6;       ///< [ns], finite, 0 or more
-  double of_period = 0.03;  ///< 0 to below 1
+  double time = 5e6;        ///< [ns], finite, 0 or more
+  double of_period = 0.02;  ///< 0 to below 1
 
   /// @throw std::invalid_argument names the number that is out of its range
   void validate() const;

@@ -90,17 +90,12 @@ class Model {
   struct Harmless {
     double shortest = 0;  ///< [ns]
     double longest = 0;   ///< [ns]
-    double period =
-        0;  ///< [ns]; delays near 0 wrap to it, and the other way round; 0: they do not
-
-    double less = 0;  ///< where a delay wraps, shortest and longest are so much nearer [ns]
+    /// Delays near 0 wrap to it, and the other way round [ns]; 0: they do not.
+    double period = 0;
 
     bool contains(double delay) const {
-      const auto lies = [&](double shifted, double nearer) {
-        return shortest + nearer <= shifted && shifted <= longest - nearer;
-      };
-      return lies(delay, 0) ||
-             (period > 0 && (lies(delay - period, less) || lies(delay + period, less)));
+      const auto lies = [&](double shifted) { return shortest <= shifted && shifted <= longest; };
+      return lies(delay) || (period > 0 && (lies(delay - period) || lies(delay + period)));
     }
   };
   /// Of a delay track; the same object for the two tracks of a pair.
