@@ -236,8 +236,12 @@ Relation Relations::delays(EventId from, EventId to, const std::vector<Span>& mo
                        : relation.reaches || relation.irregular ? kChanceOfOne
                                                                 : kChanceOfAny / looked_at_;
   const double starts = std::max<double>(static_cast<double>(relation.starts), 1);
-  // Who comes in the second half of a period after another may as well be the one that it asks.
-  const bool late = !relation.reaches && medianDelay(from, to) > period(from, to) / 2;
+  // Who comes in the second half of a period after another may as well be the one that it asks; of
+  // what one node publishes, nobody knows what comes upon what.
+  const bool one_source =
+      counts_.vocabulary().at(from).source == counts_.vocabulary().at(to).source;
+  const bool late =
+      (!relation.reaches || one_source) && medianDelay(from, to) > period(from, to) / 2;
   relation.watched = !late && std::pow(relation.spread, starts - 1) <= level;
   relation.starts_needed =
       relation.watched || late || relation.spread >= 1
