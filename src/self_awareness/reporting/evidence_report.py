@@ -44,8 +44,9 @@ def print_expected(trained: TrainedModel) -> None:
     low, high = confidence.poisson_rate(expected * hours, hours)
     print(f'false alarms to be expected: {expected:.2g} an hour (95 %: {low:.2g} to {high:.2g}), '
           'by leaving recordings out in turn')
-    if expected > budget:
-        needed = hours * expected / budget - hours
+    if high > budget:
+        # Where less than the budget is expected, more hours are to confirm it.
+        needed = hours * (expected if expected > budget else high) / budget - hours
         print(f'  the recordings cannot support a budget of {budget:g} an hour: that takes about '
               f'{_hours(needed)} more of normal operation, in several starts of the robot')
 
