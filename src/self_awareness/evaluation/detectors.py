@@ -49,7 +49,7 @@ class Paper:
         # - 1, because the window in which the recording ends is the last one.
         model: Model = required(self._model, self.name, 'train')
         return model.judge(DEFAULT_WINDOW, self._threshold, DetectorParameters(),
-                           encoded.stamps, encoded.ids, encoded.end - 1, encoded.event_types)
+                           encoded.stamps, encoded.ids, encoded.end - 1)
 
 
 class Evidence:
