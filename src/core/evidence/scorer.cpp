@@ -30,6 +30,9 @@ constexpr double kMostBehind = 3;
 // changed: it is news once (docs/method.md, section 3.7).
 constexpr std::int64_t kAcceptAfter = 60 * kNanosecondsPerSecond;
 
+// Who was not heard so long [ns] after the start of the recording does not start any more.
+constexpr std::int64_t kStartTime = 60 * kNanosecondsPerSecond;
+
 // A stall of the whole robot, where that is longer than usual [ns]; more often, it is something
 // else.
 constexpr std::int64_t kShortestStall = kNanosecondsPerSecond / 20;
@@ -156,6 +159,7 @@ std::optional<std::int64_t> Scorer::add(const Event& event) {
   const std::uint64_t* const numbers = numbers_.data();
   const std::uint64_t last = numbers[event.id];
   const Eigen::Array2d drifts(kDrift, kSlowDrift);
+  start_ = number_ == 0 ? event.stamp : start_;
   noteStall(event.stamp);
   const bool stalled = event.stamp < stalled_until_;
   const std::int64_t last_stamp = last > 0 ? stamps[event.id] : event.stamp;
@@ -398,9 +402,11 @@ const std::vector<double>& Scorer::closeWindow(std::int64_t end) {
       }
       case Channel::kDeadline: {
         const Deadline& deadline = deadlines_[state_of_[track]];
-        evidence_[track] = deadline.requests == 0 || !seen ? 0
-                           : deadline.in_requests          ? deadline.requests
-                                                           : toSeconds(end - deadline.since);
+        // Who was not heard yet may still be starting.
+        const bool started = seen || end - start_ >= kStartTime;
+        evidence_[track] = deadline.requests == 0 || !started ? 0
+                           : deadline.in_requests             ? deadline.requests
+                                                              : toSeconds(end - deadline.since);
         break;
       }
     }

@@ -172,6 +172,7 @@ class Scorer {
   std::vector<std::vector<std::size_t>> tracks_of_;   // delay and answer tracks, by id
   bool has_limits_ = false;
   std::int64_t longest_silence_ = 0;        // that is usual [ns]
+  std::int64_t start_ = 0;                  // stamp of the first event [ns], once there was one
   std::int64_t last_stamp_ = 0;             // [ns], once there was an event
   std::int64_t stall_ = 0;                  // that goes on at the end of the last window [ns]
   std::int64_t stalled_from_ = 0;           // begin of the last stall [ns]

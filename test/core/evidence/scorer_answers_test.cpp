@@ -134,6 +134,16 @@ TEST_F(ScorerDeadlinesTest, RareRequestsAreCountedInSecondsSinceTheFirst) {
   EXPECT_EQ(scorer_->waiting(deadline_), 0);
 }
 
+TEST_F(ScorerDeadlinesTest, WhoWasNeverHeardMayBeStartingForAMinute) {
+  learn(8 * kSecond);
+  scorer_->add({5 * kSecond, kA});
+  EXPECT_EQ(evidenceAt(60 * kSecond), 0);
+  EXPECT_DOUBLE_EQ(evidenceAt(65 * kSecond), 60);
+  scorer_->restart();
+  scorer_->add({100 * kSecond, kA});
+  EXPECT_EQ(evidenceAt(150 * kSecond), 0);
+}
+
 TEST_F(ScorerDeadlinesTest, SeriesOfRequestsAreCounted) {
   learn(500 * kMillisecond);
   ASSERT_TRUE(model_->countsRequests(deadline_));

@@ -16,6 +16,7 @@ MOST_BEHIND = 3.0
 MOST_EVIDENCE = 200.0
 MOST_OF_LIMIT = 1.5
 ACCEPT_AFTER = 60 * SECOND
+START_TIME = 60 * SECOND
 REGIME = 120 * SECOND
 SHORTEST_STALL = 50 * MS
 LONGEST_STALL = 700 * MS
@@ -106,6 +107,7 @@ class ReferenceScorer:
         self._answers = {track[1:]: Watch([self._cap(track)])
                          for track in model.tracks if track[0] == 'answer'}
         self._usual_silence = max(model.longest_silence * 5 // 4, SHORTEST_STALL)
+        self._start: Optional[int] = None  # the first event
         self._newest: Optional[int] = None
         self._stall: Optional[Tuple[int, int]] = None  # the last one that is over
         self.rows: List[List[float]] = []
@@ -115,6 +117,7 @@ class ReferenceScorer:
                 self.rows.append(self._row(index))
                 index += 1
             if kind in model.types:
+                self._start = t if self._start is None else self._start
                 self._note_stall(t)
                 self._add(t, kind)
                 self._last[kind] = (t, number)
@@ -224,8 +227,15 @@ class ReferenceScorer:
     def _evidence(self, track: Track, index: int, end: int, stall: int, stalled: bool) -> float:
         channel, kind, other = track
         last = self._last.get(kind)
-        if last is None:
+        if last is None and (channel != 'deadline' or self._start is None
+                             or end - self._start < START_TIME):
             return 0.0
+        if channel == 'deadline':
+            requests = self._requests[track]
+            if self._model.counts_requests(track):
+                return float(len(requests))
+            return (end - requests[0]) / SECOND if requests else 0.0
+        assert last is not None
         if channel == 'overdue':
             if not stall and self._stall is not None and last[0] <= self._stall[0]:
                 stall = self._stall[1] - self._stall[0]
@@ -237,11 +247,6 @@ class ReferenceScorer:
                 return 0.0
             more = self._model.rate(kind, sum(n > index - span for n in self._in_window[kind]))
             return max(more if channel == 'more' else -more, 0.0)
-        if channel == 'deadline':
-            requests = self._requests[track]
-            if self._model.counts_requests(track):
-                return float(len(requests))
-            return (end - requests[0]) / SECOND if requests else 0.0
         watch = self._pairs[kind, other] if channel in DELAYS else self._answers[kind, other]
         value = watch.sums[list(DELAYS).index(channel) if channel in DELAYS else 0]
         return value if watch.arming.armed else 0.0
