@@ -45,12 +45,10 @@ HeldOut::Level HeldOut::levelOf(const std::vector<Part>& parts,
     level.eligible_hours += hours;
   }
   level.group_of = std::move(group_of);
-  level.exceedances_of.assign(level.hours.size(), 0);
   return level;
 }
 
-HeldOut::Exceedance HeldOut::exceedance(const Level& level, const std::vector<double>& largest,
-                                        double least) {
+double HeldOut::exceedance(const Level& level, const std::vector<double>& largest, double least) {
   std::vector<double> of_group(level.hours.size(), 0);
   for (std::size_t part = 0; part < largest.size(); ++part) {
     double& group = of_group[level.group_of[part]];
@@ -59,16 +57,16 @@ HeldOut::Exceedance HeldOut::exceedance(const Level& level, const std::vector<do
   const auto first = std::max_element(of_group.begin(), of_group.end());
   if (first == of_group.end() || *first <= least ||
       level.hours[static_cast<std::size_t>(first - of_group.begin())] <= 0) {
-    return {};
+    return 0;
   }
   const double most = *first;
   *first = 0;
   const double second =
       std::max(*std::max_element(of_group.begin(), of_group.end()), kLeastShare * least);
   if (second <= 0) {
-    return {};  // the others know nothing of it
+    return 0;  // the others know nothing of it
   }
-  return {std::log(most / second), static_cast<std::size_t>(first - of_group.begin())};
+  return std::log(most / second);
 }
 
 double HeldOut::scale(const Level& level) const {
@@ -79,9 +77,8 @@ double HeldOut::scale(const Level& level) const {
 void HeldOut::add(const std::vector<double>& largest, double least) {
   ++tracks_;
   for (Level& level : levels_) {
-    const auto [logarithm, group] = exceedance(level, largest, least);
+    const double logarithm = exceedance(level, largest, least);
     if (logarithm > kLeastExcess) {
-      level.exceedances_of[group] += 1;
       level.exceedances += 1;
       level.logarithms += logarithm - kLeastExcess;
       level.most = std::max(level.most, logarithm);
@@ -115,7 +112,7 @@ double HeldOut::rate(double margin) const {
 }
 
 double HeldOut::excess(const std::vector<double>& largest, double least) const {
-  return std::exp(exceedance(levels_.front(), largest, least).logarithm);
+  return std::exp(exceedance(levels_.front(), largest, least));
 }
 
 }  // namespace self_awareness::core::evidence

@@ -31,8 +31,7 @@ class HeldOut {
   /// @param rate exceedances an hour that are allowed to all tracks together
   /// @param least margin
   double margin(double rate, double least) const;
-  /// Exceedances an hour that are to be expected with a margin. Tracks that exceed the others in
-  /// the same start (part) do so for one reason: together, they are one at most.
+  /// Exceedances an hour, of all tracks together, that are to be expected with a margin.
   double rate(double margin) const;
   /// By how much the largest value of a track exceeded those of all other starts; 1 if it did not,
   /// or if there is nothing to compare it with.
@@ -44,22 +43,17 @@ class HeldOut {
  private:
   /// One way to leave out: groups of parts in turn.
   struct Level {
-    std::vector<std::size_t> group_of;   // by part
-    std::vector<double> hours;           // by group
-    double eligible_hours = 0;           // of groups that the others can judge
-    std::vector<double> exceedances_of;  // by group
-    double exceedances = 0;              // their sum
-    double logarithms = 0;               // their sum, of by how much
-    double most = 0;                     // the largest of them
+    std::vector<std::size_t> group_of;  // by part
+    std::vector<double> hours;          // by group
+    double eligible_hours = 0;          // of groups that the others can judge
+    double exceedances = 0;
+    double logarithms = 0;  // their sum, of by how much
+    double most = 0;        // the largest of them
   };
 
   static Level levelOf(const std::vector<Part>& parts, std::vector<std::size_t> group_of);
-  struct Exceedance {
-    double logarithm = 0;   // of by how much the largest group exceeds the others; 0: it does not
-    std::size_t group = 0;  // the largest
-  };
-  static Exceedance exceedance(const Level& level, const std::vector<double>& largest,
-                               double least);
+  /// log of by how much the largest group exceeds the others; 0 if it does not.
+  static double exceedance(const Level& level, const std::vector<double>& largest, double least);
   double scale(const Level& level) const;
 
   double prior_scale_;

@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import math
-from collections import Counter
 from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
@@ -69,16 +68,16 @@ class HeldOut:
                  scale: float) -> None:
         self._parts = parts
         self._many = len(tracks) >= MANY_TRACKS
-        self._levels = []  # eligible hours, exceedances and their groups, their scale
+        self._levels = []  # eligible hours, logarithms of the exceedances, their scale
         for groups in ([part.start for part in parts], list(range(len(parts)))):
             found = [self._exceedance(groups, largest, least) for largest, least in tracks]
-            beyond = [log for log in found if log[0] > LEAST_EXCESS]
-            believed = ((sum(log - LEAST_EXCESS for log, _ in beyond) + scale * PRIOR_EXCEEDANCES)
-                        / (len(beyond) + PRIOR_EXCEEDANCES))
+            logs = [log for log in found if log > LEAST_EXCESS]
+            believed = ((sum(log - LEAST_EXCESS for log in logs) + scale * PRIOR_EXCEEDANCES)
+                        / (len(logs) + PRIOR_EXCEEDANCES))
             eligible = sum(self._hours(groups, group) for group in set(groups)
                            if self._is_eligible(groups, group))
             if eligible > 0:
-                self._levels.append((eligible, beyond, believed))
+                self._levels.append((eligible, logs, believed))
 
     def _hours(self, groups: Sequence[int], group: int) -> float:
         return sum(part.hours for part, other in zip(self._parts, groups) if other == group)
@@ -86,42 +85,36 @@ class HeldOut:
     def _is_eligible(self, groups: Sequence[int], group: int) -> bool:
         return self._hours(groups, group) <= sum(part.hours for part in self._parts) / 2
 
-    def _exceedance(self, groups: Sequence[int], largest: Sequence[float],
-                    least: float) -> Tuple[float, int]:
-        """Return the logarithm of by how much the worst group exceeds the others, and it."""
+    def _exceedance(self, groups: Sequence[int], largest: Sequence[float], least: float) -> float:
         of_group = {group: max(value for value, other in zip(largest, groups) if other == group)
                     for group in sorted(set(groups))}
         worst = max(of_group, key=lambda group: of_group[group])
         if of_group[worst] <= least or not self._is_eligible(groups, worst):
-            return 0.0, worst
+            return 0.0
         second = max((value for group, value in of_group.items() if group != worst), default=0.0)
         known = max(second, LEAST_SHARE * least)
-        return math.log(of_group[worst] / known) if known > 0 else 0.0, worst
+        return math.log(of_group[worst] / known) if known > 0 else 0.0
 
     def excess(self, largest: Sequence[float], least: float) -> float:
         """Return by how much the worst start exceeds the others."""
-        return math.exp(self._exceedance([part.start for part in self._parts], largest, least)[0])
+        return math.exp(self._exceedance([part.start for part in self._parts], largest, least))
 
     def margin(self, rate: float, least: float) -> float:
         """Return the margin that is exceeded so often an hour."""
         margin = least
-        for hours, beyond, scale in self._levels:
-            expected = max(len(beyond), FEWEST_EXCEEDANCES) / (hours * rate)
+        for hours, logs, scale in self._levels:
+            expected = max(len(logs), FEWEST_EXCEEDANCES) / (hours * rate)
             log = LEAST_EXCESS + scale * max(math.log(expected), 0.0)
             if self._many:
-                log = min(log, max((each for each, _ in beyond), default=0.0) + BEYOND)
+                log = min(log, max(logs, default=0.0) + BEYOND)
             margin = max(margin, math.exp(log))
         return margin
 
     def rate(self, margin: float) -> float:
-        """Return how often an hour a margin is exceeded: at most once in a group."""
-        over = max(math.log(margin) - LEAST_EXCESS, 0.0)
-        rates = []
-        for hours, beyond, scale in self._levels:
-            number = Counter(group for _, group in beyond)
-            rates.append(sum(min(number[group] * math.exp(-over / scale), 1.0)
-                             for group in number) / hours)
-        return max(rates, default=0.0)
+        """Return how often an hour a margin is exceeded."""
+        beyond = max(math.log(margin) - LEAST_EXCESS, 0.0)
+        return max((len(logs) / hours * math.exp(-beyond / scale)
+                    for hours, logs, scale in self._levels), default=0.0)
 
 
 class Tail(NamedTuple):
