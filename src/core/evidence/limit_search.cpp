@@ -60,21 +60,6 @@ double sumOf(const std::vector<Part>& parts) {
   return hours;
 }
 
-/// Numbers the starts that recordings belong to.
-std::vector<std::size_t> startsOf(const std::vector<Span>& recordings) {
-  std::vector<std::size_t> starts;
-  for (const Span& recording : recordings) {
-    std::vector<Span> before;
-    for (const Span& other : recordings) {
-      if (other <= recording) {
-        before.push_back(other);
-      }
-    }
-    starts.push_back(numberOfStarts(before) - 1);
-  }
-  return starts;
-}
-
 /// False alarms an hour that limits are made for. By the training alone, they promise one in so
 /// many times the time that was seen at best.
 constexpr double kMostOfTraining = 10;
@@ -124,10 +109,10 @@ void LimitSearch::gatherParts(const LimitFinder::Findings& findings) {
   const std::vector<Statistics::Recording>& training = model_.statistics().recordings();
   std::vector<Span> spans;
   for (const Statistics::Recording& recording : training) {
-    spans.emplace_back(recording.start, recording.end);
+    spans.push_back({recording.start, recording.end, recording.robot_start});
   }
   for (const LimitFinder::Recording& recording : findings) {
-    spans.emplace_back(recording.start, recording.end);
+    spans.push_back({recording.start, recording.end, recording.robot_start});
   }
   const std::vector<std::size_t> starts = startsOf(spans);
   for (std::size_t k = 0; k < training.size(); ++k) {
@@ -273,7 +258,7 @@ LimitSearch::Linker LimitSearch::linker(const LimitFinder::Findings& findings,
                                         const LimitFinder::Parameters& parameters) {
   std::vector<Span> spans;
   for (const LimitFinder::Recording& recording : findings) {
-    spans.emplace_back(recording.start, recording.end);
+    spans.push_back({recording.start, recording.end, recording.robot_start});
   }
   const std::vector<std::size_t> starts = startsOf(spans);
   std::vector<Part> parts;

@@ -12,7 +12,7 @@ from self_awareness import EVIDENCE_THRESHOLD, Alarm, Model, Suspect, Verdicts
 from self_awareness.commands import cli
 from self_awareness.judging import evidence_judge, paper_judge
 from self_awareness.output_files import check_outputs, replacing
-from self_awareness.recordings import BagPart, RecordingEvents
+from self_awareness.recordings import BagPart, RecordingEvents, expand
 from self_awareness.reporting.plots import ScorePlot, save_scores
 from self_awareness.stamps import SECOND_NS, utc
 
@@ -49,7 +49,7 @@ def _score(arguments: argparse.Namespace) -> None:
         print(f'{arguments.model}: not calibrated: windows are scored, none is called abnormal '
               '(rosrun self_awareness calibrate)')
     judged: List[Tuple[RecordingEvents, Verdicts]] = []
-    for part in arguments.bags:
+    for part in expand(arguments.bags):
         recording = cli.read_recording('score', trained, part)
         verdicts = judge(recording.stamps, recording.ids, recording.end,
                          recording.event_types)
