@@ -80,8 +80,8 @@ def _event_type(kind: Dict[str, Any]) -> str:
 
 def _graph(graph: List[Dict[str, str]]) -> str:
     if not graph:
-        return ('none: roots are told from victims by the training alone (record.launch writes it '
-                'beside the bags, or train --graph)')
+        return ('none: roots are told from victims by the training alone (record.launch writes '
+                'it down, or train --graph)')
     publishers = {edge['publisher'] for edge in graph}
     return f'sources that somebody listens to: {len(publishers)}, connections: {len(graph)}'
 
