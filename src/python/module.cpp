@@ -7,6 +7,8 @@ PYBIND11_MODULE(_core, m) {
   m.doc() = "C++ core of self_awareness: the one implementation of the method.";
   self_awareness::python::bindFiles(m);
   self_awareness::python::bindTraining(m);
+  self_awareness::python::bindCounts(m);
   self_awareness::python::bindEvidence(m);
   self_awareness::python::bindDetector(m);
+  self_awareness::python::bindLanes(m);
 }
