@@ -13,7 +13,7 @@ from self_awareness.commands import cli
 from self_awareness.judging import evidence_judge, paper_judge
 from self_awareness.output_files import check_outputs, replacing
 from self_awareness.recordings import BagPart, RecordingEvents
-from self_awareness.reporting.plots import ScorePlot, save_scores
+from self_awareness.reporting.plots import NamedAlarm, ScorePlot, save_scores
 from self_awareness.stamps import SECOND_NS, utc
 
 _COLUMNS = ('bag', 'window_start_ns', 'events', 'unknown', 'score', 'threshold', 'abnormal')
@@ -142,10 +142,18 @@ def _plot(recording: RecordingEvents, verdicts: Verdicts, window: int,
         title=f'{recording.part}: score of windows of {window / SECOND_NS:g} s',
         times=starts[:-1],
         scores=verdicts.score,
+        abnormal=verdicts.abnormal & ~verdicts.settling,
         threshold=threshold,
         settling=[(float(starts[a]), float(starts[b])) for a, b in edges.reshape(-1, 2)],
-        alarms=[(float(seconds(alarm.start)), float(seconds(alarm.end)))
-                for alarm in verdicts.alarms])
+        alarms=[NamedAlarm(float(seconds(alarm.start)), float(seconds(alarm.end)),
+                           _component(recording, alarm)) for alarm in verdicts.alarms])
+
+
+def _component(recording: RecordingEvents, alarm: Alarm) -> str:
+    if not alarm.suspects:
+        return ''
+    kind = recording.event_types[alarm.suspects[0].id]
+    return kind.source or kind.scope
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -156,7 +164,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('--model', required=True, help='file written by train or calibrate')
     cli.add_detector_argument(parser)
     parser.add_argument('--csv', metavar='FILE', help='write the score of every window')
-    parser.add_argument('--plot', type=cli.png_file, metavar='FILE.png',
-                        help='draw the scores over time')
+    parser.add_argument('--plot', type=cli.plot_file, metavar='FILE',
+                        help='draw the scores over time; the name ends in .png, .pdf or .svg')
     cli.add_detector_arguments(parser)
     return parser
