@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 
 #include "bindings.h"
@@ -14,13 +15,12 @@ namespace {
 
 namespace evidence = core::evidence;
 
-/// What one half of a training counted, of all pairs of event types.
+/// What a training, or one half of it, counted of all pairs of event types.
 class EvidenceCounts {
  public:
-  EvidenceCounts(const ros1::TrainedModel& trained, std::size_t half)
-      : counts_(trained.evidence.at(half)),
-        model_({{}, trained.evidence, trained.least_effect},
-               half == 0 ? evidence::Model::Learned::kFirst : evidence::Model::Learned::kSecond) {}
+  EvidenceCounts(const ros1::TrainedModel& trained, std::optional<std::size_t> half)
+      : model_({{}, trained.evidence, trained.least_effect}, learnedOf(half)),
+        counts_(half ? trained.evidence.at(*half) : model_.statistics()) {}
 
   const evidence::Statistics& counts() const { return counts_; }
   const evidence::Model& model() const { return model_; }
@@ -33,25 +33,29 @@ class EvidenceCounts {
   }
 
  private:
-  evidence::Statistics counts_;
+  static evidence::Model::Learned learnedOf(std::optional<std::size_t> half) {
+    using Learned = evidence::Model::Learned;
+    return !half ? Learned::kBoth : *half == 0 ? Learned::kFirst : Learned::kSecond;
+  }
+
   evidence::Model model_;
+  evidence::Statistics counts_;
 };
 
 }  // namespace
 
 void bindCounts(py::module& m) {
   using Counts = EvidenceCounts;
-  py::class_<Counts>(m, "EvidenceCounts", "What one half of a training counted.")
-      .def(py::init([](const ros1::TrainedModel& trained, std::size_t half) {
-             trained.requireWatched();
+  py::class_<Counts>(m, "EvidenceCounts", "What a training, or a half of it, counted.")
+      .def(py::init([](const ros1::TrainedModel& trained, std::optional<std::size_t> half) {
              if (!trained.hasEvidence()) {
                throw std::invalid_argument("the counts of all pairs were not loaded");
              }
              return std::make_unique<Counts>(trained, half);
            }),
-           py::arg("trained"), py::arg("half"),
-           "half: 0 or 1. ValueError if the model was not trained for the evidence detector, or\n"
-           "only a part of it was loaded.")
+           py::arg("trained"), py::arg("half") = py::none(),
+           "half: 0 or 1; None: both. ValueError if the model was not trained for the evidence\n"
+           "detector, or only a part of it was loaded.")
       .def_property_readonly(
           "duration", [](const Counts& self) { return self.counts().duration(); }, "[ns]")
       .def(
@@ -79,6 +83,7 @@ void bindCounts(py::module& m) {
           },
           py::arg("from_id"), py::arg("to_id"), py::arg("share"),
           "delay [s] that this share (0 to 1) of the delays did not exceed; as of EvidenceModel");
+  m.attr("LEAST_RATE_EFFECT") = evidence::kLeastRateEffect;
   m.attr("RATE_SPAN") = evidence::kRateSpan;  // [ns]
 }
 

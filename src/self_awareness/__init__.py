@@ -10,6 +10,7 @@ from self_awareness._core import (  # noqa: F401
     EVIDENCE_THRESHOLD,
     FEWEST_GAPS,
     LEAST_KNOWN,
+    LEAST_RATE_EFFECT,
     PREDECESSORS,
     RATE_SPAN,
     USUAL_SHARES,
