@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import html
 import math
-from typing import Any, Dict, List, Optional, Sequence
+from typing import Any, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -17,6 +17,9 @@ from self_awareness.reporting.report.timeline import Lanes, Overview, Timeline
 
 Figure = Dict[str, Any]
 """Traces and layout of a plot (`data`, `layout`)."""
+
+Bins = List[Tuple[float, float]]
+"""Begin [s] of each bin of delays, and the share of the delays in it [%]."""
 
 RED, AMBER, BLUE, GREY = '#e5484d', '#e08a00', '#4a8fdd', '#8b93a1'
 SHOWN = 4.0
@@ -102,6 +105,27 @@ def histogram(shown: Histogram) -> Figure:
         'height': 210, 'margin': {'l': 46, 'r': 10, 't': 32, 'b': 44}, 'showlegend': False,
         'xaxis': axis, 'yaxis': {'title': {'text': '% in training'}, 'fixedrange': True},
         'bargap': 0, 'shapes': shapes, 'annotations': annotations}}
+
+
+def two_histograms(before: Bins, after: Bins) -> Figure:
+    """Return the delays of two sides, one over the other: begin [s] and % of each bin."""
+    filled = [begin for bins in (before, after) for begin, share in bins if share > 0]
+    edges = [begin for begin, _ in before if min(filled) <= begin <= max(filled)]
+    first = edges[0] or edges[min(1, len(edges) - 1)] / 2
+    traces = []
+    for name, colour, bins in (('before', GREY, before), ('after', RED, after)):
+        shares = dict(bins)
+        # The last edge holds the line up to the end of its bin.
+        traces.append({
+            'type': 'scatter', 'mode': 'lines', 'name': name, 'fill': 'tozeroy',
+            'line': {'shape': 'hv', 'color': colour, 'width': 1.5},
+            'x': _rounded([edge or first for edge in edges] + [edges[-1] * 1.19]),
+            'y': _rounded([shares[edge] for edge in edges] + [shares[edges[-1]]], 3)})
+    return {'data': traces, 'layout': {
+        'height': 190, 'margin': {'l': 46, 'r': 10, 't': 10, 'b': 44}, 'showlegend': True,
+        'legend': {'x': 1, 'xanchor': 'right', 'y': 1},
+        'xaxis': {'type': 'log', 'title': {'text': 'delay [s]'}},
+        'yaxis': {'title': {'text': '%'}, 'fixedrange': True}}}
 
 
 def graph(shown: Neighbourhood) -> Figure:
