@@ -89,7 +89,7 @@ def test_the_pages_are_written(installed: Dict[str, str], model: Path, tmp_path:
     """They need files beside the Python modules."""
     bag = model.parent / 'cc1_4.bag'
     _program(installed, 'score', '--model', model, bag, '--report', tmp_path / 'report.html')
-    _program(installed, 'diff', model, bag, '--html', tmp_path / 'diff.html')
+    _program(installed, 'diff', model, f'{bag}@62', '--html', tmp_path / 'diff.html')
     assert '/player (/scan) stopped sending' in (tmp_path / 'report.html').read_text()
     assert '/player' in (tmp_path / 'diff.html').read_text()
 
