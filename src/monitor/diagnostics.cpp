@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ros/verdict/verdict_message.h"
 #include "self_awareness/core/stream/event.h"
 #include "self_awareness/core/stream/vocabulary.h"
-#include "verdict_message.h"
 
 namespace self_awareness {
 namespace {
@@ -86,14 +86,14 @@ void Diagnostics::communication(Status& status) const {
       status.add("for [s]", number(state_.level_for));
     }
     for (std::size_t i = 0; i < last.suspects.size(); ++i) {
-      status.add("suspect " + std::to_string(i + 1), describe(last.suspects[i]));
+      status.add("suspect " + std::to_string(i + 1), ros1::describe(last.suspects[i]));
     }
   }
   status.add("model", state_.model);
 }
 
 void Diagnostics::component(const std::string& name, Status& status) const {
-  const HeardReport::Component& component = state_.heard.components.at(name);
+  const ros1::HeardReport::Component& component = state_.heard.components.at(name);
   status.summary(DiagnosticStatus::OK, component.last_heard ? "heard" : "not heard yet");
   const std::vector<self_awareness::Suspect>& suspects = state_.last.suspects;
   for (std::size_t i = 0; i < suspects.size() && state_.last.level != DiagnosticStatus::OK; ++i) {
@@ -102,7 +102,7 @@ void Diagnostics::component(const std::string& name, Status& status) const {
       status.summary(i == 0 && !state_.busy && state_.last.level == DiagnosticStatus::ERROR
                          ? DiagnosticStatus::ERROR
                          : DiagnosticStatus::WARN,
-                     describeOnScope(suspects[i]));
+                     ros1::describeOnScope(suspects[i]));
       break;
     }
   }

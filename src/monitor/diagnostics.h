@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "heard_tally.h"
+#include "ros/verdict/heard_tally.h"
 #include "self_awareness/SelfAwareness.h"
 
 namespace self_awareness {
@@ -21,7 +21,7 @@ struct MonitorState {
   self_awareness::SelfAwareness last;  ///< the verdict on the last window, if started
   bool busy = false;                   ///< the machine is to blame, no component
   double level_for = 0;                ///< how long it has had its level [s]
-  HeardReport heard;
+  ros1::HeardReport heard;
   std::size_t subscriptions = 0;
   std::size_t connections = 0;
   bool master_answers = true;

@@ -30,7 +30,7 @@ std::int64_t steadyNow() {
   return static_cast<std::int64_t>(ros::SteadyTime::now().toNSec());
 }
 
-HeardTally::Moment momentNow() {
+ros1::HeardTally::Moment momentNow() {
   timespec cpu{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
   return {rosNow(), steadyNow(), cpu.tv_sec * core::kNanosecondsPerSecond + cpu.tv_nsec};
@@ -215,7 +215,7 @@ void Monitor::refreshGraph(const std::shared_ptr<const ros1::Graph>& graph) {
 void Monitor::publishDiagnostics() {
   const Discovery::State discovered = discovery_->state();
   refreshGraph(discovered.graph);
-  const HeardTally::Moment moment = momentNow();
+  const ros1::HeardTally::Moment moment = momentNow();
   MonitorState state;
   state.model = parameters_.model;
   state.model_error = model_error_;

@@ -13,11 +13,11 @@
 #include <string>
 #include <vector>
 
-#include "alarm_state.h"
 #include "diagnostics.h"
 #include "discovery.h"
-#include "heard_tally.h"
 #include "parameters.h"
+#include "ros/verdict/alarm_state.h"
+#include "ros/verdict/heard_tally.h"
 #include "self_awareness/core/verdict/detector.h"
 #include "self_awareness/ros/graph.h"
 #include "self_awareness/ros/live/clock_watch.h"
@@ -129,8 +129,8 @@ class Monitor {
   std::string model_error_;
   std::unique_ptr<Session> session_;  // none: no model
   ros1::ClockWatch clock_watch_;
-  AlarmState alarm_;
-  HeardTally heard_;
+  ros1::AlarmState alarm_;
+  ros1::HeardTally heard_;
   std::shared_ptr<const ros1::Graph> graph_;  // the newest that was taken over
 
   std::unique_ptr<ros1::LiveEvents> live_events_;

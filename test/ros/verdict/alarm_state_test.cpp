@@ -1,4 +1,4 @@
-#include "monitor/alarm_state.h"
+#include "ros/verdict/alarm_state.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace self_awareness {
+namespace self_awareness::ros1 {
 namespace {
 
 using self_awareness::SelfAwareness;
@@ -169,4 +169,4 @@ TEST_F(AlarmStateTest, AnAlarmStandsThroughAChangeOfModelUntilItIsTakenBack) {
 }
 
 }  // namespace
-}  // namespace self_awareness
+}  // namespace self_awareness::ros1

@@ -5,7 +5,7 @@
 #include "self_awareness/core/stream/event.h"
 #include "verdict_message.h"
 
-namespace self_awareness {
+namespace self_awareness::ros1 {
 
 void AlarmState::add(const core::Verdict& verdict, const core::Vocabulary& vocabulary,
                      std::int64_t window, const std::string& load) {
@@ -57,4 +57,4 @@ double AlarmState::standsFor(std::int64_t now) const {
   return core::toSeconds(now - level_since_);
 }
 
-}  // namespace self_awareness
+}  // namespace self_awareness::ros1

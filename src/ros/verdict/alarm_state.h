@@ -7,7 +7,7 @@
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/core/verdict/detector.h"
 
-namespace self_awareness {
+namespace self_awareness::ros1 {
 
 /// What the monitor says now: the verdict on the last window, and the alarm or suspicion that
 /// stands, with its suspects, its evidence, and since when.
@@ -49,4 +49,4 @@ class AlarmState {
   std::int64_t level_since_ = 0;  // end of the window with which the level changed last [ns]
 };
 
-}  // namespace self_awareness
+}  // namespace self_awareness::ros1
