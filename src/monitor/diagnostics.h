@@ -7,21 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "ros/verdict/heard_tally.h"
-#include "self_awareness/SelfAwareness.h"
+#include "ros/verdict/diagnostic_status.h"
 
 namespace self_awareness {
 
-/// What the diagnostics tell; filled in by the monitor, worded by Diagnostics.
+/// What the diagnostics tell; filled in by the monitor.
 struct MonitorState {
-  std::string model;        ///< path
-  std::string model_error;  ///< why there is none; empty: it is loaded
-  bool calibrated = false;
-  bool started = false;                ///< something was said of a window
-  self_awareness::SelfAwareness last;  ///< the verdict on the last window, if started
-  bool busy = false;                   ///< the machine is to blame, no component
-  double level_for = 0;                ///< how long it has had its level [s]
-  ros1::HeardReport heard;
+  ros1::CommunicationState communication;
   std::size_t subscriptions = 0;
   std::size_t connections = 0;
   bool master_answers = true;
@@ -45,8 +37,6 @@ class Diagnostics {
   using Status = diagnostic_updater::DiagnosticStatusWrapper;
 
   void updateComponents();
-  void communication(Status& status) const;
-  void component(const std::string& name, Status& status) const;
   void monitor(Status& status) const;
 
   bool component_statuses_;

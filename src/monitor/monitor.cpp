@@ -45,6 +45,11 @@ Monitor::Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& priv
       parameters_(MonitorParameters::load(private_node_handle)),
       diagnostics_(node_handle, private_node_handle, name, parameters_.hardware_id,
                    parameters_.source_diagnostics),
+      announcer_({[this](const self_awareness::SelfAwareness& status) {
+                    status_publisher_.publish(status);
+                  },
+                  [this](const self_awareness::SelfAwareness& alarm) { publishAlarm(alarm); },
+                  [this] { publishDiagnostics(); }}),
       heard_(momentNow()),
       spinner_(1, &queue_) {
   node_handle_.setCallbackQueue(&queue_);
@@ -119,7 +124,7 @@ std::string Monitor::modelPath() const {
 void Monitor::startSession(std::unique_ptr<Session> session) {
   session_ = std::move(session);
   model_error_.clear();
-  alarm_.forgetWindow();
+  announcer_.forgetWindow();
   heard_.setTypes(session_->types());
   graph_.reset();
   timer_.setPeriod(tickFor(session_->window()));
@@ -175,33 +180,27 @@ void Monitor::restart() {
   ROS_WARN("ROS time was set: delays and windows start afresh");
   session_->detector().restart();
   heard_.onClockStep();
-  standDown("settling: ROS time was set");
+  standDown(ros1::kClockWasSet);
 }
 
 void Monitor::onVerdict(const core::Verdict& verdict) {
-  alarm_.add(verdict, session_->vocabulary(), session_->window(),
-             verdict.busy ? loadInWords() : "");
-  const self_awareness::SelfAwareness& said = alarm_.message();
-  status_publisher_.publish(said);
-  if (verdict.changed) {
-    if (verdict.alarm) {
-      ROS_ERROR("%s", said.message.c_str());
-    } else if (verdict.suspicion) {
-      ROS_WARN("%s", said.message.c_str());
-    } else {
-      ROS_INFO("%s", said.message.c_str());
-    }
-    alarm_publisher_.publish(said);
-    publishDiagnostics();
-  }
+  announcer_.add(verdict, session_->vocabulary(), session_->window(),
+                 verdict.busy ? loadInWords() : "");
 }
 
 void Monitor::standDown(const std::string& message) {
-  if (alarm_.standDown(message, rosNow())) {
-    ROS_INFO("%s", message.c_str());
-    alarm_publisher_.publish(alarm_.message());
+  announcer_.standDown(message, rosNow());
+}
+
+void Monitor::publishAlarm(const self_awareness::SelfAwareness& alarm) {
+  if (alarm.level == self_awareness::SelfAwareness::ERROR) {
+    ROS_ERROR("%s", alarm.message.c_str());
+  } else if (alarm.level == self_awareness::SelfAwareness::WARN) {
+    ROS_WARN("%s", alarm.message.c_str());
+  } else {
+    ROS_INFO("%s", alarm.message.c_str());
   }
-  publishDiagnostics();
+  alarm_publisher_.publish(alarm);
 }
 
 void Monitor::refreshGraph(const std::shared_ptr<const ros1::Graph>& graph) {
@@ -217,14 +216,11 @@ void Monitor::publishDiagnostics() {
   refreshGraph(discovered.graph);
   const ros1::HeardTally::Moment moment = momentNow();
   MonitorState state;
-  state.model = parameters_.model;
-  state.model_error = model_error_;
-  state.calibrated = session_ && session_->calibrated();
-  state.started = session_ && alarm_.spoken();
-  state.last = alarm_.message();
-  state.busy = !alarm_.busy().empty();
-  state.level_for = alarm_.standsFor(moment.ros);
-  state.heard = heard_.report(moment, live_events_->dropped());
+  state.communication.model = parameters_.model;
+  state.communication.model_error = model_error_;
+  state.communication.calibrated = session_ && session_->calibrated();
+  state.communication.take(announcer_.alarm(), heard_.report(moment, live_events_->dropped()),
+                           moment.ros);
   state.subscriptions = discovered.subscriptions;
   state.connections = live_events_->connections();
   state.master_answers = discovered.master_answers;
@@ -244,7 +240,7 @@ bool Monitor::onReset(std_srvs::Trigger::Request& /*request*/,
 
 bool Monitor::onClear(std_srvs::Trigger::Request& /*request*/,
                       std_srvs::Trigger::Response& response) {
-  const bool stood = alarm_.stands();
+  const bool stood = announcer_.alarm().stands();
   response.success = true;
   response.message = stood ? "the alarm is cleared" : "there is no alarm";
   if (stood) {

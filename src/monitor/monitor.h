@@ -16,7 +16,7 @@
 #include "diagnostics.h"
 #include "discovery.h"
 #include "parameters.h"
-#include "ros/verdict/alarm_state.h"
+#include "ros/verdict/announcer.h"
 #include "ros/verdict/heard_tally.h"
 #include "self_awareness/core/verdict/detector.h"
 #include "self_awareness/ros/graph.h"
@@ -111,8 +111,9 @@ class Monitor {
   /// at: by another look, the clock may have been set again.
   std::int64_t watchClock();
   void restart();
-  /// Publishes a change of level that no window brought about.
+  /// Says that what stood is over, although no window brought that about.
   void standDown(const std::string& message);
+  void publishAlarm(const self_awareness::SelfAwareness& alarm);
   void publishDiagnostics();
   void refreshGraph(const std::shared_ptr<const ros1::Graph>& graph);
 
@@ -129,7 +130,7 @@ class Monitor {
   std::string model_error_;
   std::unique_ptr<Session> session_;  // none: no model
   ros1::ClockWatch clock_watch_;
-  ros1::AlarmState alarm_;
+  ros1::Announcer announcer_;
   ros1::HeardTally heard_;
   std::shared_ptr<const ros1::Graph> graph_;  // the newest that was taken over
 
