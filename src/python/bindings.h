@@ -52,6 +52,8 @@ void bindFiles(py::module& module);
 void bindTraining(py::module& module);
 /// Binds evidence and its limits (evidence_bindings.cpp).
 void bindEvidence(py::module& module);
+/// Binds result bags (result_bindings.cpp).
+void bindResults(py::module& module);
 /// Binds model, scores, verdicts and ROC (detector_bindings.cpp).
 void bindDetector(py::module& module);
 

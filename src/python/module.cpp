@@ -8,5 +8,6 @@ PYBIND11_MODULE(_core, m) {
   self_awareness::python::bindFiles(m);
   self_awareness::python::bindTraining(m);
   self_awareness::python::bindEvidence(m);
+  self_awareness::python::bindResults(m);
   self_awareness::python::bindDetector(m);
 }
