@@ -38,20 +38,22 @@ EventId Training::intern(const EventType& type) {
   return id;
 }
 
-std::size_t Training::startRecording(std::optional<std::int64_t> since) {
+std::size_t Training::startRecording(std::optional<std::int64_t> since, std::int64_t robot_start) {
   half_ = recordings_++ % counts_.halves.size();
   middle_.reset();
   trainers_->paper.startRecording();
-  trainers_->evidence.at(half_).startRecording(since);
+  trainers_->evidence.at(half_).startRecording(since, robot_start);
   return half_;
 }
 
-void Training::startOnlyRecording(std::int64_t middle, std::optional<std::int64_t> since) {
+void Training::startOnlyRecording(std::int64_t middle, std::optional<std::int64_t> since,
+                                  std::int64_t robot_start) {
   if (recordings_ > 0) {
     throw std::logic_error("a recording that is to be cut in two is not the first one");
   }
-  startRecording(since);
+  startRecording(since, robot_start);
   middle_ = middle;
+  robot_start_ = robot_start;
 }
 
 void Training::addBefore(const Event& event) {
@@ -69,7 +71,7 @@ void Training::add(const Event& event) {
   if (middle_ && event.stamp >= *middle_) {
     middle_.reset();
     half_ = 1;
-    trainers_->evidence.at(half_).startRecording();
+    trainers_->evidence.at(half_).startRecording(std::nullopt, robot_start_);
   }
   if (parameters_.evidence) {
     trainers_->evidence.at(half_).add(event);

@@ -10,6 +10,7 @@
 
 #include "self_awareness/core/evidence/limits.h"
 #include "self_awareness/core/stream/event.h"
+#include "self_awareness/ros/bag/bag_reader.h"
 
 /// What the parts of the Python module share.
 PYBIND11_MAKE_OPAQUE(self_awareness::core::evidence::LimitFinder::Findings)
@@ -46,8 +47,24 @@ void forEachEvent(const Stamps& stamps, const Ids& ids, Handler handler) {
   }
 }
 
-/// Binds encoding, bags and model files (files_bindings.cpp).
-void bindFiles(py::module& module);
+/// Tells a callback of Python, or None, how far a reader has come; Ctrl-C ends the reading.
+inline ros1::BagReader::Progress progressTo(const py::object& callback) {
+  return [&callback](std::uint64_t done, std::uint64_t all) {
+    if (PyErr_CheckSignals() != 0) {
+      throw py::error_already_set();
+    }
+    if (!callback.is_none()) {
+      callback(done, all);
+    }
+  };
+}
+
+/// Binds the writing of event logs (event_log_bindings.cpp).
+void bindEventLogs(py::module& module);
+/// Binds the encoding, and the reading of bags and event logs (recording_bindings.cpp).
+void bindRecordings(py::module& module);
+/// Binds model files (model_bindings.cpp).
+void bindModel(py::module& module);
 /// Binds the training (training_bindings.cpp).
 void bindTraining(py::module& module);
 /// Binds evidence and its limits (evidence_bindings.cpp).

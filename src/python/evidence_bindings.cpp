@@ -35,9 +35,10 @@ struct LimitSearch {
     }
     return search;
   }
-  void addEvents(const Stamps& stamps, const Ids& ids, std::optional<std::size_t> half) {
+  void addEvents(const Stamps& stamps, const Ids& ids, std::optional<std::size_t> half,
+                 std::int64_t robot_start) {
     const py::gil_scoped_release release;
-    finder.startRecording(cross_fit->judging(half));
+    finder.startRecording(cross_fit->judging(half), robot_start);
     forEachEvent(stamps, ids, [&](const core::Event& event) { finder.add(event); });
     finder.finish();
   }
@@ -58,7 +59,7 @@ using LimitsState = std::tuple<std::vector<double>, double>;
 
 using Findings = evidence::LimitFinder::Findings;
 using PartState = std::tuple<std::uint64_t, std::vector<float>, std::vector<std::int64_t>, float>;
-using RecordingState = std::tuple<std::int64_t, std::int64_t, bool, std::uint64_t,
+using RecordingState = std::tuple<std::int64_t, std::int64_t, std::int64_t, bool, std::uint64_t,
                                   std::vector<PartState>, std::vector<std::uint8_t>>;
 using FindingsState = std::vector<RecordingState>;
 
@@ -73,18 +74,19 @@ FindingsState stateOf(const Findings& findings) {
     for (const evidence::LimitFinder::Said each : recording.said) {
       said.push_back(static_cast<std::uint8_t>(each));
     }
-    state.emplace_back(recording.start, recording.end, recording.trained_on, recording.windows,
-                       parts, said);
+    state.emplace_back(recording.start, recording.end, recording.robot_start, recording.trained_on,
+                       recording.windows, parts, said);
   }
   return state;
 }
 
 Findings fromState(const FindingsState& state) {
   Findings findings;
-  for (const auto& [start, end, trained_on, windows, parts, said] : state) {
+  for (const auto& [start, end, robot_start, trained_on, windows, parts, said] : state) {
     evidence::LimitFinder::Recording& recording = findings.emplace_back();
     recording.start = start;
     recording.end = end;
+    recording.robot_start = robot_start;
     recording.trained_on = trained_on;
     recording.windows = windows;
     for (const auto& [part_windows, evidence, gaps, linker] : parts) {
@@ -204,8 +206,9 @@ void bindEvidence(py::module& m) {
           py::arg("trained"), py::arg("settle_time"), py::arg("budget"),
           "settle_time: [ns]; budget: false alarms an hour")
       .def("add_events", &LimitSearch::addEvents, py::arg("stamps"), py::arg("ids"),
-           py::arg("half") = py::none(),
-           "Takes in a recording; half: 0 or 1 if that half of the training learned from it.")
+           py::arg("half") = py::none(), py::arg("robot_start") = 0,
+           "Takes in a recording; half: 0 or 1 if that half of the training learned from it;\n"
+           "robot_start: of the robot [ns], 0: not known.")
       .def("part", &LimitSearch::part, "A finder without findings, for the same model and pass.")
       .def(
           "findings", [](const LimitSearch& self) { return self.finder.findings(); },

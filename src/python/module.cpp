@@ -5,7 +5,9 @@
 
 PYBIND11_MODULE(_core, m) {
   m.doc() = "C++ core of self_awareness: the one implementation of the method.";
-  self_awareness::python::bindFiles(m);
+  self_awareness::python::bindRecordings(m);
+  self_awareness::python::bindEventLogs(m);
+  self_awareness::python::bindModel(m);
   self_awareness::python::bindTraining(m);
   self_awareness::python::bindEvidence(m);
   self_awareness::python::bindResults(m);

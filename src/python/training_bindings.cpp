@@ -36,10 +36,12 @@ class Training {
     if (before && before->first.size() > 0) {
       since = before->first.at(0);
     }
+    const std::int64_t robot_start =
+        recording ? static_cast<std::int64_t>(recording->robot_start.toNSec()) : 0;
     if (middle) {
-      training_.startOnlyRecording(*middle, since);
+      training_.startOnlyRecording(*middle, since, robot_start);
     } else {
-      training_.startRecording(since);
+      training_.startRecording(since, robot_start);
     }
     if (before) {
       addBefore(types, *before);

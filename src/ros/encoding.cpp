@@ -95,6 +95,7 @@ Connection connectionFrom(const ros::M_string& header, const std::string& topic)
   connection.callerid = headerField(header, "callerid");
   connection.topic = topic;
   connection.datatype = headerField(header, "type");
+  connection.md5sum = headerField(header, "md5sum");
   connection.definition = headerField(header, "message_definition");
   connection.latching = headerField(header, "latching") == "1";
   return connection;

@@ -18,6 +18,7 @@ from self_awareness._core import (  # noqa: F401
     Calibration,
     DetectorParameters,
     EncodingRules,
+    EventLogWriter,
     EventType,
     EvidenceCalibration,
     EvidenceLimits,
@@ -41,6 +42,7 @@ from self_awareness._core import (  # noqa: F401
     Verdicts,
     judge_by_evidence,
     read_events,
+    recordings_in_event_log,
     stable_name,
     summarise_bag,
 )

@@ -4,50 +4,105 @@ from __future__ import annotations
 import math
 import os
 import re
-from dataclasses import dataclass
-from typing import Dict, Iterable, List, Optional, Set, Tuple
+from dataclasses import dataclass, replace
+from typing import Dict, Iterable, Iterator, List, Optional, Set, Tuple
 
 import numpy as np
 
 from self_awareness import (LEAST_KNOWN, EventType, RecordedEvents, Recording, TrainedModel,
-                            progress, read_events)
+                            progress, read_events, recordings_in_event_log)
 from self_awareness.stamps import nanoseconds
 
-_PART = re.compile(r'(?P<path>.+)@(?P<start>\d+(\.\d+)?)(-(?P<end>\d+(\.\d+)?))?')
+_PART = re.compile(r'(?P<path>.+?)(#(?P<number>\d+))?'
+                   r'(@(?P<start>\d+(\.\d+)?)(-(?P<end>\d+(\.\d+)?))?)?')
 
 
 @dataclass(frozen=True)
 class BagPart:
-    """A bag, or a part of it in seconds from its first message."""
+    """A recording, or a part of it in seconds from its first message.
+
+    Args:
+        path: of a bag, or of an event log.
+        start, end: of the part [s]; None: of the recording.
+        recording: its number in an event log, from 0; None: the file is a bag, or expand() has not
+            looked at it yet.
+        alone: it is the only recording of its file.
+    """
 
     path: str
     start: Optional[float] = None
     end: Optional[float] = None
+    recording: Optional[int] = None
+    alone: bool = True
 
     @classmethod
     def parse(cls, text: str) -> BagPart:
-        """Read BAG, BAG@START or BAG@START-END; a file with this name comes first."""
+        """Read BAG, BAG@START or BAG@START-END; a file with this name comes first.
+
+        BAG#N stands for the recording N, from 1, of an event log.
+        """
         match = None if os.path.exists(text) else _PART.fullmatch(text)
-        if match is None:
+        if match is None or (match['number'] is None and match['start'] is None):
             return cls(text)
-        end = match['end']
-        return cls(match['path'], float(match['start']), None if end is None else float(end))
+        number, start, end = match['number'], match['start'], match['end']
+        return cls(match['path'], None if start is None else float(start),
+                   None if end is None else float(end),
+                   None if number is None else int(number) - 1, number is None)
 
     def __str__(self) -> str:
+        text = self.path if self.alone else f'{self.path}#{self.number}'
         if self.start is None and self.end is None:
-            return self.path
-        return (f'{self.path}@{self.start or 0.0:g}'
-                + ('' if self.end is None else f'-{self.end:g}'))
+            return text
+        return f'{text}@{self.start or 0.0:g}' + ('' if self.end is None else f'-{self.end:g}')
+
+    @property
+    def number(self) -> int:
+        """Which recording of its file it is, from 1."""
+        return (self.recording or 0) + 1
+
+    def whole(self) -> BagPart:
+        """Return the recording that it is a part of."""
+        return replace(self, start=None, end=None)
 
     def meets(self, other: BagPart) -> bool:
-        """Return whether two parts of one bag have more than a moment in common."""
-        return (self.start or 0.0) < _end(other) and (other.start or 0.0) < _end(self)
+        """Return whether two parts of one file have more than a moment in common."""
+        return (self.recording == other.recording
+                and (self.start or 0.0) < _end(other) and (other.start or 0.0) < _end(self))
 
     def span(self, first: int, last: int) -> Tuple[int, int]:
         """Return start and end [ns] within a recording from `first` to `last` [ns]."""
         start = first + nanoseconds(self.start or 0.0)
         end = last if self.end is None else first + nanoseconds(self.end)
         return start, min(end, last)
+
+
+def expand(parts: Iterable[BagPart]) -> List[BagPart]:
+    """Return the recordings of files: a bag is one, and an event log may hold several.
+
+    Raises:
+        ValueError: a file does not hold the recording that is asked for, or it is not said which
+            one a part is of.
+    """
+    return [recording for part in parts for recording in _recordings_of(part)]
+
+
+def _recordings_of(part: BagPart) -> Iterator[BagPart]:
+    number = recordings_in_event_log(part.path)
+    if number is None:
+        if part.recording is not None:
+            raise ValueError(f'{part}: {part.path} is no event log with numbered recordings; name '
+                             'it without a number')
+        yield part
+    elif part.recording is not None:
+        if not 0 <= part.recording < number:
+            raise ValueError(f'{part}: the event log holds recordings 1 to {number}')
+        yield replace(part, alone=number == 1)
+    elif number > 1 and (part.start is not None or part.end is not None):
+        raise ValueError(f'{part}: the event log holds {number} recordings; name the one that the '
+                         f'time is of: {part.path}#1@...')
+    else:
+        for recording in range(max(number, 1)):
+            yield replace(part, recording=recording, alone=number == 1)
 
 
 def _end(part: BagPart) -> float:
@@ -68,6 +123,8 @@ class RecordingEvents:
         fingerprint: of the whole bag.
         one_sender_a_topic: the bag was written by a program that keeps only one (BagSummary).
         copied: so it is, and it is a copy of a recording.
+        bag: what the file is called, or the bag that an event log was made of.
+        robot_start: when the robot was started [ns]; 0: not known.
     """
 
     part: BagPart
@@ -79,6 +136,17 @@ class RecordingEvents:
     fingerprint: int
     one_sender_a_topic: bool = False
     copied: bool = False
+    bag: str = ''
+    robot_start: int = 0
+
+    @classmethod
+    def of(cls, part: BagPart, events: RecordedEvents) -> RecordingEvents:
+        """Return the events that were read for a part."""
+        summary = events.summary
+        _, end = part.span(summary.start, summary.end)
+        return cls(part, events.event_types, events.stamps, events.ids, summary.start, end,
+                   summary.fingerprint, summary.one_sender_a_topic, summary.copied, summary.bag,
+                   summary.robot_start)
 
     @property
     def middle(self) -> int:
@@ -91,11 +159,12 @@ class RecordingEvents:
         """What a model file says about the part."""
         start, end = self.part.span(self.origin, self.end)
         recording = Recording()
-        recording.bag = os.path.basename(self.part.path)
+        recording.bag = self.bag
         recording.start = start
         recording.end = end
         recording.events = int(((self.stamps >= start) & (self.stamps <= end)).sum())
         recording.fingerprint = self.fingerprint
+        recording.robot_start = self.robot_start
         return recording
 
 
@@ -110,14 +179,11 @@ def read(model: TrainedModel, part: BagPart) -> RecordingEvents:
     with progress.messages(os.path.basename(part.path)) as update:
         try:
             events = read_events(part.path, model.encoding, model.event_types, part.start,
-                                 part.end, update)
+                                 part.end, update, part.recording)
         except ValueError as error:
             raise ValueError(f'{part}: {error}') from error
     _check(model, part, events)
-    _, end = part.span(events.summary.start, events.summary.end)
-    return RecordingEvents(part, events.event_types, events.stamps, events.ids,
-                           events.summary.start, end, events.summary.fingerprint,
-                           events.summary.one_sender_a_topic, events.summary.copied)
+    return RecordingEvents.of(part, events)
 
 
 def few_known(model: TrainedModel, recording: RecordingEvents) -> Optional[str]:

@@ -36,7 +36,7 @@ def check_result_bag(path: Optional[str], parts: Sequence[BagPart]) -> None:
 def _check_apart(path: str, parts: Sequence[BagPart]) -> None:
     spans = []
     for part in parts:
-        summary = summarise_bag(part.path)
+        summary = summarise_bag(part.path, part.recording)
         spans.append((part.span(summary.start, summary.end), str(part)))
     spans.sort()
     for (before, first), (after, second) in zip(spans, spans[1:]):

@@ -48,13 +48,16 @@ class Training {
   /// Starts a recording: the next events belong to it. Recordings belong to the two halves in
   /// turn.
   /// @param since when the recording began [ns], if not all of it is trained on
+  /// @param robot_start when the robot was started [ns]; 0: not known
   /// @return the half that this one belongs to, 0 or 1
-  std::size_t startRecording(std::optional<std::int64_t> since = std::nullopt);
+  std::size_t startRecording(std::optional<std::int64_t> since = std::nullopt,
+                             std::int64_t robot_start = 0);
   /// Starts the only recording of a training, which is cut in two: events before `middle` [ns]
   /// belong to the first half, the others to the second. So what holds in one part only is not
   /// taken for information.
   /// @throw std::logic_error if a recording was started before
-  void startOnlyRecording(std::int64_t middle, std::optional<std::int64_t> since = std::nullopt);
+  void startOnlyRecording(std::int64_t middle, std::optional<std::int64_t> since = std::nullopt,
+                          std::int64_t robot_start = 0);
   /// An event of the recording before those that are trained on: it only says when its type comes
   /// first.
   void addBefore(const Event& event);
@@ -74,6 +77,7 @@ class Training {
   std::size_t recordings_ = 0;
   std::size_t half_ = 0;                // the half that is trained
   std::optional<std::int64_t> middle_;  // of the only recording [ns], until it is reached
+  std::int64_t robot_start_ = 0;        // of the only recording [ns]
 };
 
 }  // namespace self_awareness::core

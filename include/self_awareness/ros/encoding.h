@@ -59,6 +59,7 @@ struct Connection {
   std::string datatype;
   std::string definition;
   bool latching = false;
+  std::string md5sum;  ///< of the definition
 };
 
 /// What a connection header says; fields that it lacks are empty.

@@ -40,7 +40,7 @@ std::vector<Suspect> Blame::suspects(const std::vector<double>& shares, const Sc
   std::set<std::string> components;
   const auto add = [&](const Candidate& candidate) {
     Suspect suspect = reasons.of(candidate.track);
-    suspect.component = component(suspect.id);
+    suspect.component = model_->component(suspect.id);
     suspect.abnormal = shares[candidate.track] > 1;
     components.insert(suspect.component);
     suspects.push_back(std::move(suspect));
@@ -57,7 +57,7 @@ std::vector<Suspect> Blame::suspects(const std::vector<double>& shares, const Sc
     }
   }
   for (const Candidate& candidate : candidates) {
-    if (shares[candidate.track] > 1 && components.count(component(toOf(candidate))) == 0) {
+    if (shares[candidate.track] > 1 && components.count(model_->component(toOf(candidate))) == 0) {
       add(candidate);
     }
   }
@@ -101,30 +101,31 @@ std::vector<Blame::Candidate>::iterator Blame::rootsOfSilence(
   std::set<std::string> roots;
   const auto isSilent = [&](const Candidate& other) {
     return std::any_of(silent.begin(), silent.end(), [&](const Candidate& candidate) {
-      return component(toOf(other)) == component(toOf(candidate));
+      return model_->component(toOf(other)) == model_->component(toOf(candidate));
     });
   };
   const auto answered = [&](const Candidate& other) {
     return std::any_of(silent.begin(), silent.end(), [&](const Candidate& candidate) {
-      return leads.count({component(toOf(other)), component(toOf(candidate))}) > 0 &&
+      return leads.count({model_->component(toOf(other)), model_->component(toOf(candidate))}) >
+                 0 &&
              (scorer.lastSeen(toOf(candidate)) >= scorer.lastSeen(toOf(other)) ||
               static_cast<double>(scorer.age(toOf(other))) < model_->meanGap(toOf(other)) / 2);
     });
   };
   const auto leadsRoot = [&](const Candidate& other) {
     return std::any_of(roots.begin(), roots.end(), [&](const std::string& root) {
-      return leads.count({component(toOf(other)), root}) > 0;
+      return leads.count({model_->component(toOf(other)), root}) > 0;
     });
   };
   for (bool found = true; found;) {
     found = false;
     for (const Candidate& other : others) {
       found |= other.own && !isSilent(other) && (answered(other) || leadsRoot(other)) &&
-               roots.insert(component(toOf(other))).second;
+               roots.insert(model_->component(toOf(other))).second;
     }
   }
   return std::stable_partition(others.begin(), others.end(), [&](const Candidate& other) {
-    return roots.count(component(toOf(other))) > 0;
+    return roots.count(model_->component(toOf(other))) > 0;
   });
 }
 
@@ -136,7 +137,7 @@ std::vector<Blame::Candidate> Blame::rootFirst(std::vector<Candidate> candidates
   std::stable_sort(candidates.begin(), candidates.end(), likelier);
   std::map<std::string, std::vector<std::size_t>> by_component;  // indexes of candidates
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    by_component[component(toOf(candidates[i]))].push_back(i);
+    by_component[model_->component(toOf(candidates[i]))].push_back(i);
   }
   std::vector<std::size_t> upstream(candidates.size(), 0);  // number of those left that are
   std::map<std::string, std::vector<std::size_t>> downstream;
@@ -159,7 +160,7 @@ std::vector<Blame::Candidate> Blame::rootFirst(std::vector<Candidate> candidates
         std::min_element(left.begin(), left.end(),
                          [&](std::size_t a, std::size_t b) { return upstream[a] < upstream[b]; });
     ordered.push_back(candidates[*root]);
-    for (const std::size_t victim : downstream[component(toOf(candidates[*root]))]) {
+    for (const std::size_t victim : downstream[model_->component(toOf(candidates[*root]))]) {
       --upstream[victim];
     }
     left.erase(root);
@@ -187,9 +188,10 @@ std::vector<Blame::Candidate> Blame::unusual(const std::vector<double>& shares,
       continue;
     }
     const double share = std::min(shares[track], kMostShare);
-    const bool other = channel == Channel::kDelay && component(from) != component(to);
+    const bool other =
+        channel == Channel::kDelay && model_->component(from) != model_->component(to);
     const bool earlier = other && isEarlier(reasons.of(track));
-    Involved& later = components[component(to)];
+    Involved& later = components[model_->component(to)];
     later.sum += earlier ? kShareOfOther * share : share;
     if (other && !earlier) {
       later.late = true;
@@ -202,11 +204,11 @@ std::vector<Blame::Candidate> Blame::unusual(const std::vector<double>& shares,
       later.track = track;
     }
     if (other) {
-      components[component(from)].sum += earlier ? share : kShareOfOther * share;
+      components[model_->component(from)].sum += earlier ? share : kShareOfOther * share;
     }
   }
   for (const std::size_t track : followers_.lateBefore(late, shares, reasons)) {
-    Involved& involved = components[component(model_->tracks()[track].to)];
+    Involved& involved = components[model_->component(model_->tracks()[track].to)];
     involved.late = true;
     if (involved.largest == 0) {
       involved.largest = kLeastShare;
@@ -255,11 +257,6 @@ std::size_t Blame::trackOfSilence(EventId id, const std::vector<double>& shares)
     }
   }
   return most;
-}
-
-const std::string& Blame::component(EventId id) const {
-  const EventType& type = model_->vocabulary().at(id);
-  return componentOf(type.source, type.scope);
 }
 
 }  // namespace self_awareness::core::evidence

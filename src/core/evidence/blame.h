@@ -56,7 +56,6 @@ class Blame {
   double logSurvival(EventId id, const Reasons& reasons) const;
   std::size_t trackOfSilence(EventId id, const std::vector<double>& shares) const;
   EventId toOf(const Candidate& candidate) const { return model_->tracks()[candidate.track].to; }
-  const std::string& component(EventId id) const;
 
   std::shared_ptr<const Model> model_;
   std::shared_ptr<const SourceGraph> graph_;

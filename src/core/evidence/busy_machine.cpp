@@ -32,7 +32,7 @@ std::optional<Busy> BusyMachine::closeWindow(const std::vector<double>& shares,
   std::vector<double> largest(names.size(), 0);  // share of what is not silence
   for (std::size_t track = 0; track < shares.size(); ++track) {
     const EventId id = model_->tracks()[track].to;
-    const std::size_t component = model_->component(id);
+    const std::size_t component = model_->componentIndex(id);
     heard[component] = heard[component] || scorer.lastSeen(id).has_value();
     if (model_->tracks()[track].channel == Channel::kOverdue) {
       silent[component] = silent[component] || shares[track] > 1;

@@ -16,7 +16,7 @@ Followers::Followers(std::shared_ptr<const Model> model) : model_(std::move(mode
 }
 
 bool Followers::follows(const Track& track) const {
-  if (component(track.from) == component(track.to)) {
+  if (model_->component(track.from) == model_->component(track.to)) {
     return false;
   }
   const double period = std::min(model_->meanGap(track.from), model_->meanGap(track.to));
@@ -29,7 +29,8 @@ Followers::Leads Followers::leads(const std::vector<double>& shares) const {
   for (std::size_t track = 0; track < shares.size(); ++track) {
     if (follows_[track]) {
       (shares[track] < kLeastShare ? usual : unusual)
-          .emplace(component(model_->tracks()[track].from), component(model_->tracks()[track].to));
+          .emplace(model_->component(model_->tracks()[track].from),
+                   model_->component(model_->tracks()[track].to));
     }
   }
   Leads leads;
@@ -66,11 +67,6 @@ std::vector<std::size_t> Followers::lateBefore(const std::vector<std::size_t>& l
     }
   }
   return found;
-}
-
-const std::string& Followers::component(EventId id) const {
-  const EventType& type = model_->vocabulary().at(id);
-  return componentOf(type.source, type.scope);
 }
 
 }  // namespace self_awareness::core::evidence

@@ -38,7 +38,6 @@ class Followers {
 
  private:
   bool follows(const Track& track) const;
-  const std::string& component(EventId id) const;
 
   std::shared_ptr<const Model> model_;
   std::vector<bool> follows_;  // whether `to` usually comes soon after `from`, by track

@@ -60,21 +60,6 @@ double sumOf(const std::vector<Part>& parts) {
   return hours;
 }
 
-/// Numbers the starts that recordings belong to.
-std::vector<std::size_t> startsOf(const std::vector<Span>& recordings) {
-  std::vector<std::size_t> starts;
-  for (const Span& recording : recordings) {
-    std::vector<Span> before;
-    for (const Span& other : recordings) {
-      if (other <= recording) {
-        before.push_back(other);
-      }
-    }
-    starts.push_back(numberOfStarts(before) - 1);
-  }
-  return starts;
-}
-
 /// False alarms an hour that limits are made for. By the training alone, they promise one in so
 /// many times the time that was seen at best.
 constexpr double kMostOfTraining = 10;
@@ -106,7 +91,7 @@ LimitSearch::LimitSearch(const Model& model, const LimitFinder::Findings& findin
     Pool pool = poolOf(model_.tracks()[track].channel);
     Seen seen{track, model_.leastLimit(track), {}};
     if (pool == Pool::kOthers) {
-      seen = gapsOf(track);
+      seen.largest = gapsOf(model_.tracks()[track].to);
       pool = poolOfGaps(seen);
     } else {
       for (const LimitFinder::Recording::Part* part : judged_parts_) {
@@ -124,10 +109,10 @@ void LimitSearch::gatherParts(const LimitFinder::Findings& findings) {
   const std::vector<Statistics::Recording>& training = model_.statistics().recordings();
   std::vector<Span> spans;
   for (const Statistics::Recording& recording : training) {
-    spans.emplace_back(recording.start, recording.end);
+    spans.push_back({recording.start, recording.end, recording.robot_start});
   }
   for (const LimitFinder::Recording& recording : findings) {
-    spans.emplace_back(recording.start, recording.end);
+    spans.push_back({recording.start, recording.end, recording.robot_start});
   }
   const std::vector<std::size_t> starts = startsOf(spans);
   for (std::size_t k = 0; k < training.size(); ++k) {
@@ -170,25 +155,24 @@ double LimitSearch::leastMargin(Pool pool) {
   return pool == Pool::kDeadlines ? kLeastDeadlineMargin : kLeastMargin;
 }
 
-LimitSearch::Seen LimitSearch::gapsOf(std::size_t track) const {
-  const EventId id = model_.tracks()[track].to;
-  Seen seen{track, model_.leastLimit(track), {}};
+std::vector<double> LimitSearch::gapsOf(EventId id) const {
+  std::vector<double> longest;
   for (const Statistics::Recording& recording : model_.statistics().recordings()) {
-    seen.largest.push_back(
+    longest.push_back(
         id < recording.longest_gaps.size() ? static_cast<double>(recording.longest_gaps[id]) : 0);
   }
   for (const LimitFinder::Recording::Part* part : gap_parts_) {
-    seen.largest.push_back(static_cast<double>(part->longest_gaps[id]));
+    longest.push_back(static_cast<double>(part->longest_gaps[id]));
   }
   // Windows tell ages no better than this, and hiccups of a host add to a gap, however long.
-  for (double& gap : seen.largest) {
+  for (double& gap : longest) {
     gap += gap > 0 ? window() : 0;
   }
-  return seen;
+  return longest;
 }
 
 LimitSearch::Pool LimitSearch::poolOfGaps(const Seen& seen) const {
-  const double mean_gap = meanGap(model_.tracks()[seen.track].to);
+  const double mean_gap = model_.meanGap(model_.tracks()[seen.track].to);
   std::vector<double> sorted = seen.largest;
   std::sort(sorted.rbegin(), sorted.rend());
   const double second = sorted.size() > 1 && sorted[1] > 0 ? sorted[1] : sorted[0];
@@ -243,7 +227,7 @@ double LimitSearch::limitOf(std::size_t track, double found) const {
     case Channel::kSlowDelay:
       return found > kMostDelayLimit ? kNone : found;
     case Channel::kAnswer:
-      return found / model_.missed(track) * meanGap(from) > kLongestWait ? kNone : found;
+      return found / model_.missed(track) * model_.meanGap(from) > kLongestWait ? kNone : found;
     case Channel::kDeadline: {
       const double usual =
           model_.countsRequests(track) ? model_.usualDelay(from, from, 0.5) : 1;  // [s]
@@ -257,7 +241,7 @@ double LimitSearch::limitOf(std::size_t track, double found) const {
 double LimitSearch::limitOfAge(std::size_t track, double age) const {
   const EventId id = model_.tracks()[track].to;
   // What comes when something happens may stay away for as long as nothing does.
-  const bool irregular = age > kLongestWait && age > kMostMeanGaps * meanGap(id);
+  const bool irregular = age > kLongestWait && age > kMostMeanGaps * model_.meanGap(id);
   return irregular ? kNone : model_.overdue(id, std::llround(age));
 }
 
@@ -267,19 +251,14 @@ GapTail LimitSearch::tailOf(const Seen& seen) const {
   for (const LimitFinder::Recording::Part* part : gap_parts_) {
     gaps.addGap(part->longest_gaps[id]);
   }
-  return {gaps.longest_gaps, sumOf(with_gaps_), kRegular * meanGap(id)};
-}
-
-double LimitSearch::meanGap(EventId id) const {
-  const Statistics::Type& type = model_.statistics().type(id);
-  return static_cast<double>(type.gap_sum) / static_cast<double>(type.gaps);
+  return {gaps.longest_gaps, sumOf(with_gaps_), kRegular * model_.meanGap(id)};
 }
 
 LimitSearch::Linker LimitSearch::linker(const LimitFinder::Findings& findings,
                                         const LimitFinder::Parameters& parameters) {
   std::vector<Span> spans;
   for (const LimitFinder::Recording& recording : findings) {
-    spans.emplace_back(recording.start, recording.end);
+    spans.push_back({recording.start, recording.end, recording.robot_start});
   }
   const std::vector<std::size_t> starts = startsOf(spans);
   std::vector<Part> parts;

@@ -55,7 +55,8 @@ class LimitSearch {
   static Pool poolOf(Channel channel);
   static double leastMargin(Pool pool);
   void gatherParts(const LimitFinder::Findings& findings);
-  Seen gapsOf(std::size_t track) const;
+  /// Longest gaps by part [ns], as long as windows can tell them.
+  std::vector<double> gapsOf(EventId id) const;
   Pool poolOfGaps(const Seen& seen) const;
   void search(Pool pool, const std::vector<Seen>& tracks);
   double limitOf(std::size_t track, double found) const;
@@ -63,7 +64,6 @@ class LimitSearch {
   double limitOfAge(std::size_t track, double age) const;
   /// Of the gaps of training and of the recordings.
   GapTail tailOf(const Seen& seen) const;
-  double meanGap(EventId id) const;  // of training [ns]
   double window() const { return static_cast<double>(parameters_.window); }
 
   const Model& model_;

@@ -33,9 +33,10 @@ LimitFinder::LimitFinder(std::shared_ptr<const Model> model, const Parameters& p
 
 LimitFinder::~LimitFinder() = default;
 
-void LimitFinder::startRecording(std::shared_ptr<const Model> model) {
+void LimitFinder::startRecording(std::shared_ptr<const Model> model, std::int64_t robot_start) {
   finish();
   judging_ = std::move(model);
+  robot_start_ = robot_start;
   startScoring();
 }
 
@@ -45,6 +46,7 @@ void LimitFinder::startScoring() {
     scorer_->capAt(limits_);  // as the detector does
   }
   recording_ = {};
+  recording_.robot_start = robot_start_;
   recording_.trained_on = judging_ != model_;
   part_windows_ =
       static_cast<std::uint64_t>(std::max<std::int64_t>(kShortestPart / parameters_.window, 1));
@@ -223,7 +225,7 @@ void LimitFinder::findRelations() {
       std::vector<Span> as_usual;
       for (const Recording& recording : findings_) {
         if (!recording.trained_on && recording.said[track] == Said::kAsUsual) {
-          as_usual.emplace_back(recording.start, recording.end);
+          as_usual.push_back({recording.start, recording.end, recording.robot_start});
         }
       }
       relation = relations.delays(from, to, as_usual);

@@ -4,15 +4,12 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <optional>
 
 #include "core/evidence/log_bins.h"
 
 namespace self_awareness::core::evidence {
 namespace {
 
-// Recordings with less than this between them [ns] are of one start.
-constexpr std::int64_t kSameStart = 60 * kNanosecondsPerSecond;
 // A start with a smaller share of the events says nothing about all of them.
 constexpr double kLeastShareOfStart = 0.02;
 constexpr std::uint64_t kFewestEventsOfStart = 20;
@@ -52,20 +49,6 @@ double divergence(double n, double observed, double expected) {
 }
 
 }  // namespace
-
-std::size_t numberOfStarts(std::vector<Span> recordings) {
-  std::sort(recordings.begin(), recordings.end());
-  std::size_t starts = 0;
-  std::optional<std::int64_t> end;  // of the start [ns]
-  for (const auto& [first, last] : recordings) {
-    if (!end || first - *end >= kSameStart) {
-      ++starts;
-      end = last;
-    }
-    end = std::max(*end, last);
-  }
-  return starts;
-}
 
 Relations::Relations(const Statistics& counts, const SourceGraph& graph)
     : counts_(counts), graph_(graph), broadcasts_(kBroadcasts), gaps_(counts.size()) {
@@ -225,7 +208,7 @@ Relation Relations::delays(EventId from, EventId to, const std::vector<Span>& mo
     if (share >= kLeastShareOfStart &&
         std::min(events(from), events(to)) >= kFewestEventsOfStart) {
       least_share = std::min(least_share, share);
-      spans.emplace_back(recording.start, recording.end);
+      spans.push_back({recording.start, recording.end, recording.robot_start});
     }
   }
   relation.starts = numberOfStarts(spans);

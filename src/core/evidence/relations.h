@@ -1,24 +1,16 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <set>
 #include <string>
-#include <utility>
 #include <vector>
 
+#include "core/evidence/starts.h"
 #include "self_awareness/core/evidence/model.h"
 #include "self_awareness/core/evidence/statistics.h"
 #include "self_awareness/core/verdict/source_graph.h"
 
 namespace self_awareness::core::evidence {
-
-/// First and last stamp of a recording [ns].
-using Span = std::pair<std::int64_t, std::int64_t>;
-
-/// Number of starts of the robot that recordings come from: recordings that overlap, or follow
-/// each other within a minute, are of one start.
-std::size_t numberOfStarts(std::vector<Span> recordings);
 
 /// Says of two event types whether what they do together has a reason, or may be chance
 /// (docs/method.md, section 3.6). Two timers that have nothing to do with each other keep one

@@ -428,7 +428,7 @@ Sum sumUp(const std::vector<double>& evidence, const Model& model, const Limits&
       sum.largest = share;
     }
     if ((channel == Channel::kSlowDelay || channel == Channel::kAnswer) && share > 0) {
-      double& of_component = linked[model.component(model.tracks()[track].to)];
+      double& of_component = linked[model.componentIndex(model.tracks()[track].to)];
       of_component =
           std::max(of_component, std::min((share - kLeastLinked) / (1 - kLeastLinked), 1.0));
     }

@@ -77,7 +77,8 @@ bool isSame(const Statistics::Recording& a, const Statistics::Recording& b, std:
   const auto first = [](const Statistics::Recording& recording, EventId id) {
     return id < recording.firsts.size() ? recording.firsts[id] : -1;
   };
-  bool same = a.start == b.start && a.end == b.end && a.longest_silence == b.longest_silence;
+  bool same = std::tie(a.start, a.end, a.longest_silence, a.robot_start) ==
+              std::tie(b.start, b.end, b.longest_silence, b.robot_start);
   for (EventId id = 0; same && id < types; ++id) {
     same = at(a.events, id) == at(b.events, id) &&
            at(a.longest_gaps, id) == at(b.longest_gaps, id) && first(a, id) == first(b, id);
@@ -149,7 +150,8 @@ void Statistics::merge(const Statistics& other) {
                    theirs.longest_silence,
                    std::vector<std::uint64_t>(size(), 0),
                    std::vector<std::int64_t>(size(), 0),
-                   std::vector<std::int64_t>(size(), -1)};
+                   std::vector<std::int64_t>(size(), -1),
+                   theirs.robot_start};
     for (EventId id = 0; id < theirs.events.size(); ++id) {
       ours.events[here[id]] = theirs.events[id];
       ours.longest_gaps[here[id]] = theirs.longest_gaps[id];
@@ -295,12 +297,13 @@ bool operator==(const Statistics& a, const Statistics& b) {
 Trainer::Trainer(Statistics& statistics, std::int64_t window)
     : statistics_(statistics), window_(window), counts_(0, rateWindows(window)) {}
 
-void Trainer::startRecording(std::optional<std::int64_t> since) {
+void Trainer::startRecording(std::optional<std::int64_t> since, std::int64_t robot_start) {
   if (last_stamp_) {
     recording_.end = newest_stamp_;
     statistics_.addRecording(std::move(recording_));
   }
   recording_ = {};
+  recording_.robot_start = robot_start;
   since_ = since;
   last_seen_.clear();
   last_stamp_.reset();
@@ -325,7 +328,7 @@ void Trainer::addBefore(const Event& event) {
 
 void Trainer::add(const Event& event) {
   if (last_stamp_ && isClockStep(*last_stamp_, event.stamp)) {
-    startRecording();
+    startRecording(std::nullopt, recording_.robot_start);
   }
   last_seen_.resize(statistics_.size());
   addBefore(event);

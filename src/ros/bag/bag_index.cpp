@@ -43,14 +43,29 @@ class IndexReader {
 
   /// None if the bag is of another format or encrypted.
   std::optional<BagIndex> read() {
+    if (!readConnections()) {
+      return std::nullopt;
+    }
+    readEntries();
+    return std::move(index_);
+  }
+
+  std::vector<Connection> connections() {
+    readConnections();
+    return std::move(index_.connections);
+  }
+
+ private:
+  /// Reads the records at the end of the bag; false if it is of another format or encrypted.
+  bool readConnections() {
     std::string_view start = file_.at(0, kFileHeaderBytes);
     if (start.substr(0, kFormat.size()) != kFormat) {
-      return std::nullopt;
+      return false;
     }
     take(start, kFormat.size());
     const std::string_view header = takeHeader(start, Op::kFileHeader);
     if (isEncrypted(header)) {
-      return std::nullopt;
+      return false;
     }
     const auto index = number<std::uint64_t>(header, "index_pos");
     const auto connections = number<std::uint32_t>(header, "conn_count");
@@ -65,11 +80,9 @@ class IndexReader {
     for (std::uint32_t i = 0; i < chunks; ++i) {
       takeChunkInfo(rest);
     }
-    readEntries();
-    return std::move(index_);
+    return true;
   }
 
- private:
   static bool isEncrypted(std::string_view header) {
     while (!header.empty()) {
       const auto [name, value] = takeField(header);
@@ -195,6 +208,10 @@ class RosbagIndex : private rosbag::View {
 };
 
 }  // namespace
+
+std::vector<Connection> readBagConnections(const std::string& path) {
+  return IndexReader(path).connections();
+}
 
 BagIndex readBagIndex(const std::string& path) {
   if (std::optional<BagIndex> index = IndexReader(path).read()) {

@@ -3,14 +3,13 @@
 #include <rosbag/exceptions.h>
 
 #include <algorithm>
-#include <boost/filesystem/operations.hpp>
 #include <cmath>
-#include <fstream>
 #include <set>
 #include <vector>
 
 #include "bag_index.h"
 #include "bag_messages.h"
+#include "open_bag.h"
 
 namespace self_awareness::ros1 {
 namespace {
@@ -55,48 +54,6 @@ bool topicsAreDistinct(const BagIndex& index) {
       [&](const Connection& connection) { return topics.insert(connection.topic).second; });
 }
 
-std::string reindexHint(const std::string& path) {
-  return "; mend it with: rosbag reindex '" + path + "'";
-}
-
-bool startsLikeABag(const std::string& path) {
-  constexpr char kMagic[] = "#ROSBAG V";
-  char start[sizeof kMagic] = {};
-  std::ifstream(path, std::ios::binary).read(start, sizeof start - 1);
-  return std::string(start) == kMagic;
-}
-
-BagIndex openBag(const std::string& path) {
-  boost::system::error_code error;
-  const boost::filesystem::file_status status = boost::filesystem::status(path, error);
-  if (status.type() == boost::filesystem::file_not_found) {
-    throw BagError(path + ": no such file");
-  }
-  if (status.type() == boost::filesystem::status_error) {
-    throw BagError(path + ": cannot be read (" + error.message() + ")");
-  }
-  if (!boost::filesystem::is_regular_file(status)) {
-    throw BagError(path + ": not a file; name a bag");
-  }
-  if (!startsLikeABag(path)) {
-    throw BagError(path + ": not a bag of ROS 1");
-  }
-  try {
-    return readBagIndex(path);
-  } catch (const rosbag::BagUnindexedException&) {
-    throw BagError(path + ": the bag has no index, its recording was not ended properly" +
-                   reindexHint(path));
-  } catch (const rosbag::BagException& error) {
-    throw BagError(path + ": the bag is truncated or damaged (" + error.what() + ")" +
-                   reindexHint(path));
-  } catch (const std::bad_alloc&) {  // damaged numbers ask for much memory
-    throw BagError(path + ": the bag is damaged, or there is too little memory" +
-                   reindexHint(path));
-  } catch (const std::length_error&) {
-    throw BagError(path + ": the bag is damaged" + reindexHint(path));
-  }
-}
-
 std::int64_t fromSeconds(double seconds) {
   return std::llround(seconds * 1e9);
 }
@@ -110,12 +67,28 @@ void TimeRange::validate() const {
   }
 }
 
+std::pair<std::int64_t, std::int64_t> limitsIn(const BagSummary& summary, const TimeRange& range) {
+  range.validate();
+  const std::int64_t start = summary.start + fromSeconds(range.start.value_or(0));
+  if (start > summary.end) {
+    throw BagError(summary.path + ": the time range begins after the recording's end (" +
+                   std::to_string(core::toSeconds(summary.end - summary.start)) + " s)");
+  }
+  return {start, range.end ? std::min(summary.start + fromSeconds(*range.end), summary.end)
+                           : summary.end};
+}
+
 BagReader::BagReader(const std::string& path)
     : index_(std::make_unique<const BagIndex>(openBag(path))) {
+  if (areOfEventLog(index_->connections)) {
+    throw BagError(
+        path + ": an event log, not a bag of the robot's messages; its recordings have numbers");
+  }
   if (index_->entries.empty()) {
     throw BagError(path + ": the bag holds no messages");
   }
   summary_.path = path;
+  summary_.bag = path.substr(path.rfind('/') + 1);
   summary_.start = index_->entries.front().stamp;
   summary_.end = index_->entries.back().stamp;
   summary_.messages = index_->entries.size();
@@ -129,21 +102,9 @@ BagReader::BagReader(const std::string& path)
 
 BagReader::~BagReader() = default;
 
-std::pair<std::int64_t, std::int64_t> BagReader::limits(const TimeRange& range) const {
-  range.validate();
-  return {
-      summary_.start + fromSeconds(range.start.value_or(0)),
-      range.end ? std::min(summary_.start + fromSeconds(*range.end), summary_.end) : summary_.end};
-}
-
 void BagReader::read(const Encoder& encoder, const TimeRange& range, const Handler& handler,
                      const Progress& progress) const {
-  const auto [from, to] = limits(range);
-  if (from > summary_.end) {
-    throw BagError(summary_.path + ": the time range begins after the recording's end (" +
-                   std::to_string(core::toSeconds(summary_.end - summary_.start)) + " s)");
-  }
-
+  const auto [from, to] = limitsIn(summary_, range);
   std::vector<std::optional<ConnectionEncoder>> encoders;
   encoders.reserve(index_->connections.size());
   for (const Connection& connection : index_->connections) {

@@ -73,6 +73,7 @@ self_awareness::Evidence toMessage(const evidence::Statistics& statistics) {
     self_awareness::RecordingCounts counts;
     counts.start.fromNSec(static_cast<std::uint64_t>(recording.start));
     counts.end.fromNSec(static_cast<std::uint64_t>(recording.end));
+    counts.robot_start.fromNSec(static_cast<std::uint64_t>(recording.robot_start));
     counts.longest_silence = recording.longest_silence;
     counts.events = recording.events;
     counts.longest_gaps = recording.longest_gaps;
@@ -132,7 +133,7 @@ evidence::Statistics fromMessage(const self_awareness::Evidence& message,
           "its recordings do not fit its event types");
     statistics.addRecording({nanoseconds(counts.start), nanoseconds(counts.end),
                              counts.longest_silence, counts.events, counts.longest_gaps,
-                             counts.firsts});
+                             counts.firsts, nanoseconds(counts.robot_start)});
   }
   for (core::EventId id = 0; id < n; ++id) {
     statistics.type(id) = typeOf(message, id);
@@ -185,6 +186,7 @@ self_awareness::RecordingFindings toMessage(const evidence::LimitFinder::Recordi
   self_awareness::RecordingFindings message;
   message.start.fromNSec(static_cast<std::uint64_t>(recording.start));
   message.end.fromNSec(static_cast<std::uint64_t>(recording.end));
+  message.robot_start.fromNSec(static_cast<std::uint64_t>(recording.robot_start));
   message.windows = recording.windows;
   for (const evidence::LimitFinder::Recording::Part& part : recording.parts) {
     message.part_windows.push_back(part.windows);
@@ -213,6 +215,7 @@ evidence::LimitFinder::Recording fromMessage(const self_awareness::RecordingFind
   LimitFinder::Recording recording;
   recording.start = nanoseconds(message.start);
   recording.end = nanoseconds(message.end);
+  recording.robot_start = nanoseconds(message.robot_start);
   recording.trained_on = true;
   recording.windows = message.windows;
   for (std::size_t k = 0; k < parts; ++k) {

@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "check.h"
+#include "self_awareness/ros/encoding_message.h"
 #include "self_awareness/ros/model/delays_message.h"
 #include "self_awareness/ros/model/evidence_message.h"
 
@@ -25,48 +26,12 @@ constexpr char kTopic[] = "/model";
 constexpr char kDelaysTopic[] = "/delays";
 constexpr std::array<const char*, 2> kEvidenceTopics{"/evidence/first", "/evidence/second"};
 
-self_awareness::Encoding encodingMessage(const EncodingRules& rules) {
-  self_awareness::Encoding message;
-  message.source = rules.source == EncodingRules::Source::kNone
-                       ? self_awareness::Encoding::SOURCE_NONE
-                       : self_awareness::Encoding::SOURCE_CALLERID;
-  message.include_topics = rules.include_topics;
-  message.exclude_topics = rules.exclude_topics;
-  message.include_sources = rules.include_sources;
-  message.exclude_sources = rules.exclude_sources;
-  for (const auto& [datatype, field] : rules.type_fields) {
-    self_awareness::TypeField type_field;
-    type_field.datatype = datatype;
-    type_field.field = field;
-    message.type_fields.push_back(type_field);
-  }
-  return message;
-}
-
 self_awareness::GraphEdge graphMessage(const core::SourceGraph::Edge& edge) {
   self_awareness::GraphEdge message;
   message.publisher = edge.publisher;
   message.topic = edge.topic;
   message.subscriber = edge.subscriber;
   return message;
-}
-
-EncodingRules rulesOf(const self_awareness::Encoding& message) {
-  EncodingRules rules;
-  const bool none = message.source == self_awareness::Encoding::SOURCE_NONE;
-  if (!none && message.source != self_awareness::Encoding::SOURCE_CALLERID) {
-    throw std::invalid_argument("its encoding has the unknown source '" + message.source + "'");
-  }
-  rules.source = none ? EncodingRules::Source::kNone : EncodingRules::Source::kCallerId;
-  rules.include_topics = message.include_topics;
-  rules.exclude_topics = message.exclude_topics;
-  rules.include_sources = message.include_sources;
-  rules.exclude_sources = message.exclude_sources;
-  for (const self_awareness::TypeField& type_field : message.type_fields) {
-    rules.type_fields[type_field.datatype] = type_field.field;
-  }
-  rules.validate();
-  return rules;
 }
 
 core::paper::DelayStatistics eventTypesOf(const self_awareness::Model& message) {
@@ -222,7 +187,7 @@ std::optional<core::evidence::Limits> TrainedModel::limits() const {
 self_awareness::Model toMessage(const TrainedModel& model) {
   self_awareness::Model message;
   message.stamp = model.stamp;
-  message.encoding = encodingMessage(model.encoding);
+  message.encoding = toMessage(model.encoding);
   message.window.fromNSec(model.window);
   message.bin_size = model.statistics.binning().bin_size;
   message.horizon_bins = model.statistics.binning().horizon_bins;
@@ -265,7 +230,7 @@ self_awareness::Model toMessage(const TrainedModel& model) {
 TrainedModel fromMessage(const self_awareness::Model& message) {
   TrainedModel model;
   model.stamp = message.stamp;
-  model.encoding = rulesOf(message.encoding);
+  model.encoding = fromMessage(message.encoding);
   model.window = message.window.toNSec();
   check(model.window > 0, "its windows have no length");
   model.statistics = eventTypesOf(message);

@@ -22,20 +22,22 @@ from self_awareness.workers import InProcess, Workers
 BUDGET = 0.5
 """False alarms an hour that limits are made for, by default."""
 
-Part = Tuple[np.ndarray, np.ndarray, Optional[int]]
-"""Stamps [ns] and ids of a recording; the half of the training it belongs to, None: neither."""
+Part = Tuple[np.ndarray, np.ndarray, Optional[int], int]
+"""Stamps [ns] and ids of a recording; the half of the training it belongs to, None: neither; when
+the robot was started [ns], 0: not known."""
 
 
 @dataclass(frozen=True)
 class HeldOut:
-    """A recording that was not trained on: stamps [ns] and ids."""
+    """A recording that was not trained on: stamps [ns], ids, and when the robot started [ns]."""
 
     stamps: np.ndarray
     ids: np.ndarray
+    robot_start: int = 0
 
     def parts(self, _: TrainedModel) -> Iterable[Part]:
         """Return what is to be judged."""
-        return [(self.stamps, self.ids, None)]
+        return [(self.stamps, self.ids, None, self.robot_start)]
 
 
 @dataclass(frozen=True)
@@ -48,7 +50,7 @@ class OfHalf:
 
     def parts(self, _: TrainedModel) -> Iterable[Part]:
         """Return what is to be judged."""
-        return [(self.stamps, self.ids, self.half)]
+        return [(self.stamps, self.ids, self.half, 0)]
 
 
 @dataclass(frozen=True)
@@ -78,10 +80,12 @@ class TrainedOn:
         else:
             known = {kind: index for index, kind in enumerate(trained.event_types)}
             ids = np.array([known[kind] for kind in events.event_types], np.uint32)[events.ids]
+        start = events.robot_start
         if self.half is not None:
-            return [(events.stamps, ids, self.half)]
+            return [(events.stamps, ids, self.half, start)]
         second = events.stamps >= events.middle
-        return [(events.stamps[~second], ids[~second], 0), (events.stamps[second], ids[second], 1)]
+        return [(events.stamps[~second], ids[~second], 0, start),
+                (events.stamps[second], ids[second], 1, start)]
 
 
 def held_out(trained: TrainedModel, found_in: Iterable[RecordingEvents], settle_time: int,
@@ -99,7 +103,8 @@ def held_out(trained: TrainedModel, found_in: Iterable[RecordingEvents], settle_
     """
     found_in = list(found_in)
     calibration = find(trained, settle_time, budget,
-                       [HeldOut(recording.stamps, recording.ids) for recording in found_in])
+                       [HeldOut(recording.stamps, recording.ids, recording.robot_start)
+                        for recording in found_in])
     calibration.method = 'held-out'
     calibration.recordings = [recording.recording for recording in found_in]
     return calibration
@@ -235,6 +240,6 @@ class _Judging:
 
 def _judge(judging: _Judging, task: Any) -> LimitFindings:
     finder = judging.finder.part()
-    for stamps, ids, half in task.parts(judging.trained):
-        finder.add_events(stamps, ids, half)
+    for stamps, ids, half, robot_start in task.parts(judging.trained):
+        finder.add_events(stamps, ids, half, robot_start)
     return finder.findings()

@@ -25,7 +25,7 @@ from self_awareness.calibration.threshold_rule import ThresholdRule
 from self_awareness.commands import cli
 from self_awareness.judging import evidence_judge, paper_judge
 from self_awareness.output_files import check_outputs, replacing
-from self_awareness.recordings import BagPart
+from self_awareness.recordings import BagPart, expand
 from self_awareness.reporting import evidence_report
 from self_awareness.reporting.plots import save_roc
 from self_awareness.stamps import SECOND_NS
@@ -78,10 +78,10 @@ def _calibrate(arguments: argparse.Namespace) -> None:
     for fault in arguments.inject:
         check_source(fault, trained.event_types)
 
-    normal = [cli.read_recording('calibrate', trained, part) for part in arguments.normal]
-    faulty = [dataclasses.replace(cli.read_recording('calibrate', trained, BagPart(part.path)),
+    normal = [cli.read_recording('calibrate', trained, part) for part in expand(arguments.normal)]
+    faulty = [dataclasses.replace(cli.read_recording('calibrate', trained, part.whole()),
                                   part=part)
-              for part in arguments.faulty]
+              for part in expand(arguments.faulty)]
     check_unseen(trained, normal + faulty)
     normal_runs = [normal_run(recording) for recording in normal]
     faulty_runs = ([recorded_fault(recording, trained.window) for recording in faulty]

@@ -12,7 +12,7 @@ from self_awareness import EVIDENCE_THRESHOLD, Alarm, Model, Suspect, Verdicts
 from self_awareness.commands import cli
 from self_awareness.judging import evidence_judge, paper_judge
 from self_awareness.output_files import check_outputs, replacing
-from self_awareness.recordings import BagPart, RecordingEvents
+from self_awareness.recordings import BagPart, RecordingEvents, expand
 from self_awareness.reporting.plots import ScorePlot, save_scores
 from self_awareness.results import check_result_bag, result_bag
 from self_awareness.stamps import SECOND_NS, utc
@@ -40,7 +40,8 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 def _score(arguments: argparse.Namespace) -> None:
     check_outputs([arguments.csv, arguments.plot, arguments.result_bag],
                   [part.path for part in arguments.bags] + [arguments.model])
-    check_result_bag(arguments.result_bag, arguments.bags)
+    parts = expand(arguments.bags)
+    check_result_bag(arguments.result_bag, parts)
     parameters = cli.detector_parameters(arguments)
     paper = arguments.detector == 'paper'
     trained = cli.load_model(arguments.model, arguments.detector, watched_only=not paper)
@@ -56,7 +57,7 @@ def _score(arguments: argparse.Namespace) -> None:
     judged: List[Tuple[RecordingEvents, Verdicts]] = []
     with result_bag(arguments.result_bag, arguments.model, trained,
                     threshold is not None) as replay:
-        for part in arguments.bags:
+        for part in parts:
             recording = cli.read_recording('score', trained, part)
             verdicts = judge(recording.stamps, recording.ids, recording.end,
                              recording.event_types, replay(recording))

@@ -13,7 +13,7 @@ from self_awareness.calibration.limits import TooLittleError
 from self_awareness.commands import cli
 from self_awareness.judging import BOTH, EVIDENCE, PAPER
 from self_awareness.output_files import check_outputs, check_replaces_model
-from self_awareness.recordings import BagPart
+from self_awareness.recordings import BagPart, expand
 from self_awareness.reporting.training_report import print_summary
 from self_awareness.stamps import SECOND_NS
 from self_awareness.training import live_graph, many_bags
@@ -123,8 +123,8 @@ def _counting(arguments: argparse.Namespace, base: Optional[TrainedModel]) -> Co
 
 def _parts(arguments: argparse.Namespace) -> List[BagPart]:
     """Return what is named; --start and --end are for bags that are named without a part."""
-    return [BagPart(part.path, arguments.start, arguments.end)
-            if part.start is None else part for part in arguments.bags]
+    return [replace(part, start=arguments.start, end=arguments.end)
+            if part.start is None else part for part in expand(arguments.bags)]
 
 
 def _workers(arguments: argparse.Namespace, bags: Sequence[str]) -> Workers:

@@ -67,8 +67,8 @@ def lines(found: List[Dict[str, Any]]) -> List[str]:
     if len(watched) > _MOST_LINES:
         text.append(f'and {len(watched) - _MOST_LINES} more (info --json lists all)')
     if found and max(relation['starts'] for relation in found) == 1:
-        text.append('all recordings are taken for one start of the robot: between those of '
-                    'different starts lies a minute or more')
+        text.append('all recordings are taken for one start of the robot: event logs say when it '
+                    'was started, and between bags of different starts lies a minute or more')
     if waiting:
         fewest = min(waiting, key=lambda each: each['starts_needed'] - each['starts'])
         more = fewest['starts_needed'] - fewest['starts']

@@ -14,9 +14,9 @@ from typing import Callable, Dict, Iterable, List, Optional, Sequence, Set, Tupl
 
 import numpy as np
 
-from self_awareness import (DEFAULT_WINDOW, PREDECESSORS, BagError, DetectorParameters,
-                            EncodingRules, LeastEffect, Recording, TrainedModel, Training,
-                            progress, read_events)
+from self_awareness import (DEFAULT_WINDOW, PREDECESSORS, BagError, BagSummary,
+                            DetectorParameters, EncodingRules, LeastEffect, Recording,
+                            TrainedModel, Training, progress, read_events, summarise_bag)
 from self_awareness.calibration import limits
 from self_awareness.calibration.limits import TrainedOn
 from self_awareness.judging import BOTH, EVIDENCE, PAPER
@@ -283,13 +283,14 @@ def _count_batch(how: _How, batch: _Batch) -> _Sum:
 def _count(how: _How, part: BagPart) -> _Sum:
     counting = how.counting
     try:
-        events, encoding = _read(counting, part)
+        events, encoding, summary = _read(counting, part)
         recording = Recording()
-        recording.bag = os.path.basename(part.path)
+        recording.bag = events.bag
         recording.start = int(events.stamps[0])
         recording.end = int(events.stamps[-1])
         recording.events = len(events.stamps)
         recording.fingerprint = events.fingerprint
+        recording.robot_start = events.robot_start
         training = Training(encoding, counting.bin_size, counting.window, counting.horizon_bins,
                             counting.predecessors, counting.detector in (EVIDENCE, BOTH),
                             counting.detector in (PAPER, BOTH), counting.least_effect)
@@ -297,13 +298,16 @@ def _count(how: _How, part: BagPart) -> _Sum:
                             events.middle if how.alone else None, recording,
                             _before(encoding, events))
         model = training.model(watch=False)
-        model.graph = _graph(part)
+        model.graph = _graph(part, summary)
     except BagError as error:
         raise _BadBag(str(error)) from error
     except ValueError as error:
         raise _BadBag(f'{part}: {error}') from error
     seconds = (recording.end - recording.start) / SECOND_NS
     lines = [f'{part}: {seconds:.1f} s, {recording.events} events']
+    if summary.dropped:
+        lines.append(f'{part}: warning: {summary.dropped} messages came too fast to be written, '
+                     'and are missing')
     if events.copied and encoding.source != 'none':
         lines.append(f'{part}: {_COPIED}')
     trained_on = TrainedOn(part, None if how.alone else 0, events)
@@ -318,28 +322,31 @@ def _before(encoding: EncodingRules,
     """
     if not events.part.start:
         return None
-    read = read_events(events.part.path, encoding, events.event_types, None, events.part.start)
+    part = events.part
+    read = read_events(part.path, encoding, events.event_types, None, part.start,
+                       recording=part.recording)
     return read.stamps, read.ids
 
 
-def _graph(part: BagPart) -> Set[Tuple[str, str, str]]:
-    """Return whose messages reach whom, if a file beside the bag says so."""
+def _graph(part: BagPart, summary: BagSummary) -> Set[Tuple[str, str, str]]:
+    """Return whose messages reach whom, if an event log or a file beside the bag says so."""
+    if summary.encoding is not None:
+        return RobotGraph(*summary.graph).edges()
     path = graph_file(part.path)
     return RobotGraph.load(path).edges() if os.path.exists(path) else set()
 
 
-def _read(counting: Counting, part: BagPart) -> Tuple[RecordingEvents, EncodingRules]:
+def _read(counting: Counting, part: BagPart) -> Tuple[RecordingEvents, EncodingRules, BagSummary]:
     encoding = counting.encoding or EncodingRules.defaults()
+    if counting.encoding is None and part.recording is not None:
+        encoding = summarise_bag(part.path, part.recording).encoding
     with progress.messages(os.path.basename(part.path)) as update:
-        read = read_events(part.path, encoding, [], part.start, part.end, update)
+        read = read_events(part.path, encoding, [], part.start, part.end, update, part.recording)
     if encoding.source == 'callerid' and not read.summary.has_sources:
         if counting.encoding is not None:
             raise ValueError(_NAMELESS)
         encoding.source = 'none'  # what was read stays the same
-    _, end = part.span(read.summary.start, read.summary.end)
-    events = RecordingEvents(part, read.event_types, read.stamps, read.ids, read.summary.start,
-                             end, read.summary.fingerprint,
-                             read.summary.one_sender_a_topic, read.summary.copied)
+    events = RecordingEvents.of(part, read)
     if len(events.stamps) == 0:
         raise ValueError('no message is an event by the encoding; a recording of "rosbag play" '
                          'needs "source: none" (--encoding), and a part that is too short another '
@@ -347,4 +354,4 @@ def _read(counting: Counting, part: BagPart) -> Tuple[RecordingEvents, EncodingR
     if len(events.stamps) == 1:
         raise ValueError('one event only, there is no delay to learn; leave it out or record for '
                          'longer')
-    return events, encoding
+    return events, encoding, read.summary

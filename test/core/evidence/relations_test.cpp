@@ -52,9 +52,9 @@ SourceGraph connected(const std::string& topic, int listeners = 1) {
 
 TEST(NumberOfStarts, RecordingsWithinAMinuteAreOneStart) {
   const auto seconds = [](std::vector<Span> spans) {
-    for (auto& [start, end] : spans) {
-      start *= kSecond;
-      end *= kSecond;
+    for (Span& span : spans) {
+      span.start *= kSecond;
+      span.end *= kSecond;
     }
     return numberOfStarts(spans);
   };
@@ -65,6 +65,18 @@ TEST(NumberOfStarts, RecordingsWithinAMinuteAreOneStart) {
   EXPECT_EQ(seconds({{160, 200}, {0, 100}}), 2U) << "in any order";
   EXPECT_EQ(seconds({{0, 1000}, {10, 20}, {1030, 1100}}), 1U) << "the longer one goes on";
   EXPECT_EQ(seconds({{0, 10}, {50, 60}, {100, 110}, {500, 510}}), 2U);
+}
+
+TEST(NumberOfStarts, WhenTheRobotWasStartedTellsStartsApart) {
+  const auto seconds = [](std::int64_t start, std::int64_t end, std::int64_t robot_start) {
+    return Span{start * kSecond, end * kSecond, robot_start * kSecond};
+  };
+  EXPECT_EQ(numberOfStarts({seconds(10, 20, 5), seconds(25, 30, 22)}), 2U) << "soon after";
+  EXPECT_EQ(numberOfStarts({seconds(10, 20, 5), seconds(900, 950, 5)}), 1U) << "long after";
+  EXPECT_EQ(startsOf({seconds(900, 950, 5), seconds(25, 30, 22), seconds(10, 20, 5)}),
+            (std::vector<std::size_t>{0, 1, 0}));
+  EXPECT_EQ(numberOfStarts({seconds(10, 20, 5), seconds(10, 20, 0), seconds(30, 40, 0)}), 2U)
+      << "of the others it is not known";
 }
 
 TEST(Relations, TheOwnHistoryNeedsNoReason) {
@@ -144,7 +156,7 @@ TEST(Relations, RecordingsThatWereNotTrainedOnCountIfTheyAreOfOtherStarts) {
   std::vector<Span> more{{10 * kSecond, 30 * kSecond}};
   EXPECT_EQ(relations.delays(kA, kB, more).starts, 1U);
   for (int start = 1; start < 6; ++start) {
-    more.emplace_back(start * kStart, start * kStart + kLength);
+    more.push_back({start * kStart, start * kStart + kLength});
   }
   EXPECT_EQ(relations.delays(kA, kB, more).starts, 6U);
   EXPECT_TRUE(relations.delays(kA, kB, more).watched);

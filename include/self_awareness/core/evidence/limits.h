@@ -36,10 +36,11 @@ class LimitFinder : private WindowObserver {
   };
   /// What one recording says. It is cut into at most kMostParts parts of one length.
   struct Recording {
-    std::int64_t start = 0;     ///< stamp of the first event [ns]
-    std::int64_t end = 0;       ///< stamp of the last one [ns]
-    bool trained_on = false;    ///< it was judged by what the other half of the training says
-    std::uint64_t windows = 0;  ///< looked at
+    std::int64_t start = 0;        ///< stamp of the first event [ns]
+    std::int64_t end = 0;          ///< stamp of the last one [ns]
+    std::int64_t robot_start = 0;  ///< when the robot was started [ns]; 0: not known
+    bool trained_on = false;       ///< it was judged by what the other half of the training says
+    std::uint64_t windows = 0;     ///< looked at
     /// A part of it.
     struct Part {
       std::uint64_t windows = 0;               ///< looked at
@@ -61,7 +62,8 @@ class LimitFinder : private WindowObserver {
   /// Starts a recording: the next events belong to it.
   /// @param model that judges it: that of the constructor, or one with the same tracks that was
   /// learned from the other half of the training (CrossFit)
-  void startRecording(std::shared_ptr<const Model> model);
+  /// @param robot_start when the robot was started [ns]; 0: not known
+  void startRecording(std::shared_ptr<const Model> model, std::int64_t robot_start = 0);
   void add(const Event& event);
   /// Ends the recording.
   void finish();
@@ -122,6 +124,7 @@ class LimitFinder : private WindowObserver {
   std::shared_ptr<const Model> judging_;
   std::unique_ptr<Scorer> scorer_;
   Windows windows_;
+  std::int64_t robot_start_ = 0;             // of the recording [ns]; 0: not known
   std::optional<std::int64_t> first_stamp_;  // of the recording [ns]
   Recording recording_;                      // the open one
   std::uint64_t part_windows_ = 0;           // length of its parts

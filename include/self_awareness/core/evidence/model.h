@@ -50,8 +50,10 @@ class Model {
   const std::vector<Track>& tracks() const { return tracks_; }
   /// Names of the components: sources, or topics where the sources are not known.
   const std::vector<std::string>& components() const { return components_; }
-  /// Index of the component that an event type comes from.
-  std::size_t component(EventId id) const { return component_of_.at(id); }
+  /// The component that an event type comes from.
+  const std::string& component(EventId id) const { return components_[component_of_.at(id)]; }
+  /// Its index in components().
+  std::size_t componentIndex(EventId id) const { return component_of_.at(id); }
 
   /// Evidence of channel overdue [nat]: -log of the probability, at a random moment of normal
   /// operation, of an age of at least `age` [ns] (docs/method.md, section 3.2).

@@ -69,6 +69,7 @@ class Statistics {
     /// From the start of the whole recording to the first event [ns] by id, as long as events; -1:
     /// it did not come.
     std::vector<std::int64_t> firsts;
+    std::int64_t robot_start = 0;  ///< when the robot was started [ns]; 0: not known
   };
   /// An ordered pair of event types, `from` before `to`.
   struct Pair {
@@ -140,7 +141,9 @@ class Trainer {
 
   /// Ends the recording: the next event belongs to a new one.
   /// @param since when that one began [ns], if not all of it is counted
-  void startRecording(std::optional<std::int64_t> since = std::nullopt);
+  /// @param robot_start when the robot was started [ns]; 0: not known
+  void startRecording(std::optional<std::int64_t> since = std::nullopt,
+                      std::int64_t robot_start = 0);
   /// An event of the recording before those that are counted: it only says when its type came
   /// first.
   void addBefore(const Event& event);

@@ -10,6 +10,7 @@
 
 #include "self_awareness/core/stream/event.h"
 #include "self_awareness/ros/encoding.h"
+#include "self_awareness/ros/graph.h"
 
 namespace self_awareness::ros1 {
 
@@ -28,14 +29,16 @@ struct TimeRange {
   void validate() const;
 };
 
-/// What a bag's index says about the bag.
+/// What is known of a recording without reading its events: of a bag, or in an event log.
 struct BagSummary {
   std::string path;
-  std::int64_t start = 0;      ///< of the first message [ns]
-  std::int64_t end = 0;        ///< of the last message [ns]
-  std::uint64_t messages = 0;  ///< in the bag, whether they are events or not
+  /// File name of the bag; of an event log, of the bag that it was made of, if it was.
+  std::string bag;
+  std::int64_t start = 0;      ///< of the first message, or when listening began [ns]
+  std::int64_t end = 0;        ///< of the last message, or when listening ended [ns]
+  std::uint64_t messages = 0;  ///< in the bag, whether they are events or not; events of a log
   /// Hash over the time and the topic of every message. It does not depend on compression, or on
-  /// the program that wrote the messages again.
+  /// the program that wrote the messages again. A log has that of its bag, or a random one.
   std::uint64_t fingerprint = 0;
   bool has_sources = false;  ///< at least one connection names its publisher
   /// rosbag's Python library wrote the bag: it keeps one connection a topic. If several nodes
@@ -43,7 +46,17 @@ struct BagSummary {
   bool one_sender_a_topic = false;
   /// It is so of a recording that was copied: by `rosbag filter`, `compress` or `decompress`.
   bool copied = false;
+
+  // Of event logs only:
+  std::optional<EncodingRules> encoding;  ///< by which messages became events
+  std::int64_t robot_start = 0;  ///< recordings that share it are of one start [ns]; 0: not known
+  Graph graph;                   ///< all who ever published or subscribed
+  std::uint64_t dropped = 0;     ///< messages that came too fast to be written
 };
+
+/// First and last stamp [ns] of a range of a recording.
+/// @throw std::invalid_argument if the range is not valid
+std::pair<std::int64_t, std::int64_t> limitsIn(const BagSummary& summary, const TimeRange& range);
 
 struct BagIndex;
 
@@ -61,9 +74,6 @@ class BagReader {
   ~BagReader();
 
   const BagSummary& summary() const { return summary_; }
-  /// First and last stamp [ns] of a range.
-  /// @throw std::invalid_argument if the range is not valid
-  std::pair<std::int64_t, std::int64_t> limits(const TimeRange& range) const;
   /// Calls the handler with every event of the range, in the order of the recording.
   /// @throw BagError if the range holds no time of the recording or a message cannot be read
   /// @throw std::invalid_argument if a type field does not fit a message's definition

@@ -1,7 +1,6 @@
 #include <pybind11/stl.h>
 #include <ros/serialization.h>
 
-#include <cmath>
 #include <map>
 #include <optional>
 #include <set>
@@ -12,196 +11,13 @@
 
 #include "bindings.h"
 #include "core/evidence/log_bins.h"
-#include "self_awareness/ros/bag/bag_reader.h"
 #include "self_awareness/ros/model/evidence_message.h"
 #include "self_awareness/ros/model/model_bytes.h"
 #include "self_awareness/ros/model/model_file.h"
 #include "self_awareness/ros/model/model_merge.h"
-#include "self_awareness/ros/stable_name.h"
 
 namespace self_awareness::python {
 namespace {
-
-// The progress bar is in Python, and Ctrl-C must work while C++ reads.
-ros1::BagReader::Progress progressTo(const py::object& callback) {
-  return [&callback](std::uint64_t done, std::uint64_t all) {
-    if (PyErr_CheckSignals() != 0) {
-      throw py::error_already_set();
-    }
-    if (!callback.is_none()) {
-      callback(done, all);
-    }
-  };
-}
-
-ros1::TimeRange timeRange(std::optional<double> start, std::optional<double> end) {
-  ros1::TimeRange range{start, end};
-  range.validate();
-  return range;
-}
-
-/// The events of a recording, in memory.
-struct RecordedEvents {
-  ros1::BagSummary summary;
-  std::vector<core::EventType> event_types;  // the known ones first, then the new ones
-  std::vector<std::int64_t> stamps;          // [ns]
-  std::vector<std::uint32_t> ids;
-};
-
-// The array is a view of its owner's data, and keeps the owner alive: events may be many.
-template <typename T>
-py::array_t<T> viewOf(const std::vector<T>& values, const py::object& owner) {
-  py::array_t<T> view(static_cast<py::ssize_t>(values.size()), values.data(), owner);
-  view.attr("setflags")(py::arg("write") = false);
-  return view;
-}
-
-RecordedEvents readEvents(const std::string& path, const ros1::EncodingRules& rules,
-                          const std::vector<core::EventType>& known, const ros1::TimeRange& range,
-                          const py::object& progress) {
-  const ros1::BagReader reader(path);
-  core::Vocabulary vocabulary(known);
-  const ros1::Encoder encoder(
-      rules, [&](const core::EventType& type) { return vocabulary.intern(type); });
-  RecordedEvents events;
-  events.summary = reader.summary();
-  events.stamps.reserve(events.summary.messages);
-  events.ids.reserve(events.summary.messages);
-  reader.read(
-      encoder, range,
-      [&](const core::Event& event) {
-        events.stamps.push_back(event.stamp);
-        events.ids.push_back(event.id);
-      },
-      progressTo(progress));
-  events.event_types = vocabulary.types();
-  return events;
-}
-
-using EventTypeState = std::tuple<std::string, std::string, std::string>;
-using EncodingState =
-    std::tuple<bool, std::vector<std::string>, std::vector<std::string>, std::vector<std::string>,
-               std::vector<std::string>, std::map<std::string, std::string>>;
-
-EncodingState stateOf(const ros1::EncodingRules& rules) {
-  return {rules.source == ros1::EncodingRules::Source::kNone,
-          rules.include_topics,
-          rules.exclude_topics,
-          rules.include_sources,
-          rules.exclude_sources,
-          rules.type_fields};
-}
-
-ros1::EncodingRules fromState(const EncodingState& state) {
-  ros1::EncodingRules rules;
-  bool none = false;
-  std::tie(none, rules.include_topics, rules.exclude_topics, rules.include_sources,
-           rules.exclude_sources, rules.type_fields) = state;
-  rules.source =
-      none ? ros1::EncodingRules::Source::kNone : ros1::EncodingRules::Source::kCallerId;
-  return rules;
-}
-
-void bindEncoding(py::module& m) {
-  m.def("stable_name", &ros1::stableName, py::arg("name"),
-        "A node's name without the number that makes it anonymous.");
-  py::class_<core::EventType>(m, "EventType", "What happened: (source, scope, type).")
-      .def(py::init<std::string, std::string, std::string>(), py::arg("source"), py::arg("scope"),
-           py::arg("type"))
-      .def_readonly("source", &core::EventType::source)
-      .def_readonly("scope", &core::EventType::scope)
-      .def_readonly("type", &core::EventType::type)
-      .def("__str__", &core::toString)
-      .def("__repr__",
-           [](const core::EventType& self) { return "<EventType " + core::toString(self) + ">"; })
-      .def("__eq__", [](const core::EventType& a, const core::EventType& b) { return a == b; })
-      .def("__hash__",
-           [](const core::EventType& self) { return py::hash(py::str(core::toString(self))); })
-      .def(py::pickle(
-          [](const core::EventType& self) {
-            return EventTypeState{self.source, self.scope, self.type};
-          },
-          [](const EventTypeState& state) {
-            return core::EventType{std::get<0>(state), std::get<1>(state), std::get<2>(state)};
-          }));
-
-  py::class_<ros1::EncodingRules>(m, "EncodingRules",
-                                  "How messages become events; see config/encoding.yaml.")
-      .def(py::init<>(), "Sources told apart, nothing excluded, no type fields.")
-      .def_static("defaults", &ros1::EncodingRules::defaults)
-      .def_property(
-          "source",
-          [](const ros1::EncodingRules& self) {
-            return self.source == ros1::EncodingRules::Source::kNone ? "none" : "callerid";
-          },
-          [](ros1::EncodingRules& self, const std::string& source) {
-            if (source != "none" && source != "callerid") {
-              throw std::invalid_argument("source must be 'callerid' or 'none', not '" + source +
-                                          "'");
-            }
-            self.source = source == "none" ? ros1::EncodingRules::Source::kNone
-                                           : ros1::EncodingRules::Source::kCallerId;
-          },
-          "'callerid' or 'none'")
-      .def_readwrite("include_topics", &ros1::EncodingRules::include_topics)
-      .def_readwrite("exclude_topics", &ros1::EncodingRules::exclude_topics)
-      .def_readwrite("include_sources", &ros1::EncodingRules::include_sources)
-      .def_readwrite("exclude_sources", &ros1::EncodingRules::exclude_sources)
-      .def_readwrite("type_fields", &ros1::EncodingRules::type_fields)
-      .def("validate", &ros1::EncodingRules::validate,
-           "ValueError if a pattern is no regular expression.")
-      .def(py::pickle(&stateOf, &fromState))
-      .def("__eq__",
-           [](const ros1::EncodingRules& a, const ros1::EncodingRules& b) { return a == b; });
-}
-
-void bindBags(py::module& m) {
-  py::register_exception<ros1::BagError>(m, "BagError", PyExc_RuntimeError);
-
-  py::class_<ros1::BagSummary>(m, "BagSummary", "What a bag's index says about it.")
-      .def_readonly("path", &ros1::BagSummary::path)
-      .def_readonly("start", &ros1::BagSummary::start, "stamp of the first message [ns]")
-      .def_readonly("end", &ros1::BagSummary::end, "stamp of the last message [ns]")
-      .def_readonly("messages", &ros1::BagSummary::messages)
-      .def_readonly("fingerprint", &ros1::BagSummary::fingerprint)
-      .def_readonly("has_sources", &ros1::BagSummary::has_sources)
-      .def_readonly("one_sender_a_topic", &ros1::BagSummary::one_sender_a_topic,
-                    "Python's rosbag wrote it; further senders are under the name of the first")
-      .def_readonly("copied", &ros1::BagSummary::copied,
-                    "the same of a recording: by rosbag filter, compress or decompress");
-  m.def(
-      "summarise_bag", [](const std::string& path) { return ros1::BagReader(path).summary(); },
-      py::arg("path"), "BagSummary of a bag. Raises BagError.");
-
-  py::class_<RecordedEvents>(m, "RecordedEvents", "The events of a recording, in memory.")
-      .def_readonly("summary", &RecordedEvents::summary)
-      .def_readonly("event_types", &RecordedEvents::event_types, "by id")
-      .def_property_readonly(
-          "stamps",
-          [](const py::object& self) {
-            return viewOf(self.cast<const RecordedEvents&>().stamps, self);
-          },
-          "int64 [ns], read-only")
-      .def_property_readonly(
-          "ids",
-          [](const py::object& self) {
-            return viewOf(self.cast<const RecordedEvents&>().ids, self);
-          },
-          "uint32, read-only");
-  m.def(
-      "read_events",
-      [](const std::string& path, const ros1::EncodingRules& encoding,
-         const std::vector<core::EventType>& event_types, std::optional<double> start,
-         std::optional<double> end, const py::object& progress) {
-        return readEvents(path, encoding, event_types, timeRange(start, end), progress);
-      },
-      py::arg("path"), py::arg("encoding"),
-      py::arg("event_types") = std::vector<core::EventType>(), py::arg("start") = py::none(),
-      py::arg("end") = py::none(), py::arg("progress") = py::none(),
-      "RecordedEvents of a bag: stamps (int64 [ns]) and ids (uint32). Ids below len(event_types)\n"
-      "stand for these, the ids after them for new types. start, end: seconds from the\n"
-      "recording's first message. Calls progress(done, all) from time to time. Raises BagError.");
-}
 
 std::vector<std::pair<std::int64_t, std::uint64_t>> delaysOf(const ros1::TrainedModel& model,
                                                              core::EventId from,
@@ -220,6 +36,8 @@ std::vector<std::pair<std::int64_t, std::uint64_t>> delaysOf(const ros1::Trained
 // Of an edge of the graph: publisher, topic, subscriber.
 using EdgeState = std::tuple<std::string, std::string, std::string>;
 
+}  // namespace
+
 void bindModel(py::module& m) {
   py::register_exception<ros1::ModelFileError>(m, "ModelFileError", PyExc_RuntimeError);
 
@@ -233,6 +51,11 @@ void bindModel(py::module& m) {
       .def_property(
           "end", [](const self_awareness::Recording& self) { return self.end.toNSec(); },
           [](self_awareness::Recording& self, std::uint64_t ns) { self.end.fromNSec(ns); }, "[ns]")
+      .def_property(
+          "robot_start",
+          [](const self_awareness::Recording& self) { return self.robot_start.toNSec(); },
+          [](self_awareness::Recording& self, std::uint64_t ns) { self.robot_start.fromNSec(ns); },
+          "[ns]; 0: not known")
       .def_readwrite("events", &self_awareness::Recording::events)
       .def_readwrite("fingerprint", &self_awareness::Recording::fingerprint);
 
@@ -402,14 +225,6 @@ void bindModel(py::module& m) {
           py::arg("from_id"), py::arg("to_id"), py::arg("fraction"),
           "by the paper's counts: the bin up to which the fraction of the pair's delays lies;\n"
           "0 if there is none");
-}
-
-}  // namespace
-
-void bindFiles(py::module& m) {
-  bindEncoding(m);
-  bindBags(m);
-  bindModel(m);
 }
 
 }  // namespace self_awareness::python

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "self_awareness/ros/bag/bag_reader.h"
+#include "self_awareness/ros/encoding.h"
+
+namespace self_awareness::ros1 {
+
+/// Number of recordings in an event log; none: the file is no event log, or cannot be read.
+std::optional<std::size_t> recordingsInEventLog(const std::string& path);
+
+/// Reads one recording of an event log as a stream of events, like BagReader.
+class EventLogReader {
+ public:
+  /// @param recording its number in the log, from 0
+  /// @throw BagError if the file cannot be read, is no event log, is one of another version or
+  /// damaged, or does not hold this recording
+  EventLogReader(const std::string& path, std::size_t recording);
+  ~EventLogReader();
+
+  const BagSummary& summary() const { return summary_; }
+  /// Calls the handler with every event of the range, in the order in which they were heard.
+  /// @param rules that the events must have been made by
+  /// @throw BagError if they were made by other rules, the range holds no time of the recording,
+  /// or a part is missing or damaged
+  void read(const EncodingRules& rules, const EventIds& ids, const TimeRange& range,
+            const BagReader::Handler& handler,
+            const BagReader::Progress& progress = nullptr) const;
+
+ private:
+  struct Parts;
+
+  std::unique_ptr<const Parts> parts_;
+  BagSummary summary_;
+};
+
+}  // namespace self_awareness::ros1

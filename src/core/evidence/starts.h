@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace self_awareness::core::evidence {
+
+/// When something was recorded [ns].
+struct Span {
+  std::int64_t start = 0;        ///< first stamp
+  std::int64_t end = 0;          ///< last stamp
+  std::int64_t robot_start = 0;  ///< when the robot was started; 0: not known
+};
+
+/// Numbers the starts of the robot that recordings come from, from 0. Where it is known when the
+/// robot was started, this tells starts apart; other recordings are of one start if they overlap,
+/// or follow each other within a minute (docs/method.md, section 3.6).
+std::vector<std::size_t> startsOf(const std::vector<Span>& recordings);
+
+/// Number of these starts.
+std::size_t numberOfStarts(const std::vector<Span>& recordings);
+
+}  // namespace self_awareness::core::evidence

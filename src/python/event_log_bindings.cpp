@@ -1,0 +1,51 @@
+#include <pybind11/stl.h>
+
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+
+#include "bindings.h"
+#include "self_awareness/ros/bag/bag_reader.h"
+#include "self_awareness/ros/bag/bag_to_event_log.h"
+#include "self_awareness/ros/bag/event_log_writer.h"
+
+namespace self_awareness::python {
+namespace {
+
+using NodesOfTopics = std::map<std::string, std::set<std::string>>;
+
+ros1::Graph graphOf(const NodesOfTopics& publishers, const NodesOfTopics& subscribers) {
+  ros1::Graph graph;
+  for (const auto& [topic, nodes] : publishers) {
+    graph.topics[topic].publishers = nodes;
+  }
+  for (const auto& [topic, nodes] : subscribers) {
+    graph.topics[topic].subscribers = nodes;
+  }
+  return graph;
+}
+
+}  // namespace
+
+void bindEventLogs(py::module& m) {
+  py::class_<ros1::EventLogWriter>(m, "EventLogWriter", "Writes an event log.")
+      .def(py::init<std::string>(), py::arg("path"), "Replaces a file that is there.")
+      .def(
+          "add_bag",
+          [](ros1::EventLogWriter& self, const std::string& path,
+             const ros1::EncodingRules& encoding, const NodesOfTopics& publishers,
+             const NodesOfTopics& subscribers, const py::object& progress) {
+            const ros1::BagReader bag(path);
+            ros1::addToEventLog(bag, encoding, graphOf(publishers, subscribers), self,
+                                progressTo(progress));
+            return bag.summary();
+          },
+          py::arg("path"), py::arg("encoding"), py::arg("publishers") = NodesOfTopics(),
+          py::arg("subscribers") = NodesOfTopics(), py::arg("progress") = py::none(),
+          "Adds a bag as a recording of its own, with the nodes of its topics where they are\n"
+          "known; returns its BagSummary. After an error the log is of no use.")
+      .def("close", &ros1::EventLogWriter::close, "Ends the file; without that it has no index.");
+}
+
+}  // namespace self_awareness::python

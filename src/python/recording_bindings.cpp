@@ -1,0 +1,234 @@
+#include <pybind11/stl.h>
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "bindings.h"
+#include "self_awareness/ros/bag/bag_reader.h"
+#include "self_awareness/ros/bag/event_log_reader.h"
+#include "self_awareness/ros/stable_name.h"
+
+namespace self_awareness::python {
+namespace {
+
+ros1::TimeRange timeRange(std::optional<double> start, std::optional<double> end) {
+  ros1::TimeRange range{start, end};
+  range.validate();
+  return range;
+}
+
+/// The events of a recording, in memory.
+struct RecordedEvents {
+  ros1::BagSummary summary;
+  std::vector<core::EventType> event_types;  // the known ones first, then the new ones
+  std::vector<std::int64_t> stamps;          // [ns]
+  std::vector<std::uint32_t> ids;
+};
+
+// The array is a view of its owner's data, and keeps the owner alive: events may be many.
+template <typename T>
+py::array_t<T> viewOf(const std::vector<T>& values, const py::object& owner) {
+  py::array_t<T> view(static_cast<py::ssize_t>(values.size()), values.data(), owner);
+  view.attr("setflags")(py::arg("write") = false);
+  return view;
+}
+
+/// Which recording of a file: none of a bag, which is one; its number, from 0, of an event log.
+using InLog = std::optional<std::size_t>;
+
+ros1::BagSummary summaryOf(const std::string& path, const InLog& recording) {
+  return recording ? ros1::EventLogReader(path, *recording).summary()
+                   : ros1::BagReader(path).summary();
+}
+
+RecordedEvents readEvents(const std::string& path, const InLog& recording,
+                          const ros1::EncodingRules& rules,
+                          const std::vector<core::EventType>& known, const ros1::TimeRange& range,
+                          const py::object& progress) {
+  core::Vocabulary vocabulary(known);
+  const ros1::EventIds ids = [&](const core::EventType& type) { return vocabulary.intern(type); };
+  RecordedEvents events;
+  const auto handler = [&](const core::Event& event) {
+    events.stamps.push_back(event.stamp);
+    events.ids.push_back(event.id);
+  };
+  if (recording) {
+    const ros1::EventLogReader reader(path, *recording);
+    events.summary = reader.summary();
+    reader.read(rules, ids, range, handler, progressTo(progress));
+  } else {
+    const ros1::BagReader reader(path);
+    events.summary = reader.summary();
+    events.stamps.reserve(events.summary.messages);
+    events.ids.reserve(events.summary.messages);
+    reader.read(ros1::Encoder(rules, ids), range, handler, progressTo(progress));
+  }
+  events.event_types = vocabulary.types();
+  return events;
+}
+
+using EventTypeState = std::tuple<std::string, std::string, std::string>;
+using EncodingState =
+    std::tuple<bool, std::vector<std::string>, std::vector<std::string>, std::vector<std::string>,
+               std::vector<std::string>, std::map<std::string, std::string>>;
+
+EncodingState stateOf(const ros1::EncodingRules& rules) {
+  return {rules.source == ros1::EncodingRules::Source::kNone,
+          rules.include_topics,
+          rules.exclude_topics,
+          rules.include_sources,
+          rules.exclude_sources,
+          rules.type_fields};
+}
+
+ros1::EncodingRules fromState(const EncodingState& state) {
+  ros1::EncodingRules rules;
+  bool none = false;
+  std::tie(none, rules.include_topics, rules.exclude_topics, rules.include_sources,
+           rules.exclude_sources, rules.type_fields) = state;
+  rules.source =
+      none ? ros1::EncodingRules::Source::kNone : ros1::EncodingRules::Source::kCallerId;
+  return rules;
+}
+
+void bindEncoding(py::module& m) {
+  m.def("stable_name", &ros1::stableName, py::arg("name"),
+        "A node's name without the number that makes it anonymous.");
+  py::class_<core::EventType>(m, "EventType", "What happened: (source, scope, type).")
+      .def(py::init<std::string, std::string, std::string>(), py::arg("source"), py::arg("scope"),
+           py::arg("type"))
+      .def_readonly("source", &core::EventType::source)
+      .def_readonly("scope", &core::EventType::scope)
+      .def_readonly("type", &core::EventType::type)
+      .def("__str__", &core::toString)
+      .def("__repr__",
+           [](const core::EventType& self) { return "<EventType " + core::toString(self) + ">"; })
+      .def("__eq__", [](const core::EventType& a, const core::EventType& b) { return a == b; })
+      .def("__hash__",
+           [](const core::EventType& self) { return py::hash(py::str(core::toString(self))); })
+      .def(py::pickle(
+          [](const core::EventType& self) {
+            return EventTypeState{self.source, self.scope, self.type};
+          },
+          [](const EventTypeState& state) {
+            return core::EventType{std::get<0>(state), std::get<1>(state), std::get<2>(state)};
+          }));
+
+  py::class_<ros1::EncodingRules>(m, "EncodingRules",
+                                  "How messages become events; see config/encoding.yaml.")
+      .def(py::init<>(), "Sources told apart, nothing excluded, no type fields.")
+      .def_static("defaults", &ros1::EncodingRules::defaults)
+      .def_property(
+          "source",
+          [](const ros1::EncodingRules& self) {
+            return self.source == ros1::EncodingRules::Source::kNone ? "none" : "callerid";
+          },
+          [](ros1::EncodingRules& self, const std::string& source) {
+            if (source != "none" && source != "callerid") {
+              throw std::invalid_argument("source must be 'callerid' or 'none', not '" + source +
+                                          "'");
+            }
+            self.source = source == "none" ? ros1::EncodingRules::Source::kNone
+                                           : ros1::EncodingRules::Source::kCallerId;
+          },
+          "'callerid' or 'none'")
+      .def_readwrite("include_topics", &ros1::EncodingRules::include_topics)
+      .def_readwrite("exclude_topics", &ros1::EncodingRules::exclude_topics)
+      .def_readwrite("include_sources", &ros1::EncodingRules::include_sources)
+      .def_readwrite("exclude_sources", &ros1::EncodingRules::exclude_sources)
+      .def_readwrite("type_fields", &ros1::EncodingRules::type_fields)
+      .def("validate", &ros1::EncodingRules::validate,
+           "ValueError if a pattern is no regular expression.")
+      .def(py::pickle(&stateOf, &fromState))
+      .def("__eq__",
+           [](const ros1::EncodingRules& a, const ros1::EncodingRules& b) { return a == b; });
+}
+
+void bindBags(py::module& m) {
+  py::register_exception<ros1::BagError>(m, "BagError", PyExc_RuntimeError);
+
+  py::class_<ros1::BagSummary>(m, "BagSummary", "What is known of a recording without its events.")
+      .def_readonly("path", &ros1::BagSummary::path)
+      .def_readonly("bag", &ros1::BagSummary::bag,
+                    "file name; of an event log, that of the bag that it was made of")
+      .def_readonly("start", &ros1::BagSummary::start,
+                    "stamp of the first message, or when listening began [ns]")
+      .def_readonly("end", &ros1::BagSummary::end,
+                    "stamp of the last message, or when listening ended [ns]")
+      .def_readonly("messages", &ros1::BagSummary::messages, "of an event log: events")
+      .def_readonly("fingerprint", &ros1::BagSummary::fingerprint)
+      .def_readonly("has_sources", &ros1::BagSummary::has_sources)
+      .def_readonly("one_sender_a_topic", &ros1::BagSummary::one_sender_a_topic,
+                    "Python's rosbag wrote it; further senders are under the name of the first")
+      .def_readonly("copied", &ros1::BagSummary::copied,
+                    "the same of a recording: by rosbag filter, compress or decompress")
+      .def_readonly("encoding", &ros1::BagSummary::encoding, "of an event log; None: a bag")
+      .def_readonly("robot_start", &ros1::BagSummary::robot_start, "[ns]; 0: not known")
+      .def_readonly("dropped", &ros1::BagSummary::dropped,
+                    "messages that came too fast for an event log")
+      .def_property_readonly(
+          "graph",
+          [](const ros1::BagSummary& self) {
+            std::map<std::string, std::set<std::string>> publishers;
+            std::map<std::string, std::set<std::string>> subscribers;
+            for (const auto& [name, topic] : self.graph.topics) {
+              publishers[name] = topic.publishers;
+              subscribers[name] = topic.subscribers;
+            }
+            return std::make_pair(publishers, subscribers);
+          },
+          "of an event log: publishers and subscribers, each a dict of sets of nodes by topic");
+  m.def(
+      "summarise_bag",
+      [](const std::string& path, const InLog& recording) { return summaryOf(path, recording); },
+      py::arg("path"), py::arg("recording") = py::none(),
+      "BagSummary of a bag, or of a recording in an event log (see read_events). Raises "
+      "BagError.");
+  m.def("recordings_in_event_log", &ros1::recordingsInEventLog, py::arg("path"),
+        "Number of recordings in an event log; None: it is none, or cannot be read.");
+
+  py::class_<RecordedEvents>(m, "RecordedEvents", "The events of a recording, in memory.")
+      .def_readonly("summary", &RecordedEvents::summary)
+      .def_readonly("event_types", &RecordedEvents::event_types, "by id")
+      .def_property_readonly(
+          "stamps",
+          [](const py::object& self) {
+            return viewOf(self.cast<const RecordedEvents&>().stamps, self);
+          },
+          "int64 [ns], read-only")
+      .def_property_readonly(
+          "ids",
+          [](const py::object& self) {
+            return viewOf(self.cast<const RecordedEvents&>().ids, self);
+          },
+          "uint32, read-only");
+  m.def(
+      "read_events",
+      [](const std::string& path, const ros1::EncodingRules& encoding,
+         const std::vector<core::EventType>& event_types, std::optional<double> start,
+         std::optional<double> end, const py::object& progress, const InLog& recording) {
+        return readEvents(path, recording, encoding, event_types, timeRange(start, end), progress);
+      },
+      py::arg("path"), py::arg("encoding"),
+      py::arg("event_types") = std::vector<core::EventType>(), py::arg("start") = py::none(),
+      py::arg("end") = py::none(), py::arg("progress") = py::none(),
+      py::arg("recording") = py::none(),
+      "RecordedEvents of a bag: stamps (int64 [ns]) and ids (uint32). Ids below len(event_types)\n"
+      "stand for these, the ids after them for new types. start, end: seconds from the\n"
+      "recording's first message. Calls progress(done, all) from time to time.\n"
+      "recording: its number in an event log, from 0; None: the file is a bag. Raises BagError.");
+}
+
+}  // namespace
+
+void bindRecordings(py::module& m) {
+  bindEncoding(m);
+  bindBags(m);
+}
+
+}  // namespace self_awareness::python

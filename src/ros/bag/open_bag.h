@@ -1,0 +1,16 @@
+#pragma once
+
+#include <string>
+
+#include "bag_index.h"
+
+namespace self_awareness::ros1 {
+
+/// The index of a bag.
+/// @throw BagError if the file is missing, no bag, unindexed, truncated or damaged
+BagIndex openBag(const std::string& path);
+
+/// What to do about a damaged bag: the end of an error message.
+std::string reindexHint(const std::string& path);
+
+}  // namespace self_awareness::ros1

@@ -1,0 +1,157 @@
+#include "packed_events.h"
+
+#include <algorithm>
+#include <limits>
+#include <stdexcept>
+
+namespace self_awareness::ros1 {
+namespace {
+
+// A delay with more ones than this is stored whole, in kWholeBits.
+constexpr std::uint64_t kMostOnes = 40;
+constexpr int kWholeBits = 63;
+constexpr int kMostDelayBits = 62;
+constexpr int kMostIdBits = 32;
+constexpr std::uint64_t kMostDelay = std::numeric_limits<std::int64_t>::max();  // [ns]
+
+class BitWriter {
+ public:
+  explicit BitWriter(std::vector<std::uint8_t>& bytes) : bytes_(bytes) {}
+
+  /// Writes the low bits of a value, the highest of them first.
+  void write(std::uint64_t value, int bits) {
+    for (int bit = bits - 1; bit >= 0; --bit) {
+      if (free_ == 0) {
+        bytes_.push_back(0);
+        free_ = 8;
+      }
+      --free_;
+      bytes_.back() |= static_cast<std::uint8_t>((value >> bit & 1) << free_);
+    }
+  }
+
+ private:
+  std::vector<std::uint8_t>& bytes_;
+  int free_ = 0;  // bits of the last byte
+};
+
+class BitReader {
+ public:
+  explicit BitReader(const std::vector<std::uint8_t>& bytes) : bytes_(bytes) {}
+
+  std::uint64_t read(int bits) {
+    std::uint64_t value = 0;
+    for (int bit = 0; bit < bits; ++bit) {
+      if (position_ / 8 >= bytes_.size()) {
+        throw std::invalid_argument("packed events are cut off");
+      }
+      value = value << 1 | (bytes_[position_ / 8] >> (7 - position_ % 8) & 1U);
+      ++position_;
+    }
+    return value;
+  }
+  /// Bytes that were begun.
+  std::size_t bytes() const { return (position_ + 7) / 8; }
+
+ private:
+  const std::vector<std::uint8_t>& bytes_;
+  std::size_t position_ = 0;  // [bits]
+};
+
+std::uint64_t bitsOf(std::uint64_t delay, int delay_bits) {
+  const std::uint64_t ones = delay >> delay_bits;
+  return ones < kMostOnes ? ones + 1 + static_cast<std::uint64_t>(delay_bits)
+                          : kMostOnes + kWholeBits;
+}
+
+int shortestDelayBits(const std::vector<std::uint64_t>& delays) {
+  int shortest = 0;
+  std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
+  for (int bits = 0; bits <= kMostDelayBits; ++bits) {
+    std::uint64_t sum = 0;
+    for (const std::uint64_t delay : delays) {
+      sum += bitsOf(delay, bits);
+    }
+    if (sum < least) {
+      least = sum;
+      shortest = bits;
+    }
+  }
+  return shortest;
+}
+
+}  // namespace
+
+PackedEvents PackedEvents::pack(const std::vector<core::Event>& events) {
+  if (events.size() > std::numeric_limits<std::uint32_t>::max()) {
+    throw std::invalid_argument("too many events to pack together");
+  }
+  PackedEvents packed;
+  packed.events = static_cast<std::uint32_t>(events.size());
+  if (events.empty()) {
+    return packed;
+  }
+  packed.first = events.front().stamp;
+  std::vector<std::uint64_t> delays;
+  std::int64_t last = packed.first;
+  std::uint64_t largest_id = 0;
+  for (const core::Event& event : events) {
+    if (event.stamp < last) {
+      throw std::invalid_argument("the time of events to be packed goes back");
+    }
+    delays.push_back(static_cast<std::uint64_t>(event.stamp - last));
+    last = event.stamp;
+    largest_id = std::max<std::uint64_t>(largest_id, event.id);
+  }
+  const int delay_bits = shortestDelayBits(delays);
+  int id_bits = 0;
+  while (largest_id >> id_bits > 0) {
+    ++id_bits;
+  }
+  packed.delay_bits = static_cast<std::uint8_t>(delay_bits);
+  packed.id_bits = static_cast<std::uint8_t>(id_bits);
+  BitWriter writer(packed.bytes);
+  for (std::size_t k = 0; k < events.size(); ++k) {
+    const std::uint64_t ones = delays[k] >> delay_bits;
+    if (ones < kMostOnes) {
+      writer.write((std::uint64_t{1} << (ones + 1)) - 2, static_cast<int>(ones) + 1);
+      writer.write(delays[k], delay_bits);
+    } else {
+      writer.write((std::uint64_t{1} << kMostOnes) - 1, kMostOnes);
+      writer.write(delays[k], kWholeBits);
+    }
+    writer.write(events[k].id, id_bits);
+  }
+  return packed;
+}
+
+std::vector<core::Event> PackedEvents::unpack() const {
+  if (delay_bits > kMostDelayBits || id_bits > kMostIdBits) {
+    throw std::invalid_argument("packed events have a wrong number of bits");
+  }
+  std::vector<core::Event> unpacked;
+  // Each has one bit at least: damaged numbers do not ask for much memory.
+  unpacked.reserve(std::min<std::size_t>(events, 8 * bytes.size()));
+  BitReader reader(bytes);
+  std::int64_t stamp = first;
+  for (std::uint32_t k = 0; k < events; ++k) {
+    std::uint64_t ones = 0;
+    while (ones < kMostOnes && reader.read(1) == 1) {
+      ++ones;
+    }
+    const bool runs_over = ones < kMostOnes && ones > kMostDelay >> delay_bits;
+    const std::uint64_t delay =
+        ones < kMostOnes ? ones << delay_bits | reader.read(delay_bits) : reader.read(kWholeBits);
+    if (runs_over || stamp < 0 || delay > kMostDelay - static_cast<std::uint64_t>(stamp)) {
+      throw std::invalid_argument("the time of packed events runs over");
+    }
+    stamp += static_cast<std::int64_t>(delay);
+    unpacked.push_back({stamp, static_cast<core::EventId>(reader.read(id_bits))});
+  }
+  if (reader.bytes() != bytes.size()) {
+    throw std::invalid_argument("packed events are followed by other bytes");
+  }
+  return unpacked;
+}
+
+}  // namespace self_awareness::ros1

@@ -1,0 +1,43 @@
+#include "self_awareness/ros/encoding_message.h"
+
+#include <stdexcept>
+
+namespace self_awareness::ros1 {
+
+self_awareness::Encoding toMessage(const EncodingRules& rules) {
+  self_awareness::Encoding message;
+  message.source = rules.source == EncodingRules::Source::kNone
+                       ? self_awareness::Encoding::SOURCE_NONE
+                       : self_awareness::Encoding::SOURCE_CALLERID;
+  message.include_topics = rules.include_topics;
+  message.exclude_topics = rules.exclude_topics;
+  message.include_sources = rules.include_sources;
+  message.exclude_sources = rules.exclude_sources;
+  for (const auto& [datatype, field] : rules.type_fields) {
+    self_awareness::TypeField type_field;
+    type_field.datatype = datatype;
+    type_field.field = field;
+    message.type_fields.push_back(type_field);
+  }
+  return message;
+}
+
+EncodingRules fromMessage(const self_awareness::Encoding& message) {
+  EncodingRules rules;
+  const bool none = message.source == self_awareness::Encoding::SOURCE_NONE;
+  if (!none && message.source != self_awareness::Encoding::SOURCE_CALLERID) {
+    throw std::invalid_argument("its encoding has the unknown source '" + message.source + "'");
+  }
+  rules.source = none ? EncodingRules::Source::kNone : EncodingRules::Source::kCallerId;
+  rules.include_topics = message.include_topics;
+  rules.exclude_topics = message.exclude_topics;
+  rules.include_sources = message.include_sources;
+  rules.exclude_sources = message.exclude_sources;
+  for (const self_awareness::TypeField& type_field : message.type_fields) {
+    rules.type_fields[type_field.datatype] = type_field.field;
+  }
+  rules.validate();
+  return rules;
+}
+
+}  // namespace self_awareness::ros1

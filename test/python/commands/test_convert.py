@@ -1,0 +1,199 @@
+"""`convert`: event logs, which every program reads like the bags that they were made of."""
+from __future__ import annotations
+
+import os
+import shutil
+from pathlib import Path
+from typing import Callable, List, Tuple
+
+import pytest
+import rosbag
+from conftest import learned, robot
+
+from self_awareness import (EncodingRules, EventLogWriter, TrainedModel, read_events,
+                            recordings_in_event_log, summarise_bag)
+from self_awareness.commands import calibrate, convert, score, simulate, train
+from self_awareness.recordings import BagPart, expand
+from self_awareness.training.robot_graph import RobotGraph, graph_file
+
+Bags = Tuple[str, str]
+
+
+def error_of(main: Callable[[List[str]], int], arguments: List[str],
+             capsys: pytest.CaptureFixture) -> str:
+    capsys.readouterr()
+    assert main(arguments) == 1
+    return capsys.readouterr().err
+
+
+@pytest.fixture(scope='module')
+def log(long_bags: Bags, tmp_path_factory: pytest.TempPathFactory) -> str:
+    """An event log of two recordings."""
+    path = str(tmp_path_factory.mktemp('log') / 'robot.events.bag')
+    assert convert.main([*long_bags, '-o', path]) == 0
+    return path
+
+
+def test_events_are_the_same_to_the_nanosecond(long_bags: Bags, log: str) -> None:
+    rules = EncodingRules.defaults()
+    for number, bag in enumerate(long_bags):
+        for start, end in ((None, None), (20.0, 30.5), (0.0, None)):
+            expected = read_events(bag, rules, [], start, end)
+            found = read_events(log, rules, [], start, end, recording=number)
+            assert found.stamps.tolist() == expected.stamps.tolist()
+            assert found.ids.tolist() == expected.ids.tolist()
+            assert found.event_types == expected.event_types
+        before, after = summarise_bag(bag), summarise_bag(log, number)
+        for name in ('start', 'end', 'bag', 'fingerprint', 'has_sources', 'one_sender_a_topic',
+                     'copied'):
+            assert getattr(after, name) == getattr(before, name), name
+
+
+def test_a_log_gives_the_same_model_limits_and_windows(long_bags: Bags, log: str, tmp_path: Path,
+                                                       capsys) -> None:
+    results = []
+    for name, parts in (('bag', list(long_bags)), ('log', [f'{log}#1', f'{log}#2'])):
+        model, csv = str(tmp_path / f'{name}.model'), tmp_path / f'{name}.csv'
+        assert train.main([parts[0], '-o', model, '--detector', 'both']) == 0
+        trained = learned(TrainedModel.load(model), calibrations=True)
+        assert calibrate.main(['--model', model, '--normal', parts[1], '-o', model]) == 0
+        capsys.readouterr()
+        assert score.main([parts[1], '--model', model, '--csv', str(csv)]) == 0
+        said = capsys.readouterr().out.replace(parts[1], '')
+        windows = csv.read_text().replace(parts[1], '')
+        results.append((trained, learned(TrainedModel.load(model), calibrations=True), said,
+                        windows))
+    assert results[0] == results[1]
+    assert len(results[0][3].splitlines()) > 1000
+
+
+def test_all_recordings_of_a_log_are_trained_on(long_bags: Bags, log: str, tmp_path: Path,
+                                                capsys) -> None:
+    models = [str(tmp_path / name) for name in ('bags', 'log')]
+    assert train.main([*long_bags, '-o', models[0]]) == 0
+    assert train.main([log, '-o', models[1], '--jobs', '2']) == 0
+    said = capsys.readouterr().out
+    assert f'{log}#1: 120.0 s' in said and f'{log}#2: 120.0 s' in said
+    one, other = (learned(TrainedModel.load(model), calibrations=True) for model in models)
+    assert one == other
+
+
+def test_who_subscribes_to_what_comes_along(long_bags: Bags, tmp_path: Path) -> None:
+    bag, log = str(tmp_path / 'a.bag'), str(tmp_path / 'log.bag')
+    shutil.copy(long_bags[0], bag)
+    RobotGraph({'/scan': {'/laser'}}, {'/scan': {'/slam', '/recorder_1_1795206536731'}}).save(
+        graph_file(bag))
+    assert convert.main([bag, '-o', log]) == 0
+    models = [str(tmp_path / name) for name in ('bag.model', 'log.model')]
+    for path, model in zip((bag, log), models):
+        assert train.main([path, '-o', model]) == 0
+    one, other = (TrainedModel.load(model).graph for model in models)
+    assert one == other and ('/laser', '/scan', '/slam') in one
+
+
+def test_the_encoding_of_the_log_is_that_of_the_model(long_bags: Bags, tmp_path: Path,
+                                                      capsys) -> None:
+    encoding, log, model = (str(tmp_path / name) for name in ('e.yaml', 'log.bag', 'model'))
+    Path(encoding).write_text('exclude_topics: [/charge]\n')
+    assert convert.main([long_bags[0], '-o', log, '--encoding', encoding]) == 0
+    assert train.main([log, '-o', model]) == 0
+    trained = TrainedModel.load(model)
+    assert trained.encoding.exclude_topics == ['/charge'] and len(trained.event_types) == 2
+    other = str(tmp_path / 'other.model')
+    assert train.main([long_bags[0], '-o', other]) == 0
+    assert 'another encoding' in error_of(score.main, [log, '--model', other], capsys)
+    assert 'another encoding' in error_of(train.main, [log, '--add-to', other, '-o', other],
+                                          capsys)
+
+
+def test_a_robot_without_senders_stays_without(make_bag: Callable[..., str], tmp_path: Path,
+                                               capsys) -> None:
+    bag, log = make_bag('a.bag', robot(1000.0), sources=False), str(tmp_path / 'log.bag')
+    assert convert.main([bag, '-o', log]) == 0
+    models = [str(tmp_path / name) for name in ('bag.model', 'log.model')]
+    for path, model in zip((bag, log), models):
+        assert train.main([path, '-o', model]) == 0
+    one, other = (learned(TrainedModel.load(model), calibrations=True) for model in models)
+    assert one == other
+
+
+def test_a_day_of_the_simulated_robot_stays_small(tmp_path: Path) -> None:
+    bag, log = str(tmp_path / 'robot.bag'), str(tmp_path / 'log.bag')
+    assert simulate.main(['--output', bag, '--duration', '600', '--seed', '5']) == 0
+    assert convert.main([bag, '-o', log]) == 0
+    events = summarise_bag(log, 0).messages
+    assert events > 0.95 * summarise_bag(bag).messages
+    assert os.path.getsize(log) / events < 4.0
+    assert os.path.getsize(log) * (86400 / 600) < 60e6
+
+
+def test_parts_name_the_recording(log: str) -> None:
+    assert BagPart.parse('a.bag#2') == BagPart('a.bag', None, None, 1, False)
+    assert str(BagPart.parse('a.bag#2@3-4')) == 'a.bag#2@3-4'
+    assert [str(part) for part in expand([BagPart.parse(log)])] == [f'{log}#1', f'{log}#2']
+    for text in (f'{log}#3', f'{log}#0', f'{log}@1-2'):
+        with pytest.raises(ValueError, match='recordings'):
+            expand([BagPart.parse(text)])
+
+
+def test_a_number_is_for_event_logs_only(robot_bags: Bags, tmp_path: Path, capsys) -> None:
+    error = error_of(train.main, [f'{robot_bags[0]}#1', '-o', str(tmp_path / 'm')], capsys)
+    assert 'no event log' in error and robot_bags[0] in error
+
+
+def test_the_same_recording_as_bag_and_log_is_refused(long_bags: Bags, log: str, tmp_path: Path,
+                                                      capsys) -> None:
+    error = error_of(train.main, [long_bags[1], log, '-o', str(tmp_path / 'm')], capsys)
+    assert 'the same recording' in error
+    error = error_of(train.main, [log, f'{log}#2@3', '-o', str(tmp_path / 'm')], capsys)
+    assert f'{log}#2@3: the same recording as {log}#2' in error
+
+
+def test_a_damaged_log_is_named(log: str, tmp_path: Path, capsys) -> None:
+    whole = Path(log).read_bytes()
+    cut = tmp_path / 'cut.bag'
+    model = str(tmp_path / 'm')
+    cut.write_bytes(whole[:len(whole) // 2])
+    assert f'rosbag reindex {str(cut)!r}' in error_of(train.main, [str(cut), '-o', model], capsys)
+    with rosbag.Bag(log) as source, rosbag.Bag(str(cut), 'w') as copy:
+        for topic, message, stamp in source.read_messages(topics=['/event_log/events']):
+            copy.write(topic, message, stamp)
+    assert f'{cut}: the event log has no start' in error_of(train.main, [str(cut), '-o', model],
+                                                            capsys)
+    assert not os.path.exists(model)
+
+
+def test_a_log_that_was_not_closed_can_be_mended(robot_bags: Bags, tmp_path: Path) -> None:
+    path = str(tmp_path / 'log.bag')
+    log = EventLogWriter(path)
+    log.add_bag(robot_bags[0], EncodingRules.defaults())
+    assert recordings_in_event_log(path) is None
+    with rosbag.Bag(path, 'a', allow_unindexed=True) as bag:
+        for _ in bag.reindex():
+            pass
+    found = read_events(path, EncodingRules.defaults(), recording=0)
+    assert found.stamps.tolist() == read_events(robot_bags[0],
+                                                EncodingRules.defaults()).stamps.tolist()
+
+
+def test_nothing_is_replaced_but_an_event_log(robot_bags: Bags, tmp_path: Path, capsys) -> None:
+    precious = tmp_path / 'precious.bag'
+    shutil.copy(robot_bags[1], precious)
+    before = precious.read_bytes()
+    error = error_of(convert.main, [robot_bags[0], '-o', str(precious)], capsys)
+    assert 'no event log that could be replaced' in error and precious.read_bytes() == before
+    assert 'is an input, too' in error_of(convert.main, [str(precious), '-o', str(precious)],
+                                          capsys)
+    log = str(tmp_path / 'log.bag')
+    assert convert.main([robot_bags[0], '-o', log]) == 0
+    assert convert.main([robot_bags[1], '-o', log]) == 0
+    assert summarise_bag(log, 0).bag == 'second.bag'
+    assert 'is an event log already' in error_of(
+        convert.main, [log, '-o', str(tmp_path / 'again.bag')], capsys)
+    # A bag that cannot be read leaves nothing behind.
+    broken = tmp_path / 'broken.bag'
+    broken.write_bytes(before[:5000])
+    error = error_of(convert.main, [robot_bags[0], str(broken), '-o', log], capsys)
+    assert str(broken) in error and summarise_bag(log, 0).bag == 'second.bag'
+    assert sorted(each.name for each in tmp_path.iterdir()) == ['broken.bag', 'log.bag',
+                                                                'precious.bag']

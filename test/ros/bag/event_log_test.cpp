@@ -1,0 +1,270 @@
+// Tests that event logs come out as they were written, and that damage is named.
+
+#include <gtest/gtest.h>
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+
+#include <boost/filesystem.hpp>
+#include <cstdint>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "self_awareness/EventLogGraph.h"
+#include "self_awareness/core/stream/vocabulary.h"
+#include "self_awareness/ros/bag/event_log_packer.h"
+#include "self_awareness/ros/bag/event_log_reader.h"
+#include "self_awareness/ros/bag/event_log_writer.h"
+#include "self_awareness/ros/encoding_message.h"
+
+namespace self_awareness::ros1 {
+namespace {
+
+namespace fs = boost::filesystem;
+
+constexpr std::int64_t kSecond = core::kNanosecondsPerSecond;
+constexpr std::int64_t kBegin = 1790000000 * kSecond;
+
+std::vector<std::pair<std::int64_t, std::string>> eventsOf(std::int64_t begin, int number) {
+  std::vector<std::pair<std::int64_t, std::string>> events;
+  for (int k = 0; k < number; ++k) {
+    events.emplace_back(begin + k * kSecond / 7, "/node" + std::to_string(k % 3));
+  }
+  return events;
+}
+
+class EventLogTest : public testing::Test {
+ protected:
+  EventLogTest()
+      : folder_(fs::temp_directory_path() / fs::unique_path("self_awareness-%%%%%%%%")) {
+    fs::create_directory(folder_);
+  }
+  ~EventLogTest() override { fs::remove_all(folder_); }
+
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  /// Writes a recording: half a second of silence, a node that other ones hear, and the events.
+  void write(EventLogWriter& log, std::int64_t begin, std::int64_t robot_start,
+             const std::vector<std::pair<std::int64_t, std::string>>& events) {
+    self_awareness::EventLogStart start;
+    start.encoding = toMessage(rules_);
+    start.begin.fromNSec(static_cast<std::uint64_t>(begin - kSecond / 2));
+    start.robot_start.fromNSec(static_cast<std::uint64_t>(robot_start));
+    start.fingerprint = static_cast<std::uint64_t>(begin) % 1000;
+    start.has_sources = true;
+    log.start(start);
+    Graph graph;
+    graph.topics["/topic"] = {"std_msgs/String", {"/node0"}, {"/node1"}};
+    log.writeGraph(graph, begin);
+    EventLogPacker packer([&](self_awareness::EventLog part) { log.write(std::move(part)); });
+    core::Vocabulary vocabulary({{"/other", "/topic", "std_msgs/String"}});  // is never heard
+    for (const auto& [stamp, node] : events) {
+      packer.add({stamp, vocabulary.intern({node, "/topic", "std_msgs/String"})}, vocabulary);
+    }
+    packer.flush(events.back().first + 2 * kSecond);
+    graph.topics["/topic"].subscribers = {"/node2"};
+    log.writeGraph(graph, begin);
+  }
+
+  std::string writeLog(const std::string& name) {
+    EventLogWriter log(path(name));
+    write(log, kBegin, 3 * kSecond, eventsOf(kBegin, 500));
+    log.close();
+    return path(name);
+  }
+
+  std::vector<std::pair<std::int64_t, std::string>> read(const EventLogReader& log,
+                                                         const TimeRange& range = {}) const {
+    std::vector<std::pair<std::int64_t, std::string>> events;
+    core::Vocabulary vocabulary;
+    log.read(
+        rules_, [&](const core::EventType& type) { return vocabulary.intern(type); }, range,
+        [&](const core::Event& event) {
+          events.emplace_back(event.stamp, vocabulary.at(event.id).source);
+        });
+    return events;
+  }
+
+  /// What is wrong with a log, as its user is told.
+  std::string errorOf(const std::string& log, std::size_t recording = 0) const {
+    try {
+      read(EventLogReader(log, recording));
+    } catch (const BagError& error) {
+      EXPECT_EQ(std::string(error.what()).find(log), 0U) << "names the file: " << error.what();
+      return error.what();
+    }
+    return "";
+  }
+
+  EncodingRules rules_ = EncodingRules::defaults();
+
+ private:
+  fs::path folder_;
+};
+
+std::string bytesOf(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+TEST_F(EventLogTest, EventsComeOutAsTheyWentIn) {
+  const std::string log = writeLog("log.bag");
+  const EventLogReader reader(log, 0);
+  EXPECT_EQ(read(reader), eventsOf(kBegin, 500));
+  const BagSummary& summary = reader.summary();
+  EXPECT_EQ(summary.start, kBegin - kSecond / 2);
+  EXPECT_EQ(summary.end, kBegin + 499 * kSecond / 7 + 2 * kSecond) << "the silence belongs to it";
+  EXPECT_EQ(summary.messages, 500U);
+  EXPECT_EQ(summary.robot_start, 3 * kSecond);
+  EXPECT_EQ(*summary.encoding, rules_);
+  EXPECT_EQ(summary.bag, "log.bag");
+  EXPECT_EQ(summary.graph.topics.at("/topic").publishers, std::set<std::string>{"/node0"});
+  EXPECT_EQ(summary.graph.topics.at("/topic").subscribers,
+            (std::set<std::string>{"/node1", "/node2"}))
+      << "all who ever listened";
+}
+
+TEST_F(EventLogTest, IsABagThatRosbagReads) {
+  const rosbag::Bag bag(writeLog("log.bag"), rosbag::bagmode::Read);
+  rosbag::View view(bag);
+  std::size_t events = 0;
+  for (const rosbag::MessageInstance& message : view) {
+    if (const auto part = message.instantiate<self_awareness::EventLog>()) {
+      events += part->events;
+    }
+  }
+  EXPECT_EQ(events, 500U);
+  EXPECT_EQ(recordingsInEventLog(bag.getFileName()), 1U);
+}
+
+TEST_F(EventLogTest, ARangeIsCountedFromTheStart) {
+  const EventLogReader reader(writeLog("log.bag"), 0);
+  const auto events = read(reader, {1.5, 2.5});
+  ASSERT_EQ(events.size(), 8U);
+  EXPECT_EQ(events.front().first, kBegin + kSecond);
+  EXPECT_EQ(events.back().first, kBegin + 2 * kSecond);
+  EXPECT_THROW(read(reader, {1000.0, std::nullopt}), BagError);
+}
+
+TEST_F(EventLogTest, HoldsSeveralRecordingsInTheirOrder) {
+  EventLogWriter log(path("log.bag"));
+  write(log, kBegin, 1 * kSecond, eventsOf(kBegin, 30));
+  write(log, kBegin - 3600 * kSecond, 2 * kSecond, eventsOf(kBegin - 3600 * kSecond, 20));
+  log.close();
+  EXPECT_EQ(recordingsInEventLog(log.path()), 2U) << "though the clock was set back";
+  EXPECT_EQ(read(EventLogReader(log.path(), 0)), eventsOf(kBegin, 30));
+  EXPECT_EQ(read(EventLogReader(log.path(), 1)), eventsOf(kBegin - 3600 * kSecond, 20));
+  EXPECT_NE(errorOf(log.path(), 2).find("holds 2 recordings"), std::string::npos);
+}
+
+TEST_F(EventLogTest, EventsThatAreOutOfOrderStayInTheOrderInWhichTheyWereHeard) {
+  const std::vector<std::pair<std::int64_t, std::string>> events{
+      {kBegin, "/a"}, {kBegin + 100, "/b"}, {kBegin + 50, "/a"}, {kBegin + 120, "/c"}};
+  EventLogWriter log(path("log.bag"));
+  write(log, kBegin, 0, events);
+  log.close();
+  EXPECT_EQ(read(EventLogReader(log.path(), 0)), events);
+}
+
+TEST_F(EventLogTest, SilenceIsHandedOutToo) {
+  std::vector<self_awareness::EventLog> parts;
+  EventLogPacker packer([&](self_awareness::EventLog part) { parts.push_back(std::move(part)); });
+  packer.advance(kBegin);
+  packer.advance(kBegin + EventLogPacker::kLongestPart - 1);
+  EXPECT_EQ(parts.size(), 0U);
+  packer.advance(kBegin + EventLogPacker::kLongestPart);
+  ASSERT_EQ(parts.size(), 1U);
+  EXPECT_EQ(parts[0].events, 0U);
+  EXPECT_EQ(parts[0].heard_until.toNSec(),
+            static_cast<std::uint64_t>(kBegin + EventLogPacker::kLongestPart));
+}
+
+TEST_F(EventLogTest, APartIsBounded) {
+  std::vector<std::uint32_t> parts;
+  EventLogPacker packer(
+      [&](const self_awareness::EventLog& part) { parts.push_back(part.events); });
+  const core::Vocabulary vocabulary({{"/a", "/b", "c"}});
+  for (std::size_t k = 0; k <= 2 * EventLogPacker::kMostEvents; ++k) {
+    packer.add({kBegin + static_cast<std::int64_t>(k), 0}, vocabulary);
+  }
+  EXPECT_EQ(parts, (std::vector<std::uint32_t>(2, EventLogPacker::kMostEvents)));
+}
+
+TEST_F(EventLogTest, AnotherEncodingIsAnError) {
+  const std::string log = writeLog("log.bag");
+  rules_.exclude_topics.emplace_back("/other");
+  EXPECT_NE(errorOf(log).find("another encoding"), std::string::npos);
+}
+
+TEST_F(EventLogTest, AnOrdinaryBagIsNoEventLog) {
+  rosbag::Bag bag(path("a.bag"), rosbag::bagmode::Write);
+  bag.write("/a", ros::Time(1, 0), self_awareness::EventLog());
+  bag.write("/b", ros::Time(1, 0), self_awareness::EventType());
+  bag.close();
+  EXPECT_FALSE(recordingsInEventLog(bag.getFileName())) << "somebody recorded a log's topic";
+  EXPECT_FALSE(recordingsInEventLog(path("none.bag")));
+  EXPECT_NE(errorOf(path("a.bag")).find("no event log"), std::string::npos);
+}
+
+TEST_F(EventLogTest, ALogWithoutAStartIsAnError) {
+  rosbag::Bag bag(path("a.bag"), rosbag::bagmode::Write);
+  bag.write(kEventLogTopic, ros::Time(1, 0), self_awareness::EventLog());
+  bag.close();
+  EXPECT_NE(errorOf(path("a.bag")).find("no start"), std::string::npos);
+}
+
+TEST_F(EventLogTest, AMissingPartIsAnError) {
+  const std::string log = writeLog("log.bag");
+  {
+    const rosbag::Bag from(log, rosbag::bagmode::Read);
+    rosbag::Bag to(path("cut.bag"), rosbag::bagmode::Write);
+    std::size_t parts = 0;
+    rosbag::View view(from);
+    for (const rosbag::MessageInstance& message : view) {
+      if (message.getTopic() != kEventLogTopic || ++parts != 2) {
+        to.write(message.getTopic(), message.getTime(), message);
+      }
+    }
+    ASSERT_GT(parts, 2U);
+  }
+  EXPECT_NE(errorOf(path("cut.bag")).find("a part is missing"), std::string::npos);
+}
+
+TEST_F(EventLogTest, AnotherVersionIsAnError) {
+  std::string bytes = bytesOf(writeLog("log.bag"));
+  const std::string md5 = ros::message_traits::md5sum<self_awareness::EventLog>();
+  for (std::size_t at = bytes.find(md5); at != std::string::npos; at = bytes.find(md5, at + 1)) {
+    bytes.replace(at, md5.size(), std::string(md5.size(), '0'));
+  }
+  std::ofstream(path("other.bag"), std::ios::binary) << bytes;
+  EXPECT_NE(errorOf(path("other.bag")).find("another version"), std::string::npos);
+}
+
+TEST_F(EventLogTest, ACutOffLogSaysHowToMendIt) {
+  const std::string bytes = bytesOf(writeLog("log.bag"));
+  for (std::size_t size = 0; size < bytes.size(); size += 97) {
+    std::ofstream(path("cut.bag"), std::ios::binary) << bytes.substr(0, size);
+    EXPECT_NE(errorOf(path("cut.bag")), "") << size << " bytes";
+  }
+}
+
+TEST_F(EventLogTest, ALogThatWasNotClosedKeepsAllThatWasWritten) {
+  {
+    EventLogWriter log(path("log.bag"));
+    write(log, kBegin, 3 * kSecond, eventsOf(kBegin, 500));
+  }
+  EXPECT_NE(errorOf(path("log.bag")).find("rosbag reindex"), std::string::npos);
+}
+
+TEST_F(EventLogTest, AFullDiskIsAnErrorAndNoEndOfTheProgram) {
+  if (!fs::exists("/dev/full")) {
+    GTEST_SKIP() << "there is no /dev/full";
+  }
+  EXPECT_THROW(EventLogWriter("/dev/full"), BagError);
+  EXPECT_THROW(EventLogWriter(path("none/log.bag")), BagError);
+}
+
+}  // namespace
+}  // namespace self_awareness::ros1

@@ -1,0 +1,115 @@
+// Tests that packed events come out as they went in, and that damage is noticed.
+
+#include "ros/bag/packed_events.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <random>
+#include <stdexcept>
+#include <vector>
+
+namespace self_awareness::ros1 {
+namespace {
+
+using core::Event;
+
+bool same(const std::vector<Event>& a, const std::vector<Event>& b) {
+  return a.size() == b.size() &&
+         std::equal(a.begin(), a.end(), b.begin(), [](const Event& x, const Event& y) {
+           return x.stamp == y.stamp && x.id == y.id;
+         });
+}
+
+TEST(PackedEvents, ComeOutAsTheyWentIn) {
+  constexpr std::int64_t kNow = 1790000000123456789;
+  const std::vector<std::vector<Event>> cases{
+      {},
+      {{kNow, 0}},
+      {{kNow, 7}, {kNow, 7}, {kNow, 0}},
+      {{0, 1}, {std::numeric_limits<std::int64_t>::max(), 2}},
+      {{kNow, 0}, {kNow + 1, 4294967295}, {kNow + 86400 * core::kNanosecondsPerSecond, 3}}};
+  for (const std::vector<Event>& events : cases) {
+    EXPECT_TRUE(same(PackedEvents::pack(events).unpack(), events)) << events.size();
+  }
+}
+
+TEST(PackedEvents, OfAnyRobotComeOutAsTheyWentIn) {
+  std::mt19937_64 random(7);
+  for (int robot = 0; robot < 200; ++robot) {
+    const double mean = std::exp(std::uniform_real_distribution<>(0, 28)(random));  // [ns]
+    std::exponential_distribution<> delay(1 / mean);
+    std::uniform_int_distribution<core::EventId> id(0, static_cast<core::EventId>(random() % 600));
+    std::vector<Event> events;
+    std::int64_t stamp = static_cast<std::int64_t>(random() % (1ULL << 61U));
+    for (std::size_t k = random() % 300; k > 0; --k) {
+      stamp += random() % 5 == 0 ? 0 : static_cast<std::int64_t>(delay(random));
+      events.push_back({stamp, id(random)});
+    }
+    ASSERT_TRUE(same(PackedEvents::pack(events).unpack(), events)) << "robot " << robot;
+  }
+}
+
+TEST(PackedEvents, NeedLittleMoreThanTheBitsThatFollowNoRule) {
+  std::mt19937_64 random(1);
+  std::exponential_distribution<> delay(163e-9);  // 163 Hz
+  std::vector<Event> events;
+  std::int64_t stamp = 1;
+  for (int k = 0; k < 20000; ++k) {
+    stamp += static_cast<std::int64_t>(delay(random));
+    events.push_back({stamp, static_cast<core::EventId>(random() % 24)});
+  }
+  // log2(e 1 s / 163 Hz) = 23.99 bits, and 5 bits of the id.
+  const double bits = 8.0 * static_cast<double>(PackedEvents::pack(events).bytes.size());
+  EXPECT_GT(bits / 20000, 28.9);
+  EXPECT_LT(bits / 20000, 29.2);
+}
+
+TEST(PackedEvents, TimeDoesNotGoBack) {
+  EXPECT_THROW(PackedEvents::pack({{2, 0}, {1, 0}}), std::invalid_argument);
+}
+
+TEST(PackedEvents, DamageEndsInAnErrorOrInOtherEvents) {
+  const PackedEvents good = PackedEvents::pack({{100, 1}, {250, 3}, {700, 2}, {701, 0}});
+  PackedEvents bad = good;
+  bad.bytes.pop_back();
+  EXPECT_THROW(bad.unpack(), std::invalid_argument) << "cut off";
+  bad = good;
+  bad.bytes.push_back(0);
+  EXPECT_THROW(bad.unpack(), std::invalid_argument) << "too long";
+  bad = good;
+  bad.events = 4000000000;
+  EXPECT_THROW(bad.unpack(), std::invalid_argument) << "asks for much memory";
+  bad = good;
+  bad.delay_bits = 63;
+  EXPECT_THROW(bad.unpack(), std::invalid_argument);
+  bad = good;
+  bad.id_bits = 33;
+  EXPECT_THROW(bad.unpack(), std::invalid_argument);
+  bad = good;
+  bad.first = std::numeric_limits<std::int64_t>::max() - 10;
+  EXPECT_THROW(bad.unpack(), std::invalid_argument) << "runs over";
+
+  std::mt19937_64 random(3);
+  for (int k = 0; k < 20000; ++k) {  // no crash, no endless loop
+    PackedEvents any;
+    any.first = static_cast<std::int64_t>(random());
+    any.events = static_cast<std::uint32_t>(random() % 50);
+    any.delay_bits = static_cast<std::uint8_t>(random() % 70);
+    any.id_bits = static_cast<std::uint8_t>(random() % 40);
+    any.bytes.resize(random() % 40);
+    for (std::uint8_t& byte : any.bytes) {
+      byte = static_cast<std::uint8_t>(random() % 3 == 0 ? 255 : random());
+    }
+    try {
+      EXPECT_EQ(any.unpack().size(), any.events);
+    } catch (const std::invalid_argument&) {
+    }
+  }
+}
+
+}  // namespace
+}  // namespace self_awareness::ros1
