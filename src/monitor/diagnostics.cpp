@@ -62,6 +62,21 @@ void Diagnostics::monitor(Status& status) const {
   status.add("publishers heard", state_.connections);
   status.add("share of a core spent", number(heard.cpu_share));
   status.add("times the clock was set", heard.clock_steps);
+  if (state_.recorder) {
+    recorder(*state_.recorder, status);
+  }
+}
+
+void Diagnostics::recorder(const FlightRecorder::Report& report, Status& status) {
+  if (!report.files.error.empty()) {
+    status.mergeSummary(DiagnosticStatus::WARN,
+                        "the flight recorder cannot write: " + report.files.error);
+  }
+  status.add("recorded [s]", number(report.seconds));
+  status.add("memory of the recorder [MB]", number(static_cast<double>(report.bytes) * 1e-6));
+  status.add("files of the recorder", report.files.written);
+  status.add("files given up", report.files.given_up);
+  status.add("last file", report.files.last_written);
 }
 
 }  // namespace self_awareness

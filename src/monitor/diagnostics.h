@@ -4,9 +4,11 @@
 #include <ros/node_handle.h>
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "flight_recorder.h"
 #include "ros/verdict/diagnostic_status.h"
 
 namespace self_awareness {
@@ -17,6 +19,7 @@ struct MonitorState {
   std::size_t subscriptions = 0;
   std::size_t connections = 0;
   bool master_answers = true;
+  std::optional<FlightRecorder::Report> recorder;  ///< none: there is no recorder
 };
 
 /// Publishes on /diagnostics (REP-107: OK, WARN, ERROR; never STALE): one status for the whole,
@@ -38,6 +41,7 @@ class Diagnostics {
 
   void updateComponents();
   void monitor(Status& status) const;
+  static void recorder(const FlightRecorder::Report& report, Status& status);
 
   bool component_statuses_;
   MonitorState state_;

@@ -51,6 +51,10 @@ Monitor::Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& priv
                   [this](const self_awareness::SelfAwareness& alarm) { publishAlarm(alarm); },
                   [this] { publishDiagnostics(); }}),
       heard_(momentNow()),
+      recorder_(parameters_.recorder,
+                [this] {
+                  return FlightRecorder::Source{session_->encoding(), graph_};
+                }),
       spinner_(1, &queue_) {
   node_handle_.setCallbackQueue(&queue_);
   private_node_handle_.setCallbackQueue(&queue_);
@@ -59,6 +63,7 @@ Monitor::Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& priv
       private_node_handle_.advertise<self_awareness::SelfAwareness>("alarm", 10, true);
   services_ = {private_node_handle_.advertiseService("reset", &Monitor::onReset, this),
                private_node_handle_.advertiseService("clear", &Monitor::onClear, this),
+               private_node_handle_.advertiseService("dump", &Monitor::onDump, this),
                private_node_handle_.advertiseService("reload", &Monitor::onReload, this)};
   std::vector<std::string> service_names;
   for (const ros::ServiceServer& service : services_) {
@@ -88,6 +93,7 @@ Monitor::Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& priv
 
 Monitor::~Monitor() {
   spinner_.stop();  // first: what it serves uses the others
+  recorder_.onShutdown(announcer_.alarm().message().level == self_awareness::SelfAwareness::ERROR);
   discovery_.reset();
   live_events_.reset();
 }
@@ -122,6 +128,7 @@ std::string Monitor::modelPath() const {
 }
 
 void Monitor::startSession(std::unique_ptr<Session> session) {
+  recorder_.restart();  // the events to come are those of another model
   session_ = std::move(session);
   model_error_.clear();
   announcer_.forgetWindow();
@@ -153,6 +160,7 @@ void Monitor::onEvent(const core::Event& event) {
     restart();
     session_->detector().add(event);
   }
+  recorder_.add(event, session_->vocabulary());
 }
 
 void Monitor::onTick(const ros::SteadyTimerEvent& /*tick*/) {
@@ -161,6 +169,7 @@ void Monitor::onTick(const ros::SteadyTimerEvent& /*tick*/) {
   if (session_) {
     session_->detector().advance(now - kGrace);
   }
+  recorder_.advance(now - kGrace, steadyNow());
   if (heard_.sinceReport(steadyNow()) >= diagnostics_.period()) {
     live_events_->forgetClosedConnections();
     publishDiagnostics();
@@ -180,12 +189,17 @@ void Monitor::restart() {
   ROS_WARN("ROS time was set: delays and windows start afresh");
   session_->detector().restart();
   heard_.onClockStep();
+  recorder_.restart();
   standDown(ros1::kClockWasSet);
 }
 
 void Monitor::onVerdict(const core::Verdict& verdict) {
+  const bool stood = announcer_.alarm().message().level == self_awareness::SelfAwareness::ERROR;
+  if (verdict.alarm && !stood) {
+    alarm_file_ = recorder_.onAlarm(steadyNow());
+  }
   announcer_.add(verdict, session_->vocabulary(), session_->window(),
-                 verdict.busy ? loadInWords() : "");
+                 {verdict.busy ? loadInWords() : "", alarm_file_});
 }
 
 void Monitor::standDown(const std::string& message) {
@@ -224,6 +238,9 @@ void Monitor::publishDiagnostics() {
   state.subscriptions = discovered.subscriptions;
   state.connections = live_events_->connections();
   state.master_answers = discovered.master_answers;
+  if (recorder_.enabled()) {
+    state.recorder = recorder_.report();
+  }
   diagnostics_.publish(state);
 }
 
@@ -246,6 +263,23 @@ bool Monitor::onClear(std_srvs::Trigger::Request& /*request*/,
   if (stood) {
     session_->detector().clearAlarm();
     standDown("cleared by hand");
+  }
+  return true;
+}
+
+bool Monitor::onDump(std_srvs::Trigger::Request& /*request*/,
+                     std_srvs::Trigger::Response& response) {
+  const std::optional<std::string> path = recorder_.dump();
+  const FlightRecorder::Report report = recorder_.report();
+  response.success = path && report.files.error.empty();
+  if (!recorder_.enabled()) {
+    response.message = "there is no flight recorder: ~recorder/duration is 0";
+  } else if (!path) {
+    response.message = "nothing was heard yet";
+  } else if (!report.files.error.empty()) {
+    response.message = report.files.error + "; it is tried again";
+  } else {
+    response.message = "the last " + ros1::number(report.seconds) + " s go to " + *path;
   }
   return true;
 }

@@ -71,9 +71,8 @@ class ParameterReader {
     for (const std::string& name : names) {
       if (name.compare(0, prefix.size(), prefix) == 0) {
         const std::string own = name.substr(prefix.size());
-        const std::string top = own.substr(0, own.find('/'));
-        if (known_.count(top) == 0) {
-          unknown.insert(top);
+        if (known_.count(own) == 0) {
+          unknown.insert(own);
         }
       }
     }
@@ -139,6 +138,13 @@ MonitorParameters MonitorParameters::load(const ros::NodeHandle& private_node_ha
       reader.wholeNumber("queue_size", static_cast<int>(defaults.queue_size), 1));
   parameters.source_diagnostics = reader.read("source_diagnostics", defaults.source_diagnostics);
   parameters.hardware_id = reader.read("hardware_id", defaults.hardware_id);
+  RecorderParameters& recorder = parameters.recorder;
+  recorder.duration = reader.seconds("recorder/duration", recorder.duration, 0);
+  recorder.after = reader.seconds("recorder/after", recorder.after, 0);
+  recorder.directory = reader.read("recorder/directory", recorder.directory);
+  recorder.files = reader.wholeNumber("recorder/files", recorder.files, 1);
+  recorder.disk = reader.wholeNumber("recorder/disk", recorder.disk, 1);
+  recorder.memory = reader.wholeNumber("recorder/memory", recorder.memory, 1);
   reader.expect("diagnostic_period");  // of diagnostic_updater
   reader.warnOfUnknown();
   return parameters;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 
+#include "flight_recorder.h"
 #include "ros/verdict/diagnostic_status.h"
 #include "self_awareness/core/verdict/detector.h"
 #include "self_awareness/ros/graph.h"
@@ -24,6 +25,7 @@ struct MonitorParameters {
   std::uint32_t queue_size = 1000;              ///< ~queue_size: messages a topic may have waiting
   bool source_diagnostics = true;               ///< ~source_diagnostics: one status per source
   std::string hardware_id = ros1::kNoHardware;  ///< ~hardware_id: of the diagnostics
+  RecorderParameters recorder;                  ///< ~recorder/...
 
   /// Reads the parameters, checks and logs them; warns of those it does not know.
   /// @throw std::invalid_argument names the parameter, its value and what it may be

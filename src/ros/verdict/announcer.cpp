@@ -7,8 +7,8 @@ namespace self_awareness::ros1 {
 Announcer::Announcer(Handlers handlers) : handlers_(std::move(handlers)) {}
 
 void Announcer::add(const core::Verdict& verdict, const core::Vocabulary& vocabulary,
-                    std::int64_t window, const std::string& load) {
-  alarm_.add(verdict, vocabulary, window, load);
+                    std::int64_t window, const Circumstances& circumstances) {
+  alarm_.add(verdict, vocabulary, window, circumstances);
   handlers_.on_status(alarm_.message());
   if (verdict.changed) {
     handlers_.on_alarm(alarm_.message());

@@ -30,7 +30,7 @@ class Announcer {
 
   /// Says what the verdict on the next window is. The arguments are those of AlarmState::add().
   void add(const core::Verdict& verdict, const core::Vocabulary& vocabulary, std::int64_t window,
-           const std::string& load = "");
+           const Circumstances& circumstances = {});
   /// Says that what stood is over, as AlarmState::standDown().
   void standDown(const std::string& message, std::int64_t now);
   /// As AlarmState::forgetWindow().
