@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -14,8 +15,8 @@
 #include "self_awareness/core/evidence/limits.h"
 #include "self_awareness/core/stream/clock.h"
 #include "self_awareness/core/stream/event.h"
-#include "self_awareness/ros/bag/bag_reader.h"
 #include "self_awareness/core/verdict/detector.h"
+#include "self_awareness/ros/bag/bag_reader.h"
 
 /// What the parts of the Python module share.
 PYBIND11_MAKE_OPAQUE(self_awareness::core::evidence::LimitFinder::Findings)
@@ -66,12 +67,17 @@ inline ros1::BagReader::Progress progressTo(const py::object& callback) {
 
 /// Lets a detector judge a recording.
 /// @param end the recording goes on in silence until then [ns]; none: it ends with the last event
+/// @param heard called after each event; whether it belongs to the same clock as those before
 inline void judgeRecording(core::Detector& detector, const Stamps& stamps, const Ids& ids,
-                           std::optional<std::int64_t> end) {
+                           std::optional<std::int64_t> end,
+                           const std::function<void(const core::Event&, bool)>& heard = nullptr) {
   std::optional<std::int64_t> last;
   forEachEvent(stamps, ids, [&](const core::Event& event) {
-    detector.add(event);
+    const bool same_clock = detector.add(event);
     last = event.stamp;
+    if (heard) {
+      heard(event, same_clock);
+    }
   });
   if (end && last && !core::isClockStep(*last, *end)) {
     detector.advance(*end);  // silence until the end is part of the recording
@@ -104,6 +110,8 @@ void bindCounts(py::module& module);
 void bindEvidence(py::module& module);
 /// Binds the evidence of components over time (lanes_bindings.cpp).
 void bindLanes(py::module& module);
+/// Binds result bags (result_bindings.cpp).
+void bindResults(py::module& module);
 /// Binds model, scores, verdicts and ROC (detector_bindings.cpp).
 void bindDetector(py::module& module);
 

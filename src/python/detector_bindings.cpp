@@ -11,6 +11,7 @@
 
 #include "bindings.h"
 #include "core/paper/scorer.h"
+#include "ros/verdict/replayed_monitor.h"
 #include "self_awareness/core/evidence/judge.h"
 #include "self_awareness/core/paper/judge.h"
 #include "self_awareness/core/paper/model.h"
@@ -88,32 +89,41 @@ void record(const core::Verdict& verdict, std::int64_t window, Verdicts& verdict
 
 Verdicts judge(std::unique_ptr<core::Judge> judge, std::int64_t window,
                const core::Detector::Parameters& parameters, const Stamps& stamps, const Ids& ids,
-               std::optional<std::int64_t> end) {
+               std::optional<std::int64_t> end, ros1::ReplayedMonitor* monitor) {
   Verdicts verdicts;
   core::Detector detector(std::move(judge), window, parameters, [&](const core::Verdict& verdict) {
     record(verdict, window, verdicts);
+    if (monitor != nullptr) {
+      monitor->onVerdict(verdict);
+    }
   });
-  judgeRecording(detector, stamps, ids, end);
+  judgeRecording(detector, stamps, ids, end, [&](const core::Event& event, bool same_clock) {
+    if (monitor != nullptr) {
+      monitor->onEvent(event, same_clock);
+    }
+  });
   return verdicts;
 }
 
 Verdicts judgeByPaper(const std::shared_ptr<core::paper::Model>& model, std::int64_t window,
                       std::optional<double> threshold,
                       const core::Detector::Parameters& parameters, const Stamps& stamps,
-                      const Ids& ids, std::optional<std::int64_t> end) {
+                      const Ids& ids, std::optional<std::int64_t> end,
+                      ros1::ReplayedMonitor* monitor) {
   return judge(core::paper::makeJudge(model, threshold, parameters.silence_is_abnormal), window,
-               parameters, stamps, ids, end);
+               parameters, stamps, ids, end, monitor);
 }
 
 Verdicts judgeByEvidence(const ros1::TrainedModel& trained,
                          const std::shared_ptr<core::evidence::Model>& model,
                          const core::Detector::Parameters& parameters, const Stamps& stamps,
                          const Ids& ids, std::optional<std::int64_t> end,
-                         const std::vector<core::EventType>& event_types) {
+                         const std::vector<core::EventType>& event_types,
+                         ros1::ReplayedMonitor* monitor) {
   return judge(core::evidence::makeJudge(model, trained.limits(), trained.window,
                                          std::make_shared<core::SourceGraph>(trained.graph),
                                          std::make_shared<core::Vocabulary>(event_types)),
-               trained.window, parameters, stamps, ids, end);
+               trained.window, parameters, stamps, ids, end, monitor);
 }
 
 std::vector<double> scoreEvents(const std::shared_ptr<core::paper::Model>& model,
@@ -284,13 +294,14 @@ void bindVerdicts(py::module& m) {
           py::arg("stamps"), py::arg("ids"), "s_j of every event, float64")
       .def("judge", &judgeByPaper, py::arg("window"), py::arg("threshold"), py::arg("parameters"),
            py::arg("stamps"), py::arg("ids"), py::arg("end") = py::none(),
+           py::arg("monitor") = nullptr,
            "Verdicts on a recording. window: [ns]; threshold None: not calibrated.\n"
            "stamps: int64 [ns], in order. ids: those from len(event_types) of the model on are\n"
            "unknown events. end [ns]: the recording goes on in silence until then; None: it ends\n"
-           "with the last event.");
+           "with the last event. monitor: a ReplayedMonitor that is told of all of it.");
   m.def("judge_by_evidence", &judgeByEvidence, py::arg("trained"), py::arg("model"),
         py::arg("parameters"), py::arg("stamps"), py::arg("ids"), py::arg("end") = py::none(),
-        py::arg("event_types") = std::vector<core::EventType>(),
+        py::arg("event_types") = std::vector<core::EventType>(), py::arg("monitor") = nullptr,
         "Verdicts on a recording by the EvidenceModel of a TrainedModel, like Model.judge.\n"
         "event_types: by id, those of the model first; empty: those of unknown events are not\n"
         "known.");

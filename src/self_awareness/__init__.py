@@ -35,6 +35,8 @@ from self_awareness._core import (  # noqa: F401
     Persistence,
     RecordedEvents,
     Recording,
+    ReplayedMonitor,
+    ResultBag,
     Roc,
     RocPoint,
     Suspect,

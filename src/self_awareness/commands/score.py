@@ -19,6 +19,7 @@ from self_awareness.reporting.report.judged import Judged, JudgedBy
 from self_awareness.reporting.report.page import (check_installed, check_name,
                                                   save_report)
 from self_awareness.reporting.report.section import section
+from self_awareness.results import check_result_bag, result_bag
 from self_awareness.stamps import SECOND_NS, utc
 
 _COLUMNS = ('bag', 'window_start_ns', 'events', 'unknown', 'score', 'threshold', 'abnormal')
@@ -30,6 +31,9 @@ alarm, or an event that training never saw.
 The CSV has one row a window: score and threshold are empty where there is none, abnormal is 1
 where the score lies below the threshold, also while settling. With the paper's detector a window
 without events has no score and counts as 0.
+The result bag has /self_awareness/status, /self_awareness/alarm and /diagnostics, without what the
+monitor says of itself; that of several recordings has all of them, which must not overlap in time.
+It replaces another result bag, and no other file.
 """
 
 
@@ -39,10 +43,12 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 
 def _score(arguments: argparse.Namespace) -> None:
-    check_outputs([arguments.csv, arguments.plot, arguments.report],
+    check_outputs([arguments.csv, arguments.plot, arguments.report, arguments.result_bag],
                   [part.path for part in arguments.bags] + [arguments.model])
     if arguments.report is not None:
         check_installed()
+    parts = expand(arguments.bags)
+    check_result_bag(arguments.result_bag, parts)
     parameters = cli.detector_parameters(arguments)
     paper = arguments.detector == 'paper'
     trained = cli.load_model(arguments.model, arguments.detector, watched_only=not paper)
@@ -57,12 +63,14 @@ def _score(arguments: argparse.Namespace) -> None:
         print(f'{arguments.model}: not calibrated: windows are scored, none is called abnormal '
               '(rosrun self_awareness calibrate)')
     judged: List[Tuple[RecordingEvents, Verdicts]] = []
-    for part in expand(arguments.bags):
-        recording = cli.read_recording('score', trained, part)
-        verdicts = judge(recording.stamps, recording.ids, recording.end,
-                         recording.event_types)
-        judged.append((recording, verdicts))
-        _print(recording, verdicts, len(trained.event_types), threshold)
+    with result_bag(arguments.result_bag, arguments.model, trained,
+                    threshold is not None) as replay:
+        for part in parts:
+            recording = cli.read_recording('score', trained, part)
+            verdicts = judge(recording.stamps, recording.ids, recording.end,
+                             recording.event_types, replay(recording))
+            judged.append((recording, verdicts))
+            _print(recording, verdicts, len(trained.event_types), threshold)
     if arguments.csv is not None:
         _save_csv(arguments.csv, judged, threshold)
     if arguments.plot is not None:
@@ -181,5 +189,8 @@ def _parser() -> argparse.ArgumentParser:
                         help='draw the scores over time; the name ends in .png, .pdf or .svg')
     parser.add_argument('--report', type=cli.checked(check_name), metavar='FILE.html',
                         help='write a page for a browser: who failed, when and why')
+    parser.add_argument('--result-bag', metavar='FILE.bag',
+                        help='write what the monitor would have published, with the times of the '
+                             'recordings')
     cli.add_detector_arguments(parser)
     return parser
