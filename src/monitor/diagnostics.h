@@ -4,27 +4,22 @@
 #include <ros/node_handle.h>
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "heard_tally.h"
-#include "self_awareness/SelfAwareness.h"
+#include "flight_recorder.h"
+#include "ros/verdict/diagnostic_status.h"
 
 namespace self_awareness {
 
-/// What the diagnostics tell; filled in by the monitor, worded by Diagnostics.
+/// What the diagnostics tell; filled in by the monitor.
 struct MonitorState {
-  std::string model;        ///< path
-  std::string model_error;  ///< why there is none; empty: it is loaded
-  bool calibrated = false;
-  bool started = false;                ///< something was said of a window
-  self_awareness::SelfAwareness last;  ///< the verdict on the last window, if started
-  bool busy = false;                   ///< the machine is to blame, no component
-  double level_for = 0;                ///< how long it has had its level [s]
-  HeardReport heard;
+  ros1::CommunicationState communication;
   std::size_t subscriptions = 0;
   std::size_t connections = 0;
   bool master_answers = true;
+  std::optional<FlightRecorder::Report> recorder;  ///< none: there is no recorder
 };
 
 /// Publishes on /diagnostics (REP-107: OK, WARN, ERROR; never STALE): one status for the whole,
@@ -45,9 +40,8 @@ class Diagnostics {
   using Status = diagnostic_updater::DiagnosticStatusWrapper;
 
   void updateComponents();
-  void communication(Status& status) const;
-  void component(const std::string& name, Status& status) const;
   void monitor(Status& status) const;
+  static void recorder(const FlightRecorder::Report& report, Status& status);
 
   bool component_statuses_;
   MonitorState state_;

@@ -58,7 +58,7 @@ EventRecorder::Parameters EventRecorder::Parameters::load(
   parameters.poll_interval = reader.seconds("poll_interval", parameters.poll_interval, 0.01);
   parameters.queue_size = static_cast<std::uint32_t>(
       reader.wholeNumber("queue_size", static_cast<int>(parameters.queue_size), 1));
-  reader.expect("encoding");
+  reader.expectNamespace("encoding");
   parameters.encoding = loadEncoding(private_node_handle);
   reader.expect("diagnostic_period");  // of diagnostic_updater
   reader.warnOfUnknown();

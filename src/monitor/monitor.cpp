@@ -30,7 +30,7 @@ std::int64_t steadyNow() {
   return static_cast<std::int64_t>(ros::SteadyTime::now().toNSec());
 }
 
-HeardTally::Moment momentNow() {
+ros1::HeardTally::Moment momentNow() {
   timespec cpu{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
   return {rosNow(), steadyNow(), cpu.tv_sec * core::kNanosecondsPerSecond + cpu.tv_nsec};
@@ -45,7 +45,16 @@ Monitor::Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& priv
       parameters_(MonitorParameters::load(private_node_handle)),
       diagnostics_(node_handle, private_node_handle, name, parameters_.hardware_id,
                    parameters_.source_diagnostics),
+      announcer_({[this](const self_awareness::SelfAwareness& status) {
+                    status_publisher_.publish(status);
+                  },
+                  [this](const self_awareness::SelfAwareness& alarm) { publishAlarm(alarm); },
+                  [this] { publishDiagnostics(); }}),
       heard_(momentNow()),
+      recorder_(parameters_.recorder,
+                [this] {
+                  return FlightRecorder::Source{session_->encoding(), graph_};
+                }),
       spinner_(1, &queue_) {
   node_handle_.setCallbackQueue(&queue_);
   private_node_handle_.setCallbackQueue(&queue_);
@@ -54,6 +63,7 @@ Monitor::Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& priv
       private_node_handle_.advertise<self_awareness::SelfAwareness>("alarm", 10, true);
   services_ = {private_node_handle_.advertiseService("reset", &Monitor::onReset, this),
                private_node_handle_.advertiseService("clear", &Monitor::onClear, this),
+               private_node_handle_.advertiseService("dump", &Monitor::onDump, this),
                private_node_handle_.advertiseService("reload", &Monitor::onReload, this)};
   std::vector<std::string> service_names;
   for (const ros::ServiceServer& service : services_) {
@@ -83,6 +93,7 @@ Monitor::Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& priv
 
 Monitor::~Monitor() {
   spinner_.stop();  // first: what it serves uses the others
+  recorder_.onShutdown(announcer_.alarm().message().level == self_awareness::SelfAwareness::ERROR);
   discovery_.reset();
   live_events_.reset();
 }
@@ -117,9 +128,10 @@ std::string Monitor::modelPath() const {
 }
 
 void Monitor::startSession(std::unique_ptr<Session> session) {
+  recorder_.restart();  // the events to come are those of another model
   session_ = std::move(session);
   model_error_.clear();
-  alarm_.forgetWindow();
+  announcer_.forgetWindow();
   heard_.setTypes(session_->types());
   graph_.reset();
   timer_.setPeriod(tickFor(session_->window()));
@@ -148,6 +160,7 @@ void Monitor::onEvent(const core::Event& event) {
     restart();
     session_->detector().add(event);
   }
+  recorder_.add(event, session_->vocabulary());
 }
 
 void Monitor::onTick(const ros::SteadyTimerEvent& /*tick*/) {
@@ -156,6 +169,7 @@ void Monitor::onTick(const ros::SteadyTimerEvent& /*tick*/) {
   if (session_) {
     session_->detector().advance(now - kGrace);
   }
+  recorder_.advance(now - kGrace, steadyNow());
   if (heard_.sinceReport(steadyNow()) >= diagnostics_.period()) {
     live_events_->forgetClosedConnections();
     publishDiagnostics();
@@ -175,33 +189,32 @@ void Monitor::restart() {
   ROS_WARN("ROS time was set: delays and windows start afresh");
   session_->detector().restart();
   heard_.onClockStep();
-  standDown("settling: ROS time was set");
+  recorder_.restart();
+  standDown(ros1::kClockWasSet);
 }
 
 void Monitor::onVerdict(const core::Verdict& verdict) {
-  alarm_.add(verdict, session_->vocabulary(), session_->window(),
-             verdict.busy ? loadInWords() : "");
-  const self_awareness::SelfAwareness& said = alarm_.message();
-  status_publisher_.publish(said);
-  if (verdict.changed) {
-    if (verdict.alarm) {
-      ROS_ERROR("%s", said.message.c_str());
-    } else if (verdict.suspicion) {
-      ROS_WARN("%s", said.message.c_str());
-    } else {
-      ROS_INFO("%s", said.message.c_str());
-    }
-    alarm_publisher_.publish(said);
-    publishDiagnostics();
+  const bool stood = announcer_.alarm().message().level == self_awareness::SelfAwareness::ERROR;
+  if (verdict.alarm && !stood) {
+    alarm_file_ = recorder_.onAlarm(steadyNow());
   }
+  announcer_.add(verdict, session_->vocabulary(), session_->window(),
+                 {verdict.busy ? loadInWords() : "", alarm_file_});
 }
 
 void Monitor::standDown(const std::string& message) {
-  if (alarm_.standDown(message, rosNow())) {
-    ROS_INFO("%s", message.c_str());
-    alarm_publisher_.publish(alarm_.message());
+  announcer_.standDown(message, rosNow());
+}
+
+void Monitor::publishAlarm(const self_awareness::SelfAwareness& alarm) {
+  if (alarm.level == self_awareness::SelfAwareness::ERROR) {
+    ROS_ERROR("%s", alarm.message.c_str());
+  } else if (alarm.level == self_awareness::SelfAwareness::WARN) {
+    ROS_WARN("%s", alarm.message.c_str());
+  } else {
+    ROS_INFO("%s", alarm.message.c_str());
   }
-  publishDiagnostics();
+  alarm_publisher_.publish(alarm);
 }
 
 void Monitor::refreshGraph(const std::shared_ptr<const ros1::Graph>& graph) {
@@ -215,19 +228,19 @@ void Monitor::refreshGraph(const std::shared_ptr<const ros1::Graph>& graph) {
 void Monitor::publishDiagnostics() {
   const Discovery::State discovered = discovery_->state();
   refreshGraph(discovered.graph);
-  const HeardTally::Moment moment = momentNow();
+  const ros1::HeardTally::Moment moment = momentNow();
   MonitorState state;
-  state.model = parameters_.model;
-  state.model_error = model_error_;
-  state.calibrated = session_ && session_->calibrated();
-  state.started = session_ && alarm_.spoken();
-  state.last = alarm_.message();
-  state.busy = !alarm_.busy().empty();
-  state.level_for = alarm_.standsFor(moment.ros);
-  state.heard = heard_.report(moment, live_events_->dropped());
+  state.communication.model = parameters_.model;
+  state.communication.model_error = model_error_;
+  state.communication.calibrated = session_ && session_->calibrated();
+  state.communication.take(announcer_.alarm(), heard_.report(moment, live_events_->dropped()),
+                           moment.ros);
   state.subscriptions = discovered.subscriptions;
   state.connections = live_events_->connections();
   state.master_answers = discovered.master_answers;
+  if (recorder_.enabled()) {
+    state.recorder = recorder_.report();
+  }
   diagnostics_.publish(state);
 }
 
@@ -244,12 +257,29 @@ bool Monitor::onReset(std_srvs::Trigger::Request& /*request*/,
 
 bool Monitor::onClear(std_srvs::Trigger::Request& /*request*/,
                       std_srvs::Trigger::Response& response) {
-  const bool stood = alarm_.stands();
+  const bool stood = announcer_.alarm().stands();
   response.success = true;
   response.message = stood ? "the alarm is cleared" : "there is no alarm";
   if (stood) {
     session_->detector().clearAlarm();
     standDown("cleared by hand");
+  }
+  return true;
+}
+
+bool Monitor::onDump(std_srvs::Trigger::Request& /*request*/,
+                     std_srvs::Trigger::Response& response) {
+  const std::optional<std::string> path = recorder_.dump();
+  const FlightRecorder::Report report = recorder_.report();
+  response.success = path && report.files.error.empty();
+  if (!recorder_.enabled()) {
+    response.message = "there is no flight recorder: ~recorder/duration is 0";
+  } else if (!path) {
+    response.message = "nothing was heard yet";
+  } else if (!report.files.error.empty()) {
+    response.message = report.files.error + "; it is tried again";
+  } else {
+    response.message = "the last " + ros1::number(report.seconds) + " s go to " + *path;
   }
   return true;
 }

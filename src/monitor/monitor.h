@@ -13,11 +13,12 @@
 #include <string>
 #include <vector>
 
-#include "alarm_state.h"
 #include "diagnostics.h"
 #include "discovery.h"
-#include "heard_tally.h"
+#include "flight_recorder.h"
 #include "parameters.h"
+#include "ros/verdict/announcer.h"
+#include "ros/verdict/heard_tally.h"
 #include "self_awareness/core/verdict/detector.h"
 #include "self_awareness/ros/graph.h"
 #include "self_awareness/ros/live/clock_watch.h"
@@ -57,6 +58,18 @@ namespace self_awareness {
 ///   what comes then is dropped, and counted in the diagnostics.
 /// - `~source_diagnostics` (bool; default: true): one status for every source of the model.
 /// - `~hardware_id` (string; default: none): of the diagnostics.
+/// - `~recorder/duration` (double, s; default: 300.0; at least 0): the flight recorder keeps the
+///   events of so long in memory, and writes them as an event log when an alarm is raised. 0:
+///   there is no recorder.
+/// - `~recorder/after` (double, s; default: 10.0; at least 0): how much of what follows an alarm
+/// is
+///   in its file (steady time).
+/// - `~recorder/directory` (string; default: ~/.ros/self_awareness): folder of the files, which is
+///   created. ROS keeps what it writes beside it.
+/// - `~recorder/files` (int; default: 20; at least 1): most files; the oldest are removed.
+/// - `~recorder/disk` (int, MB; default: 200; at least 1): most of all files together.
+/// - `~recorder/memory` (int, MB; default: 32; at least 1): most for the events in memory; the
+///   oldest are forgotten. Files that the disk does not take keep as much each, three at most.
 /// - `~diagnostic_period` (double, s; default: 1.0): time between two reports on /diagnostics
 ///   (steady time); a change of the level is reported at once.
 ///
@@ -72,12 +85,16 @@ namespace self_awareness {
 /// - `~reset` (std_srvs/Trigger): delays, windows and the alarm start from the beginning.
 /// - `~clear` (std_srvs/Trigger): ends the alarm and forgets the windows that led to it; delays go
 ///   on.
+/// - `~dump` (std_srvs/Trigger): writes what the flight recorder has; answers with the file's
+/// name,
+///   without waiting for the disk.
 /// - `~reload` (std_srvs/Trigger): reads the parameter `~model` and its file again, and keeps the
 ///   old model where that fails.
 ///
 /// **Threads**: one thread serves messages, windows, services and diagnostics through a queue of
-/// its own. What may block on the network is done by the thread of Discovery. They share what has
-/// arrived (Arrivals) and what the master said (Discovery), each with a lock (Guarded).
+/// its own. What may block on the network is done by the thread of Discovery, what waits for the
+/// disk by that of FileWriter. They share what has arrived (Arrivals), what the master said
+/// (Discovery) and the files to write (FileWriter), each with a lock (Guarded).
 class Monitor {
  public:
   /// @param name full name of the node or nodelet, for the diagnostics
@@ -105,14 +122,16 @@ class Monitor {
   void onVerdict(const core::Verdict& verdict);
   bool onReset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool onClear(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  bool onDump(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool onReload(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
 
   /// Starts from the beginning where ROS time was set. Returns the ROS time [ns] that it looked
   /// at: by another look, the clock may have been set again.
   std::int64_t watchClock();
   void restart();
-  /// Publishes a change of level that no window brought about.
+  /// Says that what stood is over, although no window brought that about.
   void standDown(const std::string& message);
+  void publishAlarm(const self_awareness::SelfAwareness& alarm);
   void publishDiagnostics();
   void refreshGraph(const std::shared_ptr<const ros1::Graph>& graph);
 
@@ -129,8 +148,10 @@ class Monitor {
   std::string model_error_;
   std::unique_ptr<Session> session_;  // none: no model
   ros1::ClockWatch clock_watch_;
-  AlarmState alarm_;
-  HeardTally heard_;
+  ros1::Announcer announcer_;
+  ros1::HeardTally heard_;
+  FlightRecorder recorder_;
+  std::string alarm_file_;                    // of the alarm that was raised last
   std::shared_ptr<const ros1::Graph> graph_;  // the newest that was taken over
 
   std::unique_ptr<ros1::LiveEvents> live_events_;

@@ -70,6 +70,8 @@ class ParameterReader {
 
   /// A parameter that something else reads.
   void expect(const std::string& name) { known_.insert(name); }
+  /// A namespace that something else reads.
+  void expectNamespace(const std::string& name) { spaces_.insert(name); }
 
   void warnOfUnknown() const {
     std::vector<std::string> names;
@@ -79,9 +81,8 @@ class ParameterReader {
     for (const std::string& name : names) {
       if (name.compare(0, prefix.size(), prefix) == 0) {
         const std::string own = name.substr(prefix.size());
-        const std::string top = own.substr(0, own.find('/'));
-        if (known_.count(top) == 0) {
-          unknown.insert(top);
+        if (known_.count(own) == 0 && spaces_.count(own.substr(0, own.find('/'))) == 0) {
+          unknown.insert(own);
         }
       }
     }
@@ -100,6 +101,7 @@ class ParameterReader {
 
   ros::NodeHandle node_handle_;
   std::set<std::string> known_;
+  std::set<std::string> spaces_;
 };
 
 }  // namespace self_awareness

@@ -52,6 +52,13 @@ MonitorParameters MonitorParameters::load(const ros::NodeHandle& private_node_ha
       reader.wholeNumber("queue_size", static_cast<int>(defaults.queue_size), 1));
   parameters.source_diagnostics = reader.read("source_diagnostics", defaults.source_diagnostics);
   parameters.hardware_id = reader.read("hardware_id", defaults.hardware_id);
+  RecorderParameters& recorder = parameters.recorder;
+  recorder.duration = reader.seconds("recorder/duration", recorder.duration, 0);
+  recorder.after = reader.seconds("recorder/after", recorder.after, 0);
+  recorder.directory = reader.read("recorder/directory", recorder.directory);
+  recorder.files = reader.wholeNumber("recorder/files", recorder.files, 1);
+  recorder.disk = reader.wholeNumber("recorder/disk", recorder.disk, 1);
+  recorder.memory = reader.wholeNumber("recorder/memory", recorder.memory, 1);
   reader.expect("diagnostic_period");  // of diagnostic_updater
   reader.warnOfUnknown();
   return parameters;

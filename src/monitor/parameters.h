@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <string>
 
+#include "flight_recorder.h"
+#include "ros/verdict/diagnostic_status.h"
 #include "self_awareness/core/verdict/detector.h"
 #include "self_awareness/ros/graph.h"
 
@@ -19,10 +21,11 @@ struct MonitorParameters {
   core::Detector::Parameters detector;  ///< ~settle_time, ~alarm_windows, ~alarm_of,
                                         ///< ~hold_time, ~silence, ~unknown
   ros1::SubscribePolicy subscribe = ros1::SubscribePolicy::kUsed;  ///< ~subscribe
-  double poll_interval = 1.0;        ///< ~poll_interval: of the master [s], > 0
-  std::uint32_t queue_size = 1000;   ///< ~queue_size: messages a topic may have waiting
-  bool source_diagnostics = true;    ///< ~source_diagnostics: one status per source
-  std::string hardware_id = "none";  ///< ~hardware_id: of the diagnostics
+  double poll_interval = 1.0;                   ///< ~poll_interval: of the master [s], > 0
+  std::uint32_t queue_size = 1000;              ///< ~queue_size: messages a topic may have waiting
+  bool source_diagnostics = true;               ///< ~source_diagnostics: one status per source
+  std::string hardware_id = ros1::kNoHardware;  ///< ~hardware_id: of the diagnostics
+  RecorderParameters recorder;                  ///< ~recorder/...
 
   /// Reads the parameters, checks and logs them; warns of those it does not know.
   /// @throw std::invalid_argument names the parameter, its value and what it may be

@@ -40,6 +40,8 @@ class Session {
   const std::vector<core::EventType>& types() const { return trained_.vocabulary().types(); }
   /// Event types of the model, and after them the unknown ones as they appeared.
   const core::Vocabulary& vocabulary() const { return *vocabulary_; }
+  /// The rules of the encoder.
+  const ros1::EncodingRules& encoding() const { return trained_.encoding; }
   const std::shared_ptr<const ros1::Encoder>& encoder() const { return encoder_; }
   core::Detector& detector() { return detector_; }
 

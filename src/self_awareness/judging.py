@@ -12,24 +12,30 @@ BOTH = 'both'
 """The detectors that a model may be trained for."""
 
 Judge = Callable[..., Verdicts]
-"""Judges stamps and ids of a recording, and the silence up to its end [ns]. A further argument are
-the event types by id, those of the model first: without it, those of unknown events are not
-known."""
+"""Judges stamps and ids of a recording, and the silence up to its end [ns]. Further arguments: the
+event types by id, those of the model first (without them, those of unknown events are not known),
+and a ReplayedMonitor that is told of all of it."""
 
 
 def paper_judge(trained: TrainedModel, model: Model, threshold: Optional[float],
                 parameters: DetectorParameters) -> Judge:
     """Return what judges by the paper's score; threshold None: scores only, no alarms."""
-    return lambda stamps, ids, end, event_types=(): model.judge(
-        trained.window, threshold, parameters, stamps, ids, end)
+    return lambda stamps, ids, end, event_types=(), monitor=None: model.judge(
+        trained.window, threshold, parameters, stamps, ids, end, monitor)
 
 
-def evidence_judge(trained: TrainedModel, parameters: DetectorParameters) -> Judge:
+def evidence_judge(trained: TrainedModel, parameters: DetectorParameters,
+                   computed: Optional[EvidenceModel] = None) -> Judge:
     """Return what judges by evidence and the model's limits.
+
+    Args:
+        trained: the model.
+        parameters: of the detector.
+        computed: from the model, if the caller has it already.
 
     Raises:
         ValueError: the limits are not those of the model.
     """
-    model = EvidenceModel(trained)
-    return lambda stamps, ids, end, event_types=(): judge_by_evidence(
-        trained, model, parameters, stamps, ids, end, list(event_types))
+    model = computed or EvidenceModel(trained)
+    return lambda stamps, ids, end, event_types=(), monitor=None: judge_by_evidence(
+        trained, model, parameters, stamps, ids, end, list(event_types), monitor)

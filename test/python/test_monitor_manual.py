@@ -44,7 +44,7 @@ def _manual() -> str:
 
 
 def _entries(manual: str) -> Dict[str, Entry]:
-    found = re.findall(r'- `~(\w+)` \((\w+)(?:, ([^;)]+))?; default: ([^;)]+)(?:; ([^)]+))?\):',
+    found = re.findall(r'- `~([\w/]+)` \((\w+)(?:, ([^;)]+))?; default: ([^;)]+)(?:; ([^)]+))?\):',
                        manual)
     assert len({name for name, *_ in found}) == len(found)
     return {name: Entry(*fields) for name, *fields in found}
@@ -53,12 +53,20 @@ def _entries(manual: str) -> Dict[str, Entry]:
 def _readings() -> Dict[str, Reading]:
     code = (ROOT / 'src/monitor/parameters.cpp').read_text()
     code = code[code.index('MonitorParameters::load'):]
-    found = re.findall(r'reader\.(\w+)(?:<[^>]*>)?\(\s*"(\w+)"(.*?)\);', code, re.DOTALL)
+    found = re.findall(r'reader\.(\w+)(?:<[^>]*>)?\(\s*"([\w/]+)"(.*?)\);', code, re.DOTALL)
     return {name: Reading(how, arguments) for how, name, arguments in found}
 
 
 def _configuration() -> Dict[str, Any]:
-    return yaml.safe_load((ROOT / 'config/self_awareness.yaml').read_text())
+    """Return the defaults by their full names: ~recorder/after is in the section recorder."""
+    found: Dict[str, Any] = {}
+    for name, value in yaml.safe_load(
+            (ROOT / 'config/self_awareness.yaml').read_text()).items():
+        if isinstance(value, dict):
+            found.update({f'{name}/{key}': each for key, each in value.items()})
+        else:
+            found[name] = value
+    return found
 
 
 def test_lists_every_parameter_that_is_read() -> None:

@@ -321,8 +321,10 @@ class LiveRulesTest(MonitorCase):
             await_condition('the monitor serves', lambda: rosservice.get_service_node(
                 '/self_awareness/reload'), 20)
             monitor.stop()  # the log comes when the buffer is emptied
-            logged = dict(re.findall(r'/self_awareness/(\w+): (.*?)(?:\x1b.*)?$', monitor.output,
-                                     re.MULTILINE))
+            logged = dict(re.findall(r'/self_awareness/([\w/]+): (.*?)(?:\x1b.*)?$',
+                                     monitor.output, re.MULTILINE))
+        configuration.update({'recorder/' + name: default for name, default
+                              in configuration.pop('recorder').items()})
         for name, default in configuration.items():
             self.assertEqual(yaml.safe_load(logged[name]), default, name)
 

@@ -104,7 +104,8 @@ class MonitorCase(unittest.TestCase):
         """A monitor in a process of its own, by the paper's score; settles within half a second.
         """
         settings = dict({'detector': 'paper', 'unknown': 'ignore', 'settle_time': 0.5,
-                         'poll_interval': 0.1}, **parameters)
+                         'poll_interval': 0.1, 'recorder/directory': self.path('recorder')},
+                        **parameters)
         return Process('rosrun', 'self_awareness', 'self_awareness_node', '__name:=' + name,
                        '_model:=' + model,
                        *['_{}:={}'.format(key, value) for key, value in settings.items()])

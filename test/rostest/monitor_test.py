@@ -66,9 +66,11 @@ class MonitorTest(unittest.TestCase):
 
     def start_monitor(self) -> Process:
         standalone = rospy.get_param('~standalone')
+        # The flight recorder writes below the home folder.
         return Process('roslaunch', 'self_awareness', 'monitor.launch',
                        'model:=' + self.path('model'),
-                       'standalone:=' + ('true' if standalone else 'false'))
+                       'standalone:=' + ('true' if standalone else 'false'),
+                       env={'HOME': self.folder})
 
     @again_if_clock_was_set
     def test_from_recordings_to_an_alarm(self) -> None:
@@ -103,6 +105,7 @@ class MonitorTest(unittest.TestCase):
                 await_condition('5 s of the fault',
                                 lambda: rospy.get_time() > killed_at + 5, 30)
         self.compare_with_bag(listener.statuses)
+        self.check_recorder(alarm)
 
     def check_heartbeat(self, listener: MonitorListener) -> None:
         for task in ('monitor', '/player', '/slam', '/base'):
@@ -145,6 +148,15 @@ class MonitorTest(unittest.TestCase):
                       self.aggregated['/Self-awareness/communication'].message)
         self.assertEqual([s for s in listener.diagnostics('/base')
                           if s.level == DiagnosticStatus.ERROR], [])
+
+    def check_recorder(self, alarm: SelfAwareness) -> None:
+        """It wrote when the monitor ended, since what follows the alarm had not yet come."""
+        folder = self.path('.ros/self_awareness')
+        path, = [os.path.join(folder, name) for name in os.listdir(folder)
+                 if name.startswith('alarm_')]
+        self.assertTrue(alarm.message.endswith('; events in ' + path), alarm.message)
+        printed = self.run_program('score', path, '--model', self.path('model'))
+        self.assertIn('1. /player /scan std_msgs/String: silent for ', printed)
 
     def compare_with_bag(self, statuses: list) -> None:
         """The bag that was recorded at the same time has the same abnormal windows."""

@@ -1,4 +1,4 @@
-#include "monitor/verdict_message.h"
+#include "ros/verdict/verdict_message.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace self_awareness {
+namespace self_awareness::ros1 {
 namespace {
 
 using Reason = core::Suspect::Reason;
@@ -77,4 +77,4 @@ TEST_F(VerdictMessageTest, ABusyMachineIsNamedBeforeTheSuspects) {
 }
 
 }  // namespace
-}  // namespace self_awareness
+}  // namespace self_awareness::ros1

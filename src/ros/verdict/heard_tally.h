@@ -9,7 +9,7 @@
 
 #include "self_awareness/core/stream/event.h"
 
-namespace self_awareness {
+namespace self_awareness::ros1 {
 
 /// What was heard since the last report, and from whom.
 struct HeardReport {
@@ -74,4 +74,4 @@ class HeardTally {
   Moment reported_at_;
 };
 
-}  // namespace self_awareness
+}  // namespace self_awareness::ros1

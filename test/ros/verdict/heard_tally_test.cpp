@@ -1,10 +1,10 @@
-#include "monitor/heard_tally.h"
+#include "ros/verdict/heard_tally.h"
 
 #include <gtest/gtest.h>
 
 #include <vector>
 
-namespace self_awareness {
+namespace self_awareness::ros1 {
 namespace {
 
 constexpr std::int64_t kSecond = 1000000000;          // [ns]
@@ -111,4 +111,4 @@ TEST_F(HeardTallyTest, AnotherModelHasOtherComponents) {
 }
 
 }  // namespace
-}  // namespace self_awareness
+}  // namespace self_awareness::ros1

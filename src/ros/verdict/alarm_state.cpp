@@ -5,10 +5,10 @@
 #include "self_awareness/core/stream/event.h"
 #include "verdict_message.h"
 
-namespace self_awareness {
+namespace self_awareness::ros1 {
 
 void AlarmState::add(const core::Verdict& verdict, const core::Vocabulary& vocabulary,
-                     std::int64_t window, const std::string& load) {
+                     std::int64_t window, const Circumstances& circumstances) {
   const std::int64_t end = verdict.window->start + window;
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   if (levelOf(verdict) != message_.level) {
@@ -20,10 +20,13 @@ void AlarmState::add(const core::Verdict& verdict, const core::Vocabulary& vocab
   }
   if (!verdict.evidence.empty() || !stands()) {
     message_.evidence = verdict.evidence;
-    busy_ = verdict.busy ? core::describe(*verdict.busy, load) : "";
+    busy_ = verdict.busy ? core::describe(*verdict.busy, circumstances.load) : "";
   }
   message_.message = wording(verdict, message_.evidence, message_.suspects,
                              toMessages(verdict.new_suspects, vocabulary), busy_);
+  if (verdict.alarm && !circumstances.recording.empty()) {
+    message_.message += "; events in " + circumstances.recording;
+  }
   message_.header.stamp = toRosTime(end);
   message_.window_start = toRosTime(verdict.window->start);
   message_.window.fromNSec(window);
@@ -57,4 +60,4 @@ double AlarmState::standsFor(std::int64_t now) const {
   return core::toSeconds(now - level_since_);
 }
 
-}  // namespace self_awareness
+}  // namespace self_awareness::ros1

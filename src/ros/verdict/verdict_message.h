@@ -10,7 +10,7 @@
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/core/verdict/detector.h"
 
-namespace self_awareness {
+namespace self_awareness::ros1 {
 
 /// @param nanoseconds since 1970; what is earlier counts as 1970
 ros::Time toRosTime(std::int64_t nanoseconds);
@@ -38,4 +38,4 @@ std::string wording(const core::Verdict& verdict, const std::string& evidence,
                     const std::vector<self_awareness::Suspect>& new_suspects,
                     const std::string& busy = "");
 
-}  // namespace self_awareness
+}  // namespace self_awareness::ros1

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace self_awareness {
+namespace self_awareness::ros1 {
 namespace {
 
 // Two reports may come one right after the other, when the level changes.
@@ -78,4 +78,4 @@ HeardReport HeardTally::report(const Moment& now, std::uint64_t dropped) {
   return report;
 }
 
-}  // namespace self_awareness
+}  // namespace self_awareness::ros1

@@ -7,7 +7,13 @@
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/core/verdict/detector.h"
 
-namespace self_awareness {
+namespace self_awareness::ros1 {
+
+/// What a verdict on its own does not know; what is empty is left out.
+struct Circumstances {
+  std::string load;       ///< of the machine, in words
+  std::string recording;  ///< path of the file that holds the events of the alarm
+};
 
 /// What the monitor says now: the verdict on the last window, and the alarm or suspicion that
 /// stands, with its suspects, its evidence, and since when.
@@ -20,9 +26,8 @@ class AlarmState {
   /// last window that had any.
   /// @param vocabulary that the suspects' ids are of
   /// @param window length [ns]
-  /// @param load of the machine in words; empty: not known
   void add(const core::Verdict& verdict, const core::Vocabulary& vocabulary, std::int64_t window,
-           const std::string& load = "");
+           const Circumstances& circumstances = {});
   /// Takes back what stands, for another reason than a window: there is nothing abnormal any more.
   /// @param message the reason
   /// @param now ROS time [ns]
@@ -49,4 +54,4 @@ class AlarmState {
   std::int64_t level_since_ = 0;  // end of the window with which the level changed last [ns]
 };
 
-}  // namespace self_awareness
+}  // namespace self_awareness::ros1

@@ -4,7 +4,7 @@
 
 #include "self_awareness/SelfAwareness.h"
 
-namespace self_awareness {
+namespace self_awareness::ros1 {
 
 ros::Time toRosTime(std::int64_t nanoseconds) {
   ros::Time time;
@@ -76,4 +76,4 @@ std::string wording(const core::Verdict& verdict, const std::string& evidence,
   return verdict.settling ? "settling" : "normal communication";
 }
 
-}  // namespace self_awareness
+}  // namespace self_awareness::ros1

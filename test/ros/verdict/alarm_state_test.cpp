@@ -1,4 +1,4 @@
-#include "monitor/alarm_state.h"
+#include "ros/verdict/alarm_state.h"
 
 #include <gtest/gtest.h>
 
@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace self_awareness {
+namespace self_awareness::ros1 {
 namespace {
 
 using self_awareness::SelfAwareness;
@@ -142,6 +142,21 @@ TEST_F(AlarmStateTest, NewSuspectsAreNamedInWordsWithTheWindowThatNamesThem) {
   EXPECT_EQ(alarm_.message().message, before);
 }
 
+TEST_F(AlarmStateTest, NamesTheFileOfItsEventsWhileItStands) {
+  const Circumstances recorded{"", "/data/alarm_1.bag"};
+  const auto saysFile = [&](Level level, const std::string& evidence) {
+    alarm_.add(verdict(level, true, evidence), vocabulary_, kWindow, recorded);
+    return alarm_.message().message.find("/data/alarm_1.bag") != std::string::npos;
+  };
+  EXPECT_FALSE(saysFile(Level::kSuspicion, "rate"));
+  EXPECT_TRUE(saysFile(Level::kAlarm, "rate"));
+  EXPECT_EQ(alarm_.message().message, "abnormal communication (rate), /player on /scan: " +
+                                          alarm_.message().suspects[0].reason +
+                                          "; events in /data/alarm_1.bag");
+  EXPECT_TRUE(saysFile(Level::kAlarm, "")) << "also with windows that are normal";
+  EXPECT_FALSE(saysFile(Level::kOk, ""));
+}
+
 TEST_F(AlarmStateTest, StandsDownWithAReason) {
   add(verdict(Level::kAlarm, true, "overdue"));
   EXPECT_TRUE(alarm_.standDown("cleared by hand", kStart + 42));
@@ -169,4 +184,4 @@ TEST_F(AlarmStateTest, AnAlarmStandsThroughAChangeOfModelUntilItIsTakenBack) {
 }
 
 }  // namespace
-}  // namespace self_awareness
+}  // namespace self_awareness::ros1

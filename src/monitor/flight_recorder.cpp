@@ -1,0 +1,210 @@
+#include "flight_recorder.h"
+
+#include <ros/time.h>
+
+#include <algorithm>
+#include <boost/filesystem.hpp>
+#include <cmath>
+#include <random>
+#include <utility>
+
+#include "self_awareness/EventLogStart.h"
+#include "self_awareness/ros/bag/event_log_writer.h"
+#include "self_awareness/ros/encoding_message.h"
+
+namespace self_awareness {
+namespace {
+
+constexpr double kPause = 5;  // between two attempts to write a file [s]
+constexpr std::size_t kMegabyte = 1000000;
+
+std::int64_t nanoseconds(double seconds) {
+  return std::llround(seconds * 1e9);
+}
+
+std::size_t bytesOf(const self_awareness::EventType& type) {
+  return sizeof type + type.source.capacity() + type.scope.capacity() + type.type.capacity();
+}
+
+std::size_t bytesOf(const self_awareness::EventLog& part) {
+  std::size_t bytes = sizeof part + part.packed.capacity();
+  for (const self_awareness::EventType& type : part.new_types) {
+    bytes += bytesOf(type);
+  }
+  return bytes;
+}
+
+/// An event log of one recording, as it will be written.
+struct Recording {
+  self_awareness::EventLogStart start;
+  std::shared_ptr<const ros1::Graph> graph;
+  std::vector<self_awareness::EventType> types_before;  // which the parts take for known
+  std::vector<std::shared_ptr<const self_awareness::EventLog>> parts;
+};
+
+void write(const Recording& recording, const std::string& path) {
+  ros1::EventLogWriter log(path);
+  log.start(recording.start);
+  if (recording.graph) {
+    log.writeGraph(*recording.graph, static_cast<std::int64_t>(recording.start.begin.toNSec()));
+  }
+  for (const auto& part : recording.parts) {
+    self_awareness::EventLog written = *part;
+    if (part == recording.parts.front()) {
+      written.new_types.insert(written.new_types.begin(), recording.types_before.begin(),
+                               recording.types_before.end());
+    }
+    log.write(std::move(written));
+  }
+  log.close();
+}
+
+/// Writes beside `path` and renames: no program finds half a file.
+void writeWhole(const Recording& recording, const std::string& path) {
+  const std::string temporary = path + ".part";
+  try {
+    write(recording, temporary);
+    boost::filesystem::rename(temporary, path);
+  } catch (const std::exception&) {
+    boost::system::error_code ignored;  // what went wrong before is what counts
+    boost::filesystem::remove(temporary, ignored);
+    throw;
+  }
+}
+
+std::uint64_t drawFingerprint() {
+  std::random_device device;
+  return (static_cast<std::uint64_t>(device()) << 32U) | device();
+}
+
+ros::Time toTime(std::int64_t stamp) {
+  ros::Time time;
+  time.fromNSec(static_cast<std::uint64_t>(std::max<std::int64_t>(stamp, 0)));
+  return time;
+}
+
+}  // namespace
+
+FlightRecorder::FlightRecorder(const RecorderParameters& parameters,
+                               std::function<Source()> source)
+    : duration_(nanoseconds(parameters.duration)),
+      after_(nanoseconds(parameters.after)),
+      most_bytes_(static_cast<std::size_t>(parameters.memory) * kMegabyte),
+      source_(std::move(source)),
+      folder_(parameters.directory, static_cast<std::size_t>(parameters.files),
+              static_cast<std::uint64_t>(parameters.disk) * kMegabyte),
+      packer_([this](self_awareness::EventLog part) { keep(std::move(part)); }),
+      writer_(kPause) {}
+
+void FlightRecorder::add(const core::Event& event, const core::Vocabulary& vocabulary) {
+  if (!enabled()) {
+    return;
+  }
+  if (!first_) {
+    first_ = event.stamp;
+    last_ = event.stamp;
+  }
+  last_ = std::max(last_, event.stamp);
+  packer_.add(event, vocabulary);
+}
+
+void FlightRecorder::advance(std::int64_t ros_now, std::int64_t now) {
+  if (heardAnything()) {
+    last_ = std::max(last_, ros_now);
+    packer_.advance(last_);
+  }
+  if (pending_ && now >= pending_->due) {
+    write(std::exchange(pending_, std::nullopt)->path);
+  }
+}
+
+void FlightRecorder::restart() {
+  if (pending_) {
+    write(std::exchange(pending_, std::nullopt)->path);
+  }
+  packer_ = ros1::EventLogPacker([this](self_awareness::EventLog part) { keep(std::move(part)); });
+  parts_.clear();
+  bytes_ = 0;
+  first_.reset();
+  forgotten_types_.clear();
+}
+
+std::string FlightRecorder::onAlarm(std::int64_t now) {
+  if (!enabled()) {
+    return "";
+  }
+  if (!pending_) {
+    pending_ = Pending{path(RecorderFolder::Cause::kAlarm), now + after_};
+  }
+  return pending_->path;
+}
+
+std::optional<std::string> FlightRecorder::dump() {
+  if (!heardAnything()) {
+    return std::nullopt;
+  }
+  std::string dumped = path(RecorderFolder::Cause::kDump);
+  write(dumped);
+  return dumped;
+}
+
+void FlightRecorder::onShutdown(bool alarm_stands) {
+  if (pending_) {
+    write(std::exchange(pending_, std::nullopt)->path);
+  } else if (alarm_stands && heardAnything()) {
+    write(path(RecorderFolder::Cause::kShutdown));
+  }
+}
+
+FlightRecorder::Report FlightRecorder::report() const {
+  Report report;
+  report.seconds = first_ ? core::toSeconds(last_ - *first_) : 0;
+  report.files = writer_.report();
+  report.bytes = bytes_ + report.files.waiting_bytes;
+  return report;
+}
+
+void FlightRecorder::keep(self_awareness::EventLog part) {
+  bytes_ += bytesOf(part);
+  parts_.push_back(std::make_shared<const self_awareness::EventLog>(std::move(part)));
+  while (parts_.size() > 1 &&
+         (bytes_ > most_bytes_ ||
+          static_cast<std::int64_t>(parts_.front()->heard_until.toNSec()) < last_ - duration_)) {
+    forgetOldest();
+  }
+}
+
+void FlightRecorder::forgetOldest() {
+  const self_awareness::EventLog& oldest = *parts_.front();
+  // The parts after it name event types by their numbers.
+  forgotten_types_.insert(forgotten_types_.end(), oldest.new_types.begin(),
+                          oldest.new_types.end());
+  first_ = static_cast<std::int64_t>(oldest.heard_until.toNSec());
+  bytes_ -= bytesOf(oldest);
+  parts_.pop_front();
+}
+
+std::string FlightRecorder::path(RecorderFolder::Cause cause) const {
+  return folder_.pathOf(cause, static_cast<std::int64_t>(ros::WallTime::now().toNSec()));
+}
+
+void FlightRecorder::write(const std::string& path) {
+  packer_.flush(last_);
+  const Source source = source_();
+  Recording recording;
+  recording.start.encoding = ros1::toMessage(source.encoding);
+  recording.start.begin = toTime(*first_);
+  recording.start.fingerprint = drawFingerprint();
+  recording.start.has_sources = source.encoding.source == ros1::EncodingRules::Source::kCallerId;
+  recording.graph = source.graph;
+  recording.types_before = forgotten_types_;
+  recording.parts.assign(parts_.begin(), parts_.end());
+  const RecorderFolder folder = folder_;
+  writer_.add({path, bytes_, [folder, recording](const std::string& file) {
+                 folder.create();
+                 writeWhole(recording, file);
+                 folder.removeOldest();
+               }});
+}
+
+}  // namespace self_awareness

@@ -1,0 +1,106 @@
+#include "recorder_folder.h"
+
+#include <algorithm>
+#include <boost/filesystem.hpp>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <regex>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "self_awareness/core/stream/event.h"
+
+namespace self_awareness {
+namespace {
+
+namespace filesystem = boost::filesystem;
+
+const char* nameOf(RecorderFolder::Cause cause) {
+  switch (cause) {
+    case RecorderFolder::Cause::kAlarm:
+      return "alarm";
+    case RecorderFolder::Cause::kDump:
+      return "dump";
+    case RecorderFolder::Cause::kShutdown:
+      return "shutdown";
+  }
+  throw std::logic_error("no such cause");
+}
+
+std::string inHomeFolder(const std::string& path) {
+  const char* home = std::getenv("HOME");
+  return path.rfind("~/", 0) == 0 && home != nullptr ? home + path.substr(1) : path;
+}
+
+struct RecorderFile {
+  std::string time;  // as in its name
+  filesystem::path path;
+  std::uint64_t bytes;
+};
+
+/// The oldest first.
+std::vector<RecorderFile> filesIn(const filesystem::path& folder) {
+  static const std::regex pattern("(?:alarm|dump|shutdown)_([-0-9.]+)\\.bag");
+  std::vector<RecorderFile> files;
+  for (const filesystem::directory_entry& entry : filesystem::directory_iterator(folder)) {
+    std::smatch match;
+    const std::string name = entry.path().filename().string();
+    if (std::regex_match(name, match, pattern) && filesystem::is_regular_file(entry.path())) {
+      files.push_back({match[1], entry.path(), filesystem::file_size(entry.path())});
+    }
+  }
+  std::sort(files.begin(), files.end(),
+            [](const RecorderFile& a, const RecorderFile& b) { return a.time < b.time; });
+  return files;
+}
+
+}  // namespace
+
+RecorderFolder::RecorderFolder(const std::string& path, std::size_t most_files,
+                               std::uint64_t most_bytes)
+    : path_(inHomeFolder(path)), most_files_(most_files), most_bytes_(most_bytes) {}
+
+std::string RecorderFolder::pathOf(Cause cause, std::int64_t wall_time) const {
+  const std::time_t seconds = wall_time / core::kNanosecondsPerSecond;
+  std::tm utc{};
+  gmtime_r(&seconds, &utc);
+  char time[32];
+  std::strftime(time, sizeof time, "%Y-%m-%d-%H-%M-%S", &utc);
+  char milliseconds[8];
+  std::snprintf(milliseconds, sizeof milliseconds, ".%03d",
+                static_cast<int>(wall_time % core::kNanosecondsPerSecond / 1000000));
+  return path_ + "/" + nameOf(cause) + "_" + time + milliseconds + ".bag";
+}
+
+void RecorderFolder::create() const {
+  boost::system::error_code error;
+  if (filesystem::exists(path_, error) && !filesystem::is_directory(path_)) {
+    throw std::runtime_error(path_ + ": is no folder for the flight recorder, but a file");
+  }
+  filesystem::create_directories(path_, error);
+  if (error) {
+    throw std::runtime_error(path_ + ": the flight recorder cannot create this folder (" +
+                             error.message() + ")");
+  }
+}
+
+void RecorderFolder::removeOldest() const {
+  std::vector<RecorderFile> files = filesIn(path_);
+  std::size_t left = files.size();
+  std::uint64_t bytes = 0;
+  for (const RecorderFile& file : files) {
+    bytes += file.bytes;
+  }
+  for (const RecorderFile& file : files) {
+    if (left <= 1 || (left <= most_files_ && bytes <= most_bytes_)) {
+      break;
+    }
+    filesystem::remove(file.path);
+    --left;
+    bytes -= file.bytes;
+  }
+}
+
+}  // namespace self_awareness

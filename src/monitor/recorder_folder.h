@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+namespace self_awareness {
+
+/// The folder of the flight recorder's files, in which the oldest ones make room for new ones.
+/// Other files in it are left alone.
+class RecorderFolder {
+ public:
+  /// Why a file was written; its name begins with it.
+  enum class Cause { kAlarm, kDump, kShutdown };
+
+  /// @param path a leading "~/" stands for the home folder
+  /// @param most_files, most_bytes that the recorder's files may be in all; the newest one stays
+  /// even if it alone is larger
+  RecorderFolder(const std::string& path, std::size_t most_files, std::uint64_t most_bytes);
+
+  /// Path of a file that does not exist yet: "alarm_2026-11-22-05-10-33.123.bag".
+  /// @param wall_time in UTC [ns since 1970]: names sort in the order in which they were given,
+  /// whatever ROS time does
+  std::string pathOf(Cause cause, std::int64_t wall_time) const;
+  /// Creates the folder if it is not there.
+  /// @throw std::runtime_error if it cannot be created
+  void create() const;
+  /// Removes the recorder's oldest files until the rest is within the bounds.
+  /// @throw std::runtime_error if a file cannot be removed
+  void removeOldest() const;
+
+ private:
+  std::string path_;
+  std::size_t most_files_;
+  std::uint64_t most_bytes_;
+};
+
+}  // namespace self_awareness

@@ -1,0 +1,26 @@
+#include "announcer.h"
+
+#include <utility>
+
+namespace self_awareness::ros1 {
+
+Announcer::Announcer(Handlers handlers) : handlers_(std::move(handlers)) {}
+
+void Announcer::add(const core::Verdict& verdict, const core::Vocabulary& vocabulary,
+                    std::int64_t window, const Circumstances& circumstances) {
+  alarm_.add(verdict, vocabulary, window, circumstances);
+  handlers_.on_status(alarm_.message());
+  if (verdict.changed) {
+    handlers_.on_alarm(alarm_.message());
+    handlers_.on_diagnostics();
+  }
+}
+
+void Announcer::standDown(const std::string& message, std::int64_t now) {
+  if (alarm_.standDown(message, now)) {
+    handlers_.on_alarm(alarm_.message());
+  }
+  handlers_.on_diagnostics();
+}
+
+}  // namespace self_awareness::ros1

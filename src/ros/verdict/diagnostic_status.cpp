@@ -1,0 +1,110 @@
+#include "diagnostic_status.h"
+
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <vector>
+
+#include "alarm_state.h"
+#include "self_awareness/core/stream/event.h"
+#include "self_awareness/core/stream/vocabulary.h"
+#include "verdict_message.h"
+
+namespace self_awareness::ros1 {
+
+using diagnostic_msgs::DiagnosticStatus;
+using diagnostic_updater::DiagnosticStatusWrapper;
+
+void CommunicationState::take(const AlarmState& alarm, const HeardReport& report,
+                              std::int64_t now) {
+  started = alarm.spoken();
+  last = alarm.message();
+  busy = !alarm.busy().empty();
+  level_for = alarm.standsFor(now);
+  heard = report;
+}
+
+std::string number(double value) {
+  if (std::isnan(value)) {
+    return "none";
+  }
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+void tellCommunication(const CommunicationState& state, DiagnosticStatusWrapper& status) {
+  const self_awareness::SelfAwareness& last = state.last;
+  if (!state.model_error.empty()) {
+    status.summary(DiagnosticStatus::ERROR, "no model: " + state.model_error);
+  } else if (!state.started) {
+    status.summary(DiagnosticStatus::OK, "waiting for the first message");
+  } else {
+    // Not an alarm, but an operator who relies on one must know that none can come.
+    const std::uint8_t uncalibrated = DiagnosticStatus::WARN;
+    status.summary(state.calibrated ? last.level : uncalibrated, last.message);
+    const std::size_t heard = state.heard.known_types + state.heard.unknown_types;
+    if (!last.settling && static_cast<double>(state.heard.known_types) <
+                              core::kLeastKnown * static_cast<double>(heard)) {
+      status.mergeSummary(DiagnosticStatus::WARN,
+                          "the model knows " + std::to_string(state.heard.known_types) +
+                              " of the " + std::to_string(heard) +
+                              " event types that were heard: is it of this robot?");
+    }
+    status.add("score", number(last.score));
+    status.add("threshold", number(last.threshold));
+    status.add("events in the window", last.events);
+    status.add("unknown events in the window", last.unknown_events);
+    if (last.level != DiagnosticStatus::OK) {
+      status.add("evidence", last.evidence);
+      status.add("for [s]", number(state.level_for));
+    }
+    for (std::size_t i = 0; i < last.suspects.size(); ++i) {
+      status.add("suspect " + std::to_string(i + 1), describe(last.suspects[i]));
+    }
+  }
+  status.add("model", state.model);
+}
+
+void tellComponent(const CommunicationState& state, const std::string& name,
+                   DiagnosticStatusWrapper& status) {
+  const HeardReport::Component& component = state.heard.components.at(name);
+  status.summary(DiagnosticStatus::OK, component.last_heard ? "heard" : "not heard yet");
+  const std::vector<self_awareness::Suspect>& suspects = state.last.suspects;
+  for (std::size_t i = 0; i < suspects.size() && state.last.level != DiagnosticStatus::OK; ++i) {
+    if (core::componentOf(suspects[i].source, suspects[i].scope) == name) {
+      // The most likely one is to blame; the others may well be its victims.
+      status.summary(i == 0 && !state.busy && state.last.level == DiagnosticStatus::ERROR
+                         ? DiagnosticStatus::ERROR
+                         : DiagnosticStatus::WARN,
+                     describeOnScope(suspects[i]));
+      break;
+    }
+  }
+  if (component.last_heard) {
+    status.add("last heard [s ago]", number(*component.last_heard));
+  }
+  status.add("events a second", number(component.rate));
+}
+
+diagnostic_msgs::DiagnosticArray toDiagnostics(const CommunicationState& state,
+                                               const std::string& node, std::int64_t now) {
+  diagnostic_msgs::DiagnosticArray array;
+  array.header.stamp = toRosTime(now);
+  const auto add = [&](const std::string& name, const DiagnosticStatusWrapper& told) {
+    DiagnosticStatus& status = array.status.emplace_back(told);
+    status.name = node + ": " + name;
+    status.hardware_id = kNoHardware;
+  };
+  DiagnosticStatusWrapper whole;
+  tellCommunication(state, whole);
+  add("communication", whole);
+  for (const auto& [name, component] : state.heard.components) {
+    DiagnosticStatusWrapper status;
+    tellComponent(state, name, status);
+    add(name, status);
+  }
+  return array;
+}
+
+}  // namespace self_awareness::ros1

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <diagnostic_msgs/DiagnosticArray.h>
+#include <diagnostic_updater/DiagnosticStatusWrapper.h>
+
+#include <cstdint>
+#include <string>
+
+#include "heard_tally.h"
+#include "self_awareness/SelfAwareness.h"
+
+namespace self_awareness::ros1 {
+
+class AlarmState;
+
+/// What the diagnostics tell of the robot; worded by the functions below.
+struct CommunicationState {
+  std::string model;        ///< path
+  std::string model_error;  ///< why there is none; empty: it is loaded
+  bool calibrated = false;
+  bool started = false;                ///< something was said of a window
+  self_awareness::SelfAwareness last;  ///< the verdict on the last window, if started
+  bool busy = false;                   ///< the machine is to blame, no component
+  double level_for = 0;                ///< how long it has had its level [s]
+  HeardReport heard;
+
+  /// Takes over what the alarm says, and what was heard.
+  /// @param now ROS time [ns]
+  void take(const AlarmState& alarm, const HeardReport& report, std::int64_t now);
+};
+
+/// The hardware id where none is set: diagnostics want one.
+constexpr char kNoHardware[] = "none";
+
+/// A number as the diagnostics show it; "none" for NaN.
+std::string number(double value);
+/// Fills in the level, message and values of the status of the whole.
+void tellCommunication(const CommunicationState& state,
+                       diagnostic_updater::DiagnosticStatusWrapper& status);
+/// Fills in the level, message and values of the status of one component.
+/// @param name one of state.heard.components
+void tellComponent(const CommunicationState& state, const std::string& name,
+                   diagnostic_updater::DiagnosticStatusWrapper& status);
+/// The statuses of the whole and of every component, as a node publishes them on /diagnostics.
+/// @param node its name, without the leading slash, which the names of the statuses begin with
+/// @param now ROS time [ns]
+diagnostic_msgs::DiagnosticArray toDiagnostics(const CommunicationState& state,
+                                               const std::string& node, std::int64_t now);
+
+}  // namespace self_awareness::ros1

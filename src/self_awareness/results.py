@@ -1,0 +1,73 @@
+"""Result bags: what the monitor would have published while recordings were made."""
+from __future__ import annotations
+
+import os
+from contextlib import contextmanager
+from typing import Callable, Iterator, Optional, Sequence
+
+from self_awareness import ReplayedMonitor, ResultBag, TrainedModel, summarise_bag
+from self_awareness.output_files import replacing
+from self_awareness.recordings import BagPart, RecordingEvents
+
+Replay = Callable[[RecordingEvents], Optional[ReplayedMonitor]]
+"""Returns what the judge of a recording must tell; None: nobody wants to know."""
+
+
+def check_result_bag(path: Optional[str], parts: Sequence[BagPart]) -> None:
+    """Check before long work that a result bag can hold all recordings, and destroys none.
+
+    Args:
+        path: of the result bag; None: there will be none.
+        parts: whose results it will hold.
+
+    Raises:
+        ValueError: the file is there and no result bag, or two parts overlap in time.
+        BagError: there are several parts, and one cannot be read.
+    """
+    if path is None:
+        return
+    if os.path.exists(path) and not ResultBag.is_one(path):
+        raise ValueError(f'{path}: is there already, and no result bag that could be replaced; '
+                         'remove it or choose another name')
+    if len(parts) > 1:
+        _check_apart(path, parts)
+
+
+def _check_apart(path: str, parts: Sequence[BagPart]) -> None:
+    spans = []
+    for part in parts:
+        summary = summarise_bag(part.path, part.recording)
+        spans.append((part.span(summary.start, summary.end), str(part)))
+    spans.sort()
+    for (before, first), (after, second) in zip(spans, spans[1:]):
+        if after[0] < before[1]:
+            raise ValueError(f'{path}: {first} and {second} overlap in time, so that their '
+                             'results would be mixed up; write a result bag for each')
+
+
+@contextmanager
+def result_bag(path: Optional[str], model_path: str, trained: TrainedModel,
+               calibrated: bool) -> Iterator[Replay]:
+    """Write a result bag, which replaces `path` at the end of the block, or nothing.
+
+    Args:
+        path: of the result bag; None: write none.
+        model_path: what the diagnostics call the model.
+        calibrated: there are limits, or a threshold, for the detector that judges.
+
+    Raises:
+        BagError: it cannot be written.
+    """
+    if path is None:
+        yield lambda recording: None
+        return
+    with replacing(path) as temporary:
+        bag = ResultBag(temporary)
+
+        def replay(recording: RecordingEvents) -> ReplayedMonitor:
+            start, _ = recording.part.span(recording.origin, recording.end)
+            return ReplayedMonitor(bag, model_path, trained, calibrated, recording.event_types,
+                                   start)
+
+        yield replay
+        bag.close()

@@ -1,0 +1,240 @@
+#include "monitor/flight_recorder.h"
+
+#include <gtest/gtest.h>
+
+#include <boost/filesystem.hpp>
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "self_awareness/ros/bag/event_log_reader.h"
+
+namespace self_awareness {
+namespace {
+
+namespace filesystem = boost::filesystem;
+
+constexpr std::int64_t kSecond = core::kNanosecondsPerSecond;
+constexpr std::int64_t kStart = 1600000000 * kSecond;  // ROS time [ns]
+constexpr std::int64_t kSteady = 5000 * kSecond;       // steady time at the start [ns]
+
+/// Waits for the writer's thread.
+bool await(const std::function<bool()>& condition) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
+  while (!condition()) {
+    if (std::chrono::steady_clock::now() > deadline) {
+      return false;
+    }
+    std::this_thread::yield();
+  }
+  return true;
+}
+
+class FlightRecorderTest : public testing::Test {
+ protected:
+  FlightRecorderTest() {
+    parameters_.directory = folder_.string();
+    vocabulary_.intern({"/player", "/scan", "T"});
+    vocabulary_.intern({"/slam", "/pose", "T"});
+    auto graph = std::make_shared<ros1::Graph>();
+    graph->topics["/scan"].publishers = {"/player"};
+    source_ = {ros1::EncodingRules::defaults(), graph};
+  }
+  ~FlightRecorderTest() override { filesystem::remove_all(folder_); }
+
+  FlightRecorder& recorder() {
+    if (!recorder_) {
+      recorder_ = std::make_unique<FlightRecorder>(parameters_, [this] { return source_; });
+    }
+    return *recorder_;
+  }
+  /// An event each 10 ms, one type after the other, from `from` to before `to` [s].
+  void hear(double from, double to) {
+    for (auto i = static_cast<int>(from * 100); i < static_cast<int>(to * 100); ++i) {
+      const core::Event event{kStart + i * kSecond / 100, static_cast<core::EventId>(i & 1)};
+      recorder().add(event, vocabulary_);
+      heard_.push_back(event);
+      recorder().advance(event.stamp, steady(event.stamp));
+    }
+  }
+  static std::int64_t steady(std::int64_t ros) { return ros - kStart + kSteady; }
+  bool awaitFiles(std::uint64_t number) {
+    return await([&] { return recorder().report().files.written == number; });
+  }
+  std::size_t files() const {
+    return static_cast<std::size_t>(
+        std::distance(filesystem::directory_iterator(folder_), filesystem::directory_iterator()));
+  }
+  /// The events of a file, by the ids of the vocabulary.
+  std::vector<core::Event> read(const std::string& path) {
+    const ros1::EventLogReader reader(path, 0);
+    std::vector<core::Event> events;
+    reader.read(
+        source_.encoding, [&](const core::EventType& type) { return *vocabulary_.find(type); }, {},
+        [&](const core::Event& event) { events.push_back(event); });
+    return events;
+  }
+  void expectSame(const std::vector<core::Event>& found, std::size_t first, std::size_t last) {
+    ASSERT_EQ(found.size(), last - first);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      ASSERT_EQ(found[i].stamp, heard_[first + i].stamp) << i;
+      ASSERT_EQ(found[i].id, heard_[first + i].id) << i;
+    }
+  }
+
+  const filesystem::path folder_ = filesystem::temp_directory_path() / filesystem::unique_path();
+  RecorderParameters parameters_;
+  FlightRecorder::Source source_;
+  core::Vocabulary vocabulary_;
+  std::vector<core::Event> heard_;
+  std::unique_ptr<FlightRecorder> recorder_;
+};
+
+TEST_F(FlightRecorderTest, AnAlarmIsWrittenWithWhatFollows) {
+  parameters_.after = 5;
+  hear(0, 20);
+  const std::string path = recorder().onAlarm(kSteady + 20 * kSecond);
+  EXPECT_EQ(path.rfind((folder_ / "alarm_").string(), 0), 0U) << path;
+  hear(20, 24.99);
+  EXPECT_EQ(recorder().report().files.written + recorder().report().files.waiting_bytes, 0U);
+  hear(24.99, 26);
+  ASSERT_TRUE(awaitFiles(1));
+  expectSame(read(path), 0, 2501);
+  const ros1::EventLogReader reader(path, 0);
+  EXPECT_EQ(reader.summary().start, kStart);
+  EXPECT_EQ(reader.summary().encoding, source_.encoding);
+  EXPECT_TRUE(reader.summary().has_sources);
+  EXPECT_EQ(reader.summary().graph.topics.count("/scan"), 1U);
+  EXPECT_EQ(files(), 1U) << "no temporary file is left";
+}
+
+TEST_F(FlightRecorderTest, AnAlarmThatFollowsSoonIsInTheSameFile) {
+  hear(0, 20);
+  const std::string path = recorder().onAlarm(kSteady + 20 * kSecond);
+  hear(20, 25);
+  EXPECT_EQ(recorder().onAlarm(kSteady + 25 * kSecond), path);
+  hear(25, 31);
+  ASSERT_TRUE(awaitFiles(1));
+  EXPECT_NE(recorder().onAlarm(kSteady + 31 * kSecond), path);
+}
+
+TEST_F(FlightRecorderTest, TheOldestEventsAreForgotten) {
+  parameters_.duration = 30;
+  hear(0, 100);
+  EXPECT_GE(recorder().report().seconds, 30);
+  EXPECT_LE(recorder().report().seconds, 50) << "what is forgotten are parts of 10 s";
+  const std::string path = recorder().dump().value();
+  ASSERT_TRUE(awaitFiles(1));
+  const std::vector<core::Event> events = read(path);
+  ASSERT_GE(events.size(), 3000U);
+  expectSame(events, heard_.size() - events.size(), heard_.size());
+}
+
+TEST_F(FlightRecorderTest, ManyEventsDoNotFillTheMemory) {
+  parameters_.memory = 1;
+  for (int i = 0; i < 2000000; ++i) {  // 100 s of 20,000 events a second
+    recorder().add({kStart + i * 50000L, static_cast<core::EventId>(i % 2)}, vocabulary_);
+  }
+  EXPECT_LE(recorder().report().bytes, 1000000U);
+  EXPECT_GE(recorder().report().bytes, 800000U);
+  const double seconds = recorder().report().seconds;
+  EXPECT_LT(seconds, 99);
+  const std::string path = recorder().dump().value();
+  ASSERT_TRUE(awaitFiles(1));
+  const std::vector<core::Event> events = read(path);
+  EXPECT_NEAR(static_cast<double>(events.size()), 20000 * seconds, 40000);
+  EXPECT_EQ(events.back().stamp, kStart + 1999999 * 50000L);
+}
+
+TEST_F(FlightRecorderTest, AnEventTypeThatWasHeardLongAgoKeepsItsName) {
+  parameters_.duration = 30;
+  for (int i = 0; i < 2000; ++i) {  // /pose first, so that its number is no accident
+    const core::Event event{kStart + i * kSecond / 10,
+                            static_cast<core::EventId>(i == 0       ? 1
+                                                       : i % 7 == 0 ? 1
+                                                                    : 0)};
+    recorder().add(event, vocabulary_);
+    heard_.push_back(event);
+  }
+  const core::EventId late = vocabulary_.intern({"/joy", "/joy", "T"});
+  heard_.push_back({kStart + 200 * kSecond, late});
+  recorder().add(heard_.back(), vocabulary_);
+  const std::string path = recorder().dump().value();
+  ASSERT_TRUE(awaitFiles(1));
+  const std::vector<core::Event> events = read(path);
+  ASSERT_LT(events.size(), 600U);
+  expectSame(events, heard_.size() - events.size(), heard_.size());
+}
+
+TEST_F(FlightRecorderTest, SilenceBelongsToIt) {
+  parameters_.after = 5;
+  hear(0, 20);
+  const std::string path = recorder().onAlarm(kSteady + 21 * kSecond);
+  recorder().advance(kStart + 26 * kSecond, kSteady + 26 * kSecond);
+  ASSERT_TRUE(awaitFiles(1));
+  EXPECT_EQ(ros1::EventLogReader(path, 0).summary().end, kStart + 26 * kSecond);
+  expectSame(read(path), 0, 2000);
+}
+
+TEST_F(FlightRecorderTest, WhatComesAfterARestartIsAnotherRecording) {
+  hear(0, 20);
+  const std::string path = recorder().onAlarm(kSteady + 20 * kSecond);
+  recorder().restart();
+  ASSERT_TRUE(awaitFiles(1)) << "what follows would be of another time, or another model";
+  expectSame(read(path), 0, 2000);
+  EXPECT_FALSE(recorder().dump()) << "nothing was heard since";
+  heard_.clear();
+  hear(-3600, -3590);
+  const std::string second = recorder().dump().value();
+  ASSERT_TRUE(awaitFiles(2));
+  expectSame(read(second), 0, 1000);
+}
+
+TEST_F(FlightRecorderTest, AtTheEndAnAlarmThatStandsIsWritten) {
+  hear(0, 1);
+  recorder().onShutdown(false);
+  recorder_.reset();
+  EXPECT_FALSE(filesystem::exists(folder_)) << "no alarm stood";
+  hear(0, 1);
+  recorder().onShutdown(true);
+  recorder_.reset();
+  ASSERT_EQ(files(), 1U);
+  EXPECT_EQ(filesystem::directory_iterator(folder_)->path().filename().string().rfind("shutdown_"),
+            0U);
+}
+
+TEST_F(FlightRecorderTest, AtTheEndAFileDoesNotWaitForWhatFollows) {
+  hear(0, 1);
+  const std::string path = recorder().onAlarm(kSteady + kSecond);
+  recorder().onShutdown(true);
+  recorder_.reset();
+  EXPECT_EQ(files(), 1U) << "the alarm is in its own file already";
+  expectSame(read(path), 0, 100);
+}
+
+TEST_F(FlightRecorderTest, WithoutADurationThereIsNone) {
+  parameters_.duration = 0;
+  EXPECT_FALSE(recorder().enabled());
+  hear(0, 1);
+  EXPECT_EQ(recorder().onAlarm(kSteady), "");
+  EXPECT_FALSE(recorder().dump());
+  recorder().onShutdown(true);
+  recorder_.reset();
+  EXPECT_FALSE(filesystem::exists(folder_));
+}
+
+TEST_F(FlightRecorderTest, ADiskThatDoesNotTakeItIsReportedAndTheRestGoesOn) {
+  parameters_.directory = "/dev/full/recorder";
+  hear(0, 1);
+  recorder().dump();
+  ASSERT_TRUE(await([&] { return !recorder().report().files.error.empty(); }));
+  EXPECT_NE(recorder().report().files.error.find("/dev/full/recorder"), std::string::npos);
+  hear(1, 30);
+  EXPECT_GT(recorder().report().seconds, 29);
+}
+
+}  // namespace
+}  // namespace self_awareness

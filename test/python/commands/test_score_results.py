@@ -1,0 +1,187 @@
+"""`score --result-bag`: what the monitor would have published, with the times of the recording."""
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+from pathlib import Path
+from typing import Any, Callable, Iterable, List, Tuple
+
+import pytest
+import rosbag
+from conftest import jittery_robot
+
+from self_awareness.commands import score
+
+STATUS, ALARM, DIAGNOSTICS = '/self_awareness/status', '/self_awareness/alarm', '/diagnostics'
+OK, WARN, ERROR = 0, 1, 2
+
+
+@pytest.fixture
+def dead_laser(make_bag: Callable[..., str]) -> str:
+    """Its laser falls silent from 12 s to 20 s, and a stranger speaks at 5.5 s."""
+    return make_bag('dead.bag', sorted(
+        [m for m in jittery_robot(3000.0, 30.0, 3)
+         if not (3012.0 <= m[0] < 3020.0 and m[1] == '/laser')] + [(3005.52, '/new', '/a')]))
+
+
+@pytest.fixture
+def results(evidence_model: str, dead_laser: str, tmp_path: Path, capsys) -> Tuple[str, str]:
+    """The result bag of it, and what was printed."""
+    path = str(tmp_path / 'out.bag')
+    assert score.main([dead_laser, '--model', evidence_model, '--result-bag', path]) == 0
+    return path, capsys.readouterr().out
+
+
+def read(path: str, topic: str) -> List[Tuple[Any, Any]]:
+    """Return message and time [s] of a topic."""
+    with rosbag.Bag(path) as bag:
+        return [(message, stamp.to_sec()) for _, message, stamp in bag.read_messages(topic)]
+
+
+def levels(messages: Iterable[Tuple[Any, Any]], start: float) -> List[Tuple[float, int]]:
+    """Return the changes of the level, each with its time [s from the start]."""
+    found = []
+    level = OK
+    for message, stamp in messages:
+        if message.level != level:
+            level = message.level
+            found.append((round(stamp - start, 1), level))
+    return found
+
+
+def test_the_alarms_are_those_that_are_printed(results: Tuple[str, str],
+                                               dead_laser: str) -> None:
+    path, out = results
+    printed = [(float(start), float(end), WARN if suspicion else ERROR) for suspicion, start, end
+               in re.findall(r'^  (suspicion: )?([\d.]+) - ([\d.]+) s', out, re.MULTILINE)]
+    assert {level for *_, level in printed} == {WARN, ERROR}
+    ends = {end for _, end, _ in printed}
+    expected = {(start, level) for start, _, level in printed}
+    expected |= {(end, OK) for end in ends - {start for start, _, _ in printed}}
+    with rosbag.Bag(dead_laser) as recording:
+        origin = recording.get_start_time()
+    for topic in (STATUS, ALARM):
+        assert set(levels(read(path, topic), origin)) == expected, topic
+    raised = next(message for message, _ in read(path, ALARM) if message.level == ERROR)
+    assert (raised.suspects[0].source, raised.suspects[0].scope) == ('/laser', '/scan')
+    assert raised.message.startswith('abnormal communication (')
+
+
+def test_times_are_those_of_the_recording(results: Tuple[str, str], dead_laser: str) -> None:
+    path, _ = results
+    with rosbag.Bag(path) as bag, rosbag.Bag(dead_laser) as recording:
+        assert bag.get_compression_info().compression == 'lz4'
+        assert set(bag.get_type_and_topic_info().topics) == {STATUS, ALARM, DIAGNOSTICS}
+        stamps = []
+        for topic, message, stamp in bag.read_messages():
+            assert message.header.stamp == stamp, topic
+            stamps.append(stamp)
+        assert stamps == sorted(stamps)
+        assert recording.get_start_time() < stamps[0].to_sec()
+        assert stamps[-1].to_sec() == pytest.approx(recording.get_end_time(), abs=0.11)
+        assert {connection.topic: (connection.header['callerid'], connection.header['latching'])
+                for connection in bag._get_connections()} == {
+                    STATUS: (b'/self_awareness', b'0'), ALARM: (b'/self_awareness', b'1'),
+                    DIAGNOSTICS: (b'/self_awareness', b'0')}
+    starts = [message.window_start.to_nsec() for message, _ in read(path, STATUS)]
+    assert {b - a for a, b in zip(starts, starts[1:])} == {10**8}
+
+
+def test_the_diagnostics_tell_of_the_whole_and_of_every_component(
+        results: Tuple[str, str]) -> None:
+    path, _ = results
+    diagnostics = read(path, DIAGNOSTICS)
+    stamps = [stamp for _, stamp in diagnostics]
+    assert max(b - a for a, b in zip(stamps, stamps[1:])) < 1.11
+    assert len(stamps) >= 29
+    for array, _ in diagnostics:
+        assert [status.name for status in array.status] == [
+            'self_awareness: communication', 'self_awareness: /battery',
+            'self_awareness: /laser', 'self_awareness: /slam']
+        assert {status.hardware_id for status in array.status} == {'none'}
+    alarm = next((message, stamp) for message, stamp in read(path, ALARM)
+                 if message.level == ERROR)
+    at_once = next(array for array, stamp in diagnostics if stamp == alarm[1])
+    by_name = {status.name.split(': ')[1]: status for status in at_once.status}
+    assert by_name['communication'].level == ERROR
+    assert by_name['communication'].message == alarm[0].message
+    assert by_name['/laser'].level == ERROR
+    assert by_name['/laser'].message.startswith('/scan: silent for ')
+    assert by_name['/battery'].message == 'heard'
+
+
+def test_rostopic_and_rosbag_show_it(results: Tuple[str, str]) -> None:
+    path, _ = results
+    shown = subprocess.run(['rostopic', 'echo', '-b', path, '-p', '/diagnostics'],
+                           stdout=subprocess.PIPE, text=True, check=True).stdout.splitlines()
+    assert shown[0].startswith('%time,field.header.seq,field.header.stamp,')
+    assert len(shown) - 1 == len(read(path, DIAGNOSTICS))
+    assert any('abnormal communication' in line for line in shown)
+    info = subprocess.run(['rosbag', 'info', path], stdout=subprocess.PIPE, text=True,
+                          check=True).stdout
+    assert re.search(r'/self_awareness/status +\d+ msgs +: self_awareness/SelfAwareness', info)
+
+
+def test_several_recordings_are_in_one_bag_in_the_order_of_time(
+        evidence_model: str, make_bag: Callable[..., str], tmp_path: Path) -> None:
+    later = make_bag('later.bag', jittery_robot(7000.0, 12.0, 4))
+    earlier = make_bag('earlier.bag', jittery_robot(3000.0, 12.0, 3))
+    both, alone = str(tmp_path / 'both.bag'), str(tmp_path / 'alone.bag')
+    assert score.main([later, earlier, '--model', evidence_model, '--result-bag', both]) == 0
+    assert score.main([later, '--model', evidence_model, '--result-bag', alone]) == 0
+    windows = [message.window_start.to_nsec() for message, _ in read(both, STATUS)]
+    assert windows == sorted(windows)
+    assert windows[0] < 3100 * 10**9 and windows[-1] > 7000 * 10**9
+    assert [message for message, _ in read(both, STATUS)
+            if message.window_start.to_sec() > 6000] == [m for m, _ in read(alone, STATUS)]
+
+
+def test_recordings_that_overlap_are_refused(
+        evidence_model: str, make_bag: Callable[..., str], tmp_path: Path, capsys) -> None:
+    bag, path = make_bag('a.bag', jittery_robot(3000.0, 20.0, 3)), str(tmp_path / 'out.bag')
+    assert score.main([f'{bag}@0-12', f'{bag}@8', '--model', evidence_model,
+                       '--result-bag', path]) == 1
+    assert 'overlap in time' in capsys.readouterr().err
+    assert not os.path.exists(path)
+    assert score.main([f'{bag}@0-10', f'{bag}@10', '--model', evidence_model,
+                       '--result-bag', path]) == 0
+
+
+def test_a_result_bag_replaces_a_result_bag_only(
+        evidence_model: str, results: Tuple[str, str], dead_laser: str,
+        make_bag: Callable[..., str], tmp_path: Path, capsys) -> None:
+    path, _ = results
+    before = Path(path).read_bytes()
+    assert score.main([f'{dead_laser}@0-20', '--model', evidence_model,
+                       '--result-bag', path]) == 0
+    assert Path(path).read_bytes() != before
+    precious = make_bag('precious.bag', jittery_robot(3000.0, 10.0, 3))
+    Path(path).write_bytes(Path(path).read_bytes()[:-100])  # as if it were being written
+    for file, reason in ((precious, 'no result bag'), (path, 'no result bag'),
+                         (dead_laser, 'is an input, too'), (evidence_model, 'is an input, too')):
+        kept = Path(file).read_bytes()
+        assert score.main([dead_laser, '--model', evidence_model, '--result-bag', file]) == 1
+        assert reason in capsys.readouterr().err
+        assert Path(file).read_bytes() == kept
+
+
+def test_nothing_is_left_where_a_recording_cannot_be_judged(
+        evidence_model: str, dead_laser: str, make_bag: Callable[..., str], tmp_path: Path,
+        capsys) -> None:
+    other = make_bag('other.bag', [(9000.0 + i, '/a', '/b') for i in range(9)])
+    before = sorted(tmp_path.iterdir())
+    assert score.main([dead_laser, other, '--model', evidence_model, '--result-bag',
+                       str(tmp_path / 'out.bag')]) == 1
+    assert 'the model knows none of' in capsys.readouterr().err
+    assert sorted(tmp_path.iterdir()) == before
+
+
+def test_without_limits_the_diagnostics_warn(
+        model_file: str, dead_laser: str, tmp_path: Path, capsys) -> None:
+    path = str(tmp_path / 'out.bag')
+    assert score.main([dead_laser, '--model', model_file, '--detector', 'paper',
+                       '--result-bag', path]) == 0
+    assert read(path, ALARM) == []
+    whole = read(path, DIAGNOSTICS)[-1][0].status[0]
+    assert whole.level == WARN and whole.message.startswith('not calibrated')
