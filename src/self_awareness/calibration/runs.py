@@ -8,7 +8,7 @@ section 2.3).
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import List, Optional, Sequence
+from typing import List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -33,18 +33,27 @@ class Run:
     Args:
         source: the recording.
         fault: empty for normal operation, RECORDED, or the fault injected.
-        stamps: int64 [ns]; those of the source unless a fault was injected.
-        ids: uint32, one for each stamp.
         onset: when the fault begins [ns]; not for normal operation.
         relief: when it ends [ns]; not for normal operation.
+        injected: the fault injected; None: the events are those of the source.
     """
 
     source: RecordingEvents
     fault: str
-    stamps: np.ndarray
-    ids: np.ndarray
     onset: int = 0
     relief: int = 0
+    injected: Optional[InjectedFault] = None
+
+    def events(self) -> Tuple[np.ndarray, np.ndarray]:
+        """Return stamps (int64 [ns]) and ids (uint32).
+
+        Those with a fault are made here, and not kept: a fault of every source of a robot in every
+        recording would not fit into the memory.
+        """
+        if self.injected is None:
+            return self.source.stamps, self.source.ids
+        return fault_injection.inject(self.injected, self.source.event_types, self.source.stamps,
+                                      self.source.ids, self.onset, self.source.end)
 
 
 @dataclass(frozen=True)
@@ -72,7 +81,7 @@ class JudgedRun:
 
 def normal_run(recording: RecordingEvents) -> Run:
     """Return a run of normal operation."""
-    return Run(recording, '', recording.stamps, recording.ids)
+    return Run(recording, '')
 
 
 def recorded_fault(whole: RecordingEvents, window: int) -> Run:
@@ -90,30 +99,41 @@ def recorded_fault(whole: RecordingEvents, window: int) -> Run:
         raise ValueError(f'{whole.part}: no part of the recording, which lasts '
                          f'{(whole.end - whole.origin) / SECOND_NS:.1f} s')
     # The window in which the recording ends is as faulty as those before it.
-    return Run(whole, RECORDED, whole.stamps, whole.ids, onset,
-               relief + window if relief == whole.end else relief)
+    return Run(whole, RECORDED, onset, relief + window if relief == whole.end else relief)
 
 
 def injected_fault(recording: RecordingEvents, fault: InjectedFault, window: int) -> Run:
     """Return a run with the fault injected in the middle of a normal recording.
 
-    The onset is put on the grid of windows [ns], so that none is half faulty.
+    Raises:
+        ValueError: it would change nothing, see fault_injection.inject().
     """
-    middle = int(recording.stamps[0]) + (recording.end - int(recording.stamps[0])) // 2
-    onset = -(-middle // window) * window
+    run = Run(recording, str(fault), _middle(recording, window), recording.end + window, fault)
     try:
-        stamps, ids = fault_injection.inject(fault, recording.event_types, recording.stamps,
-                                             recording.ids, onset, recording.end)
+        run.events()
     except ValueError as error:
         raise ValueError(f'{recording.part}: {error}') from error
-    return Run(recording, str(fault), stamps, ids, onset, recording.end + window)
+    return run
+
+
+def acts_after_middle(source: str, recording: RecordingEvents, window: int) -> bool:
+    """Return whether a source has an event where a fault would be injected, or later."""
+    of_source = [i for i, kind in enumerate(recording.event_types) if kind.source == source]
+    later = recording.ids[recording.stamps >= _middle(recording, window)]
+    return bool(np.isin(of_source, later).any())
+
+
+def _middle(recording: RecordingEvents, window: int) -> int:
+    """Return the onset of injected faults, on the grid of windows [ns]: none is half faulty."""
+    first = int(recording.stamps[0])
+    return -(-(first + (recording.end - first) // 2) // window) * window
 
 
 def judge_runs(judge: Judge, window: int, runs: Sequence[Run]) -> List[JudgedRun]:
     """Let a detector judge runs in windows of a length [ns]."""
     judged = []
     for run in progress.each(runs, 'scoring'):
-        verdicts = judge(run.stamps, run.ids, run.source.end)
+        verdicts = judge(*run.events(), run.source.end)
         judged.append(JudgedRun(run, verdicts, np.nan_to_num(verdicts.score),
                                 _labels(run, verdicts, window)))
     return judged

@@ -4,7 +4,6 @@ from __future__ import annotations
 import argparse
 import csv
 import dataclasses
-import math
 import time
 from statistics import median
 from typing import List, NamedTuple, Optional, Sequence, Tuple
@@ -14,18 +13,18 @@ import numpy as np
 from self_awareness import (EVIDENCE_THRESHOLD, Calibration, DetectorParameters, Model, Roc,
                             RocPoint, TrainedModel)
 from self_awareness.calibration import confidence, limits
-from self_awareness.calibration.fault_injection import (FORMS, InjectedFault, check_source,
+from self_awareness.calibration.fault_injection import (EACH, FORMS, InjectedFault, check_source,
                                                         of_each_source)
 from self_awareness.calibration.results import (FalseAlarms, FaultResult, false_alarms,
                                                 fault_results, labelled)
 from self_awareness.calibration.runs import (ABNORMAL, LEFT_OUT, NORMAL, RECORDED, JudgedRun, Run,
-                                             check_unseen, injected_fault, judge_runs, normal_run,
-                                             recorded_fault)
+                                             acts_after_middle, check_unseen, injected_fault,
+                                             judge_runs, normal_run, recorded_fault)
 from self_awareness.calibration.threshold_rule import ThresholdRule
 from self_awareness.commands import cli
 from self_awareness.judging import evidence_judge, paper_judge
 from self_awareness.output_files import check_outputs, replacing
-from self_awareness.recordings import BagPart, expand
+from self_awareness.recordings import BagPart, RecordingEvents, expand
 from self_awareness.reporting import evidence_report
 from self_awareness.reporting.plots import save_roc
 from self_awareness.stamps import SECOND_NS
@@ -73,10 +72,9 @@ def _calibrate(arguments: argparse.Namespace) -> None:
     parameters = cli.detector_parameters(arguments)
     _check_options(arguments)
     trained = cli.load_model(arguments.model, arguments.detector)
-    arguments.inject = [each for fault in arguments.inject
-                        for each in of_each_source(fault, trained.event_types)]
     for fault in arguments.inject:
-        check_source(fault, trained.event_types)
+        if fault.source != EACH:
+            check_source(fault, trained.event_types)
 
     normal = [cli.read_recording('calibrate', trained, part) for part in expand(arguments.normal)]
     faulty = [dataclasses.replace(cli.read_recording('calibrate', trained, part.whole()),
@@ -84,9 +82,8 @@ def _calibrate(arguments: argparse.Namespace) -> None:
               for part in expand(arguments.faulty)]
     check_unseen(trained, normal + faulty)
     normal_runs = [normal_run(recording) for recording in normal]
-    faulty_runs = ([recorded_fault(recording, trained.window) for recording in faulty]
-                   + [injected_fault(recording, fault, trained.window)
-                      for fault in dict.fromkeys(arguments.inject) for recording in normal])
+    injected, silent = _inject(arguments.inject, trained, normal)
+    faulty_runs = [recorded_fault(recording, trained.window) for recording in faulty] + injected
 
     if arguments.detector == 'evidence':
         measured = _find_limits(arguments, trained, parameters, normal_runs, faulty_runs)
@@ -94,6 +91,7 @@ def _calibrate(arguments: argparse.Namespace) -> None:
         evidence_report.print_measured(measured.normal, measured.false_alarms)
         evidence_report.print_expected(trained)
         evidence_report.print_faults(measured.faulty)
+        evidence_report.print_not_tried(silent)
     else:
         measured = _find_threshold(trained, parameters, arguments.cutoff, normal_runs, faulty_runs)
         trained.calibration = _calibration(arguments, measured)
@@ -108,6 +106,28 @@ def _calibrate(arguments: argparse.Namespace) -> None:
                  [(result.fault, result.roc) for result in measured.faults], measured.point)
     trained.save(arguments.output)
     print(f'written: {arguments.output}')
+
+
+def _inject(faults: Sequence[InjectedFault], trained: TrainedModel,
+            normal: Sequence[RecordingEvents]) -> Tuple[List[Run], List[str]]:
+    """Return every fault in every recording, and the faults that no recording can show.
+
+    Where a fault stands for each source, those that say nothing after the middle of a recording
+    are left out: many only speak when the robot starts.
+
+    Raises:
+        ValueError: a fault of a source that is named would change nothing.
+    """
+    runs: List[Run] = []
+    silent: List[str] = []
+    for each in dict.fromkeys(each for fault in faults
+                              for each in of_each_source(fault, trained.event_types)):
+        able = [recording for recording in normal if each in faults
+                or acts_after_middle(each.source or '', recording, trained.window)]
+        runs += [injected_fault(recording, each, trained.window) for recording in able]
+        if not able:
+            silent.append(str(each))
+    return runs, silent
 
 
 def _check_options(arguments: argparse.Namespace) -> None:
@@ -197,7 +217,8 @@ def _calibration(arguments: argparse.Namespace, measured: _Measured) -> Calibrat
     result.normal = [judged.run.source.recording for judged in measured.normal]
     result.faulty = [judged.run.source.recording for judged in measured.faulty
                      if judged.run.fault == RECORDED]
-    result.injected = [str(fault) for fault in dict.fromkeys(arguments.inject)]
+    result.injected = list(dict.fromkeys(
+        judged.run.fault for judged in measured.faulty if judged.run.fault != RECORDED))
     result.stamp = int(time.time()) * SECOND_NS
     return result
 
@@ -261,17 +282,6 @@ def _save_csv(path: str, runs: Sequence[JudgedRun]) -> None:
                                      unknown, repr(score), _LABELS[label]))
 
 
-def _budget(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not 0.0 < value < math.inf:
-        raise argparse.ArgumentTypeError('expected false alarms an hour, more than 0, not '
-                                         f'{text!r}')
-    return value
-
-
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog='calibrate', description=__doc__.split(': ', 1)[1], epilog=_EPILOG,
@@ -289,7 +299,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('-o', '--output', required=True, metavar='MODEL',
                         help='file to write; may be the same model')
     cli.add_detector_argument(parser)
-    parser.add_argument('--budget', type=_budget, metavar='N', help='evidence: false alarms an '
+    parser.add_argument('--budget', type=cli.budget, metavar='N', help='evidence: false alarms an '
                         f'hour that the limits allow (default: {limits.BUDGET:g})')
     parser.add_argument('--cutoff', type=cli.checked(ThresholdRule.parse),
                         metavar='HOW', help='paper: youden: largest true less false positive '

@@ -93,6 +93,23 @@ def count(text: str) -> int:
     return int(text)
 
 
+def above_zero(what: str) -> Callable[[str], float]:
+    """Return an argument type: a number above 0 of something."""
+    def convert(text: str) -> float:
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if not 0.0 < value < math.inf:
+            raise argparse.ArgumentTypeError(f'expected {what}, more than 0, not {text!r}')
+        return value
+    return convert
+
+
+budget = above_zero('false alarms an hour')
+"""Argument type: how many false alarms limits allow."""
+
+
 def checked(parse: Callable[[str], _Value]) -> Callable[[str], _Value]:
     """Return an argument type whose ValueErrors reach the user with their text."""
     def convert(text: str) -> _Value:

@@ -85,6 +85,12 @@ def print_faults(faulty: Sequence[JudgedRun]) -> None:
     print(f'found {found} of {len(faulty)} (95 %: {low:.1%} to {high:.1%})')
 
 
+def print_not_tried(faults: Sequence[str]) -> None:
+    """Print which faults no recording can show."""
+    if faults:
+        print('not tried, silent after the middle of every recording: ' + ', '.join(faults))
+
+
 def _hours(hours: float) -> str:
     return f'{hours:.2g} h' if hours >= 1.0 else f'{60.0 * hours:.0f} min'
 

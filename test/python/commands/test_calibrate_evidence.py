@@ -5,9 +5,11 @@ import csv
 import math
 import os
 import re
+from pathlib import Path
 from typing import Callable, List, Tuple
 
 import pytest
+from conftest import jittery_robot
 
 from self_awareness import EvidenceModel, TrainedModel
 from self_awareness.commands import calibrate, train
@@ -151,3 +153,23 @@ def test_recordings_that_were_trained_on_are_refused(run, long_bags: Bags, tmp_p
         assert code == 1 and 'renamed.bag' in err and 'monday.bag' in err
         assert 'trained on it' in err and 'BAG@START-END' in err
     assert not (tmp_path / 'm').exists()
+
+
+def test_a_source_that_is_silent_after_the_middle_is_no_obstacle(tmp_path: Path, make_bag,
+                                                                 capsys) -> None:
+    model = str(tmp_path / 'm')
+
+    def bag(name: str, start: float) -> str:
+        once = [(start + 0.1 * i, '/starter', '/hello') for i in range(20)]
+        return make_bag(name, sorted([*jittery_robot(start, 120.0, int(start)), *once]))
+
+    assert train.main([bag('train.bag', 1000.0), '-o', model]) == 0
+    normal = bag('normal.bag', 5000.0)
+    arguments = ['--model', model, '--normal', normal, '-o', model]
+    assert calibrate.main([*arguments, '--inject', 'crash:*', 'crash:/laser']) == 0
+    out = capsys.readouterr().out
+    assert 'not tried, silent after the middle of every recording: crash:/starter\n' in out
+    assert len(re.findall(r'^crash  ', out, re.MULTILINE)) == 3
+    # Who names it wants to know.
+    assert calibrate.main([*arguments, '--inject', 'crash:/starter']) == 1
+    assert 'nothing would change' in capsys.readouterr().err

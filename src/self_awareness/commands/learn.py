@@ -1,0 +1,95 @@
+"""`rosrun self_awareness learn`: learns a running robot, and goes on as its monitor."""
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import sys
+from typing import List, Optional, Sequence
+
+import rospy
+
+from self_awareness import EncodingRules, encoding_file
+from self_awareness.calibration import limits
+from self_awareness.commands import cli
+from self_awareness.learning import programs
+from self_awareness.learning.learner import Learner, Plan
+from self_awareness.output_files import check_outputs
+
+_MONITOR = 'self_awareness_node'
+_START_UP_S = 30.0
+
+_EPILOG = """\
+learn.launch runs it. The model is the parameter ~model, as of the monitor. If the file is there
+already, this is the monitor at once. ~finish (std_srvs/Trigger) ends the recording early. Started
+again, it goes on with the logs that are there.
+"""
+
+
+def main(argv: Optional[Sequence[str]] = None) -> int:
+    """Run the program; return its exit code (see cli.run)."""
+    # Under roslaunch, the name of a node comes with the arguments.
+    return cli.run(_parser(), _learn, rospy.myargv(sys.argv if argv is None else ['', *argv])[1:])
+
+
+def _learn(arguments: argparse.Namespace) -> None:
+    rospy.init_node('self_awareness')
+    model = str(rospy.get_param('~model', ''))
+    if not model:
+        raise ValueError('the parameter ~model is not set: which file is the model to be?')
+    if os.path.exists(model):
+        rospy.loginfo('%s is there: this is the monitor; remove it to learn again', model)
+    else:
+        check_outputs([model], [])
+        encoding = without(rospy.get_name(), encoding_file.load(arguments.encoding)
+                           if arguments.encoding else EncodingRules.defaults())
+        plan = Plan(model, arguments.logs or f'{model}.logs', arguments.hours, arguments.start_up,
+                    arguments.budget, encoding, arguments.subscribe)
+        if not Learner(plan).run():
+            return
+        rospy.loginfo('%s is learned: this is the monitor from now on', model)
+    _become_monitor()
+
+
+def without(node: str, encoding: EncodingRules) -> EncodingRules:
+    """Return an encoding by which what a node sends is no event.
+
+    The monitor will have this name, and does not listen to itself.
+    """
+    if not any(re.fullmatch(pattern, node) for pattern in encoding.exclude_sources):
+        encoding.exclude_sources += [node]  # a regular expression: no name has special characters
+    return encoding
+
+
+def _become_monitor() -> None:
+    """Replace this process, so that who started it, and its name, stay the same."""
+    monitor = programs.executable(_MONITOR)
+    remapped: List[str] = [each for each in sys.argv[1:] if ':=' in each]
+    if not any(each.startswith('__name:=') for each in remapped):
+        remapped.append(f'__name:={os.path.basename(rospy.get_name())}')
+    rospy.signal_shutdown('this is the monitor now')
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os.execv(monitor, [monitor, *remapped])
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog='learn', description=__doc__.split(': ', 1)[1].strip(), epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('--hours', type=cli.above_zero('hours'), default=2.0, metavar='N',
+                        help='of recordings to learn from, more than 0 (default: 2)')
+    parser.add_argument('--logs', metavar='FOLDER',
+                        help='of the event logs that are recorded (default: MODEL.logs)')
+    parser.add_argument('--start-up', type=cli.offset, default=_START_UP_S, metavar='S',
+                        help='leave out so much after each start of the robot, in s (default: '
+                             f'{_START_UP_S:g})')
+    parser.add_argument('--budget', type=cli.budget, default=limits.BUDGET, metavar='N',
+                        help='false alarms an hour that the limits allow (default: '
+                             f'{limits.BUDGET:g})')
+    parser.add_argument('--encoding', metavar='FILE',
+                        help='how messages become events (example: config/encoding.yaml)')
+    parser.add_argument('--subscribe', choices=('used', 'all'), default='used',
+                        help='used: topics that another node subscribes to; all: also those that '
+                             'wake publishers which work only for subscribers (default: used)')
+    return parser

@@ -1,0 +1,1 @@
+"""From nothing to a monitor: records a robot, learns from it, and goes on as the monitor."""

@@ -1,0 +1,170 @@
+"""The steps of a learning: record until there is enough, train and calibrate, or record more."""
+from __future__ import annotations
+
+import os
+import threading
+from dataclasses import dataclass
+from typing import Dict, Optional
+
+import rospy
+from diagnostic_msgs.msg import DiagnosticStatus
+from std_srvs.srv import Trigger, TriggerRequest, TriggerResponse
+
+from self_awareness import EncodingRules
+from self_awareness.learning import programs
+from self_awareness.learning.announcer import Announcer
+from self_awareness.learning.division import divide
+from self_awareness.learning.logs import LogFolder
+from self_awareness.learning.recorder import Recorder
+
+_PERIOD_S = 1.0
+_MORE = 1.5
+_LEAST_MORE_H = 1.0 / 60.0
+
+
+@dataclass(frozen=True)
+class Plan:
+    """What is to be learned.
+
+    Args:
+        model: file to write.
+        logs: folder of the event logs.
+        hours: of recordings to learn from, those that are there included.
+        start_up: left out after each start of the robot [s].
+        budget: false alarms an hour that the limits allow.
+        encoding: how messages become events.
+        subscribe: used or all, see launch/record.launch.
+    """
+
+    model: str
+    logs: str
+    hours: float
+    start_up: float
+    budget: float
+    encoding: EncodingRules
+    subscribe: str
+
+
+class Learner:
+    """Learns, and serves `~finish` (std_srvs/Trigger); needs rospy.init_node().
+
+    Args:
+        plan: what is to be learned.
+    """
+
+    def __init__(self, plan: Plan) -> None:
+        self._plan = plan
+        self._wanted = plan.hours
+        self._folder = LogFolder(plan.logs, plan.encoding)
+        self._announcer = Announcer()
+        self._problem = ''  # why the last attempt failed
+        self._recorder: Optional[Recorder] = None
+        self._finish = threading.Event()
+        self._wake = threading.Event()
+        rospy.on_shutdown(self._wake.set)
+        self._service = rospy.Service('~finish', Trigger, self._on_finish)
+
+    def run(self) -> bool:
+        """Learn the model; return False if the node was told to end before.
+
+        Raises:
+            ValueError: another one records in the folder, or the recorder has ended by itself.
+        """
+        with self._folder.locked() as lock:
+            for line in self._folder.mend():
+                rospy.logwarn(line)
+            while self._listen(lock) and not rospy.is_shutdown():
+                if self._train():
+                    return True
+        return False
+
+    def _listen(self, lock: int) -> bool:
+        """Record until there is enough; return False if the node was told to end before."""
+        self._finish.clear()
+        self._wake.clear()
+        self._look()
+        while self._folder.hours < self._wanted and not self._finish.is_set():
+            rospy.loginfo('recording to %s; %s', self._plan.logs,
+                          self._progress(self._folder.hours, self._folder.starts))
+            with Recorder(os.path.join(self._plan.logs, 'normal'), self._plan.encoding,
+                          self._plan.subscribe, lock) as self._recorder:
+                self._await(self._recorder)
+            self._recorder = None
+            self._look()
+            if rospy.is_shutdown():
+                return False
+        return True
+
+    def _await(self, recorder: Recorder) -> None:
+        """Wait until there is enough, or nothing more is to be recorded; say how far it is."""
+        starts = self._folder.starts + 1
+        told = 0
+        while not rospy.is_shutdown() and not self._finish.is_set():
+            if recorder.ended():
+                self._finish.set()
+            self._look()
+            hours = self._folder.hours + recorder.seconds() / 3600.0
+            if hours >= self._wanted:
+                return
+            progress = self._progress(hours, max(starts, self._folder.starts))
+            self._say_progress(progress, recorder.problem)
+            tenths = int(10.0 * hours / self._wanted)
+            if tenths > told:
+                told = tenths
+                rospy.loginfo(progress)
+            self._wake.wait(_PERIOD_S)
+
+    def _train(self) -> bool:
+        """Learn from what there is; return False, and want more, if that is not enough."""
+        held = self._folder.hours
+        progress = f'{_length(held)} of {_starts(self._folder.starts)}'
+        rospy.loginfo('learning from %s', progress)
+        self._announcer.say(DiagnosticStatus.OK, f'learning from {progress}', self._values())
+        division = divide(self._folder.logs, self._plan.start_up)
+        try:
+            programs.train_and_calibrate(division, self._plan.model, self._plan.logs,
+                                         self._plan.budget, rospy.is_shutdown)
+        except programs.ProgramError as error:
+            if not rospy.is_shutdown():
+                self._wanted = max(_MORE * held, held + _LEAST_MORE_H)
+                self._problem = str(error)
+                rospy.logwarn('nothing was learned (%s): recording goes on until there are %s',
+                              error, _length(self._wanted))
+            return False
+        return True
+
+    def _look(self) -> None:
+        for problem in self._folder.look():
+            rospy.logwarn(problem)
+
+    def _progress(self, hours: float, starts: int) -> str:
+        return f'learning: {_length(hours)} of {_length(self._wanted)}, {_starts(starts)}'
+
+    def _say_progress(self, progress: str, problem: str) -> None:
+        level = DiagnosticStatus.OK
+        if self._problem:
+            level = DiagnosticStatus.WARN
+            progress += f'; the last attempt failed: {self._problem}'
+        if problem:
+            level = DiagnosticStatus.ERROR
+            progress = f'{problem}; {progress}'
+        self._announcer.say(level, progress, self._values())
+
+    def _values(self) -> Dict[str, str]:
+        return {'model': self._plan.model, 'logs': self._plan.logs,
+                'complete logs': str(len(self._folder.logs))}
+
+    def _on_finish(self, _: TriggerRequest) -> TriggerResponse:
+        if self._recorder is None:
+            return TriggerResponse(False, 'nothing is recorded at the moment')
+        self._finish.set()
+        self._wake.set()
+        return TriggerResponse(True, 'learns from what was recorded; see /diagnostics')
+
+
+def _length(hours: float) -> str:
+    return f'{hours:.1f} h' if hours >= 1.0 else f'{60.0 * hours:.1f} min'
+
+
+def _starts(number: int) -> str:
+    return f'{number} start of the robot' if number == 1 else f'{number} starts of the robot'

@@ -1,0 +1,77 @@
+"""Runs the programs of this package that a learning consists of."""
+from __future__ import annotations
+
+import os
+import shlex
+import subprocess
+import sys
+import tempfile
+from typing import Callable
+
+import roslib.packages
+
+from self_awareness.learning.division import Division
+
+_POLL_S = 0.5
+
+
+class ProgramError(ValueError):
+    """A program has ended with an error, and says which."""
+
+
+def executable(name: str) -> str:
+    """Return the path of a program or node of this package, as rosrun finds it.
+
+    Raises:
+        ValueError: it was not built or installed.
+    """
+    found = roslib.packages.find_node('self_awareness', name)
+    if not found:
+        raise ValueError(f'{name} is not there: was the package built?')
+    return str(found[0])
+
+
+def train_and_calibrate(division: Division, model: str, folder: str, budget: float,
+                        interrupted: Callable[[], bool]) -> None:
+    """Learn a model, and print what it can find.
+
+    The programs are processes of their own: a robot runs beside them, so they stand back, and
+    their memory is free afterwards.
+
+    Args:
+        division: what is trained and calibrated on.
+        model: file to write, at the end.
+        folder: where there is space for the model that has no limits yet.
+        budget: false alarms an hour that the limits allow.
+        interrupted: asked from time to time whether to stop.
+
+    Raises:
+        ProgramError: one of them says why it cannot do it, or is interrupted; or there is nothing
+            to calibrate on.
+    """
+    if not division.calibration:
+        raise ProgramError('the recordings are too short')
+    with tempfile.TemporaryDirectory(prefix='.training', dir=folder) as temporary:
+        counted = os.path.join(temporary, 'trained.model')
+        _run(interrupted, 'train', *map(str, division.training), '-o', counted)
+        _run(interrupted, 'calibrate', '--model', counted,
+             '--normal', *map(str, division.calibration), '--budget', f'{budget:g}',
+             '--inject', 'crash:*', '-o', model)
+
+
+def _run(interrupted: Callable[[], bool], *command: str) -> None:
+    """Run a program; what it prints goes on to the console."""
+    print(f'+ rosrun self_awareness {" ".join(map(shlex.quote, command))}', flush=True)
+    with subprocess.Popen([executable(command[0]), *command[1:]], stderr=subprocess.PIPE,
+                          universal_newlines=True) as process:
+        while True:
+            try:
+                _, errors = process.communicate(timeout=_POLL_S)
+                break
+            except subprocess.TimeoutExpired:
+                if interrupted():
+                    process.terminate()
+    sys.stderr.write(errors)
+    if process.returncode:
+        lines = errors.strip().splitlines() or [f'{command[0]}: exit code {process.returncode}']
+        raise ProgramError(lines[-1])

@@ -1,0 +1,103 @@
+"""The recorder of a learning, as a process of its own that ends with this one."""
+from __future__ import annotations
+
+import glob
+import os
+import signal
+import subprocess
+import time
+from types import TracebackType
+from typing import Optional, Type
+
+import rospy
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+
+from self_awareness import EncodingRules
+from self_awareness.learning.programs import executable
+
+_END_S = 30.0  # to write the last file
+
+
+class Recorder:
+    """Records event logs while its `with` block lasts; needs rospy.init_node().
+
+    Args:
+        prefix: of the files.
+        encoding: how messages become events.
+        subscribe: used or all, see launch/record.launch.
+        lock: a file descriptor that it keeps open for as long as it lives.
+    """
+
+    def __init__(self, prefix: str, encoding: EncodingRules, subscribe: str, lock: int) -> None:
+        self._prefix = prefix
+        self._encoding = encoding
+        self._subscribe = subscribe
+        self._lock = lock
+        self._problem = ''
+        self._process: Optional[subprocess.Popen] = None
+        self._file = ''  # that is written
+        self._began = 0.0  # the file [s of time.monotonic()]
+
+    def __enter__(self) -> Recorder:
+        # Its diagnostics go through this node's: a name that nobody beats for any more would
+        # become STALE when the monitor has taken over.
+        diagnostics = rospy.resolve_name('~recording')
+        self._subscriber = rospy.Subscriber(diagnostics, DiagnosticArray, self._on_diagnostics)
+        name = f'{rospy.get_name()}_recorder'
+        rospy.set_param(f'{name}/encoding', _parameters(self._encoding))
+        self._process = subprocess.Popen(
+            ['setpriv', '--pdeathsig', 'INT', executable('record_events'),
+             f'__name:={os.path.basename(name)}', f'_output:={self._prefix}',
+             f'_subscribe:={self._subscribe}', f'/diagnostics:={diagnostics}'],
+            pass_fds=(self._lock,))
+        return self
+
+    def __exit__(self, kind: Optional[Type[BaseException]], error: Optional[BaseException],
+                 trace: Optional[TracebackType]) -> None:
+        self._subscriber.unregister()
+        assert self._process is not None
+        self._process.send_signal(signal.SIGINT)
+        try:
+            self._process.wait(_END_S)
+        except subprocess.TimeoutExpired:
+            self._process.kill()  # the file can be mended
+            self._process.wait()
+
+    @property
+    def problem(self) -> str:
+        """Why nothing is recorded, in its words; empty: it is, or has said nothing yet."""
+        return self._problem
+
+    def seconds(self) -> float:
+        """Return for how long the file that is not complete yet has been written [s].
+
+        Call it often: a file is taken to begin when it is seen for the first time.
+        """
+        files = sorted(glob.glob(f'{glob.escape(self._prefix)}*.bag.active'))
+        newest = files[-1] if files else ''
+        if newest != self._file:
+            self._file, self._began = newest, time.monotonic()
+        return time.monotonic() - self._began if newest else 0.0
+
+    def ended(self) -> bool:
+        """Return whether it was told to end.
+
+        Raises:
+            ValueError: it ended by itself.
+        """
+        code = None if self._process is None else self._process.poll()
+        if code:
+            raise ValueError(f'the recorder ended (exit code {code}); it says why above')
+        return code is not None
+
+    def _on_diagnostics(self, array: DiagnosticArray) -> None:
+        for status in array.status:
+            self._problem = '' if status.level == DiagnosticStatus.OK else status.message
+
+
+def _parameters(encoding: EncodingRules) -> dict:
+    """Return an encoding as config/encoding.yaml is loaded."""
+    return {'source': encoding.source, 'include_topics': encoding.include_topics,
+            'exclude_topics': encoding.exclude_topics,
+            'include_sources': encoding.include_sources,
+            'exclude_sources': encoding.exclude_sources, 'type_fields': encoding.type_fields}

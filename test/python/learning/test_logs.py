@@ -1,0 +1,91 @@
+"""The folder of a learning: what is mended, what is left out, how much there is."""
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from conftest import robot, write_bag
+from event_logs import write_log
+
+from self_awareness import EncodingRules, read_events
+from self_awareness.learning import logs
+from self_awareness.learning.logs import LogFolder
+
+RULES = EncodingRules.defaults()
+
+
+def folder(path: Path) -> LogFolder:
+    return LogFolder(str(path), RULES)
+
+
+def test_hours_and_starts_are_those_of_the_recordings(tmp_path: Path) -> None:
+    for name, length, start in (('a', 90.0, 7), ('b', 60.0, 7), ('c', 30.0, 8)):
+        write_log(tmp_path / f'{name}.bag', robot(1000.0, length), start)
+    found = folder(tmp_path)
+    assert found.hours == found.starts == 0
+    assert found.look() == []
+    assert found.hours == pytest.approx(180.0 / 3600.0, rel=0.01)
+    assert found.starts == 2
+    assert [log.part.path for log in found.logs] == [str(tmp_path / f'{x}.bag') for x in 'abc']
+    write_log(tmp_path / 'd.bag', robot(2000.0, 60.0), 9)
+    assert found.look() == []
+    assert found.starts == 3
+
+
+def test_what_a_crash_left_behind_is_mended(tmp_path: Path) -> None:
+    path = write_log(tmp_path / 'a.bag.active', robot(1000.0, 60.0), 7, crashed=True)
+    found = folder(tmp_path)
+    assert found.look() == [] and found.logs == []
+    assert found.mend() == [f'mended: {tmp_path}/a.bag']
+    assert not Path(path).exists()
+    assert found.look() == []
+    assert found.starts == 1
+    events = read_events(str(tmp_path / 'a.bag'), RULES, recording=0)
+    assert len(events.stamps) == len(list(robot(1000.0, 60.0)))
+
+
+def test_what_cannot_be_mended_is_named_and_the_rest_is_used(tmp_path: Path) -> None:
+    (tmp_path / 'a.bag.active').write_bytes(b'')
+    (tmp_path / 'b.bag.active').write_bytes(b'no bag at all')
+    write_log(tmp_path / 'c.bag.active', robot(1000.0, 60.0), 7, crashed=True)
+    found = folder(tmp_path)
+    lines = found.mend()
+    for line, name in zip(lines, 'ab'):
+        assert line.startswith(f'left out: {tmp_path}/{name}.bag.active: cannot be mended')
+    assert lines[2:] == [f'mended: {tmp_path}/c.bag']
+    assert (tmp_path / 'a.bag.active').exists()
+    assert found.look() == []
+    assert len(found.logs) == 1
+
+
+def test_what_is_no_good_log_is_named_once_and_left_out(tmp_path: Path) -> None:
+    write_log(tmp_path / 'damaged.bag', robot(1000.0, 60.0), 7, without=2)
+    write_log(tmp_path / 'good.bag', robot(1000.0, 60.0), 7)
+    write_bag(tmp_path / 'messages.bag', robot(1000.0))
+    (tmp_path / 'text.bag').write_text('no bag')
+    found = folder(tmp_path)
+    problems = found.look()
+    assert [log.part.path for log in found.logs] == [str(tmp_path / 'good.bag')]
+    for problem, name, why in zip(problems, ('damaged', 'messages', 'text'),
+                                  ('damaged', 'no event log', 'text.bag')):
+        assert problem.startswith(f'left out: {tmp_path}/{name}.bag') and why in problem
+    assert len(problems) == 3
+    assert found.look() == []
+
+
+def test_logs_of_another_encoding_are_left_out(tmp_path: Path) -> None:
+    path = write_log(tmp_path / 'a.bag', robot(1000.0), 7)
+    rules = EncodingRules.defaults()
+    rules.exclude_topics += ['/scan']
+    found = LogFolder(str(tmp_path), rules)
+    assert found.look() == [f'left out: {path}: was recorded by another encoding']
+
+
+def test_only_one_learns_in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(logs, '_UNLOCKED_S', 0.0)
+    with folder(tmp_path).locked():
+        with pytest.raises(ValueError, match='somebody else learns here'):
+            with folder(tmp_path).locked():
+                pass
+    with folder(tmp_path).locked():
+        pass

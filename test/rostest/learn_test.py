@@ -1,0 +1,110 @@
+#!/usr/bin/python3
+"""launch/learn.launch: learns the robot through a crash, goes on as the monitor, finds a fault."""
+
+import glob
+import os
+import re
+import shutil
+import signal
+import tempfile
+import unittest
+
+import rospy
+import rostest
+from diagnostic_msgs.msg import DiagnosticStatus
+from std_srvs.srv import Trigger
+
+from live_system import MonitorListener, Process, again_if_clock_was_set, await_condition, pid_of
+from self_awareness import TrainedModel
+from self_awareness.msg import SelfAwareness
+
+# 50 s are the least to find limits on, and a third of the recordings is for that.
+HOURS = 0.06
+LEARNING_S = 500
+FINISH = '/self_awareness/finish'
+
+
+def recorded(listener: MonitorListener) -> float:
+    """How much the last status says to be recorded [min]; NaN: there is none yet."""
+    statuses = listener.diagnostics('communication')
+    match = re.match(r'learning: ([0-9.]+) min of 3\.6 min', statuses[-1].message
+                     ) if statuses else None
+    return float(match.group(1)) if match else float('nan')
+
+
+class LearnTest(unittest.TestCase):
+
+    def setUp(self) -> None:
+        self.folder = tempfile.mkdtemp()
+        self.addCleanup(shutil.rmtree, self.folder)
+        self.model = os.path.join(self.folder, 'robot.model')
+        for topic in ('/scan', '/pose', '/odom'):
+            rospy.wait_for_message(topic, rospy.AnyMsg, 60)
+
+    def learn(self, hours: float) -> Process:
+        # As in monitor_test: few false alarms are allowed on a busy machine.
+        return Process('roslaunch', 'self_awareness', 'learn.launch', 'model:=' + self.model,
+                       'hours:={}'.format(hours), 'start_up:=2', 'subscribe:=all',
+                       'budget:=0.01')
+
+    def await_said(self, listener: MonitorListener, part: str, level: int,
+                   timeout: float) -> None:
+        """Waits until the last status says something."""
+        def says() -> bool:
+            statuses = listener.diagnostics('communication')
+            return bool(statuses) and part in statuses[-1].message and statuses[-1].level == level
+        await_condition(part, says, timeout)
+
+    @again_if_clock_was_set
+    def test_1_from_nothing_to_an_alarm(self) -> None:
+        with MonitorListener() as listener, self.learn(HOURS) as process:
+            self.await_said(listener, ', 1 start of the robot', DiagnosticStatus.OK, 60)
+            await_condition('a log', lambda: glob.glob(self.model + '.logs/*.bag.active'), 30)
+            await_condition('12 s are recorded', lambda: recorded(listener) >= 0.2, 60)
+            os.kill(pid_of('/self_awareness_recorder'), signal.SIGKILL)
+            self.await_said(listener, ', 2 starts of the robot', DiagnosticStatus.OK, 60)
+            self.assertGreater(recorded(listener), 0.0)
+            self.assertIn('mended: ' + self.model + '.logs', process.output)
+
+            settled = listener.await_settled(LEARNING_S)
+            self.assertNotEqual(settled.level, SelfAwareness.ERROR)
+            for node in ('/player', '/slam', '/base'):
+                self.assertIn('crash  ' + node, process.output)
+            sources = {kind.source for kind in TrainedModel.load(self.model).event_types}
+            self.assertLessEqual({'/player', '/slam', '/base'}, sources)
+            self.assertEqual([name for name in sources if 'self_awareness' in name], [])
+
+            os.kill(pid_of('/player'), signal.SIGKILL)
+            alarm = listener.await_alarm()
+            self.assertEqual(alarm.suspects[0].source, '/player')
+            self.assertEqual(alarm.suspects[0].scope, '/scan')
+            self.check_respawned(listener)
+
+    def check_respawned(self, listener: MonitorListener) -> None:
+        """A monitor that crashes comes back as the monitor."""
+        pid = pid_of('/self_awareness')
+        os.kill(pid, signal.SIGKILL)
+        before = len(listener.statuses)
+        said = len(listener.diagnostics('communication'))
+        await_condition('the monitor is back', lambda: len(listener.statuses) > before, 60)
+        self.assertNotEqual(pid_of('/self_awareness'), pid)
+        self.assertEqual([status.message for status in listener.diagnostics('communication')[said:]
+                          if 'learning' in status.message], [])
+
+    def test_2_too_little_is_said_and_recording_goes_on(self) -> None:
+        with MonitorListener() as listener, self.learn(1.0):
+            rospy.wait_for_service(FINISH, 60)
+            finish = rospy.ServiceProxy(FINISH, Trigger)
+            await_condition('it records', lambda: finish().success, 30)
+            self.await_said(listener, 'failed: the recordings are too short',
+                            DiagnosticStatus.WARN, 60)
+            await_condition('it records again', lambda: finish().success, 30)
+        # Who ends it leaves complete logs.
+        self.assertEqual(glob.glob(self.model + '.logs/*.active'), [])
+        self.assertTrue(glob.glob(self.model + '.logs/*.bag'))
+        self.assertFalse(os.path.exists(self.model))
+
+
+if __name__ == '__main__':
+    rospy.init_node('learning')  # as rostest calls it, too
+    rostest.rosrun('self_awareness', 'learning', LearnTest)
