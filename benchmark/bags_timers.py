@@ -25,11 +25,12 @@ def write(folder: str, number: int, types: int, seconds: float) -> Tuple[List[st
     paths = []
     for part, events in enumerate(zip(np.split(stamps, cuts), np.split(ids, cuts))):
         paths.append(os.path.join(folder, f'part{part}.bag'))
-        _write(paths[-1], *events)
+        write_bag(paths[-1], *events)
     return paths, len(stamps)
 
 
-def _write(path: str, stamps: np.ndarray, ids: np.ndarray) -> None:
+def write_bag(path: str, stamps: np.ndarray, ids: np.ndarray) -> None:
+    """Write events as a bag: stamps [ns] from its start, and the number of each one's topic."""
     message = (Empty._type, b'', Empty._md5sum, 0, Empty)
     with rosbag.Bag(path, 'w') as bag:
         for stamp, kind in zip((stamps + _START_NS).tolist(), ids.tolist()):

@@ -92,6 +92,8 @@ void Discovery::poll(const Wanted& wanted) {
     state.graph = std::make_shared<const ros1::Graph>(std::move(*graph));
   }
   const auto shared = shared_.lock();
+  state.master_restarts = shared->state.master_restarts +
+                          (master == ros1::MasterRegistration::Master::kRestarted ? 1 : 0);
   if (!state.master_answers) {
     state.subscriptions = shared->state.subscriptions;
   }

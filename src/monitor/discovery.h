@@ -36,6 +36,7 @@ class Discovery {
   struct State {
     bool master_answers = true;  ///< false also while it lets a call wait for long
     std::size_t subscriptions = 0;
+    std::size_t master_restarts = 0;  ///< that were noticed
     /// Who publishes and subscribes what; none before the first answer of the master, the last one
     /// while it does not answer.
     std::shared_ptr<const ros1::Graph> graph;

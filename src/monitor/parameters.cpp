@@ -1,97 +1,11 @@
 #include "parameters.h"
 
-#include <ros/console.h>
-#include <ros/param.h>
-
 #include <cmath>
-#include <set>
-#include <stdexcept>
-#include <utility>
-#include <vector>
+
+#include "parameter_reader.h"
 
 namespace self_awareness {
 namespace {
-
-/// Reads parameters of one namespace and remembers which.
-class ParameterReader {
- public:
-  explicit ParameterReader(const ros::NodeHandle& node_handle) : node_handle_(node_handle) {}
-
-  template <typename T>
-  T read(const std::string& name, const T& otherwise) {
-    known_.insert(name);
-    T value = otherwise;
-    if (node_handle_.hasParam(name) && !node_handle_.getParam(name, value)) {
-      throw std::invalid_argument(node_handle_.resolveName(name) + " has the wrong type");
-    }
-    ROS_INFO_STREAM(node_handle_.resolveName(name) << ": " << value);
-    return value;
-  }
-
-  /// A number of seconds of at least `least`.
-  double seconds(const std::string& name, double otherwise, double least) {
-    const double value = read(name, otherwise);
-    if (!std::isfinite(value) || value < least) {
-      fail(name, std::to_string(value),
-           "a finite number of seconds of at least " + std::to_string(least));
-    }
-    return value;
-  }
-
-  int wholeNumber(const std::string& name, int otherwise, int least) {
-    const int value = read(name, otherwise);
-    if (value < least) {
-      fail(name, std::to_string(value), "a whole number of at least " + std::to_string(least));
-    }
-    return value;
-  }
-
-  template <typename T>
-  T choice(const std::string& name, const std::string& otherwise,
-           const std::vector<std::pair<std::string, T>>& choices) {
-    const std::string value = read(name, otherwise);
-    std::string names;
-    for (const auto& [choice, meaning] : choices) {
-      if (value == choice) {
-        return meaning;
-      }
-      names += (names.empty() ? "" : ", ") + choice;
-    }
-    fail(name, "'" + value + "'", "one of: " + names);
-  }
-
-  /// A parameter that something else reads.
-  void expect(const std::string& name) { known_.insert(name); }
-
-  void warnOfUnknown() const {
-    std::vector<std::string> names;
-    ros::param::getParamNames(names);
-    const std::string prefix = node_handle_.getNamespace() + "/";
-    std::set<std::string> unknown;
-    for (const std::string& name : names) {
-      if (name.compare(0, prefix.size(), prefix) == 0) {
-        const std::string own = name.substr(prefix.size());
-        if (known_.count(own) == 0) {
-          unknown.insert(own);
-        }
-      }
-    }
-    for (const std::string& name : unknown) {
-      ROS_WARN("%s is not a parameter of self_awareness; it is ignored",
-               node_handle_.resolveName(name).c_str());
-    }
-  }
-
- private:
-  [[noreturn]] void fail(const std::string& name, const std::string& value,
-                         const std::string& must_be) const {
-    throw std::invalid_argument(node_handle_.resolveName(name) + " is " + value + ", it must be " +
-                                must_be);
-  }
-
-  ros::NodeHandle node_handle_;
-  std::set<std::string> known_;
-};
 
 std::int64_t nanoseconds(double seconds) {
   return std::llround(seconds * 1e9);

@@ -5,11 +5,17 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
+#include "core/evidence/log_bins.h"
 #include "self_awareness/core/evidence/limits.h"
+#include "self_awareness/core/stream/clock.h"
 #include "self_awareness/core/stream/event.h"
+#include "self_awareness/core/verdict/detector.h"
 #include "self_awareness/ros/bag/bag_reader.h"
 
 /// What the parts of the Python module share.
@@ -59,6 +65,39 @@ inline ros1::BagReader::Progress progressTo(const py::object& callback) {
   };
 }
 
+/// Lets a detector judge a recording.
+/// @param end the recording goes on in silence until then [ns]; none: it ends with the last event
+/// @param on_event called with every event that the detector has taken in, and with what
+/// Detector::add() returned
+inline void judgeRecording(
+    core::Detector& detector, const Stamps& stamps, const Ids& ids,
+    std::optional<std::int64_t> end,
+    const std::function<void(const core::Event&, bool)>& on_event = nullptr) {
+  std::optional<std::int64_t> last;
+  forEachEvent(stamps, ids, [&](const core::Event& event) {
+    const bool same_clock = detector.add(event);
+    if (on_event) {
+      on_event(event, same_clock);
+    }
+    last = event.stamp;
+  });
+  if (end && last && !core::isClockStep(*last, *end)) {
+    detector.advance(*end);  // silence until the end is part of the recording
+  }
+  detector.finish();
+}
+
+/// Delays of a pair of event types: shortest delay [ns] and count by bin.
+inline std::vector<std::pair<std::int64_t, std::uint32_t>> delaysOf(
+    const core::evidence::Statistics& statistics, core::EventId from, core::EventId to) {
+  const core::evidence::Statistics::Delays& counts = statistics.delays(from, to);
+  std::vector<std::pair<std::int64_t, std::uint32_t>> delays;
+  for (std::size_t bin = 0; bin < counts.size(); ++bin) {
+    delays.emplace_back(core::evidence::log_bins::lowerEdge(bin), counts[bin]);
+  }
+  return delays;
+}
+
 /// Binds the writing of event logs (event_log_bindings.cpp).
 void bindEventLogs(py::module& module);
 /// Binds the encoding, and the reading of bags and event logs (recording_bindings.cpp).
@@ -67,10 +106,14 @@ void bindRecordings(py::module& module);
 void bindModel(py::module& module);
 /// Binds the training (training_bindings.cpp).
 void bindTraining(py::module& module);
+/// Binds what a training counted (counts_bindings.cpp).
+void bindCounts(py::module& module);
 /// Binds evidence and its limits (evidence_bindings.cpp).
 void bindEvidence(py::module& module);
 /// Binds result bags (result_bindings.cpp).
 void bindResults(py::module& module);
+/// Binds the evidence of components over time (lanes_bindings.cpp).
+void bindLanes(py::module& module);
 /// Binds model, scores, verdicts and ROC (detector_bindings.cpp).
 void bindDetector(py::module& module);
 

@@ -15,7 +15,6 @@
 #include "self_awareness/core/evidence/judge.h"
 #include "self_awareness/core/paper/judge.h"
 #include "self_awareness/core/paper/model.h"
-#include "self_awareness/core/stream/clock.h"
 #include "self_awareness/core/verdict/detector.h"
 #include "self_awareness/core/verdict/persistence.h"
 #include "self_awareness/core/verdict/roc.h"
@@ -98,18 +97,11 @@ Verdicts judge(std::unique_ptr<core::Judge> judge, std::int64_t window,
       monitor->onVerdict(verdict);
     }
   });
-  std::optional<std::int64_t> last;
-  forEachEvent(stamps, ids, [&](const core::Event& event) {
-    const bool same_clock = detector.add(event);
-    last = event.stamp;
+  judgeRecording(detector, stamps, ids, end, [&](const core::Event& event, bool same_clock) {
     if (monitor != nullptr) {
       monitor->onEvent(event, same_clock);
     }
   });
-  if (end && last && !core::isClockStep(*last, *end)) {
-    detector.advance(*end);  // silence until the end is part of the recording
-  }
-  detector.finish();
   return verdicts;
 }
 
@@ -143,14 +135,56 @@ std::vector<double> scoreEvents(const std::shared_ptr<core::paper::Model>& model
   return scores;
 }
 
+std::string reasonName(core::Suspect::Reason reason) {
+  using Reason = core::Suspect::Reason;
+  switch (reason) {
+    case Reason::kSilent:
+      return "silent";
+    case Reason::kLate:
+      return "late";
+    case Reason::kUnknown:
+      return "unknown";
+    case Reason::kUnusual:
+      return "unusual";
+    case Reason::kRate:
+      return "rate";
+    case Reason::kDelay:
+      return "delay";
+    case Reason::kAnswer:
+      return "answer";
+    case Reason::kUnanswered:
+      return "unanswered";
+    case Reason::kNeverHeard:
+      return "never heard";
+  }
+  throw std::invalid_argument("a reason without a name");
+}
+
 void bindVerdicts(py::module& m) {
   py::class_<core::Suspect>(m, "Suspect", "An event type that may have made a window abnormal.")
       .def_readonly("id", &core::Suspect::id)
+      .def_readonly("component", &core::Suspect::component,
+                    "whose event type it is; empty: not known")
+      .def_readonly("abnormal", &core::Suspect::abnormal, "it alone would be abnormal")
+      .def_property_readonly(
+          "reason", [](const core::Suspect& self) { return reasonName(self.reason); },
+          "silent, late, unknown, unusual, rate, delay, answer, unanswered or never heard")
       .def_readonly("since", &core::Suspect::since,
                     "when the alarm or the suspicion first named its component [ns]")
       .def_readonly("silence", &core::Suspect::silence, "[s]; NaN: that is not the reason")
       .def_readonly("usual_shortest", &core::Suspect::usual_shortest, "[s], NaN like silence")
       .def_readonly("usual_longest", &core::Suspect::usual_longest, "[s], NaN like silence")
+      .def_readonly("usual_gap", &core::Suspect::usual_gap, "mean [s]; NaN: not known")
+      .def_readonly("events", &core::Suspect::events, "in the window; rate: in the last 2 s")
+      .def_readonly("usual_fewest", &core::Suspect::usual_fewest, "rate: in 2 s")
+      .def_readonly("usual_most", &core::Suspect::usual_most, "rate: in 2 s")
+      .def_readonly("other", &core::Suspect::other,
+                    "delay, answer, unanswered: the other event type; empty: its own")
+      .def_readonly("delay", &core::Suspect::delay, "delay: seen, median [s]; 0: not known")
+      .def_readonly("usual_delay", &core::Suspect::usual_delay, "delay: median [s]")
+      .def_readonly("lasted", &core::Suspect::lasted, "delay, answer: seen in the last so many s")
+      .def_readonly("of", &core::Suspect::of, "delay: delays; answer: questions")
+      .def_readonly("times", &core::Suspect::times, "of them, unusual or left out")
       .def("describe", py::overload_cast<const core::Suspect&>(&core::describe),
            "the reason in words and numbers");
 

@@ -161,6 +161,14 @@ void bindEvidence(py::module& m) {
            py::arg("share"),
            "delay [s] that this share (0 to 1) of the delays in training did not exceed,\n"
            "as exactly as the bins are")
+      .def(
+          "delays",
+          [](const evidence::Model& self, core::EventId from, core::EventId to) {
+            return delaysOf(self.statistics(), from, to);
+          },
+          py::arg("from_id"), py::arg("to_id"),
+          "counts of the delays in training, of what is watched: list of (shortest delay [ns],\n"
+          "count) by bin; zeros for other pairs")
       .def("overdue", &evidence::Model::overdue, py::arg("id"), py::arg("age"), "age: [ns]")
       .def("log_survival", &evidence::Model::logSurvival, py::arg("id"), py::arg("age"))
       .def("evidence", &evidenceOf, py::arg("window"), py::arg("stamps"), py::arg("ids"),

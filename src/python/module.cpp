@@ -9,7 +9,9 @@ PYBIND11_MODULE(_core, m) {
   self_awareness::python::bindEventLogs(m);
   self_awareness::python::bindModel(m);
   self_awareness::python::bindTraining(m);
+  self_awareness::python::bindCounts(m);
   self_awareness::python::bindEvidence(m);
   self_awareness::python::bindResults(m);
   self_awareness::python::bindDetector(m);
+  self_awareness::python::bindLanes(m);
 }

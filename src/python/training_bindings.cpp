@@ -133,6 +133,10 @@ void bindTraining(py::module& m) {
       .def_readonly("time", &LeastEffect::time, "[ns], 0 or more")
       .def_readonly("of_period", &LeastEffect::of_period,
                     "share of the mean gap of what the delay counts from, 0 to below 1")
+      .def("on_delay", &LeastEffect::onDelay, py::arg("period"),
+           "on the delay after an event type with this mean gap [ns], in ns")
+      .def("on_gap", &LeastEffect::onGap, py::arg("period"),
+           "on the gaps of an event type with this mean gap [ns], in ns")
       .def(py::pickle(
           [](const LeastEffect& self) {
             return LeastEffectState{self.time, self.of_period};

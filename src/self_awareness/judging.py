@@ -24,12 +24,18 @@ def paper_judge(trained: TrainedModel, model: Model, threshold: Optional[float],
         trained.window, threshold, parameters, stamps, ids, end, monitor)
 
 
-def evidence_judge(trained: TrainedModel, parameters: DetectorParameters) -> Judge:
+def evidence_judge(trained: TrainedModel, parameters: DetectorParameters,
+                   computed: Optional[EvidenceModel] = None) -> Judge:
     """Return what judges by evidence and the model's limits.
+
+    Args:
+        trained: the model.
+        parameters: of the detector.
+        computed: from the model, if the caller has it already.
 
     Raises:
         ValueError: the limits are not those of the model.
     """
-    model = EvidenceModel(trained)
+    model = computed or EvidenceModel(trained)
     return lambda stamps, ids, end, event_types=(), monitor=None: judge_by_evidence(
         trained, model, parameters, stamps, ids, end, list(event_types), monitor)

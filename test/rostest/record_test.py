@@ -1,20 +1,24 @@
 #!/usr/bin/python3
-"""launch/record.launch: what lies in the bags, and who listens to whom beside them."""
+"""launch/record.launch: what lies in event logs and in bags, and who listens to whom."""
 
 import glob
 import os
 import shutil
 import tempfile
 import unittest
-from typing import Set
+from typing import Callable, List, Set
 
 import rosbag
 import rospy
 import rostest
+from diagnostic_msgs.msg import DiagnosticArray
 from std_msgs.msg import String
+from std_srvs.srv import Trigger
 
 from live_system import Process, await_condition
 from monitor_case import Talker, subscribers
+from self_awareness import (EncodingRules, read_events, recordings_in_event_log,
+                            summarise_bag)
 from self_awareness.training.robot_graph import RobotGraph, graph_file
 
 
@@ -24,12 +28,14 @@ class RecordTest(unittest.TestCase):
         self.folder = tempfile.mkdtemp()
         self.addCleanup(shutil.rmtree, self.folder)
 
-    def record(self, *arguments: str) -> str:
+    def launch(self, *arguments: str) -> Process:
+        return Process('roslaunch', 'self_awareness', 'record.launch',
+                       'output:={}/run'.format(self.folder), *arguments)
+
+    def record_bags(self, *arguments: str) -> str:
         """Records for a moment; returns the path of the bag."""
         name = rospy.get_name()
-        with Talker('/a') as heard, Talker('/b'), \
-                Process('roslaunch', 'self_awareness', 'record.launch',
-                        'output:={}/run'.format(self.folder), *arguments):
+        with Talker('/a') as heard, Talker('/b'), self.launch('what:=bags', *arguments):
             await_condition('a bag', self.active, 30)
             await_condition('the recorder listens', heard.publisher.get_num_connections, 30)
             await_condition('a graph', self.edges, 30)
@@ -53,7 +59,7 @@ class RecordTest(unittest.TestCase):
             return set(opened.get_type_and_topic_info().topics)
 
     def test_all_but_what_is_excluded_is_recorded_and_the_graph_lies_beside(self) -> None:
-        bag = self.record('exclude:=/b')
+        bag = self.record_bags('exclude:=/b')
         self.assertIn('/a', self.topics(bag))
         self.assertNotIn('/b', self.topics(bag))
         name = rospy.get_name()
@@ -61,7 +67,74 @@ class RecordTest(unittest.TestCase):
         self.assertEqual(subscribers('/a'), [])
 
     def test_only_the_topics_that_are_named_are_recorded(self) -> None:
-        self.assertEqual(self.topics(self.record('topics:=/a /c')), {'/a'})
+        self.assertEqual(self.topics(self.record_bags('topics:=/a /c')), {'/a'})
+
+    def record_events(self, until: Callable[[], object], *arguments: str) -> List[str]:
+        """Records event logs until something holds; returns their paths, in order."""
+        with self.launch(*arguments):
+            await_condition('a log', self.active, 30)
+            await_condition('something', until, 60)
+        self.assertEqual(self.active(), set())
+        return sorted(glob.glob(self.folder + '/run*.bag'))
+
+    def test_event_logs_hold_what_somebody_listens_to(self) -> None:
+        name = rospy.get_name()
+        with Talker('/a') as heard, Talker('/lonely') as lonely:
+            listener = rospy.Subscriber('/a', String, lambda _: None)
+            log, = self.record_events(
+                lambda: heard.publisher.get_num_connections() > 1 and self.holds(20))
+            self.assertEqual(lonely.publisher.get_num_connections(), 0, 'wakes nobody')
+            listener.unregister()
+        self.assertEqual(recordings_in_event_log(log), 1)
+        events = read_events(log, EncodingRules.defaults(), recording=0)
+        heard_of = {(kind.source, kind.scope, kind.type) for kind in events.event_types}
+        self.assertIn((name, '/a', 'std_msgs/String'), heard_of)
+        self.assertNotIn('/recorder', {source for source, _, _ in heard_of})
+        summary = summarise_bag(log, 0)
+        self.assertTrue(0 < summary.robot_start <= summary.start <= events.stamps[0])
+        self.assertIn((name, '/a', name), RobotGraph(*summary.graph).edges())
+
+    def test_files_of_one_start_say_so(self) -> None:
+        with Talker('/a'), Talker('/b'):
+            rospy.Subscriber('/a', String, lambda _: None)
+            files = self.record_events(lambda: glob.glob(self.folder + '/run*.bag'),
+                                       'split:=0.1')
+            again = self.record_events(lambda: True, 'split:=1')
+        starts = [summarise_bag(path, 0).robot_start for path in files]
+        self.assertGreaterEqual(len(files), 2)
+        self.assertEqual(len(set(starts)), 1)
+        later, = set(again) - set(files)
+        self.assertNotEqual(summarise_bag(later, 0).robot_start, starts[0])
+
+    def test_the_file_ends_when_it_is_asked_to(self) -> None:
+        with Talker('/a'), self.launch() as recorder:
+            await_condition('a log', self.active, 30)
+            rospy.wait_for_service('/recorder/finish', 30)
+            self.assertTrue(rospy.ServiceProxy('/recorder/finish', Trigger)().success)
+            self.assertEqual(self.active(), set())
+            recorder.wait(30)
+        log, = glob.glob(self.folder + '/run*.bag')
+        self.assertEqual(recordings_in_event_log(log), 1)
+
+    def test_a_disk_without_space_is_an_error_on_diagnostics(self) -> None:
+        said = []
+        listener = rospy.Subscriber('/diagnostics', DiagnosticArray, said.append)
+        # Under a name of its own: the parameters stay on the master.
+        with Process('rosrun', 'self_awareness', 'record_events', '__name:=full',
+                     '_output:={}/run'.format(self.folder), '_min_space:=1e12'):
+            await_condition('an error', lambda: [
+                status for array in said for status in array.status
+                if status.name == 'full: recording' and status.level == 2
+                and 'min_space' in status.message], 30)
+        listener.unregister()
+        self.assertEqual(os.listdir(self.folder), [])
+
+    def holds(self, events: int) -> bool:
+        """Whether a diagnostic says that at least so many events were recorded."""
+        said = rospy.wait_for_message('/diagnostics', DiagnosticArray, 10)
+        return any(int(value.value) >= events for status in said.status
+                   if status.name == 'recorder: recording'
+                   for value in status.values if value.key == 'events')
 
 
 if __name__ == '__main__':

@@ -30,7 +30,8 @@ constexpr std::int64_t kConfirmation = kNanosecondsPerSecond / 10;
 class Judge : public core::Judge {
  public:
   Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, std::int64_t window,
-        std::shared_ptr<const SourceGraph> graph, std::shared_ptr<const Vocabulary> heard);
+        std::shared_ptr<const SourceGraph> graph, std::shared_ptr<const Vocabulary> heard,
+        SharesHandler shares);
 
   ObservedEvent add(const Event& event) override {
     hindsight_.add(event);
@@ -61,14 +62,16 @@ class Judge : public core::Judge {
   NeverHeard never_heard_;
   Strangers strangers_;
   BusyMachine busy_machine_;
-  std::int64_t settle_time_ = 0;          // [ns]
-  std::vector<double> shares_;            // of its limit that each track has reached
-  std::vector<std::int64_t> settled_at_;  // [ns], by id
+  std::int64_t settle_time_ = 0;  // [ns]
+  std::vector<double> shares_;    // of its limit that each track has reached
+  SharesHandler tell_shares_;
+  std::vector<std::int64_t> settled_at_;                                    // [ns], by id
   std::int64_t all_settled_at_ = std::numeric_limits<std::int64_t>::min();  // the latest of them
 };
 
 Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, std::int64_t window,
-             std::shared_ptr<const SourceGraph> graph, std::shared_ptr<const Vocabulary> heard)
+             std::shared_ptr<const SourceGraph> graph, std::shared_ptr<const Vocabulary> heard,
+             SharesHandler shares)
     : model_(std::move(model)),
       limits_(std::move(limits)),
       window_(window),
@@ -79,6 +82,7 @@ Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, s
       strangers_(*model_, std::move(heard)),
       busy_machine_(model_),
       shares_(model_->tracks().size(), 0),
+      tell_shares_(std::move(shares)),
       settled_at_(model_->size(), std::numeric_limits<std::int64_t>::min()) {
   if (limits_ && (limits_->tracks.size() != model_->tracks().size() ||
                   !std::isfinite(limits_->linker) || limits_->linker <= 0)) {
@@ -148,6 +152,9 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
   const Sum sum = sumUp(evidence, *model_, *limits_);
   const double linker = sum.linker / limits_->linker;
   never_heard_.closeWindow(end, settle_time_);
+  if (tell_shares_) {
+    tell_shares_(window, {shares_, linker, never_heard_.shares()});
+  }
   judgement.score = -std::max({sum.largest, linker, never_heard_.share()});
   judgement.threshold = kThreshold;
   judgement.busy = busy_machine_.closeWindow(shares_, scorer_, *judgement.score < kThreshold);
@@ -210,9 +217,10 @@ bool Judge::isSilent() const {
 std::unique_ptr<core::Judge> makeJudge(std::shared_ptr<const Model> model,
                                        std::optional<Limits> limits, std::int64_t window,
                                        std::shared_ptr<const SourceGraph> graph,
-                                       std::shared_ptr<const Vocabulary> heard) {
+                                       std::shared_ptr<const Vocabulary> heard,
+                                       SharesHandler shares) {
   return std::make_unique<Judge>(std::move(model), std::move(limits), window, std::move(graph),
-                                 std::move(heard));
+                                 std::move(heard), std::move(shares));
 }
 
 }  // namespace self_awareness::core::evidence

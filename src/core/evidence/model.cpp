@@ -21,9 +21,6 @@ constexpr double kLeastDeviation = 0.5;  // [nat]
 
 constexpr double kUsual = 0.9;  // share of the delays that are usual
 
-// A rate that changes by this share is no fault: clocks and loads differ from day to day.
-constexpr double kLeastRateEffect = 0.04;
-
 // Share of the usual answers that a fault takes away: the fault that is looked for.
 constexpr double kLost = 0.5;
 constexpr double kLeastMissRate = 0.1;

@@ -102,6 +102,14 @@ std::vector<NeverHeard::Expected> NeverHeard::rootFirst(std::vector<Expected> mi
   return missing;
 }
 
+std::vector<std::pair<EventId, double>> NeverHeard::shares() const {
+  std::vector<std::pair<EventId, double>> shares;
+  for (const Expected& expected : missing_) {
+    shares.emplace_back(expected.id, expected.share);
+  }
+  return shares;
+}
+
 std::vector<Suspect> NeverHeard::suspects() const {
   std::vector<Suspect> suspects;
   for (const Expected& expected : missing_) {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "self_awareness/core/evidence/model.h"
@@ -30,6 +31,8 @@ class NeverHeard {
   /// The largest share of its limit that the absence of an event type has reached; 0 if nothing
   /// should have come by now. Above 1, it is abnormal.
   double share() const { return share_; }
+  /// Those of the event types that should have come by now.
+  std::vector<std::pair<EventId, double>> shares() const;
   /// The event types that should have come by now, sources upstream of others first.
   std::vector<Suspect> suspects() const;
 

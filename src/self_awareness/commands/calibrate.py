@@ -295,7 +295,8 @@ def _parser() -> argparse.ArgumentParser:
                         metavar='HOW', help='paper: youden: largest true less false positive '
                         'rate; closest: closest to all found and none false; fpr=RATE: this share '
                         'of normal windows false (default: youden)')
-    parser.add_argument('--roc', type=cli.png_file, metavar='FILE.png', help='draw the ROC')
+    parser.add_argument('--roc', type=cli.plot_file, metavar='FILE',
+                        help='draw the ROC; the name ends in .png, .pdf or .svg')
     parser.add_argument('--csv', metavar='FILE', help='write score and label of every window')
     cli.add_detector_arguments(parser)
     return parser

@@ -15,6 +15,9 @@ from self_awareness.stamps import SECOND_NS, nanoseconds
 
 _Value = TypeVar('_Value')
 
+PLOT_ENDINGS = ('.png', '.pdf', '.svg')
+"""Of files of pictures: the ending says the format."""
+
 _LONGEST_S = 86400.0
 _UNKNOWN = {'ignore': UnknownEvents.IGNORE, 'warn': UnknownEvents.WARN,
             'error': UnknownEvents.ERROR}
@@ -100,10 +103,11 @@ def checked(parse: Callable[[str], _Value]) -> Callable[[str], _Value]:
     return convert
 
 
-def png_file(text: str) -> str:
+def plot_file(text: str) -> str:
     """Argument type: the name of a picture."""
-    if not text.lower().endswith('.png'):
-        raise argparse.ArgumentTypeError(f'expected a name that ends in .png, not {text!r}')
+    if not text.lower().endswith(PLOT_ENDINGS):
+        raise argparse.ArgumentTypeError(
+            f'expected a name that ends in {", ".join(PLOT_ENDINGS)}, not {text!r}')
     return text
 
 

@@ -1,4 +1,4 @@
-"""`rosrun self_awareness info`: shows what is in a model."""
+"""`rosrun self_awareness info`: shows what is in a model, or in an event log."""
 from __future__ import annotations
 
 import argparse
@@ -6,11 +6,13 @@ import json
 import shutil
 from typing import Any, Dict, List, Optional, Sequence
 
-from self_awareness import FEWEST_GAPS, EventType, Model, TrainedModel
+from self_awareness import (FEWEST_GAPS, EventType, Model, TrainedModel,
+                            recordings_in_event_log)
 from self_awareness.commands import cli
 from self_awareness.judging import EVIDENCE
 from self_awareness.reporting import histogram_text
 from self_awareness.reporting import relations_text
+from self_awareness.reporting.event_log_summary import summarise_event_log
 from self_awareness.reporting.evidence_report import counts
 from self_awareness.reporting.model_summary import summarise
 from self_awareness.stamps import utc
@@ -24,6 +26,10 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 
 def _info(arguments: argparse.Namespace) -> None:
+    recordings = recordings_in_event_log(arguments.model)
+    if recordings is not None:
+        _info_of_log(arguments, recordings)
+        return
     model = TrainedModel.load(arguments.model)
     if arguments.pair is not None:
         _print_pair(model, *(_find(model.event_types, text) for text in arguments.pair))
@@ -31,6 +37,41 @@ def _info(arguments: argparse.Namespace) -> None:
         print(json.dumps(summarise(model), indent=2, allow_nan=False))
     else:
         _print(summarise(model))
+
+
+def _info_of_log(arguments: argparse.Namespace, recordings: int) -> None:
+    if arguments.pair is not None:
+        raise ValueError(f'--pair: is for models, and {arguments.model} is an event log')
+    summary = summarise_event_log(arguments.model, recordings)
+    if arguments.json:
+        print(json.dumps(summary, indent=2, allow_nan=False))
+    else:
+        _print_log(summary)
+
+
+def _print_log(summary: Dict[str, Any]) -> None:
+    print(f'event log    {summary["size"] / 1e6:.1f} MB')
+    print(f'recordings   {len(summary["recordings"])}, {summary["duration"]:.1f} s'
+          + (f', starts of the robot: {summary["starts"]}' if summary['starts'] else ''))
+    for number, recording in enumerate(summary['recordings'], 1):
+        start = recording['robot_start_ns']
+        print(f'    #{number} {recording["bag"]}: {recording["duration"]:.1f} s, '
+              f'{recording["events"]} events, from {utc(recording["start_ns"])} UTC'
+              + ('' if start is None else f', robot started {utc(start)} UTC')
+              + (f', {recording["dropped"]} messages were dropped' if recording['dropped']
+                 else ''))
+    encodings = [recording['encoding'] for recording in summary['recordings']]
+    for index, encoding in enumerate(encodings):
+        if encoding not in encodings[:index]:
+            _print_encoding(encoding)
+    print(f'events       {summary["events"]}')
+    print(f'event types  {len(summary["event_types"])}')
+    print('     count  rate [Hz]')
+    for kind in summary['event_types']:
+        rate = '-' if kind['rate'] is None else f'{kind["rate"]:.3g}'
+        print(f'  {kind["count"]:8d} {rate:>10}  {kind["source"] or "-"} {kind["scope"]} '
+              f'{kind["type"]}')
+    print(f'graph        {_graph(summary["graph"])}')
 
 
 def _print(summary: Dict[str, Any]) -> None:
@@ -42,11 +83,7 @@ def _print(summary: Dict[str, Any]) -> None:
     print(f'window       {summary["window"]:g} s')
     print(f'bin size     {summary["bin_size"]:g} s, '
           + ('no horizon' if horizon is None else f'horizon {horizon:g} s'))
-    print('encoding')
-    for key, value in summary['encoding'].items():
-        if isinstance(value, dict):
-            value = [f'{datatype}: {field}' for datatype, field in value.items()]
-        print(f'  {key:<16}{", ".join(value) if isinstance(value, list) else value}'.rstrip())
+    _print_encoding(summary['encoding'])
     sources = summary['sources']
     print(f'sources      {len(sources) if sources else "not told apart"}')
     for source in sources:
@@ -62,6 +99,14 @@ def _print(summary: Dict[str, Any]) -> None:
         _print_evidence(summary['evidence'])
     if summary['detectors'] != EVIDENCE:
         _print_calibration(summary['calibration'])
+
+
+def _print_encoding(encoding: Dict[str, Any]) -> None:
+    print('encoding')
+    for key, value in encoding.items():
+        if isinstance(value, dict):
+            value = [f'{datatype}: {field}' for datatype, field in value.items()]
+        print(f'  {key:<16}{", ".join(value) if isinstance(value, list) else value}'.rstrip())
 
 
 def _rates(summary: Dict[str, Any]) -> str:
@@ -80,8 +125,8 @@ def _event_type(kind: Dict[str, Any]) -> str:
 
 def _graph(graph: List[Dict[str, str]]) -> str:
     if not graph:
-        return ('none: roots are told from victims by the training alone (record.launch writes it '
-                'beside the bags, or train --graph)')
+        return ('none: roots are told from victims by the training alone (record.launch writes '
+                'it down, or train --graph)')
     publishers = {edge['publisher'] for edge in graph}
     return f'sources that somebody listens to: {len(publishers)}, connections: {len(graph)}'
 
@@ -179,7 +224,8 @@ def _find(event_types: Sequence[EventType], text: str) -> int:
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog='info', description=__doc__.split(': ', 1)[1])
-    parser.add_argument('model', metavar='MODEL', help='file written by train or calibrate')
+    parser.add_argument('model', metavar='MODEL',
+                        help='file written by train or calibrate, or an event log')
     how = parser.add_mutually_exclusive_group()
     how.add_argument('--json', action='store_true', help='all but the counts, for programs')
     how.add_argument('--pair', nargs=2, metavar=('A', 'B'),

@@ -8,12 +8,17 @@ from typing import Iterator, List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from self_awareness import EVIDENCE_THRESHOLD, Alarm, Model, Suspect, Verdicts
+from self_awareness import (EVIDENCE_THRESHOLD, Alarm, EvidenceModel, Model, Suspect,
+                            Verdicts)
 from self_awareness.commands import cli
 from self_awareness.judging import evidence_judge, paper_judge
 from self_awareness.output_files import check_outputs, replacing
 from self_awareness.recordings import BagPart, RecordingEvents, expand
-from self_awareness.reporting.plots import ScorePlot, save_scores
+from self_awareness.reporting.plots import NamedAlarm, ScorePlot, save_scores
+from self_awareness.reporting.report.judged import Judged, JudgedBy
+from self_awareness.reporting.report.page import (check_installed, check_name,
+                                                  save_report)
+from self_awareness.reporting.report.section import section
 from self_awareness.results import check_result_bag, result_bag
 from self_awareness.stamps import SECOND_NS, utc
 
@@ -38,18 +43,21 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 
 def _score(arguments: argparse.Namespace) -> None:
-    check_outputs([arguments.csv, arguments.plot, arguments.result_bag],
+    check_outputs([arguments.csv, arguments.plot, arguments.report, arguments.result_bag],
                   [part.path for part in arguments.bags] + [arguments.model])
     parts = expand(arguments.bags)
     check_result_bag(arguments.result_bag, parts)
+    if arguments.report is not None:
+        check_installed()
     parameters = cli.detector_parameters(arguments)
     paper = arguments.detector == 'paper'
     trained = cli.load_model(arguments.model, arguments.detector, watched_only=not paper)
-    if paper:
+    evidence = None if paper else EvidenceModel(trained)
+    if evidence is None:
         judge = paper_judge(trained, Model(trained), trained.threshold, parameters)
         threshold = trained.threshold
     else:
-        judge = evidence_judge(trained, parameters)
+        judge = evidence_judge(trained, parameters, evidence)
         threshold = None if trained.evidence_calibration is None else EVIDENCE_THRESHOLD
     if threshold is None:
         print(f'{arguments.model}: not calibrated: windows are scored, none is called abnormal '
@@ -68,6 +76,11 @@ def _score(arguments: argparse.Namespace) -> None:
     if arguments.plot is not None:
         save_scores(arguments.plot, [_plot(recording, verdicts, trained.window, threshold)
                                      for recording, verdicts in judged])
+    if arguments.report is not None:
+        by = JudgedBy(trained, arguments.model, parameters, threshold, evidence)
+        save_report(arguments.report,
+                    [section(Judged(by, recording, verdicts), f'recording-{number}')
+                     for number, (recording, verdicts) in enumerate(judged, 1)])
 
 
 def _print(recording: RecordingEvents, verdicts: Verdicts, known: int,
@@ -150,10 +163,18 @@ def _plot(recording: RecordingEvents, verdicts: Verdicts, window: int,
         title=f'{recording.part}: score of windows of {window / SECOND_NS:g} s',
         times=starts[:-1],
         scores=verdicts.score,
+        abnormal=verdicts.abnormal & ~verdicts.settling,
         threshold=threshold,
         settling=[(float(starts[a]), float(starts[b])) for a, b in edges.reshape(-1, 2)],
-        alarms=[(float(seconds(alarm.start)), float(seconds(alarm.end)))
-                for alarm in verdicts.alarms])
+        alarms=[NamedAlarm(float(seconds(alarm.start)), float(seconds(alarm.end)),
+                           _component(recording, alarm)) for alarm in verdicts.alarms])
+
+
+def _component(recording: RecordingEvents, alarm: Alarm) -> str:
+    if not alarm.suspects:
+        return ''
+    kind = recording.event_types[alarm.suspects[0].id]
+    return kind.source or kind.scope
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -164,8 +185,10 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('--model', required=True, help='file written by train or calibrate')
     cli.add_detector_argument(parser)
     parser.add_argument('--csv', metavar='FILE', help='write the score of every window')
-    parser.add_argument('--plot', type=cli.png_file, metavar='FILE.png',
-                        help='draw the scores over time')
+    parser.add_argument('--plot', type=cli.plot_file, metavar='FILE',
+                        help='draw the scores over time; the name ends in .png, .pdf or .svg')
+    parser.add_argument('--report', type=cli.checked(check_name), metavar='FILE.html',
+                        help='write a page for a browser: who failed, when and why')
     parser.add_argument('--result-bag', metavar='FILE.bag',
                         help='write what the monitor would have published, with the times of the '
                              'recordings')

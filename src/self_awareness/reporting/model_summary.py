@@ -8,6 +8,7 @@ from typing import Any, Dict, List, Optional, Tuple
 from self_awareness import (FEWEST_GAPS, USUAL_SHARES, Calibration, EvidenceCalibration,
                             EvidenceModel, Recording, TrainedModel)
 from self_awareness.reporting import relations_text
+from self_awareness.reporting.event_log_summary import encoding_values
 from self_awareness.judging import EVIDENCE, PAPER
 from self_awareness.stamps import SECOND_NS
 
@@ -18,7 +19,6 @@ def summarise(model: TrainedModel) -> Dict[str, Any]:
     Times are in seconds and rates in Hz, unless a key says otherwise. What is missing, or not a
     number, is None.
     """
-    rules = model.encoding
     duration = sum(_duration(recording) for recording in model.recordings)
     evidence = None if model.detectors == PAPER else EvidenceModel(model)
     types = [_event_type(model, evidence, index, duration)
@@ -31,14 +31,7 @@ def summarise(model: TrainedModel) -> Dict[str, Any]:
         'bin_size': model.bin_size / SECOND_NS,
         'horizon': (model.horizon_bins * model.bin_size / SECOND_NS if model.horizon_bins
                     else None),
-        'encoding': {
-            'source': rules.source,
-            'include_topics': list(rules.include_topics),
-            'exclude_topics': list(rules.exclude_topics),
-            'include_sources': list(rules.include_sources),
-            'exclude_sources': list(rules.exclude_sources),
-            'type_fields': dict(rules.type_fields),
-        },
+        'encoding': encoding_values(model.encoding),
         'recordings': [_recording(recording) for recording in model.recordings],
         'duration': duration,
         'events': model.events,

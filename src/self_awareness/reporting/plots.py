@@ -1,4 +1,7 @@
-"""Plots as PNG files. matplotlib takes long to import: only a program that draws imports it."""
+"""Plots as files: PNG, PDF or SVG, by the name's ending.
+
+matplotlib takes long to import: only a program that draws imports it.
+"""
 from __future__ import annotations
 
 from dataclasses import dataclass
@@ -11,8 +14,23 @@ from self_awareness.output_files import replacing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 _DPI = 120
+_MOST_STRETCHES = 1500
+_SHOWN_LIMITS = 4.0
+_NAMED = 3
+_LEFT_EDGE = 0.05
+_RED, _GREY = '#c62f35', '#7d8694'
+
+
+@dataclass(frozen=True)
+class NamedAlarm:
+    """A stretch in which the alarm stood [s], and whom it names first; empty: nobody."""
+
+    start: float
+    end: float
+    suspect: str
 
 
 @dataclass(frozen=True)
@@ -23,17 +41,19 @@ class ScorePlot:
         title: above the plot.
         times: of the windows' starts.
         scores: one a window, NaN where it had no events.
+        abnormal: one a window: whether it was.
         threshold: s*; None: not calibrated.
         settling: start and end of the stretches in which no alarm is raised.
-        alarms: start and end of the stretches in which the alarm stood.
+        alarms: that stood.
     """
 
     title: str
     times: np.ndarray
     scores: np.ndarray
+    abnormal: np.ndarray
     threshold: Optional[float]
     settling: List[Tuple[float, float]]
-    alarms: List[Tuple[float, float]]
+    alarms: List[NamedAlarm]
 
 
 def save_scores(path: str, plots: Sequence[ScorePlot]) -> None:
@@ -47,63 +67,132 @@ def save_scores(path: str, plots: Sequence[ScorePlot]) -> None:
     figure = Figure(figsize=(12, 0.6 + 3.6 * len(plots)), dpi=_DPI, constrained_layout=True)
     for axes, plot in zip(figure.subplots(len(plots), squeeze=False)[:, 0], plots):
         _draw_scores(axes, plot)
-    with replacing(path) as temporary:
-        figure.savefig(temporary, format='png')
+    _save(path, figure)
 
 
 def save_roc(path: str, title: str, curves: Sequence[Tuple[str, Roc]], chosen: RocPoint) -> None:
-    """Draw ROCs, and the chosen threshold. The last one is that of all faults together.
+    """Draw ROCs, and the chosen threshold; beside them, their left edge.
+
+    Those of all faults together and of the worst few are named.
 
     Args:
-        curves: name and ROC; at least one.
+        path: of the file.
+        title: of the plot.
+        curves: name and ROC; at least one. The last one is that of all faults together.
+        chosen: the threshold.
 
     Raises:
         OSError: the file cannot be written.
     """
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(7.5, 7), dpi=_DPI, constrained_layout=True)
-    axes = figure.subplots()
-    axes.plot([0, 1], [0, 1], color='0.6', linestyle=':', linewidth=1, label='chance')
-    for index, (name, roc) in enumerate(curves):
-        last = index == len(curves) - 1
-        axes.plot([point.false_positive_rate for point in roc.points],
-                  [point.true_positive_rate for point in roc.points],
-                  color='black' if last else None, linewidth=2.2 if last else 1.3,
-                  label=f'{name}: AUC {roc.auc:.3f}')
-    axes.plot(chosen.false_positive_rate, chosen.true_positive_rate, 'o', color='tab:red',
-              markersize=9, zorder=3, clip_on=False,
-              label=f's* = {chosen.cutoff:.4g}: found {chosen.true_positive_rate:.1%}, '
-                    f'false {chosen.false_positive_rate:.2%}')
-    axes.set(title=title, xlabel='false positive rate (normal windows called abnormal)',
-             ylabel='true positive rate (abnormal windows found)', xlim=(-0.01, 1.01),
-             ylim=(-0.01, 1.01), aspect='equal')
-    axes.grid(alpha=0.3)
-    axes.legend(loc='lower right')
-    with replacing(path) as temporary:
-        figure.savefig(temporary, format='png')
+    figure = Figure(figsize=(11, 6.4), dpi=_DPI)
+    whole, edge = figure.subplots(1, 2, gridspec_kw={'left': 0.07, 'right': 0.97, 'top': 0.93,
+                                                     'bottom': 0.25, 'wspace': 0.15})
+    for axes in (whole, edge):
+        _draw_rocs(axes, curves)
+        axes.plot(chosen.false_positive_rate, chosen.true_positive_rate, 'o', color=_RED,
+                  markersize=9, zorder=4, clip_on=axes is edge,
+                  label=f's* = {chosen.cutoff:.4g}: found {chosen.true_positive_rate:.1%}, '
+                        f'false {chosen.false_positive_rate:.2%}')
+        axes.set(xlabel='false positive rate (normal windows called abnormal)',
+                 ylim=(-0.01, 1.01))
+        axes.grid(alpha=0.3)
+    whole.plot([0, 1], [0, 1], color='0.6', linestyle=':', linewidth=1)
+    whole.set(title=title, xlim=(-0.01, 1.01),
+              ylabel='true positive rate (abnormal windows found)')
+    edge.set(title=f'the same up to {_LEFT_EDGE:.0%} of false positives',
+             xlim=(-0.01 * _LEFT_EDGE, 1.01 * _LEFT_EDGE))
+    figure.legend(*whole.get_legend_handles_labels(), loc='lower center', frameon=False, ncol=2)
+    _save(path, figure)
+
+
+def _draw_rocs(axes: Axes, curves: Sequence[Tuple[str, Roc]]) -> None:
+    *single, (all_name, all_roc) = curves
+    ranked = sorted(single, key=lambda curve: curve[1].auc)
+    named, others = ranked[:_NAMED], ranked[_NAMED:]
+    for index, (_, roc) in enumerate(others):
+        label = f'{len(others)} others: AUC {others[0][1].auc:.3f} and more'
+        _draw_roc(axes, roc, '0.72', 0.9, label if index == 0 else None)
+    for name, roc in named:
+        _draw_roc(axes, roc, None, 1.3, f'{name}: AUC {roc.auc:.3f}')
+    _draw_roc(axes, all_roc, 'black', 2.4, f'{all_name}: AUC {all_roc.auc:.3f}')
+
+
+def _draw_roc(axes: Axes, roc: Roc, colour: Optional[str], width: float,
+              label: Optional[str]) -> None:
+    axes.plot([point.false_positive_rate for point in roc.points],
+              [point.true_positive_rate for point in roc.points],
+              color=colour, linewidth=width, label=label)
 
 
 def _draw_scores(axes: Axes, plot: ScorePlot) -> None:
-    _shade(axes, plot.settling, 'settling: no alarm yet', color='0.88')
-    _shade(axes, plot.alarms, 'alarm', color='tab:red', alpha=0.22)
-    axes.plot(plot.times, plot.scores, color='tab:blue', linewidth=0.8, label='score of a window')
-    silent = np.isnan(plot.scores)
-    if silent.any():
-        axes.plot(plot.times[silent], np.zeros(silent.sum()), '|', color='tab:purple',
-                  markersize=8, label='no event in the window')
-    if plot.threshold is not None:
-        axes.axhline(plot.threshold, color='tab:red', linestyle='--', linewidth=1.3,
-                     label=f'threshold s* = {plot.threshold:.4g}')
+    unit = abs(plot.threshold) if plot.threshold else 1.0
+    times, lowest, highest = _stretches(plot.times, plot.scores / unit)
+    limit = None if plot.threshold is None else plot.threshold / unit
+    if limit is not None and limit < 0:
+        lowest, highest = (np.maximum(each, -_SHOWN_LIMITS) for each in (lowest, highest))
+    _shade(axes, plot.settling, 'settling: no alarm yet', color='0.9')
+    _shade(axes, [(each.start, each.end) for each in plot.alarms], 'alarm',
+           color='tab:red', alpha=0.22)
+    axes.fill_between(times, lowest, highest, color=_GREY, alpha=0.3, linewidth=0)
+    axes.plot(times, lowest, color=_GREY, linewidth=0.7,
+              label='score' if len(times) == len(plot.times) else 'lowest score of each stretch')
+    _mark(axes, plot, limit, unit)
     axes.set(title=plot.title, xlabel='time from the first message [s]',
-             ylabel='score (low is abnormal)')
+             ylabel='score' if limit is None else
+             f'score in units of the limit\n(below {limit:g} is abnormal)')
     axes.margins(x=0.005)
-    axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
+    if limit is not None and limit < 0:
+        low = float(np.nanmin(lowest)) if np.isfinite(lowest).any() else limit
+        axes.set_ylim(1.05 * min(1.5 * limit, low), 0.05)
+    else:
+        axes.set_ylim(bottom=min(0.0, axes.get_ylim()[0]))
+    _name(axes, plot.alarms)
     axes.grid(alpha=0.3)
     axes.legend(loc='upper left', bbox_to_anchor=(1.0, 1.0), frameon=False)
+
+
+def _mark(axes: Axes, plot: ScorePlot, limit: Optional[float], unit: float) -> None:
+    silent = np.isnan(plot.scores)
+    if silent.any() and plot.threshold is not None:
+        axes.plot(plot.times[silent], np.zeros(silent.sum()), '|', color='tab:purple',
+                  markersize=8, label='no event in the window')
+    if plot.abnormal.any():
+        low = np.nan_to_num(plot.scores[plot.abnormal]) / unit
+        axes.plot(plot.times[plot.abnormal], np.maximum(low, -_SHOWN_LIMITS), '.', color=_RED,
+                  markersize=3, label='abnormal window')
+    if limit is not None:
+        axes.axhline(limit, color=_RED, linestyle='--', linewidth=1.3,
+                     label=f'threshold s* = {plot.threshold:.4g}')
+
+
+def _name(axes: Axes, alarms: Sequence[NamedAlarm]) -> None:
+    """Write whom the alarms name, where there is room for it."""
+    left, right = axes.get_xlim()
+    room = left
+    for alarm in alarms:
+        if alarm.suspect and alarm.start >= room:
+            axes.annotate(alarm.suspect, (alarm.start, 1), xytext=(3, -3),
+                          xycoords=('data', 'axes fraction'), textcoords='offset points',
+                          color=_RED, fontsize='small', va='top', clip_on=True)
+            # About as wide as a character is in this figure.
+            room = alarm.start + (right - left) * 0.009 * (len(alarm.suspect) + 1)
+
+
+def _stretches(times: np.ndarray, scores: np.ndarray) -> Tuple[np.ndarray, np.ndarray,
+                                                               np.ndarray]:
+    """Return begin, lowest and highest score of as many stretches as can be seen."""
+    begins = np.arange(0, len(times), max(1, -(-len(times) // _MOST_STRETCHES)))
+    return (times[begins], np.fmin.reduceat(scores, begins), np.fmax.reduceat(scores, begins))
 
 
 def _shade(axes: Axes, stretches: Sequence[Tuple[float, float]], label: str,
            **style: object) -> None:
     for index, (start, end) in enumerate(stretches):
         axes.axvspan(start, end, linewidth=0, label=label if index == 0 else None, **style)
+
+
+def _save(path: str, figure: Figure) -> None:
+    with replacing(path) as temporary:
+        figure.savefig(temporary, format=path.lower().rpartition('.')[2])

@@ -14,7 +14,7 @@ import pytest
 ROOT = Path(__file__).resolve().parents[3]
 DOCS = ROOT / 'docs'
 REPORTS = {'core': 'core_report', 'models': 'models', 'bags': 'bags_report',
-           'live': 'live_report', 'predecessors': 'predecessors'}
+           'live': 'live_report', 'predecessors': 'predecessors', 'report': 'report'}
 
 
 @pytest.fixture(autouse=True)

@@ -1,6 +1,7 @@
 """`convert`: event logs, which every program reads like the bags that they were made of."""
 from __future__ import annotations
 
+import json
 import os
 import shutil
 from pathlib import Path
@@ -12,7 +13,7 @@ from conftest import learned, robot
 
 from self_awareness import (EncodingRules, EventLogWriter, TrainedModel, read_events,
                             recordings_in_event_log, summarise_bag)
-from self_awareness.commands import calibrate, convert, score, simulate, train
+from self_awareness.commands import calibrate, convert, info, score, simulate, train
 from self_awareness.recordings import BagPart, expand
 from self_awareness.training.robot_graph import RobotGraph, graph_file
 
@@ -125,6 +126,20 @@ def test_a_day_of_the_simulated_robot_stays_small(tmp_path: Path) -> None:
     assert events > 0.95 * summarise_bag(bag).messages
     assert os.path.getsize(log) / events < 4.0
     assert os.path.getsize(log) * (86400 / 600) < 60e6
+
+
+def test_info_says_what_is_in_a_log(log: str, capsys) -> None:
+    assert info.main([log]) == 0
+    said = capsys.readouterr().out
+    for text in ('recordings   2, 240.0 s\n',
+                 '#2 tuesday.bag: 120.0 s, 5125 events, from 1970-01-01 05:33:20',
+                 '20  /laser /scan std_msgs/String', 'event types  3'):
+        assert text in said
+    assert info.main([log, '--json']) == 0
+    found = json.loads(capsys.readouterr().out)
+    assert [recording['robot_start_ns'] for recording in found['recordings']] == [None, None]
+    assert found['recordings'][0]['encoding']['source'] == 'callerid'
+    assert 'is an event log' in error_of(info.main, [log, '--pair', '/laser', '/slam'], capsys)
 
 
 def test_parts_name_the_recording(log: str) -> None:

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "self_awareness/core/evidence/model.h"
 #include "self_awareness/core/verdict/judge.h"
@@ -14,6 +17,19 @@ namespace self_awareness::core::evidence {
 /// minus sign: as in eq. 5, low is abnormal (docs/method.md, section 4.1).
 constexpr double kThreshold = -1;
 
+/// What a window says in units of the limits: 1 is the limit. The largest of all is the score,
+/// with a minus sign, unless the machine is busy (docs/method.md, section 4.1).
+struct Shares {
+  /// By track of the model; 0: no evidence, or not judged. Slow delay tracks count in the linker
+  /// only.
+  const std::vector<double>& tracks;
+  double linker = 0;
+  /// Of event types that should have come after the start (docs/method.md, section 3.9).
+  std::vector<std::pair<EventId, double>> never_heard;
+};
+/// Called with every window that is judged; the shares are valid during the call.
+using SharesHandler = std::function<void(const Window&, const Shares&)>;
+
 /// Makes the judge of the evidence detector (docs/method.md, sections 3, 4.1 and 4.3): the largest
 /// evidence in units of its limit decides over a window; the linker decides over the last tens of
 /// seconds.
@@ -22,10 +38,12 @@ constexpr double kThreshold = -1;
 /// @param graph who is upstream of whom; shared, so it may grow meanwhile
 /// @param heard event types by id, those of the model first, then those that it does not know;
 /// shared, so it may grow meanwhile. None: of unknown events, only the number is known
+/// @param shares told what each window says, if there are limits; none: nobody wants to know
 /// @throw std::invalid_argument if the limits are not those of the model
 std::unique_ptr<core::Judge> makeJudge(std::shared_ptr<const Model> model,
                                        std::optional<Limits> limits, std::int64_t window,
                                        std::shared_ptr<const SourceGraph> graph,
-                                       std::shared_ptr<const Vocabulary> heard = nullptr);
+                                       std::shared_ptr<const Vocabulary> heard = nullptr,
+                                       SharesHandler shares = nullptr);
 
 }  // namespace self_awareness::core::evidence

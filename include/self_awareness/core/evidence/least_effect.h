@@ -2,6 +2,10 @@
 
 namespace self_awareness::core::evidence {
 
+/// A rate that changes by this share is no fault: clocks and loads differ from day to day
+/// (docs/method.md, section 3.3).
+constexpr double kLeastRateEffect = 0.04;
+
 /// What a delay must differ by from the usual ones to be a fault: the larger of a time and a share
 /// of the period (docs/method.md, section 3.4). The defaults are measured (section 7.4 there).
 struct LeastEffect {

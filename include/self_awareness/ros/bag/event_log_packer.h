@@ -16,7 +16,7 @@ namespace self_awareness::ros1 {
 class EventLogPacker {
  public:
   /// A part is handed out when it lasts this long [ns]: what is lost in a crash is no more.
-  static constexpr std::int64_t kLongestPart = 10 * core::kNanosecondsPerSecond;
+  static constexpr std::int64_t kLongestPart = 20 * core::kNanosecondsPerSecond;
   static constexpr std::size_t kMostEvents = 1U << 15U;  ///< of a part
 
   using Handler = std::function<void(self_awareness::EventLog)>;

@@ -155,7 +155,7 @@ class _Session:
 
     def _start_recorder(self, name: str) -> subprocess.Popen:
         recorder = self._processes.start(
-            name, 'roslaunch', '--wait', 'self_awareness', 'record.launch',
+            name, 'roslaunch', '--wait', 'self_awareness', 'record.launch', 'what:=bags',
             f'output:={self._folder / name}')
         await_condition(f'rosbag writes {name}',
                         lambda: any(self._folder.glob(f'{name}_*.bag.active')), STARTED_WITHIN_S)

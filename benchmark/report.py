@@ -1,0 +1,128 @@
+#!/usr/bin/python3
+"""Benchmark of the report: an hour with 500 event types, of which one node is silent for a minute.
+
+Measures `score` with and without --report, the size of the page, and how long Chromium takes to
+load it; these come from python3-selenium and chromium-driver.
+"""
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import re
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import Any, Dict, List
+
+import numpy as np
+
+import bags_timers
+import page
+from numpy_scoring import events_of
+
+_DOCS = Path(__file__).resolve().parents[1] / 'docs'
+_TYPES = 500
+_SECONDS = 3600.0
+_TRAINED_S = 300
+_SILENT_S = (1800.0, 1860.0)
+_SILENT_TYPE = 0
+_RUNS = 3
+_PROGRAM = 'import sys\nfrom self_awareness.commands.{0} import main\nsys.exit(main(sys.argv[1:]))'
+
+
+def _write(path: str) -> int:
+    """Write the recording, and return the number of its messages."""
+    stamps, ids = events_of(_TYPES, _SECONDS)
+    node = ids // 3 == _SILENT_TYPE // 3
+    silent = node & (stamps >= 1e9 * _SILENT_S[0]) & (stamps < 1e9 * _SILENT_S[1])
+    bags_timers.write_bag(path, stamps[~silent], ids[~silent])
+    return int(np.count_nonzero(~silent))
+
+
+def _run(program: str, *arguments: str) -> Dict[str, float]:
+    """Run a program; return its time and the most memory that it had."""
+    before = time.monotonic()
+    process = subprocess.Popen((sys.executable, '-B', '-c', _PROGRAM.format(program), *arguments),
+                               stdout=subprocess.DEVNULL)
+    _, status, usage = os.wait4(process.pid, 0)
+    process.returncode = status
+    if status != 0:
+        raise RuntimeError(f'{program} failed')
+    return {'wall_s': time.monotonic() - before, 'peak_bytes': 1024 * usage.ru_maxrss}
+
+
+def _loaded_s(path: str) -> float:
+    """Return how long a browser takes to load and draw a page [s]."""
+    from selenium import webdriver
+    from selenium.webdriver.chrome.service import Service
+    options = webdriver.ChromeOptions()
+    for argument in ('--headless=new', '--disable-gpu', '--window-size=1200,900', '--no-sandbox'):
+        options.add_argument(argument)
+    driver = webdriver.Chrome(service=Service('/usr/bin/chromedriver'), options=options)
+    try:
+        driver.get(Path(path).as_uri())  # returns after what its scripts draw
+        return driver.execute_script(
+            'return performance.timing.loadEventEnd - performance.timing.navigationStart') / 1000
+    finally:
+        driver.quit()
+
+
+def measure() -> Dict[str, Any]:
+    """Return the results."""
+    result: Dict[str, Any] = dict(page.machine(), types=_TYPES, seconds=_SECONDS, runs=_RUNS)
+    with tempfile.TemporaryDirectory() as folder:
+        bag, model, report = (os.path.join(folder, name) for name in ('b.bag', 'm', 'r.html'))
+        result['messages'] = _write(bag)
+        _run('train', bag, '--end', str(_TRAINED_S), '-o', model)
+        runs: List[Dict[str, Any]] = []
+        for _ in range(_RUNS):
+            runs.append({'score': _run('score', bag, '--model', model),
+                         'report': _run('score', bag, '--model', model, '--report', report),
+                         'load_s': _loaded_s(report)})
+        result['measured'] = runs
+        result['report_bytes'] = os.path.getsize(report)
+        text = Path(report).read_text(encoding='utf-8')
+        data, = re.findall(r'<script type="application/json" id="data">(.*?)</script>', text)
+        result['data_bytes'] = len(data)
+        result['intervals'] = len(json.loads(data)['sections'][0]['intervals'])
+    return result
+
+
+def markdown(result: Dict[str, Any]) -> str:
+    """Return the table."""
+    def median(*keys: str) -> float:
+        values = []
+        for run in result['measured']:
+            for key in keys:
+                run = run[key]
+            values.append(run)
+        return statistics.median(values)
+
+    rows = [
+        ['`score`', f'{median("score", "wall_s"):.1f} s'],
+        ['`score --report`', f'{median("report", "wall_s"):.1f} s'],
+        ['its memory at most', f'{median("report", "peak_bytes") / 1e6:.0f} MB'],
+        ['the page', f'{result["report_bytes"] / 1e6:.1f} MB'],
+        ['without plotly.js, data alone', f'{result["data_bytes"] / 1e6:.2f} MB'],
+        ['loaded and drawn by Chromium in', f'{median("load_s"):.1f} s']]
+    return (f'{result["messages"]:,} messages of {result["types"]} event types in '
+            f'{result["seconds"] / 60:.0f} minutes, {result["intervals"]} alarms and suspicions; '
+            f'median of {result["runs"]} runs.\n\n' + page.table(('', ''), rows))
+
+
+def main() -> None:
+    """Run the benchmark."""
+    parser = argparse.ArgumentParser(prog='benchmark report', description=__doc__)
+    parser.add_argument('--output', type=Path, default=_DOCS, metavar='FOLDER',
+                        help='for performance/report.json and performance.md (default: docs)')
+    arguments = parser.parse_args()
+    result = measure()
+    page.publish('report', result, markdown(result), arguments.output)
+
+
+if __name__ == '__main__':
+    main()

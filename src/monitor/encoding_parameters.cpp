@@ -1,0 +1,104 @@
+#include "encoding_parameters.h"
+
+#include <xmlrpcpp/XmlRpcValue.h>
+
+#include <map>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace self_awareness {
+namespace {
+
+using XmlRpc::XmlRpcValue;
+
+constexpr char kNamespace[] = "encoding";
+
+[[noreturn]] void fail(const std::string& name, const std::string& must_be) {
+  throw std::invalid_argument(name + " must be " + must_be +
+                              "; config/encoding.yaml is an example");
+}
+
+std::vector<std::string> textsOf(const std::string& name, XmlRpcValue& value) {
+  std::vector<std::string> texts;
+  if (value.getType() != XmlRpcValue::TypeArray) {
+    fail(name, "a list of regular expressions");
+  }
+  for (int i = 0; i < value.size(); ++i) {
+    if (value[i].getType() != XmlRpcValue::TypeString) {
+      fail(name, "a list of regular expressions");
+    }
+    texts.push_back(static_cast<std::string>(value[i]));
+  }
+  return texts;
+}
+
+/// The datatypes have slashes, which part the names of parameters: package and type may have come
+/// as two levels.
+void addFields(const std::string& name, const std::string& prefix, XmlRpcValue& value,
+               std::map<std::string, std::string>& fields) {
+  if (value.getType() != XmlRpcValue::TypeStruct) {
+    fail(name, "fields by datatype");
+  }
+  for (auto& [key, field] : value) {
+    if (field.getType() == XmlRpcValue::TypeString) {
+      fields[prefix + key] = static_cast<std::string>(field);
+    } else {
+      addFields(name, prefix + key + "/", field, fields);
+    }
+  }
+}
+
+ros1::EncodingRules::Source sourceOf(const std::string& name, XmlRpcValue& value) {
+  if (value.getType() == XmlRpcValue::TypeString) {
+    const std::string text = value;
+    if (text == "callerid") {
+      return ros1::EncodingRules::Source::kCallerId;
+    }
+    if (text == "none") {
+      return ros1::EncodingRules::Source::kNone;
+    }
+  }
+  fail(name, "callerid or none");
+}
+
+}  // namespace
+
+ros1::EncodingRules loadEncoding(const ros::NodeHandle& private_node_handle) {
+  ros1::EncodingRules rules = ros1::EncodingRules::defaults();
+  const std::string space = private_node_handle.resolveName(kNamespace);
+  XmlRpcValue values;
+  if (!private_node_handle.getParam(kNamespace, values)) {
+    return rules;
+  }
+  if (values.getType() != XmlRpcValue::TypeStruct) {
+    fail(space, "the keys of an encoding file");
+  }
+  const std::map<std::string, std::vector<std::string>*> lists{
+      {"include_topics", &rules.include_topics},
+      {"exclude_topics", &rules.exclude_topics},
+      {"include_sources", &rules.include_sources},
+      {"exclude_sources", &rules.exclude_sources}};
+  for (auto& [key, value] : values) {
+    const std::string name = space + "/" + key;
+    const auto list = lists.find(key);
+    if (list != lists.end()) {
+      *list->second = textsOf(name, value);
+    } else if (key == "source") {
+      rules.source = sourceOf(name, value);
+    } else if (key == "type_fields") {
+      rules.type_fields.clear();
+      addFields(name, "", value, rules.type_fields);
+    } else {
+      fail(name, "left out: there is no such key in an encoding");
+    }
+  }
+  try {
+    rules.validate();
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument(space + ": " + error.what());
+  }
+  return rules;
+}
+
+}  // namespace self_awareness

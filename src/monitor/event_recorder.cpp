@@ -1,0 +1,270 @@
+#include "event_recorder.h"
+
+#include <ros/console.h>
+#include <ros/this_node.h>
+
+#include <boost/filesystem/operations.hpp>
+#include <cmath>
+#include <ctime>
+#include <random>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "encoding_parameters.h"
+#include "parameter_reader.h"
+#include "self_awareness/ros/bag/bag_reader.h"
+#include "self_awareness/ros/encoding_message.h"
+
+namespace self_awareness {
+namespace {
+
+namespace fs = boost::filesystem;
+
+constexpr double kTick = 0.1;              // [s]
+constexpr std::int64_t kGrace = 20000000;  // as the monitor's [ns]
+constexpr double kMegabyte = 1e6;
+constexpr char kActive[] = ".active";
+
+std::int64_t rosNow() {
+  return static_cast<std::int64_t>(ros::Time::now().toNSec());
+}
+
+std::int64_t steadyNow() {
+  return static_cast<std::int64_t>(ros::SteadyTime::now().toNSec());
+}
+
+std::int64_t wallNow() {
+  return static_cast<std::int64_t>(ros::WallTime::now().toNSec());
+}
+
+std::uint64_t drawFingerprint() {
+  std::random_device random;
+  return static_cast<std::uint64_t>(random()) << 32U | random();
+}
+
+}  // namespace
+
+EventRecorder::Parameters EventRecorder::Parameters::load(
+    const ros::NodeHandle& private_node_handle) {
+  using ros1::SubscribePolicy;
+  Parameters parameters;
+  ParameterReader reader(private_node_handle);
+  parameters.output = reader.read("output", parameters.output);
+  parameters.split = reader.atLeast("split", parameters.split, 0.1, "minutes");
+  parameters.min_space = reader.atLeast("min_space", parameters.min_space, 0, "MB");
+  parameters.subscribe = reader.choice<SubscribePolicy>(
+      "subscribe", "used", {{"used", SubscribePolicy::kUsed}, {"all", SubscribePolicy::kAll}});
+  parameters.poll_interval = reader.seconds("poll_interval", parameters.poll_interval, 0.01);
+  parameters.queue_size = static_cast<std::uint32_t>(
+      reader.wholeNumber("queue_size", static_cast<int>(parameters.queue_size), 1));
+  reader.expect("encoding");
+  parameters.encoding = loadEncoding(private_node_handle);
+  reader.expect("diagnostic_period");  // of diagnostic_updater
+  reader.warnOfUnknown();
+  return parameters;
+}
+
+EventRecorder::File::File(const std::string& final_path)
+    : path(final_path), log(final_path + kActive) {}
+
+EventRecorder::EventRecorder(const ros::NodeHandle& node_handle,
+                             const ros::NodeHandle& private_node_handle, std::function<void()> end)
+    : node_handle_(node_handle),
+      private_node_handle_(private_node_handle),
+      end_(std::move(end)),
+      parameters_(Parameters::load(private_node_handle)),
+      diagnostics_(node_handle, private_node_handle, ros::this_node::getName()),
+      robot_start_(wallNow()),
+      spinner_(1, &queue_) {
+  node_handle_.setCallbackQueue(&queue_);
+  private_node_handle_.setCallbackQueue(&queue_);
+  diagnostics_.setHardwareID("none");
+  diagnostics_.add("recording", [this](auto& status) { diagnose(status); });
+  finish_ = private_node_handle_.advertiseService("finish", &EventRecorder::onFinish, this);
+  ros1::LiveEvents::Handlers handlers;
+  handlers.on_event = [this](const core::Event& event) { onEvent(event); };
+  handlers.on_connection = [this] { discovery_->pollNow(); };
+  handlers.on_arrivals = [this] { live_events_->deliver(); };
+  live_events_ =
+      std::make_unique<ros1::LiveEvents>(node_handle_, parameters_.queue_size, handlers);
+  const auto encoder = std::make_shared<const ros1::Encoder>(
+      parameters_.encoding,
+      [this](const core::EventType& type) { return vocabulary_.intern(type); });
+  live_events_->setEncoder(encoder, ros1::OwnOutput(ros::this_node::getName(), {}),
+                           core::kDefaultWindow);
+  discovery_ = std::make_unique<Discovery>(node_handle_, live_events_->arrivals(),
+                                           parameters_.subscribe, parameters_.poll_interval,
+                                           std::vector<std::string>{finish_.getService()});
+  Discovery::Wanted wanted;
+  wanted.encoder = encoder;
+  discovery_->setWanted(std::move(wanted));
+  timer_ = private_node_handle_.createSteadyTimer(ros::WallDuration(kTick), &EventRecorder::onTick,
+                                                  this);
+  spinner_.start();
+}
+
+EventRecorder::~EventRecorder() {
+  spinner_.stop();  // first: what it serves uses the others
+  discovery_.reset();
+  live_events_->deliver();
+  live_events_.reset();
+  end(rosNow());
+}
+
+void EventRecorder::onEvent(const core::Event& event) {
+  if (clock_watch_.isStale(event.stamp) || !file_) {
+    return;
+  }
+  ++events_;
+  attempt([&] { packer_->add(event, vocabulary_); });
+}
+
+void EventRecorder::onTick(const ros::SteadyTimerEvent& /*tick*/) {
+  const std::int64_t now = rosNow();
+  if (now == 0 || finished_) {  // simulated time has not begun
+    return;
+  }
+  watch(now);
+  if (!file_) {
+    begin(now);
+  }
+  live_events_->deliver();
+  if (file_) {
+    attempt([&] {
+      packer_->setDropped(live_events_->dropped());
+      packer_->advance(now - kGrace);
+      const std::shared_ptr<const ros1::Graph> graph = discovery_->state().graph;
+      if (graph && graph != graph_) {
+        file_->log.writeGraph(*graph, now);
+        graph_ = graph;
+      }
+    });
+  }
+  const double minutes = core::toSeconds(steadyNow() - began_) / 60;
+  if (file_ && (minutes >= parameters_.split || !hasSpace())) {
+    end(now);
+    begin(now);
+  }
+  if (core::toSeconds(steadyNow() - diagnosed_) >= diagnostics_.getPeriod()) {
+    diagnosed_ = steadyNow();
+    live_events_->forgetClosedConnections();
+    diagnostics_.force_update();
+  }
+}
+
+void EventRecorder::watch(std::int64_t now) {
+  const bool set = clock_watch_.look(now, steadyNow(), ros::Time::isSimTime());
+  const std::size_t restarts = discovery_->state().master_restarts;
+  if (set) {
+    ROS_WARN("ROS time was set: a new recording begins");
+    end(now);
+  }
+  if (restarts != master_restarts_) {
+    ROS_WARN("the master was restarted: the next recording is of another start of the robot");
+    master_restarts_ = restarts;
+    robot_start_ = wallNow();
+    end(now);
+  }
+}
+
+void EventRecorder::begin(std::int64_t now) {
+  if (!hasSpace()) {
+    if (problem_.empty()) {
+      problem_ = "less than " + std::to_string(std::lround(parameters_.min_space)) +
+                 " MB are free (min_space)";
+      ROS_ERROR("%s: nothing is recorded: %s", parameters_.output.c_str(), problem_.c_str());
+    }
+    return;
+  }
+  attempt([&] {
+    file_ = std::make_unique<File>(newPath());
+    graph_.reset();
+    packer_.emplace([this](self_awareness::EventLog part) { file_->log.write(std::move(part)); });
+    self_awareness::EventLogStart start;
+    start.encoding = toMessage(parameters_.encoding);
+    start.begin.fromNSec(static_cast<std::uint64_t>(now));
+    start.robot_start.fromNSec(static_cast<std::uint64_t>(robot_start_));
+    start.fingerprint = drawFingerprint();
+    start.has_sources = true;
+    file_->log.start(start);
+    began_ = steadyNow();
+    problem_.clear();
+    ROS_INFO("recording to %s", file_->log.path().c_str());
+  });
+}
+
+void EventRecorder::end(std::int64_t now) {
+  if (!file_) {
+    return;
+  }
+  attempt([&] {
+    packer_->flush(now);
+    file_->log.close();
+    fs::rename(file_->log.path(), file_->path);
+    bytes_ += file_->log.size();
+    ++files_;
+  });
+  file_.reset();
+}
+
+void EventRecorder::attempt(const std::function<void()>& write) {
+  try {
+    write();
+  } catch (const std::exception& error) {  // the disk is full, or was removed
+    if (problem_ != error.what()) {
+      problem_ = error.what();
+      ROS_ERROR("nothing is recorded: %s", error.what());
+    }
+    file_.reset();
+  }
+}
+
+std::string EventRecorder::newPath() const {
+  const std::time_t now = std::time(nullptr);
+  std::tm local{};
+  localtime_r(&now, &local);
+  char date[32];
+  std::strftime(date, sizeof date, "_%Y-%m-%d-%H-%M-%S", &local);
+  std::string path = parameters_.output + date + ".bag";
+  for (int k = 1; fs::exists(path) || fs::exists(path + kActive); ++k) {
+    path = parameters_.output + date + "_" + std::to_string(k) + ".bag";
+  }
+  return path;
+}
+
+bool EventRecorder::hasSpace() const {
+  const fs::path folder = fs::absolute(parameters_.output).parent_path();
+  boost::system::error_code error;
+  const fs::space_info space = fs::space(folder, error);
+  // Without an answer, the attempt to write tells.
+  return error || static_cast<double>(space.available) >= parameters_.min_space * kMegabyte;
+}
+
+bool EventRecorder::onFinish(std_srvs::Trigger::Request& /*request*/,
+                             std_srvs::Trigger::Response& response) {
+  live_events_->deliver();
+  end(rosNow());
+  finished_ = true;
+  response.success = problem_.empty();
+  response.message = problem_.empty() ? std::to_string(files_) + " files" : problem_;
+  end_();
+  return true;
+}
+
+void EventRecorder::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) const {
+  using diagnostic_msgs::DiagnosticStatus;
+  if (problem_.empty()) {
+    status.summary(DiagnosticStatus::OK, "recording");
+  } else {
+    status.summary(DiagnosticStatus::ERROR, "nothing is recorded: " + problem_);
+  }
+  status.add("file", file_ ? file_->log.path() : "none");
+  status.add("files before", files_);
+  status.add("events", events_);
+  status.add("size [MB]",
+             static_cast<double>(bytes_ + (file_ ? file_->log.size() : 0)) / kMegabyte);
+  status.add("dropped messages", live_events_->dropped());
+}
+
+}  // namespace self_awareness

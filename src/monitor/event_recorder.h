@@ -1,0 +1,125 @@
+#pragma once
+
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <ros/callback_queue.h>
+#include <ros/node_handle.h>
+#include <ros/service_server.h>
+#include <ros/spinner.h>
+#include <ros/steady_timer.h>
+#include <std_srvs/Trigger.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "discovery.h"
+#include "self_awareness/core/stream/vocabulary.h"
+#include "self_awareness/ros/bag/event_log_packer.h"
+#include "self_awareness/ros/bag/event_log_writer.h"
+#include "self_awareness/ros/encoding.h"
+#include "self_awareness/ros/live/clock_watch.h"
+#include "self_awareness/ros/live/live_events.h"
+
+namespace self_awareness {
+
+/// Records a robot's communication as event logs, by the same way that the monitor hears it.
+///
+/// **Parameters**, all private; one that is out of range ends the node, one that is unknown is a
+/// warning.
+/// - `~output` (string; default: normal): beginning of the files' paths; date, time and `.bag` are
+///   added. A file that is written ends in `.bag.active`.
+/// - `~split` (double, minutes; default: 30; at least 0.1): length of a file; each is a recording.
+/// - `~encoding` (namespace): how messages become events, as in config/encoding.yaml.
+/// - `~subscribe` (string; default: used; used or all): topics to listen to: what another node
+///   listens to, or all that are published, which may wake publishers that work only while
+///   somebody listens.
+/// - `~min_space` (double, MB; default: 1000; at least 0): with less free space on the disk
+/// nothing
+///   is recorded.
+/// - `~poll_interval`, `~queue_size`, `~diagnostic_period`: as those of the monitor.
+///
+/// **Published topics**: `/diagnostics`: one status, an error while nothing can be recorded.
+///
+/// **Services**: `~finish` (std_srvs/Trigger): ends the file and the node.
+///
+/// **Recordings**: a new one begins with each file, and after ROS time was set. The robot is taken
+/// to start with this node, and with its master.
+class EventRecorder {
+ public:
+  /// @param end called by ~finish; must not block
+  /// @throw std::invalid_argument if a parameter is out of range
+  EventRecorder(const ros::NodeHandle& node_handle, const ros::NodeHandle& private_node_handle,
+                std::function<void()> end);
+  /// Ends the file.
+  ~EventRecorder();
+  EventRecorder(const EventRecorder&) = delete;
+  EventRecorder& operator=(const EventRecorder&) = delete;
+
+ private:
+  struct Parameters {
+    std::string output = "normal";
+    double split = 30;  // [min]
+    ros1::EncodingRules encoding;
+    ros1::SubscribePolicy subscribe = ros1::SubscribePolicy::kUsed;
+    double min_space = 1000;  // [MB]
+    double poll_interval = 1;
+    std::uint32_t queue_size = 1000;
+
+    static Parameters load(const ros::NodeHandle& private_node_handle);
+  };
+  /// The file that is written.
+  struct File {
+    explicit File(const std::string& path);
+    std::string path;  // when it is closed
+    ros1::EventLogWriter log;
+  };
+
+  void onEvent(const core::Event& event);
+  void onTick(const ros::SteadyTimerEvent& tick);
+  bool onFinish(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+
+  /// Begins a recording in a file of its own, if there is space.
+  void begin(std::int64_t now);
+  /// Ends the recording and its file.
+  void end(std::int64_t now);
+  /// Does something that writes; what goes wrong ends the file, and is told.
+  void attempt(const std::function<void()>& write);
+  /// Starts over where the robot has: with the master, or with the clock.
+  void watch(std::int64_t now);
+  std::string newPath() const;
+  bool hasSpace() const;
+
+  ros::CallbackQueue queue_;
+  ros::NodeHandle node_handle_;
+  ros::NodeHandle private_node_handle_;
+  const std::function<void()> end_;
+  Parameters parameters_;
+  core::Vocabulary vocabulary_;
+  diagnostic_updater::Updater diagnostics_;
+  ros::ServiceServer finish_;
+  ros::SteadyTimer timer_;
+
+  ros1::ClockWatch clock_watch_;
+  std::int64_t robot_start_ = 0;  // wall time [ns]
+  std::size_t master_restarts_ = 0;
+  std::unique_ptr<File> file_;  // none: nothing is recorded
+  std::optional<ros1::EventLogPacker> packer_;
+  std::int64_t began_ = 0;                    // the file, steady time [ns]
+  std::shared_ptr<const ros1::Graph> graph_;  // that was written to the file last
+  bool finished_ = false;                     // nothing is recorded any more
+  std::string problem_;                       // why nothing is recorded; empty: it is
+  std::uint64_t events_ = 0;                  // since the start of the node
+  std::uint64_t bytes_ = 0;                   // of the files that are complete
+  std::size_t files_ = 0;                     // that are complete
+  std::int64_t diagnosed_ = 0;                // steady time [ns]
+
+  std::unique_ptr<ros1::LiveEvents> live_events_;
+  std::unique_ptr<Discovery> discovery_;
+  ros::AsyncSpinner spinner_;
+};
+
+}  // namespace self_awareness

@@ -1,0 +1,57 @@
+"""`rosrun self_awareness diff`: tells what changed from a model to another, or to a recording."""
+from __future__ import annotations
+
+import argparse
+import json
+from typing import Optional, Sequence
+
+from self_awareness.commands import cli
+from self_awareness.comparison.changes import compare
+from self_awareness.comparison.sides import read_sides
+from self_awareness.output_files import check_outputs
+from self_awareness.recordings import BagPart
+from self_awareness.reporting import diff_text
+from self_awareness.reporting.report.diff_page import save_diff
+from self_awareness.reporting.report.page import check_installed, check_name
+
+_EPILOG = """\
+A and B are models, or one of them a recording: BAG, or a part of it, BAG@START-END. A recording is
+counted with the encoding of the model. What matters most comes first: what is gone or new, then
+the largest changes of rates, gaps and delays. Not listed is what could be chance, and what is
+less than the model's least effect (train --least-effect).
+examples:
+  diff before_update.model after_update.model
+  diff robot.model today.bag --html today.html
+"""
+
+
+def main(argv: Optional[Sequence[str]] = None) -> int:
+    """Run the program; return its exit code (see cli.run)."""
+    return cli.run(_parser(), _diff, argv)
+
+
+def _diff(arguments: argparse.Namespace) -> None:
+    check_outputs([arguments.html],
+                  [BagPart.parse(name).path for name in (arguments.before, arguments.after)])
+    if arguments.html is not None:
+        check_installed()
+    comparison = compare(*read_sides(arguments.before, arguments.after))
+    if arguments.json:
+        print(json.dumps(diff_text.as_values(comparison), indent=2))
+    else:
+        for line in diff_text.lines(comparison):
+            print(line)
+    if arguments.html is not None:
+        save_diff(arguments.html, comparison)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog='diff', description=__doc__.split(': ', 1)[1],
+                                     epilog=_EPILOG,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('before', metavar='A', help='how it was')
+    parser.add_argument('after', metavar='B', help='how it is')
+    parser.add_argument('--json', action='store_true', help='for programs')
+    parser.add_argument('--html', type=cli.checked(check_name), metavar='FILE.html',
+                        help='write a page for a browser, too')
+    return parser

@@ -1,0 +1,71 @@
+"""What is in an event log, as plain values: for reading, and for JSON."""
+from __future__ import annotations
+
+import os
+from collections import Counter
+from typing import Any, Dict, List
+
+import numpy as np
+
+from self_awareness import BagSummary, EncodingRules, read_events, summarise_bag
+from self_awareness.stamps import SECOND_NS
+from self_awareness.training.robot_graph import RobotGraph
+
+
+def summarise_event_log(path: str, recordings: int) -> Dict[str, Any]:
+    """Return all of an event log but its events.
+
+    Times are in seconds and rates in Hz, unless a key says otherwise. Event types are those of all
+    recordings.
+
+    Raises:
+        BagError: it cannot be read.
+    """
+    counts: Counter = Counter()
+    found: List[Dict[str, Any]] = []
+    edges = set()
+    for number in range(recordings):
+        summary = summarise_bag(path, number)
+        events = read_events(path, summary.encoding, recording=number)
+        for kind, count in zip(events.event_types, np.bincount(
+                events.ids, minlength=len(events.event_types)).tolist()):
+            counts[kind] += count
+        edges |= RobotGraph(*summary.graph).edges()
+        found.append(_recording(summary))
+    duration = sum(recording['duration'] for recording in found)
+    return {
+        'size': os.path.getsize(path),
+        'duration': duration,
+        'events': sum(counts.values()),
+        'starts': len({recording['robot_start_ns'] for recording in found} - {None}),
+        'recordings': found,
+        'event_types': [{'source': kind.source, 'scope': kind.scope, 'type': kind.type,
+                         'count': count, 'rate': count / duration if duration > 0.0 else None}
+                        for kind, count in counts.items()],
+        'graph': [dict(zip(('publisher', 'topic', 'subscriber'), edge))
+                  for edge in sorted(edges)],
+    }
+
+
+def encoding_values(rules: EncodingRules) -> Dict[str, Any]:
+    """Return the rules of an encoding by their keys in an encoding file."""
+    return {
+        'source': rules.source,
+        'include_topics': list(rules.include_topics),
+        'exclude_topics': list(rules.exclude_topics),
+        'include_sources': list(rules.include_sources),
+        'exclude_sources': list(rules.exclude_sources),
+        'type_fields': dict(rules.type_fields),
+    }
+
+
+def _recording(summary: BagSummary) -> Dict[str, Any]:
+    return {
+        'bag': summary.bag,
+        'start_ns': summary.start,
+        'duration': (summary.end - summary.start) / SECOND_NS,
+        'events': summary.messages,
+        'dropped': summary.dropped,
+        'robot_start_ns': summary.robot_start or None,
+        'encoding': encoding_values(summary.encoding),
+    }

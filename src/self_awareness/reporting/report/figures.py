@@ -1,0 +1,262 @@
+"""Figures of the report, as plotly.js takes them: plain values, without any logic of the method.
+
+Colours of text, grid and the bottom of the heat map follow the page's theme (page.js).
+"""
+from __future__ import annotations
+
+import html
+import math
+from typing import Any, Dict, List, Optional, Sequence, Tuple
+
+import numpy as np
+
+from self_awareness.reporting.report.delays import Histogram, seconds
+from self_awareness.reporting.report.intervals import ALARM, Interval
+from self_awareness.reporting.report.neighbours import ROOT, VICTIM, Neighbourhood
+from self_awareness.reporting.report.timeline import Lanes, Overview, Timeline
+
+Figure = Dict[str, Any]
+"""Traces and layout of a plot (`data`, `layout`)."""
+
+Bins = List[Tuple[float, float]]
+"""Begin [s] of each bin of delays, and the share of the delays in it [%]."""
+
+RED, AMBER, BLUE, GREY = '#e5484d', '#e08a00', '#4a8fdd', '#8b93a1'
+SHOWN = 4.0
+"""Scores beyond so many limits are drawn at the edge."""
+
+_LANE_PX = 18
+_HEIGHTS_PX = {'strip': 26, 'score': 190, 'gap': 26, 'bottom': 52}
+_MOST_LABEL = 26
+
+
+def over_time(found: Overview, intervals: Sequence[Interval]) -> Figure:
+    """Return alarms, score and lanes over the whole recording, one above the other."""
+    timeline, lanes = found.timeline, found.lanes
+    heights = [_HEIGHTS_PX['strip'], _HEIGHTS_PX['score']]
+    if lanes is not None and lanes.names:
+        heights.append(_LANE_PX * len(lanes.names))
+    total = sum(heights) + _HEIGHTS_PX['gap'] * (len(heights) - 1)
+    domains, top = [], float(total)
+    for height in heights:
+        domains.append([max(top - height, 0.0) / total, top / total])
+        top -= height + _HEIGHTS_PX['gap']
+    traces = [_strip(intervals), *_score(timeline)]
+    layout: Figure = {
+        'height': total + _HEIGHTS_PX['bottom'] + 10,
+        'margin': {'l': 10, 'r': 12, 't': 10, 'b': _HEIGHTS_PX['bottom']},
+        'showlegend': False, 'hovermode': 'closest', 'dragmode': 'zoom',
+        'xaxis': {'title': {'text': 'time from the first message [s]'}, 'anchor': 'free',
+                  'position': 0, 'zeroline': False,
+                  'range': [float(timeline.edges[0]), float(timeline.edges[-1])]},
+        'yaxis': {'domain': domains[0], 'visible': False, 'range': [0, 1], 'fixedrange': True},
+        'yaxis2': {**_score_axis(timeline), 'domain': domains[1], 'fixedrange': True},
+        'shapes': _shapes(timeline, intervals),
+    }
+    if len(heights) == 3 and lanes is not None:
+        traces.append(_heat(timeline, lanes))
+        layout['yaxis3'] = {
+            'domain': domains[2], 'autorange': 'reversed', 'fixedrange': True, 'showgrid': False,
+            'type': 'category', 'tickvals': [escape(name) for name in lanes.names],
+            'ticktext': [_shortened(name) for name in lanes.names], 'automargin': True}
+    return {'data': traces, 'layout': layout}
+
+
+def histogram(shown: Histogram) -> Figure:
+    """Return the delays of training, with what was seen marked in them."""
+    # Log bins of one width: a count stands for its bin, not for its seconds.
+    edges = [max(edge, shown.edges[1] / 2 if edge <= 0 else edge) for edge in shown.edges]
+    log = edges[-1] > 3 * edges[0]
+    position = np.log10(edges) if log else np.array(edges)
+    middle, width = (position[1:] + position[:-1]) / 2, np.diff(position)
+    total = sum(shown.counts)
+    traces: List[Figure] = [{
+        'type': 'bar', 'x': _rounded(10 ** middle if log else middle),
+        'y': [100.0 * count / total for count in shown.counts],
+        'marker': {'color': BLUE}, 'hoverinfo': 'text',
+        'hovertext': [f'{seconds(low)} to {seconds(high)}: {count} of {total}'
+                      for low, high, count in zip(shown.edges, shown.edges[1:], shown.counts)],
+    }]
+    if log:
+        traces[0]['width'] = _rounded(np.diff(np.array(edges)))
+        traces[0]['x'] = _rounded(edges[:-1])
+        traces[0]['offset'] = 0
+    else:
+        traces[0]['width'] = _rounded(width)
+    shapes: List[Figure] = []
+    if shown.usual is not None:
+        shapes.append(_band(shown.usual[0], shown.usual[1], BLUE, 0.13))
+    low, high = edges[0], edges[-1]
+    annotations = []
+    if shown.seen is not None and shown.seen > 0:
+        shapes.append({'type': 'line', 'xref': 'x', 'yref': 'paper', 'x0': shown.seen,
+                       'x1': shown.seen, 'y0': 0, 'y1': 1, 'line': {'color': RED, 'width': 3}})
+        low, high = min(low, shown.seen / 1.3), max(high, shown.seen * 1.3)
+    annotations.append({
+        'xref': 'paper', 'yref': 'paper', 'x': 1, 'y': 1.16, 'showarrow': False,
+        'text': f'<b>{shown.seen_text}</b>', 'font': {'color': RED, 'size': 13},
+        'xanchor': 'right'})
+    axis: Figure = {'title': {'text': 'delay [s]'}, 'zeroline': False}
+    if log:
+        axis.update({'type': 'log', 'range': [math.log10(low), math.log10(high)]})
+    else:
+        axis['range'] = [low, high]
+    return {'data': traces, 'layout': {
+        'height': 210, 'margin': {'l': 46, 'r': 10, 't': 32, 'b': 44}, 'showlegend': False,
+        'xaxis': axis, 'yaxis': {'title': {'text': '% in training'}, 'fixedrange': True},
+        'bargap': 0, 'shapes': shapes, 'annotations': annotations}}
+
+
+def two_histograms(before: Bins, after: Bins) -> Figure:
+    """Return the delays of two sides, one over the other: begin [s] and % of each bin."""
+    filled = [begin for bins in (before, after) for begin, share in bins if share > 0]
+    edges = [begin for begin, _ in before if min(filled) <= begin <= max(filled)]
+    first = edges[0] or edges[min(1, len(edges) - 1)] / 2
+    traces = []
+    for name, colour, bins in (('before', GREY, before), ('after', RED, after)):
+        shares = dict(bins)
+        # The last edge holds the line up to the end of its bin.
+        traces.append({
+            'type': 'scatter', 'mode': 'lines', 'name': name, 'fill': 'tozeroy',
+            'line': {'shape': 'hv', 'color': colour, 'width': 1.5},
+            'x': _rounded([edge or first for edge in edges] + [edges[-1] * 1.19]),
+            'y': _rounded([shares[edge] for edge in edges] + [shares[edges[-1]]], 3)})
+    return {'data': traces, 'layout': {
+        'height': 190, 'margin': {'l': 46, 'r': 10, 't': 10, 'b': 44}, 'showlegend': True,
+        'legend': {'x': 1, 'xanchor': 'right', 'y': 1},
+        'xaxis': {'type': 'log', 'title': {'text': 'delay [s]'}},
+        'yaxis': {'title': {'text': '%'}, 'fixedrange': True}}}
+
+
+def graph(shown: Neighbourhood) -> Figure:
+    """Return who publishes to whom, from left to right."""
+    colours = {ROOT: RED, VICTIM: AMBER}
+    at = {node.name: (node.layer, 1 - node.place) for node in shown.nodes}
+    largest = max([sum(each.layer == node.layer for each in shown.nodes)
+                   for node in shown.nodes], default=1)
+    arrows, middles = [], []
+    for link in shown.connections:
+        (x0, y0), (x1, y1) = at[link.publisher], at[link.subscriber]
+        arrows.append({'xref': 'x', 'yref': 'y', 'axref': 'x', 'ayref': 'y', 'x': x1, 'y': y1,
+                       'ax': x0, 'ay': y0, 'text': '', 'showarrow': True, 'arrowhead': 2,
+                       'arrowwidth': 1.1, 'arrowcolor': GREY, 'standoff': 9,
+                       'startstandoff': 8})
+        text = f'{link.publisher} → {link.subscriber}: {", ".join(link.topics)}'
+        middles.append((0.5 * (x0 + x1), 0.5 * (y0 + y1), escape(text)))
+    nodes = {
+        'type': 'scatter', 'mode': 'markers+text',
+        'x': [at[node.name][0] for node in shown.nodes],
+        'y': [at[node.name][1] for node in shown.nodes],
+        'text': [_shortened(node.name) for node in shown.nodes], 'textposition': 'top center',
+        'hoverinfo': 'text',
+        'hovertext': [escape(f'{node.name} ({node.role})') for node in shown.nodes],
+        'marker': {'size': [17 if node.role == ROOT else 13 for node in shown.nodes],
+                   'color': [colours.get(node.role, GREY) for node in shown.nodes]}}
+    links = {
+        'type': 'scatter', 'mode': 'markers', 'x': [each[0] for each in middles],
+        'y': [each[1] for each in middles], 'hoverinfo': 'text',
+        'hovertext': [each[2] for each in middles],
+        'marker': {'size': 9, 'color': GREY, 'opacity': 0.25}}
+    last = max([node.layer for node in shown.nodes], default=0)
+    axis = {'visible': False, 'fixedrange': True}
+    return {'data': [links, nodes], 'layout': {
+        'height': 70 + 46 * largest, 'margin': {'l': 10, 'r': 10, 't': 10, 'b': 10},
+        'showlegend': False, 'hovermode': 'closest', 'annotations': arrows,
+        'xaxis': {**axis, 'range': [-0.5, last + 0.5]}, 'yaxis': {**axis, 'range': [-0.05, 1.12]},
+    }}
+
+
+def _strip(intervals: Sequence[Interval]) -> Figure:
+    """Return a bar for each alarm and suspicion, which can be clicked."""
+    return {
+        'type': 'bar', 'orientation': 'h', 'y': [0.5] * len(intervals),
+        'base': [round(each.start, 3) for each in intervals],
+        'x': [round(each.end - each.start, 3) for each in intervals],
+        'width': [0.9 if each.level == ALARM else 0.5 for each in intervals],
+        'marker': {'color': [RED if each.level == ALARM else AMBER for each in intervals],
+                   'line': {'color': [RED if each.level == ALARM else AMBER
+                                      for each in intervals], 'width': 1.5}},
+        'customdata': [each.key for each in intervals], 'hoverinfo': 'text',
+        'hovertext': [escape(f'{each.level} {each.start:.1f} to {each.end:.1f} s: '
+                             + (each.suspects[0].component if each.suspects else 'no suspect'))
+                      for each in intervals]}
+
+
+def _score(timeline: Timeline) -> List[Figure]:
+    x = _rounded((timeline.edges[:-1] + timeline.edges[1:]) / 2, 3)
+    low, high = _clipped(timeline, timeline.lowest), _clipped(timeline, timeline.highest)
+    lowest = _numbers(timeline.lowest)
+    traces: List[Figure] = [
+        {'type': 'scatter', 'mode': 'lines', 'x': x, 'y': high, 'yaxis': 'y2',
+         'line': {'color': GREY, 'width': 0}, 'hoverinfo': 'skip'},
+        {'type': 'scatter', 'mode': 'lines', 'x': x, 'y': low, 'yaxis': 'y2',
+         'line': {'color': GREY, 'width': 1}, 'fill': 'tonexty',
+         'fillcolor': 'rgba(139,147,161,0.25)', 'customdata': lowest,
+         'hovertemplate': '%{x:.1f} s: lowest score %{customdata}<extra></extra>'}]
+    abnormal = np.flatnonzero(timeline.abnormal)
+    traces.append(
+        {'type': 'scatter', 'mode': 'markers', 'x': [x[index] for index in abnormal],
+         'y': [low[index] for index in abnormal], 'yaxis': 'y2',
+         'marker': {'color': RED, 'size': 4}, 'hoverinfo': 'skip'})
+    return traces
+
+
+def _score_axis(timeline: Timeline) -> Figure:
+    if timeline.limit is None:
+        return {'title': {'text': 'score'}, 'zeroline': False}
+    if timeline.limit < 0:
+        low = max(-SHOWN, float(np.nanmin(timeline.lowest, initial=timeline.limit)))
+        return {'title': {'text': 'score [limits]'}, 'zeroline': False,
+                'range': [min(low, -1.5) * 1.05, 0.05], 'dtick': 1}
+    return {'title': {'text': 'score [thresholds]'}, 'zeroline': False, 'rangemode': 'tozero'}
+
+
+def _shapes(timeline: Timeline, intervals: Sequence[Interval]) -> List[Figure]:
+    shapes = [_band(start, end, GREY, 0.16) for start, end in timeline.settling]
+    shapes += [_band(each.start, each.end, RED, 0.12) for each in intervals
+               if each.level == ALARM]
+    if timeline.limit is not None:
+        shapes.append({'type': 'line', 'xref': 'paper', 'yref': 'y2', 'x0': 0, 'x1': 1,
+                       'y0': timeline.limit, 'y1': timeline.limit,
+                       'line': {'color': RED, 'width': 1.3, 'dash': 'dash'}})
+    return shapes
+
+
+def _band(start: float, end: float, colour: str, opacity: float) -> Figure:
+    return {'type': 'rect', 'xref': 'x', 'yref': 'paper', 'x0': start, 'x1': end, 'y0': 0,
+            'y1': 1, 'fillcolor': colour, 'opacity': opacity, 'line': {'width': 0},
+            'layer': 'below'}
+
+
+def _heat(timeline: Timeline, lanes: Lanes) -> Figure:
+    percent = np.rint(100 * lanes.shares).astype(int)
+    return {
+        'type': 'heatmap', 'meta': 'evidence', 'yaxis': 'y3', 'x': _rounded(timeline.edges, 3),
+        'y': [escape(name) for name in lanes.names], 'z': percent.tolist(), 'zmin': 0,
+        'zmax': 200, 'showscale': False, 'ygap': 1, 'zsmooth': False,
+        'hovertemplate': '%{y}: %{z} % of its limit<extra></extra>'}
+
+
+def _clipped(timeline: Timeline, scores: np.ndarray) -> List[Optional[float]]:
+    if timeline.limit is not None and timeline.limit < 0:
+        scores = np.maximum(scores, -SHOWN)
+    return _numbers(scores)
+
+
+def _numbers(values: np.ndarray) -> List[Optional[float]]:
+    """Return values as JSON knows them: None for NaN."""
+    return [None if math.isnan(value) else float(f'{value:.4g}') for value in values.tolist()]
+
+
+def _rounded(values: Sequence[float], digits: int = 6) -> List[float]:
+    return [round(float(value), digits) for value in values]
+
+
+def _shortened(name: str) -> str:
+    """Return at most _MOST_LABEL characters of a name; its end tells more than its beginning."""
+    return escape(name if len(name) <= _MOST_LABEL else '…' + name[1 - _MOST_LABEL:])
+
+
+def escape(text: str) -> str:
+    """Return a text that plotly shows as it is: it takes tags for formatting."""
+    return html.escape(text, quote=False)

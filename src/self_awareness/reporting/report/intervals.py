@@ -1,0 +1,180 @@
+"""Alarms and suspicions of a recording: when, whom they name, and why."""
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Dict, List, Optional, Sequence
+
+from self_awareness import Alarm, Suspect
+from self_awareness.reporting.report import delays
+from self_awareness.reporting.report.delays import Histogram
+from self_awareness.reporting.report.judged import Judged
+from self_awareness.reporting.report.neighbours import Neighbourhood, neighbourhood
+from self_awareness.reporting.report.timeline import LINKER, Overview, strongest_track
+from self_awareness.stamps import utc
+
+ALARM, SUSPICION = 'alarm', 'suspicion'
+"""The levels of an interval."""
+
+MOST_DETAILS = 40
+"""Alarms and suspicions with details, at most so many; those of alarms come first."""
+MOST_LISTED = 400
+"""Alarms and suspicions that are listed, at most so many; alarms come first."""
+
+_RATE_SPAN_S = 2.0
+_SHORT = {'silent': 'stopped sending', 'late': 'paused for too long', 'unknown': 'is new',
+          'unusual': 'came at unusual times', 'answer': 'leaves out answers',
+          'unanswered': 'does not answer', 'never heard': 'was not heard'}
+
+
+@dataclass(frozen=True)
+class NamedSuspect:
+    """A suspect in words.
+
+    Args:
+        component: whose event type it is: a node, or a topic where nodes are not known.
+        event_type: its name.
+        short: what it does wrong, in a few words.
+        why: the numbers, seen and usual.
+        named: when it was named [s] from the recording's first message.
+        histogram: of the delays that speak against it; None: it is not about a delay.
+    """
+
+    component: str
+    event_type: str
+    short: str
+    why: str
+    named: float
+    histogram: Optional[Histogram]
+
+
+@dataclass(frozen=True)
+class Interval:
+    """An alarm or a suspicion; times in seconds from the recording's first message.
+
+    Args:
+        key: unique in the page.
+        level: ALARM or SUSPICION.
+        start: of it.
+        end: of it, or of the recording.
+        utc: date and time of the start.
+        cleared: False: it stood until the recording's end.
+        began: when the trouble began, as far as the first suspect tells; None: it does not.
+        lowest: score.
+        evidence: channels that speak, in words.
+        decided: which track was strongest when it was raised, in words; empty: not known.
+        busy: that the machine had too much to do, in words; None: it had not.
+        suspects: best first.
+        later: suspects that were named later.
+        graph: who publishes to whom near them; None: not known.
+    """
+
+    key: str
+    level: str
+    start: float
+    end: float
+    utc: str
+    cleared: bool
+    began: Optional[float]
+    lowest: float
+    evidence: str
+    decided: str
+    busy: Optional[str]
+    suspects: List[NamedSuspect]
+    later: List[NamedSuspect]
+    graph: Optional[Neighbourhood]
+    detailed: bool
+
+
+def components(judged: Judged) -> List[str]:
+    """Return the components that alarms and suspicions name, the most important ones first."""
+    named: Dict[str, None] = {}
+    for alarm in [*judged.verdicts.alarms, *judged.verdicts.suspicions]:
+        for suspect in [*alarm.suspects, *alarm.new_suspects]:
+            named[_component(judged, suspect)] = None
+    return list(named)
+
+
+def intervals(judged: Judged, found: Overview, prefix: str) -> List[Interval]:
+    """Return alarms and suspicions in the order of their start, at most MOST_LISTED.
+
+    Args:
+        prefix: of their keys.
+    """
+    verdicts = judged.verdicts
+    ranked = ([(ALARM, alarm) for alarm in verdicts.alarms]
+              + [(SUSPICION, suspicion) for suspicion in verdicts.suspicions])[:MOST_LISTED]
+    made = [_interval(judged, found, f'{prefix}-{number}', level, alarm, number < MOST_DETAILS)
+            for number, (level, alarm) in enumerate(ranked)]
+    return sorted(made, key=lambda each: each.start)
+
+
+def _interval(judged: Judged, found: Overview, key: str, level: str, alarm: Alarm,
+              detailed: bool) -> Interval:
+    suspects = [_named(judged, suspect, detailed) for suspect in alarm.suspects]
+    later = [_named(judged, suspect, detailed) for suspect in alarm.new_suspects]
+    start = judged.seconds(alarm.start)
+    first = alarm.suspects[0] if alarm.suspects else None
+    return Interval(
+        key, level, start, judged.seconds(alarm.end), utc(alarm.start), alarm.cleared,
+        None if first is None else _began(first, start), alarm.lowest_score,
+        alarm.evidence or 'what is left of the alarm',
+        _decided(judged, found, start - judged.by.trained.window / 2e9), alarm.busy, suspects,
+        later, _graph(judged, [each.component for each in [*suspects, *later]], detailed),
+        detailed)
+
+
+def _named(judged: Judged, suspect: Suspect, detailed: bool) -> NamedSuspect:
+    return NamedSuspect(
+        _component(judged, suspect), str(judged.recording.event_types[suspect.id]),
+        _short(suspect), suspect.describe(), judged.seconds(suspect.since),
+        delays.histogram_of(judged, suspect) if detailed else None)
+
+
+def _component(judged: Judged, suspect: Suspect) -> str:
+    kind = judged.recording.event_types[suspect.id]
+    return suspect.component or kind.source or kind.scope
+
+
+def _short(suspect: Suspect) -> str:
+    if suspect.reason == 'rate':
+        few = suspect.events < (suspect.usual_fewest + suspect.usual_most) / 2
+        return 'sends too seldom' if few else 'sends too often'
+    if suspect.reason == 'delay':
+        if suspect.times > 0 and not suspect.other:
+            return 'sends at an irregular pace'
+        if suspect.times > 0:
+            return 'answers late' if suspect.delay > suspect.usual_delay else 'answers early'
+        return 'comes at unusual delays'
+    return _SHORT[suspect.reason]
+
+
+def _began(suspect: Suspect, start: float) -> Optional[float]:
+    """Return when the trouble began [s]: what the suspect's numbers look back to."""
+    if suspect.reason in ('silent', 'late', 'unanswered', 'never heard'):
+        return None if math.isnan(suspect.silence) else start - suspect.silence
+    if suspect.reason in ('delay', 'answer') and suspect.lasted > 0:
+        return start - suspect.lasted
+    return start - _RATE_SPAN_S if suspect.reason == 'rate' else None
+
+
+def _decided(judged: Judged, found: Overview, time: float) -> str:
+    if found.evidence is None:
+        return ''
+    linker = float(found.evidence.linker[found.stretch(time)])
+    strongest = strongest_track(found, judged, time)
+    if strongest is None or linker > strongest[1]:
+        return f'{LINKER}: {linker:.2f} of its limit' if linker > 0 else ''
+    track, share = strongest
+    kinds = judged.by.trained.event_types
+    name = str(kinds[track.to_id])
+    if track.from_id != track.to_id:
+        name = f'{kinds[track.from_id]} → {name}'
+    return f'{track.channel} of {name}: {share:.2f} of its limit'
+
+
+def _graph(judged: Judged, named: Sequence[str], detailed: bool) -> Optional[Neighbourhood]:
+    if not detailed or not named:
+        return None
+    found = neighbourhood(judged.by.trained.graph, named)
+    return found if found.nodes else None

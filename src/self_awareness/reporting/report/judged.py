@@ -1,0 +1,56 @@
+"""What a report is made of: a recording, what judged it, and the verdicts."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Optional
+
+import numpy as np
+
+from self_awareness import (DetectorParameters, EvidenceLanes, EvidenceModel, TrainedModel,
+                            Verdicts, evidence_lanes)
+from self_awareness.recordings import RecordingEvents
+from self_awareness.stamps import SECOND_NS
+
+
+@dataclass(frozen=True)
+class JudgedBy:
+    """What judged the recordings.
+
+    Args:
+        trained: the model.
+        model_name: of its file.
+        parameters: of the detector.
+        threshold: of the score; None: not calibrated.
+        evidence: of the evidence detector; None: the paper's judged.
+    """
+
+    trained: TrainedModel
+    model_name: str
+    parameters: DetectorParameters
+    threshold: Optional[float]
+    evidence: Optional[EvidenceModel]
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A recording with its verdicts."""
+
+    by: JudgedBy
+    recording: RecordingEvents
+    verdicts: Verdicts
+
+    def seconds(self, stamp: int) -> float:
+        """Return a stamp [ns] in seconds from the recording's first message."""
+        return (stamp - self.recording.origin) / SECOND_NS
+
+    def lanes(self, starts: np.ndarray) -> Optional[EvidenceLanes]:
+        """Return the evidence of each component in stretches that start at these stamps [ns].
+
+        None: the detector has no evidence of single components, or no limits.
+        """
+        if self.by.evidence is None or self.by.threshold is None:
+            return None
+        recording = self.recording
+        return evidence_lanes(self.by.trained, self.by.evidence, self.by.parameters,
+                              recording.stamps, recording.ids, recording.end,
+                              list(recording.event_types), starts.tolist())

@@ -1,0 +1,104 @@
+"""Makes the page of a report: one file that needs no network."""
+from __future__ import annotations
+
+import importlib.util
+import json
+import math
+import os
+from typing import Any, Dict, Sequence
+
+from self_awareness.output_files import replacing
+from self_awareness.reporting.report import figures
+from self_awareness.reporting.report.intervals import Interval
+from self_awareness.reporting.report.section import Section, clock
+
+_FOLDER = os.path.dirname(__file__)
+_ENDING = '.html'
+
+
+def check_name(path: str) -> str:
+    """Return the name of a page.
+
+    Raises:
+        ValueError: it does not end in .html: no browser would open it.
+    """
+    if not path.lower().endswith(_ENDING):
+        raise ValueError(f'expected a name that ends in {_ENDING}, not {path!r}')
+    return path
+
+
+def check_installed() -> None:
+    """Check before long work that a page can be made.
+
+    Raises:
+        ValueError: plotly is missing; rosdep does not know it.
+    """
+    if importlib.util.find_spec('plotly') is None:
+        raise ValueError('a report needs plotly, which is not installed: apt install '
+                         'python3-plotly')
+
+
+def save_report(path: str, sections: Sequence[Section]) -> None:
+    """Write the report of recordings.
+
+    Raises:
+        OSError: the file cannot be written.
+    """
+    save_page(path, 'report.html', {
+        'sections': [{
+            'overTime': figures.over_time(section.overview, section.intervals),
+            'intervals': {each.key: _details(each) for each in section.intervals},
+        } for section in sections]}, sections=sections, clock=clock, isnan=math.isnan)
+
+
+def save_page(path: str, template: str, data: Dict[str, Any], **values: Any) -> None:
+    """Write a page of this folder's style.
+
+    Args:
+        path: of the page.
+        template: in this folder.
+        data: what page.js draws: figures, and where they belong.
+        values: of the template.
+
+    Raises:
+        OSError: the file cannot be written.
+    """
+    # Both take long to import: only a program that writes a page imports them.
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+    from plotly.offline import get_plotlyjs
+
+    environment = Environment(loader=FileSystemLoader(_FOLDER), autoescape=True,
+                              undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
+    page = environment.get_template(template).stream(
+        data=script_json(data), style=_contents('page.css'), script=_contents('page.js'),
+        plotly=get_plotlyjs(), **values)
+    with replacing(path) as temporary:
+        with open(temporary, 'w', encoding='utf-8') as file:
+            file.writelines(page)
+
+
+def script_json(value: Any) -> str:
+    """Return JSON that can stand inside of a script element, whatever the texts are.
+
+    Raises:
+        ValueError: a number is not finite: JSON has none of these.
+    """
+    text = json.dumps(value, separators=(',', ':'), allow_nan=False)
+    for character in '<>&':  # a text might end the element, or begin a comment
+        text = text.replace(character, f'\\u{ord(character):04x}')
+    return text
+
+
+def _details(interval: Interval) -> Dict[str, Any]:
+    drawn: Dict[str, figures.Figure] = {
+        f'{interval.key}-delays-{index}': figures.histogram(suspect.histogram)
+        for index, suspect in enumerate([*interval.suspects, *interval.later])
+        if suspect.histogram is not None}
+    if interval.graph is not None:
+        drawn[f'{interval.key}-graph'] = figures.graph(interval.graph)
+    return {'range': [round(interval.start, 3), round(interval.end, 3)], 'figures': drawn}
+
+
+def _contents(name: str) -> str:
+    with open(os.path.join(_FOLDER, name), encoding='utf-8') as file:
+        return file.read()

@@ -1,0 +1,134 @@
+"""The score over the whole recording, and the evidence of each component: what is drawn of it."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import List, Optional, Sequence, Tuple
+
+import numpy as np
+
+from self_awareness import EvidenceLanes, Track
+from self_awareness.reporting.report import columns
+from self_awareness.reporting.report.judged import Judged
+
+MOST_LANES = 40
+"""Components that have a lane of their own, at most so many."""
+LINKER = 'all together (linker)'
+
+
+@dataclass(frozen=True)
+class Timeline:
+    """The score by stretch of time.
+
+    Args:
+        edges: of the stretches [s] from the recording's first message; one more than stretches.
+        lowest: score of each stretch, in units of the threshold's size; NaN: none.
+        highest: likewise.
+        abnormal: whether a window of it is.
+        unit: the threshold's size; 1: not calibrated.
+        limit: the threshold in this unit: -1 of evidence, 1 of the paper's; None: not calibrated.
+        settling: start and end [s] of the times in which no alarm is raised.
+    """
+
+    edges: np.ndarray
+    lowest: np.ndarray
+    highest: np.ndarray
+    abnormal: np.ndarray
+    unit: float
+    limit: Optional[float]
+    settling: List[Tuple[float, float]]
+
+
+@dataclass(frozen=True)
+class Lanes:
+    """The evidence of components over the stretches of a timeline.
+
+    Args:
+        names: of the components, from top to bottom.
+        shares: the largest share of its limit, float [lanes, stretches]; 1 is the limit.
+        left_out: number of components with evidence that have no lane.
+        largest_left_out: the largest share of these.
+    """
+
+    names: List[str]
+    shares: np.ndarray
+    left_out: int
+    largest_left_out: float
+
+
+@dataclass(frozen=True)
+class Overview:
+    """What is drawn over time, and what was strongest when.
+
+    Args:
+        timeline: the score.
+        lanes: None: there is no evidence of components.
+        evidence: by stretch, from which the lanes come; None likewise.
+    """
+
+    timeline: Timeline
+    lanes: Optional[Lanes]
+    evidence: Optional[EvidenceLanes]
+
+    def stretch(self, time: float) -> int:
+        """Return the index of the stretch that holds a time [s]."""
+        index = int(np.searchsorted(self.timeline.edges, time, side='right')) - 1
+        return min(max(index, 0), len(self.timeline.lowest) - 1)
+
+
+def overview(judged: Judged, first: Sequence[str]) -> Overview:
+    """Return what is drawn of a recording over time.
+
+    Args:
+        judged: the recording, with at least one window.
+        first: components whose lanes come first, the most important one first.
+    """
+    verdicts = judged.verdicts
+    # There are no more components than event types.
+    begins = columns.cut(verdicts, len(judged.by.trained.event_types))
+    found = judged.lanes(verdicts.start[begins])
+    return Overview(_timeline(judged, begins),
+                    None if found is None else select_lanes(found, first), found)
+
+
+def strongest_track(found: Overview, judged: Judged, time: float) -> Optional[Tuple[Track, float]]:
+    """Return the track that has the largest share of its limit at a time [s], and the share."""
+    if found.evidence is None or judged.by.evidence is None:
+        return None
+    stretch = found.stretch(time)
+    index = found.evidence.tracks[stretch]
+    if index is None:
+        return None
+    return (judged.by.evidence.tracks[index], float(found.evidence.strongest[stretch]))
+
+
+def select_lanes(found: EvidenceLanes, first: Sequence[str]) -> Lanes:
+    """Return the lanes of the named components, and of those with the most evidence."""
+    shares = np.vstack([found.shares, found.linker[np.newaxis]])
+    names = [*found.components, LINKER]
+    largest = shares.max(axis=1, initial=0.0)
+    rank = {name: index for index, name in enumerate(dict.fromkeys(first))}
+    order = sorted(np.flatnonzero(largest > 0).tolist(),
+                   key=lambda lane: (rank.get(names[lane], len(rank)), -largest[lane]))
+    kept, rest = order[:MOST_LANES], order[MOST_LANES:]
+    return Lanes([names[lane] for lane in kept], shares[kept], len(rest),
+                 float(largest[rest].max()) if rest else 0.0)
+
+
+def _timeline(judged: Judged, begins: np.ndarray) -> Timeline:
+    verdicts, window = judged.verdicts, judged.by.trained.window
+    threshold = judged.by.threshold
+    unit = abs(threshold) if threshold else 1.0
+    starts = (np.append(verdicts.start, verdicts.start[-1] + window)
+              - judged.recording.origin) / 1e9
+    scores = verdicts.score / unit
+    if judged.by.evidence is None:
+        scores = np.nan_to_num(scores)  # the paper's score of silence is 0
+    steps = np.flatnonzero(np.diff(np.concatenate(([0], verdicts.settling.astype(np.int8), [0]))))
+    return Timeline(
+        edges=np.append(starts[:-1][begins], starts[-1]),
+        lowest=np.fmin.reduceat(scores, begins),
+        highest=np.fmax.reduceat(scores, begins),
+        abnormal=np.logical_or.reduceat(verdicts.abnormal, begins),
+        unit=unit,
+        limit=None if threshold is None else threshold / unit,
+        settling=[(float(starts[a]), float(starts[b])) for a, b in steps.reshape(-1, 2)])

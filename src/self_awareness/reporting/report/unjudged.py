@@ -1,0 +1,103 @@
+"""What was not judged in a recording, and why."""
+from __future__ import annotations
+
+import math
+from collections import Counter
+from dataclasses import dataclass
+from typing import List, Sequence
+
+import numpy as np
+
+from self_awareness import FEWEST_GAPS
+from self_awareness.reporting.report.judged import Judged
+from self_awareness.stamps import SECOND_NS
+
+MOST_NAMES = 30
+"""Names that are listed of one kind, at most so many."""
+
+
+@dataclass(frozen=True)
+class Unjudged:
+    """Something that was not judged.
+
+    Args:
+        what: it is.
+        why: it was not judged.
+        names: of event types, at most MOST_NAMES; empty: it is none of them.
+        more: number of further ones.
+    """
+
+    what: str
+    why: str
+    names: List[str]
+    more: int = 0
+
+
+def unjudged(judged: Judged) -> List[Unjudged]:
+    """Return what was not judged, the most important first."""
+    found = []
+    by = judged.by
+    if by.threshold is None:
+        found.append(Unjudged('everything', 'the model has no limits: calibrate it (rosrun '
+                              'self_awareness calibrate)', []))
+    counts = np.bincount(judged.recording.ids, minlength=len(by.trained.event_types))
+    found += _unknown(judged, counts)
+    found += _silent(judged, counts)
+    found += _too_rare(judged)
+    found += _without_limit(judged)
+    settling = int(judged.verdicts.settling.sum()) * by.trained.window / SECOND_NS
+    if settling > 0 and by.threshold is not None:
+        found.append(Unjudged(f'{settling:.1f} s of settling', 'too little is known in the first '
+                              f'{by.parameters.settle_time / SECOND_NS:g} s after a start', []))
+    if by.evidence is None:
+        found.append(Unjudged('single components', "the paper's detector has one score for all: "
+                              'there are no lanes', []))
+    if not by.trained.graph:
+        found.append(Unjudged('who hears whom', 'the model has no graph of publishers and '
+                              'subscribers (record.launch writes it beside the bags, or train '
+                              '--graph)', []))
+    return found
+
+
+def _listed(what: str, why: str, names: Sequence[str]) -> List[Unjudged]:
+    if not names:
+        return []
+    text = f'{len(names)} event type{"" if len(names) == 1 else "s"} {what}'
+    return [Unjudged(text, why, list(names[:MOST_NAMES]), max(len(names) - MOST_NAMES, 0))]
+
+
+def _unknown(judged: Judged, counts: np.ndarray) -> List[Unjudged]:
+    known = len(judged.by.trained.event_types)
+    order = sorted(range(known, len(counts)), key=lambda kind: -counts[kind])
+    return _listed('that training never saw',
+                   'nothing is known of them; with each their number of events',
+                   [f'{judged.recording.event_types[kind]}: {counts[kind]}' for kind in order])
+
+
+def _silent(judged: Judged, counts: np.ndarray) -> List[Unjudged]:
+    kinds = judged.by.trained.event_types
+    return _listed('of the model without any event',
+                   'not heard in this recording; those that came after every start in training '
+                   'are a suspicion after a while',
+                   [str(kind) for index, kind in enumerate(kinds) if counts[index] == 0])
+
+
+def _too_rare(judged: Judged) -> List[Unjudged]:
+    kinds = judged.by.trained.event_types
+    return _listed('too rare in training', f'fewer than {FEWEST_GAPS} gaps between two of a kind',
+                   [str(kind) for index, kind in enumerate(kinds)
+                    if judged.by.trained.gaps(index) < FEWEST_GAPS])
+
+
+def _without_limit(judged: Judged) -> List[Unjudged]:
+    calibration = judged.by.trained.evidence_calibration
+    if judged.by.evidence is None or calibration is None:
+        return []
+    left_out = Counter(track.channel
+                       for track, limit in zip(judged.by.evidence.tracks, calibration.limits)
+                       if math.isnan(limit))
+    if not left_out:
+        return []
+    text = ', '.join(f'{channel} {count}' for channel, count in sorted(left_out.items()))
+    return [Unjudged(f'{sum(left_out.values())} tracks ({text})', 'they say nothing or too '
+                     'little, or there were too few starts of the robot (info tells more)', [])]

@@ -1,0 +1,110 @@
+#include "core/evidence/lanes.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <vector>
+
+#include "recordings.h"
+#include "self_awareness/core/verdict/detector.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+constexpr std::int64_t kPeriod = 200 * kMillisecond;
+
+Statistics counts(unsigned seed) {
+  const Events asked = irregular(kA, 0, 100 * kSecond, kPeriod, seed);
+  return countsOf({later(together({asked, answers(kB, asked, 20 * kMillisecond)}), seed * kStart)},
+                  2);
+}
+
+class LanesTest : public testing::Test {
+ protected:
+  Shares sharesOf(std::size_t track, double share) {
+    tracks_.assign(model_->tracks().size(), 0);
+    tracks_.at(track) = share;
+    return {tracks_, 0, {}};
+  }
+  std::size_t track(Channel channel, EventId to, EventId from) const {
+    return indexOf(model_->tracks(), channel, to, from);
+  }
+  std::size_t component(EventId id) const { return model_->component(id); }
+  static Window windowAt(std::int64_t start) {
+    Window window;
+    window.start = start;
+    return window;
+  }
+
+  std::shared_ptr<const Model> model_ = std::make_shared<Model>(watch(counts(1), counts(2)));
+  std::vector<double> tracks_;
+};
+
+TEST_F(LanesTest, AColumnKeepsTheLargestOfItsWindows) {
+  Lanes lanes(model_, {0, 2 * kWindow});
+  const std::size_t overdue = track(Channel::kOverdue, kA, kA);
+  const std::size_t delay = track(Channel::kDelay, kB, kA);
+  lanes.add(windowAt(-kWindow), sharesOf(overdue, 9));  // before all columns
+  lanes.add(windowAt(0), sharesOf(overdue, 0.5));
+  lanes.add(windowAt(kWindow), sharesOf(delay, 1.5));
+  lanes.add(windowAt(2 * kWindow), sharesOf(overdue, 0.25));
+  lanes.add(windowAt(9 * kWindow), {tracks_, 0.75, {{kB, 0.125}}});
+  const std::vector<Lanes::Column>& columns = lanes.columns();
+  ASSERT_EQ(columns.size(), 2);
+  EXPECT_EQ(columns[0].shares[component(kA)], 0.5F);
+  EXPECT_EQ(columns[0].shares[component(kB)], 1.5F);
+  EXPECT_EQ(columns[0].strongest_share, 1.5F);
+  EXPECT_EQ(columns[0].track, delay);
+  EXPECT_EQ(columns[0].linker, 0);
+  EXPECT_EQ(columns[1].shares[component(kA)], 0.25F);
+  EXPECT_EQ(columns[1].shares[component(kB)], 0.125F);  // never heard
+  EXPECT_EQ(columns[1].linker, 0.75F);
+}
+
+TEST_F(LanesTest, SlowDelayTracksCountInTheLinkerOnly) {
+  Lanes lanes(model_, {0});
+  lanes.add(windowAt(0), sharesOf(track(Channel::kSlowDelay, kB, kA), 2));
+  EXPECT_EQ(lanes.columns()[0].shares[component(kB)], 0);
+  EXPECT_EQ(lanes.columns()[0].track, std::nullopt);
+}
+
+TEST_F(LanesTest, StretchesMustBeInOrder) {
+  EXPECT_THROW(Lanes(model_, {1, 0}), std::invalid_argument);
+}
+
+TEST_F(LanesTest, TheyAgreeWithTheScore) {
+  Limits limits;
+  limits.linker = 100;
+  for (std::size_t each = 0; each < model_->tracks().size(); ++each) {
+    limits.tracks.push_back(model_->leastLimit(each));
+  }
+  Lanes lanes(model_, {0, 15 * kSecond, 20 * kSecond});
+  std::vector<double> lowest(3, 0);
+  Detector detector(
+      makeJudge(model_, limits, kWindow, std::make_shared<SourceGraph>(), nullptr,
+                [&](const Window& window, const Shares& shares) { lanes.add(window, shares); }),
+      kWindow, {}, [&](const Verdict& verdict) {
+        const std::int64_t start = verdict.window->start;
+        double& score = lowest[start < 15 * kSecond ? 0 : start < 20 * kSecond ? 1 : 2];
+        score = std::min(score, *verdict.score);
+      });
+  Events asked = irregular(kA, 0, 20 * kSecond, kPeriod, 3);
+  for (const Event& event : together({asked, answers(kB, asked, 20 * kMillisecond)})) {
+    detector.add(event);
+  }
+  detector.advance(30 * kSecond);  // both are silent
+  detector.finish();
+  EXPECT_LT(lowest[2], -1);
+  for (std::size_t column = 0; column < lowest.size(); ++column) {
+    const Lanes::Column& lane = lanes.columns()[column];
+    const float largest = *std::max_element(lane.shares.begin(), lane.shares.end());
+    EXPECT_FLOAT_EQ(std::max(largest, lane.linker), static_cast<float>(-lowest[column]));
+    EXPECT_FLOAT_EQ(lane.strongest_share, largest);
+  }
+}
+
+}  // namespace
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,201 @@
+"""The page of a report as a file: whole, bounded, and safe whatever the names are."""
+from __future__ import annotations
+
+import json
+import os
+import re
+from pathlib import Path
+from typing import Any, Callable, Dict, List
+
+import numpy as np
+import pytest
+from conftest import jittery_robot, write_bag
+from judged_recordings import judged, with_graph, without_laser
+
+from self_awareness.commands import score, train
+from self_awareness.reporting.report import figures
+from self_awareness.reporting.report.delays import Histogram
+from self_awareness.reporting.report.page import save_report, script_json
+from self_awareness.reporting.report.section import section
+from self_awareness.reporting.report.timeline import MOST_LANES
+from self_awareness.reporting.report.unjudged import MOST_NAMES
+
+MOST_BYTES = 10_000_000
+
+
+def data_of(page: str) -> Dict[str, Any]:
+    """Return what the page draws."""
+    found, = re.findall(r'<script type="application/json" id="data">(.*?)</script>', page)
+    return json.loads(found)
+
+
+def all_figures(page: str) -> List[Dict[str, Any]]:
+    sections = data_of(page)['sections']
+    return [each['overTime'] for each in sections] + [
+        figure for each in sections for interval in each['intervals'].values()
+        for figure in interval['figures'].values()]
+
+
+def test_score_writes_a_report_of_each_recording(evidence_model: str, make_bag, tmp_path: Path,
+                                                 capsys) -> None:
+    bags = [make_bag('dead.bag', without_laser(3000.0)),
+            make_bag('normal.bag', jittery_robot(7000.0, 30.0, 4))]
+    report, model = tmp_path / 'r.html', with_graph(evidence_model, tmp_path / 'm')
+    assert score.main([*bags, '--model', model, '--report', str(report)]) == 0
+    page = report.read_text()
+    assert len(page) < MOST_BYTES
+    assert page.count('<section ') == 2
+    assert '/laser (/scan) stopped sending at 12.0 s.' in page and 'Nothing abnormal.' in page
+    # The report and the text agree.
+    start, end = re.findall(r'^  ([\d.]+) - ([\d.]+) s, ', capsys.readouterr().out, re.M)[0]
+    assert f'{start} s – {end} s' in page
+    interval, = [each for each in data_of(page)['sections'][0]['intervals'].values()
+                 if [f'{time:.1f}' for time in each['range']] == [start, end]]
+    assert len(interval['figures']) >= 2
+
+
+def test_it_needs_no_network(evidence_model: str, make_bag, tmp_path: Path) -> None:
+    report = tmp_path / 'r.html'
+    bag = make_bag('dead.bag', without_laser(3000.0))
+    assert score.main([bag, '--model', evidence_model, '--report', str(report)]) == 0
+    page = report.read_text()
+    without_plotly = re.sub(r'<script>.*?</script>', '', page, flags=re.S)
+    assert not re.search(r'(src|href)="(?!#|data:)', without_plotly)
+    assert "default-src 'none'" in page
+
+
+def test_every_figure_is_one_that_plotly_knows(evidence_model: str, make_bag,
+                                               tmp_path: Path) -> None:
+    objects = pytest.importorskip('plotly.graph_objects')
+    report = tmp_path / 'r.html'
+    for detector in ('evidence', 'paper'):
+        model = with_graph(evidence_model, tmp_path / 'm')
+        found = section(judged(model, make_bag('dead.bag', without_laser(3000.0)), detector,
+                               0.2), 'x')
+        save_report(str(report), [found])
+        drawn = all_figures(report.read_text())
+        assert len(drawn) >= 2
+        for figure in drawn:
+            objects.Figure(figure)  # ValueError if it has something unknown
+
+
+def test_the_seen_delay_is_marked_in_its_histogram() -> None:
+    drawn = figures.histogram(Histogram('gaps', [0.04, 0.05, 0.06], [10, 30], 0.5, 'now: 0.5 s',
+                                        (0.045, 0.055)))
+    line, = [shape for shape in drawn['layout']['shapes'] if shape['type'] == 'line']
+    assert line['x0'] == line['x1'] == 0.5
+    assert drawn['data'][0]['y'] == [25.0, 75.0]
+    low, high = drawn['layout']['xaxis']['range']
+    assert low <= 0.04 and high > 0.5
+    assert 'now: 0.5 s' in drawn['layout']['annotations'][0]['text']
+
+
+@pytest.mark.parametrize('first_edge', [0.0, 0.04])
+def test_log_bins_from_0_on_can_be_drawn(first_edge: float) -> None:
+    drawn = figures.histogram(Histogram('gaps', [first_edge, 0.05, 0.6], [1, 1], None, 'none',
+                                        None))
+    low, high = drawn['layout']['xaxis']['range']
+    assert -3 < low < high < 0
+    assert all(edge > 0 for edge in drawn['data'][0]['x'])
+
+
+def test_a_name_cannot_become_a_part_of_the_page(evidence_model: str, tmp_path: Path) -> None:
+    """Names come from strangers; those of event types may hold any text (type_fields)."""
+    evil = '/a</script><script>alert(1)</script><b>'
+    bag = write_bag(tmp_path / 'evil.bag',
+                    sorted([*without_laser(3000.0), (3015.0, '/joystick', evil)]))
+    report = tmp_path / '<i>.html'
+    assert score.main([bag, '--model', evidence_model, '--report', str(report)]) == 0
+    page = report.read_text()
+    assert '<script>alert' not in page and '&lt;script&gt;alert' in page
+    assert all('<script' not in text for text in
+               re.findall(r'id="data">(.*?)</script>', page, re.S))
+
+
+def test_json_cannot_end_its_element() -> None:
+    text = script_json({'</script><!--': ['&', 1.5]})
+    assert not set('<>&') & set(text)
+    assert json.loads(text) == {'</script><!--': ['&', 1.5]}
+    with pytest.raises(ValueError):
+        script_json(float('nan'))
+
+
+@pytest.mark.parametrize('name', ['report.pdf', 'report', 'html'])
+def test_another_ending_is_refused(evidence_model: str, make_bag, tmp_path: Path, name: str,
+                                   capsys) -> None:
+    bag = make_bag('n.bag', jittery_robot(7000.0, 30.0, 4))
+    assert score.main([bag, '--model', evidence_model, '--report', str(tmp_path / name)]) == 2
+    assert '.html' in capsys.readouterr().err and os.listdir(tmp_path) == ['n.bag']
+
+
+def test_without_plotly_it_says_what_to_install(evidence_model: str, make_bag, tmp_path: Path,
+                                                monkeypatch, capsys) -> None:
+    bag = make_bag('n.bag', jittery_robot(7000.0, 30.0, 4))
+    monkeypatch.setattr('importlib.util.find_spec', lambda name: None)
+    arguments = [bag, '--model', evidence_model, '--report', str(tmp_path / 'r.html')]
+    assert score.main(arguments) == 1
+    captured = capsys.readouterr()
+    assert 'apt install python3-plotly' in captured.err and captured.out == ''
+
+
+def test_a_report_overwrites_no_input(evidence_model: str, tmp_path: Path, capsys) -> None:
+    bag = write_bag(tmp_path / 'bag.html', jittery_robot(7000.0, 30.0, 4))
+    before = Path(bag).read_bytes()
+    assert score.main([bag, '--model', evidence_model, '--report', bag]) == 1
+    assert bag in capsys.readouterr().err and Path(bag).read_bytes() == before
+
+
+def test_a_bag_without_events_leaves_no_report(evidence_model: str, make_bag, tmp_path: Path,
+                                               capsys) -> None:
+    player = '/play_1795206536731453261'
+    good = make_bag('good.bag', jittery_robot(7000.0, 30.0, 4))
+    bag = make_bag('replay.bag', [(t, player, '/a') for t, _, _ in jittery_robot(1.0, 9.0, 1)])
+    report = tmp_path / 'r.html'
+    assert score.main([good, bag, '--model', evidence_model, '--report', str(report)]) == 1
+    assert bag in capsys.readouterr().err
+    assert sorted(os.listdir(tmp_path)) == ['good.bag', 'replay.bag']
+
+
+def test_twenty_thousand_event_types_are_a_bounded_page(evidence_model: str, tmp_path: Path,
+                                                        make_bag: Callable[..., str]) -> None:
+    messages = sorted([*without_laser(3000.0),
+                       *((3010.0 + i / 1000.0, f'/n{i}', f'/t{i}') for i in range(20_000))])
+    bag, report = make_bag('many.bag', messages), tmp_path / 'r.html'
+    assert score.main([bag, '--model', evidence_model, '--report', str(report)]) == 0
+    page = report.read_text()
+    assert len(page) < MOST_BYTES
+    assert '20000 event types that training never saw' in page
+    assert f'and {20_000 - MOST_NAMES} more' in page
+
+
+def test_a_model_of_many_nodes_has_its_most_unusual_lanes(tmp_path: Path) -> None:
+    rng = np.random.default_rng(1)
+    nodes = 3 * MOST_LANES
+    messages = sorted((1000.0 + tick + 0.5 * node / nodes + rng.exponential(0.002), f'/n{node}',
+                       f'/t{node}') for node in range(nodes) for tick in np.arange(0, 120, 0.5))
+    model, bag = str(tmp_path / 'm'), write_bag(tmp_path / 'b.bag', messages)
+    assert train.main([bag, '-o', model]) == 0
+    dead = [m for m in messages if not (m[0] > 1060.0 and m[1] == '/n7')]
+    found = section(judged(model, write_bag(tmp_path / 'd.bag', dead)), 'x')
+    lanes = found.overview.lanes
+    assert len(lanes.names) == MOST_LANES and lanes.names[0] == '/n7'
+    assert lanes.left_out >= nodes - MOST_LANES
+    assert lanes.largest_left_out <= lanes.shares[-1].max()
+    save_report(str(tmp_path / 'r.html'), [found])
+    assert f'{lanes.left_out} more components have evidence' in re.sub(
+        r'\s+', ' ', (tmp_path / 'r.html').read_text()[:100_000])
+
+
+def test_a_full_disk_leaves_the_report_of_before(evidence_model: str, make_bag, tmp_path: Path,
+                                                 monkeypatch, capsys) -> None:
+    bag, report = make_bag('n.bag', jittery_robot(7000.0, 30.0, 4)), tmp_path / 'r.html'
+    report.write_text('of yesterday')
+
+    def disk_full(*_: object) -> None:
+        raise OSError(28, 'No space left on device', str(report))
+
+    monkeypatch.setattr('os.replace', disk_full)
+    assert score.main([bag, '--model', evidence_model, '--report', str(report)]) == 1
+    assert 'No space left' in capsys.readouterr().err
+    assert report.read_text() == 'of yesterday'
+    assert sorted(os.listdir(tmp_path)) == ['n.bag', 'r.html']
