@@ -19,9 +19,9 @@
 namespace self_awareness::python {
 namespace {
 
-std::vector<std::pair<std::int64_t, std::uint64_t>> delaysOf(const ros1::TrainedModel& model,
-                                                             core::EventId from,
-                                                             core::EventId to) {
+std::vector<std::pair<std::int64_t, std::uint64_t>> sumOfDelays(const ros1::TrainedModel& model,
+                                                                core::EventId from,
+                                                                core::EventId to) {
   std::vector<std::pair<std::int64_t, std::uint64_t>> delays;
   for (std::size_t bin = 0; bin < core::evidence::kDelayBins; ++bin) {
     std::uint64_t count = 0;
@@ -215,7 +215,7 @@ void bindModel(py::module& m) {
           py::arg("from_id"), py::arg("to_id"),
           "the paper's counts of the delays from the last from_id to the current to_id: dict of\n"
           "bin: count")
-      .def("delays", &delaysOf, py::arg("from_id"), py::arg("to_id"),
+      .def("delays", &sumOfDelays, py::arg("from_id"), py::arg("to_id"),
            "the evidence detector's counts: list of (shortest delay [ns], count) by bin")
       .def(
           "quantile",

@@ -85,6 +85,15 @@ def test_the_programs_name_who_died(installed: Dict[str, str], model: Path) -> N
     assert '1. /player' in printed[alarm:], printed
 
 
+def test_the_pages_are_written(installed: Dict[str, str], model: Path, tmp_path: Path) -> None:
+    """They need files beside the Python modules."""
+    bag = model.parent / 'cc1_4.bag'
+    _program(installed, 'score', '--model', model, bag, '--report', tmp_path / 'report.html')
+    _program(installed, 'diff', model, f'{bag}@62', '--html', tmp_path / 'diff.html')
+    assert '/player (/scan) stopped sending' in (tmp_path / 'report.html').read_text()
+    assert '/player' in (tmp_path / 'diff.html').read_text()
+
+
 @pytest.mark.parametrize('standalone', ('true', 'false'))
 def test_the_monitor_speaks(installed: Dict[str, str], model: Path, standalone: str,
                             master: None, tmp_path: Path) -> None:

@@ -43,6 +43,9 @@ class Browser:
 def opened(page: Path, width: int = 1200, height: int = 900) -> Iterator[Browser]:
     """Open a page in a window of this size [pixels]."""
     webdriver = pytest.importorskip('selenium.webdriver', reason='python3-selenium is missing')
+    import selenium
+    if int(selenium.__version__.split('.')[0]) < 4:
+        pytest.skip(f'selenium 4 is needed, this is {selenium.__version__}')
     programs = [shutil.which(name) for name in ('chromium', 'chromedriver')]
     if None in programs:
         pytest.skip('chromium or its driver is not installed')

@@ -24,7 +24,7 @@ void Lanes::add(const Window& window, const Shares& shares) {
   }
   Column& column = columns_[static_cast<std::size_t>(next - starts_.begin()) - 1];
   const auto raise = [&](EventId id, float share) {
-    float& largest = column.shares[model_->component(id)];
+    float& largest = column.shares[model_->componentIndex(id)];
     largest = std::max(largest, share);
   };
   for (std::size_t track = 0; track < shares.tracks.size(); ++track) {

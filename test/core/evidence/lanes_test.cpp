@@ -32,7 +32,7 @@ class LanesTest : public testing::Test {
   std::size_t track(Channel channel, EventId to, EventId from) const {
     return indexOf(model_->tracks(), channel, to, from);
   }
-  std::size_t component(EventId id) const { return model_->component(id); }
+  std::size_t componentIndex(EventId id) const { return model_->component(id); }
   static Window windowAt(std::int64_t start) {
     Window window;
     window.start = start;

@@ -64,19 +64,22 @@ def test_it_needs_no_network(evidence_model: str, make_bag, tmp_path: Path) -> N
     assert "default-src 'none'" in page
 
 
-def test_every_figure_is_one_that_plotly_knows(evidence_model: str, make_bag,
-                                               tmp_path: Path) -> None:
+@pytest.mark.parametrize('detector', ['evidence', 'paper'])
+@pytest.mark.parametrize('calibrated', [True, False])
+def test_every_figure_is_one_that_plotly_knows(evidence_model: str, model_file: str, make_bag,
+                                               tmp_path: Path, detector: str,
+                                               calibrated: bool) -> None:
     objects = pytest.importorskip('plotly.graph_objects')
-    report = tmp_path / 'r.html'
-    for detector in ('evidence', 'paper'):
-        model = with_graph(evidence_model, tmp_path / 'm')
-        found = section(judged(model, make_bag('dead.bag', without_laser(3000.0)), detector,
-                               0.2), 'x')
-        save_report(str(report), [found])
-        drawn = all_figures(report.read_text())
-        assert len(drawn) >= 2
-        for figure in drawn:
-            objects.Figure(figure)  # ValueError if it has something unknown
+    report, bag = tmp_path / 'r.html', make_bag('dead.bag', without_laser(3000.0))
+    model = with_graph(evidence_model if calibrated else model_file, tmp_path / 'm')
+    save_report(str(report), [section(judged(model, bag, detector, 0.2 if calibrated else None),
+                                      'x')])
+    page = report.read_text()
+    assert ('not calibrated' in page) != calibrated
+    drawn = all_figures(page)
+    assert len(drawn) >= (2 if calibrated else 1)
+    for figure in drawn:
+        objects.Figure(figure)  # ValueError if it has something unknown
 
 
 def test_the_seen_delay_is_marked_in_its_histogram() -> None:

@@ -50,7 +50,8 @@ def over_time(found: Overview, intervals: Sequence[Interval]) -> Figure:
                   'position': 0, 'zeroline': False,
                   'range': [float(timeline.edges[0]), float(timeline.edges[-1])]},
         'yaxis': {'domain': domains[0], 'visible': False, 'range': [0, 1], 'fixedrange': True},
-        'yaxis2': {**_score_axis(timeline), 'domain': domains[1], 'fixedrange': True},
+        'yaxis2': {**_score_axis(timeline), 'domain': domains[1], 'fixedrange': True,
+                   'automargin': True},
         'shapes': _shapes(timeline, intervals),
     }
     if len(heights) == 3 and lanes is not None:

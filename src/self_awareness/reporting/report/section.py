@@ -4,6 +4,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import List, Optional, Tuple
 
+import numpy as np
+
 from self_awareness.reporting.report import intervals
 from self_awareness.reporting.report.intervals import ALARM, Interval
 from self_awareness.reporting.report.judged import Judged
@@ -78,7 +80,7 @@ def clock(seconds: float) -> str:
 def _facts(judged: Judged) -> List[Tuple[str, str]]:
     recording, by = judged.recording, judged.by
     start, end = recording.part.span(recording.origin, recording.end)
-    types = len(set(recording.ids.tolist()))
+    types = int(np.count_nonzero(np.bincount(recording.ids)))
     return [('recorded', f'{utc(start)} UTC, {clock((end - start) / SECOND_NS)}'),
             ('events', f'{len(recording.stamps):,} of {types:,} event types'),
             ('windows', f'{len(judged.verdicts.start):,} of {by.trained.window / SECOND_NS:g} s'),
