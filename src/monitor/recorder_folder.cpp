@@ -60,7 +60,9 @@ std::vector<RecorderFile> filesIn(const filesystem::path& folder) {
 
 RecorderFolder::RecorderFolder(const std::string& path, std::size_t most_files,
                                std::uint64_t most_bytes)
-    : path_(inHomeFolder(path)), most_files_(most_files), most_bytes_(most_bytes) {}
+    : path_(filesystem::absolute(inHomeFolder(path)).string()),
+      most_files_(most_files),
+      most_bytes_(most_bytes) {}
 
 std::string RecorderFolder::pathOf(Cause cause, std::int64_t wall_time) const {
   const std::time_t seconds = wall_time / core::kNanosecondsPerSecond;

@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import Dict, List, Optional, Set, Tuple
 
 from self_awareness import (BagError, EventType, EvidenceCounts, EvidenceModel, ModelFileError,
-                            TrainedModel, Training, recordings, summarise_bag)
+                            TrainedModel, Training, recordings, recordings_in_event_log, summarise_bag)
 from self_awareness.recordings import BagPart
 from self_awareness.stamps import SECOND_NS
 
@@ -93,7 +93,9 @@ def read_sides(before: str, after: str) -> Tuple[Side, Side]:
 def _model_of(name: str) -> Optional[TrainedModel]:
     """Return the model of a file; None: it is a recording, or a part of one."""
     part = BagPart.parse(name)
-    if part.start is not None or (os.path.isfile(name) and _is_recording(name)):
+    if (part.start is not None or part.recording is not None
+            or recordings_in_event_log(part.path) is not None
+            or (os.path.isfile(name) and _is_recording(name))):
         return None
     model = TrainedModel.load(name)
     try:
@@ -117,7 +119,11 @@ def _is_recording(name: str) -> bool:
 
 
 def _recording_side(name: str, like: TrainedModel) -> Side:
-    recording = recordings.read(like, BagPart.parse(name))
+    parts = recordings.expand([BagPart.parse(name)])
+    if len(parts) > 1:
+        raise ValueError(f'{name}: the event log holds {len(parts)} recordings; name one: '
+                         f'{parts[0]}')
+    recording = recordings.read(like, parts[0])
     training = Training(copy.copy(like.encoding), like.bin_size, like.window, like.horizon_bins,
                         like.predecessors, True, False, like.least_effect)
     training.add_events(recording.event_types, recording.stamps, recording.ids, recording.middle,

@@ -13,7 +13,7 @@ from conftest import learned, robot
 
 from self_awareness import (EncodingRules, EventLogWriter, TrainedModel, read_events,
                             recordings_in_event_log, summarise_bag)
-from self_awareness.commands import calibrate, convert, info, score, simulate, train
+from self_awareness.commands import calibrate, convert, diff, info, score, simulate, train
 from self_awareness.recordings import BagPart, expand
 from self_awareness.training.robot_graph import RobotGraph, graph_file
 
@@ -66,6 +66,22 @@ def test_a_log_gives_the_same_model_limits_and_windows(long_bags: Bags, log: str
                         windows))
     assert results[0] == results[1]
     assert len(results[0][3].splitlines()) > 1000
+
+
+def test_reports_results_and_comparisons_read_a_log(long_bags: Bags, log: str, evidence_model: str,
+                                                    tmp_path: Path, capsys) -> None:
+    said = []
+    for part in (long_bags[1], f'{log}#2'):
+        out = {end: str(tmp_path / f'out.{end}') for end in ('html', 'bag')}
+        assert score.main([part, '--model', evidence_model, '--report', out['html'],
+                           '--result-bag', out['bag']]) == 0
+        assert diff.main([evidence_model, part]) == 0
+        with rosbag.Bag(out['bag']) as results:
+            statuses = [str(message) for _, message, _ in results.read_messages(
+                topics=['/self_awareness/status'])]
+        said.append((statuses, capsys.readouterr().out.replace(part, '')))
+    assert said[0] == said[1] and len(said[0][0]) > 1000
+    assert 'name one' in error_of(diff.main, [evidence_model, log], capsys)
 
 
 def test_all_recordings_of_a_log_are_trained_on(long_bags: Bags, log: str, tmp_path: Path,
