@@ -100,11 +100,11 @@ def test_from_nothing_to_an_alarm_and_its_report(reader: Reader) -> None:
     assert re.search(r'1\. /player ', scored)
     report = (reader.folder / 'alarm.html').read_text()
     assert '/player' in report
-    changes = next(text for command, text in by_command.items() if ' diff ' in command)
-    assert '/player' in changes
     results = next(text for command, text in by_command.items() if 'echo -b' in command)
     assert 'abnormal communication' in results
-    assert 'starts of the robot: 1' in '\n'.join(said.values())
+    learned_more = said[blocks('tutorial.md')[-1]]
+    for text in ('starts of the robot: 1', 'written: better.model', 'before  robot.model'):
+        assert text in learned_more
 
 
 def test_the_simulated_alarm_is_as_the_page_says(reader: Reader) -> None:
