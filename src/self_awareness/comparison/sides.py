@@ -8,7 +8,8 @@ from functools import cached_property
 from typing import Dict, List, Optional, Set, Tuple
 
 from self_awareness import (BagError, EventType, EvidenceCounts, EvidenceModel, ModelFileError,
-                            TrainedModel, Training, recordings, recordings_in_event_log, summarise_bag)
+                            TrainedModel, Training, recordings, recordings_in_event_log,
+                            summarise_bag)
 from self_awareness.recordings import BagPart
 from self_awareness.stamps import SECOND_NS
 

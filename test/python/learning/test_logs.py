@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 from conftest import robot, write_bag
-from event_logs import write_log
+from recorded_logs import write_log
 
 from self_awareness import EncodingRules, read_events
 from self_awareness.learning import logs

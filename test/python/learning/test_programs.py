@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 from conftest import jittery_robot
-from event_logs import write_log
+from recorded_logs import write_log
 
 from self_awareness import EncodingRules, TrainedModel
 from self_awareness.learning.division import Division, divide
