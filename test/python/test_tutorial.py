@@ -54,12 +54,18 @@ class Reader:
                 ['bash', '-c', f'exec {block.splitlines()[1]}'], cwd=self.folder,
                 env=self.environment, stdout=log, stderr=subprocess.STDOUT,
                 start_new_session=True))
+            wait_until(self._master_answers, 'a master')
             return ''
         done = subprocess.run(['bash', '-ec', block], cwd=self.folder, env=self.environment,
                               stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                               timeout=COMMAND_S, check=False)
         assert done.returncode == 0, f'{block}\n{done.stdout}\n{self.logs()}'
         return done.stdout
+
+    def _master_answers(self) -> bool:
+        return subprocess.run(['rosparam', 'get', '/run_id'], env=self.environment,
+                              stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
+                              check=False).returncode == 0
 
     def logs(self) -> str:
         """Return the last lines of the terminals of their own."""

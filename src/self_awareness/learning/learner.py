@@ -61,7 +61,6 @@ class Learner:
         self._recorder: Optional[Recorder] = None
         self._finish = threading.Event()
         self._wake = threading.Event()
-        rospy.on_shutdown(self._wake.set)
         self._service = rospy.Service('~finish', Trigger, self._on_finish)
 
     def run(self) -> bool:

@@ -14,7 +14,8 @@ import pytest
 ROOT = Path(__file__).resolve().parents[3]
 DOCS = ROOT / 'docs'
 REPORTS = {'core': 'core_report', 'models': 'models', 'bags': 'bags_report',
-           'live': 'live_report', 'predecessors': 'predecessors', 'report': 'report'}
+           'live': 'live_report', 'predecessors': 'predecessors', 'report': 'report',
+           'event_logs': 'event_logs'}
 
 
 @pytest.fixture(autouse=True)

@@ -59,7 +59,7 @@ def test_what_cannot_be_mended_is_named_and_the_rest_is_used(tmp_path: Path) -> 
 
 
 def test_what_is_no_good_log_is_named_once_and_left_out(tmp_path: Path) -> None:
-    write_log(tmp_path / 'damaged.bag', robot(1000.0, 60.0), 7, without=2)
+    write_log(tmp_path / 'damaged.bag', robot(1000.0, 60.0), 7, without=1)
     write_log(tmp_path / 'good.bag', robot(1000.0, 60.0), 7)
     write_bag(tmp_path / 'messages.bag', robot(1000.0))
     (tmp_path / 'text.bag').write_text('no bag')

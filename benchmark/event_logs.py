@@ -1,0 +1,84 @@
+#!/usr/bin/python3
+"""Benchmark of event logs: an hour of the simulated robot as a bag and as a log of its events."""
+from __future__ import annotations
+
+import argparse
+import os
+import tempfile
+import time
+from pathlib import Path
+from typing import Any, Callable, Dict
+
+import page
+from self_awareness import EncodingRules, EventLogWriter, read_events
+from self_awareness.commands import simulate
+
+_DOCS = Path(__file__).resolve().parents[1] / 'docs'
+_SECONDS = 3600
+_SEED = 5
+_RUNS = 5
+_DAY_S = 86400
+
+
+def _cpu_s(work: Callable[[], object]) -> float:
+    """Return the processor time of work, the least of several runs [s]."""
+    times = []
+    for _ in range(_RUNS):
+        before = time.process_time()
+        work()
+        times.append(time.process_time() - before)
+    return min(times)
+
+
+def measure() -> Dict[str, Any]:
+    """Return the results."""
+    rules = EncodingRules.defaults()
+    with tempfile.TemporaryDirectory() as folder:
+        bag, log = os.path.join(folder, 'robot.bag'), os.path.join(folder, 'log.bag')
+        if simulate.main(['--output', bag, '--duration', str(_SECONDS), '--seed', str(_SEED)]):
+            raise RuntimeError('simulate failed')
+
+        def convert() -> None:
+            writer = EventLogWriter(log)
+            writer.add_bag(bag, rules)
+            writer.close()
+
+        events = len(read_events(bag, rules).stamps)
+        read_bag = _cpu_s(lambda: read_events(bag, rules))
+        written = _cpu_s(convert)
+        read_log = _cpu_s(lambda: read_events(log, rules, recording=0))
+        return dict(page.machine(), seconds=_SECONDS, seed=_SEED, runs=_RUNS, events=events,
+                    bytes=os.path.getsize(log), bag_bytes=os.path.getsize(bag),
+                    read_bag_s=read_bag, convert_s=written, read_log_s=read_log)
+
+
+def markdown(result: Dict[str, Any]) -> str:
+    """Return the results as a table."""
+    events, seconds = result['events'], result['seconds']
+    writing = result['convert_s'] - result['read_bag_s']
+    return '\n'.join([
+        f'{seconds / 3600:g} h of the simulated robot (seed {result["seed"]}), {events:,} events, '
+        f'{events / seconds:.0f} a second; the least processor time of {result["runs"]} runs.',
+        '',
+        '| | |',
+        '|---|---:|',
+        f'| an event in the log | {result["bytes"] / events:.2f} bytes |',
+        f'| a day | {result["bytes"] * _DAY_S / seconds / 1e6:.1f} MB |',
+        f'| an event in the bag (messages without content) | {result["bag_bytes"] / events:.0f} '
+        'bytes |',
+        f'| packing and writing an event | {1e9 * writing / events:.0f} ns, '
+        f'{100 * writing / seconds:.4f} % of a core |',
+        f'| reading an event from the log | {1e9 * result["read_log_s"] / events:.0f} ns |',
+        f'| reading an event from the bag | {1e9 * result["read_bag_s"] / events:.0f} ns |',
+    ])
+
+
+def main() -> None:
+    """Measure, and write the results into the page."""
+    argparse.ArgumentParser(description=__doc__).parse_args()
+    result = measure()
+    page.publish('event_logs', result, markdown(result), _DOCS)
+
+
+if __name__ == '__main__':
+    main()
