@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kPause = 5;  // between two attempts to write a file [s]
 constexpr std::size_t kMegabyte = 1000000;
+constexpr std::int64_t kNameStep = 1000000;  // names tell milliseconds [ns]
 
 std::int64_t nanoseconds(double seconds) {
   return std::llround(seconds * 1e9);
@@ -134,7 +135,7 @@ std::string FlightRecorder::onAlarm(std::int64_t now) {
     return "";
   }
   if (!pending_) {
-    pending_ = Pending{path(RecorderFolder::Cause::kAlarm), now + after_};
+    pending_ = Pending{newPath(RecorderFolder::Cause::kAlarm), now + after_};
   }
   return pending_->path;
 }
@@ -143,7 +144,7 @@ std::optional<std::string> FlightRecorder::dump() {
   if (!heardAnything()) {
     return std::nullopt;
   }
-  std::string dumped = path(RecorderFolder::Cause::kDump);
+  std::string dumped = newPath(RecorderFolder::Cause::kDump);
   write(dumped);
   return dumped;
 }
@@ -152,7 +153,7 @@ void FlightRecorder::onShutdown(bool alarm_stands) {
   if (pending_) {
     write(std::exchange(pending_, std::nullopt)->path);
   } else if (alarm_stands && heardAnything()) {
-    write(path(RecorderFolder::Cause::kShutdown));
+    write(newPath(RecorderFolder::Cause::kShutdown));
   }
 }
 
@@ -184,8 +185,10 @@ void FlightRecorder::forgetOldest() {
   parts_.pop_front();
 }
 
-std::string FlightRecorder::path(RecorderFolder::Cause cause) const {
-  return folder_.pathOf(cause, static_cast<std::int64_t>(ros::WallTime::now().toNSec()));
+std::string FlightRecorder::newPath(RecorderFolder::Cause cause) {
+  const auto now = static_cast<std::int64_t>(ros::WallTime::now().toNSec());
+  named_at_ = std::max(now, named_at_ + kNameStep);
+  return folder_.pathOf(cause, named_at_);
 }
 
 void FlightRecorder::write(const std::string& path) {

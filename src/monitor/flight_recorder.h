@@ -85,7 +85,8 @@ class FlightRecorder {
   void keep(self_awareness::EventLog part);
   void forgetOldest();
   bool heardAnything() const { return first_.has_value(); }
-  std::string path(RecorderFolder::Cause cause) const;
+  /// Path of a new file; no two have the same.
+  std::string newPath(RecorderFolder::Cause cause);
   /// Hands all that is kept to the writer.
   void write(const std::string& path);
 
@@ -101,7 +102,8 @@ class FlightRecorder {
   std::int64_t last_ = 0;              // up to where all was heard
   std::vector<self_awareness::EventType> forgotten_types_;  // of parts that were forgotten
   std::optional<Pending> pending_;
-  FileWriter writer_;  // last: it writes what the others have handed over
+  std::int64_t named_at_ = 0;  // wall time that the last file is named by [ns]
+  FileWriter writer_;          // last: it writes what the others have handed over
 };
 
 }  // namespace self_awareness

@@ -123,11 +123,11 @@ TEST_F(FlightRecorderTest, AnAlarmThatFollowsSoonIsInTheSameFile) {
 
 TEST_F(FlightRecorderTest, TheOldestEventsAreForgotten) {
   parameters_.duration = 30;
-  hear(0, 100);
+  hear(0, 400);
   EXPECT_GE(recorder().report().seconds, 30);
   EXPECT_LE(recorder().report().seconds,
             30 + 2 * core::toSeconds(ros1::EventLogPacker::kLongestPart))
-      << "what is forgotten are parts";
+      << "whole parts are forgotten";
   const std::string path = recorder().dump().value();
   ASSERT_TRUE(awaitFiles(1));
   const std::vector<core::Event> events = read(path);
@@ -167,7 +167,7 @@ TEST_F(FlightRecorderTest, AnEventTypeThatWasHeardLongAgoKeepsItsName) {
   const std::string path = recorder().dump().value();
   ASSERT_TRUE(awaitFiles(1));
   const std::vector<core::Event> events = read(path);
-  ASSERT_LT(events.size(), 600U);
+  ASSERT_LT(events.size(), 1000U) << "less than half";
   expectSame(events, heard_.size() - events.size(), heard_.size());
 }
 

@@ -30,7 +30,7 @@ MonitorParameters byPaper() {
 
 ros1::ConnectionEncoder connect(const Session& session, const std::string& topic) {
   return session.encoder()
-      ->connect({"/talker", topic, "std_msgs/String", "string data", false})
+      ->connect({"/talker", topic, "std_msgs/String", "string data", false, ""})
       .value();
 }
 
