@@ -64,8 +64,7 @@ def markdown(result: Dict[str, Any]) -> str:
         '|---|---:|',
         f'| an event in the log | {result["bytes"] / events:.2f} bytes |',
         f'| a day | {result["bytes"] * _DAY_S / seconds / 1e6:.1f} MB |',
-        f'| an event in the bag (messages without content) | {result["bag_bytes"] / events:.0f} '
-        'bytes |',
+        f'| an event in the bag | {result["bag_bytes"] / events:.0f} bytes |',
         f'| packing and writing an event | {1e9 * writing / events:.0f} ns, '
         f'{100 * writing / seconds:.4f} % of a core |',
         f'| reading an event from the log | {1e9 * result["read_log_s"] / events:.0f} ns |',
