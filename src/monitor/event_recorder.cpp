@@ -53,6 +53,8 @@ EventRecorder::Parameters EventRecorder::Parameters::load(
   parameters.output = reader.read("output", parameters.output);
   parameters.split = reader.atLeast("split", parameters.split, 0.1, "minutes");
   parameters.min_space = reader.atLeast("min_space", parameters.min_space, 0, "MB");
+  parameters.robot_start =
+      reader.seconds("robot_start", ros::WallTime::now().toSec(), parameters.robot_start);
   parameters.subscribe = reader.choice<SubscribePolicy>(
       "subscribe", "used", {{"used", SubscribePolicy::kUsed}, {"all", SubscribePolicy::kAll}});
   parameters.poll_interval = reader.seconds("poll_interval", parameters.poll_interval, 0.01);
@@ -75,7 +77,7 @@ EventRecorder::EventRecorder(const ros::NodeHandle& node_handle,
       end_(std::move(end)),
       parameters_(Parameters::load(private_node_handle)),
       diagnostics_(node_handle, private_node_handle, ros::this_node::getName()),
-      robot_start_(wallNow()),
+      robot_start_(std::llround(parameters_.robot_start * 1e9)),
       spinner_(1, &queue_) {
   node_handle_.setCallbackQueue(&queue_);
   private_node_handle_.setCallbackQueue(&queue_);

@@ -39,6 +39,8 @@ namespace self_awareness {
 /// - `~min_space` (double, MB; default: 1000; at least 0): with less free space on the disk
 /// nothing
 ///   is recorded.
+/// - `~robot_start` (double, seconds since 1970; default: now; at least 0): when the robot was
+///   started, for who starts the recorder more than once in a start of the robot.
 /// - `~poll_interval`, `~queue_size`, `~diagnostic_period`: as those of the monitor.
 ///
 /// **Published topics**: `/diagnostics`: one status, an error while nothing can be recorded.
@@ -46,7 +48,7 @@ namespace self_awareness {
 /// **Services**: `~finish` (std_srvs/Trigger): ends the file and the node.
 ///
 /// **Recordings**: a new one begins with each file, and after ROS time was set. The robot is taken
-/// to start with this node, and with its master.
+/// to start with this node (but for `~robot_start`), and with its master.
 class EventRecorder {
  public:
   /// @param end called by ~finish; must not block
@@ -65,6 +67,7 @@ class EventRecorder {
     ros1::EncodingRules encoding;
     ros1::SubscribePolicy subscribe = ros1::SubscribePolicy::kUsed;
     double min_space = 1000;  // [MB]
+    double robot_start = 0;   // wall time [s]
     double poll_interval = 1;
     std::uint32_t queue_size = 1000;
 

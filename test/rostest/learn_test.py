@@ -100,6 +100,8 @@ class LearnTest(unittest.TestCase):
             self.await_said(listener, 'failed: the recordings are too short',
                             DiagnosticStatus.WARN, 60)
             await_condition('it records again', lambda: finish().success, 30)
+            # The robot was not started again.
+            self.await_said(listener, ', 1 start of the robot', DiagnosticStatus.WARN, 30)
         # Who ends it leaves complete logs.
         self.assertEqual(glob.glob(self.model + '.logs/*.active'), [])
         self.assertTrue(glob.glob(self.model + '.logs/*.bag'))

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import os
 import threading
+import time
 from dataclasses import dataclass
 from typing import Dict, Optional
 
@@ -59,8 +60,9 @@ class Learner:
         self._announcer = Announcer()
         self._problem = ''  # why the last attempt failed
         self._recorder: Optional[Recorder] = None
+        self._robot_start = time.time()
+        self._starts_before = 0
         self._finish = threading.Event()
-        self._wake = threading.Event()
         self._service = rospy.Service('~finish', Trigger, self._on_finish)
 
     def run(self) -> bool:
@@ -72,6 +74,8 @@ class Learner:
         with self._folder.locked() as lock:
             for line in self._folder.mend():
                 rospy.logwarn(line)
+            self._look()
+            self._starts_before = self._folder.starts
             while self._listen(lock) and not rospy.is_shutdown():
                 if self._train():
                     return True
@@ -80,13 +84,11 @@ class Learner:
     def _listen(self, lock: int) -> bool:
         """Record until there is enough; return False if the node was told to end before."""
         self._finish.clear()
-        self._wake.clear()
-        self._look()
         while self._folder.hours < self._wanted and not self._finish.is_set():
             rospy.loginfo('recording to %s; %s', self._plan.logs,
                           self._progress(self._folder.hours, self._folder.starts))
             with Recorder(os.path.join(self._plan.logs, 'normal'), self._plan.encoding,
-                          self._plan.subscribe, lock) as self._recorder:
+                          self._plan.subscribe, self._robot_start, lock) as self._recorder:
                 self._await(self._recorder)
             self._recorder = None
             self._look()
@@ -96,7 +98,7 @@ class Learner:
 
     def _await(self, recorder: Recorder) -> None:
         """Wait until there is enough, or nothing more is to be recorded; say how far it is."""
-        starts = self._folder.starts + 1
+        starts = self._starts_before + 1
         told = 0
         while not rospy.is_shutdown() and not self._finish.is_set():
             if recorder.ended():
@@ -111,7 +113,7 @@ class Learner:
             if tenths > told:
                 told = tenths
                 rospy.loginfo(progress)
-            self._wake.wait(_PERIOD_S)
+            self._finish.wait(_PERIOD_S)
 
     def _train(self) -> bool:
         """Learn from what there is; return False, and want more, if that is not enough."""
@@ -157,7 +159,6 @@ class Learner:
         if self._recorder is None:
             return TriggerResponse(False, 'nothing is recorded at the moment')
         self._finish.set()
-        self._wake.set()
         return TriggerResponse(True, 'learns from what was recorded; see /diagnostics')
 
 

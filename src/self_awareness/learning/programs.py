@@ -61,6 +61,8 @@ def train_and_calibrate(division: Division, model: str, folder: str, budget: flo
 
 def _run(interrupted: Callable[[], bool], *command: str) -> None:
     """Run a program; what it prints goes on to the console."""
+    if interrupted():
+        raise ProgramError(f'{command[0]}: interrupted')
     print(f'+ rosrun self_awareness {" ".join(map(shlex.quote, command))}', flush=True)
     with subprocess.Popen([executable(command[0]), *command[1:]], stderr=subprocess.PIPE,
                           universal_newlines=True) as process:

@@ -25,13 +25,16 @@ class Recorder:
         prefix: of the files.
         encoding: how messages become events.
         subscribe: used or all, see launch/record.launch.
+        robot_start: since 1970 [s].
         lock: a file descriptor that it keeps open for as long as it lives.
     """
 
-    def __init__(self, prefix: str, encoding: EncodingRules, subscribe: str, lock: int) -> None:
+    def __init__(self, prefix: str, encoding: EncodingRules, subscribe: str, robot_start: float,
+                 lock: int) -> None:
         self._prefix = prefix
         self._encoding = encoding
         self._subscribe = subscribe
+        self._robot_start = robot_start
         self._lock = lock
         self._problem = ''
         self._process: Optional[subprocess.Popen] = None
@@ -48,7 +51,8 @@ class Recorder:
         self._process = subprocess.Popen(
             ['setpriv', '--pdeathsig', 'INT', executable('record_events'),
              f'__name:={os.path.basename(name)}', f'_output:={self._prefix}',
-             f'_subscribe:={self._subscribe}', f'/diagnostics:={diagnostics}'],
+             f'_subscribe:={self._subscribe}', f'_robot_start:={self._robot_start:.6f}',
+             f'/diagnostics:={diagnostics}'],
             pass_fds=(self._lock,))
         return self
 
