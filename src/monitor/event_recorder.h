@@ -37,8 +37,7 @@ namespace self_awareness {
 ///   listens to, or all that are published, which may wake publishers that work only while
 ///   somebody listens.
 /// - `~min_space` (double, MB; default: 1000; at least 0): with less free space on the disk
-/// nothing
-///   is recorded.
+///   nothing is recorded.
 /// - `~robot_start` (double, seconds since 1970; default: now; at least 0): when the robot was
 ///   started, for who starts the recorder more than once in a start of the robot.
 /// - `~poll_interval`, `~queue_size`, `~diagnostic_period`: as those of the monitor.

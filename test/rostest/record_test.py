@@ -129,6 +129,20 @@ class RecordTest(unittest.TestCase):
         listener.unregister()
         self.assertEqual(os.listdir(self.folder), [])
 
+    def test_an_encoding_that_is_wrong_ends_the_node_and_is_named(self) -> None:
+        for number, (parameter, value) in enumerate((
+                ('encoding/exclude', '[/a]'), ('encoding/exclude_topics', '/a'),
+                ('encoding/include_topics', '["("]'), ('encoding/source', 'nobody'),
+                ('encoding/type_fields', '{std_msgs/String: 1}'), ('split', '0'))):
+            name = 'wrong{}'.format(number)
+            recorder = Process('rosrun', 'self_awareness', 'record_events', '__name:=' + name,
+                               '_output:={}/run'.format(self.folder),
+                               '_{}:={}'.format(parameter, value))
+            with recorder:
+                self.assertEqual(recorder.wait(30), 1)
+                self.assertIn('/{}/{}'.format(name, parameter.split('/')[0]), recorder.output)
+        self.assertEqual(os.listdir(self.folder), [])
+
     def holds(self, events: int) -> bool:
         """Whether a diagnostic says that at least so many events were recorded."""
         said = rospy.wait_for_message('/diagnostics', DiagnosticArray, 10)
