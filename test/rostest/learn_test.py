@@ -55,11 +55,15 @@ class LearnTest(unittest.TestCase):
             return bool(statuses) and part in statuses[-1].message and statuses[-1].level == level
         await_condition(part, says, timeout)
 
+    def await_log(self) -> None:
+        """Waits until a log is being written."""
+        await_condition('a log', lambda: glob.glob(self.model + '.logs/*.bag.active'), 30)
+
     @again_if_clock_was_set
     def test_1_from_nothing_to_an_alarm(self) -> None:
         with MonitorListener() as listener, self.learn(HOURS) as process:
             self.await_said(listener, ', 1 start of the robot', DiagnosticStatus.OK, 60)
-            await_condition('a log', lambda: glob.glob(self.model + '.logs/*.bag.active'), 30)
+            self.await_log()
             # The last 20 s are lost.
             await_condition('30 s are recorded', lambda: recorded(listener) >= 0.5, 90)
             os.kill(pid_of('/self_awareness_recorder'), signal.SIGKILL)
@@ -102,6 +106,7 @@ class LearnTest(unittest.TestCase):
             await_condition('it records again', lambda: finish().success, 30)
             # The robot was not started again.
             self.await_said(listener, ', 1 start of the robot', DiagnosticStatus.WARN, 30)
+            self.await_log()
         # Who ends it leaves complete logs.
         self.assertEqual(glob.glob(self.model + '.logs/*.active'), [])
         self.assertTrue(glob.glob(self.model + '.logs/*.bag'))
