@@ -107,9 +107,9 @@ EventRecorder::EventRecorder(const ros::NodeHandle& node_handle,
 }
 
 EventRecorder::~EventRecorder() {
-  spinner_.stop();  // first: what it serves uses the others
+  spinner_.stop();          // first: what it serves uses the others
+  live_events_->deliver();  // a new connection asks discovery_ to poll
   discovery_.reset();
-  live_events_->deliver();
   live_events_.reset();
   end(rosNow());
 }
