@@ -6,7 +6,6 @@
 #include <boost/filesystem/operations.hpp>
 #include <cmath>
 #include <ctime>
-#include <random>
 #include <stdexcept>
 #include <utility>
 #include <vector>
@@ -14,7 +13,6 @@
 #include "encoding_parameters.h"
 #include "parameter_reader.h"
 #include "self_awareness/ros/bag/bag_reader.h"
-#include "self_awareness/ros/encoding_message.h"
 
 namespace self_awareness {
 namespace {
@@ -36,11 +34,6 @@ std::int64_t steadyNow() {
 
 std::int64_t wallNow() {
   return static_cast<std::int64_t>(ros::WallTime::now().toNSec());
-}
-
-std::uint64_t drawFingerprint() {
-  std::random_device random;
-  return static_cast<std::uint64_t>(random()) << 32U | random();
 }
 
 }  // namespace
@@ -183,13 +176,7 @@ void EventRecorder::begin(std::int64_t now) {
     file_ = std::make_unique<File>(newPath());
     graph_.reset();
     packer_.emplace([this](self_awareness::EventLog part) { file_->log.write(std::move(part)); });
-    self_awareness::EventLogStart start;
-    start.encoding = toMessage(parameters_.encoding);
-    start.begin.fromNSec(static_cast<std::uint64_t>(now));
-    start.robot_start.fromNSec(static_cast<std::uint64_t>(robot_start_));
-    start.fingerprint = drawFingerprint();
-    start.has_sources = true;
-    file_->log.start(start);
+    file_->log.start(ros1::startOfRecording(parameters_.encoding, now, robot_start_));
     began_ = steadyNow();
     problem_.clear();
     ROS_INFO("recording to %s", file_->log.path().c_str());

@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <boost/filesystem.hpp>
 #include <cmath>
-#include <random>
 #include <utility>
 
 #include "self_awareness/EventLogStart.h"
 #include "self_awareness/ros/bag/event_log_writer.h"
-#include "self_awareness/ros/encoding_message.h"
 
 namespace self_awareness {
 namespace {
@@ -71,17 +69,6 @@ void writeWhole(const Recording& recording, const std::string& path) {
     boost::filesystem::remove(temporary, ignored);
     throw;
   }
-}
-
-std::uint64_t drawFingerprint() {
-  std::random_device device;
-  return (static_cast<std::uint64_t>(device()) << 32U) | device();
-}
-
-ros::Time toTime(std::int64_t stamp) {
-  ros::Time time;
-  time.fromNSec(static_cast<std::uint64_t>(std::max<std::int64_t>(stamp, 0)));
-  return time;
 }
 
 }  // namespace
@@ -195,10 +182,7 @@ void FlightRecorder::write(const std::string& path) {
   packer_.flush(last_);
   const Source source = source_();
   Recording recording;
-  recording.start.encoding = ros1::toMessage(source.encoding);
-  recording.start.begin = toTime(*first_);
-  recording.start.fingerprint = drawFingerprint();
-  recording.start.has_sources = source.encoding.source == ros1::EncodingRules::Source::kCallerId;
+  recording.start = ros1::startOfRecording(source.encoding, *first_);
   recording.graph = source.graph;
   recording.types_before = forgotten_types_;
   recording.parts.assign(parts_.begin(), parts_.end());

@@ -1,7 +1,7 @@
 """Reads an encoding file: how messages become events (config/encoding.yaml is an example)."""
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, Dict
 
 from self_awareness import EncodingRules
 from self_awareness.yaml_section import Section
@@ -36,6 +36,12 @@ def load(path: str) -> EncodingRules:
         if 'type_fields' in section:
             rules.type_fields = section.texts_by_key('type_fields')
     return rules
+
+
+def values(rules: EncodingRules) -> Dict[str, Any]:
+    """Return rules by their keys in an encoding file."""
+    return {'source': rules.source, **{key: list(getattr(rules, key)) for key in _LISTS},
+            'type_fields': dict(rules.type_fields)}
 
 
 def _patterns(section: Section, key: str, value: Any) -> Any:

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import os
 from contextlib import contextmanager
-from typing import Iterator, Optional, Sequence
+from typing import Callable, Iterator, Optional, Sequence
 
 from self_awareness import ModelFileError, TrainedModel
 
@@ -27,18 +27,32 @@ def replacing(path: str) -> Iterator[str]:
 
 
 def check_replaces_model(path: str) -> None:
+    """Check that a file is a model, if it is there (see check_replaces)."""
+    check_replaces(path, 'model', _is_model)
+
+
+def check_replaces(path: str, kind: str, is_one: Callable[[str], bool]) -> None:
     """Check that no recording is lost where somebody mixed up the arguments.
 
+    Args:
+        path: a file to be written.
+        kind: of file, in words.
+        is_one: says whether a file is of this kind.
+
     Raises:
-        ValueError: the file is there, and no model.
+        ValueError: the file is there, and of another kind.
     """
-    if not os.path.exists(path):
-        return
+    if os.path.exists(path) and not is_one(path):
+        raise ValueError(f'{path}: is there already, and no {kind} that could be replaced; remove '
+                         'it or choose another name')
+
+
+def _is_model(path: str) -> bool:
     try:
         TrainedModel.load(path, watched_only=True)
-    except ModelFileError as error:
-        raise ValueError(f'{path}: is there already, and no model that could be replaced; remove '
-                         'it or choose another name') from error
+    except ModelFileError:
+        return False
+    return True
 
 
 def check_outputs(outputs: Sequence[Optional[str]], inputs: Sequence[Optional[str]]) -> None:

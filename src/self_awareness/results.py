@@ -1,12 +1,11 @@
 """Result bags: what the monitor would have published while recordings were made."""
 from __future__ import annotations
 
-import os
 from contextlib import contextmanager
 from typing import Callable, Iterator, Optional, Sequence
 
 from self_awareness import ReplayedMonitor, ResultBag, TrainedModel, summarise_bag
-from self_awareness.output_files import replacing
+from self_awareness.output_files import check_replaces, replacing
 from self_awareness.recordings import BagPart, RecordingEvents
 
 Replay = Callable[[RecordingEvents], Optional[ReplayedMonitor]]
@@ -26,9 +25,7 @@ def check_result_bag(path: Optional[str], parts: Sequence[BagPart]) -> None:
     """
     if path is None:
         return
-    if os.path.exists(path) and not ResultBag.is_one(path):
-        raise ValueError(f'{path}: is there already, and no result bag that could be replaced; '
-                         'remove it or choose another name')
+    check_replaces(path, 'result bag', ResultBag.is_one)
     if len(parts) > 1:
         _check_apart(path, parts)
 

@@ -10,23 +10,12 @@
 #include <thread>
 #include <vector>
 
+#include "await.h"
+
 namespace self_awareness {
 namespace {
 
 constexpr double kNever = 3600;  // [s]: the writer does not try again by itself
-
-/// Waits for what another thread does.
-template <typename Condition>
-bool await(Condition condition) {
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > deadline) {
-      return false;
-    }
-    std::this_thread::yield();
-  }
-  return true;
-}
 
 FileWriter::File fileOf(const std::string& path, std::function<void()> write) {
   return {path, 10, [write = std::move(write)](const std::string& /*path*/) { write(); }};

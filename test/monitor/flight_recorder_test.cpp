@@ -3,13 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <boost/filesystem.hpp>
-#include <chrono>
-#include <functional>
 #include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
+#include "await.h"
 #include "self_awareness/ros/bag/event_log_reader.h"
 
 namespace self_awareness {
@@ -20,18 +18,6 @@ namespace filesystem = boost::filesystem;
 constexpr std::int64_t kSecond = core::kNanosecondsPerSecond;
 constexpr std::int64_t kStart = 1600000000 * kSecond;  // ROS time [ns]
 constexpr std::int64_t kSteady = 5000 * kSecond;       // steady time at the start [ns]
-
-/// Waits for the writer's thread.
-bool await(const std::function<bool()>& condition) {
-  const auto deadline = std::chrono::steady_clock::now() + std::chrono::seconds(20);
-  while (!condition()) {
-    if (std::chrono::steady_clock::now() > deadline) {
-      return false;
-    }
-    std::this_thread::yield();
-  }
-  return true;
-}
 
 class FlightRecorderTest : public testing::Test {
  protected:

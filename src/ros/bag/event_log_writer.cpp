@@ -1,9 +1,11 @@
 #include "self_awareness/ros/bag/event_log_writer.h"
 
 #include <algorithm>
+#include <random>
 #include <utility>
 
 #include "self_awareness/EventLogGraph.h"
+#include "self_awareness/ros/encoding_message.h"
 
 namespace self_awareness::ros1 {
 namespace {
@@ -22,6 +24,18 @@ self_awareness::TopicNodes nodesOf(const std::string& name, const Graph::Topic& 
 }
 
 }  // namespace
+
+self_awareness::EventLogStart startOfRecording(const EncodingRules& encoding, std::int64_t begin,
+                                               std::int64_t robot_start) {
+  std::random_device random;
+  self_awareness::EventLogStart start;
+  start.encoding = toMessage(encoding);
+  start.begin.fromNSec(static_cast<std::uint64_t>(begin));
+  start.robot_start.fromNSec(static_cast<std::uint64_t>(robot_start));
+  start.fingerprint = static_cast<std::uint64_t>(random()) << 32U | random();
+  start.has_sources = true;
+  return start;
+}
 
 void EventLogWriter::start(const self_awareness::EventLogStart& start) {
   parts_ = 0;

@@ -12,7 +12,7 @@ from typing import Optional, Type
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
-from self_awareness import EncodingRules
+from self_awareness import EncodingRules, encoding_file
 from self_awareness.learning.programs import executable
 
 _END_S = 30.0  # to write the last file
@@ -47,7 +47,7 @@ class Recorder:
         diagnostics = rospy.resolve_name('~recording')
         self._subscriber = rospy.Subscriber(diagnostics, DiagnosticArray, self._on_diagnostics)
         name = f'{rospy.get_name()}_recorder'
-        rospy.set_param(f'{name}/encoding', _parameters(self._encoding))
+        rospy.set_param(f'{name}/encoding', encoding_file.values(self._encoding))
         self._process = subprocess.Popen(
             ['setpriv', '--pdeathsig', 'INT', executable('record_events'),
              f'__name:={os.path.basename(name)}', f'_output:={self._prefix}',
@@ -97,11 +97,3 @@ class Recorder:
     def _on_diagnostics(self, array: DiagnosticArray) -> None:
         for status in array.status:
             self._problem = '' if status.level == DiagnosticStatus.OK else status.message
-
-
-def _parameters(encoding: EncodingRules) -> dict:
-    """Return an encoding as config/encoding.yaml is loaded."""
-    return {'source': encoding.source, 'include_topics': encoding.include_topics,
-            'exclude_topics': encoding.exclude_topics,
-            'include_sources': encoding.include_sources,
-            'exclude_sources': encoding.exclude_sources, 'type_fields': encoding.type_fields}

@@ -7,7 +7,7 @@ from typing import Any, Dict, List
 
 import numpy as np
 
-from self_awareness import BagSummary, EncodingRules, read_events, summarise_bag
+from self_awareness import BagSummary, encoding_file, read_events, summarise_bag
 from self_awareness.stamps import SECOND_NS
 from self_awareness.training.robot_graph import RobotGraph
 
@@ -47,18 +47,6 @@ def summarise_event_log(path: str, recordings: int) -> Dict[str, Any]:
     }
 
 
-def encoding_values(rules: EncodingRules) -> Dict[str, Any]:
-    """Return the rules of an encoding by their keys in an encoding file."""
-    return {
-        'source': rules.source,
-        'include_topics': list(rules.include_topics),
-        'exclude_topics': list(rules.exclude_topics),
-        'include_sources': list(rules.include_sources),
-        'exclude_sources': list(rules.exclude_sources),
-        'type_fields': dict(rules.type_fields),
-    }
-
-
 def _recording(summary: BagSummary) -> Dict[str, Any]:
     return {
         'bag': summary.bag,
@@ -67,5 +55,5 @@ def _recording(summary: BagSummary) -> Dict[str, Any]:
         'events': summary.messages,
         'dropped': summary.dropped,
         'robot_start_ns': summary.robot_start or None,
-        'encoding': encoding_values(summary.encoding),
+        'encoding': encoding_file.values(summary.encoding),
     }

@@ -6,9 +6,8 @@ from collections import Counter
 from typing import Any, Dict, List, Optional, Tuple
 
 from self_awareness import (FEWEST_GAPS, USUAL_SHARES, Calibration, EvidenceCalibration,
-                            EvidenceModel, Recording, TrainedModel)
+                            EvidenceModel, Recording, TrainedModel, encoding_file)
 from self_awareness.reporting import relations_text
-from self_awareness.reporting.event_log_summary import encoding_values
 from self_awareness.judging import EVIDENCE, PAPER
 from self_awareness.stamps import SECOND_NS
 
@@ -31,7 +30,7 @@ def summarise(model: TrainedModel) -> Dict[str, Any]:
         'bin_size': model.bin_size / SECOND_NS,
         'horizon': (model.horizon_bins * model.bin_size / SECOND_NS if model.horizon_bins
                     else None),
-        'encoding': encoding_values(model.encoding),
+        'encoding': encoding_file.values(model.encoding),
         'recordings': [_recording(recording) for recording in model.recordings],
         'duration': duration,
         'events': model.events,

@@ -6,6 +6,7 @@
 #include "self_awareness/EventLog.h"
 #include "self_awareness/EventLogStart.h"
 #include "self_awareness/ros/bag/bag_writer.h"
+#include "self_awareness/ros/encoding.h"
 #include "self_awareness/ros/graph.h"
 
 namespace self_awareness::ros1 {
@@ -15,6 +16,12 @@ namespace self_awareness::ros1 {
 constexpr char kEventLogStartTopic[] = "/event_log/start";  ///< EventLogStart
 constexpr char kEventLogTopic[] = "/event_log/events";      ///< EventLog
 constexpr char kEventLogGraphTopic[] = "/event_log/graph";  ///< EventLogGraph
+
+/// The start of a recording that is heard live, with a fingerprint drawn at random.
+/// @param begin when listening began [ns], 0 or more
+/// @param robot_start when the robot was started [ns]; 0: not known
+self_awareness::EventLogStart startOfRecording(const EncodingRules& encoding, std::int64_t begin,
+                                               std::int64_t robot_start = 0);
 
 class EventLogWriter {
  public:
