@@ -84,8 +84,9 @@ EventRecorder::EventRecorder(const ros::NodeHandle& node_handle,
   live_events_ =
       std::make_unique<ros1::LiveEvents>(node_handle_, parameters_.queue_size, handlers);
   const auto encoder = std::make_shared<const ros1::Encoder>(
-      parameters_.encoding,
-      [this](const core::EventType& type) { return vocabulary_.intern(type); });
+      parameters_.encoding, [this](const core::EventType& type) {
+        return ros1::internUpTo(ros1::kMostEventTypes, type, vocabulary_);
+      });
   live_events_->setEncoder(encoder, ros1::OwnOutput(ros::this_node::getName(), {}),
                            core::kDefaultWindow);
   discovery_ = std::make_unique<Discovery>(node_handle_, live_events_->arrivals(),

@@ -34,13 +34,8 @@ std::unique_ptr<core::Judge> Session::makeJudge(const MonitorParameters& paramet
                                    trained_.limits(), trained_.window, graph_, vocabulary_);
 }
 
-// A type field with ever new values must not fill the memory of a robot that runs for months.
 core::EventId Session::intern(const core::EventType& type) {
-  const std::size_t known = trained_.vocabulary().size();
-  if (!vocabulary_->find(type) && vocabulary_->size() >= known + kMostUnknownTypes) {
-    return vocabulary_->intern({"", "(further topics)", "(further unknown events)"});
-  }
-  return vocabulary_->intern(type);
+  return ros1::internUpTo(trained_.vocabulary().size() + kMostUnknownTypes, type, *vocabulary_);
 }
 
 std::set<std::string> Session::topics() const {

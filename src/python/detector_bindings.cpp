@@ -311,7 +311,9 @@ void bindVerdicts(py::module& m) {
         "event_types: by id, those of the model first; empty: those of unknown events are not\n"
         "known.");
   m.attr("EVIDENCE_THRESHOLD") = core::evidence::kThreshold;
-  m.attr("DEFAULT_WINDOW") = core::kDefaultWindow;  // [ns]
+  m.attr("DEFAULT_WINDOW") = core::kDefaultWindow;    // [ns]
+  m.attr("SHORTEST_WINDOW") = core::kShortestWindow;  // [ns]
+  m.attr("LONGEST_SILENCE") = core::kLongestSilence;  // [ns]
   m.attr("FEWEST_GAPS") = core::kFewestGaps;
   m.attr("LEAST_KNOWN") = core::kLeastKnown;
   m.attr("PREDECESSORS") = core::evidence::kPredecessors;

@@ -15,6 +15,7 @@
 #include "self_awareness/ros/model/model_bytes.h"
 #include "self_awareness/ros/model/model_file.h"
 #include "self_awareness/ros/model/model_merge.h"
+#include "self_awareness/ros/ros_time.h"
 
 namespace self_awareness::python {
 namespace {
@@ -46,15 +47,20 @@ void bindModel(py::module& m) {
       .def_readwrite("bag", &self_awareness::Recording::bag)
       .def_property(
           "start", [](const self_awareness::Recording& self) { return self.start.toNSec(); },
-          [](self_awareness::Recording& self, std::uint64_t ns) { self.start.fromNSec(ns); },
+          [](self_awareness::Recording& self, std::int64_t ns) {
+            self.start = ros1::toRosTime(ns);
+          },
           "[ns]")
       .def_property(
           "end", [](const self_awareness::Recording& self) { return self.end.toNSec(); },
-          [](self_awareness::Recording& self, std::uint64_t ns) { self.end.fromNSec(ns); }, "[ns]")
+          [](self_awareness::Recording& self, std::int64_t ns) { self.end = ros1::toRosTime(ns); },
+          "[ns]")
       .def_property(
           "robot_start",
           [](const self_awareness::Recording& self) { return self.robot_start.toNSec(); },
-          [](self_awareness::Recording& self, std::uint64_t ns) { self.robot_start.fromNSec(ns); },
+          [](self_awareness::Recording& self, std::int64_t ns) {
+            self.robot_start = ros1::toRosTime(ns);
+          },
           "[ns]; 0: not known")
       .def_readwrite("events", &self_awareness::Recording::events)
       .def_readwrite("fingerprint", &self_awareness::Recording::fingerprint);
@@ -75,7 +81,7 @@ void bindModel(py::module& m) {
       .def_readwrite("injected", &Calibration::injected)
       .def_property(
           "stamp", [](const Calibration& self) { return self.stamp.toNSec(); },
-          [](Calibration& self, std::uint64_t ns) { self.stamp.fromNSec(ns); }, "[ns]");
+          [](Calibration& self, std::int64_t ns) { self.stamp = ros1::toRosTime(ns); }, "[ns]");
 
   using self_awareness::EvidenceCalibration;
   py::class_<EvidenceCalibration>(m, "EvidenceCalibration", "msg/EvidenceCalibration.msg")
@@ -106,7 +112,8 @@ void bindModel(py::module& m) {
       .def_readwrite("recordings", &EvidenceCalibration::recordings)
       .def_property(
           "stamp", [](const EvidenceCalibration& self) { return self.stamp.toNSec(); },
-          [](EvidenceCalibration& self, std::uint64_t ns) { self.stamp.fromNSec(ns); }, "[ns]");
+          [](EvidenceCalibration& self, std::int64_t ns) { self.stamp = ros1::toRosTime(ns); },
+          "[ns]");
 
   using ros1::TrainedModel;
   py::class_<TrainedModel>(m, "TrainedModel", "All that a model file holds: counts.")

@@ -51,7 +51,9 @@ RecordedEvents readEvents(const std::string& path, const InLog& recording,
                           const std::vector<core::EventType>& known, const ros1::TimeRange& range,
                           const py::object& progress) {
   core::Vocabulary vocabulary(known);
-  const ros1::EventIds ids = [&](const core::EventType& type) { return vocabulary.intern(type); };
+  const ros1::EventIds ids = [&](const core::EventType& type) {
+    return ros1::internUpTo(known.size() + ros1::kMostEventTypes, type, vocabulary);
+  };
   RecordedEvents events;
   const auto handler = [&](const core::Event& event) {
     events.stamps.push_back(event.stamp);
@@ -144,6 +146,12 @@ void bindEncoding(py::module& m) {
       .def_readwrite("type_fields", &ros1::EncodingRules::type_fields)
       .def("validate", &ros1::EncodingRules::validate,
            "ValueError if a pattern is no regular expression.")
+      .def(
+          "includes_source",
+          [](const ros1::EncodingRules& self, const std::string& source) {
+            return ros1::Encoder(self, nullptr).includesSource(source);
+          },
+          py::arg("source"), "Whether messages of a node can be events, by its stable name.")
       .def(py::pickle(&stateOf, &fromState))
       .def("__eq__",
            [](const ros1::EncodingRules& a, const ros1::EncodingRules& b) { return a == b; });
@@ -169,6 +177,8 @@ void bindBags(py::module& m) {
                     "the same of a recording: by rosbag filter, compress or decompress")
       .def_readonly("clock_watched", &ros1::BagSummary::clock_watched,
                     "of an event log that was heard live: it ended when ROS time was set")
+      .def_readonly("left_out", &ros1::BagSummary::left_out,
+                    "of a bag: why some connections are no events, whatever the encoding")
       .def_readonly("encoding", &ros1::BagSummary::encoding, "of an event log; None: a bag")
       .def_readonly("robot_start", &ros1::BagSummary::robot_start, "[ns]; 0: not known")
       .def_readonly("dropped", &ros1::BagSummary::dropped,

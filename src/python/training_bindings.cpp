@@ -110,7 +110,7 @@ class Training {
     const std::size_t before = training_.vocabulary().size();
     const core::EventId id = training_.intern(type);
     if (training_.vocabulary().size() > before) {
-      ros1::checkTypeFields(rules_, training_.vocabulary());
+      ros1::checkEventTypes(rules_, training_.vocabulary());
     }
     return id;
   }

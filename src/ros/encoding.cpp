@@ -1,32 +1,18 @@
 #include "self_awareness/ros/encoding.h"
 
+#include <ros/names.h>
+
 #include <algorithm>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
 
+#include "name_patterns.h"
 #include "self_awareness/ros/stable_name.h"
+#include "text.h"
 
 namespace self_awareness::ros1 {
 namespace {
-
-std::vector<std::regex> compile(const std::vector<std::string>& patterns) {
-  std::vector<std::regex> compiled;
-  for (const std::string& pattern : patterns) {
-    try {
-      compiled.emplace_back(pattern);
-    } catch (const std::regex_error& error) {
-      throw std::invalid_argument("encoding: '" + pattern +
-                                  "' is not a regular expression: " + error.what());
-    }
-  }
-  return compiled;
-}
-
-bool anyMatches(const std::vector<std::regex>& patterns, const std::string& name) {
-  return std::any_of(patterns.begin(), patterns.end(),
-                     [&](const std::regex& pattern) { return std::regex_match(name, pattern); });
-}
 
 /// Whether a node is `rostopic pub`, in any namespace.
 bool isRostopic(const std::string& source) {
@@ -36,6 +22,12 @@ bool isRostopic(const std::string& source) {
 std::string headerField(const ros::M_string& header, const std::string& name) {
   const auto field = header.find(name);
   return field == header.end() ? "" : field->second;
+}
+
+/// roscpp throws an exception at names that rospy only warns of, or that a bag brings along.
+bool isLegalTopic(const std::string& name) {
+  std::string error;
+  return name.size() <= kLongestName && ros::names::validate(name, error) && name[0] != '~';
 }
 
 }  // namespace
@@ -60,7 +52,7 @@ EncodingRules EncodingRules::defaults() {
 void EncodingRules::validate() const {
   for (const auto* patterns :
        {&include_topics, &exclude_topics, &include_sources, &exclude_sources}) {
-    compile(*patterns);
+    NamePatterns{*patterns};
   }
 }
 
@@ -72,7 +64,7 @@ bool operator==(const EncodingRules& a, const EncodingRules& b) {
   return fields(a) == fields(b);
 }
 
-void checkTypeFields(const EncodingRules& rules, const core::Vocabulary& vocabulary) {
+void checkEventTypes(const EncodingRules& rules, const core::Vocabulary& vocabulary) {
   std::map<std::string, std::size_t> types;  // by datatype
   for (const core::EventType& type : vocabulary.types()) {
     const std::size_t datatype_end = type.type.find('[');
@@ -80,22 +72,49 @@ void checkTypeFields(const EncodingRules& rules, const core::Vocabulary& vocabul
       continue;
     }
     const std::string datatype = type.type.substr(0, datatype_end);
-    if (++types[datatype] > kMostTypesOfField) {
-      throw std::invalid_argument("the type field " + datatype + ": " +
-                                  rules.type_fields.at(datatype) + " has more than " +
-                                  std::to_string(kMostTypesOfField) +
+    const auto field = rules.type_fields.find(datatype);  // none: somebody's type is called so
+    if (field != rules.type_fields.end() && ++types[datatype] > kMostTypesOfField) {
+      throw std::invalid_argument("the type field " + datatype + ": " + field->second +
+                                  " has more than " + std::to_string(kMostTypesOfField) +
                                   " values; name a field that says what a message does, or none "
                                   "for this datatype");
     }
   }
+  if (vocabulary.size() > kMostEventTypes) {
+    throw std::invalid_argument("there are more than " + std::to_string(kMostEventTypes) +
+                                " event types; leave topics or nodes out by the encoding");
+  }
+}
+
+core::EventId internUpTo(std::size_t most, const core::EventType& type,
+                         core::Vocabulary& vocabulary) {
+  if (vocabulary.size() >= most && !vocabulary.find(type)) {
+    return vocabulary.intern({"", "(further topics)", "(further unknown events)"});
+  }
+  return vocabulary.intern(type);
+}
+
+std::string whyLeftOut(const Connection& connection) {
+  constexpr std::size_t kLongestQuote = 100;  // [bytes]
+  if (!isLegalTopic(connection.topic)) {
+    return "no node can subscribe to the topic '" + printable(connection.topic, kLongestQuote) +
+           "': its name is illegal";
+  }
+  for (const std::string* name : {&connection.callerid, &connection.datatype}) {
+    if (name->size() > kLongestName) {
+      return "the name '" + printable(*name, kLongestQuote) + "...' on the topic " +
+             printable(connection.topic, kLongestQuote) + " is too long";
+    }
+  }
+  return "";
 }
 
 Connection connectionFrom(const ros::M_string& header, const std::string& topic) {
   Connection connection;
-  connection.callerid = headerField(header, "callerid");
-  connection.topic = topic;
-  connection.datatype = headerField(header, "type");
-  connection.md5sum = headerField(header, "md5sum");
+  connection.callerid = printable(headerField(header, "callerid"));
+  connection.topic = printable(topic);
+  connection.datatype = printable(headerField(header, "type"));
+  connection.md5sum = printable(headerField(header, "md5sum"));
   connection.definition = headerField(header, "message_definition");
   connection.latching = headerField(header, "latching") == "1";
   return connection;
@@ -123,34 +142,37 @@ core::EventId ConnectionEncoder::id(const std::uint8_t* data, std::size_t size) 
   core::EventType type = type_;
   type.type += "[" + field_name_ + "=" + value + "]";
   const core::EventId id = ids_(type);
-  ids_by_value_.emplace(value, id);
+  if (ids_by_value_.size() < kMostTypesOfField) {
+    ids_by_value_.emplace(value, id);
+  }
   return id;
 }
 
 Encoder::Encoder(const EncodingRules& rules, EventIds ids)
     : rules_(rules),
       ids_(std::move(ids)),
-      include_topics_(compile(rules.include_topics)),
-      exclude_topics_(compile(rules.exclude_topics)),
-      include_sources_(compile(rules.include_sources)),
-      exclude_sources_(compile(rules.exclude_sources)) {}
+      include_topics_(std::make_shared<const NamePatterns>(rules.include_topics)),
+      exclude_topics_(std::make_shared<const NamePatterns>(rules.exclude_topics)),
+      include_sources_(std::make_shared<const NamePatterns>(rules.include_sources)),
+      exclude_sources_(std::make_shared<const NamePatterns>(rules.exclude_sources)) {}
 
 bool Encoder::includesTopic(const std::string& topic) const {
-  return (include_topics_.empty() || anyMatches(include_topics_, topic)) &&
-         !anyMatches(exclude_topics_, topic);
+  return isLegalTopic(topic) && (include_topics_->empty() || include_topics_->match(topic)) &&
+         !exclude_topics_->match(topic);
 }
 
 bool Encoder::includesSource(const std::string& source) const {
   if (rules_.source == EncodingRules::Source::kNone) {
     return true;
   }
-  return (include_sources_.empty() || anyMatches(include_sources_, source)) &&
-         !anyMatches(exclude_sources_, source);
+  return (include_sources_->empty() || include_sources_->match(source)) &&
+         !exclude_sources_->match(source);
 }
 
 std::optional<ConnectionEncoder> Encoder::connect(const Connection& connection) const {
   const std::string source = stableName(connection.callerid);
-  if (!includesTopic(connection.topic) || !includesSource(source)) {
+  if (!whyLeftOut(connection).empty() || !includesTopic(connection.topic) ||
+      !includesSource(source)) {
     return std::nullopt;
   }
   ConnectionEncoder encoder;

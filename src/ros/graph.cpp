@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "self_awareness/ros/stable_name.h"
+#include "text.h"
 
 namespace self_awareness::ros1 {
 namespace {
@@ -27,9 +28,9 @@ std::optional<XmlRpc::XmlRpcValue> ask(const std::string& method) {
 void addNodes(XmlRpc::XmlRpcValue& entries, std::set<std::string> Graph::Topic::*nodes,
               Graph& graph) {
   for (int i = 0; i < entries.size(); ++i) {
-    std::set<std::string>& names = graph.topics[std::string(entries[i][0])].*nodes;
+    std::set<std::string>& names = graph.topics[printable(std::string(entries[i][0]))].*nodes;
     for (int k = 0; k < entries[i][1].size(); ++k) {
-      names.insert(std::string(entries[i][1][k]));
+      names.insert(printable(std::string(entries[i][1][k])));
     }
   }
 }
@@ -56,9 +57,9 @@ std::optional<Graph> fetchGraph() {
     addNodes((*state)[0], &Graph::Topic::publishers, graph);
     addNodes((*state)[1], &Graph::Topic::subscribers, graph);
     for (int i = 0; i < types->size(); ++i) {
-      const auto topic = graph.topics.find(std::string((*types)[i][0]));
+      const auto topic = graph.topics.find(printable(std::string((*types)[i][0])));
       if (topic != graph.topics.end()) {
-        topic->second.datatype = std::string((*types)[i][1]);
+        topic->second.datatype = printable(std::string((*types)[i][1]));
       }
     }
     return graph;
@@ -71,7 +72,7 @@ void addEdges(const Graph& graph, const std::string& own_name, core::SourceGraph
   for (const auto& [name, topic] : graph.topics) {
     for (const std::string& publisher : topic.publishers) {
       for (const std::string& subscriber : topic.subscribers) {
-        if (publisher != own_name && subscriber != own_name) {
+        if (publisher != own_name && subscriber != own_name && edges.edges().size() < kMostEdges) {
           edges.connect(stableName(publisher), name, stableName(subscriber));
         }
       }

@@ -3,8 +3,8 @@ from __future__ import annotations
 
 from typing import Any, Dict
 
-from self_awareness import EncodingRules
-from self_awareness.yaml_section import Section
+from self_awareness import EncodingRules, yaml_file
+from self_awareness.yaml_section import Section, shown
 
 _LISTS = ('include_topics', 'exclude_topics', 'include_sources', 'exclude_sources')
 
@@ -17,14 +17,7 @@ def load(path: str) -> EncodingRules:
         ValueError: it is no YAML, has an unknown key, a value of the wrong kind, or a pattern that
             is no regular expression; the message names the file and the key.
     """
-    # Imported here: it takes long, and most trainings have no such file.
-    import yaml
-
-    with open(path, encoding='utf-8') as file:
-        try:
-            data = yaml.safe_load(file)
-        except (yaml.YAMLError, UnicodeDecodeError) as error:
-            raise ValueError(f'{path}: not YAML: {error}') from error
+    data = yaml_file.load(path)
     rules = EncodingRules.defaults()
     # A file with nothing but comments is None: no key is there.
     with Section({} if data is None else data, path) as section:
@@ -46,7 +39,7 @@ def values(rules: EncodingRules) -> Dict[str, Any]:
 
 def _patterns(section: Section, key: str, value: Any) -> Any:
     if not isinstance(value, list) or not all(isinstance(pattern, str) for pattern in value):
-        section.fail(key, f'expected a list of regular expressions, found {value!r}')
+        section.fail(key, f'expected a list of regular expressions, found {shown(value)}')
     for pattern in value:
         probe = EncodingRules()
         probe.include_topics = [pattern]

@@ -9,9 +9,13 @@ from typing import Dict, Iterable, Iterator, List, Optional, Sequence, Set, Tupl
 
 import numpy as np
 
-from self_awareness import (LEAST_KNOWN, EventType, RecordedEvents, Recording, TrainedModel,
-                            find_clock_steps, progress, read_events, recordings_in_event_log)
+from self_awareness import (LEAST_KNOWN, LONGEST_SILENCE, EventType, RecordedEvents, Recording,
+                            TrainedModel, find_clock_steps, progress, read_events,
+                            recordings_in_event_log)
 from self_awareness.stamps import SECOND_NS, nanoseconds
+
+MOST_WINDOWS = 10_000_000
+"""Of a recording: eleven days in windows of 0.1 s. Verdicts on them take some 100 MB."""
 
 _PART = re.compile(r'(?P<path>.+?)(#(?P<number>\d+))?'
                    r'(@(?P<start>\d+(\.\d+)?)(-(?P<end>\d+(\.\d+)?))?)?')
@@ -126,6 +130,7 @@ class RecordingEvents:
         bag: what the file is called, or the bag that an event log was made of.
         robot_start: when the robot was started [ns]; 0: not known.
         clock_steps: stamps of the first events after the clock was set forward [ns].
+        left_out: why some connections of a bag are no events, whatever the encoding.
     """
 
     part: BagPart
@@ -140,6 +145,7 @@ class RecordingEvents:
     bag: str = ''
     robot_start: int = 0
     clock_steps: Sequence[int] = ()
+    left_out: Tuple[str, ...] = ()
 
     @classmethod
     def of(cls, part: BagPart, events: RecordedEvents) -> RecordingEvents:
@@ -149,7 +155,8 @@ class RecordingEvents:
         return cls(part, events.event_types, events.stamps, events.ids, summary.start, end,
                    summary.fingerprint, summary.one_sender_a_topic, summary.copied, summary.bag,
                    summary.robot_start,
-                   () if summary.clock_watched else find_clock_steps(events.stamps, events.ids))
+                   () if summary.clock_watched else find_clock_steps(events.stamps, events.ids),
+                   tuple(summary.left_out))
 
     @property
     def recording(self) -> Recording:
@@ -180,7 +187,30 @@ def read(model: TrainedModel, part: BagPart) -> RecordingEvents:
         except ValueError as error:
             raise ValueError(f'{part}: {error}') from error
     _check(model, part, events)
+    try:
+        check_windows(events.stamps, model.window)
+    except ValueError as error:
+        raise ValueError(f'{part}: {error}') from error
     return RecordingEvents.of(part, events)
+
+
+def check_windows(stamps: np.ndarray, window: int) -> None:
+    """Check that a recording has no more windows than can be looked at.
+
+    Windows without an event count as well: a few events an hour apart may have any number of them.
+
+    Args:
+        stamps: of its events [ns].
+        window: length of a window [ns].
+
+    Raises:
+        ValueError: it has more than MOST_WINDOWS.
+    """
+    delays = np.diff(stamps)
+    windows = int(delays[(delays > 0) & (delays <= LONGEST_SILENCE)].sum()) // window
+    if windows > MOST_WINDOWS:
+        raise ValueError(f'{windows} windows of {window / SECOND_NS:g} s, more than '
+                         f'{MOST_WINDOWS}; name a part of it (@START-END)')
 
 
 def few_known(model: TrainedModel, recording: RecordingEvents) -> Optional[str]:

@@ -30,7 +30,7 @@ class Section:
         self._known: Dict[str, None] = {}
         if not isinstance(data, dict):
             raise SectionError(f'{path}: {where or "the file"}: expected keys with values, '
-                               f'found {_shown(data)}')
+                               f'found {shown(data)}')
         self._data = data
 
     def __contains__(self, key: str) -> bool:
@@ -72,7 +72,7 @@ class Section:
         """Return an integer >= low."""
         value = self.number(key, low=low, default=default)
         if not isinstance(value, int):
-            self.fail(key, f'expected an integer, found {_shown(value)}')
+            self.fail(key, f'expected an integer, found {shown(value)}')
         return value
 
     def boolean(self, key: str, default: Any = _REQUIRED) -> Any:
@@ -80,7 +80,7 @@ class Section:
         if self._absent(key, default):
             return default
         if not isinstance(self._data[key], bool):
-            self.fail(key, f'expected true or false, found {_shown(self._data[key])}')
+            self.fail(key, f'expected true or false, found {shown(self._data[key])}')
         return self._data[key]
 
     def text(self, key: str, pattern: str = r'.+', default: Any = _REQUIRED) -> Any:
@@ -89,7 +89,7 @@ class Section:
             return default
         value = self._data[key]
         if not isinstance(value, str) or not re.fullmatch(pattern, value):
-            self.fail(key, f'expected a text of the form {pattern}, found {_shown(value)}')
+            self.fail(key, f'expected a text of the form {pattern}, found {shown(value)}')
         return value
 
     def texts(self, key: str, default: Any = _REQUIRED) -> Any:
@@ -98,7 +98,7 @@ class Section:
             return default
         for value in self._list(key):
             if not isinstance(value, str):
-                self.fail(key, f'expected texts, found {_shown(value)}')
+                self.fail(key, f'expected texts, found {shown(value)}')
         return tuple(self._data[key])
 
     def values(self, key: str, default: Any = _REQUIRED) -> Any:
@@ -109,7 +109,7 @@ class Section:
         for value in found:
             if not isinstance(value, (bool, int, str)):
                 self.fail(key, 'expected true, false, an integer or a text, '
-                               f'found {_shown(value)}')
+                               f'found {shown(value)}')
         return tuple(found)
 
     def texts_by_key(self, key: str) -> Dict[str, str]:
@@ -117,7 +117,7 @@ class Section:
         value = None if self._absent(key, _REQUIRED) else self._data[key]
         if not isinstance(value, dict) or not all(
                 isinstance(part, str) for pair in value.items() for part in pair):
-            self.fail(key, f'expected texts with texts, found {_shown(value)}')
+            self.fail(key, f'expected texts with texts, found {shown(value)}')
         return dict(value)
 
     def section(self, key: str) -> Section:
@@ -144,13 +144,13 @@ class Section:
         if isinstance(value, bool) or not isinstance(value, (int, float)) or not (
                 low <= value <= high and abs(value) != float('inf')):
             allowed = _range(low, high)
-            self.fail(key, f'expected a finite number{allowed}, found {_shown(value)}')
+            self.fail(key, f'expected a finite number{allowed}, found {shown(value)}')
         return value
 
     def _list(self, key: str) -> List[Any]:
         value = None if self._absent(key, _REQUIRED) else self._data[key]
         if not isinstance(value, list) or not value:
-            self.fail(key, f'expected a list of at least one entry, found {_shown(value)}')
+            self.fail(key, f'expected a list of at least one entry, found {shown(value)}')
         return value
 
     def _name(self, key: str) -> str:
@@ -163,6 +163,7 @@ def _range(low: float, high: float) -> str:
     return f' of at least {low:g}' if low > float('-inf') else ''
 
 
-def _shown(value: Any) -> str:
+def shown(value: Any) -> str:
+    """Return a value of a file for an error message, not longer than a line."""
     text = repr(value)
     return text if len(text) <= 60 else text[:57] + '...'

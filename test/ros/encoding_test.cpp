@@ -9,6 +9,8 @@
 #include <visualization_msgs/Marker.h>
 #include <visualization_msgs/MarkerArray.h>
 
+#include <algorithm>
+#include <cstring>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -264,6 +266,64 @@ TEST_F(EncoderTest, NamesThePatternThatIsNoRegularExpression) {
   } catch (const std::invalid_argument& error) {
     EXPECT_NE(std::string(error.what()).find("'/a(b'"), std::string::npos) << error.what();
   }
+}
+
+TEST_F(EncoderTest, NoPatternAndNoNameTakesForever) {
+  EncodingRules rules;
+  rules.exclude_topics = {"(([a-z/_])*)*#", "(a*)*(a*)*(a*)*b", ".*.*.*.*.*.*x"};
+  rules.exclude_sources = rules.exclude_topics;
+  const Encoder encoder = makeEncoder(rules);
+  Connection connection = scan();
+  connection.topic = "/" + std::string(999, 'a');
+  connection.callerid = connection.topic;
+  EXPECT_TRUE(encoder.connect(connection));
+  connection.callerid = "/" + std::string(30000, 'a');
+  EXPECT_FALSE(encoder.connect(connection));
+  stableName(connection.callerid + "_1");
+}
+
+TEST_F(EncoderTest, PatternsThatGrowAreRefused) {
+  EncodingRules rules;
+  std::string nested = "a";
+  for (int level = 0; level < 20000; ++level) {
+    nested = "(" + nested + ")";
+  }
+  for (const std::string& pattern : {std::string("(((a{1,100}){1,100}){1,100}){1,100}"), nested,
+                                     std::string("\xFF\xFE["), std::string("(a)\\1")}) {
+    rules.include_topics = {pattern};
+    try {
+      rules.validate();
+      FAIL() << pattern.substr(0, 50);
+    } catch (const std::invalid_argument& error) {
+      EXPECT_LT(std::string(error.what()).size(), 500U);
+    }
+  }
+  rules.include_topics.assign(100000, "/a[0-9]{5}");
+  EXPECT_THROW(rules.validate(), std::invalid_argument);
+}
+
+TEST_F(EncoderTest, NewValuesWithoutEndTakeNoMemory) {
+  EncodingRules rules;
+  rules.type_fields = {{"test/Value", "value"}};
+  const Encoder encoder(rules, [this](const core::EventType& type) {
+    return internUpTo(kMostEventTypes, type, vocabulary_);
+  });
+  Connection connection = scan();
+  connection.datatype = "test/Value";
+  connection.definition = "uint32 value\n";
+  auto encoded = encoder.connect(connection);
+  ASSERT_TRUE(encoded);
+  std::vector<std::uint8_t> message(4);
+  for (std::uint32_t value = 0; value < 3 * kMostEventTypes; ++value) {
+    std::memcpy(message.data(), &value, sizeof value);
+    const core::EventId id = encoded->id(message.data(), message.size());
+    EXPECT_EQ(id, std::min<std::size_t>(value, kMostEventTypes));
+  }
+  EXPECT_EQ(vocabulary_.size(), kMostEventTypes + 1);
+  const std::uint32_t known = 3;
+  std::memcpy(message.data(), &known, sizeof known);
+  EXPECT_EQ(encoded->id(message.data(), message.size()), known) << "what was known stays";
+  EXPECT_THROW(checkEventTypes({}, vocabulary_), std::invalid_argument);
 }
 
 }  // namespace

@@ -8,7 +8,6 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <regex>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -21,7 +20,7 @@ namespace self_awareness::ros1 {
 
 /// How messages become events: the rules of the function f (paper, section IV-C; docs/method.md,
 /// section 1.1). The model holds them, so training and the monitor cannot disagree. Patterns are
-/// regular expressions that must match the whole name.
+/// regular expressions of RE2 (github.com/google/re2/wiki/Syntax) that must match the whole name.
 struct EncodingRules {
   enum class Source {
     kCallerId,  ///< the publisher's node name, without anonymous numbers
@@ -38,7 +37,8 @@ struct EncodingRules {
   /// Rules that suit most robots: everything but the monitor's own output, clocks, aggregated
   /// logs, bonds and tools that only look on.
   static EncodingRules defaults();
-  /// @throw std::invalid_argument names the pattern that is no regular expression
+  /// @throw std::invalid_argument names the pattern that is no regular expression; or they are too
+  /// large together
   void validate() const;
 };
 
@@ -48,9 +48,19 @@ bool operator==(const EncodingRules& a, const EncodingRules& b);
 /// field with many values, such as an identifier, would fill the memory and teach nothing.
 constexpr std::size_t kMostTypesOfField = 1000;
 
-/// Checks that no type field makes too many event types.
-/// @throw std::invalid_argument names the type field that makes more than kMostTypesOfField
-void checkTypeFields(const EncodingRules& rules, const core::Vocabulary& vocabulary);
+/// Most event types of one robot: what is counted grows with their square, to some GB here.
+constexpr std::size_t kMostEventTypes = 4000;
+
+/// Checks that there are not too many event types to learn them.
+/// @throw std::invalid_argument names the type field that makes more than kMostTypesOfField, or
+/// says that all together are more than kMostEventTypes
+void checkEventTypes(const EncodingRules& rules, const core::Vocabulary& vocabulary);
+
+/// Id of an event type in a vocabulary that may grow up to `most`, and by one more: what is new
+/// then has the type "(further unknown events)" all together. Who makes up new names or values all
+/// the time must not fill the memory.
+core::EventId internUpTo(std::size_t most, const core::EventType& type,
+                         core::Vocabulary& vocabulary);
 
 /// One publisher's connection to a topic, from a connection header, live or in a bag.
 struct Connection {
@@ -62,11 +72,21 @@ struct Connection {
   std::string md5sum;  ///< of the definition
 };
 
-/// What a connection header says; fields that it lacks are empty.
+/// Longest name of a topic, of a node, or of a type [bytes]. Longer ones are made up.
+constexpr std::size_t kLongestName = 1000;
+
+/// Why no message of a connection can be an event, whatever the rules: its topic has a name that
+/// roscpp refuses to subscribe to, or a name is too long. Empty: it can.
+std::string whyLeftOut(const Connection& connection);
+
+/// What a connection header says, in UTF-8: what is none is replaced. Fields that it lacks are
+/// empty.
 Connection connectionFrom(const ros::M_string& header, const std::string& topic);
 
 /// Gives an event type its id; a new type gets a new id where the vocabulary may grow.
 using EventIds = std::function<core::EventId(const core::EventType&)>;
+
+class NamePatterns;
 
 /// Turns the messages of one connection into event ids.
 class ConnectionEncoder {
@@ -101,22 +121,22 @@ class Encoder {
   /// @throw std::invalid_argument names the pattern that is no regular expression
   Encoder(const EncodingRules& rules, EventIds ids);
 
-  /// Whether the rules let any message of the topic be an event.
+  /// Whether any message of the topic can be an event: by the rules, and by its name (whyLeftOut).
   bool includesTopic(const std::string& topic) const;
   /// Whether the rules let any message of the source be an event.
   /// @param source the publisher's stable name
   bool includesSource(const std::string& source) const;
-  /// Encoder of the connection's messages; none if the rules leave them out.
+  /// Encoder of the connection's messages; none if the rules or their names leave them out.
   /// @throw std::invalid_argument if a type field does not fit the message's definition
   std::optional<ConnectionEncoder> connect(const Connection& connection) const;
 
  private:
   EncodingRules rules_;
   EventIds ids_;
-  std::vector<std::regex> include_topics_;
-  std::vector<std::regex> exclude_topics_;
-  std::vector<std::regex> include_sources_;
-  std::vector<std::regex> exclude_sources_;
+  std::shared_ptr<const NamePatterns> include_topics_;
+  std::shared_ptr<const NamePatterns> exclude_topics_;
+  std::shared_ptr<const NamePatterns> include_sources_;
+  std::shared_ptr<const NamePatterns> exclude_sources_;
 };
 
 }  // namespace self_awareness::ros1

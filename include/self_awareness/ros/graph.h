@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <map>
 #include <optional>
@@ -25,6 +26,10 @@ bool operator==(const Graph& a, const Graph& b);
 
 /// Asks the master, and blocks until it answers; none if it does not.
 std::optional<Graph> fetchGraph();
+
+/// Most edges that are kept: what is new then is left out. They name roots, no more, and a robot
+/// of 300 nodes with all of tf and /rosout has some ten thousand.
+constexpr std::size_t kMostEdges = 50000;
 
 /// Adds an edge from every publisher of a topic to every subscriber, by their stable names
 /// (docs/method.md, section 6).

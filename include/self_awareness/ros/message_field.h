@@ -2,13 +2,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
-#include <vector>
 
 namespace self_awareness::ros1 {
 
 /// Reads one field of a serialized message by the message's definition, without its C++ type. The
-/// field must be an integer, a bool or a string, and not in an array.
+/// field must be an integer, a bool or a string, and not in an array. Definitions are bounded
+/// (docs/encoding.md): they come from whoever publishes.
 class MessageField {
  public:
   /// @param definition full text, with those of nested types, as in bags and connection headers
@@ -18,26 +19,15 @@ class MessageField {
   MessageField(const std::string& definition, const std::string& datatype,
                const std::string& path);
 
-  /// Value as text; strings are cut after 64 bytes.
+  /// Value as text, in UTF-8; strings are cut after 64 bytes. The time it takes follows the size
+  /// of the message.
   /// @throw std::out_of_range if the message ends before the end of the field
   std::string read(const std::uint8_t* data, std::size_t size) const;
 
  private:
-  friend class DefinitionParser;
+  struct Way;
 
-  // How to skip one piece of the message, or to read it.
-  struct Step {
-    enum class Kind { kSkipBytes, kSkipString, kSkipArray, kRead };
-    Kind kind = Kind::kSkipBytes;
-    std::size_t bytes = 0;      // kSkipBytes
-    std::vector<Step> element;  // kSkipArray: steps across one element
-    std::string type;           // kRead: built-in type
-  };
-  class Cursor;
-
-  static void skip(const Step& step, Cursor& cursor);
-
-  std::vector<Step> steps_;
+  std::shared_ptr<const Way> way_;  // to the field, and its type
 };
 
 }  // namespace self_awareness::ros1

@@ -4,9 +4,12 @@
 #include <rosbag/view.h>
 
 #include <algorithm>
+#include <map>
 #include <optional>
 #include <tuple>
 #include <unordered_map>
+#include <unordered_set>
+#include <utility>
 
 #include "bag_records.h"
 
@@ -16,15 +19,13 @@ namespace {
 using namespace bag_records;  // NOLINT: the format's words, in this file only
 
 constexpr std::uint64_t kFileHeaderBytes = 4096;  // every writer fills it up to this
-// Header of a record of the index, as every writer writes it.
-constexpr std::uint64_t kIndexHeaderBytes = 55;
-// Each message in such a record.
-constexpr std::uint64_t kIndexEntryBytes = 12;
+constexpr std::uint64_t kIndexEntryBytes = 12;    // of a message in a record of the index
+// Entries that are read at once.
+constexpr std::uint64_t kEntriesPerPiece = 1 << 14;
 
 struct ChunkInfo {
   std::uint64_t position = 0;
-  std::uint64_t connections = 0;  // with messages in it
-  std::uint64_t messages = 0;
+  std::map<std::uint32_t, std::uint64_t> messages;  // by connection
 };
 
 // A type and not a function, so that std::sort can inline it: sorting takes most of the time here.
@@ -46,7 +47,7 @@ class IndexReader {
     if (!readConnections()) {
       return std::nullopt;
     }
-    readEntries();
+    readChunks();
     return std::move(index_);
   }
 
@@ -56,29 +57,33 @@ class IndexReader {
   }
 
  private:
-  /// Reads the records at the end of the bag; false if it is of another format or encrypted.
+  /// Reads the connections at the end of the bag; false if it is of another format or encrypted.
   bool readConnections() {
-    std::string_view start = file_.at(0, kFileHeaderBytes);
-    if (start.substr(0, kFormat.size()) != kFormat) {
+    if (file_.at(0, kFormat.size()) != kFormat) {
       return false;
     }
-    take(start, kFormat.size());
-    const std::string_view header = takeHeader(start, Op::kFileHeader);
-    if (isEncrypted(header)) {
+    const PiecesOfFile::Record start = file_.record(kFormat.size(), kFileHeaderBytes);
+    if (opOf(start.header) != Op::kFileHeader) {
+      throw FormatError("it does not begin with a header");
+    }
+    if (isEncrypted(start.header)) {
       return false;
     }
-    const auto index = number<std::uint64_t>(header, "index_pos");
-    const auto connections = number<std::uint32_t>(header, "conn_count");
-    const auto chunks = number<std::uint32_t>(header, "chunk_count");
-    if (index == 0) {
+    index_position_ = number<std::uint64_t>(start.header, "index_pos");
+    const auto connections = number<std::uint32_t>(start.header, "conn_count");
+    chunks_ = number<std::uint32_t>(start.header, "chunk_count");
+    position_ = start.end;
+    if (index_position_ == 0) {
       throw rosbag::BagUnindexedException();
     }
-    std::string_view rest = file_.at(index, file_.size());
-    for (std::uint32_t i = 0; i < connections; ++i) {
-      takeConnection(rest);
+    if (connections > kMostConnections) {
+      throw FormatError("too many connections");
     }
-    for (std::uint32_t i = 0; i < chunks; ++i) {
-      takeChunkInfo(rest);
+    info_position_ = index_position_;
+    for (std::uint32_t i = 0; i < connections; ++i) {
+      const PiecesOfFile::Record record = file_.record(info_position_, kLargestConnection);
+      info_position_ = record.end;
+      addConnection(record);
     }
     return true;
   }
@@ -93,92 +98,181 @@ class IndexReader {
     return false;
   }
 
-  void takeConnection(std::string_view& bytes) {
-    const std::string_view record = takeHeader(bytes, Op::kConnection);
-    std::string_view fields = takeBlock(bytes);
+  void addConnection(const PiecesOfFile::Record& record) {
+    if (opOf(record.header) != Op::kConnection) {
+      throw FormatError("a record of another kind");
+    }
     ros::M_string header;
     bool in_order = true;
-    while (!fields.empty()) {
+    for (std::string_view fields = record.data; !fields.empty();) {
       const auto [name, value] = takeField(fields);
       in_order &= header.empty() || header.rbegin()->first < name;
       header.emplace(name, value);
     }
     index_.recorded |= in_order && header.count("latching") > 0;
-    if (ids_.emplace(number<std::uint32_t>(record, "conn"), ids_.size()).second) {
-      index_.connections.push_back(connectionFrom(header, std::string(field(record, "topic"))));
+    const auto id = number<std::uint32_t>(record.header, "conn");
+    if (ids_.emplace(id, ids_.size()).second) {
+      index_.connections.push_back(
+          connectionFrom(header, std::string(field(record.header, "topic"))));
+      index_.numbers.push_back(id);
     }
   }
 
-  void takeChunkInfo(std::string_view& bytes) {
-    const std::string_view header = takeHeader(bytes, Op::kChunkInfo);
-    if (number<std::uint32_t>(header, "ver") != 1) {
+  ChunkInfo takeChunkInfo() {
+    const PiecesOfFile::Record record =
+        file_.record(info_position_, kMostConnections * 2 * sizeof(std::uint32_t));
+    info_position_ = record.end;
+    if (opOf(record.header) != Op::kChunkInfo ||
+        number<std::uint32_t>(record.header, "ver") != 1) {
       throw FormatError("another version of chunk info");
     }
     ChunkInfo chunk;
-    chunk.position = number<std::uint64_t>(header, "chunk_pos");
-    for (std::string_view counts = takeBlock(bytes); !counts.empty(); ++chunk.connections) {
-      takeNumber<std::uint32_t>(counts);  // the connection
-      chunk.messages += takeNumber<std::uint32_t>(counts);
+    chunk.position = number<std::uint64_t>(record.header, "chunk_pos");
+    for (std::string_view counts = record.data; !counts.empty();) {
+      const auto connection = takeNumber<std::uint32_t>(counts);
+      chunk.messages[connection] = takeNumber<std::uint32_t>(counts);
     }
-    messages_ += chunk.messages;
-    chunks_.push_back(chunk);
+    return chunk;
   }
 
-  void readEntries() {
-    index_.entries.reserve(std::min(messages_, file_.size() / kIndexEntryBytes));
-    for (const ChunkInfo& chunk : chunks_) {
-      const auto first = static_cast<std::ptrdiff_t>(index_.entries.size());
-      const Chunk header(file_, chunk.position);
-      index_.by_python |= header.by_python;
-      std::uint64_t position = header.end;
-      // Reads all records at once, with the header of the next chunk, which follows.
-      file_.at(position, chunk.connections * kIndexHeaderBytes + chunk.messages * kIndexEntryBytes,
-               2 * kHeaderBytes);
-      for (std::uint64_t i = 0; i < chunk.connections; ++i) {
-        position = readRecord(position, chunk.position);
-      }
+  void readChunks() {
+    for (std::uint32_t i = 0; i < chunks_; ++i) {
+      const auto first = index_.entries.size();
+      readChunk(takeChunkInfo());
       // Recordings are nearly in order, so it is mostly enough to sort each chunk.
-      std::sort(index_.entries.begin() + first, index_.entries.end(), Earlier());
+      std::sort(index_.entries.begin() + static_cast<std::ptrdiff_t>(first), index_.entries.end(),
+                Earlier());
+    }
+    passConnections(index_position_);
+    if (info_position_ != file_.size()) {
+      throw FormatError("it goes on after its end");
     }
     if (!std::is_sorted(index_.entries.begin(), index_.entries.end(), Earlier())) {
       std::sort(index_.entries.begin(), index_.entries.end(), Earlier());
     }
   }
 
-  /// Reads a record; returns where the next one begins.
-  std::uint64_t readRecord(std::uint64_t position, std::uint64_t chunk) {
-    std::string_view bytes = file_.at(position, kHeaderBytes);
-    const std::size_t all = bytes.size();
-    const std::string_view header = takeHeader(bytes, Op::kIndex);
-    if (number<std::uint32_t>(header, "ver") != 1) {
+  /// Goes on to a position; only connections may lie before it.
+  void passConnections(std::uint64_t position) {
+    while (position_ < position) {
+      const PiecesOfFile::Record record = file_.record(position_, kLargestConnection);
+      if (opOf(record.header) != Op::kConnection) {
+        throw FormatError("its index leaves out a chunk");
+      }
+      position_ = record.end;
+    }
+    if (position_ != position) {
+      throw FormatError("its index has a chunk twice, or in another one");
+    }
+  }
+
+  void readChunk(const ChunkInfo& info) {
+    if (info.position < position_ || info.position >= index_position_) {
+      throw FormatError("its index has a chunk twice, or in another one");
+    }
+    passConnections(info.position);
+    const Chunk chunk(file_, info.position);
+    index_.by_python |= chunk.by_python;
+    position_ = chunk.end;
+    const std::size_t first = index_.entries.size();
+    for (std::size_t i = 0; i < info.messages.size(); ++i) {
+      readRecord(info, chunk);
+    }
+    places_.clear();
+    for (std::size_t i = first; i < index_.entries.size(); ++i) {
+      places_.push_back({index_.entries[i].offset, i});
+    }
+    std::sort(places_.begin(), places_.end());
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      if (i > 0 && places_[i].first == places_[i - 1].first) {
+        throw FormatError("its index has a message twice");
+      }
+      if (chunk.compression == "none") {
+        checkMessage(index_.entries[places_[i].second], chunk);
+      }
+    }
+    if (!chunks_seen_.insert(hashOf(first)).second && spansTime(first)) {
+      throw FormatError("it holds the same messages twice");
+    }
+  }
+
+  /// Of the entries from the given one on (FNV-1a, 64 bit, by numbers instead of bytes).
+  std::uint64_t hashOf(std::size_t first) const {
+    std::uint64_t hash = 0xcbf29ce484222325;
+    for (std::size_t i = first; i < index_.entries.size(); ++i) {
+      const BagIndexEntry& entry = index_.entries[i];
+      for (const std::uint64_t number : {static_cast<std::uint64_t>(entry.stamp),
+                                         std::uint64_t{entry.offset} << 32U | entry.connection}) {
+        hash = (hash ^ number) * 0x100000001b3;
+        hash ^= hash >> 29U;
+      }
+    }
+    return hash;
+  }
+
+  /// Messages of one moment may be the same in two chunks: the clock of a simulation stands still.
+  bool spansTime(std::size_t first) const {
+    const auto begin = index_.entries.begin() + static_cast<std::ptrdiff_t>(first);
+    return std::any_of(begin, index_.entries.end(),
+                       [&](const BagIndexEntry& entry) { return entry.stamp != begin->stamp; });
+  }
+
+  /// Reads the messages of one connection in a chunk.
+  void readRecord(const ChunkInfo& info, const Chunk& chunk) {
+    const PiecesOfFile::Head head = file_.head(position_);
+    if (opOf(head.header) != Op::kIndex || number<std::uint32_t>(head.header, "ver") != 1) {
       throw FormatError("another version of the index");
     }
-    const auto connection = ids_.find(number<std::uint32_t>(header, "conn"));
+    const auto number_of_connection = number<std::uint32_t>(head.header, "conn");
+    const auto connection = ids_.find(number_of_connection);
     if (connection == ids_.end()) {
       throw FormatError("messages without a connection");
     }
-    const auto size = takeNumber<std::uint32_t>(bytes);
-    position += all - bytes.size();
-    bytes = file_.at(position, size);
-    BagIndexEntry entry;
-    entry.chunk = chunk;
-    entry.connection = connection->second;
-    for (std::string_view entries = take(bytes, size); !entries.empty();) {
-      const std::int64_t seconds = takeNumber<std::uint32_t>(entries);
-      const std::int64_t nanoseconds = takeNumber<std::uint32_t>(entries);
-      entry.stamp = seconds * core::kNanosecondsPerSecond + nanoseconds;
-      entry.offset = takeNumber<std::uint32_t>(entries);
-      if (entry.stamp != 0) {  // rosbag, too, leaves out messages without a time
-        index_.entries.push_back(entry);
-      }
+    const auto announced = info.messages.find(number_of_connection);
+    const std::uint64_t size = head.end - head.data;
+    if (announced == info.messages.end() || size != announced->second * kIndexEntryBytes ||
+        announced->second > chunk.unpacked_bytes / kLeastMessageBytes) {
+      throw FormatError("its index contradicts itself");
     }
-    return position + size;
+    position_ = head.data;
+    BagIndexEntry entry;
+    entry.chunk = info.position;
+    entry.connection = connection->second;
+    for (const std::uint64_t end = position_ + size; position_ < end;) {
+      const std::uint64_t piece = std::min(end - position_, kEntriesPerPiece * kIndexEntryBytes);
+      std::string_view bytes = file_.at(position_, piece);
+      for (std::string_view entries = take(bytes, piece); !entries.empty();) {
+        entry.stamp = takeTime(entries);
+        entry.offset = takeNumber<std::uint32_t>(entries);
+        if (entry.offset >= chunk.unpacked_bytes) {
+          throw FormatError("a message beyond the end of its chunk");
+        }
+        if (entry.stamp != 0) {  // rosbag, too, leaves out messages without a time
+          index_.entries.push_back(entry);
+        }
+      }
+      position_ += piece;
+    }
+  }
+
+  /// Compares what the index says of a message with the message.
+  void checkMessage(const BagIndexEntry& entry, const Chunk& chunk) {
+    const PiecesOfFile::Head head = headOfMessage(file_, chunk.begin + entry.offset);
+    const MessageHeader message = messageHeader(head.header);
+    if (message.stamp != entry.stamp || message.connection != index_.numbers[entry.connection] ||
+        head.end > chunk.end) {
+      throw FormatError("its index and its messages contradict each other");
+    }
   }
 
   PiecesOfFile file_;
-  std::unordered_map<std::uint32_t, std::uint32_t> ids_;  // index by the connection's number
-  std::vector<ChunkInfo> chunks_;
-  std::uint64_t messages_ = 0;
+  std::uint64_t position_ = 0;        // up to here, all that is in the file has been looked at
+  std::uint64_t index_position_ = 0;  // of the connections at the end
+  std::uint64_t info_position_ = 0;   // of the next chunk info
+  std::uint32_t chunks_ = 0;
+  std::unordered_map<std::uint32_t, std::uint32_t> ids_;       // index by the connection's number
+  std::vector<std::pair<std::uint32_t, std::size_t>> places_;  // offset, and index of the entry
+  std::unordered_set<std::uint64_t> chunks_seen_;              // by hashOf()
   BagIndex index_;
 };
 
@@ -207,16 +301,34 @@ class RosbagIndex : private rosbag::View {
   }
 };
 
+/// Checks that no record of a bag that is left to rosbag is longer than the file: rosbag makes
+/// room for what a length says, and ends the program where there is none.
+void checkRecords(const std::string& path) {
+  PiecesOfFile file(path);
+  for (std::uint64_t position = kFormat.size(); position < file.size();) {
+    const PiecesOfFile::Head head = file.head(position);
+    if (head.end > file.size() || head.end - head.data > kLargestChunk) {
+      throw FormatError("a record is cut off");
+    }
+    position = head.end;
+  }
+}
+
 }  // namespace
 
 std::vector<Connection> readBagConnections(const std::string& path) {
   return IndexReader(path).connections();
 }
 
+std::optional<BagIndex> readIndexOfFormat2(const std::string& path) {
+  return IndexReader(path).read();
+}
+
 BagIndex readBagIndex(const std::string& path) {
-  if (std::optional<BagIndex> index = IndexReader(path).read()) {
+  if (std::optional<BagIndex> index = readIndexOfFormat2(path)) {
     return std::move(*index);
   }
+  checkRecords(path);
   const rosbag::Bag bag(path, rosbag::bagmode::Read);
   return RosbagIndex(bag).read();
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct BagIndexEntry {
 
 struct BagIndex {
   std::vector<Connection> connections;
+  std::vector<std::uint32_t> numbers;  ///< of the connections, in the file
   /// In the order of the recording: by time, and in the order of the file where that is the same.
   std::vector<BagIndexEntry> entries;
   bool by_rosbag = false;  ///< only rosbag can read this bag
@@ -37,7 +39,17 @@ bool areOfEventLog(const std::vector<Connection>& connections);
 /// @throw rosbag::BagException as readBagIndex()
 std::vector<Connection> readBagConnections(const std::string& path);
 
-/// @throw rosbag::BagException if the bag has no index or it is damaged
+/// The index of a bag of format 2.0, which this package's own code reads; none if the file is of
+/// another format, or encrypted.
+///
+/// Checks the index as well: it must list every chunk, once, and in it as many messages as it
+/// says, each in a place of its own. Where the chunk is not compressed, the messages themselves
+/// must say the same. What is read follows the size of the file, whatever the numbers in it say.
+/// @throw rosbag::BagException if the bag has no index, or it is damaged
+std::optional<BagIndex> readIndexOfFormat2(const std::string& path);
+
+/// The same, and by rosbag of what else it can read.
+/// @throw rosbag::BagException as readIndexOfFormat2()
 BagIndex readBagIndex(const std::string& path);
 
 }  // namespace self_awareness::ros1

@@ -4,16 +4,16 @@
 #include <rosbag/chunked_file.h>
 #include <rosbag/view.h>
 
+#include <algorithm>
+#include <cstdlib>
+#include <new>
 #include <optional>
-
-#include "bag_records.h"
+#include <utility>
 
 namespace self_awareness::ros1 {
 namespace {
 
 using namespace bag_records;  // NOLINT: the format's words, in this file only
-
-constexpr std::uint64_t kShortMessageBytes = 1024;  // up to here, read together with its header
 
 void assign(std::vector<std::uint8_t>& content, std::string_view bytes) {
   content.assign(bytes.begin(), bytes.end());
@@ -21,7 +21,9 @@ void assign(std::vector<std::uint8_t>& content, std::string_view bytes) {
 
 class MessagesOfChunks : public BagMessages {
  public:
-  explicit MessagesOfChunks(const std::string& path) : file_(path) {}
+  MessagesOfChunks(const std::string& path, std::vector<std::uint32_t> numbers,
+                   std::uint64_t largest)
+      : file_(path), numbers_(std::move(numbers)), largest_(largest) {}
 
   void read(const BagIndexEntry& entry, std::vector<std::uint8_t>& content) override {
     if (!chunk_ || chunk_position_ != entry.chunk) {
@@ -32,43 +34,34 @@ class MessagesOfChunks : public BagMessages {
       chunk_position_ = entry.chunk;
     }
     if (chunk_->compression == "none") {
-      std::uint64_t position = chunk_->begin + entry.offset;
-      std::string_view bytes = file_.at(position, kHeaderBytes, kShortMessageBytes);
-      while (const std::uint64_t size = connectionBytes(bytes)) {
-        position += size;
-        bytes = file_.at(position, kHeaderBytes, kShortMessageBytes);
+      const PiecesOfFile::Head head = headOfMessage(file_, chunk_->begin + entry.offset);
+      check(head.header, entry);
+      const std::uint64_t size = head.end - head.data;
+      if (head.end > chunk_->end) {
+        throw FormatError("a message is cut off");
       }
-      const std::size_t all = bytes.size();
-      const std::uint32_t size = takeMessageSize(bytes);
-      bytes = file_.at(position + (all - bytes.size()), size);
+      std::string_view bytes = file_.at(head.data, size);
       assign(content, take(bytes, size));
-    } else {
-      std::string_view bytes = unpacked_;
-      take(bytes, entry.offset);
-      while (const std::uint64_t size = connectionBytes(bytes)) {
-        take(bytes, size);
-      }
-      const std::uint32_t size = takeMessageSize(bytes);
-      assign(content, take(bytes, size));
+      return;
     }
+    std::string_view bytes(unpacked_.get(), chunk_->unpacked_bytes);
+    take(bytes, entry.offset);
+    std::string_view header = takeBlock(bytes);
+    while (opOf(header) == Op::kConnection) {
+      takeBlock(bytes);
+      header = takeBlock(bytes);
+    }
+    check(header, entry);
+    assign(content, takeBlock(bytes));
   }
 
  private:
-  /// Size of the record that the bytes begin with if it is a connection's, else 0. An index may
-  /// point at such a record before the message; rosbag skips it, too.
-  static std::uint64_t connectionBytes(std::string_view bytes) {
-    const std::size_t all = bytes.size();
-    const std::string_view header = takeBlock(bytes);
-    if (number<std::uint8_t>(header, "op") != static_cast<std::uint8_t>(Op::kConnection)) {
-      return 0;
+  /// The message must be the one that the index says.
+  void check(std::string_view header, const BagIndexEntry& entry) const {
+    const MessageHeader message = messageHeader(header);
+    if (message.stamp != entry.stamp || message.connection != numbers_.at(entry.connection)) {
+      throw FormatError("its index and its messages contradict each other");
     }
-    const auto data = takeNumber<std::uint32_t>(bytes);
-    return all - bytes.size() + data;
-  }
-
-  static std::uint32_t takeMessageSize(std::string_view& bytes) {
-    takeHeader(bytes, Op::kMessage);
-    return takeNumber<std::uint32_t>(bytes);
   }
 
   void unpack(const Chunk& chunk) {
@@ -78,18 +71,31 @@ class MessagesOfChunks : public BagMessages {
     if (chunk.compression != "bz2" && chunk.compression != "lz4") {
       throw FormatError("unknown compression: " + chunk.compression);
     }
+    if (chunk.unpacked_bytes > largest_) {
+      throw FormatError("a chunk that announces too much");
+    }
     std::string packed(file_.at(chunk.begin, chunk.end - chunk.begin));
-    unpacked_.resize(chunk.unpacked_bytes);
+    // calloc() takes no memory for zeros that nobody writes: the chunk may hold less than it says.
+    unpacked_.reset(static_cast<char*>(std::calloc(std::max(chunk.unpacked_bytes, 1U), 1)));
+    if (!unpacked_) {
+      throw std::bad_alloc();
+    }
     rosbag::ChunkedFile().decompress(
         chunk.compression == "bz2" ? rosbag::compression::BZ2 : rosbag::compression::LZ4,
-        reinterpret_cast<std::uint8_t*>(&unpacked_[0]), chunk.unpacked_bytes,
+        reinterpret_cast<std::uint8_t*>(unpacked_.get()), chunk.unpacked_bytes,
         reinterpret_cast<std::uint8_t*>(&packed[0]), static_cast<unsigned int>(packed.size()));
   }
 
+  struct Free {
+    void operator()(char* bytes) const { std::free(bytes); }
+  };
+
   PiecesOfFile file_;
-  std::optional<Chunk> chunk_;  // the one that was read last
+  std::vector<std::uint32_t> numbers_;  // of the connections, in the file
+  std::uint64_t largest_;               // that a chunk may be when it is unpacked [bytes]
+  std::optional<Chunk> chunk_;          // the one that was read last
   std::uint64_t chunk_position_ = 0;
-  std::string unpacked_;  // its data, if it is compressed
+  std::unique_ptr<char, Free> unpacked_;  // its data, if it is compressed
 };
 
 class MessagesOfRosbag : public BagMessages, private rosbag::View {
@@ -115,11 +121,12 @@ class MessagesOfRosbag : public BagMessages, private rosbag::View {
 
 }  // namespace
 
-std::unique_ptr<BagMessages> BagMessages::open(const std::string& path, const BagIndex& index) {
+std::unique_ptr<BagMessages> BagMessages::open(const std::string& path, const BagIndex& index,
+                                               std::uint64_t largest) {
   if (index.by_rosbag) {
     return std::make_unique<MessagesOfRosbag>(path);
   }
-  return std::make_unique<MessagesOfChunks>(path);
+  return std::make_unique<MessagesOfChunks>(path, index.numbers, largest);
 }
 
 }  // namespace self_awareness::ros1

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "bag_index.h"
+#include "bag_records.h"
 
 namespace self_awareness::ros1 {
 
@@ -16,11 +17,13 @@ class BagMessages {
  public:
   virtual ~BagMessages() = default;
 
-  /// @throw rosbag::BagException if it cannot be read
+  /// @throw rosbag::BagException if it cannot be read, or is not the one that the index says
   virtual void read(const BagIndexEntry& entry, std::vector<std::uint8_t>& content) = 0;
 
   /// The messages of the bag that the index was read from.
-  static std::unique_ptr<BagMessages> open(const std::string& path, const BagIndex& index);
+  /// @param largest that a compressed chunk may be when it is unpacked [bytes]
+  static std::unique_ptr<BagMessages> open(const std::string& path, const BagIndex& index,
+                                           std::uint64_t largest = bag_records::kLargestChunk);
 };
 
 }  // namespace self_awareness::ros1

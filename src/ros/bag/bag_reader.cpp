@@ -54,8 +54,20 @@ bool topicsAreDistinct(const BagIndex& index) {
       [&](const Connection& connection) { return topics.insert(connection.topic).second; });
 }
 
+std::vector<std::string> reasonsOf(const std::vector<Connection>& connections) {
+  std::set<std::string> reasons;
+  for (const Connection& connection : connections) {
+    const std::string reason = whyLeftOut(connection);
+    if (!reason.empty() && reasons.size() < BagSummary::kMostReasons) {
+      reasons.insert(reason);
+    }
+  }
+  return {reasons.begin(), reasons.end()};
+}
+
+// ROS time has 32 bits for the seconds.
 std::int64_t fromSeconds(double seconds) {
-  return std::llround(seconds * 1e9);
+  return std::llround(std::min(seconds, 0x1p32) * 1e9);
 }
 
 }  // namespace
@@ -98,6 +110,7 @@ BagReader::BagReader(const std::string& path)
                   [](const Connection& connection) { return !connection.callerid.empty(); });
   summary_.one_sender_a_topic = index_->by_python && topicsAreDistinct(*index_);
   summary_.copied = summary_.one_sender_a_topic && index_->recorded;
+  summary_.left_out = reasonsOf(index_->connections);
 }
 
 BagReader::~BagReader() = default;

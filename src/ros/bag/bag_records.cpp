@@ -2,7 +2,16 @@
 
 #include <algorithm>
 
+#include "self_awareness/core/stream/event.h"
+
 namespace self_awareness::ros1::bag_records {
+namespace {
+
+constexpr std::uint64_t kLengthBytes = sizeof(std::uint32_t);  // of a length in the file
+// Read together with what is asked for: most headers and messages are short.
+constexpr std::uint64_t kReadAhead = 1024;
+
+}  // namespace
 
 PiecesOfFile::PiecesOfFile(const std::string& path) {
   file_.rdbuf()->pubsetbuf(nullptr, 0);
@@ -27,19 +36,82 @@ std::string_view PiecesOfFile::at(std::uint64_t position, std::uint64_t bytes,
   return std::string_view(buffer_).substr(position - position_, bytes);
 }
 
+PiecesOfFile::Head PiecesOfFile::head(std::uint64_t position) {
+  std::string_view bytes = at(position, kLengthBytes, kReadAhead);
+  const std::uint64_t size = kLengthBytes + takeNumber<std::uint32_t>(bytes) + kLengthBytes;
+  if (size > kLargestHeader) {
+    throw FormatError("a header that is too long");
+  }
+  bytes = at(position, size, kReadAhead);
+  Head head;
+  head.header = takeBlock(bytes);
+  head.data = position + size;
+  head.end = head.data + takeNumber<std::uint32_t>(bytes);
+  return head;
+}
+
+PiecesOfFile::Record PiecesOfFile::record(std::uint64_t position, std::uint64_t most) {
+  const Head begin = head(position);
+  if (begin.end - begin.data > most) {
+    throw FormatError("a record that is too long");
+  }
+  std::string_view bytes = at(position, begin.end - position, kReadAhead);
+  Record record;
+  record.header = takeBlock(bytes);
+  record.data = takeBlock(bytes);
+  record.end = begin.end;
+  return record;
+}
+
+PiecesOfFile::Head headOfMessage(PiecesOfFile& file, std::uint64_t position) {
+  PiecesOfFile::Head head = file.head(position);
+  while (opOf(head.header) == Op::kConnection) {
+    head = file.head(head.end);
+  }
+  return head;
+}
+
+std::int64_t takeTime(std::string_view& bytes) {
+  const std::int64_t seconds = takeNumber<std::uint32_t>(bytes);
+  const std::int64_t nanoseconds = takeNumber<std::uint32_t>(bytes);
+  if (nanoseconds >= core::kNanosecondsPerSecond) {
+    throw FormatError("a time that cannot be");
+  }
+  return seconds * core::kNanosecondsPerSecond + nanoseconds;
+}
+
+MessageHeader messageHeader(std::string_view header) {
+  if (opOf(header) != Op::kMessage) {
+    throw FormatError("a record of another kind");
+  }
+  std::string_view time = field(header, "time");
+  return {number<std::uint32_t>(header, "conn"), takeTime(time)};
+}
+
 Chunk::Chunk(PiecesOfFile& file, std::uint64_t position) {
-  std::string_view bytes = file.at(position, kHeaderBytes);
-  const std::size_t all = bytes.size();
-  const std::string_view header = takeHeader(bytes, Op::kChunk);
+  const PiecesOfFile::Head head = file.head(position);
+  if (opOf(head.header) != Op::kChunk) {
+    throw FormatError("a record of another kind");
+  }
   // The format leaves the order of the fields open. Python's rosbag begins with the operation;
   // that in C++ writes them in alphabetical order.
-  std::string_view fields = header;
+  std::string_view fields = head.header;
   by_python = takeField(fields).first == "op";
-  compression = field(header, "compression");
-  unpacked_bytes = number<std::uint32_t>(header, "size");
-  const auto size = takeNumber<std::uint32_t>(bytes);
-  begin = position + (all - bytes.size());
-  end = begin + size;
+  compression = field(head.header, "compression");
+  unpacked_bytes = number<std::uint32_t>(head.header, "size");
+  begin = head.data;
+  end = head.end;
+  if (end > file.size()) {
+    throw FormatError("a chunk is cut off");
+  }
+  const std::uint64_t size = end - begin;
+  // What LZ4 and bzip2 make of zeros: nothing is packed into less.
+  constexpr std::uint64_t kLz4 = 255;
+  constexpr std::uint64_t kBz2 = 25000;
+  const std::uint64_t most = compression == "lz4" ? kLz4 : compression == "bz2" ? kBz2 : 1;
+  if (unpacked_bytes > kLargestChunk || unpacked_bytes > most * size) {
+    throw FormatError("a chunk that announces too much");
+  }
 }
 
 }  // namespace self_awareness::ros1::bag_records

@@ -80,18 +80,21 @@ Number number(std::string_view header, std::string_view name) {
   return takeNumber<Number>(value);
 }
 
-/// Takes the header of a record.
-/// @throw FormatError if it is not of this kind
-inline std::string_view takeHeader(std::string_view& bytes, Op op) {
-  const std::string_view header = takeBlock(bytes);
-  if (number<std::uint8_t>(header, "op") != static_cast<std::uint8_t>(op)) {
-    throw FormatError("a record of another kind");
-  }
-  return header;
+/// What kind of record a header is of; 0 and others may be no kind at all.
+inline Op opOf(std::string_view header) {
+  return static_cast<Op>(number<std::uint8_t>(header, "op"));
 }
 
-/// Size that is enough for the header of a chunk or of a message [bytes].
-constexpr std::uint64_t kHeaderBytes = 256;
+/// The least that the record of a message takes [bytes].
+constexpr std::uint64_t kLeastMessageBytes = 46;
+
+/// Bounds for what a file may ask for: its numbers may be wrong on purpose.
+constexpr std::uint64_t kLargestHeader = 1 << 20;      ///< of a record [bytes]
+constexpr std::uint64_t kLargestConnection = 1 << 22;  ///< data of its record [bytes]
+constexpr std::uint64_t kMostConnections = 100000;     ///< of a bag, or in a chunk
+/// Of a chunk, unpacked [bytes]. Writers begin a new one after 768 kB, and roscpp sends no message
+/// of more than a billion bytes.
+constexpr std::uint64_t kLargestChunk = 1 << 30;
 
 /// Reads a file in pieces, and no more than is asked for: a stream's own buffer would read more.
 class PiecesOfFile {
@@ -104,6 +107,25 @@ class PiecesOfFile {
   /// @throw FormatError if the position lies beyond the end
   std::string_view at(std::uint64_t position, std::uint64_t bytes, std::uint64_t ahead = 0);
 
+  /// The beginning of a record; valid until the next call.
+  struct Head {
+    std::string_view header;
+    std::uint64_t data = 0;  ///< position of its data
+    std::uint64_t end = 0;   ///< position after it, which may lie beyond the end of the file
+  };
+  /// @throw FormatError if it is cut off, or too long
+  Head head(std::uint64_t position);
+
+  /// A record; valid until the next call.
+  struct Record {
+    std::string_view header;
+    std::string_view data;
+    std::uint64_t end = 0;  ///< position after it
+  };
+  /// @param most that its data may have [bytes]
+  /// @throw FormatError if it is larger, or is cut off
+  Record record(std::uint64_t position, std::uint64_t most);
+
  private:
   std::ifstream file_;
   std::uint64_t size_ = 0;
@@ -111,9 +133,24 @@ class PiecesOfFile {
   std::uint64_t position_ = 0;  // of the buffer
 };
 
+/// Whose message a record holds, and when it came.
+struct MessageHeader {
+  std::uint32_t connection = 0;  ///< number
+  std::int64_t stamp = 0;        ///< [ns]
+};
+/// @throw FormatError if it is the header of another kind of record
+MessageHeader messageHeader(std::string_view header);
+
+/// The beginning of a message, or of the one after a connection: an index may point there, too.
+PiecesOfFile::Head headOfMessage(PiecesOfFile& file, std::uint64_t position);
+
+/// Takes a time [ns].
+/// @throw FormatError if it has a second of nanoseconds, or more
+std::int64_t takeTime(std::string_view& bytes);
+
 /// The header of a chunk.
 struct Chunk {
-  /// @throw FormatError if there is none
+  /// @throw FormatError if there is none, it is cut off, or it says what cannot be
   Chunk(PiecesOfFile& file, std::uint64_t position);
 
   bool by_python = false;            ///< rosbag's Python library wrote it, not that in C++

@@ -5,6 +5,7 @@
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/ros/bag/event_log_packer.h"
 #include "self_awareness/ros/encoding_message.h"
+#include "self_awareness/ros/ros_time.h"
 
 namespace self_awareness::ros1 {
 
@@ -13,7 +14,7 @@ void addToEventLog(const BagReader& bag, const EncodingRules& rules, const Graph
   const BagSummary& summary = bag.summary();
   self_awareness::EventLogStart start;
   start.encoding = toMessage(rules);
-  start.begin.fromNSec(static_cast<std::uint64_t>(summary.start));
+  start.begin = toRosTime(summary.start);
   start.bag = summary.bag;
   start.fingerprint = summary.fingerprint;
   start.has_sources = summary.has_sources;
@@ -27,7 +28,7 @@ void addToEventLog(const BagReader& bag, const EncodingRules& rules, const Graph
     const std::size_t before = vocabulary.size();
     const core::EventId id = vocabulary.intern(type);
     if (vocabulary.size() > before) {
-      checkTypeFields(rules, vocabulary);
+      checkEventTypes(rules, vocabulary);
     }
     return id;
   });

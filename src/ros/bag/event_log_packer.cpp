@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "packed_events.h"
+#include "self_awareness/ros/ros_time.h"
 
 namespace self_awareness::ros1 {
 
@@ -41,11 +42,10 @@ void EventLogPacker::flush(std::int64_t now) {
   PackedEvents packed = PackedEvents::pack(events_);
   self_awareness::EventLog part;
   part.new_types = std::exchange(new_types_, {});
-  part.heard_until.fromNSec(
-      static_cast<std::uint64_t>(std::max(now, events_.empty() ? now : events_.back().stamp)));
+  part.heard_until = toRosTime(std::max(now, events_.empty() ? now : events_.back().stamp));
   part.dropped = dropped_;
   part.events = packed.events;
-  part.first.fromNSec(static_cast<std::uint64_t>(packed.first));
+  part.first = toRosTime(packed.first);
   part.delay_bits = packed.delay_bits;
   part.id_bits = packed.id_bits;
   part.packed = std::move(packed.bytes);

@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "../message_check.h"
+#include "../text.h"
 #include "bag_index.h"
 #include "bag_messages.h"
 #include "open_bag.h"
@@ -16,6 +18,7 @@
 #include "self_awareness/EventLog.h"
 #include "self_awareness/EventLogGraph.h"
 #include "self_awareness/EventLogStart.h"
+#include "self_awareness/ros/bag/event_log_packer.h"
 #include "self_awareness/ros/encoding_message.h"
 
 namespace self_awareness::ros1 {
@@ -56,19 +59,13 @@ class LogMessages {
   Message read(const BagIndexEntry& entry) {
     try {
       messages_->read(entry, content_);
-      Message message;
-      ros::serialization::IStream stream(content_.data(),
-                                         static_cast<std::uint32_t>(content_.size()));
-      ros::serialization::deserialize(stream, message);
-      return message;
+      return readMessage<Message>(content_.data(), content_.size());
     } catch (const rosbag::BagException& error) {
       fail(error.what());
-    } catch (const ros::serialization::StreamOverrunException& error) {
+    } catch (const std::invalid_argument& error) {
       fail(error.what());
     } catch (const std::bad_alloc&) {
       fail("or there is too little memory");
-    } catch (const std::length_error&) {
-      fail("a length is wrong");
     }
   }
 
@@ -222,11 +219,17 @@ void EventLogReader::read(const EncodingRules& rules, const EventIds& ids, const
     packed.delay_bits = part.delay_bits;
     packed.id_bits = part.id_bits;
     packed.bytes = std::move(part.packed);
+    if (part.events > EventLogPacker::kMostEvents) {
+      messages.fail("a part of too many events");
+    }
     std::vector<core::Event> events;
     try {
       events = packed.unpack();
     } catch (const std::invalid_argument& error) {
       messages.fail(error.what());
+    }
+    if (!events.empty() && events.back().stamp > nanoseconds(part.heard_until)) {
+      messages.fail("an event after the end of its part");
     }
     for (const core::Event& event : events) {
       if (event.id >= known.size()) {

@@ -6,6 +6,7 @@
 
 #include "self_awareness/EventLogGraph.h"
 #include "self_awareness/ros/encoding_message.h"
+#include "self_awareness/ros/ros_time.h"
 
 namespace self_awareness::ros1 {
 namespace {
@@ -30,8 +31,8 @@ self_awareness::EventLogStart startOfRecording(const EncodingRules& encoding, st
   std::random_device random;
   self_awareness::EventLogStart start;
   start.encoding = toMessage(encoding);
-  start.begin.fromNSec(static_cast<std::uint64_t>(begin));
-  start.robot_start.fromNSec(static_cast<std::uint64_t>(robot_start));
+  start.begin = toRosTime(begin);
+  start.robot_start = toRosTime(robot_start);
   start.fingerprint = static_cast<std::uint64_t>(random()) << 32U | random();
   start.has_sources = true;
   return start;
@@ -53,7 +54,7 @@ void EventLogWriter::write(self_awareness::EventLog part) {
 
 void EventLogWriter::writeGraph(const Graph& graph, std::int64_t stamp) {
   self_awareness::EventLogGraph message;
-  message.stamp.fromNSec(static_cast<std::uint64_t>(stamp));
+  message.stamp = toRosTime(stamp);
   for (const auto& [name, topic] : graph.topics) {
     const auto before = graph_.topics.find(name);
     if (before == graph_.topics.end() || before->second.publishers != topic.publishers ||

@@ -1,11 +1,13 @@
 #include "self_awareness/ros/model/evidence_message.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "check.h"
+#include "self_awareness/ros/ros_time.h"
 
 namespace self_awareness::ros1 {
 namespace {
@@ -20,6 +22,10 @@ bool areOffsets(const std::vector<std::uint64_t>& offsets, std::size_t groups,
                 std::size_t entries) {
   return offsets.size() == groups + 1 && offsets.front() == 0 && offsets.back() == entries &&
          std::is_sorted(offsets.begin(), offsets.end());
+}
+
+bool areTimes(const std::vector<std::int64_t>& times, std::int64_t least) {
+  return std::all_of(times.begin(), times.end(), [&](std::int64_t time) { return time >= least; });
 }
 
 void appendType(const evidence::Statistics::Type& type, self_awareness::Evidence& message) {
@@ -58,7 +64,8 @@ evidence::Statistics::Type typeOf(const self_awareness::Evidence& message, std::
   }
   std::copy_n(message.left_out.begin() + static_cast<std::ptrdiff_t>(id * evidence::kDelayBins),
               evidence::kDelayBins, type.left_out.begin());
-  check(type.gap_sum >= 0 && (type.gaps > 0) == !type.longest_gaps.empty(),
+  check(type.gap_sum >= 0 && (type.gaps > 0) == !type.longest_gaps.empty() &&
+            (type.longest_gaps.empty() || type.longest_gaps.back() >= 0),
         "its evidence has impossible gaps");
   return type;
 }
@@ -71,9 +78,9 @@ self_awareness::Evidence toMessage(const evidence::Statistics& statistics) {
   message.duration = statistics.duration();
   for (const evidence::Statistics::Recording& recording : statistics.recordings()) {
     self_awareness::RecordingCounts counts;
-    counts.start.fromNSec(static_cast<std::uint64_t>(recording.start));
-    counts.end.fromNSec(static_cast<std::uint64_t>(recording.end));
-    counts.robot_start.fromNSec(static_cast<std::uint64_t>(recording.robot_start));
+    counts.start = toRosTime(recording.start);
+    counts.end = toRosTime(recording.end);
+    counts.robot_start = toRosTime(recording.robot_start);
     counts.longest_silence = recording.longest_silence;
     counts.events = recording.events;
     counts.longest_gaps = recording.longest_gaps;
@@ -131,6 +138,9 @@ evidence::Statistics fromMessage(const self_awareness::Evidence& message,
     check(counts.events.size() <= n && counts.events.size() == counts.longest_gaps.size() &&
               counts.events.size() == counts.firsts.size(),
           "its recordings do not fit its event types");
+    check(counts.longest_silence >= 0 && areTimes(counts.longest_gaps, 0) &&
+              areTimes(counts.firsts, -1),
+          "its recordings have times that cannot be");
     statistics.addRecording({nanoseconds(counts.start), nanoseconds(counts.end),
                              counts.longest_silence, counts.events, counts.longest_gaps,
                              counts.firsts, nanoseconds(counts.robot_start)});
@@ -184,9 +194,9 @@ evidence::Track fromMessage(const self_awareness::Track& message) {
 
 self_awareness::RecordingFindings toMessage(const evidence::LimitFinder::Recording& recording) {
   self_awareness::RecordingFindings message;
-  message.start.fromNSec(static_cast<std::uint64_t>(recording.start));
-  message.end.fromNSec(static_cast<std::uint64_t>(recording.end));
-  message.robot_start.fromNSec(static_cast<std::uint64_t>(recording.robot_start));
+  message.start = toRosTime(recording.start);
+  message.end = toRosTime(recording.end);
+  message.robot_start = toRosTime(recording.robot_start);
   message.windows = recording.windows;
   for (const evidence::LimitFinder::Recording::Part& part : recording.parts) {
     message.part_windows.push_back(part.windows);
@@ -212,6 +222,11 @@ evidence::LimitFinder::Recording fromMessage(const self_awareness::RecordingFind
   check(message.evidence.size() == parts * tracks &&
             message.longest_gaps.size() == parts * types && message.said.size() == tracks,
         "its findings do not fit its tracks");
+  check(parts <= evidence::LimitFinder::kMostParts, "its findings have too many parts");
+  check(areTimes(message.longest_gaps, 0) &&
+            std::all_of(message.evidence.begin(), message.evidence.end(),
+                        [](float evidence) { return std::isfinite(evidence); }),
+        "its findings are no numbers");
   LimitFinder::Recording recording;
   recording.start = nanoseconds(message.start);
   recording.end = nanoseconds(message.end);

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "../message_check.h"
 #include "self_awareness/ros/model/delays_message.h"
 #include "self_awareness/ros/model/evidence_message.h"
 
@@ -56,17 +57,13 @@ class Reader {
     std::memcpy(&length, &bytes_[next_], sizeof length);
     next_ += sizeof length;
     require(length);
-    // The stream wants writable bytes, but writes nothing.
-    serialization::IStream stream(
-        reinterpret_cast<std::uint8_t*>(const_cast<char*>(bytes_.data() + next_)), length);
+    const auto* data = reinterpret_cast<const std::uint8_t*>(bytes_.data() + next_);
     next_ += length;
-    Message message;
     try {
-      serialization::deserialize(stream, message);
-    } catch (const serialization::StreamOverrunException& error) {
+      return readMessage<Message>(data, length);
+    } catch (const std::invalid_argument& error) {
       throw std::invalid_argument(std::string("a damaged model: ") + error.what());
     }
-    return message;
   }
 
  private:

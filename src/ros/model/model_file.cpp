@@ -2,20 +2,24 @@
 
 #include <rosbag/bag.h>
 #include <rosbag/exceptions.h>
-#include <rosbag/view.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <boost/filesystem/operations.hpp>
 #include <cmath>
 #include <cstdio>
+#include <memory>
 #include <new>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
+#include "../bag/bag_index.h"
+#include "../bag/bag_messages.h"
+#include "../message_check.h"
 #include "check.h"
 #include "self_awareness/ros/encoding_message.h"
+#include "self_awareness/ros/graph.h"
 #include "self_awareness/ros/model/delays_message.h"
 #include "self_awareness/ros/model/evidence_message.h"
 
@@ -25,6 +29,10 @@ namespace {
 constexpr char kTopic[] = "/model";
 constexpr char kDelaysTopic[] = "/delays";
 constexpr std::array<const char*, 2> kEvidenceTopics{"/evidence/first", "/evidence/second"};
+
+// Of a file that may be made to fill the memory: many times what the largest model needs.
+constexpr std::uint64_t kLargestChunk = 1 << 28;  // [bytes]
+constexpr std::size_t kMostTracks = 200000;
 
 self_awareness::GraphEdge graphMessage(const core::SourceGraph::Edge& edge) {
   self_awareness::GraphEdge message;
@@ -47,40 +55,62 @@ core::paper::DelayStatistics eventTypesOf(const self_awareness::Model& message) 
   return statistics;
 }
 
-/// Calls visit(message) for every message on a topic; returns their number.
-template <typename Message, typename Visit>
-std::size_t forEach(const rosbag::Bag& bag, const std::string& topic, const std::string& path,
-                    Visit visit) {
-  std::size_t number = 0;
-  rosbag::View view(bag, rosbag::TopicQuery(topic));
-  for (const rosbag::MessageInstance& instance : view) {
-    if (instance.getDataType() != ros::message_traits::datatype<Message>()) {
-      break;
+/// The messages of a model file.
+class ModelMessages {
+ public:
+  explicit ModelMessages(std::string path) : path_(std::move(path)) {
+    std::optional<BagIndex> index = readIndexOfFormat2(path_);
+    if (!index) {
+      throw ModelFileError(path_ + ": not a model file");
     }
-    if (instance.getMD5Sum() != ros::message_traits::md5sum<Message>()) {
-      throw ModelFileError(path + ": written by another version of self_awareness (md5 " +
-                           instance.getMD5Sum() + ", this one reads " +
-                           ros::message_traits::md5sum<Message>() + "); train the model again");
-    }
-    visit(*instance.instantiate<Message>());
-    ++number;
+    index_ = std::move(*index);
+    messages_ = BagMessages::open(path_, index_, kLargestChunk);
   }
-  return number;
-}
 
-TrainedModel read(const rosbag::Bag& bag, const std::string& path, ModelCounts counts) {
+  /// Calls visit(message) for every message on a topic; returns their number.
+  template <typename Message, typename Visit>
+  std::size_t forEach(const std::string& topic, Visit visit) {
+    std::size_t number = 0;
+    for (const BagIndexEntry& entry : index_.entries) {
+      const Connection& connection = index_.connections[entry.connection];
+      if (connection.topic != topic ||
+          connection.datatype != ros::message_traits::datatype<Message>()) {
+        continue;
+      }
+      if (connection.md5sum != ros::message_traits::md5sum<Message>()) {
+        throw ModelFileError(path_ + ": written by another version of self_awareness (md5 " +
+                             connection.md5sum + ", this one reads " +
+                             ros::message_traits::md5sum<Message>() + "); train the model again");
+      }
+      messages_->read(entry, content_);
+      visit(readMessage<Message>(content_.data(), content_.size()));
+      ++number;
+    }
+    return number;
+  }
+
+  const std::string& path() const { return path_; }
+
+ private:
+  std::string path_;
+  BagIndex index_;
+  std::unique_ptr<BagMessages> messages_;
+  std::vector<std::uint8_t> content_;
+};
+
+TrainedModel read(ModelMessages& messages, ModelCounts counts) {
   std::optional<TrainedModel> model;
-  forEach<self_awareness::Model>(bag, kTopic, path, [&](const self_awareness::Model& message) {
-    model = fromMessage(message);
-  });
+  const std::size_t models = messages.forEach<self_awareness::Model>(
+      kTopic, [&](const self_awareness::Model& message) { model = fromMessage(message); });
+  check(models <= 1, "it holds more than one model");
   if (!model) {
-    throw ModelFileError(path +
+    throw ModelFileError(messages.path() +
                          ": a bag, but it holds no model; train one from it "
                          "(rosrun self_awareness train)");
   }
   if (counts != ModelCounts::kWatched || !model->isWatched()) {
-    const std::size_t number = forEach<self_awareness::DelayHistograms>(
-        bag, kDelaysTopic, path, [&](const self_awareness::DelayHistograms& message) {
+    const std::size_t number = messages.forEach<self_awareness::DelayHistograms>(
+        kDelaysTopic, [&](const self_awareness::DelayHistograms& message) {
           addMessage(message, model->statistics);
         });
     check(number == model->vocabulary().size() || (number == 0 && model->isWatched()),
@@ -89,8 +119,8 @@ TrainedModel read(const rosbag::Bag& bag, const std::string& path, ModelCounts c
   const std::size_t halves = counts == ModelCounts::kAll && model->isWatched() ? 2 : 0;
   for (std::size_t half = 0; half < halves; ++half) {
     model->evidence.at(half) = model->watched.halves.at(half).withoutPairs();
-    const std::size_t number = forEach<self_awareness::EvidencePairs>(
-        bag, kEvidenceTopics.at(half), path, [&](const self_awareness::EvidencePairs& message) {
+    const std::size_t number = messages.forEach<self_awareness::EvidencePairs>(
+        kEvidenceTopics.at(half), [&](const self_awareness::EvidencePairs& message) {
           setPairs(message, model->evidence.at(half));
         });
     check(number == model->vocabulary().size(), "its evidence does not fit its event types");
@@ -112,10 +142,41 @@ void write(const TrainedModel& model, rosbag::Bag& bag) {
   }
 }
 
-bool limitsFit(const TrainedModel& model) {
-  const core::evidence::Limits limits = limitsOf(*model.evidence_calibration);
-  return limits.tracks.size() == model.watched.tracks.size() && std::isfinite(limits.linker) &&
-         limits.linker > 0;
+bool isNoRate(double value) {
+  return !(value >= 0 && std::isfinite(value)) && !std::isnan(value);
+}
+
+/// @throw std::invalid_argument names what cannot be, or does not fit the model
+void checkCalibration(const self_awareness::EvidenceCalibration& calibration,
+                      const TrainedModel& model) {
+  const std::size_t tracks = model.watched.tracks.size();
+  check(calibration.limits.size() == tracks && std::isfinite(calibration.linker_limit) &&
+            calibration.linker_limit > 0,
+        "its limits are not those of its evidence; calibrate it again");
+  // NaN: the track is not judged.
+  check(std::none_of(calibration.limits.begin(), calibration.limits.end(),
+                     [](double limit) { return limit <= 0 || std::isinf(limit); }),
+        "a limit of its evidence is not above 0");
+  check(tracks == 0 || std::any_of(calibration.limits.begin(), calibration.limits.end(),
+                                   [](double limit) { return limit > 0; }),
+        "its limits judge nothing; calibrate it again");
+  check(calibration.relations.empty() || calibration.relations.size() == tracks,
+        "its relations are not those of its evidence");
+  check((calibration.firsts.empty() || calibration.firsts.size() == model.vocabulary().size()) &&
+            std::all_of(calibration.firsts.begin(), calibration.firsts.end(),
+                        [](std::int64_t first) { return first >= -1; }),
+        "its first events are not those of its event types");
+  check(!isNoRate(calibration.budget) && !isNoRate(calibration.false_alarms_per_hour),
+        "a rate of its false alarms cannot be");
+}
+
+void checkEffort(const self_awareness::Model& message) {
+  check(message.window.toNSec() >= core::kShortestWindow &&
+            message.window.toNSec() <= core::kLongestWindow,
+        "the length of its windows cannot be");
+  check(message.event_types.size() <= kMostEventTypes, "it has too many event types");
+  check(message.tracks.size() <= kMostTracks, "it watches too much");
+  check(message.graph.size() <= kMostEdges, "it has too many edges");
 }
 
 }  // namespace
@@ -240,11 +301,11 @@ self_awareness::Model toMessage(const TrainedModel& model) {
 }
 
 TrainedModel fromMessage(const self_awareness::Model& message) {
+  checkEffort(message);
   TrainedModel model;
   model.stamp = message.stamp;
   model.encoding = fromMessage(message.encoding);
   model.window = message.window.toNSec();
-  check(model.window > 0, "its windows have no length");
   model.statistics = eventTypesOf(message);
   model.predecessors = message.predecessors;
   model.least_effect = {message.least_effect, message.least_effect_of_period};
@@ -276,7 +337,7 @@ TrainedModel fromMessage(const self_awareness::Model& message) {
   check(message.evidence_calibration.size() <= 1, "it has more than one calibration");
   if (!message.evidence_calibration.empty()) {
     model.evidence_calibration = message.evidence_calibration.front();
-    check(limitsFit(model), "its limits are not those of its evidence; calibrate it again");
+    checkCalibration(*model.evidence_calibration, model);
   }
   return model;
 }
@@ -305,18 +366,14 @@ TrainedModel loadModel(const std::string& path, ModelCounts counts) {
                          "(rosrun self_awareness train)");
   }
   try {
-    const rosbag::Bag bag(path, rosbag::bagmode::Read);
-    return read(bag, path, counts);
+    ModelMessages messages(path);
+    return read(messages, counts);
   } catch (const rosbag::BagException& error) {
     throw ModelFileError(path + ": not a model file, or a damaged one (" + error.what() + ")");
-  } catch (const ros::serialization::StreamOverrunException& error) {
-    throw ModelFileError(path + ": a damaged model file (" + error.what() + ")");
   } catch (const std::invalid_argument& error) {
     throw ModelFileError(path + ": a damaged model file: " + error.what());
   } catch (const std::bad_alloc&) {  // damaged numbers ask for much memory
     throw ModelFileError(path + ": a damaged model file, or too little memory");
-  } catch (const std::length_error& error) {
-    throw ModelFileError(path + ": a damaged model file (" + error.what() + ")");
   }
 }
 

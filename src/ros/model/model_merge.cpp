@@ -82,7 +82,7 @@ void merge(TrainedModel& model, const TrainedModel& other) {
   for (const core::EventType& type : other.statistics.vocabulary().types()) {
     vocabulary.intern(type);
   }
-  checkTypeFields(model.encoding, vocabulary);
+  checkEventTypes(model.encoding, vocabulary);
 
   model.statistics.merge(other.statistics);
   core::evidence::merge(model.evidence, model.onlyHalf(), other.evidence, other.onlyHalf());

@@ -3,6 +3,7 @@
 #include <limits>
 
 #include "self_awareness/core/stream/event.h"
+#include "self_awareness/ros/ros_time.h"
 #include "verdict_message.h"
 
 namespace self_awareness::ros1 {

@@ -8,6 +8,7 @@
 #include "alarm_state.h"
 #include "self_awareness/core/stream/event.h"
 #include "self_awareness/core/stream/vocabulary.h"
+#include "self_awareness/ros/ros_time.h"
 #include "verdict_message.h"
 
 namespace self_awareness::ros1 {

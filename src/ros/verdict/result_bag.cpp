@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "self_awareness/ros/bag/bag_reader.h"
+#include "self_awareness/ros/ros_time.h"
 #include "verdict_message.h"
 
 namespace self_awareness::ros1 {

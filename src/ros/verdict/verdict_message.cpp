@@ -1,16 +1,9 @@
 #include "verdict_message.h"
 
-#include <algorithm>
-
 #include "self_awareness/SelfAwareness.h"
+#include "self_awareness/ros/ros_time.h"
 
 namespace self_awareness::ros1 {
-
-ros::Time toRosTime(std::int64_t nanoseconds) {
-  ros::Time time;
-  time.fromNSec(static_cast<std::uint64_t>(std::max<std::int64_t>(nanoseconds, 0)));
-  return time;
-}
 
 std::uint8_t levelOf(const core::Verdict& verdict) {
   if (verdict.alarm) {

@@ -12,9 +12,6 @@
 
 namespace self_awareness::ros1 {
 
-/// @param nanoseconds since 1970; what is earlier counts as 1970
-ros::Time toRosTime(std::int64_t nanoseconds);
-
 /// Level of SelfAwareness.msg: ERROR for an alarm, WARN for a suspicion.
 std::uint8_t levelOf(const core::Verdict& verdict);
 

@@ -8,8 +8,8 @@ import re
 import sys
 from typing import Callable, Optional, Sequence, TypeVar
 
-from self_awareness import (BagError, DetectorParameters, ModelFileError, TrainedModel,
-                            UnknownEvents, recordings)
+from self_awareness import (SHORTEST_WINDOW, BagError, DetectorParameters, ModelFileError,
+                            TrainedModel, UnknownEvents, recordings)
 from self_awareness.recordings import BagPart, RecordingEvents
 from self_awareness.stamps import SECOND_NS, nanoseconds
 
@@ -33,6 +33,7 @@ def run(parser: argparse.ArgumentParser, work: Callable[[argparse.Namespace], No
         0 on success, 1 after an error, 2 after wrong usage, 130 after Ctrl-C.
     """
     try:
+        _check_utf8(sys.argv[1:] if argv is None else argv)
         work(parser.parse_args(argv))
         sys.stdout.flush()
     except SystemExit as stop:  # of argparse: after --help, or after wrong usage
@@ -48,6 +49,14 @@ def run(parser: argparse.ArgumentParser, work: Callable[[argparse.Namespace], No
         file = f'{error.filename}: ' if error.filename else ''
         return _fail(parser.prog, f'{file}{error.strerror or error}')
     return 0
+
+
+def _check_utf8(argv: Sequence[str]) -> None:
+    for argument in argv:
+        try:
+            argument.encode()
+        except UnicodeEncodeError:  # bytes that Python could not decode
+            raise ValueError(f'{ascii(argument)}: not in UTF-8; rename the file') from None
 
 
 def stand_back() -> None:
@@ -75,6 +84,11 @@ def seconds(text: str, low: float = 0.0) -> int:
 def duration(text: str) -> int:
     """Argument type: a time in seconds, from a nanosecond to a day, as nanoseconds."""
     return seconds(text, 1e-9)
+
+
+def window(text: str) -> int:
+    """Argument type: the length of a window in seconds, as nanoseconds."""
+    return seconds(text, SHORTEST_WINDOW / SECOND_NS)
 
 
 def offset(text: str) -> float:
@@ -163,6 +177,8 @@ def read_recording(program: str, model: TrainedModel, part: BagPart) -> Recordin
                     recordings.few_known(model, recording)):
         if warning is not None:
             warn(program, warning)
+    for reason in recording.left_out:
+        warn(program, f'{part}: {reason}; it is left out')
     return recording
 
 

@@ -3,7 +3,6 @@ from __future__ import annotations
 
 import argparse
 import os
-import re
 import sys
 from typing import List, Optional, Sequence
 
@@ -56,7 +55,7 @@ def without(node: str, encoding: EncodingRules) -> EncodingRules:
 
     The monitor will have this name, and does not listen to itself.
     """
-    if not any(re.fullmatch(pattern, node) for pattern in encoding.exclude_sources):
+    if node not in encoding.exclude_sources and encoding.includes_source(node):
         encoding.exclude_sources += [node]  # a regular expression: no name has special characters
     return encoding
 

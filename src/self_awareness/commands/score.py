@@ -23,6 +23,7 @@ from self_awareness.results import check_result_bag, result_bag
 from self_awareness.stamps import SECOND_NS, utc
 
 _COLUMNS = ('bag', 'window_start_ns', 'events', 'unknown', 'score', 'threshold', 'abnormal')
+_ROWS = 1 << 16  # of the table that are made at once
 
 _EPILOG = """\
 BAG@START-END stands for a part of a recording, in s from its first message. Times that are printed
@@ -146,11 +147,12 @@ def _save_csv(path: str, judged: Sequence[Tuple[RecordingEvents, Verdicts]],
             for recording, verdicts in judged:
                 columns = (verdicts.start, verdicts.events, verdicts.unknown, verdicts.score,
                            verdicts.abnormal)
-                for start, events, unknown, score, abnormal in zip(
-                        *(column.tolist() for column in columns)):
-                    writer.writerow((recording.part, start, events, unknown,
-                                     '' if math.isnan(score) else repr(score), limit,
-                                     int(abnormal)))
+                for begin in range(0, len(verdicts.start), _ROWS):  # lists take much memory
+                    for start, events, unknown, score, abnormal in zip(
+                            *(column[begin:begin + _ROWS].tolist() for column in columns)):
+                        writer.writerow((recording.part, start, events, unknown,
+                                         '' if math.isnan(score) else repr(score), limit,
+                                         int(abnormal)))
 
 
 def _plot(recording: RecordingEvents, verdicts: Verdicts, window: int,

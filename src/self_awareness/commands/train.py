@@ -188,7 +188,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('--bin', type=cli.duration, metavar='S',
                         help="size of the bins of the paper's delays in s (default: "
                              f'{Counting.bin_size / SECOND_NS:g})')
-    parser.add_argument('--window', type=cli.duration, metavar='S',
+    parser.add_argument('--window', type=cli.window, metavar='S',
                         help='length of the windows that are scored, in s (default: '
                              f'{Counting.window / SECOND_NS:g})')
     parser.add_argument('--horizon', type=cli.seconds, metavar='S',

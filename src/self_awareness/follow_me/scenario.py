@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import Dict, Mapping, Optional, Tuple, Union
 
 import rospkg
-import yaml
 
 from self_awareness.follow_me.component_spec import (ComponentSpec, Duration, Hypothesis, InView,
                                                      Need, Output, Task)
@@ -70,11 +69,11 @@ def load_scenario(path: Union[str, Path, None] = None) -> Scenario:
     """
     path = default_path() if path is None else Path(path)
     try:
-        data = yaml.safe_load(path.read_text(encoding='utf-8'))
-    except (OSError, UnicodeDecodeError) as error:
+        data = yaml_file.load(str(path))
+    except OSError as error:
         raise SectionError(f'{path}: cannot be read: {error}') from error
-    except yaml.YAMLError as error:
-        raise SectionError(f'{path}: not YAML: {error}') from error
+    except ValueError as error:
+        raise SectionError(str(error)) from error
     with Section(data, str(path)) as top:
         components = tuple(_component(section) for section in top.sections('components'))
         datatypes = _datatypes(top, components)

@@ -16,12 +16,12 @@ import numpy as np
 
 from self_awareness import (DEFAULT_WINDOW, PREDECESSORS, BagError, BagSummary,
                             DetectorParameters, EncodingRules, LeastEffect, Recording,
-                            TrainedModel, Training, progress, read_events, summarise_bag)
+                            TrainedModel, Training, progress, read_events, recordings,
+                            summarise_bag)
 from self_awareness.calibration import limits
 from self_awareness.calibration.limits import TrainedOn
 from self_awareness.judging import BOTH, EVIDENCE, PAPER
-from self_awareness import recordings
-from self_awareness.recordings import BagPart, RecordingEvents, overlap
+from self_awareness.recordings import BagPart, RecordingEvents, check_windows, overlap
 from self_awareness.stamps import SECOND_NS
 from self_awareness.training.robot_graph import RobotGraph, graph_file
 from self_awareness.workers import InProcess, Workers
@@ -299,6 +299,7 @@ def _count(how: _How, part: BagPart) -> _Sum:
     if summary.dropped:
         lines.append(f'{part}: warning: {summary.dropped} messages came too fast to be written, '
                      'and are missing')
+    lines += [f'{part}: warning: {reason}; it is left out' for reason in summary.left_out]
     if events.copied and encoding.source != 'none':
         lines.append(f'{part}: {_COPIED}')
     trained_on = TrainedOn(part, events.fingerprint, events)
@@ -345,4 +346,5 @@ def _read(counting: Counting, part: BagPart) -> Tuple[RecordingEvents, EncodingR
     if len(events.stamps) == 1:
         raise ValueError('one event only, there is no delay to learn; leave it out or record for '
                          'longer')
+    check_windows(events.stamps, counting.window)
     return events, encoding, read.summary

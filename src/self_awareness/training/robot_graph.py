@@ -4,7 +4,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, Dict, Set, Tuple
 
-from self_awareness import stable_name
+from self_awareness import stable_name, yaml_file
 from self_awareness.output_files import replacing
 
 _Nodes = Dict[str, Set[str]]
@@ -61,14 +61,7 @@ class RobotGraph:
             OSError: it cannot be read.
             ValueError: it does not hold a graph; the message names the file.
         """
-        # Imported here: it takes long, and not all recordings have such a file.
-        import yaml
-
-        with open(path, encoding='utf-8') as file:
-            try:
-                content = yaml.safe_load(file)
-            except (yaml.YAMLError, UnicodeDecodeError) as error:
-                raise ValueError(f'{path}: not YAML: {error}') from error
+        content = yaml_file.load(path)
         if not isinstance(content, dict):
             raise ValueError(f'{path}: expected topics, each with publishers and subscribers')
         graph = cls()

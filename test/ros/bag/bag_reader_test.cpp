@@ -12,13 +12,13 @@
 #include <cmath>
 #include <fstream>
 #include <iterator>
-#include <map>
 #include <random>
 #include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "bag_bytes.h"
 #include "self_awareness/core/stream/vocabulary.h"
 
 namespace self_awareness::ros1 {
@@ -76,50 +76,6 @@ class BagReaderTest : public testing::Test {
     BagReader(bag).read(encoder, range,
                         [&](const core::Event& event) { events.push_back(event); });
     return events;
-  }
-
-  // Writes three messages /a, one a second, in a format that rosbag no longer writes.
-  std::string writeBagOfFormerFormat(const std::string& name) const {
-    const auto number = [](auto value) {
-      return std::string(reinterpret_cast<const char*>(&value), sizeof value);
-    };
-    const auto block = [&](const std::string& bytes) {
-      return number(static_cast<std::uint32_t>(bytes.size())) + bytes;
-    };
-    const auto record = [&](const std::map<std::string, std::string>& fields,
-                            const std::string& data) {
-      std::string header;
-      for (const auto& [field, value] : fields) {
-        header += block(std::string(field).append("=").append(value));
-      }
-      return block(header) + block(data);
-    };
-    std::string bag = "#ROSBAG V1.2\n";
-    const std::string start =
-        record({{"op", "\x03"}, {"index_pos", number(std::uint64_t{0})}}, "");
-    const std::size_t first = bag.size() + start.size();
-    std::string messages = record({{"op", "\x01"},
-                                   {"topic", "/a"},
-                                   {"md5", ros::message_traits::md5sum<std_msgs::String>()},
-                                   {"type", "std_msgs/String"},
-                                   {"def", "string data\n"}},
-                                  "");
-    std::string index;
-    for (std::uint32_t i = 0; i < 3; ++i) {
-      // The index points at the definition before the first message.
-      const std::uint64_t place = first + (i == 0 ? 0 : messages.size());
-      index += number(100 + i) + number(std::uint32_t{0}) + number(place);
-      messages += record({{"op", "\x02"}, {"topic", "/a"}}, block(std::string(1, "xyz"[i])));
-    }
-    const std::uint64_t index_pos = first + messages.size();
-    bag += record({{"op", "\x03"}, {"index_pos", number(index_pos)}}, "") + messages +
-           record({{"op", "\x04"},
-                   {"topic", "/a"},
-                   {"ver", number(std::uint32_t{0})},
-                   {"count", number(std::uint32_t{3})}},
-                  index);
-    std::ofstream(path(name), std::ios::binary) << bag;
-    return path(name);
   }
 
   // What this process has read so far, from any file [bytes].
@@ -249,7 +205,8 @@ TEST_F(BagReaderTest, HardlyAnythingIsReadOfABagWithImages) {
 }
 
 TEST_F(BagReaderTest, ABagOfTheFormerFormatIsLeftToRosbag) {
-  const std::string bag = writeBagOfFormerFormat("former.bag");
+  const std::string bag = path("former.bag");
+  bag_bytes::writeFile(bag, bag_bytes::formerBag());
   const BagSummary summary = BagReader(bag).summary();
   EXPECT_EQ(summary.messages, 3U);
   EXPECT_EQ(summary.start, 100 * core::kNanosecondsPerSecond);

@@ -12,6 +12,10 @@ namespace self_awareness::core {
 /// Default length of a window [ns] (paper, section V-B).
 constexpr std::int64_t kDefaultWindow = kNanosecondsPerSecond / 10;
 
+/// Windows of a model are no shorter and no longer [ns]: a silence is judged window by window.
+constexpr std::int64_t kShortestWindow = kNanosecondsPerSecond / 1000;
+constexpr std::int64_t kLongestWindow = 86400 * kNanosecondsPerSecond;
+
 /// Start [ns] of the window in which a stamp [ns] lies: windows start at the multiples of `length`
 /// [ns].
 std::int64_t floorToGrid(std::int64_t stamp, std::int64_t length);

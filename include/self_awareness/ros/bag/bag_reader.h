@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "self_awareness/core/stream/event.h"
 #include "self_awareness/ros/encoding.h"
@@ -46,6 +47,10 @@ struct BagSummary {
   bool one_sender_a_topic = false;
   /// It is so of a recording that was copied: by `rosbag filter`, `compress` or `decompress`.
   bool copied = false;
+  /// Of bags: why some connections are no events whatever the encoding (whyLeftOut), each reason
+  /// once, and no more than kMostReasons.
+  std::vector<std::string> left_out;
+  static constexpr std::size_t kMostReasons = 10;
 
   // Of event logs only:
   std::optional<EncodingRules> encoding;  ///< by which messages became events

@@ -1,0 +1,40 @@
+#include "name_patterns.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "text.h"
+
+namespace self_awareness::ros1 {
+namespace {
+
+constexpr std::size_t kLongestQuote = 200;  // of a pattern in an error [bytes]
+
+}  // namespace
+
+NamePatterns::NamePatterns(const std::vector<std::string>& patterns) {
+  re2::RE2::Options options;
+  options.set_log_errors(false);
+  options.set_max_mem(kMostMemory);
+  int states = 0;
+  for (const std::string& pattern : patterns) {
+    auto compiled = std::make_unique<const re2::RE2>(pattern, options);
+    if (!compiled->ok()) {
+      throw std::invalid_argument("encoding: '" + printable(pattern, kLongestQuote) +
+                                  "' is not a regular expression (of RE2): " +
+                                  printable(compiled->error(), kLongestQuote));
+    }
+    states += compiled->ProgramSize();
+    if (states > kMostStates) {
+      throw std::invalid_argument("encoding: its patterns are too large together");
+    }
+    patterns_.push_back(std::move(compiled));
+  }
+}
+
+bool NamePatterns::match(const std::string& name) const {
+  return std::any_of(patterns_.begin(), patterns_.end(),
+                     [&](const auto& pattern) { return re2::RE2::FullMatch(name, *pattern); });
+}
+
+}  // namespace self_awareness::ros1

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <re2/re2.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace self_awareness::ros1 {
+
+/// Regular expressions that names of topics or nodes match, in the syntax of RE2
+/// (github.com/google/re2/wiki/Syntax). RE2 needs time that follows the length of the name, and
+/// bounded memory, whatever the pattern: patterns come with models, and names from strangers.
+class NamePatterns {
+ public:
+  /// Of what RE2 makes of a pattern [bytes]. The patterns of the defaults need a few kB.
+  static constexpr int kMostMemory = 1 << 18;
+  /// States of all patterns together: a name of 1000 bytes is matched in a fraction of a second.
+  static constexpr int kMostStates = 200000;
+
+  /// @throw std::invalid_argument names the pattern that is no regular expression, or too large
+  explicit NamePatterns(const std::vector<std::string>& patterns);
+
+  bool empty() const { return patterns_.empty(); }
+  /// Whether one of them matches the whole name.
+  bool match(const std::string& name) const;
+
+ private:
+  std::vector<std::unique_ptr<const re2::RE2>> patterns_;
+};
+
+}  // namespace self_awareness::ros1

@@ -1,0 +1,122 @@
+"""Bytes that are no text, and files made to fill the memory: one line, or nothing special."""
+from __future__ import annotations
+
+import os
+import random
+from pathlib import Path
+
+import pytest
+from conftest import robot, write_bag
+
+from self_awareness import ModelFileError, TrainedModel, encoding_file, yaml_file
+from self_awareness.commands import info, score, train
+from self_awareness.training.robot_graph import RobotGraph
+
+BOMB = 'a0: &a0 [x, x, x, x, x, x, x, x, x]\n' + ''.join(
+    f'a{i + 1}: &a{i + 1} [{", ".join([f"*a{i}"] * 9)}]\n' for i in range(9))
+
+
+def test_names_that_are_no_utf8_are_learned_and_shown(make_bag, tmp_path: Path, capsys) -> None:
+    bag = Path(make_bag('umlaut.bag', robot(1.0)))
+    bag.write_bytes(bag.read_bytes().replace(b'/laser', b'/l\xe4ser'))
+    model = str(tmp_path / 'm')
+    assert train.main([str(bag), '-o', model]) == 0
+    assert info.main([model]) == 0 and '/l\ufffdser' in capsys.readouterr().out
+    assert score.main([str(bag), '--model', model]) == 0
+
+
+def test_a_value_cut_inside_a_character_is_learned(tmp_path: Path, capsys) -> None:
+    bag = write_bag(tmp_path / 'cut.bag', robot(1.0), text='x' * 63 + '\u00e4')
+    encoding = tmp_path / 'e.yaml'
+    encoding.write_text('type_fields: {std_msgs/Header: frame_id}\n')
+    model = str(tmp_path / 'm')
+    assert train.main([bag, '-o', model, '--encoding', str(encoding)]) == 0
+    assert info.main([model]) == 0 and f'[frame_id={"x" * 63}]' in capsys.readouterr().out
+
+
+def test_a_topic_that_no_node_can_subscribe_to_is_left_out_and_named(make_bag, tmp_path: Path,
+                                                                     capsys) -> None:
+    bag = make_bag('front.bag', [*robot(1.0), *((t, '/laser', '/scan-front')
+                                                for t, _, _ in robot(1.0, 2.0))])
+    model = str(tmp_path / 'm')
+    assert train.main([bag, '-o', model]) == 0
+    told = capsys.readouterr().out
+    assert told.count("'/scan-front'") == 1 and 'left out' in told
+    assert '/scan-front' not in {kind.scope for kind in TrainedModel.load(model).event_types}
+    assert score.main([bag, '--model', model]) == 0
+    assert capsys.readouterr().err.count("'/scan-front'") == 1
+
+
+def test_a_file_name_that_is_no_utf8_is_one_line(make_bag, tmp_path: Path, capsys) -> None:
+    bag = make_bag('good.bag', robot(1.0))
+    name = os.fsdecode(os.fsencode(str(tmp_path)) + b'/gr\xfc\xdf.bag')
+    os.rename(bag, name)
+    assert train.main([name, '-o', str(tmp_path / 'm')]) == 1
+    error = capsys.readouterr().err
+    assert error.count('\n') == 1 and 'UTF-8' in error
+
+
+def test_windows_without_end_are_refused(make_bag, model_file: str, tmp_path: Path,
+                                         capsys) -> None:
+    bag = make_bag('rare.bag', [(1.0 + 3000.0 * i, '/laser', '/scan') for i in range(400)])
+    for program, arguments in ((train, ['-o', str(tmp_path / 'm')]),
+                               (score, ['--model', model_file])):
+        assert program.main([bag, *arguments]) == 1
+        error = capsys.readouterr().err
+        assert bag in error and 'windows' in error and error.count('\n') == 1
+    assert train.main([bag, '--window', '1e-6', '-o', str(tmp_path / 'm')]) == 2
+
+
+@pytest.mark.parametrize('text, told', [
+    (BOMB, 'alias'), ('[' * 2000, 'deep'), ('- ' * 2000 + 'x', 'deep'), ('source: 2001-99-99', ''),
+    ('source: !!python/object/apply:os.system [true]', ''), ('source: "\\ud800"', ''),
+    (f'source: {"9" * 10000}', ''), ('source: \xff', '')])
+def test_a_bad_yaml_file_is_one_line_that_names_it(tmp_path: Path, text: str, told: str) -> None:
+    path = tmp_path / 'e.yaml'
+    path.write_bytes(text.encode('latin-1', 'replace'))
+    for load in (encoding_file.load, RobotGraph.load):
+        with pytest.raises(ValueError, match=str(path)) as error:
+            load(str(path))
+        assert told in str(error.value) and len(str(error.value)) < 1000
+
+
+def test_a_large_yaml_file_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / 'e.yaml'
+    with path.open('wb') as file:
+        file.truncate(1 << 30)  # takes no room on the disk
+    with pytest.raises(ValueError, match='larger than'):
+        yaml_file.load(str(path))
+
+
+def test_a_changed_encoding_file_is_read_or_refused(tmp_path: Path) -> None:
+    whole = (Path(__file__).resolve().parents[3] / 'config' / 'encoding.yaml').read_bytes()
+    draw = random.Random(1)
+    path = tmp_path / 'e.yaml'
+    refused = 0
+    for _ in range(150):
+        data = bytearray(whole)
+        for _ in range(draw.randrange(1, 20)):
+            at = draw.randrange(len(data))
+            data[at:at + draw.randrange(3)] = bytes(
+                draw.choice(b'[]{}:,-*&!#|>\'"%@`?\n\t \xff0') for _ in range(draw.randrange(3)))
+        path.write_bytes(data)
+        try:
+            encoding_file.load(str(path)).validate()
+        except ValueError as error:
+            assert str(path) in str(error)
+            refused += 1
+    assert 0 < refused < 150
+
+
+def test_a_changed_model_is_loaded_or_refused(model_file: str, tmp_path: Path) -> None:
+    whole = Path(model_file).read_bytes()
+    draw = random.Random(2)
+    path = tmp_path / 'bad.model'
+    for _ in range(200):
+        data = bytearray(whole)
+        data[draw.randrange(4100, len(data))] ^= 1 << draw.randrange(8)
+        path.write_bytes(data)
+        try:
+            TrainedModel.load(str(path))
+        except ModelFileError as error:
+            assert str(path) in str(error) and 'memory' not in str(error)

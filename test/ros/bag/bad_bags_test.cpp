@@ -1,0 +1,346 @@
+// Bags that were damaged, or made to do harm: each is read, or refused in words that name the
+// file.
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <boost/filesystem.hpp>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "bag_bytes.h"
+#include "self_awareness/core/stream/vocabulary.h"
+#include "self_awareness/ros/bag/bag_reader.h"
+#include "self_awareness/ros/bag/bag_to_event_log.h"
+#include "self_awareness/ros/bag/bag_writer.h"
+#include "self_awareness/ros/bag/event_log_reader.h"
+
+namespace self_awareness::ros1 {
+namespace {
+
+namespace fs = boost::filesystem;
+using bag_bytes::block;
+using bag_bytes::bytesOf;
+using bag_bytes::Parts;
+
+// What this process may allocate beyond what it has [bytes]: a length that is believed needs more.
+constexpr std::uint64_t kEnough = 256 << 20;
+
+/// Lets no test allocate what a lying number asks for.
+class MemoryLimit {
+ public:
+  MemoryLimit() {
+    getrlimit(RLIMIT_AS, &before_);
+    std::ifstream statm("/proc/self/statm");
+    std::uint64_t pages = 0;
+    statm >> pages;
+    rlimit limit = before_;
+    limit.rlim_cur = pages * 4096 + kEnough;
+    setrlimit(RLIMIT_AS, &limit);
+  }
+  ~MemoryLimit() { setrlimit(RLIMIT_AS, &before_); }
+  MemoryLimit(const MemoryLimit&) = delete;
+  MemoryLimit& operator=(const MemoryLimit&) = delete;
+
+ private:
+  rlimit before_{};
+};
+
+class BadBagsTest : public testing::Test {
+ protected:
+  BadBagsTest() : folder_(fs::temp_directory_path() / fs::unique_path("self_awareness-%%%%%%%%")) {
+    fs::create_directory(folder_);
+    parts_.messages = {{100, block("x")}, {101, block("y")}, {102, block("z")}};
+    rules_.type_fields = {{"std_msgs/String", "data"}};
+  }
+  ~BadBagsTest() override { fs::remove_all(folder_); }
+
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  /// What is wrong with a bag; empty: it was read.
+  std::string errorOf(const std::string& bytes) {
+    bag_bytes::writeFile(path("bad.bag"), bytes);
+    events_.clear();
+    vocabulary_ = {};
+    try {
+      const Encoder encoder(
+          rules_, [this](const core::EventType& type) { return vocabulary_.intern(type); });
+      BagReader(path("bad.bag")).read(encoder, {}, [this](const core::Event& event) {
+        events_.push_back(event);
+      });
+    } catch (const BagError& error) {
+      EXPECT_EQ(std::string(error.what()).rfind(path("bad.bag") + ": ", 0), 0U) << error.what();
+      return error.what();
+    } catch (const std::invalid_argument& error) {  // the definition; the caller names the bag
+      return error.what();
+    }
+    return "";
+  }
+  std::string errorOfLog(const std::string& bytes) {
+    bag_bytes::writeFile(path("bad.log"), bytes);
+    events_.clear();
+    vocabulary_ = {};
+    try {
+      const std::size_t recordings = recordingsInEventLog(path("bad.log")).value_or(1);
+      for (std::size_t k = 0; k < std::min<std::size_t>(recordings, 3); ++k) {
+        const EventLogReader log(path("bad.log"), k);
+        log.read(
+            *log.summary().encoding,
+            [this](const core::EventType& type) { return vocabulary_.intern(type); }, {},
+            [this](const core::Event& event) { events_.push_back(event); });
+      }
+    } catch (const BagError& error) {
+      EXPECT_EQ(std::string(error.what()).rfind(path("bad.log") + ": ", 0), 0U) << error.what();
+      return error.what();
+    }
+    return "";
+  }
+  static bool has(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+  }
+  /// Three chunks of three messages each.
+  std::string threeChunks() {
+    std::vector<std::string> chunks;
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      for (auto& [second, content] : parts_.messages) {
+        second += 10;
+      }
+      const std::string data = parts_.chunk();
+      chunks.push_back(parts_.chunkRecord(data, static_cast<std::uint32_t>(data.size())) +
+                       parts_.indexRecord());
+    }
+    return parts_.bag(chunks);
+  }
+  std::string eventLog() {
+    bag_bytes::writeFile(path("good.bag"), parts_.bag());
+    EventLogWriter log(path("good.log"));
+    Graph graph;
+    graph.topics["/a"] = {"std_msgs/String", {"/node"}, {"/other"}};
+    addToEventLog(BagReader(path("good.bag")), rules_, graph, log);
+    log.close();
+    return bag_bytes::readFile(path("good.log"));
+  }
+
+  fs::path folder_;
+  Parts parts_;
+  EncodingRules rules_;
+  core::Vocabulary vocabulary_;
+  std::vector<core::Event> events_;
+};
+
+TEST_F(BadBagsTest, TheBagThatTheOthersAreMadeFromIsGood) {
+  EXPECT_EQ(errorOf(parts_.bag()), "");
+  EXPECT_EQ(events_.size(), 3U);
+  EXPECT_EQ(errorOf(threeChunks()), "");
+  EXPECT_EQ(events_.size(), 9U);
+  EXPECT_EQ(errorOfLog(eventLog()), "");
+  EXPECT_EQ(events_.size(), 3U);
+}
+
+TEST_F(BadBagsTest, ABagIsRefusedWhereverItIsCut) {
+  const MemoryLimit limit;
+  const std::string bag = threeChunks();
+  const std::string log = eventLog();
+  for (const std::string* whole : {&bag, &log}) {
+    for (const std::size_t boundary : bag_bytes::boundaries(*whole)) {
+      for (const int beside : {-1, 0, 1, 5}) {
+        const auto cut = static_cast<std::ptrdiff_t>(boundary) + beside;
+        if (cut < static_cast<std::ptrdiff_t>(whole->size())) {
+          const std::string part = whole->substr(0, static_cast<std::size_t>(cut));
+          EXPECT_NE(whole == &bag ? errorOf(part) : errorOfLog(part), "") << cut;
+        }
+      }
+    }
+  }
+}
+
+TEST_F(BadBagsTest, NoFlippedBitIsBelievedInSilence) {
+  const MemoryLimit limit;
+  const std::string whole = threeChunks();
+  errorOf(whole);
+  const std::vector<core::Event> events = events_;
+  const std::size_t first = bag_bytes::boundaries(whole)[1];
+  for (std::size_t at = first; at < whole.size(); ++at) {
+    std::string bytes = whole;
+    bytes[at] = static_cast<char>(bytes[at] ^ 1 << at % 8);
+    // What is read in spite of it has all events at their times, or none under a name that cannot
+    // be: contents and names may differ.
+    if (errorOf(bytes).empty() && BagReader(path("bad.bag")).summary().left_out.empty()) {
+      ASSERT_EQ(events_.size(), events.size()) << at;
+      for (std::size_t k = 0; k < events.size(); ++k) {
+        ASSERT_EQ(events_[k].stamp, events[k].stamp) << at;
+      }
+    }
+  }
+}
+
+TEST_F(BadBagsTest, NoFlippedBitOfALogEndsTheProgram) {
+  const MemoryLimit limit;
+  const std::string whole = eventLog();
+  std::size_t refused = 0;
+  for (std::size_t at = bag_bytes::boundaries(whole)[1]; at < whole.size(); at += 5) {
+    std::string bytes = whole;
+    bytes[at] = static_cast<char>(bytes[at] ^ 1 << at % 8);
+    refused += errorOfLog(bytes).empty() ? 0 : 1;
+  }
+  EXPECT_GT(refused, 50U);
+}
+
+TEST_F(BadBagsTest, ALyingLengthAsksForNoMemory) {
+  const MemoryLimit limit;
+  const std::string bag = threeChunks();
+  const std::string log = eventLog();
+  for (const std::string* whole : {&bag, &log}) {
+    for (std::size_t at = 13; at + 4 < whole->size(); ++at) {
+      for (const std::uint32_t lie : {0xFFFFFFFFU, 0x7FFFFFFFU, 0x3FFFFFFFU}) {
+        std::uint32_t length = 0;
+        std::memcpy(&length, &(*whole)[at], sizeof length);
+        if (length > 5000 || (at > 200 && at < 4000)) {
+          continue;  // no length, or the blanks after the file's header
+        }
+        std::string bytes = *whole;
+        bytes.replace(at, sizeof lie, bytesOf(lie));
+        const std::string error = whole == &bag ? errorOf(bytes) : errorOfLog(bytes);
+        EXPECT_FALSE(has(error, "memory")) << at << ": " << error;
+      }
+    }
+  }
+}
+
+TEST_F(BadBagsTest, SwappedAndRepeatedBlocksAreRefused) {
+  const std::string whole = threeChunks();
+  const std::vector<std::size_t> begins = bag_bytes::boundaries(whole);
+  const auto piece = [&](std::size_t k) {
+    return whole.substr(begins[k], begins[k + 1] - begins[k]);
+  };
+  for (std::size_t k = 1; k + 1 < begins.size(); ++k) {
+    std::string repeated = whole;
+    repeated.insert(begins[k + 1], piece(k));
+    EXPECT_NE(errorOf(repeated), "") << k;
+    std::string left_out = whole;
+    left_out.erase(begins[k], begins[k + 1] - begins[k]);
+    EXPECT_NE(errorOf(left_out), "") << k;
+  }
+  // A chunk and its index, with those after them: of the same lengths, so all positions fit.
+  std::string swapped = whole;
+  swapped.replace(begins[1], begins[5] - begins[1], piece(3) + piece(4) + piece(1) + piece(2));
+  EXPECT_EQ(errorOf(swapped), "") << "the order of chunks says nothing";
+  swapped = whole;
+  swapped.replace(begins[1], begins[5] - begins[1], piece(1) + piece(4) + piece(3) + piece(2));
+  EXPECT_TRUE(has(errorOf(swapped), "its index and its messages contradict each other"));
+}
+
+TEST_F(BadBagsTest, AChunkThatTheIndexHasTwiceOrNotAtAllIsRefused) {
+  const std::string data = parts_.chunk();
+  const std::string chunk =
+      parts_.chunkRecord(data, static_cast<std::uint32_t>(data.size())) + parts_.indexRecord();
+  const std::uint64_t first = Parts::fileHeader(0, 0, 0).size();
+  const auto bag = [&](const std::vector<std::uint64_t>& positions) {
+    std::string infos;
+    for (const std::uint64_t position : positions) {
+      infos += Parts::chunkInfo(first + position, 3);
+    }
+    return Parts::fileHeader(first + 2 * chunk.size(), 1,
+                             static_cast<std::uint32_t>(positions.size())) +
+           chunk + chunk + parts_.connectionRecord() + infos;
+  };
+  EXPECT_TRUE(has(errorOf(bag({0, 0})), "a chunk twice"));
+  EXPECT_TRUE(has(errorOf(bag({0})), "leaves out a chunk"));
+  EXPECT_TRUE(has(errorOf(bag({chunk.size()})), "leaves out a chunk"));
+  EXPECT_TRUE(has(errorOf(bag({chunk.size(), 0})), "leaves out a chunk"));
+  EXPECT_TRUE(has(errorOf(bag({0, chunk.size()})), "the same messages twice"));
+}
+
+TEST_F(BadBagsTest, AChunkThatAnnouncesGigabytesIsRefused) {
+  const MemoryLimit limit;
+  const std::string zeros(1000, '\0');
+  for (const char* compression : {"none", "lz4", "bz2", "zip"}) {
+    parts_.compression = compression;
+    for (const std::uint32_t announced : {0xFFFFFFFFU, 0x40000001U, 1000000U}) {
+      const std::string error =
+          errorOf(parts_.bag({parts_.chunkRecord(zeros, announced) + parts_.indexRecord()}));
+      EXPECT_NE(error, "") << compression;
+      EXPECT_FALSE(has(error, "memory")) << error;
+    }
+  }
+}
+
+TEST_F(BadBagsTest, AListOfChunksAsLongAsAHoleInTheFileIsRefused) {
+  const MemoryLimit limit;
+  std::string bytes = Parts::fileHeader(4200, 1, 0xFFFFFFFF);
+  bytes.resize(4200);
+  bytes += parts_.connectionRecord();
+  bag_bytes::writeFile(path("hole.bag"), bytes);
+  fs::resize_file(path("hole.bag"), std::uintmax_t{3} << 30);  // takes no room on the disk
+  try {
+    BagReader bag(path("hole.bag"));
+    FAIL();
+  } catch (const BagError& error) {
+    EXPECT_FALSE(has(error.what(), "memory")) << error.what();
+  }
+}
+
+TEST_F(BadBagsTest, EveryTimeThatABagCanHoldIsReadOrRefused) {
+  parts_.messages = {{1, block("x")}, {0xFFFFFFFF, block("y")}};
+  parts_.nanoseconds = 999999999;
+  EXPECT_EQ(errorOf(parts_.bag()), "");
+  EXPECT_EQ(events_.back().stamp, 4294967295999999999);
+  EXPECT_EQ(errorOfLog(eventLog()), "") << "to the last second";
+  parts_.nanoseconds = 1000000000;
+  EXPECT_TRUE(has(errorOf(parts_.bag()), "a time that cannot be"));
+}
+
+TEST_F(BadBagsTest, NamesAreUtf8WhateverTheBagSays) {
+  parts_.callerid = "/m\xFCller";                                    // Latin-1
+  parts_.messages = {{1, block(std::string(63, 'x') + "\xC3\xA4")},  // cut in the middle of ae
+                     {2, block("\xFF\n\x1B[2J")}};
+  EXPECT_EQ(errorOf(parts_.bag()), "");
+  EXPECT_EQ(vocabulary_.at(0).source, "/m\xEF\xBF\xBDller");
+  EXPECT_EQ(vocabulary_.at(0).type, "std_msgs/String[data=" + std::string(63, 'x') + "]");
+  EXPECT_EQ(vocabulary_.at(1).type,
+            "std_msgs/String[data=\xEF\xBF\xBD\xEF\xBF\xBD\xEF\xBF\xBD[2J]");
+}
+
+TEST_F(BadBagsTest, TopicsThatNoNodeCanSubscribeToAreLeftOutAndNamed) {
+  for (const std::string& topic :
+       {std::string("/scan-front"), std::string("/a b"), std::string("/m\xFCller"),
+        std::string("/a:b"), "/" + std::string(30000, 'a')}) {
+    parts_.topic = topic;
+    EXPECT_EQ(errorOf(parts_.bag()), "") << topic;
+    EXPECT_TRUE(events_.empty());
+    const std::vector<std::string> left_out = BagReader(path("bad.bag")).summary().left_out;
+    ASSERT_EQ(left_out.size(), 1U);
+    EXPECT_TRUE(has(left_out[0], topic.substr(0, 2))) << left_out[0];
+    EXPECT_LT(left_out[0].size(), 200U);
+  }
+  parts_.topic = "/a";
+  parts_.callerid = "/" + std::string(30000, 'n');
+  EXPECT_EQ(errorOf(parts_.bag()), "");
+  EXPECT_TRUE(events_.empty());
+}
+
+TEST_F(BadBagsTest, ADefinitionThatWouldTakeForeverIsRefused) {
+  const MemoryLimit limit;
+  for (const char* before :
+       {"std_msgs/String self\n", "uint8[99999999999999999999] x\n", "string[4294967295] x\n",
+        "uint64[4294967295] x\n", "uint8[-1] x\n"}) {
+    parts_.definition = std::string(before) + "string data\n";
+    EXPECT_NE(errorOf(parts_.bag()), "") << before;
+  }
+}
+
+TEST_F(BadBagsTest, AFormerBagWithALyingLengthIsRefused) {
+  const MemoryLimit limit;
+  const std::string header =
+      bag_bytes::record({{"op", "\x03"}, {"index_pos", bytesOf(std::uint64_t{60})}}, "");
+  for (const std::uint32_t lie : {0xFFFFFFFFU, 0x7FFFFFFFU, 4000U}) {
+    EXPECT_NE(errorOf("#ROSBAG V1.2\n" + header + bytesOf(lie) + std::string(100, 'x')), "");
+    EXPECT_NE(errorOf("#ROSBAG V1.2\n" + header + block("op=\x02") + bytesOf(lie)), "");
+  }
+}
+
+}  // namespace
+}  // namespace self_awareness::ros1

@@ -1,0 +1,174 @@
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <initializer_list>
+#include <iterator>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace self_awareness::ros1::bag_bytes {
+
+/// Bags of format 2.0, byte by byte, so that a test can make what no program writes.
+
+inline std::string readFile(const std::string& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+inline void writeFile(const std::string& path, const std::string& bytes) {
+  std::ofstream(path, std::ios::binary) << bytes;
+}
+
+template <typename Number>
+std::string bytesOf(Number number) {
+  return {reinterpret_cast<const char*>(&number), sizeof number};
+}
+
+inline std::string block(const std::string& bytes) {
+  return bytesOf(static_cast<std::uint32_t>(bytes.size())) + bytes;
+}
+
+using Fields = std::initializer_list<std::pair<std::string, std::string>>;
+
+inline std::string fields(const Fields& named) {
+  std::string bytes;
+  for (const auto& [name, value] : named) {
+    bytes += block(name + "=" + value);
+  }
+  return bytes;
+}
+
+inline std::string record(const Fields& header, const std::string& data) {
+  return block(fields(header)) + block(data);
+}
+
+/// Where the records of a file begin, and where the last one ends.
+inline std::vector<std::size_t> boundaries(const std::string& file) {
+  const auto length = [&](std::size_t at) {
+    std::uint32_t value = 0;
+    std::memcpy(&value, &file[at], sizeof value);
+    return value;
+  };
+  std::vector<std::size_t> begins{file.find('\n') + 1};
+  while (begins.back() < file.size()) {
+    const std::size_t data = begins.back() + sizeof(std::uint32_t) + length(begins.back());
+    begins.push_back(data + sizeof(std::uint32_t) + length(data));
+  }
+  return begins;
+}
+
+/// A bag of one chunk with one connection, /a of /node, in pieces that a test may change.
+struct Parts {
+  std::string definition = "string data\n";
+  std::string datatype = "std_msgs/String";
+  std::string topic = "/a";
+  std::string callerid = "/node";
+  std::string compression = "none";
+  std::vector<std::pair<std::uint32_t, std::string>> messages;  ///< second, and content
+  std::uint32_t nanoseconds = 0;                                ///< of each time
+
+  std::string chunk() const {
+    std::string data;
+    for (const auto& [second, content] : messages) {
+      data += message(second, content);
+    }
+    return data;
+  }
+  std::string time(std::uint32_t second) const { return bytesOf(second) + bytesOf(nanoseconds); }
+  std::string message(std::uint32_t second, const std::string& content) const {
+    return record({{"op", "\x02"}, {"conn", bytesOf(std::uint32_t{0})}, {"time", time(second)}},
+                  content);
+  }
+  std::string chunkRecord(const std::string& data, std::uint32_t unpacked) const {
+    return record({{"op", "\x05"}, {"compression", compression}, {"size", bytesOf(unpacked)}},
+                  data);
+  }
+  std::string indexRecord() const {
+    std::string entries;
+    std::uint32_t offset = 0;
+    for (const auto& [second, content] : messages) {
+      entries += time(second) + bytesOf(offset);
+      offset += static_cast<std::uint32_t>(message(second, content).size());
+    }
+    return record({{"op", "\x04"},
+                   {"ver", bytesOf(std::uint32_t{1})},
+                   {"conn", bytesOf(std::uint32_t{0})},
+                   {"count", bytesOf(static_cast<std::uint32_t>(messages.size()))}},
+                  entries);
+  }
+  std::string connectionRecord() const {
+    return record({{"op", "\x07"}, {"conn", bytesOf(std::uint32_t{0})}, {"topic", topic}},
+                  fields({{"callerid", callerid},
+                          {"md5sum", "*"},
+                          {"message_definition", definition},
+                          {"topic", topic},
+                          {"type", datatype}}));
+  }
+  static std::string chunkInfo(std::uint64_t position, std::uint32_t messages) {
+    const std::string no_time(8, '\0');
+    return record({{"op", "\x06"},
+                   {"ver", bytesOf(std::uint32_t{1})},
+                   {"chunk_pos", bytesOf(position)},
+                   {"start_time", no_time},
+                   {"end_time", no_time},
+                   {"count", bytesOf(std::uint32_t{1})}},
+                  bytesOf(std::uint32_t{0}) + bytesOf(messages));
+  }
+  static std::string fileHeader(std::uint64_t index, std::uint32_t connections,
+                                std::uint32_t chunks) {
+    return "#ROSBAG V2.0\n" + record({{"op", "\x03"},
+                                      {"index_pos", bytesOf(index)},
+                                      {"conn_count", bytesOf(connections)},
+                                      {"chunk_count", bytesOf(chunks)}},
+                                     std::string(4027, ' '));
+  }
+  /// @param chunks each with its index, one after the other
+  std::string bag(const std::vector<std::string>& chunks) const {
+    std::uint64_t position = fileHeader(0, 0, 0).size();
+    std::string body;
+    std::string infos;
+    for (const std::string& chunk : chunks) {
+      infos += chunkInfo(position, static_cast<std::uint32_t>(messages.size()));
+      body += chunk;
+      position += chunk.size();
+    }
+    return fileHeader(position, 1, static_cast<std::uint32_t>(chunks.size())) + body +
+           connectionRecord() + infos;
+  }
+  std::string bag() const {
+    const std::string data = chunk();
+    return bag({chunkRecord(data, static_cast<std::uint32_t>(data.size())) + indexRecord()});
+  }
+};
+
+/// Three messages /a, one a second, in format 1.2, which rosbag no longer writes.
+inline std::string formerBag() {
+  const std::string start = record({{"op", "\x03"}, {"index_pos", bytesOf(std::uint64_t{0})}}, "");
+  const std::size_t first = std::string("#ROSBAG V1.2\n").size() + start.size();
+  std::string messages = record({{"op", "\x01"},
+                                 {"topic", "/a"},
+                                 {"md5", "992ce8a1687cec8c8bd883ec73ca41d1"},
+                                 {"type", "std_msgs/String"},
+                                 {"def", "string data\n"}},
+                                "");
+  std::string index;
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    // The index points at the definition before the first message.
+    const std::uint64_t place = first + (i == 0 ? 0 : messages.size());
+    index += bytesOf(100 + i) + bytesOf(std::uint32_t{0}) + bytesOf(place);
+    messages += record({{"op", "\x02"}, {"topic", "/a"}}, block(std::string(1, "xyz"[i])));
+  }
+  const std::uint64_t index_pos = first + messages.size();
+  return "#ROSBAG V1.2\n" + record({{"op", "\x03"}, {"index_pos", bytesOf(index_pos)}}, "") +
+         messages +
+         record({{"op", "\x04"},
+                 {"topic", "/a"},
+                 {"ver", bytesOf(std::uint32_t{0})},
+                 {"count", bytesOf(std::uint32_t{3})}},
+                index);
+}
+
+}  // namespace self_awareness::ros1::bag_bytes

@@ -1,0 +1,117 @@
+// Models that were damaged, or made to do harm: each is refused in words that name the file.
+
+#include <gtest/gtest.h>
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+
+#include <boost/filesystem.hpp>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+
+#include "../bag/bag_bytes.h"
+#include "model_file_case.h"
+
+namespace self_awareness::ros1 {
+namespace {
+
+using Message = self_awareness::Model;
+
+class BadModelsTest : public ModelFileTest {
+ protected:
+  /// A model without compression: each byte of it means something.
+  std::string plainModel() {
+    saveModel(calibratedModel(), path("packed"));
+    const rosbag::Bag packed(path("packed"), rosbag::bagmode::Read);
+    rosbag::Bag plain(path("plain"), rosbag::bagmode::Write);
+    for (const rosbag::MessageInstance& message : rosbag::View(packed)) {
+      plain.write(message.getTopic(), message.getTime(), message);
+    }
+    plain.close();
+    return bag_bytes::readFile(path("plain"));
+  }
+  std::string errorOf(const std::string& bytes) {
+    bag_bytes::writeFile(path("bad"), bytes);
+    const std::string error = modelError(path("bad"));
+    EXPECT_TRUE(error.empty() || error.rfind(path("bad") + ": ", 0) == 0) << error;
+    EXPECT_EQ(error.find("memory"), std::string::npos) << error;
+    return error;
+  }
+};
+
+TEST_F(BadModelsTest, AModelIsRefusedWhereverItIsCut) {
+  const std::string whole = plainModel();
+  ASSERT_EQ(errorOf(whole), "");
+  for (const std::size_t boundary : bag_bytes::boundaries(whole)) {
+    for (const std::size_t cut : {boundary - 1, boundary, boundary + 1}) {
+      if (cut < whole.size()) {
+        EXPECT_NE(errorOf(whole.substr(0, cut)), "") << cut;
+      }
+    }
+  }
+}
+
+TEST_F(BadModelsTest, AFlippedBitOrALyingLengthAsksForNoMemory) {
+  const std::string whole = plainModel();
+  const std::size_t first = bag_bytes::boundaries(whole)[1];
+  std::mt19937 random(1);
+  for (int round = 0; round < 1500; ++round) {
+    const std::size_t at = first + random() % (whole.size() - first - sizeof(std::uint32_t));
+    std::string bytes = whole;
+    if (round % 2 == 0) {
+      bytes[at] = static_cast<char>(bytes[at] ^ 1 << random() % 8);
+    } else {
+      bytes.replace(at, sizeof(std::uint32_t),
+                    bag_bytes::bytesOf(round % 4 == 1 ? 0xFFFFFFF0U : 0x3FFFFFFFU));
+    }
+    errorOf(bytes);
+  }
+}
+
+TEST_F(BadModelsTest, NumbersThatCannotBeAreRefused) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  const auto limits =
+      [this](const std::function<void(self_awareness::EvidenceCalibration&)>& set) {
+        return damagedModel([&](Message& m) { set(m.evidence_calibration.at(0)); });
+      };
+  EXPECT_EQ(limits([](auto& /*c*/) {}), "");
+  for (const double limit : {-1.0, 0.0, kInf, -kInf}) {
+    EXPECT_NE(limits([&](auto& c) { c.limits.at(1) = limit; }), "") << limit;
+    EXPECT_NE(limits([&](auto& c) { c.linker_limit = limit; }), "") << limit;
+  }
+  EXPECT_NE(limits([&](auto& c) { c.linker_limit = kNan; }), "");
+  EXPECT_NE(limits([&](auto& c) { c.limits.assign(c.limits.size(), kNan); }), "")
+      << "nothing would ever be abnormal";
+  EXPECT_NE(limits([](auto& c) { c.firsts = {1}; }), "");
+  EXPECT_NE(limits([](auto& c) { c.firsts = {-2, 0}; }), "");
+  EXPECT_NE(limits([](auto& c) { c.relations.pop_back(); }), "");
+  EXPECT_NE(limits([](auto& c) { c.budget = -1; }), "");
+}
+
+TEST_F(BadModelsTest, WhatWouldTakeForeverIsRefused) {
+  EXPECT_NE(damagedModel([](Message& m) { m.window = ros::Duration(0, 1); }), "");
+  EXPECT_NE(damagedModel([](Message& m) { m.window = ros::Duration(100000, 0); }), "");
+  EXPECT_EQ(damagedModel([](Message& m) { m.encoding.exclude_topics = {"(([a-z/_])*)*#"}; }), "");
+  EXPECT_NE(damagedModel([](Message& m) {
+              m.encoding.exclude_topics = {"(((a{1,100}){1,100}){1,100}){1,100}"};
+            }),
+            "");
+  EXPECT_NE(damagedModel([](Message& m) {
+              const self_awareness::EventType type = m.event_types.at(0);
+              for (std::size_t k = 0; k <= kMostEventTypes; ++k) {
+                m.event_types.push_back(type);
+                m.event_types.back().scope = "/" + std::to_string(k);
+              }
+            }),
+            "");
+}
+
+TEST_F(BadModelsTest, TextsThatAreNoUtf8AreRefused) {
+  EXPECT_NE(damagedModel([](Message& m) { m.event_types.at(0).source = "/m\xFCller"; }), "");
+  EXPECT_NE(damagedModel([](Message& m) { m.recordings.at(0).bag = "gr\xFC\xDF.bag"; }), "");
+}
+
+}  // namespace
+}  // namespace self_awareness::ros1
