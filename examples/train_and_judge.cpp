@@ -33,10 +33,9 @@ int main() {
   for (const core::EventType& type : kEventTypes) {
     training.intern(type);
   }
-  std::vector<std::size_t> halves;  // that the recordings belong to
-  for (const std::vector<core::Event>& recording : recordings) {
-    halves.push_back(training.startRecording());
-    for (const core::Event& event : recording) {
+  for (std::size_t i = 0; i < recordings.size(); ++i) {
+    training.startRecording({i, recordings[i][recordings[i].size() / 2].stamp, std::nullopt, 0});
+    for (const core::Event& event : recordings[i]) {
       training.add(event);
     }
   }
@@ -57,7 +56,7 @@ int main() {
       finder.startSecondPass();
     }
     for (std::size_t i = 0; i < recordings.size(); ++i) {
-      finder.startRecording(models.judging(halves[i]));
+      finder.startRecording(models.judging(evidence::halfOf(i)));
       for (const core::Event& event : recordings[i]) {
         finder.add(event);
       }

@@ -1,5 +1,6 @@
 #include "self_awareness/core/training.h"
 
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -9,17 +10,15 @@ namespace self_awareness::core {
 
 struct Training::Trainers {
   Trainers(TrainingCounts& counts, std::int64_t window)
-      : paper(counts.delays),
-        evidence{evidence::Trainer(counts.halves[0], window),
-                 evidence::Trainer(counts.halves[1], window)} {}
+      : paper(counts.delays), evidence(counts.halves[0], window) {}
 
   paper::DelayTrainer paper;
-  std::array<evidence::Trainer, 2> evidence;  // by half
+  evidence::Trainer evidence;
 };
 
 Training::Training(const Parameters& parameters)
     : parameters_(parameters),
-      counts_{paper::DelayStatistics(parameters.binning), {}},
+      counts_{paper::DelayStatistics(parameters.binning), {}, std::nullopt},
       trainers_(std::make_unique<Trainers>(counts_, parameters.window)) {
   if (!parameters.evidence && !parameters.paper) {
     throw std::invalid_argument("a training must count for the evidence or the paper's detector");
@@ -38,27 +37,29 @@ EventId Training::intern(const EventType& type) {
   return id;
 }
 
-std::size_t Training::startRecording(std::optional<std::int64_t> since, std::int64_t robot_start) {
-  half_ = recordings_++ % counts_.halves.size();
-  middle_.reset();
+void Training::startRecording(const Recording& recording) {
   trainers_->paper.startRecording();
-  trainers_->evidence.at(half_).startRecording(since, robot_start);
-  return half_;
+  trainers_->evidence.startRecording(recording.since, recording.robot_start);
+  const std::size_t half = evidence::halfOf(recording.fingerprint);
+  if (!started_) {
+    counts_.only_half = half;
+  } else if (counts_.only_half && counts_.only_half != half) {
+    evidence::joinParts(counts_.halves, *counts_.only_half);
+    counts_.only_half.reset();
+  }
+  started_ = true;
+  middle_ = counts_.only_half ? std::optional(recording.middle) : std::nullopt;
+  trainers_->evidence.countInto(counts_.halves.at(counts_.only_half ? 0 : half));
 }
 
-void Training::startOnlyRecording(std::int64_t middle, std::optional<std::int64_t> since,
-                                  std::int64_t robot_start) {
-  if (recordings_ > 0) {
-    throw std::logic_error("a recording that is to be cut in two is not the first one");
-  }
-  startRecording(since, robot_start);
-  middle_ = middle;
-  robot_start_ = robot_start;
+void Training::onClockStep() {
+  trainers_->paper.startRecording();
+  trainers_->evidence.onClockStep();
 }
 
 void Training::addBefore(const Event& event) {
   if (parameters_.evidence) {
-    trainers_->evidence.at(half_).addBefore(event);
+    trainers_->evidence.addBefore(event);
   }
 }
 
@@ -70,11 +71,10 @@ void Training::add(const Event& event) {
   }
   if (middle_ && event.stamp >= *middle_) {
     middle_.reset();
-    half_ = 1;
-    trainers_->evidence.at(half_).startRecording(std::nullopt, robot_start_);
+    trainers_->evidence.countInto(counts_.halves[1]);
   }
   if (parameters_.evidence) {
-    trainers_->evidence.at(half_).add(event);
+    trainers_->evidence.add(event);
   }
 }
 
@@ -82,9 +82,7 @@ TrainingCounts Training::finish() {
   if (!trainers_) {
     throw std::logic_error("the training is over: its counts were handed out");
   }
-  for (evidence::Trainer& trainer : trainers_->evidence) {
-    trainer.finish();
-  }
+  trainers_->evidence.finish();
   trainers_.reset();
   return std::move(counts_);
 }

@@ -14,6 +14,7 @@
 #include "core/evidence/log_bins.h"
 #include "self_awareness/core/evidence/limits.h"
 #include "self_awareness/core/stream/clock.h"
+#include "self_awareness/core/stream/clock_steps.h"
 #include "self_awareness/core/stream/event.h"
 #include "self_awareness/core/verdict/detector.h"
 #include "self_awareness/ros/bag/bag_reader.h"
@@ -53,6 +54,20 @@ void forEachEvent(const Stamps& stamps, const Ids& ids, Handler handler) {
   }
 }
 
+/// The same, and calls onStep() before each event with which the clock was set forward.
+template <typename Handler, typename OnStep>
+void forEachEvent(const Stamps& stamps, const Ids& ids, const core::ClockSteps& steps,
+                  Handler handler, OnStep onStep) {
+  std::optional<std::int64_t> last;
+  forEachEvent(stamps, ids, [&](const core::Event& event) {
+    if (last && steps.between(*last, event.stamp)) {
+      onStep();
+    }
+    last = event.stamp;
+    handler(event);
+  });
+}
+
 /// Tells a callback of Python, or None, how far a reader has come; Ctrl-C ends the reading.
 inline ros1::BagReader::Progress progressTo(const py::object& callback) {
   return [&callback](std::uint64_t done, std::uint64_t all) {
@@ -66,18 +81,25 @@ inline ros1::BagReader::Progress progressTo(const py::object& callback) {
 }
 
 /// Lets a detector judge a recording.
+/// @param steps with which the clock was set forward
 /// @param end the recording goes on in silence until then [ns]; none: it ends with the last event
 /// @param heard called after each event; whether it belongs to the same clock as those before
 inline void judgeRecording(core::Detector& detector, const Stamps& stamps, const Ids& ids,
-                           std::optional<std::int64_t> end,
+                           const core::ClockSteps& steps, std::optional<std::int64_t> end,
                            const std::function<void(const core::Event&, bool)>& heard = nullptr) {
   std::optional<std::int64_t> last;
-  forEachEvent(stamps, ids, [&](const core::Event& event) {
-    const bool same_clock = detector.add(event);
+  bool set_forward = false;
+  const auto add = [&](const core::Event& event) {
+    const bool same_clock = detector.add(event) && !set_forward;
+    set_forward = false;
     last = event.stamp;
     if (heard) {
       heard(event, same_clock);
     }
+  };
+  forEachEvent(stamps, ids, steps, add, [&] {
+    detector.restart();
+    set_forward = true;
   });
   if (end && last && !core::isClockStep(*last, *end)) {
     detector.advance(*end);  // silence until the end is part of the recording

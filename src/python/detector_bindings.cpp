@@ -7,6 +7,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bindings.h"
@@ -89,7 +90,8 @@ void record(const core::Verdict& verdict, std::int64_t window, Verdicts& verdict
 
 Verdicts judge(std::unique_ptr<core::Judge> judge, std::int64_t window,
                const core::Detector::Parameters& parameters, const Stamps& stamps, const Ids& ids,
-               std::optional<std::int64_t> end, ros1::ReplayedMonitor* monitor) {
+               std::optional<std::int64_t> end, ros1::ReplayedMonitor* monitor,
+               std::vector<std::int64_t> clock_steps) {
   Verdicts verdicts;
   core::Detector detector(std::move(judge), window, parameters, [&](const core::Verdict& verdict) {
     record(verdict, window, verdicts);
@@ -97,11 +99,12 @@ Verdicts judge(std::unique_ptr<core::Judge> judge, std::int64_t window,
       monitor->onVerdict(verdict);
     }
   });
-  judgeRecording(detector, stamps, ids, end, [&](const core::Event& event, bool same_clock) {
-    if (monitor != nullptr) {
-      monitor->onEvent(event, same_clock);
-    }
-  });
+  judgeRecording(detector, stamps, ids, core::ClockSteps(std::move(clock_steps)), end,
+                 [&](const core::Event& event, bool same_clock) {
+                   if (monitor != nullptr) {
+                     monitor->onEvent(event, same_clock);
+                   }
+                 });
   return verdicts;
 }
 
@@ -109,9 +112,9 @@ Verdicts judgeByPaper(const std::shared_ptr<core::paper::Model>& model, std::int
                       std::optional<double> threshold,
                       const core::Detector::Parameters& parameters, const Stamps& stamps,
                       const Ids& ids, std::optional<std::int64_t> end,
-                      ros1::ReplayedMonitor* monitor) {
+                      ros1::ReplayedMonitor* monitor, std::vector<std::int64_t> clock_steps) {
   return judge(core::paper::makeJudge(model, threshold, parameters.silence_is_abnormal), window,
-               parameters, stamps, ids, end, monitor);
+               parameters, stamps, ids, end, monitor, std::move(clock_steps));
 }
 
 Verdicts judgeByEvidence(const ros1::TrainedModel& trained,
@@ -119,11 +122,11 @@ Verdicts judgeByEvidence(const ros1::TrainedModel& trained,
                          const core::Detector::Parameters& parameters, const Stamps& stamps,
                          const Ids& ids, std::optional<std::int64_t> end,
                          const std::vector<core::EventType>& event_types,
-                         ros1::ReplayedMonitor* monitor) {
+                         ros1::ReplayedMonitor* monitor, std::vector<std::int64_t> clock_steps) {
   return judge(core::evidence::makeJudge(model, trained.limits(), trained.window,
                                          std::make_shared<core::SourceGraph>(trained.graph),
                                          std::make_shared<core::Vocabulary>(event_types)),
-               trained.window, parameters, stamps, ids, end, monitor);
+               trained.window, parameters, stamps, ids, end, monitor, std::move(clock_steps));
 }
 
 std::vector<double> scoreEvents(const std::shared_ptr<core::paper::Model>& model,
@@ -294,14 +297,16 @@ void bindVerdicts(py::module& m) {
           py::arg("stamps"), py::arg("ids"), "s_j of every event, float64")
       .def("judge", &judgeByPaper, py::arg("window"), py::arg("threshold"), py::arg("parameters"),
            py::arg("stamps"), py::arg("ids"), py::arg("end") = py::none(),
-           py::arg("monitor") = nullptr,
+           py::arg("monitor") = nullptr, py::arg("clock_steps") = std::vector<std::int64_t>(),
            "Verdicts on a recording. window: [ns]; threshold None: not calibrated.\n"
            "stamps: int64 [ns], in order. ids: those from len(event_types) of the model on are\n"
            "unknown events. end [ns]: the recording goes on in silence until then; None: it ends\n"
-           "with the last event. monitor: a ReplayedMonitor that is told of all of it.");
+           "with the last event. monitor: a ReplayedMonitor that is told of all of it.\n"
+           "clock_steps: with which the clock was set forward (find_clock_steps).");
   m.def("judge_by_evidence", &judgeByEvidence, py::arg("trained"), py::arg("model"),
         py::arg("parameters"), py::arg("stamps"), py::arg("ids"), py::arg("end") = py::none(),
         py::arg("event_types") = std::vector<core::EventType>(), py::arg("monitor") = nullptr,
+        py::arg("clock_steps") = std::vector<std::int64_t>(),
         "Verdicts on a recording by the EvidenceModel of a TrainedModel, like Model.judge.\n"
         "event_types: by id, those of the model first; empty: those of unknown events are not\n"
         "known.");

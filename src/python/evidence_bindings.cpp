@@ -36,10 +36,13 @@ struct LimitSearch {
     return search;
   }
   void addEvents(const Stamps& stamps, const Ids& ids, std::optional<std::size_t> half,
-                 std::int64_t robot_start) {
+                 std::int64_t robot_start, std::vector<std::int64_t> clock_steps) {
+    const core::ClockSteps steps(std::move(clock_steps));
     const py::gil_scoped_release release;
     finder.startRecording(cross_fit->judging(half), robot_start);
-    forEachEvent(stamps, ids, [&](const core::Event& event) { finder.add(event); });
+    forEachEvent(
+        stamps, ids, steps, [&](const core::Event& event) { finder.add(event); },
+        [&] { finder.restart(); });
     finder.finish();
   }
   evidence::Limits startSecondPass(const std::optional<evidence::Limits>& limits) {
@@ -215,8 +218,10 @@ void bindEvidence(py::module& m) {
           "settle_time: [ns]; budget: false alarms an hour")
       .def("add_events", &LimitSearch::addEvents, py::arg("stamps"), py::arg("ids"),
            py::arg("half") = py::none(), py::arg("robot_start") = 0,
+           py::arg("clock_steps") = std::vector<std::int64_t>(),
            "Takes in a recording; half: 0 or 1 if that half of the training learned from it;\n"
-           "robot_start: of the robot [ns], 0: not known.")
+           "robot_start: of the robot [ns], 0: not known; clock_steps: with which the clock was\n"
+           "set forward (find_clock_steps).")
       .def("part", &LimitSearch::part, "A finder without findings, for the same model and pass.")
       .def(
           "findings", [](const LimitSearch& self) { return self.finder.findings(); },

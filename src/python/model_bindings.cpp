@@ -135,9 +135,9 @@ void bindModel(py::module& m) {
       .def_readonly("predecessors", &TrainedModel::predecessors,
                     "most that are watched of an event type")
       .def_readonly("least_effect", &TrainedModel::least_effect)
-      .def(
-          "swap_halves", [](TrainedModel& self) { std::swap(self.evidence[0], self.evidence[1]); },
-          "Exchanges the two halves of the training; not for a model with a calibration.")
+      .def_property_readonly(
+          "only_half", &TrainedModel::onlyHalf,
+          "the half of the training that all recordings belong to; None: there are some of both")
       .def(py::pickle([](const TrainedModel& self) { return py::bytes(ros1::toBytes(self)); },
                       [](const py::bytes& state) { return ros1::fromBytes(state); }))
       .def_readonly("encoding", &TrainedModel::encoding)

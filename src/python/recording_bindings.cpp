@@ -167,6 +167,8 @@ void bindBags(py::module& m) {
                     "Python's rosbag wrote it; further senders are under the name of the first")
       .def_readonly("copied", &ros1::BagSummary::copied,
                     "the same of a recording: by rosbag filter, compress or decompress")
+      .def_readonly("clock_watched", &ros1::BagSummary::clock_watched,
+                    "of an event log that was heard live: it ended when ROS time was set")
       .def_readonly("encoding", &ros1::BagSummary::encoding, "of an event log; None: a bag")
       .def_readonly("robot_start", &ros1::BagSummary::robot_start, "[ns]; 0: not known")
       .def_readonly("dropped", &ros1::BagSummary::dropped,
@@ -227,6 +229,16 @@ void bindBags(py::module& m) {
 }  // namespace
 
 void bindRecordings(py::module& m) {
+  m.def(
+      "find_clock_steps",
+      [](const Stamps& stamps, const Ids& ids) {
+        std::vector<core::Event> events;
+        events.reserve(static_cast<std::size_t>(stamps.size()));
+        forEachEvent(stamps, ids, [&](const core::Event& event) { events.push_back(event); });
+        return core::findClockSteps(events);
+      },
+      py::arg("stamps"), py::arg("ids"),
+      "Where the clock was set forward: stamps of the first event after each step [ns].");
   bindEncoding(m);
   bindBags(m);
 }

@@ -16,6 +16,14 @@
 namespace self_awareness::python {
 namespace {
 
+std::int64_t middleOf(const Stamps& stamps) {
+  if (stamps.ndim() != 1 || stamps.size() == 0) {
+    return 0;
+  }
+  const std::int64_t first = stamps.at(0);
+  return first + (stamps.at(stamps.size() - 1) - first) / 2;
+}
+
 /// A training, and what its model holds besides the counts.
 class Training {
  public:
@@ -28,33 +36,34 @@ class Training {
         least_effect_(least_effect) {}
 
   void addEvents(const std::vector<core::EventType>& types, const Stamps& stamps, const Ids& ids,
-                 std::optional<std::int64_t> middle,
                  const std::optional<self_awareness::Recording>& recording,
-                 const std::optional<std::pair<Stamps, Ids>>& before) {
+                 const std::optional<std::pair<Stamps, Ids>>& before,
+                 std::vector<std::int64_t> clock_steps) {
     checkNotEnded();
-    std::optional<std::int64_t> since;
+    core::Training::Recording start;
+    start.middle = middleOf(stamps);
     if (before && before->first.size() > 0) {
-      since = before->first.at(0);
+      start.since = before->first.at(0);
     }
-    const std::int64_t robot_start =
-        recording ? static_cast<std::int64_t>(recording->robot_start.toNSec()) : 0;
-    if (middle) {
-      training_.startOnlyRecording(*middle, since, robot_start);
-    } else {
-      training_.startRecording(since, robot_start);
+    if (recording) {
+      start.fingerprint = recording->fingerprint;
+      start.robot_start = static_cast<std::int64_t>(recording->robot_start.toNSec());
     }
+    training_.startRecording(start);
     if (before) {
       addBefore(types, *before);
     }
     std::vector<std::optional<core::EventId>> here(types.size());
+    const core::ClockSteps steps(std::move(clock_steps));
     const py::gil_scoped_release release;
-    forEachEvent(stamps, ids, [&](const core::Event& event) {
+    const auto add = [&](const core::Event& event) {
       std::optional<core::EventId>& id = here.at(event.id);
       if (!id) {
         id = intern(types[event.id]);
       }
       training_.add({event.stamp, *id});
-    });
+    };
+    forEachEvent(stamps, ids, steps, add, [&] { training_.onClockStep(); });
     if (recording) {
       recordings_.push_back(*recording);
     }
@@ -145,6 +154,12 @@ void bindTraining(py::module& m) {
             return make_least_effect(state.first, state.second);
           }));
 
+  m.def("half_of", &core::evidence::halfOf, py::arg("fingerprint"),
+        "The half of a training that a recording belongs to, 0 or 1.");
+  m.def("middle_of", &middleOf, py::arg("stamps"),
+        "Where the second part of a recording begins [ns], from the stamps of its events, in\n"
+        "order; 0: there is none.");
+
   py::class_<Training>(m, "Training", "Trains on one recording after the other.")
       .def(py::init([](ros1::EncodingRules rules, std::int64_t bin_size, std::int64_t window,
                        std::int64_t horizon_bins, std::size_t predecessors, bool evidence,
@@ -165,13 +180,14 @@ void bindTraining(py::module& m) {
            "evidence detector watches of an event type; least_effect: that a changed delay must\n"
            "have to be a fault")
       .def("add_events", &Training::addEvents, py::arg("event_types"), py::arg("stamps"),
-           py::arg("ids"), py::arg("middle") = py::none(), py::arg("recording") = py::none(),
-           py::arg("before") = py::none(),
+           py::arg("ids"), py::arg("recording") = py::none(), py::arg("before") = py::none(),
+           py::arg("clock_steps") = std::vector<std::int64_t>(),
            "Trains on one recording given as arrays; ids are indices of event_types.\n"
-           "middle [ns]: the recording is the only one; events before it are one half of the\n"
-           "training, the others the other half. recording: what the model says about it.\n"
+           "recording: what the model says about it; its fingerprint says which half of the\n"
+           "training it belongs to (half_of); None: the first one.\n"
            "before: stamps and ids of the events of the recording before these, which only say\n"
            "when event types came first; ids from len(event_types) on are of no type of these.\n"
+           "clock_steps: with which the clock was set forward (find_clock_steps).\n"
            "After a ValueError the training is incomplete: do not use it any more.")
       .def(
           "model", &Training::model, py::arg("watch") = true,

@@ -5,13 +5,13 @@ import math
 import os
 import re
 from dataclasses import dataclass, replace
-from typing import Dict, Iterable, Iterator, List, Optional, Set, Tuple
+from typing import Dict, Iterable, Iterator, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
 from self_awareness import (LEAST_KNOWN, EventType, RecordedEvents, Recording, TrainedModel,
-                            progress, read_events, recordings_in_event_log)
-from self_awareness.stamps import nanoseconds
+                            find_clock_steps, progress, read_events, recordings_in_event_log)
+from self_awareness.stamps import SECOND_NS, nanoseconds
 
 _PART = re.compile(r'(?P<path>.+?)(#(?P<number>\d+))?'
                    r'(@(?P<start>\d+(\.\d+)?)(-(?P<end>\d+(\.\d+)?))?)?')
@@ -125,6 +125,7 @@ class RecordingEvents:
         copied: so it is, and it is a copy of a recording.
         bag: what the file is called, or the bag that an event log was made of.
         robot_start: when the robot was started [ns]; 0: not known.
+        clock_steps: stamps of the first events after the clock was set forward [ns].
     """
 
     part: BagPart
@@ -138,6 +139,7 @@ class RecordingEvents:
     copied: bool = False
     bag: str = ''
     robot_start: int = 0
+    clock_steps: Sequence[int] = ()
 
     @classmethod
     def of(cls, part: BagPart, events: RecordedEvents) -> RecordingEvents:
@@ -146,13 +148,8 @@ class RecordingEvents:
         _, end = part.span(summary.start, summary.end)
         return cls(part, events.event_types, events.stamps, events.ids, summary.start, end,
                    summary.fingerprint, summary.one_sender_a_topic, summary.copied, summary.bag,
-                   summary.robot_start)
-
-    @property
-    def middle(self) -> int:
-        """Where a training cuts it into halves if it is the only recording [ns]."""
-        start, end = self.part.span(self.origin, self.end)
-        return start + (end - start) // 2
+                   summary.robot_start,
+                   () if summary.clock_watched else find_clock_steps(events.stamps, events.ids))
 
     @property
     def recording(self) -> Recording:
@@ -193,6 +190,18 @@ def few_known(model: TrainedModel, recording: RecordingEvents) -> Optional[str]:
         return None
     return (f'{recording.part}: the model knows {known} of the {heard} event types of this '
             'recording, and says nothing of the others: is it of this robot?')
+
+
+def clock_steps(recording: RecordingEvents) -> Optional[str]:
+    """Return what to tell of a recording in which the clock was set forward."""
+    if len(recording.clock_steps) == 0:
+        return None
+    after = np.searchsorted(recording.stamps, np.asarray(recording.clock_steps))
+    steps = ', '.join(
+        f'{(recording.stamps[i] - recording.stamps[i - 1]) / SECOND_NS:.1f} s before '
+        f'{(recording.stamps[i] - recording.origin) / SECOND_NS:.1f} s' for i in after)
+    return (f'{recording.part}: the clock was set forward by {steps}: all went on as if the time '
+            'between had not been. The recording is cut there, and nobody is late')
 
 
 def merged_senders(model: TrainedModel, recording: RecordingEvents) -> Optional[str]:

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -32,29 +34,78 @@ std::vector<Event> recording(std::int64_t start, int events) {
   return all;
 }
 
-// Trains on recordings of 10, 20 and 40 events.
-TrainingCounts threeRecordings(const Training::Parameters& parameters) {
+// By the half that it belongs to.
+Training::Recording recordingOf(std::uint64_t fingerprint, std::int64_t middle = 0) {
+  Training::Recording recording;
+  recording.fingerprint = fingerprint;
+  recording.middle = middle;
+  return recording;
+}
+
+// Counts recordings in this order, each of so many events; those of 20 belong to the second half.
+TrainingCounts countsOf(const Training::Parameters& parameters, const std::vector<int>& all) {
   Training training(parameters);
   training.intern(kType);
   training.intern(kOther);
-  for (const int events : {10, 20, 40}) {
-    training.startRecording();
-    for (const Event& event : recording(events * 1000 * kPeriod, events)) {
+  for (const int events : all) {
+    const std::int64_t start = events * 1000 * kPeriod;
+    training.startRecording(recordingOf(events == 20 ? 7 : 4, start + events / 2 * kPeriod));
+    for (const Event& event : recording(start, events)) {
       training.add(event);
     }
   }
   return training.finish();
 }
 
+// Trains on recordings of 10, 20 and 40 events.
+TrainingCounts threeRecordings(const Training::Parameters& parameters) {
+  return countsOf(parameters, {10, 20, 40});
+}
+
 std::uint64_t eventsOf(const evidence::Statistics& half) {
   return half.type(0).events + half.type(1).events;
 }
 
-TEST(Training, RecordingsBelongToTheTwoHalvesInTurn) {
+TEST(Training, RecordingsBelongToTheTwoHalvesByTheirFingerprint) {
   const TrainingCounts counts = threeRecordings(counting(true, true));
   EXPECT_EQ(eventsOf(counts.halves[0]), 50U);
   EXPECT_EQ(eventsOf(counts.halves[1]), 20U);
   EXPECT_EQ(counts.delays.events(), 70U);
+  EXPECT_EQ(counts.only_half, std::nullopt);
+}
+
+TEST(Training, TheOrderOfRecordingsDoesNotMatter) {
+  const TrainingCounts counts = threeRecordings(counting(true, true));
+  for (const std::vector<int>& order : std::vector<std::vector<int>>{
+           {10, 40, 20}, {20, 10, 40}, {20, 40, 10}, {40, 10, 20}, {40, 20, 10}}) {
+    const TrainingCounts other = countsOf(counting(true, true), order);
+    EXPECT_TRUE(other.halves == counts.halves);
+    EXPECT_TRUE(other.delays == counts.delays);
+  }
+}
+
+TEST(Halves, CountsAddUpToThoseOfOneTraining) {
+  const std::vector<int> all{10, 20, 40};
+  for (unsigned in_first = 0; in_first < 8; ++in_first) {
+    std::vector<int> first;
+    std::vector<int> second;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      (((in_first >> i) & 1U) != 0 ? first : second).push_back(all[i]);
+    }
+    if (first.empty() || second.empty()) {
+      continue;
+    }
+    TrainingCounts sum = countsOf(counting(true, false), first);
+    const TrainingCounts other = countsOf(counting(true, false), second);
+    evidence::merge(sum.halves, sum.only_half, other.halves, other.only_half);
+    EXPECT_TRUE(sum.halves == threeRecordings(counting(true, false)).halves) << in_first;
+  }
+  // Recordings of one half stay in two parts.
+  TrainingCounts sum = countsOf(counting(true, false), {10});
+  const TrainingCounts other = countsOf(counting(true, false), {40});
+  evidence::merge(sum.halves, sum.only_half, other.halves, other.only_half);
+  EXPECT_TRUE(sum.halves == countsOf(counting(true, false), {10, 40}).halves);
+  EXPECT_EQ(eventsOf(sum.halves[0]), 25U);
 }
 
 TEST(Training, CountsWhatItsTrainersDo) {
@@ -94,19 +145,20 @@ TEST(Training, CountsOnlyForTheDetectorsAskedFor) {
   EXPECT_THROW(Training(counting(false, false)), std::invalid_argument);
 }
 
-TEST(Training, TheOnlyRecordingIsCutInTwo) {
+TEST(Training, RecordingsOfOneHalfAreCutInTwo) {
   Training training(counting(true, true));
   training.intern(kType);
   training.intern(kOther);
-  training.startOnlyRecording(6 * kPeriod);
+  training.startRecording(recordingOf(3, 6 * kPeriod));
   for (const Event& event : recording(0, 10)) {
     training.add(event);
   }
-  EXPECT_THROW(training.startOnlyRecording(0), std::logic_error);
   const TrainingCounts counts = training.finish();
+  EXPECT_EQ(counts.only_half, std::optional<std::size_t>(1));
   EXPECT_EQ(eventsOf(counts.halves[0]), 6U);
   EXPECT_EQ(eventsOf(counts.halves[1]), 4U);
-  EXPECT_EQ(counts.halves[1].type(0).gaps, 1U);  // no gap crosses the cut
+  EXPECT_EQ(counts.halves[1].type(0).gaps, 2U);  // the one over the cut ends in the second part
+  EXPECT_EQ(counts.halves[0].recordings().size() + counts.halves[1].recordings().size(), 1U);
   EXPECT_THROW(training.finish(), std::logic_error);
 }
 
@@ -114,8 +166,8 @@ TEST(CrossFit, AHalfIsJudgedByWhatTheOtherSays) {
   Training training(counting(true, false));
   training.intern(kType);
   training.intern(kOther);
-  for (const int events : {200, 300}) {
-    training.startRecording();
+  for (const int events : {200, 301}) {
+    training.startRecording(recordingOf(static_cast<std::uint64_t>(events)));
     for (const Event& event : recording(0, events)) {
       training.add(event);
     }

@@ -1,11 +1,11 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
 
+#include "self_awareness/core/evidence/halves.h"
 #include "self_awareness/core/evidence/statistics.h"
 #include "self_awareness/core/paper/binning.h"
 #include "self_awareness/core/paper/delay_statistics.h"
@@ -21,10 +21,10 @@ namespace self_awareness::core {
 struct TrainingCounts {
   /// For the paper's detector; without delays if the training did not count for it.
   paper::DelayStatistics delays{paper::Binning{}};
-  /// For the evidence detector, of each half of the training; without event types if the training
-  /// did not count for it. What one half says is tried on the other: this separates what holds in
-  /// all recordings from what holds in some (docs/method.md, section 3.1).
-  std::array<evidence::Statistics, 2> halves;
+  /// For the evidence detector; without event types if the training did not count for it.
+  evidence::Halves halves;
+  /// The half that all recordings belong to; none: there are some of both.
+  std::optional<std::size_t> only_half;
 };
 
 /// Trains on one recording after the other, event by event.
@@ -45,19 +45,23 @@ class Training {
   EventId intern(const EventType& type);
   const Vocabulary& vocabulary() const { return counts_.delays.vocabulary(); }
 
-  /// Starts a recording: the next events belong to it. Recordings belong to the two halves in
-  /// turn.
-  /// @param since when the recording began [ns], if not all of it is trained on
-  /// @param robot_start when the robot was started [ns]; 0: not known
-  /// @return the half that this one belongs to, 0 or 1
-  std::size_t startRecording(std::optional<std::int64_t> since = std::nullopt,
-                             std::int64_t robot_start = 0);
-  /// Starts the only recording of a training, which is cut in two: events before `middle` [ns]
-  /// belong to the first half, the others to the second. So what holds in one part only is not
-  /// taken for information.
-  /// @throw std::logic_error if a recording was started before
-  void startOnlyRecording(std::int64_t middle, std::optional<std::int64_t> since = std::nullopt,
-                          std::int64_t robot_start = 0);
+  /// What a training must know of a recording.
+  struct Recording {
+    /// Any number of its own: it says which half of the training the recording belongs to.
+    std::uint64_t fingerprint = 0;
+    /// Where its second part begins [ns]; each part is counted by itself as long as all recordings
+    /// belong to one half.
+    std::int64_t middle = 0;
+    /// When the recording began [ns], if not all of it is trained on.
+    std::optional<std::int64_t> since;
+    std::int64_t robot_start = 0;  ///< when the robot was started [ns]; 0: not known
+  };
+
+  /// Starts a recording: the next events belong to it.
+  void startRecording(const Recording& recording);
+  /// The clock was set, which the stamps do not say by themselves (stream/clock_steps.h): no delay
+  /// crosses from before.
+  void onClockStep();
   /// An event of the recording before those that are trained on: it only says when its type comes
   /// first.
   void addBefore(const Event& event);
@@ -74,10 +78,8 @@ class Training {
   Parameters parameters_;
   TrainingCounts counts_;
   std::unique_ptr<Trainers> trainers_;
-  std::size_t recordings_ = 0;
-  std::size_t half_ = 0;                // the half that is trained
-  std::optional<std::int64_t> middle_;  // of the only recording [ns], until it is reached
-  std::int64_t robot_start_ = 0;        // of the only recording [ns]
+  bool started_ = false;                // a recording
+  std::optional<std::int64_t> middle_;  // of a recording of two parts [ns], until it is reached
 };
 
 }  // namespace self_awareness::core

@@ -74,6 +74,11 @@ ObservedEvent LimitFinder::observe(const Event& event) {
   return observed;
 }
 
+void LimitFinder::restart() {
+  windows_.restart();
+  onClockStep();
+}
+
 void LimitFinder::onClockStep() {
   endRecording();
   startScoring();

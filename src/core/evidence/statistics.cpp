@@ -295,12 +295,12 @@ bool operator==(const Statistics& a, const Statistics& b) {
 }
 
 Trainer::Trainer(Statistics& statistics, std::int64_t window)
-    : statistics_(statistics), window_(window), counts_(0, rateWindows(window)) {}
+    : statistics_(&statistics), window_(window), counts_(0, rateWindows(window)) {}
 
 void Trainer::startRecording(std::optional<std::int64_t> since, std::int64_t robot_start) {
   if (last_stamp_) {
     recording_.end = newest_stamp_;
-    statistics_.addRecording(std::move(recording_));
+    statistics_->addRecording(std::move(recording_));
   }
   recording_ = {};
   recording_.robot_start = robot_start;
@@ -312,9 +312,9 @@ void Trainer::startRecording(std::optional<std::int64_t> since, std::int64_t rob
 }
 
 void Trainer::resizeRecording() {
-  recording_.events.resize(statistics_.size());
-  recording_.longest_gaps.resize(statistics_.size());
-  recording_.firsts.resize(statistics_.size(), -1);
+  recording_.events.resize(statistics_->size());
+  recording_.longest_gaps.resize(statistics_->size());
+  recording_.firsts.resize(statistics_->size(), -1);
 }
 
 void Trainer::addBefore(const Event& event) {
@@ -328,15 +328,15 @@ void Trainer::addBefore(const Event& event) {
 
 void Trainer::add(const Event& event) {
   if (last_stamp_ && isClockStep(*last_stamp_, event.stamp)) {
-    startRecording(std::nullopt, recording_.robot_start);
+    onClockStep();
   }
-  last_seen_.resize(statistics_.size());
+  last_seen_.resize(statistics_->size());
   addBefore(event);
-  counts_.resize(statistics_.size());
+  counts_.resize(statistics_->size());
   if (last_stamp_) {
     closeWindows(event.stamp);
     recording_.longest_silence = std::max(recording_.longest_silence, event.stamp - *last_stamp_);
-    statistics_.addDuration(std::max<std::int64_t>(event.stamp - newest_stamp_, 0));
+    statistics_->addDuration(std::max<std::int64_t>(event.stamp - newest_stamp_, 0));
     newest_stamp_ = std::max(newest_stamp_, event.stamp);
   } else {
     newest_stamp_ = event.stamp;
@@ -345,12 +345,12 @@ void Trainer::add(const Event& event) {
   }
   last_stamp_ = event.stamp;
 
-  Statistics::Type& type = statistics_.type(event.id);
+  Statistics::Type& type = statistics_->type(event.id);
   Seen& last = last_seen_.at(event.id);
   ++type.events;
   ++recording_.events[event.id];
   counts_.add(event.id);
-  Partner* partner = statistics_.allPartners(event.id).data();
+  Partner* partner = statistics_->allPartners(event.id).data();
   for (const Seen& other : last_seen_) {
     if (other.number > 0) {
       ++partner->delays[log_bins::bin(event.stamp - other.stamp)];
@@ -374,11 +374,11 @@ void Trainer::closeWindows(std::int64_t now) {
     if (!counts_.full()) {
       continue;
     }
-    statistics_.addRateWindows(1);
+    statistics_->addRateWindows(1);
     for (EventId id = 0; id < counts_.counts().size(); ++id) {
       const std::uint64_t count = counts_.counts()[id];
-      statistics_.type(id).rate_sum += count;
-      statistics_.type(id).rate_squares += count * count;
+      statistics_->type(id).rate_sum += count;
+      statistics_->type(id).rate_squares += count * count;
     }
   }
 }

@@ -159,6 +159,7 @@ EventLogReader::EventLogReader(const std::string& path, std::size_t recording) {
         messages.fail(error.what());
       }
       summary_.path = path;
+      summary_.clock_watched = start.bag.empty();
       summary_.bag = start.bag.empty() ? path.substr(path.rfind('/') + 1) : start.bag;
       summary_.start = nanoseconds(start.begin);
       summary_.end = summary_.start;

@@ -133,6 +133,18 @@ void TrainedModel::requireWatched() const {
         "evidence or both");
 }
 
+std::optional<std::size_t> TrainedModel::onlyHalf() const {
+  std::optional<std::size_t> only;
+  for (const self_awareness::Recording& recording : recordings) {
+    const std::size_t half = core::evidence::halfOf(recording.fingerprint);
+    if (only.value_or(half) != half) {
+      return std::nullopt;
+    }
+    only = half;
+  }
+  return only;
+}
+
 std::string TrainedModel::detectors() const {
   const bool for_evidence = hasEvidence() || isWatched();
   return for_evidence ? (hasDelays() ? "both" : "evidence") : "paper";

@@ -85,9 +85,7 @@ void merge(TrainedModel& model, const TrainedModel& other) {
   checkTypeFields(model.encoding, vocabulary);
 
   model.statistics.merge(other.statistics);
-  for (std::size_t half = 0; half < model.evidence.size(); ++half) {
-    model.evidence[half].merge(other.evidence[half]);
-  }
+  core::evidence::merge(model.evidence, model.onlyHalf(), other.evidence, other.onlyHalf());
   for (const auto& [publisher, topic, subscriber] : other.graph.edges()) {
     model.graph.connect(publisher, topic, subscriber);
   }

@@ -14,7 +14,7 @@ from typing import Any, Iterable, List, Optional, Sequence, Tuple
 import numpy as np
 
 from self_awareness import (EvidenceCalibration, EvidenceLimits, LimitFinder, LimitFindings,
-                            TrainedModel, recordings)
+                            TrainedModel, half_of, middle_of, recordings)
 from self_awareness.recordings import BagPart, RecordingEvents
 from self_awareness.stamps import SECOND_NS
 from self_awareness.workers import InProcess, Workers
@@ -22,35 +22,60 @@ from self_awareness.workers import InProcess, Workers
 BUDGET = 0.5
 """False alarms an hour that limits are made for, by default."""
 
-Part = Tuple[np.ndarray, np.ndarray, Optional[int], int]
+Part = Tuple[np.ndarray, np.ndarray, Optional[int], int, Sequence[int]]
 """Stamps [ns] and ids of a recording; the half of the training it belongs to, None: neither; when
-the robot was started [ns], 0: not known."""
+the robot was started [ns], 0: not known; where the clock was set forward [ns]."""
 
 
 @dataclass(frozen=True)
 class HeldOut:
-    """A recording that was not trained on: stamps [ns], ids, and when the robot started [ns]."""
+    """A recording that was not trained on, by stamps [ns] and ids.
+
+    Args:
+        robot_start: when the robot was started [ns]; 0: not known.
+        clock_steps: where the clock was set forward [ns].
+    """
 
     stamps: np.ndarray
     ids: np.ndarray
     robot_start: int = 0
+    clock_steps: Sequence[int] = ()
 
-    def parts(self, _: TrainedModel) -> Iterable[Part]:
+    def parts(self, _: TrainedModel, __: int) -> Iterable[Part]:
         """Return what is to be judged."""
-        return [(self.stamps, self.ids, None, self.robot_start)]
+        return [(self.stamps, self.ids, None, self.robot_start, self.clock_steps)]
 
 
 @dataclass(frozen=True)
-class OfHalf:
-    """A recording of the training in memory: stamps [ns], ids, and the half that it belongs to."""
+class InMemory:
+    """A recording of the training, by stamps [ns] and ids.
+
+    Args:
+        fingerprint: says which half of the training it belongs to.
+        robot_start: when the robot was started [ns]; 0: not known.
+        clock_steps: where the clock was set forward [ns].
+    """
 
     stamps: np.ndarray
     ids: np.ndarray
-    half: int
+    fingerprint: int
+    robot_start: int = 0
+    clock_steps: Sequence[int] = ()
 
-    def parts(self, _: TrainedModel) -> Iterable[Part]:
-        """Return what is to be judged."""
-        return [(self.stamps, self.ids, self.half, 0)]
+    def parts(self, trained: TrainedModel, settle_time: int) -> Iterable[Part]:
+        """Return what is to be judged, and the half of the training that it belongs to.
+
+        If all recordings belong to one half, the two parts of each stand for the halves. The
+        second one then has a time before it in which the detector settles [ns].
+        """
+        if trained.only_half is None:
+            halves = [(half_of(self.fingerprint), slice(None))]
+        else:
+            middle = middle_of(self.stamps)
+            halves = [(0, slice(int(np.argmax(self.stamps >= middle)))),
+                      (1, slice(int(np.argmax(self.stamps >= middle - settle_time)), None))]
+        return [(self.stamps[part], self.ids[part], half, self.robot_start, self.clock_steps)
+                for half, part in halves]
 
 
 @dataclass(frozen=True)
@@ -59,19 +84,19 @@ class TrainedOn:
 
     Args:
         part: the bag, or the part of it.
-        half: of the training, 0 or 1; None: the recording was alone, and both come from it.
+        fingerprint: of the whole bag.
         events: of the part, by ids of their own; None: read when they are needed, as the memory
             may not hold those of all recordings.
     """
 
     part: BagPart
-    half: Optional[int]
+    fingerprint: int
     events: Optional[RecordingEvents] = None
 
     def __str__(self) -> str:
         return str(self.part)
 
-    def parts(self, trained: TrainedModel) -> Iterable[Part]:
+    def parts(self, trained: TrainedModel, settle_time: int) -> Iterable[Part]:
         """Return what is to be judged, and the half of the training that it belongs to."""
         events = self.events
         if events is None:
@@ -80,12 +105,8 @@ class TrainedOn:
         else:
             known = {kind: index for index, kind in enumerate(trained.event_types)}
             ids = np.array([known[kind] for kind in events.event_types], np.uint32)[events.ids]
-        start = events.robot_start
-        if self.half is not None:
-            return [(events.stamps, ids, self.half, start)]
-        second = events.stamps >= events.middle
-        return [(events.stamps[~second], ids[~second], 0, start),
-                (events.stamps[second], ids[second], 1, start)]
+        return InMemory(events.stamps, ids, self.fingerprint, events.robot_start,
+                        events.clock_steps).parts(trained, settle_time)
 
 
 def held_out(trained: TrainedModel, found_in: Iterable[RecordingEvents], settle_time: int,
@@ -103,7 +124,8 @@ def held_out(trained: TrainedModel, found_in: Iterable[RecordingEvents], settle_
     """
     found_in = list(found_in)
     calibration = find(trained, settle_time, budget,
-                       [HeldOut(recording.stamps, recording.ids, recording.robot_start)
+                       [HeldOut(recording.stamps, recording.ids, recording.robot_start,
+                                recording.clock_steps)
                         for recording in found_in])
     calibration.method = 'held-out'
     calibration.recordings = [recording.recording for recording in found_in]
@@ -188,7 +210,8 @@ def find(trained: TrainedModel, settle_time: int, budget: float, tasks: Sequence
     return calibration
 
 
-def compare_halves(trained: TrainedModel, settle_time: int, recordings_: Sequence[OfHalf]) -> None:
+def compare_halves(trained: TrainedModel, settle_time: int,
+                   recordings_: Sequence[InMemory]) -> None:
     """Let a model keep what the recordings of its training show, without limits by them.
 
     Args:
@@ -211,6 +234,7 @@ class _Judging:
     def __init__(self, trained: TrainedModel, settle_time: int, budget: float,
                  limits: Optional[EvidenceLimits] = None) -> None:
         self._state = (trained.watched_only(), settle_time, budget)
+        self.settle_time = settle_time
         self._limits = limits  # of the first pass
         self.trained = trained
         self.finder = LimitFinder(trained, settle_time, budget)
@@ -240,6 +264,6 @@ class _Judging:
 
 def _judge(judging: _Judging, task: Any) -> LimitFindings:
     finder = judging.finder.part()
-    for stamps, ids, half, robot_start in task.parts(judging.trained):
-        finder.add_events(stamps, ids, half, robot_start)
+    for part in task.parts(judging.trained, judging.settle_time):
+        finder.add_events(*part)
     return finder.findings()

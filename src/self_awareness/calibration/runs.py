@@ -133,7 +133,8 @@ def judge_runs(judge: Judge, window: int, runs: Sequence[Run]) -> List[JudgedRun
     """Let a detector judge runs in windows of a length [ns]."""
     judged = []
     for run in progress.each(runs, 'scoring'):
-        verdicts = judge(*run.events(), run.source.end)
+        verdicts = judge(*run.events(), run.source.end,
+                         clock_steps=run.source.clock_steps)
         judged.append(JudgedRun(run, verdicts, np.nan_to_num(verdicts.score),
                                 _labels(run, verdicts, window)))
     return judged

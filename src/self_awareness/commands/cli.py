@@ -170,13 +170,13 @@ def load_model(path: str, detector: str, watched_only: bool = False) -> TrainedM
 def read_recording(program: str, model: TrainedModel, part: BagPart) -> RecordingEvents:
     """Return the events of a bag, or of a part of it.
 
-    Warns if a copy has lost senders, or the model knows little of the recording.
+    Warns if the clock was set, a copy has lost senders, or the model knows little of it.
 
     Raises:
         BagError, ValueError: as recordings.read().
     """
     recording = recordings.read(model, part)
-    for warning in (recordings.merged_senders(model, recording),
+    for warning in (recordings.clock_steps(recording), recordings.merged_senders(model, recording),
                     recordings.few_known(model, recording)):
         if warning is not None:
             warn(program, warning)

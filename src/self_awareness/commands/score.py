@@ -69,7 +69,8 @@ def _score(arguments: argparse.Namespace) -> None:
         for part in parts:
             recording = cli.read_recording('score', trained, part)
             verdicts = judge(recording.stamps, recording.ids, recording.end,
-                             recording.event_types, replay(recording))
+                             recording.event_types, replay(recording),
+                             recording.clock_steps)
             judged.append((recording, verdicts))
             _print(recording, verdicts, len(trained.event_types), threshold)
     if arguments.csv is not None:

@@ -127,8 +127,8 @@ def _recording_side(name: str, like: TrainedModel) -> Side:
     recording = recordings.read(like, parts[0])
     training = Training(copy.copy(like.encoding), like.bin_size, like.window, like.horizon_bins,
                         like.predecessors, True, False, like.least_effect)
-    training.add_events(recording.event_types, recording.stamps, recording.ids, recording.middle,
-                        recording.recording, None)
+    training.add_events(recording.event_types, recording.stamps, recording.ids,
+                        recording.recording, clock_steps=recording.clock_steps)
     return Side(name, training.model(watch=False), True)
 
 

@@ -7,10 +7,10 @@ from typing import List, Optional, Sequence, Set, Tuple
 import numpy as np
 
 from self_awareness import (DEFAULT_WINDOW, EVIDENCE_THRESHOLD, PREDECESSORS, DetectorParameters,
-                            EncodingRules, EventType, EvidenceModel, Model, TrainedModel, Training,
-                            Verdicts, judge_by_evidence)
+                            EncodingRules, EventType, EvidenceModel, Model, Recording,
+                            TrainedModel, Training, Verdicts, judge_by_evidence)
 from self_awareness.calibration import limits
-from self_awareness.calibration.limits import HeldOut, OfHalf
+from self_awareness.calibration.limits import HeldOut, InMemory
 from self_awareness.evaluation.systems import (Judged, SystemAlarm, common_threshold, distinct,
                                                required)
 from self_awareness.evaluation.windowed_events import WindowedEvents
@@ -79,8 +79,8 @@ class Evidence:
         if len(recordings) > 1:
             encoded = [recording.encoded(trained.event_types) for recording in recordings]
             limits.compare_halves(trained, DetectorParameters().settle_time,
-                                  [OfHalf(recording.stamps, recording.ids, index % 2)
-                                   for index, recording in enumerate(encoded)])
+                                  [InMemory(recording.stamps, recording.ids,
+                                            recording.fingerprint) for recording in encoded])
         self._trained = trained
         self._model = EvidenceModel(trained)
 
@@ -118,7 +118,9 @@ def _counted(recordings: Sequence[WindowedEvents], predecessors: int = PREDECESS
     training = Training(EncodingRules(), window=DEFAULT_WINDOW, predecessors=predecessors,
                         evidence=not paper, paper=paper)
     for recording in recordings:
-        training.add_events(recording.event_types, recording.stamps, recording.ids)
+        said = Recording()
+        said.fingerprint = recording.fingerprint
+        training.add_events(recording.event_types, recording.stamps, recording.ids, said)
     return training.model(watch=False)
 
 

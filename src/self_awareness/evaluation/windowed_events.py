@@ -4,6 +4,7 @@ The windows of all systems are DEFAULT_WINDOW long and lie on the absolute time 
 """
 from __future__ import annotations
 
+import zlib
 from dataclasses import dataclass
 from typing import Callable, Dict, Hashable, List, Sequence, TypeVar
 
@@ -39,6 +40,11 @@ class WindowedEvents:
         translation = np.array([ids.setdefault(event_type, len(ids))
                                 for event_type in self.event_types], dtype=np.uint32)
         return WindowedEvents(list(ids), self.stamps, translation[self.ids], self.end)
+
+    @property
+    def fingerprint(self) -> int:
+        """Return a number of its own, like that of a bag."""
+        return zlib.crc32(self.stamps.tobytes())
 
     def starts(self) -> np.ndarray:
         """Return the starts of the windows [ns], from the one with the first event on."""

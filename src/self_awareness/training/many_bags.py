@@ -20,6 +20,7 @@ from self_awareness import (DEFAULT_WINDOW, PREDECESSORS, BagError, BagSummary,
 from self_awareness.calibration import limits
 from self_awareness.calibration.limits import TrainedOn
 from self_awareness.judging import BOTH, EVIDENCE, PAPER
+from self_awareness import recordings
 from self_awareness.recordings import BagPart, RecordingEvents, overlap
 from self_awareness.stamps import SECOND_NS
 from self_awareness.training.robot_graph import RobotGraph, graph_file
@@ -94,8 +95,7 @@ def train(parts: Sequence[BagPart], counting: Counting, workers: Optional[Worker
             named twice, or is in the base already; some bags name senders, and some do not.
     """
     workers = workers or InProcess()
-    alone = base is None and len(parts) == 1
-    how = _How(counting, alone, skip_bad, _MOST_EVENTS_OF_BATCH if workers.near else 0)
+    how = _How(counting, skip_bad, _MOST_EVENTS_OF_BATCH if workers.near else 0)
     number = workers.batches(len(parts))
     cuts = [len(parts) * batch // number for batch in range(number + 1)]
     batches = [_Batch(parts[begin:end]) for begin, end in zip(cuts, cuts[1:])]
@@ -118,10 +118,6 @@ def train(parts: Sequence[BagPart], counting: Counting, workers: Optional[Worker
                 raise ValueError(counted.error)
     if total.model is None or not total.trained_on:
         raise ValueError(f'no bag can be trained on: {total.bad[-1]}')
-    if base is None and len(total.trained_on) == 1 and not alone:
-        # All others were bad: it is alone, and both halves come from it.
-        again = train([total.trained_on[0].part], counting, workers)
-        return Trained(again.model, again.trained_on, total.bad)
     if counting.detector != PAPER:
         total.model.watch()
     return Trained(total.model, total.trained_on, total.bad)
@@ -161,13 +157,11 @@ class _How:
 
     Args:
         counting: of each bag.
-        alone: the bag is the only one, and both halves of the training come from it.
         skip_bad: leave out bags that cannot be used, and go on.
         most_events: kept of a batch.
     """
 
     counting: Counting
-    alone: bool
     skip_bad: bool
     most_events: int
 
@@ -189,8 +183,7 @@ class _Sum:
 
     Args:
         most_events: that are kept.
-        model: the sum, after what was there before; None: no bag was good. Its recordings belong
-            to the two halves in turn: what only one half shows is not taken for information.
+        model: the sum, after what was there before; None: no bag was good.
         trained_on: the good bags.
         lines: about each bag that is done.
         bad: what is wrong with those that were skipped.
@@ -226,9 +219,6 @@ class _Sum:
         self.lines.append(f'skipped: {error}')
 
     def _add_counts(self, other: _Sum, model: TrainedModel) -> None:
-        swapped = self.model is not None and len(self.model.recordings) % 2 == 1
-        if swapped:
-            model.swap_halves()
         if self.model is None:
             self.model = model
         else:
@@ -239,11 +229,10 @@ class _Sum:
                 raise ValueError(f'{_Batch([each.part for each in other.trained_on])}: {error}'
                                  ) from error
         for each in other.trained_on:
-            half = 1 - each.half if swapped and each.half is not None else each.half
             events = 0 if each.events is None else len(each.events.stamps)
             keep = self._kept + events <= self.most_events
             self._kept += events if keep else 0
-            self.trained_on.append(replace(each, half=half, events=each.events if keep else None))
+            self.trained_on.append(each if keep else replace(each, events=None))
 
     def _check_sources(self, other: _Sum, mine: TrainedModel, model: TrainedModel) -> None:
         if mine.encoding.source == model.encoding.source:
@@ -295,8 +284,7 @@ def _count(how: _How, part: BagPart) -> _Sum:
                             counting.predecessors, counting.detector in (EVIDENCE, BOTH),
                             counting.detector in (PAPER, BOTH), counting.least_effect)
         training.add_events(events.event_types, events.stamps, events.ids,
-                            events.middle if how.alone else None, recording,
-                            _before(encoding, events))
+                            recording, _before(encoding, events), events.clock_steps)
         model = training.model(watch=False)
         model.graph = _graph(part, summary)
     except BagError as error:
@@ -305,12 +293,15 @@ def _count(how: _How, part: BagPart) -> _Sum:
         raise _BadBag(f'{part}: {error}') from error
     seconds = (recording.end - recording.start) / SECOND_NS
     lines = [f'{part}: {seconds:.1f} s, {recording.events} events']
+    told = recordings.clock_steps(events)
+    if told is not None:
+        lines.append(f'{part}: warning: {told.split(": ", 1)[1]}')
     if summary.dropped:
         lines.append(f'{part}: warning: {summary.dropped} messages came too fast to be written, '
                      'and are missing')
     if events.copied and encoding.source != 'none':
         lines.append(f'{part}: {_COPIED}')
-    trained_on = TrainedOn(part, None if how.alone else 0, events)
+    trained_on = TrainedOn(part, events.fingerprint, events)
     return _Sum(recording.events, model, [trained_on], lines)
 
 

@@ -13,7 +13,7 @@ from reference_relations import ReferenceRelations, number_of_starts, watched
 from reference_scorer import ReferenceScorer
 
 from self_awareness import (EncodingRules, EventType, EvidenceModel, LeastEffect, LimitFinder,
-                            TrainedModel, Training)
+                            Recording, TrainedModel, Training)
 from self_awareness.stamps import SECOND_NS
 
 MS = 1_000_000
@@ -89,9 +89,11 @@ class Robot:
     def _trained(recordings: List[List[Event]], least_effect: LeastEffect) -> TrainedModel:
         training = Training(EncodingRules(), window=WINDOW, paper=True, least_effect=least_effect)
         every_type = [EventType('', letter, '') for letter in LETTERS]
-        for events in recordings:
+        for half, events in enumerate(recordings):
+            recording = Recording()
+            recording.fingerprint = half
             training.add_events(every_type, np.array([t for t, _ in events]),
-                                np.array([LETTERS.index(kind) for _, kind in events]))
+                                np.array([LETTERS.index(kind) for _, kind in events]), recording)
         return training.model()
 
     def arrays(self, events: List[Event]) -> Tuple[np.ndarray, np.ndarray]:

@@ -2,14 +2,16 @@
 from __future__ import annotations
 
 import os
+import random
 from pathlib import Path
-from typing import Any, Callable, Iterator, List, Optional
+from typing import Any, Callable, Dict, Iterator, List, Optional
 
 import pytest
 from conftest import jittery_robot, learned, write_bag
 
-from self_awareness import EncodingRules, TrainedModel, Training, read_events
+from self_awareness import EncodingRules, EvidenceModel, TrainedModel, Training, read_events
 from self_awareness.commands import train
+from self_awareness.judging import BOTH, EVIDENCE
 from self_awareness.recordings import BagPart
 from self_awareness.training import many_bags
 from self_awareness.training.many_bags import Counting, Trained
@@ -64,8 +66,28 @@ def _bags(tmp_path_factory: pytest.TempPathFactory) -> List[str]:
     return paths
 
 
-def counted(bags: List[str], workers: Optional[Workers] = None, **options: Any) -> Trained:
-    return many_bags.train([BagPart(bag) for bag in bags], Counting(), workers, **options)
+def counted(bags: List[str], workers: Optional[Workers] = None, detector: str = EVIDENCE,
+            **options: Any) -> Trained:
+    return many_bags.train([BagPart(bag) for bag in bags], Counting(detector=detector), workers,
+                           **options)
+
+
+def described(trained: Trained) -> Dict[str, Any]:
+    """Return what a model and its limits say, by the names of event types and bags."""
+    many_bags.preliminary_limits(trained)
+    model = trained.model
+    kinds = model.event_types
+    names = [str(kind) for kind in kinds]
+    calibration = model.evidence_calibration
+    tracks = {(track.channel, names[track.from_id], names[track.to_id]):
+              (repr(limit), relation.watched, relation.starts)
+              for track, limit, relation in zip(EvidenceModel(model).tracks, calibration.limits,
+                                                calibration.relations)}
+    delays = {(names[i], names[j]): sorted(model.histogram(i, j).items())
+              for i in range(len(kinds)) for j in range(len(kinds))}
+    return {'tracks': tracks, 'delays': delays, 'linker': calibration.linker_limit,
+            'expected': calibration.false_alarms_per_hour, 'windows': calibration.windows,
+            'bags': sorted(each.bag for each in model.recordings)}
 
 
 def at_once(bags: List[str]) -> TrainedModel:
@@ -73,7 +95,7 @@ def at_once(bags: List[str]) -> TrainedModel:
     whole = Training(EncodingRules.defaults())
     for bag, recording in zip(bags, counted(bags).model.recordings):
         events = read_events(bag, EncodingRules.defaults())
-        whole.add_events(events.event_types, events.stamps, events.ids, None, recording)
+        whole.add_events(events.event_types, events.stamps, events.ids, recording)
     return whole.model()
 
 
@@ -105,7 +127,7 @@ def test_a_file_is_the_same_however_it_was_counted(bags: List[str], bad: List[in
 
 @pytest.mark.parametrize('batches', [1, 2, 4, 5])
 @pytest.mark.parametrize('bad', [[], [0], [1], [2, 3, 4], [0, 1, 5, 8]])
-def test_halves_are_taken_in_turn(bags: List[str], batches: int, bad: List[int]) -> None:
+def test_sums_are_what_one_training_counts(bags: List[str], batches: int, bad: List[int]) -> None:
     named = [f'/nowhere/{i}.bag' if i in bad else bag for i, bag in enumerate(bags)]
     said: List[str] = []
     said_one_by_one: List[str] = []
@@ -113,10 +135,26 @@ def test_halves_are_taken_in_turn(bags: List[str], batches: int, bad: List[int])
     one_by_one = counted(named, skip_bad=True, tell=said_one_by_one.append)
     good = [bag for bag in named if bag in bags]
     assert learned(summed.model) == learned(at_once(good))
-    assert [each.half for each in summed.trained_on] == [i % 2 for i in range(BAGS - len(bad))]
     assert [each.part.path for each in summed.trained_on] == good
     assert said == said_one_by_one and len(said) == BAGS
     assert summed.bad == one_by_one.bad and len(summed.bad) == len(bad)
+
+
+@pytest.mark.parametrize('seed', range(4))
+def test_the_order_of_bags_changes_nothing(bags: List[str], seed: int) -> None:
+    shuffled = random.Random(seed).sample(bags, len(bags))
+    first, second = (counted(order, detector=BOTH) for order in (bags, shuffled))
+    assert described(first) == described(second)
+
+
+def test_merged_models_hold_what_one_training_does(bags: List[str]) -> None:
+    whole = described(counted(bags, detector=BOTH))
+    for number in (1, 2, 5):
+        merged = counted(bags[:number], detector=BOTH)
+        merged.model.merge(counted(bags[number:], detector=BOTH).model)
+        merged.model.watch()
+        rest = counted(bags[number:], detector=BOTH)
+        assert described(Trained(merged.model, merged.trained_on + rest.trained_on, [])) == whole
 
 
 def test_only_sums_are_handed_over(bags: List[str]) -> None:

@@ -47,9 +47,9 @@ class ModelMergeTest : public testing::Test {
       model->statistics = core::paper::DelayStatistics(core::paper::Binning{5000000, 20});
     }
     trainOn(first_, {kScan, kMap}, 1000, 0);
-    trainOn(second_, {kMap, kPose, kScan}, 7000, 1);
+    trainOn(second_, {kMap, kPose, kScan}, 7001, 1);
     trainOn(both_, {kScan, kMap}, 1000, 0);
-    trainOn(both_, {kMap, kPose, kScan}, 7000, 1);
+    trainOn(both_, {kMap, kPose, kScan}, 7001, 1);
   }
 
   std::string errorOf(const std::function<void(TrainedModel&)>& change) const {
@@ -79,7 +79,7 @@ TEST_F(ModelMergeTest, CountsAddUpToThoseOfATrainingOnBoth) {
   EXPECT_TRUE(first_.evidence[0] == both_.evidence[0]);
   EXPECT_TRUE(first_.evidence[1] == both_.evidence[1]);
   ASSERT_EQ(first_.recordings.size(), 2U);
-  EXPECT_EQ(first_.recordings[1].fingerprint, 7000U);
+  EXPECT_EQ(first_.recordings[1].fingerprint, 7001U);
 }
 
 TEST_F(ModelMergeTest, EdgesAreThoseOfBothAndTheStampTheLater) {

@@ -65,6 +65,8 @@ class LimitFinder : private WindowObserver {
   /// @param robot_start when the robot was started [ns]; 0: not known
   void startRecording(std::shared_ptr<const Model> model, std::int64_t robot_start = 0);
   void add(const Event& event);
+  /// The clock was set, which the stamps do not say by themselves (stream/clock_steps.h).
+  void restart();
   /// Ends the recording.
   void finish();
   /// Ends the first pass and finds the limits of the tracks. All recordings must then come once

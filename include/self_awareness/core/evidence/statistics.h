@@ -144,11 +144,16 @@ class Trainer {
   /// @param robot_start when the robot was started [ns]; 0: not known
   void startRecording(std::optional<std::int64_t> since = std::nullopt,
                       std::int64_t robot_start = 0);
+  /// Starts a new recording of the same start of the robot: the clock was set.
+  void onClockStep() { startRecording(std::nullopt, recording_.robot_start); }
   /// An event of the recording before those that are counted: it only says when its type came
   /// first.
   void addBefore(const Event& event);
   /// @param event with an id of the statistics' vocabulary; in the order of the recording.
   void add(const Event& event);
+  /// Counts what comes next into other statistics, which must have the same event types and
+  /// outlive the trainer. The recording goes on; its end decides which ones name it.
+  void countInto(Statistics& statistics) { statistics_ = &statistics; }
   /// Ends the last recording.
   void finish() { startRecording(); }
 
@@ -161,7 +166,7 @@ class Trainer {
   void resizeRecording();
   void closeWindows(std::int64_t now);
 
-  Statistics& statistics_;
+  Statistics* statistics_;
   std::int64_t window_;
   Statistics::Recording recording_;         // the open one
   std::optional<std::int64_t> since_;       // when it began [ns]; none: with its first event

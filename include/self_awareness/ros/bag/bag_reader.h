@@ -50,8 +50,9 @@ struct BagSummary {
   // Of event logs only:
   std::optional<EncodingRules> encoding;  ///< by which messages became events
   std::int64_t robot_start = 0;  ///< recordings that share it are of one start [ns]; 0: not known
-  Graph graph;                   ///< all who ever published or subscribed
-  std::uint64_t dropped = 0;     ///< messages that came too fast to be written
+  bool clock_watched = false;  ///< it was heard live: a new recording began when ROS time was set
+  Graph graph;                 ///< all who ever published or subscribed
+  std::uint64_t dropped = 0;   ///< messages that came too fast to be written
 };
 
 /// First and last stamp [ns] of a range of a recording.

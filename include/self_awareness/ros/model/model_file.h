@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -12,6 +11,7 @@
 #include "self_awareness/EvidenceCalibration.h"
 #include "self_awareness/Model.h"
 #include "self_awareness/Recording.h"
+#include "self_awareness/core/evidence/halves.h"
 #include "self_awareness/core/evidence/limits.h"
 #include "self_awareness/core/evidence/model.h"
 #include "self_awareness/core/paper/delay_statistics.h"
@@ -34,9 +34,9 @@ struct TrainedModel {
   std::int64_t window = core::kDefaultWindow;  ///< length of a window [ns]
   /// Counts of the paper's detector; without delays where there are none, or they were not loaded.
   core::paper::DelayStatistics statistics{core::paper::Binning{}};
-  /// All counts of the evidence detector, of each half of the training; without event types where
-  /// there are none, or they were not loaded. merge() and further training need them.
-  std::array<core::evidence::Statistics, 2> evidence;
+  /// All counts of the evidence detector; without event types where there are none, or they were
+  /// not loaded. merge() and further training need them.
+  core::evidence::Halves evidence;
   /// The part of them that the evidence detector judges by.
   core::evidence::Watched watched;
   std::size_t predecessors =
@@ -57,6 +57,8 @@ struct TrainedModel {
   void requireDelays() const;
   /// Whether the model holds all counts of the evidence detector.
   bool hasEvidence() const { return evidence[0].size() > 0; }
+  /// The half that all recordings belong to; none: there are some of both, or no recording.
+  std::optional<std::size_t> onlyHalf() const;
   /// Whether watch() has chosen what is watched.
   bool isWatched() const { return watched.halves[0].size() > 0; }
   /// @throw std::invalid_argument if isWatched() is false, or the model was not trained for the

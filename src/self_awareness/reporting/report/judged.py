@@ -53,4 +53,5 @@ class Judged:
         recording = self.recording
         return evidence_lanes(self.by.trained, self.by.evidence, self.by.parameters,
                               recording.stamps, recording.ids, recording.end,
-                              list(recording.event_types), starts.tolist())
+                              list(recording.event_types), starts.tolist(),
+                              recording.clock_steps)

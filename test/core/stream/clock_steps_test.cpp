@@ -1,0 +1,144 @@
+#include "self_awareness/core/stream/clock_steps.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "self_awareness/core/stream/clock.h"
+
+namespace self_awareness::core {
+namespace {
+
+constexpr std::int64_t kSecond = kNanosecondsPerSecond;
+using Steps = std::vector<std::int64_t>;
+
+// Silences of a robot: from when on, and for how long [ns].
+struct Silence {
+  std::int64_t from;
+  std::int64_t length;
+};
+
+// A robot of 10 and 3 Hz for 100 s, and one event at 50 s. Nothing comes in the silences, which
+// make the recording longer, as a step of the clock does.
+std::vector<Event> robot(const std::vector<Silence>& silences) {
+  std::vector<Event> events{{50 * kSecond + 7, 2}};
+  for (std::int64_t t = 0; t < 100 * kSecond; t += kSecond / 10) {
+    events.push_back({t, 0});
+  }
+  for (std::int64_t t = 1; t < 100 * kSecond; t += kSecond / 3) {
+    events.push_back({t, 1});
+  }
+  for (Event& event : events) {
+    const std::int64_t stamp = event.stamp;
+    for (const Silence& silence : silences) {
+      event.stamp += stamp >= silence.from ? silence.length : 0;
+    }
+  }
+  std::sort(events.begin(), events.end(),
+            [](const Event& a, const Event& b) { return a.stamp < b.stamp; });
+  return events;
+}
+
+TEST(FindClockSteps, ARobotThatGoesOnHasNone) {
+  EXPECT_EQ(findClockSteps({}), Steps());
+  EXPECT_EQ(findClockSteps({{5, 0}}), Steps());
+  EXPECT_EQ(findClockSteps(robot({})), Steps());
+  EXPECT_EQ(findClockSteps(robot({{30 * kSecond, 19 * kSecond / 10}})), Steps());
+}
+
+TEST(FindClockSteps, FindsSilencesAfterWhichAllGoesOn) {
+  EXPECT_EQ(findClockSteps(robot({{30 * kSecond, 20 * kSecond}})), Steps{50 * kSecond});
+  EXPECT_EQ(findClockSteps(robot({{30 * kSecond, 3 * kSecond}})), Steps{33 * kSecond});
+  EXPECT_EQ(findClockSteps(robot({{30 * kSecond, 20 * kSecond},
+                                  {60 * kSecond, 9 * kSecond},
+                                  {70 * kSecond, 1800 * kSecond}})),
+            (Steps{50 * kSecond, 89 * kSecond, 1899 * kSecond}));
+}
+
+TEST(FindClockSteps, AfterAPauseTimersComeAtAnotherTime) {
+  std::vector<Event> events = robot({});
+  const auto pause = [](const Event& event) {
+    return 30 * kSecond < event.stamp && event.stamp < 47'770'000'000;
+  };
+  events.erase(std::remove_if(events.begin(), events.end(), pause), events.end());
+  EXPECT_EQ(findClockSteps(events), Steps());
+}
+
+TEST(FindClockSteps, AfterAnOutageWhatWaitedComesAtOnce) {
+  std::vector<Event> events = robot({});
+  for (Event& event : events) {
+    if (30 * kSecond < event.stamp && event.stamp < 47'770'000'000) {
+      event.stamp = 47'770'000'000;
+    }
+  }
+  EXPECT_EQ(findClockSteps(events), Steps());
+}
+
+TEST(FindClockSteps, OneTimerTellsNothing) {
+  std::vector<Event> events;
+  for (std::int64_t n = 0; n < 500; ++n) {
+    events.push_back({n * kSecond / 10 + (n > 200 ? 60 * kSecond : 0), 0});
+  }
+  EXPECT_EQ(findClockSteps(events), Steps());
+}
+
+TEST(FindClockSteps, WhatHappensOftenIsNormal) {
+  std::vector<Silence> silences;
+  for (std::int64_t n = 1; n <= 4; ++n) {
+    silences.push_back({n * 20 * kSecond, 20 * kSecond});
+  }
+  EXPECT_EQ(findClockSteps(robot(silences)), Steps());
+  silences.back().length = 2 * kSecond;  // much shorter than the others
+  EXPECT_EQ(findClockSteps(robot(silences)).size(), 3U);
+  silences.back().length = 3 * kSecond;
+  EXPECT_EQ(findClockSteps(robot(silences)), Steps());
+}
+
+TEST(FindClockSteps, SomebodyWhoGoesOnMakesItASilenceOfOthers) {
+  std::vector<Event> events = robot({{30 * kSecond, 20 * kSecond}});
+  events.push_back({40 * kSecond, 3});
+  std::sort(events.begin(), events.end(),
+            [](const Event& a, const Event& b) { return a.stamp < b.stamp; });
+  EXPECT_EQ(findClockSteps(events), Steps());
+}
+
+TEST(FindClockSteps, AStartIsNone) {
+  // Something is there at once, all others a while after.
+  std::vector<Event> events = robot({{0, 20 * kSecond}});
+  events.insert(events.begin(), {{0, 0}, {1, 1}, {2, 2}});
+  EXPECT_EQ(findClockSteps(events), Steps());
+  // Nor is the end of a robot of which one last message comes later.
+  events = robot({});
+  events.push_back({130 * kSecond, 0});
+  EXPECT_EQ(findClockSteps(events), Steps());
+}
+
+TEST(FindClockSteps, WhatComesSeldomTellsNothing) {
+  std::vector<Event> events;
+  for (std::int64_t n = 0; n < 90; ++n) {
+    events.push_back({n * kSecond + (n > 45 ? 60 * kSecond : 0), 0});
+  }
+  EXPECT_EQ(findClockSteps(events), Steps());
+}
+
+TEST(FindClockSteps, LeavesOutStepsThatStampsSayThemselves) {
+  std::vector<Event> events = robot({});
+  const std::vector<Event> again = robot({{10 * kSecond, 2 * kLongestSilence}});
+  events.insert(events.end(), again.begin(), again.end());
+  EXPECT_EQ(findClockSteps(events), Steps());
+}
+
+TEST(ClockSteps, LieBetweenTheEventsAroundThem) {
+  const ClockSteps steps({50, 20});
+  EXPECT_TRUE(steps.between(19, 20));
+  EXPECT_TRUE(steps.between(3, 90));
+  EXPECT_FALSE(steps.between(20, 49));
+  EXPECT_TRUE(steps.between(49, 51));
+  EXPECT_FALSE(steps.between(50, 90));
+  EXPECT_FALSE(ClockSteps().between(0, 90));
+}
+
+}  // namespace
+}  // namespace self_awareness::core

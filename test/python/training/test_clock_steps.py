@@ -1,0 +1,93 @@
+"""A bag in which the clock was set forward teaches and judges like one in which it was not."""
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Iterable, List, Tuple
+
+import numpy as np
+import pytest
+from conftest import jittery_robot, learned, write_bag
+
+from self_awareness import TrainedModel
+from self_awareness.commands import calibrate, convert, score, train
+
+STEP_S = 20.0
+
+
+def robot(start: float, seed: int, step_s: float = 0.0,
+          dies: bool = False) -> List[Tuple[float, str, str]]:
+    """Return two minutes of the robot; after one, the clock is set, or the laser dies."""
+    def messages() -> Iterable[Tuple[float, str, str]]:
+        for stamp, source, topic in jittery_robot(start, 120.0, seed):
+            if stamp < start + 60.0:
+                yield stamp, source, topic
+            elif not (dies and source == '/laser'):
+                yield stamp + step_s, source, topic
+    return list(messages())
+
+
+@pytest.fixture(name='folder', scope='module')
+def _folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    folder = tmp_path_factory.mktemp('steps')
+    for index in range(3):
+        write_bag(folder / f'{index}.bag', robot(1000.0 * (index + 1), index))
+    write_bag(folder / 'even.bag', robot(9000.0, 9))
+    write_bag(folder / 'set.bag', robot(9000.0, 9, STEP_S))
+    write_bag(folder / 'dies.bag', robot(20000.0, 11, dies=True))
+    return folder
+
+
+def trained(folder: Path, last: str, output: str) -> TrainedModel:
+    named = [str(folder / name) for name in ('0.bag', '1.bag', '2.bag', last)]
+    assert train.main([*named, '-o', str(folder / output)]) == 0
+    return TrainedModel.load(str(folder / output))
+
+
+def test_a_step_is_not_learned(folder: Path, capsys: pytest.CaptureFixture) -> None:
+    even = trained(folder, 'even.bag', 'even')
+    assert 'clock' not in capsys.readouterr().out
+    stepped = trained(folder, 'set.bag', 'set')
+    assert (f'{folder}/set.bag: warning: the clock was set forward by 20.0 s before 80.0 s: '
+            'all went on as if the time between had not been. The recording is cut there'
+            ) in capsys.readouterr().out
+    for one, other in zip(even.evidence_calibration.limits, stepped.evidence_calibration.limits):
+        assert np.isnan(one) and np.isnan(other) or other == pytest.approx(one, rel=0.1)
+    alarms = []
+    for name in ('even', 'set'):
+        assert score.main([str(folder / 'dies.bag'), '--model', str(folder / name)]) == 0
+        said = capsys.readouterr().out
+        alarms.append(next(line for line in said.splitlines()
+                           if ' UTC: ' in line and 'suspicion' not in line).split()[0])
+        assert '/laser' in said
+    assert float(alarms[1]) == pytest.approx(float(alarms[0]), abs=0.11)
+
+
+def test_a_step_is_not_judged(folder: Path, capsys: pytest.CaptureFixture) -> None:
+    named = [str(folder / f'{index}.bag') for index in range(3)]
+    assert train.main([*named, '-o', str(folder / 'three')]) == 0
+    capsys.readouterr()
+    assert score.main([str(folder / 'set.bag'), '--model', str(folder / 'three')]) == 0
+    said = capsys.readouterr()
+    assert 'alarms: 0,' in said.out
+    assert 'the clock was set forward by 20.0 s before 80.0 s' in said.err
+    limits = []
+    for name in ('even.bag', 'set.bag'):
+        output = folder / f'calibrated-{name}'
+        assert calibrate.main(['--model', str(folder / 'three'), '--normal', str(folder / name),
+                               '-o', str(output)]) == 0
+        limits.append(TrainedModel.load(str(output)).evidence_calibration.limits)
+    assert 'the clock was set forward' in capsys.readouterr().err
+    np.testing.assert_allclose(limits[1], limits[0], rtol=0.1)
+
+
+def test_the_log_of_a_bag_is_cut_like_the_bag(folder: Path,
+                                              capsys: pytest.CaptureFixture) -> None:
+    log = folder / 'set.log.bag'
+    assert convert.main([str(folder / 'set.bag'), '-o', str(log)]) == 0
+    models = []
+    for recording in (folder / 'set.bag', log):
+        output = folder / f'of-{recording.name}'
+        assert train.main([str(recording), '-o', str(output)]) == 0
+        models.append(TrainedModel.load(str(output)))
+    assert learned(models[0], calibrations=True) == learned(models[1], calibrations=True)
+    assert capsys.readouterr().out.count('the clock was set forward') == 2
