@@ -18,7 +18,7 @@ packages_debian=(
   catkin ros-base-dev ros-message-generation
   libnodeletlib-dev libnodelet-dev libnodeletlib-tools
   libdiagnostic-updater-dev libdiagnostic-aggregator-dev libdiagnostic-aggregator-tools
-  librosbag-dev librosbag-storage-dev libtopic-tools-dev topic-tools librostest-dev
+  librosbag-dev librosbag-storage-dev libroslz4-dev libtopic-tools-dev topic-tools librostest-dev
   python3-rosbag python3-rospy python3-rostest python3-roslaunch python3-rosnode python3-rostopic
   python3-rosmsg python3-rosservice python3-rosgraph rosbash rosdiagnostic
   python3-actionlib-msgs python3-diagnostic-msgs python3-geometry-msgs python3-nav-msgs python3-sensor-msgs
@@ -36,7 +36,7 @@ packages_noetic=(
   g++ make cmake python3-dev python3-setuptools
   ros-noetic-ros-base ros-noetic-nodelet ros-noetic-pluginlib ros-noetic-diagnostic-updater
   ros-noetic-diagnostic-aggregator ros-noetic-diagnostic-msgs ros-noetic-topic-tools
-  ros-noetic-rosbag ros-noetic-rosbag-storage ros-noetic-std-srvs ros-noetic-rosbash
+  ros-noetic-rosbag ros-noetic-rosbag-storage ros-noetic-roslz4 ros-noetic-std-srvs ros-noetic-rosbash
   ros-noetic-actionlib-msgs ros-noetic-visualization-msgs ros-noetic-sensor-msgs ros-noetic-nav-msgs
   ros-noetic-geometry-msgs
   pybind11-dev libboost-filesystem-dev libeigen3-dev libre2-dev pkg-config

@@ -13,6 +13,7 @@
 #include "encoding_parameters.h"
 #include "parameter_reader.h"
 #include "self_awareness/ros/bag/bag_reader.h"
+#include "self_awareness/ros/output_file.h"
 
 namespace self_awareness {
 namespace {
@@ -191,7 +192,7 @@ void EventRecorder::end(std::int64_t now) {
   attempt([&] {
     packer_->flush(now);
     file_->log.close();
-    fs::rename(file_->log.path(), file_->path);
+    ros1::putInPlace(file_->log.path(), file_->path);
     bytes_ += file_->log.size();
     ++files_;
   });

@@ -3,12 +3,12 @@
 #include <ros/time.h>
 
 #include <algorithm>
-#include <boost/filesystem.hpp>
 #include <cmath>
 #include <utility>
 
 #include "self_awareness/EventLogStart.h"
 #include "self_awareness/ros/bag/event_log_writer.h"
+#include "self_awareness/ros/output_file.h"
 
 namespace self_awareness {
 namespace {
@@ -41,8 +41,9 @@ struct Recording {
   std::vector<std::shared_ptr<const self_awareness::EventLog>> parts;
 };
 
-void write(const Recording& recording, const std::string& path) {
-  ros1::EventLogWriter log(path);
+void writeLog(const Recording& recording, const std::string& path) {
+  ros1::OutputFile file(path);
+  ros1::EventLogWriter log(file.temporary(), path);
   log.start(recording.start);
   if (recording.graph) {
     log.writeGraph(*recording.graph, static_cast<std::int64_t>(recording.start.begin.toNSec()));
@@ -56,19 +57,7 @@ void write(const Recording& recording, const std::string& path) {
     log.write(std::move(written));
   }
   log.close();
-}
-
-/// Writes beside `path` and renames: no program finds half a file.
-void writeWhole(const Recording& recording, const std::string& path) {
-  const std::string temporary = path + ".part";
-  try {
-    write(recording, temporary);
-    boost::filesystem::rename(temporary, path);
-  } catch (const std::exception&) {
-    boost::system::error_code ignored;  // what went wrong before is what counts
-    boost::filesystem::remove(temporary, ignored);
-    throw;
-  }
+  file.complete();
 }
 
 }  // namespace
@@ -189,7 +178,7 @@ void FlightRecorder::write(const std::string& path) {
   const RecorderFolder folder = folder_;
   writer_.add({path, bytes_, [folder, recording](const std::string& file) {
                  folder.create();
-                 writeWhole(recording, file);
+                 writeLog(recording, file);
                  folder.removeOldest();
                }});
 }

@@ -118,6 +118,8 @@ inline std::vector<std::pair<std::int64_t, std::uint32_t>> delaysOf(
   return delays;
 }
 
+/// Binds files that are written whole or not at all (output_file_bindings.cpp).
+void bindOutputFiles(py::module& module);
 /// Binds the writing of event logs (event_log_bindings.cpp).
 void bindEventLogs(py::module& module);
 /// Binds the encoding, and the reading of bags and event logs (recording_bindings.cpp).

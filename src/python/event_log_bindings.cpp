@@ -30,7 +30,9 @@ ros1::Graph graphOf(const NodesOfTopics& publishers, const NodesOfTopics& subscr
 
 void bindEventLogs(py::module& m) {
   py::class_<ros1::EventLogWriter>(m, "EventLogWriter", "Writes an event log.")
-      .def(py::init<std::string>(), py::arg("path"), "Replaces a file that is there.")
+      .def(py::init<const std::string&, const std::string&>(), py::arg("path"),
+           py::arg("named") = "",
+           "Replaces a file that is there. named: what errors call the file, if not by its path.")
       .def(
           "add_bag",
           [](ros1::EventLogWriter& self, const std::string& path,

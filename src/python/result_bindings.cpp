@@ -16,8 +16,10 @@ void bindResults(py::module& m) {
   using ros1::ResultBag;
   py::class_<ResultBag>(m, "ResultBag",
                         "A bag of what the monitor would have published of recordings.")
-      .def(py::init<const std::string&>(), py::arg("path"),
-           "Creates the file, or empties the one that is there. BagError where that fails.")
+      .def(py::init<const std::string&, const std::string&>(), py::arg("path"),
+           py::arg("named") = "",
+           "Creates the file, or empties the one that is there. named: what errors call it, if\n"
+           "not by its path. BagError where that fails.")
       .def("close", &ResultBag::close, "Completes the file. BagError where that fails.")
       .def_static("is_one", &ResultBag::isOne, py::arg("path"),
                   "Whether a file is a whole bag that this class wrote, and no recording.");

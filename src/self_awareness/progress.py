@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import sys
+import threading
 import time
 from contextlib import contextmanager
 from typing import Callable, Iterable, Iterator, Sequence, TypeVar
@@ -11,6 +12,9 @@ from tqdm import tqdm
 _Item = TypeVar('_Item')
 
 _silent = False
+
+# tqdm's own lock is one for all processes that are forked: who is killed with it stops the others.
+tqdm.set_lock(threading.RLock())
 
 
 def silence() -> None:

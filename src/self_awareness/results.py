@@ -5,32 +5,26 @@ from contextlib import contextmanager
 from typing import Callable, Iterator, Optional, Sequence
 
 from self_awareness import ReplayedMonitor, ResultBag, TrainedModel, summarise_bag
-from self_awareness.output_files import check_replaces, replacing
+from self_awareness.output_files import replacing
 from self_awareness.recordings import BagPart, RecordingEvents
 
 Replay = Callable[[RecordingEvents], Optional[ReplayedMonitor]]
 """Returns what the judge of a recording must tell; None: nobody wants to know."""
 
 
-def check_result_bag(path: Optional[str], parts: Sequence[BagPart]) -> None:
-    """Check before long work that a result bag can hold all recordings, and destroys none.
+def check_apart(path: Optional[str], parts: Sequence[BagPart]) -> None:
+    """Check before long work that a result bag can hold the results of all recordings.
 
     Args:
         path: of the result bag; None: there will be none.
         parts: whose results it will hold.
 
     Raises:
-        ValueError: the file is there and no result bag, or two parts overlap in time.
+        ValueError: two parts overlap in time.
         BagError: there are several parts, and one cannot be read.
     """
-    if path is None:
+    if path is None or len(parts) == 1:
         return
-    check_replaces(path, 'result bag', ResultBag.is_one)
-    if len(parts) > 1:
-        _check_apart(path, parts)
-
-
-def _check_apart(path: str, parts: Sequence[BagPart]) -> None:
     spans = []
     for part in parts:
         summary = summarise_bag(part.path, part.recording)
@@ -59,7 +53,7 @@ def result_bag(path: Optional[str], model_path: str, trained: TrainedModel,
         yield lambda recording: None
         return
     with replacing(path) as temporary:
-        bag = ResultBag(temporary)
+        bag = ResultBag(temporary, path)
 
         def replay(recording: RecordingEvents) -> ReplayedMonitor:
             start, _ = recording.part.span(recording.origin, recording.end)

@@ -8,19 +8,16 @@ import asyncio
 import concurrent.futures
 import logging
 import math
-import multiprocessing
-import multiprocessing.connection
-import os
 import pickle
-import signal
-import threading
+import traceback
 import warnings
 from abc import ABC, abstractmethod
 from collections import deque
-from contextlib import contextmanager, suppress
-from typing import Any, Callable, Deque, Generator, Iterator, Sequence, TypeVar
+from contextlib import closing, contextmanager, suppress
+from typing import Any, Callable, Deque, Dict, Generator, Iterator, Optional, Sequence, TypeVar
 
 from self_awareness import progress
+from self_awareness.process_pool import ProcessPool
 
 _Shared = TypeVar('_Shared')
 _Task = TypeVar('_Task')
@@ -95,20 +92,25 @@ class Processes(Workers):
 
     def map(self, function: Callable[[_Shared, _Task], _Result], shared: _Shared,
             tasks: Sequence[_Task], description: str) -> Generator[_Result, None, None]:
-        """See Workers. What is shared and the tasks are inherited by fork, and not copied."""
-        others = set(multiprocessing.active_children())
-        # Not spawned: that would run the program's script again in every process.
-        with concurrent.futures.ProcessPoolExecutor(
-                min(self._number, len(tasks)), multiprocessing.get_context('fork'), _start_worker,
-                (function, shared, tasks)) as pool:
-            try:
-                yield from _in_order(
-                    tasks, lambda index: pool.submit(_call_inherited, index),
-                    _result_of_process, lambda: self._number, description)
-            except BaseException:  # GeneratorExit, too: the rest is not wanted any more
-                for child in set(multiprocessing.active_children()) - others:
-                    child.kill()
-                raise
+        """See Workers. What is shared and the tasks are inherited by fork, and not copied.
+
+        If a process is killed, another one does its work.
+        """
+        number = min(self._number, len(tasks))
+        pool = ProcessPool(number, lambda index: _outcome(function, shared, tasks[index]))
+        begun = 0
+        outcomes: Dict[int, Optional[bytes]] = {}  # that wait for their turn
+        with closing(pool), progress.items(len(tasks), description) as one_done:
+            for turn, task in enumerate(tasks):
+                while True:
+                    while pool.has_room and begun < min(len(tasks), turn + _AHEAD * number):
+                        pool.begin(begun)
+                        begun += 1
+                    if turn in outcomes:
+                        break
+                    outcomes.update(pool.wait())
+                yield _result(outcomes.pop(turn), task)
+                one_done()
 
     def batches(self, tasks: int) -> int:
         """See Workers."""
@@ -238,35 +240,19 @@ def _call(function: Callable[[_Shared, _Task], _Result], shared: _Shared, task: 
     return pickle.dumps(function(shared, task))
 
 
-def _result_of_process(future: concurrent.futures.Future, task: object) -> Any:
+def _outcome(function: Callable[[_Shared, _Task], _Result], shared: _Shared,
+             task: _Task) -> bytes:
     try:
-        return pickle.loads(future.result())
-    except concurrent.futures.process.BrokenProcessPool as error:
-        raise ValueError(f'{task}: a process that worked on it or beside it was killed (for too '
-                         'little memory?); try fewer --jobs') from error
+        return pickle.dumps((function(shared, task), None, ''))
+    except Exception as error:
+        return pickle.dumps((None, error, traceback.format_exc()))
 
 
-_inherited: Any = None
-"""In a process of Processes: the function, what is shared, and all tasks."""
-
-
-def _call_inherited(index: int) -> bytes:
-    function, shared, tasks = _inherited
-    return _call(function, shared, tasks[index])
-
-
-def _start_worker(*inherited: object) -> None:
-    global _inherited
-    _inherited = inherited
-    progress.silence()
-    for number in (signal.SIGINT, signal.SIGTERM):  # the parent says what happened
-        signal.signal(number, signal.SIG_DFL)
-    threading.Thread(target=_end_with_parent, daemon=True).start()
-
-
-def _end_with_parent() -> None:
-    # Idle workers hold both ends of their pipes, and would never see that the parent is gone.
-    parent = multiprocessing.parent_process()
-    if parent is not None:  # as a worker always has one
-        multiprocessing.connection.wait([parent.sentinel])
-    os._exit(1)
+def _result(outcome: Optional[bytes], task: object) -> Any:
+    if outcome is None:
+        raise ValueError(f'{task}: a process that worked on it was killed, and so were those that '
+                         'tried again (for too little memory?); try fewer --jobs')
+    result, error, where = pickle.loads(outcome)
+    if error is not None:
+        raise error from RuntimeError(f'in a process:\n{where}')
+    return result

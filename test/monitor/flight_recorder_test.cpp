@@ -1,10 +1,17 @@
 #include "monitor/flight_recorder.h"
 
 #include <gtest/gtest.h>
+#include <sys/types.h>
+#include <sys/wait.h>
 
 #include <boost/filesystem.hpp>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
 #include <memory>
+#include <random>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "await.h"
@@ -222,6 +229,40 @@ TEST_F(FlightRecorderTest, ADiskThatDoesNotTakeItIsReportedAndTheRestGoesOn) {
   EXPECT_NE(recorder().report().files.error.find("/dev/full/recorder"), std::string::npos);
   hear(1, 30);
   EXPECT_GT(recorder().report().seconds, 29);
+}
+
+// SELF_AWARENESS_KILLS says how often (scripts/kill.sh).
+TEST_F(FlightRecorderTest, AKillLeavesWholeFilesOnly) {
+  const char* number = std::getenv("SELF_AWARENESS_KILLS");
+  const int kills = number == nullptr ? 4 : std::atoi(number);
+  ASSERT_GT(kills, 0);
+  std::mt19937 random(1);
+  for (int i = 0; i < kills; ++i) {
+    const pid_t node = ::fork();
+    if (node == 0) {
+      parameters_.files = 3;
+      hear(0, 20);
+      while (recorder().dump()) {
+        await([&] { return recorder().report().files.waiting_bytes == 0; });
+      }
+    }
+    ASSERT_TRUE(await([&] { return filesystem::exists(folder_) && files() > 0; }));
+    std::this_thread::sleep_for(std::chrono::microseconds(random() % 20000));
+    ::kill(node, SIGKILL);
+    ASSERT_EQ(::waitpid(node, nullptr, 0), node);
+    for (const filesystem::directory_entry& entry : filesystem::directory_iterator(folder_)) {
+      if (entry.path().extension() == ".bag" && entry.path().filename().string()[0] != '.') {
+        EXPECT_EQ(read(entry.path().string()).size(), 2000U);
+      }
+    }
+  }
+  hear(0, 20);
+  recorder().dump();
+  ASSERT_TRUE(awaitFiles(1));
+  for (const filesystem::directory_entry& entry : filesystem::directory_iterator(folder_)) {
+    EXPECT_NE(entry.path().filename().string()[0], '.')
+        << entry << " is left of one that was killed";
+  }
 }
 
 }  // namespace

@@ -5,13 +5,25 @@ import os
 import signal
 import subprocess
 import sys
+from contextlib import closing
 from pathlib import Path
-from typing import Tuple
+from typing import Any, Callable, Tuple
 
 import pytest
 from conftest import wait_until
 
+from self_awareness.process_pool import ProcessPool
 from self_awareness.workers import InProcess, Processes, Workers
+
+PROGRAM = """
+import signal
+import sys
+signal.signal(signal.SIGINT, signal.default_int_handler)  # who runs the tests may ignore it
+sys.path.insert(0, {tests!r})
+from pathlib import Path
+from test_workers import begin_and_hang, Processes
+list(Processes(2).map(begin_and_hang, Path({folder!r}), range(2), "test"))
+"""
 
 EVERYONE = [InProcess(), Processes(1), Processes(3)]
 
@@ -80,6 +92,67 @@ def test_a_process_that_is_killed_is_told(tmp_path: Path) -> None:
         list(Processes(2).map(die, None, range(4), 'test'))
 
 
+def test_a_process_that_is_killed_is_replaced(tmp_path: Path) -> None:
+    results = Processes(2).map(die_once, tmp_path, range(40), 'test')
+    assert list(results) == list(range(40))
+    assert len(list(tmp_path.iterdir())) == 14
+
+
+def die_once(folder: Path, number: int) -> int:
+    """Die in every third task, at its first attempt."""
+    mark = folder / str(number)
+    if number % 3 == 0 and not mark.exists():
+        mark.touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return number
+
+
+def test_a_process_may_be_killed_in_the_middle_of_its_answer(tmp_path: Path) -> None:
+    results = Processes(2).map(answer_at_length, tmp_path, range(6), 'test')
+    assert next(results) == 0  # nobody reads the others' answers now: they fill their pipes
+    wait_until(lambda: len(begun(tmp_path)) >= 3, 'two others answer')
+    for pid in set(begun(tmp_path)):
+        os.kill(pid, signal.SIGKILL)
+    assert [len(result) for result in results] == [LONG] * 5
+
+
+LONG = 10_000_000
+
+
+def answer_at_length(folder: Path, number: int) -> Any:
+    (folder / f'{number}').write_text(str(os.getpid()))
+    return bytes(LONG) if number else 0
+
+
+def test_a_free_process_may_be_killed(tmp_path: Path) -> None:
+    with closing(ProcessPool(1, lambda task: str(os.getpid()).encode())) as pool:
+        pool.begin(0)
+        [(_, first)] = pool.wait()
+        os.kill(int(first or b''), signal.SIGKILL)
+        wait_until(lambda: not alive(int(first or b'')), 'it ends')
+        pool.begin(1)
+        [(task, second)] = pool.wait()
+    assert task == 1 and second not in (None, first)
+
+
+def test_an_error_says_where_it_was_raised() -> None:
+    with pytest.raises(ValueError) as error:
+        list(Processes(2).map(fail_at_two, None, range(3), 'test'))
+    assert 'fail_at_two' in str(error.value.__cause__)
+
+
+@pytest.mark.parametrize('whom', [os.kill, os.killpg])
+def test_ctrl_c_ends_all_at_once(whom: Callable[[int, int], None], tmp_path: Path) -> None:
+    program = PROGRAM.format(tests=str(Path(__file__).parent), folder=str(tmp_path))
+    with subprocess.Popen([sys.executable, '-c', program], start_new_session=True,
+                          stderr=subprocess.PIPE, text=True) as process:
+        wait_until(lambda: len(begun(tmp_path)) == 2, 'two processes hang')
+        whom(process.pid, signal.SIGINT)
+        _, said = process.communicate(timeout=2.0)
+    assert not any(map(alive, begun(tmp_path)))
+    assert said.count('Traceback') == 1 and said.endswith('KeyboardInterrupt\n')
+
+
 def alive(pid: int) -> bool:
     try:
         return Path(f'/proc/{pid}/stat').read_text().rsplit(')', 1)[1].split()[0] != 'Z'
@@ -108,9 +181,7 @@ def _second_hangs(folder: Path, number: int) -> int:
 
 @pytest.mark.parametrize('how', [signal.SIGTERM, signal.SIGKILL])
 def test_no_process_outlives_the_program(how: signal.Signals, tmp_path: Path) -> None:
-    program = (f'import sys; sys.path.insert(0, {str(Path(__file__).parent)!r});'
-               'from pathlib import Path; from test_workers import begin_and_hang, Processes;'
-               f'list(Processes(2).map(begin_and_hang, Path({str(tmp_path)!r}), range(2), "t"))')
+    program = PROGRAM.format(tests=str(Path(__file__).parent), folder=str(tmp_path))
     with subprocess.Popen([sys.executable, '-c', program]) as process:
         wait_until(lambda: len(begun(tmp_path)) == 2, 'two processes hang')
         os.kill(process.pid, how)

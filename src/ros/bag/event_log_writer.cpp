@@ -42,14 +42,14 @@ void EventLogWriter::start(const self_awareness::EventLogStart& start) {
   parts_ = 0;
   events_ = 0;
   graph_ = {};
-  bag_.write(kEventLogStartTopic, inBag(start.begin), start);
+  bag_.write({kEventLogStartTopic}, inBag(start.begin), start);
 }
 
 void EventLogWriter::write(self_awareness::EventLog part) {
   part.number = parts_++;
   part.events_before = events_;
   events_ += part.events;
-  bag_.write(kEventLogTopic, inBag(part.heard_until), part);
+  bag_.write({kEventLogTopic}, inBag(part.heard_until), part);
 }
 
 void EventLogWriter::writeGraph(const Graph& graph, std::int64_t stamp) {
@@ -68,7 +68,7 @@ void EventLogWriter::writeGraph(const Graph& graph, std::int64_t stamp) {
     }
   }
   if (!message.topics.empty()) {
-    bag_.write(kEventLogGraphTopic, inBag(message.stamp), message);
+    bag_.write({kEventLogGraphTopic}, inBag(message.stamp), message);
     graph_ = graph;
   }
 }

@@ -2,12 +2,10 @@
 
 #include <rosbag/bag.h>
 #include <rosbag/exceptions.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <boost/filesystem/operations.hpp>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 #include <new>
 #include <optional>
@@ -18,10 +16,13 @@
 #include "../bag/bag_messages.h"
 #include "../message_check.h"
 #include "check.h"
+#include "self_awareness/ros/bag/bag_reader.h"
+#include "self_awareness/ros/bag/bag_writer.h"
 #include "self_awareness/ros/encoding_message.h"
 #include "self_awareness/ros/graph.h"
 #include "self_awareness/ros/model/delays_message.h"
 #include "self_awareness/ros/model/evidence_message.h"
+#include "self_awareness/ros/output_file.h"
 
 namespace self_awareness::ros1 {
 namespace {
@@ -128,16 +129,16 @@ TrainedModel read(ModelMessages& messages, ModelCounts counts) {
   return std::move(*model);
 }
 
-void write(const TrainedModel& model, rosbag::Bag& bag) {
+void write(const TrainedModel& model, BagWriter& bag) {
   // A bag cannot hold a message with the time 0.
   const ros::Time stamp = std::max(model.stamp, ros::TIME_MIN);
-  bag.write(kTopic, stamp, toMessage(model));
+  bag.write({kTopic}, stamp, toMessage(model));
   for (core::EventId id = 0; id < model.vocabulary().size(); ++id) {
     if (model.hasDelays()) {
-      bag.write(kDelaysTopic, stamp, toMessage(model.statistics, id));
+      bag.write({kDelaysTopic}, stamp, toMessage(model.statistics, id));
     }
     for (std::size_t half = 0; model.hasEvidence() && half < model.evidence.size(); ++half) {
-      bag.write(kEvidenceTopics.at(half), stamp, pairsMessage(model.evidence.at(half), id));
+      bag.write({kEvidenceTopics.at(half)}, stamp, pairsMessage(model.evidence.at(half), id));
     }
   }
 }
@@ -346,16 +347,16 @@ void saveModel(const TrainedModel& model, const std::string& path) {
   if (model.isWatched() != model.hasEvidence() || !(model.hasEvidence() || model.hasDelays())) {
     throw std::logic_error("a model is saved with all counts, and with what is watched");
   }
-  const std::string temporary = path + ".part" + std::to_string(::getpid());
   try {
-    rosbag::Bag bag(temporary, rosbag::bagmode::Write);
-    bag.setCompression(rosbag::compression::LZ4);
+    OutputFile file(path);
+    BagWriter bag(file.temporary(), BagWriter::Chunks::kCompressed, path);
     write(model, bag);
     bag.close();
-    boost::filesystem::rename(temporary, path);
-  } catch (const std::exception& error) {
-    std::remove(temporary.c_str());
-    throw ModelFileError(path + ": cannot be written (" + error.what() + ")");
+    file.complete();
+  } catch (const BagError& error) {
+    throw ModelFileError(error.what());
+  } catch (const FileError& error) {
+    throw ModelFileError(error.what());
   }
 }
 

@@ -23,7 +23,7 @@ from self_awareness.calibration.runs import (ABNORMAL, LEFT_OUT, NORMAL, RECORDE
 from self_awareness.calibration.threshold_rule import ThresholdRule
 from self_awareness.commands import cli
 from self_awareness.judging import evidence_judge, paper_judge
-from self_awareness.output_files import check_outputs, replacing
+from self_awareness.output_files import MODEL, PICTURE, TABLE, check_outputs, replacing
 from self_awareness.recordings import BagPart, RecordingEvents, expand
 from self_awareness.reporting import evidence_report
 from self_awareness.reporting.plots import save_roc
@@ -64,8 +64,9 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 def _calibrate(arguments: argparse.Namespace) -> None:
     bags = [part.path for part in arguments.normal + arguments.faulty]
-    check_outputs([arguments.roc, arguments.csv], bags + [arguments.model, arguments.output])
-    check_outputs([arguments.output], bags)
+    check_outputs([(arguments.roc, PICTURE), (arguments.csv, TABLE)],
+                  bags + [arguments.model, arguments.output])
+    check_outputs([(arguments.output, MODEL)], bags)
     if arguments.roc is not None and not (arguments.faulty or arguments.inject):
         raise ValueError('--roc: there is no ROC without faults: name recordings of some '
                          '(--faulty) or let some be made (--inject)')

@@ -41,13 +41,15 @@ def run(parser: argparse.ArgumentParser, work: Callable[[argparse.Namespace], No
     except KeyboardInterrupt:
         return 130
     except BrokenPipeError:  # the reader has seen enough, as `head` has
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _drop_output()
         return 1
+    except MemoryError:
+        return _fail(parser.prog, 'there is too little memory')
     except (BagError, ModelFileError, ValueError) as error:
         return _fail(parser.prog, str(error))
     except OSError as error:
         file = f'{error.filename}: ' if error.filename else ''
-        return _fail(parser.prog, f'{file}{error.strerror or error}')
+        return _fail(parser.prog, _output_problem() or f'{file}{error.strerror or error}')
     return 0
 
 
@@ -57,6 +59,21 @@ def _check_utf8(argv: Sequence[str]) -> None:
             argument.encode()
         except UnicodeEncodeError:  # bytes that Python could not decode
             raise ValueError(f'{ascii(argument)}: not in UTF-8; rename the file') from None
+
+
+def _output_problem() -> str:
+    """Return why standard output takes no more; empty: it does."""
+    try:
+        sys.stdout.flush()
+    except OSError as error:
+        _drop_output()
+        return f'standard output: {error.strerror}'
+    return ''
+
+
+def _drop_output() -> None:
+    """Let Python's own attempt to write what is left, at the end, not fail again."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def stand_back() -> None:

@@ -8,7 +8,7 @@ from typing import Optional, Sequence
 from self_awareness import (EncodingRules, EventLogWriter, encoding_file, progress,
                             recordings_in_event_log, summarise_bag)
 from self_awareness.commands import cli
-from self_awareness.output_files import check_outputs, check_replaces, replacing
+from self_awareness.output_files import EVENT_LOG, check_outputs, replacing
 from self_awareness.training.robot_graph import RobotGraph, graph_file
 
 _EPILOG = """\
@@ -27,12 +27,10 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 
 def _convert(arguments: argparse.Namespace) -> None:
-    check_outputs([arguments.output], [*arguments.bags, arguments.encoding])
-    check_replaces(arguments.output, 'event log',
-                   lambda path: recordings_in_event_log(path) is not None)
+    check_outputs([(arguments.output, EVENT_LOG)], [*arguments.bags, arguments.encoding])
     encoding = None if arguments.encoding is None else encoding_file.load(arguments.encoding)
     with replacing(arguments.output) as temporary:
-        log = EventLogWriter(temporary)
+        log = EventLogWriter(temporary, arguments.output)
         for bag in arguments.bags:
             _add(log, bag, encoding)
         log.close()

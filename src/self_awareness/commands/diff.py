@@ -8,7 +8,7 @@ from typing import Optional, Sequence
 from self_awareness.commands import cli
 from self_awareness.comparison.changes import compare
 from self_awareness.comparison.sides import read_sides
-from self_awareness.output_files import check_outputs
+from self_awareness.output_files import PAGE, check_outputs
 from self_awareness.recordings import BagPart
 from self_awareness.reporting import diff_text
 from self_awareness.reporting.report.diff_page import save_diff
@@ -31,7 +31,7 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 
 def _diff(arguments: argparse.Namespace) -> None:
-    check_outputs([arguments.html],
+    check_outputs([(arguments.html, PAGE)],
                   [BagPart.parse(name).path for name in (arguments.before, arguments.after)])
     if arguments.html is not None:
         check_installed()

@@ -13,7 +13,7 @@ from self_awareness.calibration import limits
 from self_awareness.commands import cli
 from self_awareness.learning import programs
 from self_awareness.learning.learner import Learner, Plan
-from self_awareness.output_files import check_outputs
+from self_awareness.output_files import MODEL, check_outputs
 
 _MONITOR = 'self_awareness_node'
 _START_UP_S = 30.0
@@ -39,7 +39,7 @@ def _learn(arguments: argparse.Namespace) -> None:
     if os.path.exists(model):
         rospy.loginfo('%s is there: this is the monitor; remove it to learn again', model)
     else:
-        check_outputs([model], [])
+        check_outputs([(model, MODEL)], [])
         encoding = without(rospy.get_name(), encoding_file.load(arguments.encoding)
                            if arguments.encoding else EncodingRules.defaults())
         plan = Plan(model, arguments.logs or f'{model}.logs', arguments.hours, arguments.start_up,

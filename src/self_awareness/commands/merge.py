@@ -7,7 +7,7 @@ from typing import Optional, Sequence
 from self_awareness import TrainedModel
 from self_awareness.commands import cli
 from self_awareness.judging import PAPER
-from self_awareness.output_files import check_outputs, check_replaces_model
+from self_awareness.output_files import MODEL, check_outputs
 from self_awareness.reporting.training_report import print_summary
 from self_awareness.training.many_bags import DistinctRecordings
 
@@ -28,8 +28,7 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 def _merge(arguments: argparse.Namespace) -> None:
     if len(arguments.models) < 2:
         raise ValueError(f'{arguments.models[0]}: one model only; name at least two')
-    check_outputs([arguments.output], arguments.models)
-    check_replaces_model(arguments.output)
+    check_outputs([(arguments.output, MODEL)], arguments.models)
     known = DistinctRecordings()
     first, *others = arguments.models
     merged = _load(first, known)

@@ -12,14 +12,14 @@ from self_awareness import (EVIDENCE_THRESHOLD, Alarm, EvidenceModel, Model, Sus
                             Verdicts)
 from self_awareness.commands import cli
 from self_awareness.judging import evidence_judge, paper_judge
-from self_awareness.output_files import check_outputs, replacing
+from self_awareness.output_files import PAGE, PICTURE, RESULT_BAG, TABLE, check_outputs, replacing
 from self_awareness.recordings import BagPart, RecordingEvents, expand
 from self_awareness.reporting.plots import NamedAlarm, ScorePlot, save_scores
 from self_awareness.reporting.report.judged import Judged, JudgedBy
 from self_awareness.reporting.report.page import (check_installed, check_name,
                                                   save_report)
 from self_awareness.reporting.report.section import section
-from self_awareness.results import check_result_bag, result_bag
+from self_awareness.results import check_apart, result_bag
 from self_awareness.stamps import SECOND_NS, utc
 
 _COLUMNS = ('bag', 'window_start_ns', 'events', 'unknown', 'score', 'threshold', 'abnormal')
@@ -44,12 +44,13 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 
 def _score(arguments: argparse.Namespace) -> None:
-    check_outputs([arguments.csv, arguments.plot, arguments.report, arguments.result_bag],
+    check_outputs([(arguments.csv, TABLE), (arguments.plot, PICTURE), (arguments.report, PAGE),
+                   (arguments.result_bag, RESULT_BAG)],
                   [part.path for part in arguments.bags] + [arguments.model])
     if arguments.report is not None:
         check_installed()
     parts = expand(arguments.bags)
-    check_result_bag(arguments.result_bag, parts)
+    check_apart(arguments.result_bag, parts)
     parameters = cli.detector_parameters(arguments)
     paper = arguments.detector == 'paper'
     trained = cli.load_model(arguments.model, arguments.detector, watched_only=not paper)

@@ -12,7 +12,7 @@ from self_awareness import (PREDECESSORS, BagError, LeastEffect, TrainedModel, e
 from self_awareness.calibration.limits import TooLittleError
 from self_awareness.commands import cli
 from self_awareness.judging import BOTH, EVIDENCE, PAPER
-from self_awareness.output_files import check_outputs, check_replaces_model
+from self_awareness.output_files import MODEL, check_outputs
 from self_awareness.recordings import BagPart, expand
 from self_awareness.reporting.training_report import print_summary
 from self_awareness.stamps import SECOND_NS
@@ -45,8 +45,7 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 def _train(arguments: argparse.Namespace) -> None:
     parts = _parts(arguments)
     bags = [part.path for part in parts]
-    check_outputs([arguments.output], bags + [arguments.encoding])
-    check_replaces_model(arguments.output)
+    check_outputs([(arguments.output, MODEL)], bags + [arguments.encoding])
     base = None if arguments.add_to is None else TrainedModel.load(arguments.add_to)
     counting = _counting(arguments, base)
     _check_distinct(parts)

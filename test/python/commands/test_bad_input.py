@@ -171,20 +171,6 @@ def test_a_result_without_a_folder_is_told_before_the_work(robot_bags, model_fil
     assert str(tmp_path) in error_of('train', [robot_bags[0], '-o', str(tmp_path)], capsys)
 
 
-def test_a_result_is_written_whole_or_not_at_all(robot_bags, model_file: str, tmp_path: Path,
-                                                 monkeypatch, capsys) -> None:
-    table = tmp_path / 'w.csv'
-    table.write_text('of yesterday')
-
-    def disk_full(*_: object) -> None:
-        raise OSError(28, 'No space left on device', str(table))
-
-    monkeypatch.setattr('os.replace', disk_full)
-    error = error_of('score', [robot_bags[1], '--model', model_file, '--csv', str(table)], capsys)
-    assert 'No space left' in error and str(table) in error
-    assert table.read_text() == 'of yesterday' and os.listdir(tmp_path) == ['w.csv']
-
-
 @pytest.mark.parametrize('value', ['nan', '0', '-1', 'inf', 'soon', '1e9', ''])
 @pytest.mark.parametrize('option', ['--bin', '--window'])
 def test_bins_and_windows_have_a_length(robot_bags, tmp_path: Path, option: str, value: str,

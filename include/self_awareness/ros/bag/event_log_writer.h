@@ -26,8 +26,10 @@ self_awareness::EventLogStart startOfRecording(const EncodingRules& encoding, st
 class EventLogWriter {
  public:
   /// Replaces a file that is there.
+  /// @param named what errors call the file; empty: by its path
   /// @throw BagError if it cannot be written; so do all functions, and the log is of no use then
-  explicit EventLogWriter(const std::string& path) : bag_(path) {}
+  explicit EventLogWriter(const std::string& path, const std::string& named = "")
+      : bag_(path, BagWriter::Chunks::kOfOneMessage, named) {}
 
   /// Begins a recording: what is written from now on belongs to it.
   void start(const self_awareness::EventLogStart& start);

@@ -93,8 +93,7 @@ self_awareness::Model toMessage(const TrainedModel& model);
 /// @throw std::invalid_argument names the contradiction in the message
 TrainedModel fromMessage(const self_awareness::Model& message);
 
-/// Writes a temporary file beside `path` and renames it: no program ever reads a model that is
-/// only half written.
+/// Writes the whole file or nothing (see OutputFile): no program ever reads half a model.
 /// @throw ModelFileError if the file cannot be written
 /// @throw std::logic_error if watch() was not called, or counts were dropped
 void saveModel(const TrainedModel& model, const std::string& path);

@@ -1,0 +1,251 @@
+"""Results replace what they are meant to replace and nothing else, also where the disk is full."""
+from __future__ import annotations
+
+import os
+import resource
+import shutil
+import stat
+import subprocess
+import sys
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Callable, Dict, Iterator, List, Tuple
+
+import pytest
+
+from self_awareness.commands import calibrate, convert, diff, merge, score, train
+
+PROGRAMS = {'train': train, 'calibrate': calibrate, 'merge': merge, 'score': score,
+            'convert': convert, 'diff': diff}
+
+WRITERS = {
+    'train': ('train', ['{recording}', '-o', '{output}']),
+    'calibrate': ('calibrate', ['--model', '{model}', '--normal', '{other}', '-o', '{output}']),
+    'calibrate --csv': ('calibrate', ['--model', '{model}', '--normal', '{other}', '-o',
+                                      '{spare}', '--csv', '{output}']),
+    'calibrate --roc': ('calibrate', ['--model', '{model}', '--normal', '{other}', '--inject',
+                                      'starve', '-o', '{spare}', '--roc', '{output}.png']),
+    'merge': ('merge', ['{model}', '{second}', '-o', '{output}']),
+    'convert': ('convert', ['{recording}', '-o', '{output}']),
+    'score --csv': ('score', ['{other}', '--model', '{model}', '--csv', '{output}']),
+    'score --plot': ('score', ['{other}', '--model', '{model}', '--plot', '{output}.png']),
+    'score --report': ('score', ['{other}', '--model', '{model}', '--report', '{output}.html']),
+    'score --result-bag': ('score', ['{other}', '--model', '{model}', '--result-bag',
+                                     '{output}']),
+    'diff --html': ('diff', ['{model}', '{other}', '--html', '{output}.html']),
+}
+"""Every way to write a file: the program and its arguments."""
+
+
+def line_of(way: str, output: Path, files: Dict[str, str]) -> Tuple[str, List[str], Path]:
+    """Return the program, its arguments, and the file that it is to write."""
+    program, arguments = WRITERS[way]
+    filled = [each.format(output=output, **files) for each in arguments]
+    written = next(each for each in filled if each.startswith(str(output)))
+    return program, filled, Path(written)
+
+
+def error_of(program: str, arguments: List[str], capsys: pytest.CaptureFixture) -> str:
+    """Run a program that must fail, and return the one line it says."""
+    capsys.readouterr()
+    assert PROGRAMS[program].main(arguments) == 1
+    error = capsys.readouterr().err
+    lines = [line for line in error.splitlines() if not line.startswith(f'{program}: warning: ')]
+    assert len(lines) == 1 and lines[0].startswith(f'{program}: error: '), error
+    return lines[0]
+
+
+@pytest.fixture(scope='module')
+def files(long_bags: Tuple[str, str], evidence_model: str,
+          tmp_path_factory: pytest.TempPathFactory) -> Dict[str, str]:
+    """What the ways to write need, by the names in their arguments."""
+    folder = tmp_path_factory.mktemp('files')
+    second = str(folder / 'second.model')
+    assert train.main([long_bags[1], '--detector', 'both', '-o', second]) == 0
+    return {'recording': long_bags[0], 'other': long_bags[1], 'model': evidence_model,
+            'second': second, 'spare': str(folder / 'spare.model')}
+
+
+@pytest.fixture(scope='module')
+def written(files: Dict[str, str], tmp_path_factory: pytest.TempPathFactory) -> Dict[str, bytes]:
+    """What each way writes."""
+    folder = tmp_path_factory.mktemp('written')
+    contents = {}
+    for index, way in enumerate(WRITERS):
+        program, arguments, path = line_of(way, folder / str(index), files)
+        assert PROGRAMS[program].main(arguments) == 0
+        contents[way] = path.read_bytes()
+    return contents
+
+
+@pytest.mark.parametrize('way', WRITERS)
+def test_a_file_of_another_kind_is_not_replaced(way: str, files: Dict[str, str],
+                                                written: Dict[str, bytes], tmp_path: Path,
+                                                capsys) -> None:
+    program, arguments, path = line_of(way, tmp_path / 'out', files)
+    others = {other: content for other, content in written.items()
+              if other.split()[-1] != way.split()[-1]
+              and {other, way} - {'train', 'calibrate', 'merge'}
+              and {other, way} != {'score --report', 'diff --html'}
+              and {other, way} != {'score --plot', 'calibrate --roc'}}
+    for content in (Path(files['recording']).read_bytes(), b'notes, by hand\n', *others.values()):
+        path.write_bytes(content)
+        assert f'{path}: is there already, and no ' in error_of(program, arguments, capsys)
+        assert path.read_bytes() == content
+    assert os.listdir(tmp_path) == [path.name]
+
+
+@pytest.mark.parametrize('way', WRITERS)
+def test_a_file_of_the_same_kind_or_an_empty_one_is_replaced_through_links(
+        way: str, files: Dict[str, str], written: Dict[str, bytes], tmp_path: Path) -> None:
+    program, arguments, path = line_of(way, tmp_path / 'out', files)
+    target = tmp_path / 'target'
+    path.symlink_to(target)
+    for before in (b'', written[way]):
+        target.write_bytes(before)
+        inode = target.stat().st_ino
+        assert PROGRAMS[program].main(arguments) == 0
+        assert path.is_symlink() and target.stat().st_ino != inode
+        assert target.stat().st_size > 0
+    assert sorted(os.listdir(tmp_path)) == sorted([path.name, 'target'])
+
+
+@pytest.mark.parametrize('way', WRITERS)
+def test_what_may_not_be_written_is_not_replaced(way: str, files: Dict[str, str],
+                                                 written: Dict[str, bytes], tmp_path: Path,
+                                                 monkeypatch, capsys) -> None:
+    program, arguments, path = line_of(way, tmp_path / 'out', files)
+    path.write_bytes(written[way])
+    allowed = os.access  # root may write everything
+    monkeypatch.setattr(os, 'access', lambda file, mode: allowed(file, mode) and not (
+        mode == os.W_OK and os.fspath(file) == str(path)))
+    assert f'{path}: is there already, and may not be written' in error_of(
+        program, arguments, capsys)
+    assert path.read_bytes() == written[way]
+
+
+@pytest.mark.parametrize('way', WRITERS)
+def test_an_input_is_not_replaced_by_any_of_its_names(way: str, files: Dict[str, str],
+                                                      tmp_path: Path, capsys) -> None:
+    links: List[Callable[[str, Path], None]] = [os.symlink, os.link]
+    program, arguments, path = line_of(way, tmp_path / 'out', files)
+    mine = {name: str(tmp_path / name) for name in ('recording', 'other', 'model', 'second')}
+    for name, copy in mine.items():
+        shutil.copy(files[name], copy)
+    for name in mine:
+        if f'{{{name}}}' not in WRITERS[way][1] or way == 'calibrate' and name == 'model':
+            continue
+        before = Path(mine[name]).read_bytes()
+        for link in links:
+            link(mine[name], path)
+            _, filled, _ = line_of(way, tmp_path / 'out', {**files, **mine})
+            assert f'{path}: is an input, too' in error_of(program, filled, capsys)
+            path.unlink()
+        assert Path(mine[name]).read_bytes() == before
+
+
+def test_devices_and_pipes_are_written_and_stay(files: Dict[str, str], written: Dict[str, bytes],
+                                                tmp_path: Path, capsys) -> None:
+    device = os.stat('/dev/null')
+    table = ['score', files['other'], '--model', files['model'], '--csv']
+    assert score.main([*table[1:], '/dev/null']) == 0
+    assert os.stat('/dev/null').st_ino == device.st_ino and stat.S_ISCHR(device.st_mode)
+    pipe = tmp_path / 'pipe'
+    os.mkfifo(pipe)
+    with subprocess.Popen(['cat', str(pipe)], stdout=subprocess.PIPE) as reader:
+        assert score.main([*table[1:], str(pipe)]) == 0
+        assert reader.communicate(timeout=10)[0] == written['score --csv']
+    assert stat.S_ISFIFO(pipe.stat().st_mode)
+    for way in ('train', 'convert', 'score --result-bag'):
+        program, arguments, _ = line_of(way, pipe, files)
+        assert f'{pipe}: is no file' in error_of(program, arguments, capsys)
+
+
+def test_a_file_that_standard_output_goes_to_is_named_by_itself(files: Dict[str, str],
+                                                                tmp_path: Path) -> None:
+    program = ('import sys; from self_awareness.commands import score;'
+               'sys.exit(score.main(sys.argv[1:]))')
+    with open(tmp_path / 'out', 'wb') as out:
+        run = subprocess.run([sys.executable, '-c', program, files['other'], '--model',
+                              files['model'], '--csv', '/dev/stdout'], stdout=out,
+                             stderr=subprocess.PIPE, text=True, check=False)
+    assert run.returncode == 1
+    assert run.stderr == ('score: error: /dev/stdout: leads to a file that is open already; name '
+                          'that file itself\n')
+
+
+@contextmanager
+def small_files(most_bytes: int) -> Iterator[None]:
+    """Let no file of this process grow beyond a size, as if the disk were full."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (most_bytes, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+@pytest.mark.parametrize('way', WRITERS)
+def test_a_file_that_cannot_grow_is_told_and_the_one_of_before_stays(
+        way: str, files: Dict[str, str], written: Dict[str, bytes], tmp_path: Path,
+        capsys) -> None:
+    program, arguments, path = line_of(way, tmp_path / 'out', files)
+    path.write_bytes(written[way])
+    with small_files(min(len(written[way]) // 2, 4096)):
+        error = error_of(program, arguments, capsys)
+    assert error == f'{program}: error: {path}: cannot be written (File too large)'
+    assert path.read_bytes() == written[way] and os.listdir(tmp_path) == [path.name]
+
+
+@pytest.fixture
+def small_disk(tmp_path: Path) -> Iterator[Callable[[int], Path]]:
+    """Return a function (bytes left) that returns a folder on a disk of its own, almost full."""
+    disk = tmp_path / 'disk'
+    disk.mkdir()
+    mount = ['mount', '-t', 'tmpfs', '-o', 'size=24m', 'none', str(disk)]
+    if (os.getuid() != 0 or shutil.which('mount') is None
+            or subprocess.run(mount, stderr=subprocess.DEVNULL, check=False).returncode != 0):
+        pytest.skip('only root can mount a small disk')
+
+    def fill(left: int) -> Path:
+        free = os.statvfs(disk)
+        (disk / 'filler').write_bytes(bytes(free.f_bavail * free.f_frsize - left))
+        return disk
+
+    yield fill
+    subprocess.run(['umount', str(disk)], check=True)
+
+
+@pytest.mark.parametrize('way', WRITERS)
+def test_a_full_disk_is_told_with_its_room(
+        way: str, files: Dict[str, str], written: Dict[str, bytes],
+        small_disk: Callable[[int], Path], tmp_path: Path, capsys) -> None:
+    program, arguments, path = line_of(way, tmp_path / 'disk' / 'out', files)
+    path.write_bytes(written[way])
+    disk = small_disk(4096)
+    error = error_of(program, arguments, capsys)
+    assert error == (f'{program}: error: {path}: cannot be written (No space left on device, '
+                     'there is room for 0.0 MB)')
+    assert path.read_bytes() == written[way]
+    assert sorted(os.listdir(disk)) == sorted(['filler', path.name])
+
+
+def test_a_read_only_disk_is_told_before_the_work(files: Dict[str, str],
+                                                  small_disk: Callable[[int], Path],
+                                                  capsys) -> None:
+    disk = small_disk(1_000_000)
+    subprocess.run(['mount', '-o', 'remount,ro', str(disk)], check=True)
+    for way in WRITERS:
+        program, arguments, _ = line_of(way, disk / 'out', files)
+        assert f'nothing may be written into {disk}' in error_of(program, arguments, capsys)
+
+
+def test_a_full_standard_output_is_told(files: Dict[str, str]) -> None:
+    program = ('import sys; from self_awareness.commands import info;'
+               'sys.exit(info.main(sys.argv[1:]))')
+    with open('/dev/full', 'wb') as full:
+        run = subprocess.run([sys.executable, '-c', program, files['model']], stdout=full,
+                             stderr=subprocess.PIPE, text=True, check=False,
+                             env={**os.environ, 'PYTHONUNBUFFERED': ''})
+    assert run.returncode == 1
+    assert run.stderr == 'info: error: standard output: No space left on device\n'
