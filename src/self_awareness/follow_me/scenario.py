@@ -14,6 +14,7 @@ from typing import Dict, Mapping, Optional, Tuple, Union
 
 import rospkg
 
+from self_awareness import yaml_file
 from self_awareness.follow_me.component_spec import (ComponentSpec, Duration, Hypothesis, InView,
                                                      Need, Output, Task)
 from self_awareness.follow_me.effects import (ClockDrift, Crash, Disorder, Faults, Intruder,
