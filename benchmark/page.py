@@ -2,15 +2,12 @@
 from __future__ import annotations
 
 import json
-import os
-import platform
 from pathlib import Path
 from typing import Any, Dict, List, Sequence
 
+from self_awareness.evaluation.page_section import machine, write_section
 
-def machine() -> Dict[str, Any]:
-    """Return the properties of this machine that the numbers depend on."""
-    return {'cores': os.cpu_count(), 'machine': platform.machine(), 'kernel': platform.release()}
+__all__ = ['machine', 'publish', 'table']
 
 
 def publish(name: str, result: Dict[str, Any], text: str, docs: Path) -> None:
@@ -28,16 +25,3 @@ def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     """Return a Markdown table."""
     lines: List[Sequence[str]] = [head, ['---'] + ['---:'] * (len(head) - 1), *rows]
     return '\n'.join('| ' + ' | '.join(line) + ' |' for line in lines)
-
-
-def write_section(page: Path, name: str, text: str) -> None:
-    """Replace the text between the markers `<!-- NAME -->` and `<!-- /NAME -->` of the page.
-
-    Raises:
-        ValueError: the page has no such section.
-    """
-    before, opening, rest = page.read_text().partition(f'<!-- {name} -->')
-    _, closing, after = rest.partition(f'<!-- /{name} -->')
-    if not (opening and closing):
-        raise ValueError(f'{page} has no section {name}')
-    page.write_text(f'{before}{opening}\n{text}\n{closing}{after}')

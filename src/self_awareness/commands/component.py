@@ -6,8 +6,10 @@ from typing import Optional, Sequence
 
 import rospy
 
+from self_awareness.commands import cli
 from self_awareness.follow_me.node import ComponentNode
 from self_awareness.follow_me.scenario import load_scenario
+from self_awareness.follow_me.speed import sped_up
 from self_awareness.yaml_section import SectionError
 
 
@@ -16,7 +18,7 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
     parser = _parser()
     arguments = parser.parse_args(rospy.myargv(argv)[1:])
     try:
-        scenario = load_scenario(arguments.scenario or None)
+        scenario = sped_up(load_scenario(arguments.scenario or None), arguments.speed)
         intruder = scenario.faults.extra.spec
         spec = intruder if arguments.name == intruder.name else scenario.component(arguments.name)
         rospy.init_node(spec.name)
@@ -31,4 +33,6 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('name', help='name of the component, or of the intruder, in the scenario')
     parser.add_argument('--scenario', help='scenario file (default: config/follow_me.yaml)')
     parser.add_argument('--seed', type=int, default=0, help='of what is random (default: 0)')
+    parser.add_argument('--speed', type=cli.above_zero('times the speed'), default=1.0,
+                        help='how many times as fast everything goes (default: 1)')
     return parser

@@ -108,6 +108,19 @@ def _nodes(arguments: argparse.Namespace, command: str) -> None:
         print(f'written: {path}')
 
 
+def _soak(arguments: argparse.Namespace, command: str) -> None:
+    from self_awareness.evaluation.soak import evaluation
+    from self_awareness.evaluation.soak.session import SoakPlan
+    _clean_up_when_terminated()
+    plan = SoakPlan(arguments.minutes, arguments.seed, arguments.speed, arguments.starts,
+                    arguments.training, arguments.calibrations, arguments.calibration,
+                    arguments.budget)
+    with _folder(arguments.recordings) as folder:
+        paths = evaluation.evaluate(plan, folder, arguments.output, command)
+    for path in paths:
+        print(f'written: {path}')
+
+
 def nodes_plan(arguments: argparse.Namespace) -> nodes_session.SessionPlan:
     """Return the plan that the arguments of `nodes` ask for."""
     from self_awareness.evaluation.nodes.session import SessionPlan
@@ -162,6 +175,12 @@ def parser() -> argparse.ArgumentParser:
         'starts them once more, with the monitor, watches them undisturbed, and then breaks one '
         'after the other; with the default options, this takes an hour and a half. '
         'scripts/packaged_nodes_env.sh installs the nodes and runs this.'))
+    _add_soak(parts.add_parser(
+        'soak', help='the follow-me robot at 10 times its speed, and the monitor, for an hour',
+        description='Records, trains and calibrates on several starts of the fast robot, starts '
+        'the monitor, and lets faults drawn by the seed hit the robot. It fails if one is missed, '
+        'if an alarm comes without one, or if the memory of the monitor grows. scripts/soak.sh '
+        'runs this.'))
     return parser
 
 
@@ -214,6 +233,30 @@ def _add_nodes(parser: argparse.ArgumentParser) -> None:
                         '(default: 250)')
     parser.add_argument('--minutes', type=cli.checked(_minutes), default=60.0, metavar='MIN',
                         help='normal operation that is watched (default: 60)')
+    _add_folder(parser)
+
+
+def _add_soak(parser: argparse.ArgumentParser) -> None:
+    parser.set_defaults(work=_soak)
+    parser.add_argument('-o', '--output', type=Path, default=Path('docs'), metavar='DIR',
+                        help='folder of reliability.md, whose section is written (default: docs)')
+    parser.add_argument('--minutes', type=cli.checked(_minutes), default=60.0, metavar='MIN',
+                        help='how long the monitor runs (default: 60)')
+    parser.add_argument('--seed', type=cli.count, default=1, help='of the faults and the robot '
+                        '(default: 1)')
+    parser.add_argument('--speed', type=cli.above_zero('times the speed'), default=10.0,
+                        metavar='N', help='times the usual speed of the robot (default: 10)')
+    parser.add_argument('--starts', type=cli.count, default=4, metavar='N',
+                        help='starts of the robot to learn from (default: 4)')
+    parser.add_argument('--training', type=cli.checked(_calibration_s), default=90.0, metavar='S',
+                        help='length of the recording of each of them [s] (default: 90)')
+    parser.add_argument('--calibrations', type=cli.count, default=4, metavar='N',
+                        help='further starts that the limits are found by (default: 4)')
+    parser.add_argument('--calibration', type=cli.checked(_calibration_s), default=120.0,
+                        metavar='S', help='length of the recording of each of them [s] '
+                        '(default: 120)')
+    parser.add_argument('--budget', type=cli.budget, default=0.1, metavar='B',
+                        help='false alarms an hour that the limits allow (default: 0.1)')
     _add_folder(parser)
 
 

@@ -57,7 +57,7 @@ def crash(effect: Crash, namespace: str = '') -> int:
         InduceError: the node is unknown to the master, does not answer, or runs elsewhere.
     """
     node = _resolved(namespace, effect.component)
-    pid = _pid(node)
+    pid = process_id(node)
     _kill(node, pid)
     return pid
 
@@ -72,7 +72,7 @@ def silence(scenario: Scenario, namespace: str = '') -> Dict[str, int]:
     # All at the same time: finding them takes long, so all are found before the first is killed.
     for spec in scenario.components:
         with contextlib.suppress(_DeadError):
-            pids[spec.name] = _pid(_resolved(namespace, spec.name))
+            pids[spec.name] = process_id(_resolved(namespace, spec.name))
     if not pids:
         raise InduceError('all components are dead already')
     for name, pid in pids.items():
@@ -87,7 +87,12 @@ def _kill(node: str, pid: int) -> None:
         raise InduceError(f'{node}: process {pid} cannot be killed: {error.strerror}') from error
 
 
-def _pid(node: str) -> int:
+def process_id(node: str) -> int:
+    """Return the process id of a node by its full name.
+
+    Raises:
+        InduceError: the node is unknown to the master, does not answer, or runs elsewhere.
+    """
     try:
         uri = rosgraph.Master(_CALLER_ID).lookupNode(node)
     except rosgraph.MasterError as error:

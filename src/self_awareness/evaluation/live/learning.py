@@ -4,6 +4,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Sequence
 
+from self_awareness.calibration.limits import BUDGET
 from self_awareness.evaluation.live.passing import say
 from self_awareness.evaluation.live.processes import Processes
 
@@ -11,7 +12,7 @@ _WITHIN_S = 900.0
 
 
 def learn(processes: Processes, model: Path, training: Sequence[Path], normal: Sequence[Path],
-          *options: str) -> None:
+          *options: str, budget: float = BUDGET) -> None:
     """Train and calibrate.
 
     Args:
@@ -20,6 +21,7 @@ def learn(processes: Processes, model: Path, training: Sequence[Path], normal: S
         training: recordings to learn from.
         normal: recordings to find the limits by.
         options: of train.
+        budget: false alarms an hour that the limits allow.
 
     Raises:
         LiveError: a program fails.
@@ -29,4 +31,5 @@ def learn(processes: Processes, model: Path, training: Sequence[Path], normal: S
                   *options, '-o', str(model))
     say('calibrating')
     processes.run('calibrate', _WITHIN_S, 'rosrun', 'self_awareness', 'calibrate',
-                  '--model', str(model), '--normal', *map(str, normal), '-o', str(model))
+                  '--model', str(model), '--normal', *map(str, normal), '--budget', str(budget),
+                  '-o', str(model))
