@@ -1,17 +1,16 @@
 #include "bag_index.h"
 
-#include <rosbag/bag.h>
-#include <rosbag/view.h>
+#include <rosbag/exceptions.h>
 
 #include <algorithm>
 #include <map>
 #include <optional>
-#include <tuple>
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
 
 #include "bag_records.h"
+#include "former_bag.h"
 
 namespace self_awareness::ros1 {
 namespace {
@@ -28,21 +27,11 @@ struct ChunkInfo {
   std::map<std::uint32_t, std::uint64_t> messages;  // by connection
 };
 
-// A type and not a function, so that std::sort can inline it: sorting takes most of the time here.
-struct Earlier {
-  bool operator()(const BagIndexEntry& a, const BagIndexEntry& b) const {
-    if (a.stamp != b.stamp) {
-      return a.stamp < b.stamp;
-    }
-    return std::tie(a.chunk, a.offset) < std::tie(b.chunk, b.offset);
-  }
-};
-
 class IndexReader {
  public:
   explicit IndexReader(const std::string& path) : file_(path) {}
 
-  /// None if the bag is of another format or encrypted.
+  /// None if the bag is of another format.
   std::optional<BagIndex> read() {
     if (!readConnections()) {
       return std::nullopt;
@@ -57,7 +46,7 @@ class IndexReader {
   }
 
  private:
-  /// Reads the connections at the end of the bag; false if it is of another format or encrypted.
+  /// Reads the connections at the end of the bag; false if it is of another format.
   bool readConnections() {
     if (file_.at(0, kFormat.size()) != kFormat) {
       return false;
@@ -67,7 +56,7 @@ class IndexReader {
       throw FormatError("it does not begin with a header");
     }
     if (isEncrypted(start.header)) {
-      return false;
+      throw EncryptedError();
     }
     index_position_ = number<std::uint64_t>(start.header, "index_pos");
     const auto connections = number<std::uint32_t>(start.header, "conn_count");
@@ -279,44 +268,6 @@ class IndexReader {
   BagIndex index_;
 };
 
-/// What rosbag knows of a bag.
-class RosbagIndex : private rosbag::View {
- public:
-  explicit RosbagIndex(const rosbag::Bag& bag) : rosbag::View(bag) { update(); }
-
-  BagIndex read() const {
-    BagIndex index;
-    index.by_rosbag = true;
-    for (const rosbag::MessageRange* range : ranges_) {
-      const rosbag::ConnectionInfo& connection = *range->connection_info;
-      BagIndexEntry entry;
-      entry.connection = static_cast<std::uint32_t>(index.connections.size());
-      index.connections.push_back(connectionFrom(*connection.header, connection.topic));
-      for (auto at = range->begin; at != range->end; ++at) {
-        entry.stamp = static_cast<std::int64_t>(at->time.toNSec());
-        entry.chunk = at->chunk_pos;
-        entry.offset = at->offset;
-        index.entries.push_back(entry);
-      }
-    }
-    std::sort(index.entries.begin(), index.entries.end(), Earlier());
-    return index;
-  }
-};
-
-/// Checks that no record of a bag that is left to rosbag is longer than the file: rosbag makes
-/// room for what a length says, and ends the program where there is none.
-void checkRecords(const std::string& path) {
-  PiecesOfFile file(path);
-  for (std::uint64_t position = kFormat.size(); position < file.size();) {
-    const PiecesOfFile::Head head = file.head(position);
-    if (head.end > file.size() || head.end - head.data > kLargestChunk) {
-      throw FormatError("a record is cut off");
-    }
-    position = head.end;
-  }
-}
-
 }  // namespace
 
 std::vector<Connection> readBagConnections(const std::string& path) {
@@ -331,9 +282,7 @@ BagIndex readBagIndex(const std::string& path) {
   if (std::optional<BagIndex> index = readIndexOfFormat2(path)) {
     return std::move(*index);
   }
-  checkRecords(path);
-  const rosbag::Bag bag(path, rosbag::bagmode::Read);
-  return RosbagIndex(bag).read();
+  return readFormerBag(path);
 }
 
 }  // namespace self_awareness::ros1

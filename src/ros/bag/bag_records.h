@@ -16,6 +16,12 @@ namespace self_awareness::ros1::bag_records {
 /// The file does not follow the format.
 using FormatError = rosbag::BagFormatException;
 
+/// The bag is encrypted. rosbag could read it, but checks nothing that the file says.
+class EncryptedError : public rosbag::BagException {
+ public:
+  EncryptedError() : rosbag::BagException("it is encrypted") {}
+};
+
 constexpr std::string_view kFormat = "#ROSBAG V2.0\n";  // at the beginning of the file
 
 enum class Op : std::uint8_t {

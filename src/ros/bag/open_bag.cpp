@@ -7,6 +7,7 @@
 #include <new>
 #include <stdexcept>
 
+#include "bag_records.h"
 #include "self_awareness/ros/bag/bag_reader.h"
 
 namespace self_awareness::ros1 {
@@ -42,6 +43,11 @@ BagIndex openBag(const std::string& path) {
   }
   try {
     return readBagIndex(path);
+  } catch (const bag_records::EncryptedError&) {
+    throw BagError(path +
+                   ": the bag is encrypted; write it again without: rosbag encrypt --plugin "
+                   "rosbag/NoEncryptor '" +
+                   path + "'");
   } catch (const rosbag::BagUnindexedException&) {
     throw BagError(path + ": the bag has no index, its recording was not ended properly" +
                    reindexHint(path));
