@@ -1,7 +1,11 @@
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <stdexcept>
-#include <string>
+#include <vector>
+
+#include "self_awareness/core/stream/event.h"
 
 namespace self_awareness::ros1 {
 
@@ -13,6 +17,14 @@ inline void check(bool holds, const char* otherwise) {
   if (!holds) {
     throw std::invalid_argument(otherwise);
   }
+}
+
+/// Whether all are times [ns] from `least` up to ten years: the core multiplies them by small
+/// numbers.
+inline bool areTimes(const std::vector<std::int64_t>& times, std::int64_t least) {
+  constexpr std::int64_t kLongest = 10 * 365 * 86400 * core::kNanosecondsPerSecond;
+  return std::all_of(times.begin(), times.end(),
+                     [&](std::int64_t time) { return time >= least && time <= kLongest; });
 }
 
 }  // namespace self_awareness::ros1

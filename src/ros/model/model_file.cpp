@@ -164,8 +164,7 @@ void checkCalibration(const self_awareness::EvidenceCalibration& calibration,
   check(calibration.relations.empty() || calibration.relations.size() == tracks,
         "its relations are not those of its evidence");
   check((calibration.firsts.empty() || calibration.firsts.size() == model.vocabulary().size()) &&
-            std::all_of(calibration.firsts.begin(), calibration.firsts.end(),
-                        [](std::int64_t first) { return first >= -1; }),
+            areTimes(calibration.firsts, -1),
         "its first events are not those of its event types");
   check(!isNoRate(calibration.budget) && !isNoRate(calibration.false_alarms_per_hour),
         "a rate of its false alarms cannot be");

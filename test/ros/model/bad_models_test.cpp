@@ -108,6 +108,24 @@ TEST_F(BadModelsTest, WhatWouldTakeForeverIsRefused) {
             "");
 }
 
+TEST_F(BadModelsTest, TimesThatWouldRunOverAreRefused) {
+  // A fuzzer's: the core multiplies the latest first event.
+  constexpr std::int64_t kLong = 9079256848778919936;
+  EXPECT_NE(
+      damagedModel([](Message& m) { m.watched.at(0).recordings.at(0).firsts.at(0) = kLong; }), "");
+  EXPECT_NE(damagedModel([](Message& m) {
+              m.evidence_calibration.at(0).firsts = {kLong, 0};
+            }),
+            "");
+  EXPECT_NE(damagedModel([](Message& m) { m.watched.at(1).longest_gaps.at(0) = kLong; }), "");
+  EXPECT_NE(damagedModel([](Message& m) { m.watched.at(0).duration = kLong; }), "");
+  EXPECT_NE(damagedModel([](Message& m) { m.watched.at(0).gap_sums.at(0) = kLong; }), "");
+  EXPECT_NE(damagedModel([](Message& m) { m.watched.at(0).gaps.at(0) = ~std::uint64_t{0}; }), "");
+  EXPECT_NE(damagedModel([](Message& m) { m.watched.at(0).gaps.at(0) = 1; }), "")
+      << "more delays than gaps";
+  EXPECT_NE(damagedModel([](Message& m) { m.findings.at(0).longest_gaps.at(0) = kLong; }), "");
+}
+
 TEST_F(BadModelsTest, TextsThatAreNoUtf8AreRefused) {
   EXPECT_NE(damagedModel([](Message& m) { m.event_types.at(0).source = "/m\xFCller"; }), "");
   EXPECT_NE(damagedModel([](Message& m) { m.recordings.at(0).bag = "gr\xFC\xDF.bag"; }), "");
