@@ -35,7 +35,7 @@ for fuzzer in message_field encoding bag event_log model; do
   mkdir -p "$workspace/corpus/$fuzzer"
   # The largest allocation is a chunk of a bag that is unpacked; 10 s are a hang.
   if ! "$programs/fuzz_$fuzzer" -max_total_time="$seconds" -timeout=10 -malloc_limit_mb=1100 \
-      -rss_limit_mb=3000 -max_len=65536 -print_final_stats=1 -verbosity=0 \
+      -rss_limit_mb=3000 -max_len=65536 -print_final_stats=1 -print_funcs=0 -verbosity=0 \
       -artifact_prefix="$found/$fuzzer-" "$workspace/corpus/$fuzzer" "$seeds/$fuzzer"; then
     status=1
   fi

@@ -58,8 +58,10 @@ void writeModel(const std::string& path) {
   core::Training training(parameters);
   const core::EventId a = training.intern({"/a", "/x", "T"});
   const core::EventId b = training.intern({"/b", "/y", "T[action=1]"});
-  for (int recording = 0; recording < 2; ++recording) {
-    training.startRecording();
+  for (std::uint64_t number = 0; number < 2; ++number) {
+    core::Training::Recording recording;
+    recording.fingerprint = number;
+    training.startRecording(recording);
     for (int i = 0; i < 150; ++i) {
       training.add({i * 37000000LL, i % 3 == 0 ? b : a});
     }
