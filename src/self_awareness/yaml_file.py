@@ -28,7 +28,8 @@ def load(path: str) -> Any:
 
         def compose_node(self, parent: Any, index: Any) -> Any:
             if self.check_event(yaml.AliasEvent):
-                raise yaml.YAMLError(f'an alias, which is not allowed{self.peek_event().start_mark}')
+                raise yaml.YAMLError(
+                    f'an alias, which is not allowed{self.peek_event().start_mark}')
             self.depth += 1
             if self.depth > _DEEPEST:
                 raise yaml.YAMLError(f'values in each other more than {_DEEPEST} deep')

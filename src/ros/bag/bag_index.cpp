@@ -143,7 +143,10 @@ class IndexReader {
       std::sort(index_.entries.begin() + static_cast<std::ptrdiff_t>(first), index_.entries.end(),
                 Earlier());
     }
-    passConnections(index_position_);
+    // `rosbag reindex` leaves what it could not mend of the only chunk: no messages, no damage.
+    if (chunks_ > 0) {
+      passConnections(index_position_);
+    }
     if (info_position_ != file_.size()) {
       throw FormatError("it goes on after its end");
     }

@@ -254,6 +254,13 @@ TEST_F(BadBagsTest, AChunkThatTheIndexHasTwiceOrNotAtAllIsRefused) {
   EXPECT_TRUE(has(errorOf(bag({0, chunk.size()})), "the same messages twice"));
 }
 
+TEST_F(BadBagsTest, AReindexedBagOfNoWholeChunkHoldsNoMessages) {
+  const std::string rest = parts_.chunkRecord(parts_.chunk(), 1000).substr(0, 50);
+  const std::uint64_t index = Parts::fileHeader(0, 0, 0).size() + rest.size();
+  EXPECT_TRUE(has(errorOf(Parts::fileHeader(index, 1, 0) + rest + parts_.connectionRecord()),
+                  "holds no messages"));
+}
+
 TEST_F(BadBagsTest, AChunkThatAnnouncesGigabytesIsRefused) {
   const MemoryLimit limit;
   const std::string zeros(1000, '\0');
