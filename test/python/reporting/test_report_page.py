@@ -159,8 +159,8 @@ def test_a_bag_without_events_leaves_no_report(evidence_model: str, make_bag, tm
     assert sorted(os.listdir(tmp_path)) == ['good.bag', 'replay.bag']
 
 
-def test_any_number_of_event_types_is_a_bounded_page(evidence_model: str, tmp_path: Path,
-                                                    make_bag: Callable[..., str]) -> None:
+def test_any_number_of_event_types_is_a_bounded_page(
+        evidence_model: str, tmp_path: Path, make_bag: Callable[..., str]) -> None:
     messages = sorted([*without_laser(3000.0),
                        *((3010.0 + i / 1000.0, f'/n{i}', f'/t{i}') for i in range(20_000))])
     bag, report = make_bag('many.bag', messages), tmp_path / 'r.html'
