@@ -19,6 +19,7 @@ from typing import Any, Callable, Iterator, List, Optional, Sequence, Tuple
 from self_awareness import progress
 
 _ATTEMPTS = 3
+_LOOK_AGAIN_S = 0.2
 
 
 @dataclass
@@ -72,7 +73,8 @@ class ProcessPool:
         ended: List[Tuple[int, Optional[bytes]]] = []
         while not ended:
             busy = [each for each in self._processes if each.task is not None]
-            ready = multiprocessing.connection.wait([each.pipe for each in busy])
+            # A signal that comes just before the system call does not end it: look again.
+            ready = multiprocessing.connection.wait([each.pipe for each in busy], _LOOK_AGAIN_S)
             for each in busy:
                 if each.pipe in ready:
                     ended += self._receive(each)

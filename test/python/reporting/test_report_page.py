@@ -106,7 +106,7 @@ def test_a_name_cannot_become_a_part_of_the_page(evidence_model: str, tmp_path: 
     """Names come from strangers; those of event types may hold any text (type_fields)."""
     evil = '/a</script><script>alert(1)</script><b>'
     bag = write_bag(tmp_path / 'evil.bag',
-                    sorted([*without_laser(3000.0), (3015.0, '/joystick', evil)]))
+                    sorted([*without_laser(3000.0), (3015.0, evil, '/joystick')]))
     report = tmp_path / '<i>.html'
     assert score.main([bag, '--model', evidence_model, '--report', str(report)]) == 0
     page = report.read_text()
@@ -159,16 +159,17 @@ def test_a_bag_without_events_leaves_no_report(evidence_model: str, make_bag, tm
     assert sorted(os.listdir(tmp_path)) == ['good.bag', 'replay.bag']
 
 
-def test_twenty_thousand_event_types_are_a_bounded_page(evidence_model: str, tmp_path: Path,
-                                                        make_bag: Callable[..., str]) -> None:
+def test_any_number_of_event_types_is_a_bounded_page(
+        evidence_model: str, tmp_path: Path, make_bag: Callable[..., str]) -> None:
     messages = sorted([*without_laser(3000.0),
                        *((3010.0 + i / 1000.0, f'/n{i}', f'/t{i}') for i in range(20_000))])
     bag, report = make_bag('many.bag', messages), tmp_path / 'r.html'
     assert score.main([bag, '--model', evidence_model, '--report', str(report)]) == 0
     page = report.read_text()
     assert len(page) < MOST_BYTES
-    assert '20000 event types that training never saw' in page
-    assert f'and {20_000 - MOST_NAMES} more' in page
+    # 4000 are told apart, and one stands for all others.
+    assert '4001 event types that training never saw' in page
+    assert f'and {4001 - MOST_NAMES} more' in page
 
 
 def test_a_model_of_many_nodes_has_its_most_unusual_lanes(tmp_path: Path) -> None:
