@@ -91,7 +91,6 @@ void writeBags(const std::string& folder) {
   const std::string chunk =
       parts.chunkRecord(data, static_cast<std::uint32_t>(data.size())) + parts.indexRecord();
   ros1::bag_bytes::writeFile(folder + "two_chunks", parts.bag({chunk, chunk}));
-  ros1::bag_bytes::writeFile(folder + "former", ros1::bag_bytes::formerBag());
 }
 
 void writeEventLogs(const std::string& folder) {
@@ -152,6 +151,8 @@ int main(int argc, char** argv) {
     return 2;
   }
   writeBags(folderOf(argv[1], "bag"));
+  ros1::bag_bytes::writeFile(folderOf(argv[1], "former_bag") + "former",
+                             ros1::bag_bytes::formerBag());
   writeEventLogs(folderOf(argv[1], "event_log"));
   writeMessages(folderOf(argv[1], "message_field"));
   writeEncodings(folderOf(argv[1], "encoding"));
