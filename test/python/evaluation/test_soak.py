@@ -127,7 +127,7 @@ def test_the_page_has_the_numbers(tmp_path: Path) -> None:
     text = page.read_text()
     assert text.startswith('# Before\n') and text.endswith('\nafter\n') and 'old' not in text
     for words in ('`evaluate soak --minutes 10`', 'Seed 7', '1600 messages a second', '0 of 1',
-                  '| crash | 1 | 1 | 0.60 s | 0.60 s | 1 |', '0.00 MB an hour'):
+                  '| crash | 1 | 1 | 0.60 s | 0.60 s | 1 | 2.00 s | 2.00 s |', '0.00 MB an hour'):
         assert words in text, words
     numbers = json.loads((tmp_path / 'reliability' / 'soak.json').read_text())
     assert numbers['plan']['seed'] == 7

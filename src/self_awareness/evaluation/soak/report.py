@@ -122,7 +122,8 @@ def section(soaked: Result) -> str:
         ['resident memory at the beginning and the end', '', _memory(soaked.memory)],
         ['threads, open files', '', _handles(soaked.memory)]])
     lines += ['', *table(['fault', 'number', 'found', 'median time to the alarm', 'longest',
-                          'named first'], _rows(soaked.found))]
+                          'named first', 'alarm over after the end, median', 'longest'],
+                         _rows(soaked.found))]
     lines += [''] + [f'- {failure}' for failure in soaked.failures]
     return '\n'.join(lines).rstrip()
 
@@ -157,11 +158,17 @@ def _rows(found: Sequence[Found]) -> List[List[str]]:
     for kind in sorted({_kind(fault) for fault in found}):
         of_kind = [fault for fault in found if _kind(fault) == kind]
         latencies = [fault.latency_s for fault in of_kind if fault.latency_s is not None]
-        times = [f'{time_s:.2f} s' for time_s in (median(latencies), max(latencies))
-                 ] if latencies else ['', '']
-        rows.append([kind, str(len(of_kind)), str(len(latencies)), *times,
-                     str(sum(fault.rank == 1 for fault in of_kind))])
+        cleared = [fault.cleared_s for fault in of_kind if fault.cleared_s is not None]
+        rows.append([kind, str(len(of_kind)), str(len(latencies)), *_times(latencies),
+                     str(sum(fault.rank == 1 for fault in of_kind)), *_times(cleared)])
     return rows
+
+
+def _times(times_s: Sequence[float]) -> List[str]:
+    """Return median and longest."""
+    if not times_s:
+        return ['', '']
+    return [f'{median(times_s):.2f} s', f'{max(times_s):.2f} s']
 
 
 def _kind(fault: Found) -> str:
