@@ -157,8 +157,7 @@ def _rows(found: Sequence[Found]) -> List[List[str]]:
     for kind in sorted({_kind(fault) for fault in found}):
         of_kind = [fault for fault in found if _kind(fault) == kind]
         latencies = [fault.latency_s for fault in of_kind if fault.latency_s is not None]
-        times = [f'{time_s:.2f} s' for time_s in (median(latencies), max(latencies))
-                 ] if latencies else ['', '']
+        times = [f'{f(latencies):.2f} s' if latencies else '' for f in (median, max)]
         rows.append([kind, str(len(of_kind)), str(len(latencies)), *times,
                      str(sum(fault.rank == 1 for fault in of_kind))])
     return rows
