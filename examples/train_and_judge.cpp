@@ -28,14 +28,16 @@ int main() {
     }
   }
 
-  // 1. Training counts what the recordings show.
+  // 1. Training counts what the recordings show. Their places in the list serve as fingerprints.
   core::Training training({});
   for (const core::EventType& type : kEventTypes) {
     training.intern(type);
   }
-  for (std::size_t i = 0; i < recordings.size(); ++i) {
-    training.startRecording({i, recordings[i][recordings[i].size() / 2].stamp, std::nullopt, 0});
-    for (const core::Event& event : recordings[i]) {
+  for (std::size_t fingerprint = 0; fingerprint < recordings.size(); ++fingerprint) {
+    const std::vector<core::Event>& recording = recordings[fingerprint];
+    const std::int64_t middle = recording[recording.size() / 2].stamp;
+    training.startRecording({fingerprint, middle, std::nullopt, 0});
+    for (const core::Event& event : recording) {
       training.add(event);
     }
   }
@@ -55,9 +57,9 @@ int main() {
     if (second_pass) {
       finder.startSecondPass();
     }
-    for (std::size_t i = 0; i < recordings.size(); ++i) {
-      finder.startRecording(models.judging(evidence::halfOf(i)));
-      for (const core::Event& event : recordings[i]) {
+    for (std::size_t fingerprint = 0; fingerprint < recordings.size(); ++fingerprint) {
+      finder.startRecording(models.judging(evidence::halfOf(fingerprint)));
+      for (const core::Event& event : recordings[fingerprint]) {
         finder.add(event);
       }
       finder.finish();

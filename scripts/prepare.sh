@@ -22,12 +22,13 @@ packages_debian=(
   python3-rosbag python3-rospy python3-rostest python3-roslaunch python3-rosnode python3-rostopic
   python3-rosmsg python3-rosservice python3-rosgraph rosbash rosdiagnostic
   python3-actionlib-msgs python3-diagnostic-msgs python3-geometry-msgs python3-nav-msgs python3-sensor-msgs
-  python3-std-srvs python3-visualization-msgs
+  python3-nodelet python3-std-srvs python3-visualization-msgs
   libvisualization-msgs-dev libsensor-msgs-dev libstd-srvs-dev
   pybind11-dev libboost-filesystem-dev libeigen3-dev libre2-dev pkg-config
   python3-numpy python3-matplotlib python3-tqdm python3-yaml python3-jinja2 python3-plotly
   chromium chromium-driver python3-selenium poppler-utils
-  catkin-lint clang-format libgtest-dev libgmock-dev nlohmann-json3-dev procps python3-pytest python3-pytest-xdist
+  catkin-lint clang-format libfaketime libgtest-dev libgmock-dev nlohmann-json3-dev procps
+  python3-pytest python3-pytest-xdist
   python3-hypothesis python3-flake8 python3-mypy
   # Debian 11's distributed imports tornado, but its package does not depend on it.
   python3-distributed python3-tornado
@@ -41,7 +42,7 @@ packages_noetic=(
   ros-noetic-geometry-msgs
   pybind11-dev libboost-filesystem-dev libeigen3-dev libre2-dev pkg-config
   python3-numpy python3-matplotlib python3-tqdm python3-yaml python3-jinja2 python3-plotly
-  ros-noetic-rostest ros-noetic-roslaunch libgtest-dev libgmock-dev nlohmann-json3-dev procps
+  ros-noetic-rostest ros-noetic-roslaunch libfaketime libgtest-dev libgmock-dev nlohmann-json3-dev procps
   python3-pytest python3-pytest-xdist python3-hypothesis python3-catkin-lint clang-format python3-distributed
   python3-flake8 python3-mypy
 )

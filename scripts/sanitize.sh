@@ -54,7 +54,7 @@ run_gtests() {
   done
   for name in "${live_gtests[@]}"; do
     say "$1: $name"
-    ROS_TEST_RESULTS_DIR=$results/$1 rostest "$checkout/test/$name.test" time_limit:=600 || true
+    ROS_TEST_RESULTS_DIR=$results/$1 rostest "$checkout/test/$name.test" || true
   done
 }
 

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "clock_status.h"
+#include "session.h"
+
 namespace self_awareness {
 
 using diagnostic_msgs::DiagnosticStatus;
@@ -12,8 +15,7 @@ Diagnostics::Diagnostics(const ros::NodeHandle& node_handle,
                          const std::string& hardware_id, bool component_statuses)
     : component_statuses_(component_statuses), updater_(node_handle, private_node_handle, name) {
   updater_.setHardwareID(hardware_id);
-  updater_.add("communication",
-               [this](Status& status) { ros1::tellCommunication(state_.communication, status); });
+  updater_.add("communication", [this](Status& status) { communication(status); });
   updater_.add("monitor", [this](Status& status) { monitor(status); });
 }
 
@@ -46,6 +48,13 @@ void Diagnostics::updateComponents() {
   components_ = names;
 }
 
+void Diagnostics::communication(Status& status) const {
+  ros1::tellCommunication(state_.communication, status);
+  if (state_.communication.started && clockStands(state_.clock_stands_still_for)) {
+    status.mergeSummary(DiagnosticStatus::WARN, "not judged any more: ROS time stands still");
+  }
+}
+
 void Diagnostics::monitor(Status& status) const {
   const ros1::HeardReport& heard = state_.communication.heard;
   status.summary(DiagnosticStatus::OK, "listening");
@@ -54,11 +63,29 @@ void Diagnostics::monitor(Status& status) const {
   }
   if (heard.newly_dropped > 0) {
     status.mergeSummary(DiagnosticStatus::WARN,
-                        std::to_string(heard.newly_dropped) + " messages were dropped");
+                        "overloaded: " + std::to_string(heard.newly_dropped) +
+                            " messages were dropped; who sent them is judged later");
+  }
+  if (state_.longest_pause > 0) {
+    status.mergeSummary(DiagnosticStatus::WARN, "overloaded: this program stood still for " +
+                                                    number(state_.longest_pause) +
+                                                    " s; all are judged later");
+  }
+  tellClock(state_.clock_stands_still_for, state_.ros_now, status);
+  if (state_.full_of_unknown) {
+    status.mergeSummary(DiagnosticStatus::WARN,
+                        "more than " + std::to_string(Session::kMostUnknownTypes) +
+                            " event types that the model does not know: further ones are not "
+                            "told apart");
+  }
+  if (state_.left_out_topics > 0) {
+    status.mergeSummary(DiagnosticStatus::WARN, std::to_string(state_.left_out_topics) +
+                                                    " topics are left out: there are too many");
   }
   status.add("events a second", number(heard.rate));
   status.add("dropped messages", heard.dropped);
   status.add("subscriptions", state_.subscriptions);
+  status.add("event types that the model does not know", heard.unknown_types);
   status.add("publishers heard", state_.connections);
   status.add("share of a core spent", number(heard.cpu_share));
   status.add("times the clock was set", heard.clock_steps);

@@ -4,6 +4,7 @@
 #include <ros/node_handle.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -18,7 +19,12 @@ struct MonitorState {
   ros1::CommunicationState communication;
   std::size_t subscriptions = 0;
   std::size_t connections = 0;
+  std::size_t left_out_topics = 0;  ///< there were too many
+  bool full_of_unknown = false;     ///< further unknown event types are not told apart
   bool master_answers = true;
+  std::int64_t ros_now = 0;                 ///< [ns]
+  std::int64_t clock_stands_still_for = 0;  ///< [ns of steady time]
+  double longest_pause = 0;  ///< for which this program stood still, since the last report [s]
   std::optional<FlightRecorder::Report> recorder;  ///< none: there is no recorder
 };
 
@@ -33,13 +39,12 @@ class Diagnostics {
 
   /// Publishes the state now.
   void publish(const MonitorState& state);
-  /// Time between heartbeats [s]: ~diagnostic_period, 1 by default.
-  double period() { return updater_.getPeriod(); }
 
  private:
   using Status = diagnostic_updater::DiagnosticStatusWrapper;
 
   void updateComponents();
+  void communication(Status& status) const;
   void monitor(Status& status) const;
   static void recorder(const FlightRecorder::Report& report, Status& status);
 

@@ -5,11 +5,38 @@
 
 #include <utility>
 
+#include "now.h"
+
 namespace self_awareness {
 namespace {
 
 // A master that takes longer than this to answer all that it is asked hangs.
 constexpr std::chrono::seconds kPatience(5);
+// To look for lost publishers costs more than a poll, where there are many.
+constexpr std::int64_t kBetweenLooks = 3 * core::kNanosecondsPerSecond;
+
+// Topics that are subscribed to stay: the first by name may be anybody's.
+std::size_t leaveOutMost(const std::set<std::string>& model_topics,
+                         const std::set<std::string>& before, std::set<std::string>& topics) {
+  const std::set<std::string> wanted = std::exchange(topics, {});
+  std::size_t others = 0;
+  const auto take = [&](const std::string& topic) {
+    const bool of_model = model_topics.count(topic) > 0;
+    if (topics.count(topic) == 0 && (of_model || others < Discovery::kMostOthers)) {
+      topics.insert(topic);
+      others += of_model ? 0 : 1;
+    }
+  };
+  for (const std::string& topic : wanted) {
+    if (before.count(topic) > 0) {
+      take(topic);
+    }
+  }
+  for (const std::string& topic : wanted) {
+    take(topic);
+  }
+  return wanted.size() - topics.size();
+}
 
 }  // namespace
 
@@ -70,25 +97,15 @@ std::optional<Discovery::Wanted> Discovery::awaitPoll() {
 }
 
 void Discovery::poll(const Wanted& wanted) {
+  using ros1::MasterRegistration;
   subscriptions_.adaptReading();  // at once, whether the master answers or not
   State state;
-  const ros1::MasterRegistration::Master master = registration_.check();
+  const MasterRegistration::Master master = registration_.check();
   std::optional<ros1::Graph> graph = ros1::fetchGraph();
-  state.master_answers = master != ros1::MasterRegistration::Master::kAway && graph;
+  state.master_answers = master != MasterRegistration::Master::kAway && graph;
   if (state.master_answers) {
-    if (master == ros1::MasterRegistration::Master::kRestarted) {
-      ROS_WARN("the master was restarted: registered all topics and services again");
-      subscriptions_.renew(*graph);
-    }
-    std::set<std::string> topics;
-    if (wanted.encoder) {
-      topics = ros1::chooseTopics(
-          *graph, policy_, wanted.model_topics,
-          [&](const std::string& topic) { return wanted.encoder->includesTopic(topic); },
-          ros::this_node::getName());
-    }
-    subscriptions_.setTopics(topics, *graph);
-    state.subscriptions = topics.size();
+    nameIllegal(wanted, *graph);
+    subscribe(wanted, *graph, master == MasterRegistration::Master::kRestarted, state);
     state.graph = std::make_shared<const ros1::Graph>(std::move(*graph));
   }
   const auto shared = shared_.lock();
@@ -96,11 +113,60 @@ void Discovery::poll(const Wanted& wanted) {
                           (master == ros1::MasterRegistration::Master::kRestarted ? 1 : 0);
   if (!state.master_answers) {
     state.subscriptions = shared->state.subscriptions;
+    state.left_out = shared->state.left_out;
   }
   if (!state.graph || (shared->state.graph && *state.graph == *shared->state.graph)) {
     state.graph = shared->state.graph;  // its users see that nothing changed
   }
   shared->state = state;
+}
+
+void Discovery::subscribe(const Wanted& wanted, const ros1::Graph& graph, bool master_restarted,
+                          State& state) {
+  std::set<std::string> again;
+  if (steadyNow() >= looked_for_lost_ + kBetweenLooks) {
+    looked_for_lost_ = steadyNow();
+    again = lost_publishers_.look(ros1::linksToPublishers(), looked_for_lost_);
+  }
+  if (master_restarted) {
+    ROS_WARN("the master was restarted: registered all topics and services again");
+    // roscpp does not hear of those that registered before it did.
+    for (const auto& [name, topic] : graph.topics) {
+      if (!topic.publishers.empty()) {
+        again.insert(name);
+      }
+    }
+  }
+  subscriptions_.renew(again);
+  std::set<std::string> topics;
+  if (wanted.encoder) {
+    const ros1::Encoder& encoder = *wanted.encoder;
+    topics = ros1::chooseTopics(
+        graph, policy_, wanted.model_topics,
+        [&](const std::string& topic) { return encoder.includesTopic(topic); },
+        ros::this_node::getName());
+  }
+  state.left_out = leaveOutMost(wanted.model_topics, topics_, topics);
+  topics_ = topics;
+  subscriptions_.setTopics(topics, graph);
+  state.subscriptions = topics.size();
+}
+
+void Discovery::nameIllegal(const Wanted& wanted, const ros1::Graph& graph) {
+  const auto name = [this](const std::string& topic) {
+    const std::string why = ros1::whyLeftOut(topic);
+    if (!why.empty() && illegal_.add(why)) {
+      ROS_WARN("%s; it is left out", why.c_str());
+    }
+  };
+  for (const auto& [topic, nodes] : graph.topics) {
+    if (!nodes.publishers.empty()) {
+      name(topic);
+    }
+  }
+  for (const std::string& topic : wanted.model_topics) {
+    name(topic);
+  }
 }
 
 }  // namespace self_awareness

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <set>
@@ -16,7 +17,9 @@
 #include "self_awareness/ros/graph.h"
 #include "self_awareness/ros/live/arrivals.h"
 #include "self_awareness/ros/live/guarded.h"
+#include "self_awareness/ros/live/lost_publishers.h"
 #include "self_awareness/ros/live/master_registration.h"
+#include "self_awareness/ros/live/named_once.h"
 #include "self_awareness/ros/live/subscriptions.h"
 
 namespace self_awareness {
@@ -27,6 +30,9 @@ namespace self_awareness {
 /// What the thread shares with others is in Shared; the rest is the thread's own.
 class Discovery {
  public:
+  /// Most topics that are subscribed to besides those of the model: each takes memory and files.
+  static constexpr std::size_t kMostOthers = 2000;
+
   /// What the subscriptions are chosen by.
   struct Wanted {
     std::set<std::string> model_topics;
@@ -36,6 +42,7 @@ class Discovery {
   struct State {
     bool master_answers = true;  ///< false also while it lets a call wait for long
     std::size_t subscriptions = 0;
+    std::size_t left_out = 0;         ///< topics beyond kMostOthers
     std::size_t master_restarts = 0;  ///< that were noticed
     /// Who publishes and subscribes what; none before the first answer of the master, the last one
     /// while it does not answer.
@@ -72,11 +79,20 @@ class Discovery {
   /// Waits until it is time to poll; none: the thread must end.
   std::optional<Wanted> awaitPoll();
   void poll(const Wanted& wanted);
+  /// Brings the subscriptions up to date, and says how many there are.
+  void subscribe(const Wanted& wanted, const ros1::Graph& graph, bool master_restarted,
+                 State& state);
+  /// Says which topics are left out, since nobody can subscribe to them.
+  void nameIllegal(const Wanted& wanted, const ros1::Graph& graph);
 
   const ros1::SubscribePolicy policy_;
   const std::chrono::duration<double> interval_;
   ros1::MasterRegistration registration_;
   ros1::Subscriptions subscriptions_;
+  ros1::LostPublishers lost_publishers_;
+  std::int64_t looked_for_lost_ = 0;  // steady time [ns]
+  ros1::NamedOnce illegal_;
+  std::set<std::string> topics_;  // that are subscribed to
 
   ros1::Guarded<Shared> shared_;
   std::condition_variable wake_;

@@ -10,7 +10,9 @@
 #include <utility>
 #include <vector>
 
+#include "clock_status.h"
 #include "encoding_parameters.h"
+#include "now.h"
 #include "parameter_reader.h"
 #include "self_awareness/ros/bag/bag_reader.h"
 #include "self_awareness/ros/output_file.h"
@@ -20,22 +22,10 @@ namespace {
 
 namespace fs = boost::filesystem;
 
-constexpr double kTick = 0.1;              // [s]
-constexpr std::int64_t kGrace = 20000000;  // as the monitor's [ns]
+constexpr double kTick = 0.1;  // [s]
 constexpr double kMegabyte = 1e6;
+constexpr double kLatestTime = 4294967295;  // that ROS can say [s since 1970]
 constexpr char kActive[] = ".active";
-
-std::int64_t rosNow() {
-  return static_cast<std::int64_t>(ros::Time::now().toNSec());
-}
-
-std::int64_t steadyNow() {
-  return static_cast<std::int64_t>(ros::SteadyTime::now().toNSec());
-}
-
-std::int64_t wallNow() {
-  return static_cast<std::int64_t>(ros::WallTime::now().toNSec());
-}
 
 }  // namespace
 
@@ -44,19 +34,21 @@ EventRecorder::Parameters EventRecorder::Parameters::load(
   using ros1::SubscribePolicy;
   Parameters parameters;
   ParameterReader reader(private_node_handle);
-  parameters.output = reader.read("output", parameters.output);
-  parameters.split = reader.atLeast("split", parameters.split, 0.1, "minutes");
-  parameters.min_space = reader.atLeast("min_space", parameters.min_space, 0, "MB");
+  parameters.output = reader.text("output", parameters.output);
+  parameters.split = reader.number("split", parameters.split, {0.1, 10000}, "minutes");
+  parameters.min_space = reader.number("min_space", parameters.min_space, {0, 1e15}, "MB");
   parameters.robot_start =
-      reader.seconds("robot_start", ros::WallTime::now().toSec(), parameters.robot_start);
+      reader.seconds("robot_start", ros::WallTime::now().toSec(), {0, kLatestTime});
   parameters.subscribe = reader.choice<SubscribePolicy>(
       "subscribe", "used", {{"used", SubscribePolicy::kUsed}, {"all", SubscribePolicy::kAll}});
-  parameters.poll_interval = reader.seconds("poll_interval", parameters.poll_interval, 0.01);
+  parameters.poll_interval =
+      reader.seconds("poll_interval", parameters.poll_interval, {0.01, 3600});
   parameters.queue_size = static_cast<std::uint32_t>(
-      reader.wholeNumber("queue_size", static_cast<int>(parameters.queue_size), 1));
+      reader.wholeNumber("queue_size", static_cast<int>(parameters.queue_size), {1, 1000000}));
   reader.expectNamespace("encoding");
   parameters.encoding = loadEncoding(private_node_handle);
-  reader.expect("diagnostic_period");  // of diagnostic_updater
+  parameters.diagnostic_period =
+      reader.seconds("diagnostic_period", parameters.diagnostic_period, {0.1, 3600});
   reader.warnOfUnknown();
   return parameters;
 }
@@ -71,12 +63,15 @@ EventRecorder::EventRecorder(const ros::NodeHandle& node_handle,
       end_(std::move(end)),
       parameters_(Parameters::load(private_node_handle)),
       diagnostics_(node_handle, private_node_handle, ros::this_node::getName()),
+      tells_sources_(parameters_.encoding.source == ros1::EncodingRules::Source::kCallerId),
       robot_start_(std::llround(parameters_.robot_start * 1e9)),
       spinner_(1, &queue_) {
   node_handle_.setCallbackQueue(&queue_);
   private_node_handle_.setCallbackQueue(&queue_);
   diagnostics_.setHardwareID("none");
   diagnostics_.add("recording", [this](auto& status) { diagnose(status); });
+  start_publisher_ =
+      private_node_handle_.advertise<self_awareness::EventLogStart>("start", 1, true);
   finish_ = private_node_handle_.advertiseService("finish", &EventRecorder::onFinish, this);
   ros1::LiveEvents::Handlers handlers;
   handlers.on_event = [this](const core::Event& event) { onEvent(event); };
@@ -102,10 +97,14 @@ EventRecorder::EventRecorder(const ros::NodeHandle& node_handle,
 }
 
 EventRecorder::~EventRecorder() {
-  spinner_.stop();          // first: what it serves uses the others
-  live_events_->deliver();  // a new connection asks discovery_ to poll
+  finish();
   discovery_.reset();
   live_events_.reset();
+}
+
+void EventRecorder::finish() {
+  spinner_.stop();  // first: what it serves uses the others
+  live_events_->deliver();
   end(rosNow());
 }
 
@@ -119,19 +118,33 @@ void EventRecorder::onEvent(const core::Event& event) {
 
 void EventRecorder::onTick(const ros::SteadyTimerEvent& /*tick*/) {
   const std::int64_t now = rosNow();
-  if (now == 0 || finished_) {  // simulated time has not begun
-    return;
+  const Discovery::State discovered = discovery_->state();
+  watch(now, discovered.master_restarts);
+  if (now != 0 && !finished_) {  // else simulated time has not begun
+    record(now, discovered.graph);
   }
-  watch(now);
+  if (core::toSeconds(steadyNow() - diagnosed_) >= parameters_.diagnostic_period) {
+    diagnosed_ = steadyNow();
+    live_events_->forgetClosedConnections();
+    diagnostics_.force_update();
+  }
+}
+
+void EventRecorder::record(std::int64_t now, const std::shared_ptr<const ros1::Graph>& graph) {
   if (!file_) {
     begin(now);
+  }
+  if (graph && graph != known_graph_) {
+    known_graph_ = graph;
+    if (tells_sources_) {
+      live_events_->setGraph(*graph);
+    }
   }
   live_events_->deliver();
   if (file_) {
     attempt([&] {
       packer_->setDropped(live_events_->dropped());
       packer_->advance(now - kGrace);
-      const std::shared_ptr<const ros1::Graph> graph = discovery_->state().graph;
       if (graph && graph != graph_) {
         file_->log.writeGraph(*graph, now);
         graph_ = graph;
@@ -143,17 +156,11 @@ void EventRecorder::onTick(const ros::SteadyTimerEvent& /*tick*/) {
     end(now);
     begin(now);
   }
-  if (core::toSeconds(steadyNow() - diagnosed_) >= diagnostics_.getPeriod()) {
-    diagnosed_ = steadyNow();
-    live_events_->forgetClosedConnections();
-    diagnostics_.force_update();
-  }
 }
 
-void EventRecorder::watch(std::int64_t now) {
+void EventRecorder::watch(std::int64_t now, std::size_t restarts) {
   const bool set = clock_watch_.look(now, steadyNow(), ros::Time::isSimTime());
-  const std::size_t restarts = discovery_->state().master_restarts;
-  if (set) {
+  if (set && file_) {
     ROS_WARN("ROS time was set: a new recording begins");
     end(now);
   }
@@ -178,7 +185,10 @@ void EventRecorder::begin(std::int64_t now) {
     file_ = std::make_unique<File>(newPath());
     graph_.reset();
     packer_.emplace([this](self_awareness::EventLog part) { file_->log.write(std::move(part)); });
-    file_->log.start(ros1::startOfRecording(parameters_.encoding, now, robot_start_));
+    const self_awareness::EventLogStart start =
+        ros1::startOfRecording(parameters_.encoding, now, robot_start_);
+    file_->log.start(start);
+    start_publisher_.publish(start);
     began_ = steadyNow();
     problem_.clear();
     ROS_INFO("recording to %s", file_->log.path().c_str());
@@ -250,12 +260,19 @@ void EventRecorder::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status
   } else {
     status.summary(DiagnosticStatus::ERROR, "nothing is recorded: " + problem_);
   }
+  if (vocabulary_.size() > ros1::kMostEventTypes) {
+    status.mergeSummary(DiagnosticStatus::WARN,
+                        "more than " + std::to_string(ros1::kMostEventTypes) +
+                            " event types: further ones are not told apart");
+  }
+  tellClock(clock_watch_.standsStillFor(), rosNow(), status);
   status.add("file", file_ ? file_->log.path() : "none");
   status.add("files before", files_);
   status.add("events", events_);
   status.add("size [MB]",
              static_cast<double>(bytes_ + (file_ ? file_->log.size() : 0)) / kMegabyte);
   status.add("dropped messages", live_events_->dropped());
+  status.add("event types", vocabulary_.size());
 }
 
 }  // namespace self_awareness

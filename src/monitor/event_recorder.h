@@ -3,6 +3,7 @@
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/callback_queue.h>
 #include <ros/node_handle.h>
+#include <ros/publisher.h>
 #include <ros/service_server.h>
 #include <ros/spinner.h>
 #include <ros/steady_timer.h>
@@ -16,6 +17,7 @@
 #include <string>
 
 #include "discovery.h"
+#include "run_node.h"
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/ros/bag/event_log_packer.h"
 #include "self_awareness/ros/bag/event_log_writer.h"
@@ -31,33 +33,40 @@ namespace self_awareness {
 /// warning.
 /// - `~output` (string; default: normal): beginning of the files' paths; date, time and `.bag` are
 ///   added. A file that is written ends in `.bag.active`.
-/// - `~split` (double, minutes; default: 30; at least 0.1): length of a file; each is a recording.
+/// - `~split` (double, minutes; default: 30; 0.1 to 10000): length of a file; each is a recording.
 /// - `~encoding` (namespace): how messages become events, as in config/encoding.yaml.
 /// - `~subscribe` (string; default: used; used or all): topics to listen to: what another node
 ///   listens to, or all that are published, which may wake publishers that work only while
 ///   somebody listens.
-/// - `~min_space` (double, MB; default: 1000; at least 0): with less free space on the disk
+/// - `~min_space` (double, MB; default: 1000; 0 to 1e15): with less free space on the disk
 ///   nothing is recorded.
-/// - `~robot_start` (double, seconds since 1970; default: now; at least 0): when the robot was
+/// - `~robot_start` (double, seconds since 1970; default: now; 0 to 4294967295): when the robot
+/// was
 ///   started, for who starts the recorder more than once in a start of the robot.
 /// - `~poll_interval`, `~queue_size`, `~diagnostic_period`: as those of the monitor.
 ///
-/// **Published topics**: `/diagnostics`: one status, an error while nothing can be recorded.
+/// **Published topics**
+/// - `/diagnostics`: one status, an error while nothing can be recorded.
+/// - `~start` (self_awareness/EventLogStart): latched; how the recording that is written begins.
+/// By
+///   this type, monitors know the recorder for one of this package, whatever its name is.
 ///
 /// **Services**: `~finish` (std_srvs/Trigger): ends the file and the node.
 ///
 /// **Recordings**: a new one begins with each file, and after ROS time was set. The robot is taken
 /// to start with this node (but for `~robot_start`), and with its master.
-class EventRecorder {
+class EventRecorder : public NodeProgram {
  public:
   /// @param end called by ~finish; must not block
   /// @throw std::invalid_argument if a parameter is out of range
   EventRecorder(const ros::NodeHandle& node_handle, const ros::NodeHandle& private_node_handle,
                 std::function<void()> end);
-  /// Ends the file.
-  ~EventRecorder();
+  ~EventRecorder() override;
   EventRecorder(const EventRecorder&) = delete;
   EventRecorder& operator=(const EventRecorder&) = delete;
+
+  /// Ends the file.
+  void finish() override;
 
  private:
   struct Parameters {
@@ -69,6 +78,7 @@ class EventRecorder {
     double robot_start = 0;   // wall time [s]
     double poll_interval = 1;
     std::uint32_t queue_size = 1000;
+    double diagnostic_period = 1;  // [s]
 
     static Parameters load(const ros::NodeHandle& private_node_handle);
   };
@@ -91,7 +101,9 @@ class EventRecorder {
   /// Does something that writes; what goes wrong ends the file, and is told.
   void attempt(const std::function<void()>& write);
   /// Starts over where the robot has: with the master, or with the clock.
-  void watch(std::int64_t now);
+  void watch(std::int64_t now, std::size_t master_restarts);
+  /// Writes what was heard, and goes on in the next file when it is time.
+  void record(std::int64_t now, const std::shared_ptr<const ros1::Graph>& graph);
   std::string newPath() const;
   bool hasSpace() const;
 
@@ -102,22 +114,25 @@ class EventRecorder {
   Parameters parameters_;
   core::Vocabulary vocabulary_;
   diagnostic_updater::Updater diagnostics_;
+  ros::Publisher start_publisher_;
   ros::ServiceServer finish_;
   ros::SteadyTimer timer_;
 
   ros1::ClockWatch clock_watch_;
+  const bool tells_sources_;
   std::int64_t robot_start_ = 0;  // wall time [ns]
   std::size_t master_restarts_ = 0;
   std::unique_ptr<File> file_;  // none: nothing is recorded
   std::optional<ros1::EventLogPacker> packer_;
-  std::int64_t began_ = 0;                    // the file, steady time [ns]
-  std::shared_ptr<const ros1::Graph> graph_;  // that was written to the file last
-  bool finished_ = false;                     // nothing is recorded any more
-  std::string problem_;                       // why nothing is recorded; empty: it is
-  std::uint64_t events_ = 0;                  // since the start of the node
-  std::uint64_t bytes_ = 0;                   // of the files that are complete
-  std::size_t files_ = 0;                     // that are complete
-  std::int64_t diagnosed_ = 0;                // steady time [ns]
+  std::int64_t began_ = 0;                          // the file, steady time [ns]
+  std::shared_ptr<const ros1::Graph> known_graph_;  // the newest
+  std::shared_ptr<const ros1::Graph> graph_;        // that was written to the file last
+  bool finished_ = false;                           // nothing is recorded any more
+  std::string problem_;                             // why nothing is recorded; empty: it is
+  std::uint64_t events_ = 0;                        // since the start of the node
+  std::uint64_t bytes_ = 0;                         // of the files that are complete
+  std::size_t files_ = 0;                           // that are complete
+  std::int64_t diagnosed_ = 0;                      // steady time [ns]
 
   std::unique_ptr<ros1::LiveEvents> live_events_;
   std::unique_ptr<Discovery> discovery_;

@@ -14,10 +14,12 @@ constexpr std::chrono::hours kAnyTime(1);  // to wait for what notifies
 
 FileWriter::FileWriter(double pause) : pause_(pause), thread_([this] { run(); }) {}
 
-FileWriter::~FileWriter() {
+void FileWriter::finish() {
   shared_.lock()->stopping = true;
   changed_.notify_one();
-  thread_.join();
+  if (thread_.joinable()) {
+    thread_.join();
+  }
 }
 
 void FileWriter::add(File file) {

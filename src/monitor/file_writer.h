@@ -38,13 +38,14 @@ class FileWriter {
 
   /// @param pause between two attempts to write the same file [s]
   explicit FileWriter(double pause);
-  /// Tries to write what waits once more.
-  ~FileWriter();
+  ~FileWriter() { finish(); }
   FileWriter(const FileWriter&) = delete;
   FileWriter& operator=(const FileWriter&) = delete;
 
   /// Writes the file soon; does not wait for the disk.
   void add(File file);
+  /// Tries to write what waits once more, and waits for it. Nothing is written after it.
+  void finish();
   Report report() const { return shared_.lock()->report; }
 
  private:

@@ -125,12 +125,16 @@ std::optional<std::string> FlightRecorder::dump() {
   return dumped;
 }
 
-void FlightRecorder::onShutdown(bool alarm_stands) {
+void FlightRecorder::finish(bool alarm_stands) {
+  if (std::exchange(finished_, true)) {
+    return;
+  }
   if (pending_) {
     write(std::exchange(pending_, std::nullopt)->path);
   } else if (alarm_stands && heardAnything()) {
     write(newPath(RecorderFolder::Cause::kShutdown));
   }
+  writer_.finish();
 }
 
 FlightRecorder::Report FlightRecorder::report() const {

@@ -70,8 +70,9 @@ class FlightRecorder {
   /// Writes what was heard up to now.
   /// @return path of the file; none if nothing was heard
   std::optional<std::string> dump();
-  /// The program ends: writes what waits, or what was heard if an alarm stands.
-  void onShutdown(bool alarm_stands);
+  /// The program ends: writes what waits, or what was heard if an alarm stands, and waits for the
+  /// disk. Nothing is recorded after it; a second call does nothing.
+  void finish(bool alarm_stands);
 
   Report report() const;
 
@@ -103,7 +104,8 @@ class FlightRecorder {
   std::vector<self_awareness::EventType> forgotten_types_;  // of parts that were forgotten
   std::optional<Pending> pending_;
   std::int64_t named_at_ = 0;  // wall time that the last file is named by [ns]
-  FileWriter writer_;          // last: it writes what the others have handed over
+  bool finished_ = false;
+  FileWriter writer_;  // last: it writes what the others have handed over
 };
 
 }  // namespace self_awareness

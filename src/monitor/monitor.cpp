@@ -3,31 +3,25 @@
 #include <ros/console.h>
 #include <ros/this_node.h>
 
+#include <algorithm>
 #include <ctime>
 #include <stdexcept>
 #include <utility>
 
 #include "load.h"
+#include "now.h"
 #include "self_awareness/SelfAwareness.h"
 #include "self_awareness/core/stream/event.h"
 
 namespace self_awareness {
 namespace {
 
-// Messages that came before a window's end may wait in the queue for this long when it is closed.
-constexpr std::int64_t kGrace = 20000000;  // [ns]
 constexpr int kTicksPerWindow = 4;
+// Ticks of a busy machine are late by less.
+constexpr std::int64_t kLongestPause = core::kNanosecondsPerSecond / 2;
 
 ros::WallDuration tickFor(std::int64_t window) {
   return ros::WallDuration(core::toSeconds(window) / kTicksPerWindow);
-}
-
-std::int64_t rosNow() {
-  return static_cast<std::int64_t>(ros::Time::now().toNSec());
-}
-
-std::int64_t steadyNow() {
-  return static_cast<std::int64_t>(ros::SteadyTime::now().toNSec());
 }
 
 ros1::HeardTally::Moment momentNow() {
@@ -74,6 +68,7 @@ Monitor::Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& priv
   // Whether its messages must be read cannot wait for the next poll.
   handlers.on_connection = [this] { discovery_->pollNow(); };
   handlers.on_arrivals = [this] { onArrivals(); };
+  handlers.on_dropped = [this](const ros1::Publication& publication) { onDropped(publication); };
   live_events_ =
       std::make_unique<ros1::LiveEvents>(node_handle_, parameters_.queue_size, handlers);
   timer_ = private_node_handle_.createSteadyTimer(tickFor(core::kDefaultWindow), &Monitor::onTick,
@@ -92,10 +87,14 @@ Monitor::Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& priv
 }
 
 Monitor::~Monitor() {
-  spinner_.stop();  // first: what it serves uses the others
-  recorder_.onShutdown(announcer_.alarm().message().level == self_awareness::SelfAwareness::ERROR);
+  finish();
   discovery_.reset();
   live_events_.reset();
+}
+
+void Monitor::finish() {
+  spinner_.stop();  // first: what it serves uses the others
+  recorder_.finish(announcer_.alarm().message().level == self_awareness::SelfAwareness::ERROR);
 }
 
 void Monitor::load(const std::string& path) {
@@ -165,12 +164,13 @@ void Monitor::onEvent(const core::Event& event) {
 
 void Monitor::onTick(const ros::SteadyTimerEvent& /*tick*/) {
   const std::int64_t now = watchClock();
+  refreshGraph(discovery_->state().graph);
   live_events_->deliver();
   if (session_) {
     session_->detector().advance(now - kGrace);
   }
   recorder_.advance(now - kGrace, steadyNow());
-  if (heard_.sinceReport(steadyNow()) >= diagnostics_.period()) {
+  if (heard_.sinceReport(steadyNow()) >= parameters_.diagnostic_period) {
     live_events_->forgetClosedConnections();
     publishDiagnostics();
   }
@@ -182,7 +182,19 @@ std::int64_t Monitor::watchClock() {
   if (set && session_ && session_->detector().started()) {  // else there is nothing to forget
     restart();
   }
+  // What came meanwhile was received late, or never.
+  if (!set && session_ &&
+      clock_watch_.pause() > kLongestPause + tickFor(session_->window()).toNSec()) {
+    longest_pause_ = std::max(longest_pause_, clock_watch_.pause());
+    session_->detector().onPause(now);
+  }
   return now;
+}
+
+void Monitor::onDropped(const ros1::Publication& publication) {
+  if (session_) {
+    session_->detector().onMissed(session_->typesOf(publication), rosNow());
+  }
 }
 
 void Monitor::restart() {
@@ -223,11 +235,13 @@ void Monitor::refreshGraph(const std::shared_ptr<const ros1::Graph>& graph) {
   }
   graph_ = graph;
   session_->addEdges(*graph, ros::this_node::getName());
+  if (session_->encoder()->tellsSources()) {
+    live_events_->setGraph(*graph);
+  }
 }
 
 void Monitor::publishDiagnostics() {
   const Discovery::State discovered = discovery_->state();
-  refreshGraph(discovered.graph);
   const ros1::HeardTally::Moment moment = momentNow();
   MonitorState state;
   state.communication.model = parameters_.model;
@@ -237,6 +251,11 @@ void Monitor::publishDiagnostics() {
                            moment.ros);
   state.subscriptions = discovered.subscriptions;
   state.connections = live_events_->connections();
+  state.left_out_topics = discovered.left_out;
+  state.full_of_unknown = session_ && session_->full();
+  state.ros_now = moment.ros;
+  state.clock_stands_still_for = clock_watch_.standsStillFor();
+  state.longest_pause = core::toSeconds(std::exchange(longest_pause_, 0));
   state.master_answers = discovered.master_answers;
   if (recorder_.enabled()) {
     state.recorder = recorder_.report();

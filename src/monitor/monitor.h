@@ -19,6 +19,7 @@
 #include "parameters.h"
 #include "ros/verdict/announcer.h"
 #include "ros/verdict/heard_tally.h"
+#include "run_node.h"
 #include "self_awareness/core/verdict/detector.h"
 #include "self_awareness/ros/graph.h"
 #include "self_awareness/ros/live/clock_watch.h"
@@ -39,38 +40,39 @@ namespace self_awareness {
 ///   events, rates, delays and answers, each with a limit of its own; or the score of the paper.
 /// - `~unknown` (string; default: warn; ignore, warn or error): what events are that training
 ///   never saw: nothing, a suspicion, or an alarm at once.
-/// - `~settle_time` (double, s; default: 5.0; at least 0): time without alarms after the first
+/// - `~settle_time` (double, s; default: 5.0; 0 to 3600): time without alarms after the first
 ///   message since the start, `~reset` or `~reload`, and after ROS time was set. What is heard
 ///   later for the first time has as long before it is judged; everything else is judged on.
 /// - `~alarm_windows` (int; default: 3; 1 to `~alarm_of`): number of abnormal windows that raises
 ///   an alarm; fewer are a suspicion.
-/// - `~alarm_of` (int; default: 5; at least 1): number of windows among which they are counted.
-/// - `~hold_time` (double, s; default: 2.0; at least 0): time without an abnormal window after
+/// - `~alarm_of` (int; default: 5; 1 to 1000): number of windows among which they are counted.
+/// - `~hold_time` (double, s; default: 2.0; 0 to 3600): time without an abnormal window after
 ///   which an alarm or a suspicion ends.
 /// - `~silence` (string; default: abnormal; abnormal or ignored): with `~detector` paper, what a
 ///   window without events is.
 /// - `~subscribe` (string; default: used; used, all or model): topics to listen to besides those
 ///   of the model: what another node listens to, what is published, or none. To listen may wake
 ///   publishers that work only while somebody listens.
-/// - `~poll_interval` (double, s; default: 1.0; at least 0.01): time between two questions to the
+/// - `~poll_interval` (double, s; default: 1.0; 0.01 to 3600): time between two questions to the
 ///   master about who publishes and who listens (steady time).
-/// - `~queue_size` (int, messages; default: 1000; at least 1): how many a topic may have waiting;
+/// - `~queue_size` (int, messages; default: 1000; 1 to 1000000): how many of a publisher may wait
+/// on a topic;
 ///   what comes then is dropped, and counted in the diagnostics.
 /// - `~source_diagnostics` (bool; default: true): one status for every source of the model.
 /// - `~hardware_id` (string; default: none): of the diagnostics.
-/// - `~recorder/duration` (double, s; default: 300.0; at least 0): the flight recorder keeps the
+/// - `~recorder/duration` (double, s; default: 300.0; 0 to 86400): the flight recorder keeps the
 ///   events of so long in memory, and writes them as an event log when an alarm is raised. 0:
 ///   there is no recorder.
-/// - `~recorder/after` (double, s; default: 10.0; at least 0): how much of what follows an alarm
-/// is
-///   in its file (steady time).
+/// - `~recorder/after` (double, s; default: 10.0; 0 to 3600): how much of what follows an alarm
+///   is in its file (steady time).
 /// - `~recorder/directory` (string; default: ~/.ros/self_awareness): folder of the files, which is
 ///   created. ROS keeps what it writes beside it.
-/// - `~recorder/files` (int; default: 20; at least 1): most files; the oldest are removed.
-/// - `~recorder/disk` (int, MB; default: 200; at least 1): most of all files together.
-/// - `~recorder/memory` (int, MB; default: 32; at least 1): most for the events in memory; the
+/// - `~recorder/files` (int; default: 20; 1 to 100000): most files; the oldest are removed.
+/// - `~recorder/disk` (int, MB; default: 200; 1 to 1000000): most of all files together.
+/// - `~recorder/memory` (int, MB; default: 32; 1 to 10000): most for the events in memory; the
 ///   oldest are forgotten. Files that the disk does not take keep as much each, three at most.
-/// - `~diagnostic_period` (double, s; default: 1.0): time between two reports on /diagnostics
+/// - `~diagnostic_period` (double, s; default: 1.0; 0.1 to 3600): time between two reports on
+/// /diagnostics
 ///   (steady time); a change of the level is reported at once.
 ///
 /// **Subscribed topics**: those of the model and others by `~subscribe`, of any type.
@@ -86,8 +88,7 @@ namespace self_awareness {
 /// - `~clear` (std_srvs/Trigger): ends the alarm and forgets the windows that led to it; delays go
 ///   on.
 /// - `~dump` (std_srvs/Trigger): writes what the flight recorder has; answers with the file's
-/// name,
-///   without waiting for the disk.
+///   name, without waiting for the disk.
 /// - `~reload` (std_srvs/Trigger): reads the parameter `~model` and its file again, and keeps the
 ///   old model where that fails.
 ///
@@ -95,15 +96,18 @@ namespace self_awareness {
 /// its own. What may block on the network is done by the thread of Discovery, what waits for the
 /// disk by that of FileWriter. They share what has arrived (Arrivals), what the master said
 /// (Discovery) and the files to write (FileWriter), each with a lock (Guarded).
-class Monitor {
+class Monitor : public NodeProgram {
  public:
   /// @param name full name of the node or nodelet, for the diagnostics
   /// @throw std::invalid_argument if a parameter is out of range
   Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& private_node_handle,
           const std::string& name);
-  ~Monitor();
+  ~Monitor() override;
   Monitor(const Monitor&) = delete;
   Monitor& operator=(const Monitor&) = delete;
+
+  /// Judges no more, and writes what the flight recorder has to write.
+  void finish() override;
 
  private:
   /// Starts with the model of a file; if that fails, all stays as it was.
@@ -119,14 +123,16 @@ class Monitor {
   void onArrivals();
   void onEvent(const core::Event& event);
   void onTick(const ros::SteadyTimerEvent& tick);
+  void onDropped(const ros1::Publication& publication);
   void onVerdict(const core::Verdict& verdict);
   bool onReset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool onClear(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool onDump(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool onReload(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
 
-  /// Starts from the beginning where ROS time was set. Returns the ROS time [ns] that it looked
-  /// at: by another look, the clock may have been set again.
+  /// Starts from the beginning where ROS time was set, and leaves out what was missed where this
+  /// program stood still. Returns the ROS time [ns] that it looked at: by another look, the clock
+  /// may have been set again.
   std::int64_t watchClock();
   void restart();
   /// Says that what stood is over, although no window brought that about.
@@ -148,6 +154,7 @@ class Monitor {
   std::string model_error_;
   std::unique_ptr<Session> session_;  // none: no model
   ros1::ClockWatch clock_watch_;
+  std::int64_t longest_pause_ = 0;  // of this program, since the last report [ns of steady time]
   ros1::Announcer announcer_;
   ros1::HeardTally heard_;
   FlightRecorder recorder_;

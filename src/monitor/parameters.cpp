@@ -7,6 +7,10 @@
 namespace self_awareness {
 namespace {
 
+// Longer than any of these times is of use; and they are added up in nanoseconds.
+constexpr double kHour = 3600;  // [s]
+constexpr double kDay = 86400;  // [s]
+
 std::int64_t nanoseconds(double seconds) {
   return std::llround(seconds * 1e9);
 }
@@ -15,7 +19,7 @@ std::int64_t nanoseconds(double seconds) {
 
 std::string MonitorParameters::loadModel(const ros::NodeHandle& private_node_handle,
                                          const std::string& otherwise) {
-  return ParameterReader(private_node_handle).read("model", otherwise);
+  return ParameterReader(private_node_handle).text("model", otherwise);
 }
 
 MonitorParameters MonitorParameters::load(const ros::NodeHandle& private_node_handle) {
@@ -25,7 +29,7 @@ MonitorParameters MonitorParameters::load(const ros::NodeHandle& private_node_ha
   const auto inSeconds = core::toSeconds;
   ParameterReader reader(private_node_handle);
 
-  parameters.model = reader.read("model", defaults.model);
+  parameters.model = reader.text("model", defaults.model);
   parameters.method = reader.choice<Method>(
       "detector", "evidence", {{"evidence", Method::kEvidence}, {"paper", Method::kPaper}});
   parameters.subscribe = reader.choice<SubscribePolicy>("subscribe", "used",
@@ -34,32 +38,36 @@ MonitorParameters MonitorParameters::load(const ros::NodeHandle& private_node_ha
                                                          {"model", SubscribePolicy::kModel}});
   core::Detector::Parameters& detector = parameters.detector;
   core::Persistence::Parameters& persistence = detector.persistence;
-  detector.settle_time =
-      nanoseconds(reader.seconds("settle_time", inSeconds(defaults.detector.settle_time), 0));
+  detector.settle_time = nanoseconds(
+      reader.seconds("settle_time", inSeconds(defaults.detector.settle_time), {0, kHour}));
   detector.silence_is_abnormal =
       reader.choice<bool>("silence", "abnormal", {{"abnormal", true}, {"ignored", false}});
   detector.unknown = reader.choice<core::UnknownEvents>("unknown", "warn",
                                                         {{"ignore", core::UnknownEvents::kIgnore},
                                                          {"warn", core::UnknownEvents::kWarn},
                                                          {"error", core::UnknownEvents::kError}});
-  persistence.alarm_windows = reader.wholeNumber("alarm_windows", persistence.alarm_windows, 1);
-  persistence.alarm_of = reader.wholeNumber("alarm_of", persistence.alarm_of, 1);
+  persistence.alarm_of = reader.wholeNumber("alarm_of", persistence.alarm_of, {1, 1000});
+  const double alarm_of = persistence.alarm_of;
+  persistence.alarm_windows =
+      reader.wholeNumber("alarm_windows", persistence.alarm_windows, {1, alarm_of});
   persistence.hold_time =
-      nanoseconds(reader.seconds("hold_time", inSeconds(persistence.hold_time), 0));
+      nanoseconds(reader.seconds("hold_time", inSeconds(persistence.hold_time), {0, kHour}));
   detector.validate();
-  parameters.poll_interval = reader.seconds("poll_interval", defaults.poll_interval, 0.01);
+  parameters.poll_interval =
+      reader.seconds("poll_interval", defaults.poll_interval, {0.01, kHour});
   parameters.queue_size = static_cast<std::uint32_t>(
-      reader.wholeNumber("queue_size", static_cast<int>(defaults.queue_size), 1));
-  parameters.source_diagnostics = reader.read("source_diagnostics", defaults.source_diagnostics);
-  parameters.hardware_id = reader.read("hardware_id", defaults.hardware_id);
+      reader.wholeNumber("queue_size", static_cast<int>(defaults.queue_size), {1, 1000000}));
+  parameters.source_diagnostics = reader.flag("source_diagnostics", defaults.source_diagnostics);
+  parameters.hardware_id = reader.text("hardware_id", defaults.hardware_id);
   RecorderParameters& recorder = parameters.recorder;
-  recorder.duration = reader.seconds("recorder/duration", recorder.duration, 0);
-  recorder.after = reader.seconds("recorder/after", recorder.after, 0);
-  recorder.directory = reader.read("recorder/directory", recorder.directory);
-  recorder.files = reader.wholeNumber("recorder/files", recorder.files, 1);
-  recorder.disk = reader.wholeNumber("recorder/disk", recorder.disk, 1);
-  recorder.memory = reader.wholeNumber("recorder/memory", recorder.memory, 1);
-  reader.expect("diagnostic_period");  // of diagnostic_updater
+  recorder.duration = reader.seconds("recorder/duration", recorder.duration, {0, kDay});
+  recorder.after = reader.seconds("recorder/after", recorder.after, {0, kHour});
+  recorder.directory = reader.text("recorder/directory", recorder.directory);
+  recorder.files = reader.wholeNumber("recorder/files", recorder.files, {1, 100000});
+  recorder.disk = reader.wholeNumber("recorder/disk", recorder.disk, {1, 1000000});
+  recorder.memory = reader.wholeNumber("recorder/memory", recorder.memory, {1, 10000});
+  parameters.diagnostic_period =
+      reader.seconds("diagnostic_period", defaults.diagnostic_period, {0.1, kHour});
   reader.warnOfUnknown();
   return parameters;
 }

@@ -21,10 +21,11 @@ struct MonitorParameters {
   core::Detector::Parameters detector;  ///< ~settle_time, ~alarm_windows, ~alarm_of,
                                         ///< ~hold_time, ~silence, ~unknown
   ros1::SubscribePolicy subscribe = ros1::SubscribePolicy::kUsed;  ///< ~subscribe
-  double poll_interval = 1.0;                   ///< ~poll_interval: of the master [s], > 0
+  double poll_interval = 1.0;                   ///< ~poll_interval: of the master [s]
   std::uint32_t queue_size = 1000;              ///< ~queue_size: messages a topic may have waiting
   bool source_diagnostics = true;               ///< ~source_diagnostics: one status per source
   std::string hardware_id = ros1::kNoHardware;  ///< ~hardware_id: of the diagnostics
+  double diagnostic_period = 1.0;               ///< ~diagnostic_period: between two reports [s]
   RecorderParameters recorder;                  ///< ~recorder/...
 
   /// Reads the parameters, checks and logs them; warns of those it does not know.

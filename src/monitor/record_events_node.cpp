@@ -5,7 +5,7 @@
 
 int main(int argc, char** argv) {
   return self_awareness::runNode(argc, argv, "recorder", [] {
-    return std::make_shared<self_awareness::EventRecorder>(ros::NodeHandle(), ros::NodeHandle("~"),
+    return std::make_unique<self_awareness::EventRecorder>(ros::NodeHandle(), ros::NodeHandle("~"),
                                                            self_awareness::endNode);
   });
 }

@@ -2,51 +2,138 @@
 
 #include <ros/ros.h>
 
+#include <chrono>
+#include <condition_variable>
 #include <csignal>
+#include <cstdio>
+#include <cstdlib>
 #include <exception>
+#include <thread>
+
+#include "self_awareness/ros/live/guarded.h"
 
 namespace self_awareness {
 namespace {
 
-volatile std::sig_atomic_t running = 0;
-volatile std::sig_atomic_t stopping = 0;
+constexpr std::chrono::seconds kGoodbye(2);
+constexpr std::chrono::hours kAnyTime(1);        // to wait for what notifies
+constexpr timespec kBetweenLooks{0, 100000000};  // at whether the node has ended without a signal
 
-// roscpp's own handler would close the connections while the node's threads use them: what was
-// made must end first. While the process waits for the master, there is nothing yet.
-void onSignal(int /*signal*/) {
-  stopping = 1;
-  if (running == 0) {
-    ros::requestShutdown();
-  }
-}
+/// How far a node is; what is true stays true.
+struct Life {
+  bool connected = false;  // the master has answered
+  bool made = false;
+  bool stopping = false;
+  bool finished = false;
+  bool gone = false;
+  int exit_code = 0;
+};
 
-void run(const std::function<std::shared_ptr<void>()>& make) {
-  running = 1;
-  const std::shared_ptr<void> made = make();
-  while (ros::ok() && stopping == 0) {
-    ros::WallDuration(0.1).sleep();
+/// Ends the process when the master keeps a node from leaving. Takes the signals, too, in a thread
+/// of its own: roscpp's handler would close the connections while the node's threads use them.
+class Leaving {
+ public:
+  Leaving() {
+    sigemptyset(&signals_);
+    sigaddset(&signals_, SIGINT);
+    sigaddset(&signals_, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &signals_, nullptr);  // all later threads take this over
+    signal_thread_ = std::thread([this] { awaitSignal(); });
+    goodbye_thread_ = std::thread([this] { limitGoodbye(); });
   }
+  ~Leaving() {
+    change([](Life& life) { life.stopping = life.finished = life.gone = true; });
+    signal_thread_.join();
+    goodbye_thread_.join();
+  }
+  Leaving(const Leaving&) = delete;
+  Leaving& operator=(const Leaving&) = delete;
+
+  template <typename Change>
+  void change(Change change) {
+    {
+      const auto life = life_.lock();
+      change(*life);
+    }
+    changed_.notify_all();
+  }
+  /// Waits until this is so; returns false if it is not within that time.
+  template <typename Condition>
+  bool await(Condition condition, std::chrono::duration<double> time) {
+    auto life = life_.lock();
+    life.waitFor(changed_, time, condition);
+    return condition(*life);
+  }
+
+ private:
+  void awaitSignal() {
+    while (!life_.lock()->stopping) {
+      if (sigtimedwait(&signals_, nullptr, &kBetweenLooks) > 0) {
+        if (!life_.lock()->connected) {
+          ros::requestShutdown();  // else roscpp waits for the master until it comes
+        }
+        change([](Life& life) { life.stopping = true; });
+      }
+    }
+  }
+
+  void limitGoodbye() {
+    // What is not made yet has nothing to lose.
+    const auto may_go = [](const Life& life) {
+      return life.stopping && (life.finished || !life.made);
+    };
+    while (!await(may_go, kAnyTime)) {
+    }
+    if (!await([](const Life& life) { return life.gone; }, kGoodbye)) {
+      std::fputs("the master does not answer: this node ends without its leave\n", stderr);
+      std::fflush(stdout);
+      std::_Exit(life_.lock()->exit_code);
+    }
+  }
+
+  sigset_t signals_;
+  ros1::Guarded<Life> life_;
+  std::condition_variable changed_;
+  std::thread signal_thread_;
+  std::thread goodbye_thread_;
+};
+
+Leaving* leaving = nullptr;  // of the node that runs
+
+void run(const std::function<std::unique_ptr<NodeProgram>()>& make) {
+  const std::unique_ptr<NodeProgram> made = make();
+  leaving->change([](Life& life) { life.made = true; });
+  const auto stopping = [](const Life& life) { return life.stopping; };
+  while (ros::ok() && !leaving->await(stopping, std::chrono::milliseconds(100))) {
+  }
+  made->finish();
+  leaving->change([](Life& life) { life.stopping = life.finished = true; });
 }
 
 }  // namespace
 
 int runNode(int argc, char** argv, const std::string& name,
-            const std::function<std::shared_ptr<void>()>& make) {
+            const std::function<std::unique_ptr<NodeProgram>()>& make) {
+  Leaving this_leaving;
+  leaving = &this_leaving;
   ros::init(argc, argv, name, ros::init_options::NoSigintHandler);
-  std::signal(SIGINT, onSignal);
-  std::signal(SIGTERM, onSignal);
   const ros::NodeHandle node_handle;  // waits for the master, and outlives what is made
+  leaving->change([](Life& life) { life.connected = true; });
   try {
     run(make);
   } catch (const std::exception& error) {
     ROS_FATAL("%s", error.what());
+    leaving->change([](Life& life) {
+      life.exit_code = 1;
+      life.stopping = life.finished = true;
+    });
     return 1;
   }
   return 0;
 }
 
 void endNode() {
-  stopping = 1;
+  leaving->change([](Life& life) { life.stopping = true; });
 }
 
 }  // namespace self_awareness

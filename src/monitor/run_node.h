@@ -6,11 +6,20 @@
 
 namespace self_awareness {
 
-/// Runs a node: makes what it consists of once the master has answered, and lets it live until a
-/// signal or endNode() ends it.
+/// What a node consists of. Its destructor may wait for the master.
+class NodeProgram {
+ public:
+  virtual ~NodeProgram() = default;
+  /// Ends all work and writes what must not be lost. Does not wait for the master.
+  virtual void finish() = 0;
+};
+
+/// Runs a node: makes what it consists of once the master has answered, and lets it live until
+/// SIGINT, SIGTERM or endNode() ends it. It is finished first; then it has 2 s to say goodbye to
+/// the master, which may hang.
 /// @return exit code: 1 if `make` throws, else 0
 int runNode(int argc, char** argv, const std::string& name,
-            const std::function<std::shared_ptr<void>()>& make);
+            const std::function<std::unique_ptr<NodeProgram>()>& make);
 
 /// Ends the node soon. May be called in any thread.
 void endNode();

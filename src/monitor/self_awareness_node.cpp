@@ -6,7 +6,7 @@
 
 int main(int argc, char** argv) {
   return self_awareness::runNode(argc, argv, "self_awareness", [] {
-    return std::make_shared<self_awareness::Monitor>(ros::NodeHandle(), ros::NodeHandle("~"),
+    return std::make_unique<self_awareness::Monitor>(ros::NodeHandle(), ros::NodeHandle("~"),
                                                      ros::this_node::getName());
   });
 }

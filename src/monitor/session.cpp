@@ -4,6 +4,7 @@
 
 #include "self_awareness/core/evidence/judge.h"
 #include "self_awareness/core/paper/judge.h"
+#include "self_awareness/ros/stable_name.h"
 
 namespace self_awareness {
 
@@ -46,18 +47,30 @@ std::set<std::string> Session::topics() const {
   return topics;
 }
 
-ros1::OwnOutput Session::ownOutput(const std::string& node) const {
-  std::set<std::string> known;
-  for (const core::EventType& type : types()) {
-    if (type.source == node) {
-      known.insert(type.scope);
+std::vector<core::EventId> Session::typesOf(const ros1::Publication& publication) const {
+  const std::string source =
+      encoder_->tellsSources() ? ros1::stableName(publication.node) : std::string();
+  std::vector<core::EventId> ids;
+  for (core::EventId id = 0; id < types().size(); ++id) {
+    if (types()[id].source == source && types()[id].scope == publication.topic) {
+      ids.push_back(id);
     }
+  }
+  return ids;
+}
+
+ros1::OwnOutput Session::ownOutput(const std::string& node) const {
+  ros1::OwnOutput::Known known;
+  for (const core::EventType& type : types()) {
+    known.insert({type.source, type.scope});
   }
   return {node, std::move(known)};
 }
 
 void Session::addEdges(const ros1::Graph& graph, const std::string& node) {
-  ros1::addEdges(graph, node, *graph_);
+  if (graph_->edges().size() < kMostEdges) {
+    ros1::addEdges(graph, node, *graph_);
+  }
 }
 
 }  // namespace self_awareness

@@ -14,6 +14,7 @@
 #include "self_awareness/core/verdict/source_graph.h"
 #include "self_awareness/ros/encoding.h"
 #include "self_awareness/ros/graph.h"
+#include "self_awareness/ros/live/live_events.h"
 #include "self_awareness/ros/live/own_output.h"
 #include "self_awareness/ros/model/model_file.h"
 
@@ -24,6 +25,8 @@ class Session {
  public:
   /// Event types that the model does not know and that are told apart; further ones share an id.
   static constexpr std::size_t kMostUnknownTypes = 1000;
+  /// Edges of the graph from which on no more are added: nodes may have ever new names.
+  static constexpr std::size_t kMostEdges = 50000;
 
   /// @param handler called with the verdict of every window in turn
   /// @throw std::invalid_argument if the calibration does not fit the model
@@ -44,6 +47,11 @@ class Session {
   const ros1::EncodingRules& encoding() const { return trained_.encoding; }
   const std::shared_ptr<const ros1::Encoder>& encoder() const { return encoder_; }
   core::Detector& detector() { return detector_; }
+
+  /// Whether there were more unknown types than are told apart.
+  bool full() const { return vocabulary_->size() > types().size() + kMostUnknownTypes; }
+  /// Event types of the model that this publisher sends.
+  std::vector<core::EventId> typesOf(const ros1::Publication& publication) const;
 
   /// The topics of the model's events.
   std::set<std::string> topics() const;

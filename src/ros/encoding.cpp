@@ -8,11 +8,14 @@
 #include <utility>
 
 #include "name_patterns.h"
+#include "self_awareness/ros/siblings.h"
 #include "self_awareness/ros/stable_name.h"
 #include "text.h"
 
 namespace self_awareness::ros1 {
 namespace {
+
+constexpr std::size_t kLongestQuote = 100;  // [bytes]
 
 /// Whether a node is `rostopic pub`, in any namespace.
 bool isRostopic(const std::string& source) {
@@ -27,7 +30,8 @@ std::string headerField(const ros::M_string& header, const std::string& name) {
 /// roscpp throws an exception at names that rospy only warns of, or that a bag brings along.
 bool isLegalTopic(const std::string& name) {
   std::string error;
-  return name.size() <= kLongestName && ros::names::validate(name, error) && name[0] != '~';
+  return !name.empty() && name.size() <= kLongestName && ros::names::validate(name, error) &&
+         name[0] != '~';
 }
 
 }  // namespace
@@ -94,19 +98,20 @@ core::EventId internUpTo(std::size_t most, const core::EventType& type,
   return vocabulary.intern(type);
 }
 
+std::string whyLeftOut(const std::string& topic) {
+  return isLegalTopic(topic) ? ""
+                             : "no node can subscribe to the topic '" +
+                                   printable(topic, kLongestQuote) + "': its name is illegal";
+}
+
 std::string whyLeftOut(const Connection& connection) {
-  constexpr std::size_t kLongestQuote = 100;  // [bytes]
-  if (!isLegalTopic(connection.topic)) {
-    return "no node can subscribe to the topic '" + printable(connection.topic, kLongestQuote) +
-           "': its name is illegal";
-  }
   for (const std::string* name : {&connection.callerid, &connection.datatype}) {
-    if (name->size() > kLongestName) {
+    if (name->size() > kLongestName && isLegalTopic(connection.topic)) {
       return "the name '" + printable(*name, kLongestQuote) + "...' on the topic " +
              printable(connection.topic, kLongestQuote) + " is too long";
     }
   }
-  return "";
+  return whyLeftOut(connection.topic);
 }
 
 Connection connectionFrom(const ros::M_string& header, const std::string& topic) {
@@ -171,8 +176,8 @@ bool Encoder::includesSource(const std::string& source) const {
 
 std::optional<ConnectionEncoder> Encoder::connect(const Connection& connection) const {
   const std::string source = stableName(connection.callerid);
-  if (!whyLeftOut(connection).empty() || !includesTopic(connection.topic) ||
-      !includesSource(source)) {
+  if (!whyLeftOut(connection).empty() || isOwnType(connection.datatype) ||
+      !includesTopic(connection.topic) || !includesSource(source)) {
     return std::nullopt;
   }
   ConnectionEncoder encoder;

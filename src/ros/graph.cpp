@@ -6,7 +6,9 @@
 #include <xmlrpcpp/XmlRpcValue.h>
 
 #include <algorithm>
+#include <iterator>
 
+#include "self_awareness/ros/encoding.h"
 #include "self_awareness/ros/stable_name.h"
 #include "text.h"
 
@@ -84,7 +86,9 @@ std::set<std::string> chooseTopics(const Graph& graph, SubscribePolicy policy,
                                    const std::set<std::string>& model_topics,
                                    const std::function<bool(const std::string&)>& included,
                                    const std::string& own_name) {
-  std::set<std::string> chosen = model_topics;
+  std::set<std::string> chosen;
+  std::copy_if(model_topics.begin(), model_topics.end(), std::inserter(chosen, chosen.end()),
+               [](const std::string& topic) { return whyLeftOut(topic).empty(); });
   if (policy == SubscribePolicy::kModel) {
     return chosen;
   }

@@ -190,11 +190,11 @@ TEST_F(FlightRecorderTest, WhatComesAfterARestartIsAnotherRecording) {
 
 TEST_F(FlightRecorderTest, AtTheEndAnAlarmThatStandsIsWritten) {
   hear(0, 1);
-  recorder().onShutdown(false);
+  recorder().finish(false);
   recorder_.reset();
   EXPECT_FALSE(filesystem::exists(folder_)) << "no alarm stood";
   hear(0, 1);
-  recorder().onShutdown(true);
+  recorder().finish(true);
   recorder_.reset();
   ASSERT_EQ(files(), 1U);
   EXPECT_EQ(filesystem::directory_iterator(folder_)->path().filename().string().rfind("shutdown_"),
@@ -204,7 +204,7 @@ TEST_F(FlightRecorderTest, AtTheEndAnAlarmThatStandsIsWritten) {
 TEST_F(FlightRecorderTest, AtTheEndAFileDoesNotWaitForWhatFollows) {
   hear(0, 1);
   const std::string path = recorder().onAlarm(kSteady + kSecond);
-  recorder().onShutdown(true);
+  recorder().finish(true);
   recorder_.reset();
   EXPECT_EQ(files(), 1U) << "the alarm is in its own file already";
   expectSame(read(path), 0, 100);
@@ -216,7 +216,7 @@ TEST_F(FlightRecorderTest, WithoutADurationThereIsNone) {
   hear(0, 1);
   EXPECT_EQ(recorder().onAlarm(kSteady), "");
   EXPECT_FALSE(recorder().dump());
-  recorder().onShutdown(true);
+  recorder().finish(true);
   recorder_.reset();
   EXPECT_FALSE(filesystem::exists(folder_));
 }

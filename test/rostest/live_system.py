@@ -237,11 +237,17 @@ def operation(components: Iterable[Tuple[str, str, float]], length: float,
 
 def write_bag(path: str, messages: Iterable[Tuple[float, str, str]]) -> str:
     """Writes std_msgs/String messages, given as (stamp [s], source, topic); returns the path."""
+    connections = {}  # type: Dict[Tuple[str, str], Any]
     with rosbag.Bag(path, 'w') as bag:
         for stamp, source, topic in sorted(messages):
+            # rosbag itself has one connection for each topic, however many nodes publish there.
+            bag._topic_connections.pop(topic, None)
+            if (source, topic) in connections:
+                bag._topic_connections[topic] = connections[source, topic]
             header = {'topic': topic, 'type': String._type, 'md5sum': String._md5sum,
                       'message_definition': String._full_text, 'callerid': source}
             bag.write(topic, String(), rospy.Time.from_sec(stamp), connection_header=header)
+            connections[source, topic] = bag._topic_connections[topic]
     return path
 
 

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """A master that comes late, hangs, dies and is restarted, and a dead node that it still knows."""
 
+import glob
 import json
 import os
 import shutil
@@ -19,6 +20,7 @@ from diagnostic_msgs.msg import DiagnosticStatus
 
 from live_system import (Process, again_if_clock_was_set, await_condition, make_model, operation,
                          write_bag)
+from self_awareness import EncodingRules, read_events
 from self_awareness.msg import SelfAwareness
 
 _Kept = TypeVar('_Kept', bound=Process)
@@ -28,6 +30,10 @@ COMPONENTS = (('/talker', '/from/talker', 0.05), ('/beside', '/from/beside', 0.5
 THRESHOLD = 0.02
 """A tenth of what normal operation scores; a window without messages scores 0."""
 LONGEST_HEARTBEAT_S = 2.5
+LONGEST_END_S = 3.0
+"""After a signal."""
+LONGEST_SILENCE_S = 5.0
+"""After a restart of the master."""
 
 
 def script(name: str) -> str:
@@ -101,30 +107,24 @@ class MasterTest(unittest.TestCase):
         await_condition('the master answers', self.master().is_online, 30)
         return master
 
-    def start_monitor(self) -> Process:
+    def start_monitor(self, name: str = 'self_awareness') -> Process:
         # A busy machine may hold messages back for some windows, so an alarm needs a second.
         return self.start('rosrun', 'self_awareness', 'self_awareness_node',
-                          '_model:=' + self.model, '_detector:=paper',
+                          '__name:=' + name, '_model:=' + self.model, '_detector:=paper',
                           '_unknown:=ignore', '_poll_interval:=0.2', '_settle_time:=1.0',
                           '_alarm_windows:=10', '_alarm_of:=15', '_hold_time:=1.0')
 
-    def start_component(self, name: str) -> Process:
+    def start_recorder(self) -> Process:
+        return self.start('rosrun', 'self_awareness', 'record_events', '__name:=recorder_1',
+                          '_min_space:=0', '_subscribe:=all',
+                          '_output:=' + os.path.join(self.folder, 'log'))
+
+    def start_component(self, name: str, port: int = 0) -> Process:
         topic, period = next((topic, period) for source, topic, period in COMPONENTS
                              if source == name)
         return self.start(sys.executable, script('talker.py'), '__name:=' + name[1:],
-                          '_output:=' + topic, '_rate:={}'.format(1 / period))
-
-    def occupy(self, port: int) -> None:
-        """Keeps the port of a component that died from others, until the test ends.
-
-        By chance its successor could be given the same port: roscpp takes a publisher with the
-        same URI for the one that it was connected to, and does not connect again.
-        """
-        listening = socket.socket()
-        self.addCleanup(listening.close)
-        listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        listening.bind(('', port))
-        listening.listen(1)
+                          '_output:=' + topic, '_rate:={}'.format(1 / period),
+                          '_xmlrpc_port:={}'.format(port))
 
     def start_listener(self) -> Listener:
         return self.keep(Listener(sys.executable, script('listener.py'), env=self.environment))
@@ -187,7 +187,6 @@ class MasterTest(unittest.TestCase):
         self.start_component('/beside')
         talker = self.start_component('/talker')
         self.await_normal(listener)
-        port = urlsplit(self.master().lookupNode('/talker')).port
 
         hung = time.monotonic()
         master.send(signal.SIGSTOP)
@@ -200,7 +199,6 @@ class MasterTest(unittest.TestCase):
         self.await_alarm(listener, killed, '/talker')
         listener.await_message('diagnostics', killed, task='monitor', number=2)
 
-        self.occupy(port)
         woken = time.monotonic()
         master.send(signal.SIGCONT)
         self.start_component('/talker')
@@ -215,6 +213,57 @@ class MasterTest(unittest.TestCase):
         listener.await_message('status', warning['at'], abnormal=False, number=20)
         self.check_no_alarm(listener, dead)
         self.assertLess(listener.longest_heartbeat(), LONGEST_HEARTBEAT_S)
+
+    @again_if_clock_was_set
+    def test_a_node_is_started_again_at_the_same_address(self) -> None:
+        """roscpp takes it for the one that it was connected to, and does not connect again."""
+        self.start_master()
+        self.start_monitor()
+        listener = self.start_listener()
+        self.start_component('/beside')
+        talker = self.start_component('/talker')
+        self.await_normal(listener)
+        uri = self.master().lookupNode('/talker')
+        for _ in range(2):
+            killed = time.monotonic()
+            talker.send(signal.SIGKILL)
+            self.await_alarm(listener, killed, '/talker')
+            back = time.monotonic()
+            talker = self.start_component('/talker', port=urlsplit(uri).port)
+            listener.await_message('alarm', back, level=SelfAwareness.OK)
+            self.assertEqual(self.master().lookupNode('/talker'), uri)
+            listener.await_message('status', back, abnormal=False, number=20)
+
+    @again_if_clock_was_set
+    def test_the_nodes_end_whatever_the_master_does(self) -> None:
+        for hangs in (True, False):
+            master = self.start_master()
+            nodes = [self.start_monitor(), self.start_recorder()]
+            learner = self.start('rosrun', 'self_awareness', 'learn', '__name:=learner',
+                                 '_model:=' + os.path.join(self.folder, 'learned'))
+            listener = self.start_listener()
+            self.start_component('/talker')
+            listener.await_message('diagnostics', task='/talker', message='heard')
+            for recorder in ('/recorder_1', '/learner_recorder'):
+                await_condition(recorder + ' records', lambda: (
+                    self.registered(0, recorder + '/start')), 30)
+            master.send(signal.SIGSTOP if hangs else signal.SIGKILL)
+            late = self.start_monitor('late')  # waits for the master from the start
+            told = time.monotonic()
+            for node, number in zip(nodes, (signal.SIGTERM, signal.SIGINT)):
+                node.send(number)
+            for node in (late, learner):
+                node.send(signal.SIGTERM)
+                node.wait(20)
+            for node in nodes:
+                self.assertEqual(node.wait(20), 0, node.output)
+            self.assertLess(time.monotonic() - told, LONGEST_END_S)
+            log, = glob.glob(os.path.join(self.folder, 'log*.bag'))
+            self.assertGreater(read_events(log, EncodingRules.defaults(),
+                                           recording=0).stamps.size, 0)
+            os.remove(log)
+            self.doCleanups()
+            self.setUp()
 
     @again_if_clock_was_set
     def test_master_is_restarted(self) -> None:
@@ -233,9 +282,13 @@ class MasterTest(unittest.TestCase):
         await_condition('the talker registers', lambda: self.registered(0, '/from/talker'), 30)
         monitor.send(signal.SIGCONT)
 
+        noticed = time.monotonic()
         for topic in ('/self_awareness/status', '/self_awareness/alarm', '/diagnostics'):
             await_condition('the monitor publishes ' + topic, lambda: (
                 '/self_awareness' in self.registered(0, topic)), 20)
+        await_condition('the monitor listens', lambda: (
+            '/self_awareness' in self.registered(1, '/from/talker')), 20)
+        self.assertLess(time.monotonic() - noticed, LONGEST_SILENCE_S)
         for service in ('reset', 'clear', 'reload', 'get_loggers'):
             await_condition('the monitor serves ' + service, lambda: (
                 self.registered(2, '/self_awareness/' + service)), 20)

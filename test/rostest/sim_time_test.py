@@ -3,6 +3,7 @@
 
 import os
 import random
+import re
 import shutil
 import tempfile
 import threading
@@ -28,6 +29,9 @@ THRESHOLD = 0.02
 HEARTBEAT_S = 1.0
 LONGEST_HEARTBEAT_S = 2.5
 CLOCK_WAS_SET = 'ROS time was set'
+NO_CLOCK = re.compile('ROS time has stood still for|no /clock for')
+END_S = 4294967295.99
+"""Of ROS time [s]."""
 
 
 def recording(seed: int, length: float) -> List[Tuple[float, str, str]]:
@@ -74,7 +78,7 @@ class SimulatedRobot:
                 now, ahead, standing = time.monotonic(), self._ahead, self._standing
             if standing:
                 continue
-            self._clock.publish(Clock(rospy.Time.from_sec(now + ahead)))
+            self._clock.publish(Clock(rospy.Time.from_sec(min(now + ahead, END_S))))
             for _, topic, period in COMPONENTS:
                 if due[topic] <= now:
                     self._publishers[topic].publish(String())
@@ -107,19 +111,21 @@ class SimTimeTest(unittest.TestCase):
         await_condition('the monitor subscribes', lambda: (
             listener.value('monitor', 'subscriptions') == str(len(COMPONENTS))), 40)
 
-    def await_heartbeats(self, listener: MonitorListener, number: int) -> None:
+    def await_heartbeats(self, listener: MonitorListener, number: int,
+                         clock_stands: bool = False) -> None:
         """Waits for heartbeats, which come at their rate of steady time."""
         began = time.monotonic()
         beats = await_condition('{} heartbeats'.format(number), lambda: (
             listener.heartbeats if len([t for t in listener.heartbeats if t > began]) >= number
             else None), number * LONGEST_HEARTBEAT_S)
         self.assertLess(beats[-1] - began, number * HEARTBEAT_S + LONGEST_HEARTBEAT_S)
-        self.check_heartbeats(listener)
+        self.check_heartbeats(listener, clock_stands)
 
-    def check_heartbeats(self, listener: MonitorListener) -> None:
+    def check_heartbeats(self, listener: MonitorListener, clock_stands: bool = False) -> None:
         """None was left out since the first, and all are levels of a healthy monitor.
 
-        Single windows of a replay may be a suspicion.
+        Single windows of a replay may be a suspicion. A clock that stands still is one at first,
+        and then an error of the monitor's own status.
         """
         beats = listener.heartbeats
         gaps = [later - earlier for earlier, later in zip(beats, beats[1:])]
@@ -128,7 +134,17 @@ class SimTimeTest(unittest.TestCase):
                               ('monitor', DiagnosticStatus.OK)):
             self.assertEqual([(status.level, status.message)
                               for status in listener.diagnostics(task)
-                              if status.level > healthy], [], task)
+                              if status.level > healthy
+                              and not (clock_stands and NO_CLOCK.match(status.message))], [], task)
+
+    def await_clock_missed(self, listener: MonitorListener) -> None:
+        """Waits until the monitor has warned that the clock stands, and calls it an error."""
+        levels = await_condition('the clock is missed', lambda: (
+            listener.diagnostics('monitor')[-1].level == DiagnosticStatus.ERROR
+            and [s.level for s in listener.diagnostics('monitor') if NO_CLOCK.match(s.message)]),
+            20)
+        self.assertEqual(sorted(set(levels)), [DiagnosticStatus.WARN, DiagnosticStatus.ERROR])
+        self.assertEqual(levels, sorted(levels))
 
     def check_no_alarm(self, listener: MonitorListener) -> None:
         self.assertEqual([alarm.message for alarm in listener.alarms
@@ -151,7 +167,9 @@ class SimTimeTest(unittest.TestCase):
             self.await_listening(listener)
             array = rospy.wait_for_message('/diagnostics', DiagnosticArray, 10)
             self.assertEqual(array.header.stamp, rospy.Time(0), 'there is a /clock')
-            self.await_heartbeats(listener, 5)
+            self.await_heartbeats(listener, 5, clock_stands=True)
+            self.await_clock_missed(listener)
+            self.assertIn('no /clock for', listener.diagnostics('monitor')[-1].message)
             self.assertEqual(listener.diagnostics('communication')[-1].message,
                              'waiting for the first message')
             self.assertEqual(listener.statuses, [])
@@ -169,7 +187,7 @@ class SimTimeTest(unittest.TestCase):
             self.assertGreater(sum(status.events for status in listener.statuses), 100)
             self.check_normal(listener.statuses)
             # The clock stands still from now on: windows wait, the heartbeat does not.
-            self.await_heartbeats(listener, 4)
+            self.await_heartbeats(listener, 4, clock_stands=True)
             self.check_no_alarm(listener)
 
     @again_if_clock_was_set
@@ -223,7 +241,28 @@ class SimTimeTest(unittest.TestCase):
                                  steps + 1)
                 self.check_heartbeats(listener)
             robot.stop_clock()
-            self.await_heartbeats(listener, 4)
+            self.await_heartbeats(listener, 4, clock_stands=True)
+            self.await_clock_missed(listener)
+            self.assertIn('not judged any more: ROS time stands still',
+                          listener.diagnostics('communication')[-1].message)
+            self.check_no_alarm(listener)
+
+    @again_if_clock_was_set
+    def test_the_end_of_ros_time(self) -> None:
+        with MonitorListener() as listener, self.start_monitor() as monitor, \
+                SimulatedRobot() as robot:
+            listener.await_settled()
+            robot.set_clock_by(END_S - START_S - 3600)
+            await_condition('windows of the last hour', lambda: (
+                listener.statuses[-1].window_start.to_sec() > END_S - 3600), 20)
+            robot.set_clock_by(3600)
+            await_condition('ROS time stands still', lambda: any(
+                NO_CLOCK.match(s.message) for s in listener.diagnostics('monitor')), 20)
+            robot.set_clock_by(START_S - END_S)
+            await_condition('windows of now', lambda: (
+                listener.statuses[-1].window_start.to_sec() < END_S - 3600), 20)
+            self.assertTrue(monitor.running())
+            listener.await_settled()
             self.check_no_alarm(listener)
 
     @again_if_clock_was_set

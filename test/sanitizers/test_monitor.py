@@ -16,7 +16,7 @@ from typing import Dict, Iterator, List
 import pytest
 import roslib.packages
 import rospy
-from live_system import MonitorListener, Process, await_condition
+from live_system import MonitorListener, Process, await_condition, pid_of
 from monitor_case import publishers, subscribers
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
@@ -44,7 +44,8 @@ class Programs:
         self._reports = folder / 'reports'
         self._reports.mkdir()
 
-    def start(self, program: str, *arguments: str, preload: str = '') -> Process:
+    def start(self, program: str, *arguments: str, preload: str = '', **parameters: object
+              ) -> Process:
         """Start one; `preload` is the tool's library, for a program that is not built with it."""
         command = [str(BUILT_IN / 'devel' / 'env.sh'), 'env']
         command += [f'{name}={os.environ.get(name, "")}:log_path={self._reports / program}'
@@ -57,7 +58,8 @@ class Programs:
                         f'--log-file={self._reports / program}.%p']
         path = BUILT_IN / 'devel' / 'lib' / 'self_awareness' / program
         command.append(str(path) if path.exists() else find_program(program))
-        return Process(*command, *arguments)
+        return Process(*command, *arguments,
+                       *(f'_{name}:={value}' for name, value in parameters.items()))
 
     def check(self, process: Process, code: int = 0) -> None:
         """End a program by SIGINT, and check its exit code and that the tool reports nothing."""
@@ -79,9 +81,10 @@ def find_program(name: str) -> str:
 
 
 def runtime() -> str:
-    """Return the path of AddressSanitizer's library."""
-    return subprocess.run(['g++', '-print-file-name=libasan.so'], stdout=subprocess.PIPE,
-                          text=True, check=True).stdout.strip()
+    """Return the path of the sanitizer's library."""
+    name = {'address': 'libasan.so', 'thread': 'libtsan.so'}[TOOL]
+    return subprocess.run(['g++', f'-print-file-name={name}'], stdout=subprocess.PIPE, text=True,
+                          check=True).stdout.strip()
 
 
 @pytest.fixture(name='master', scope='module', autouse=True)
@@ -135,8 +138,8 @@ def _model(robot: Dict[str, Process], tmp_path_factory: pytest.TempPathFactory) 
 
 def record(programs: Programs, folder: Path, name: str) -> Path:
     """Record an event log while the robot runs."""
-    recorder = programs.start('record_events', f'__name:={name}', f'_output:={folder / name}',
-                              '_subscribe:=all')
+    recorder = programs.start('record_events', f'__name:={name}', output=folder / name,
+                              subscribe='all')
     heard: List[float] = []
     with recorder:
         await_condition('the recorder listens', lambda: f'/{name}' in subscribers('/scan'),
@@ -166,70 +169,46 @@ def call(service: str) -> str:
 
 @pytest.mark.skipif(TOOL != 'valgrind', reason='the others stand a load')
 def test_start_and_stop(programs: Programs, model: Path, tmp_path: Path) -> None:
-    with started(programs, model, tmp_path) as node, MonitorListener('/node') as listener:
+    with programs.start('self_awareness_node', '__name:=node', model=model,
+                        **{'recorder/directory': tmp_path / 'recorder'}) as node, \
+            MonitorListener('/node') as listener:
         listener.await_settled(SLOWLY_S)
         assert Path(call('/node/dump').split()[-1]).is_absolute()
         programs.check(node)
 
 
 @pytest.mark.skipif(TOOL == 'valgrind', reason='too slow for a load')
-def test_node_with_an_alarm_and_all_services(programs: Programs, robot: Dict[str, Process],
-                                             model: Path, tmp_path: Path) -> None:
-    with started(programs, model, tmp_path) as node, MonitorListener('/node') as listener:
-        listener.await_settled(SLOWLY_S)
-        for _ in range(TIMES):
-            call('/node/dump')
-            call('/node/reload')
-            listener.await_settled(SLOWLY_S)
-        alarm_and_services('/node', listener, robot)
-        programs.check(node)
-    restart_player(robot)
-
-
-@pytest.mark.skipif(TOOL == 'valgrind', reason='too slow for a load')
-@pytest.mark.skipif(TOOL == 'thread', reason='the manager, which is not built with it, hides when '
-                    'its threads wait for each other')
-def test_nodelet_that_comes_and_goes(programs: Programs, robot: Dict[str, Process], model: Path,
-                                     tmp_path: Path) -> None:
-    """It goes while an alarm stands, too."""
+def test_load_and_alarms_and_services(programs: Programs, robot: Dict[str, Process], model: Path,
+                                      tmp_path: Path) -> None:
+    """As a node and as a nodelet at the same time: an alarm, all services, in the alarm, too."""
     manager = programs.start('nodelet', 'manager', '__name:=manager', preload=runtime())
-    with manager, MonitorListener('/nodelet') as listener:
+    node = programs.start('self_awareness_node', '__name:=node', model=model,
+                          **{'recorder/directory': tmp_path / 'node'})
+    with manager, node, MonitorListener('/node') as of_node, \
+            MonitorListener('/nodelet') as of_nodelet:
         for _ in range(TIMES):
             with nodelet(model, tmp_path):
+                of_nodelet.await_settled(SLOWLY_S)
+                for name in ('/node', '/nodelet'):
+                    call(f'{name}/reload')
+                    call(f'{name}/dump')
+        with nodelet(model, tmp_path):
+            for listener in (of_node, of_nodelet):
                 listener.await_settled(SLOWLY_S)
-                call('/nodelet/dump')
-                call('/nodelet/reload')
+            os.kill(pid_of('/player'), signal.SIGKILL)
+            for listener in (of_node, of_nodelet):
+                suspects = listener.await_alarm(SLOWLY_S).suspects
+                assert '/player' in [suspect.source for suspect in suspects]
+            for service in ('dump', 'clear', 'reload', 'reset'):
+                for name in ('/node', '/nodelet'):
+                    call(f'{name}/{service}')
+            for listener in (of_node, of_nodelet):
+                listener.await_alarm(SLOWLY_S)
+        robot['player'] = component('player')
         with nodelet(model, tmp_path):
-            alarm_and_services('/nodelet', listener, robot)
-        restart_player(robot)
-        with nodelet(model, tmp_path):
-            listener.await_settled(SLOWLY_S)
+            of_nodelet.await_settled(SLOWLY_S)
+        programs.check(node)
         programs.check(manager)
-
-
-def started(programs: Programs, model: Path, folder: Path) -> Process:
-    """Start the monitor as a node."""
-    return programs.start('self_awareness_node', '__name:=node', f'_model:={model}',
-                          f'_recorder/directory:={folder / "recorder"}')
-
-
-def alarm_and_services(name: str, listener: MonitorListener, robot: Dict[str, Process]) -> None:
-    """Kill a component, and call all services during the alarm, which comes back."""
-    listener.await_settled(SLOWLY_S)
-    robot['player'].send(signal.SIGKILL)
-    suspects = listener.await_alarm(SLOWLY_S).suspects
-    assert '/player' in [suspect.source for suspect in suspects]
-    for service in ('dump', 'clear'):
-        call(f'{name}/{service}')
-    listener.await_alarm(SLOWLY_S)
-    for service in ('reload', 'reset'):
-        call(f'{name}/{service}')
-
-
-def restart_player(robot: Dict[str, Process]) -> None:
-    """Start the component again that was killed."""
-    robot['player'] = component('player')
-    rospy.wait_for_message(COMPONENTS['player'][0], String, SLOWLY_S)
 
 
 @contextlib.contextmanager

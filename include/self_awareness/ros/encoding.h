@@ -78,6 +78,8 @@ constexpr std::size_t kLongestName = 1000;
 /// Why no message of a connection can be an event, whatever the rules: its topic has a name that
 /// roscpp refuses to subscribe to, or a name is too long. Empty: it can.
 std::string whyLeftOut(const Connection& connection);
+/// The same, as far as the name of the topic says it.
+std::string whyLeftOut(const std::string& topic);
 
 /// What a connection header says, in UTF-8: what is none is replaced. Fields that it lacks are
 /// empty.
@@ -121,12 +123,15 @@ class Encoder {
   /// @throw std::invalid_argument names the pattern that is no regular expression
   Encoder(const EncodingRules& rules, EventIds ids);
 
+  /// Whether sources are told apart.
+  bool tellsSources() const { return rules_.source == EncodingRules::Source::kCallerId; }
   /// Whether any message of the topic can be an event: by the rules, and by its name (whyLeftOut).
   bool includesTopic(const std::string& topic) const;
   /// Whether the rules let any message of the source be an event.
   /// @param source the publisher's stable name
   bool includesSource(const std::string& source) const;
-  /// Encoder of the connection's messages; none if the rules or their names leave them out.
+  /// Encoder of the connection's messages; none if the rules or their names leave them out, or if
+  /// they are of a type of this package.
   /// @throw std::invalid_argument if a type field does not fit the message's definition
   std::optional<ConnectionEncoder> connect(const Connection& connection) const;
 

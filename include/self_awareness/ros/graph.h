@@ -44,7 +44,7 @@ enum class SubscribePolicy {
 };
 
 /// Topics to subscribe to: all of the model, even if they are not published yet, and others by the
-/// policy if the encoding includes them.
+/// policy if the encoding includes them. Those that roscpp cannot subscribe to are left out.
 /// @param own_name the subscriber's node name, which does not count as another node
 std::set<std::string> chooseTopics(const Graph& graph, SubscribePolicy policy,
                                    const std::set<std::string>& model_topics,

@@ -40,6 +40,7 @@ class Judge : public core::Judge {
     return {event, !model_->knows(event.id), scorer_.add(event)};
   }
   void settle(const Event& first, std::int64_t settle_time) override;
+  void leaveOut(const std::vector<EventId>& ids, std::int64_t until) override;
   Judgement judge(const Window& window, std::int64_t end, NameSuspects suspects) override;
   void restart() override;
 
@@ -95,9 +96,15 @@ Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, s
 
 void Judge::settle(const Event& first, std::int64_t settle_time) {
   settle_time_ = settle_time;
-  if (model_->knows(first.id)) {
-    settled_at_[first.id] = first.stamp + settle_time;
-    all_settled_at_ = std::max(all_settled_at_, settled_at_[first.id]);
+  leaveOut({first.id}, first.stamp + settle_time);
+}
+
+void Judge::leaveOut(const std::vector<EventId>& ids, std::int64_t until) {
+  for (const EventId id : ids) {
+    if (model_->knows(id)) {
+      settled_at_[id] = std::max(settled_at_[id], until);
+      all_settled_at_ = std::max(all_settled_at_, settled_at_[id]);
+    }
   }
 }
 

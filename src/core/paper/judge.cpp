@@ -1,5 +1,6 @@
 #include "self_awareness/core/paper/judge.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <set>
@@ -49,6 +50,12 @@ class Judge : public core::Judge {
     }
   }
 
+  void leaveOut(const std::vector<EventId>& ids, std::int64_t until) override {
+    if (std::any_of(ids.begin(), ids.end(), [&](EventId id) { return id < model_->size(); })) {
+      settled_at_ = std::max(settled_at_.value_or(until), until);
+    }
+  }
+
   Judgement judge(const Window& window, std::int64_t end, NameSuspects suspects) override {
     Judgement judgement;
     judgement.settling = settled_at_ && window.start < *settled_at_;
@@ -95,7 +102,7 @@ class Judge : public core::Judge {
   std::vector<double> scores_;                    // of the events since the last window
   std::set<std::string> heard_;                   // components, since the start
   std::optional<std::int64_t> start_settled_at_;  // [ns]; none: nothing was heard
-  std::optional<std::int64_t> settled_at_;        // of the newest component after that [ns]
+  std::optional<std::int64_t> settled_at_;        // of what is new or was missed [ns]
 };
 
 }  // namespace

@@ -6,6 +6,13 @@
 #include <utility>
 
 namespace self_awareness::core {
+namespace {
+
+// What was missed, or came all at once afterwards, is in the counts of the last seconds for so
+// long [ns].
+constexpr std::int64_t kBacklog = 3 * kNanosecondsPerSecond;
+
+}  // namespace
 
 void Detector::Parameters::validate() const {
   persistence.validate();
@@ -31,6 +38,14 @@ bool Detector::add(const Event& event) {
     settled_at_ = event.stamp + parameters_.settle_time;
   }
   return same_clock;
+}
+
+void Detector::onMissed(const std::vector<EventId>& ids, std::int64_t now) {
+  judge_->leaveOut(ids, now + std::max(parameters_.settle_time, kBacklog));
+}
+
+void Detector::onPause(std::int64_t now) {
+  settled_at_ = std::max(settled_at_, now + std::max(parameters_.settle_time, kBacklog));
 }
 
 void Detector::advance(std::int64_t now) {

@@ -10,6 +10,7 @@
 #include "bag_index.h"
 #include "bag_messages.h"
 #include "open_bag.h"
+#include "self_awareness/ros/siblings.h"
 
 namespace self_awareness::ros1 {
 namespace {
@@ -52,6 +53,14 @@ bool topicsAreDistinct(const BagIndex& index) {
   return std::all_of(
       index.connections.begin(), index.connections.end(),
       [&](const Connection& connection) { return topics.insert(connection.topic).second; });
+}
+
+Siblings siblingsIn(const BagIndex& index) {
+  Siblings siblings;
+  for (const Connection& connection : index.connections) {
+    siblings.add(connection.callerid, connection.datatype);
+  }
+  return siblings;
 }
 
 std::vector<std::string> reasonsOf(const std::vector<Connection>& connections) {
@@ -120,8 +129,11 @@ void BagReader::read(const Encoder& encoder, const TimeRange& range, const Handl
   const auto [from, to] = limitsIn(summary_, range);
   std::vector<std::optional<ConnectionEncoder>> encoders;
   encoders.reserve(index_->connections.size());
+  const Siblings siblings = encoder.tellsSources() ? siblingsIn(*index_) : Siblings();
   for (const Connection& connection : index_->connections) {
-    encoders.push_back(encoder.connect(connection));
+    encoders.push_back(siblings.cover(connection.callerid, connection.topic)
+                           ? std::nullopt
+                           : encoder.connect(connection));
   }
   std::vector<std::uint8_t> content;
   std::uint64_t done = 0;

@@ -1,5 +1,7 @@
 #include "self_awareness/ros/live/arrivals.h"
 
+#include <topic_tools/shape_shifter.h>
+
 #include <algorithm>
 
 namespace self_awareness::ros1 {
@@ -7,26 +9,21 @@ namespace self_awareness::ros1 {
 Arrivals::Arrivals(std::uint32_t queue_size, std::function<void()> wake)
     : queue_size_(queue_size), wake_(std::move(wake)) {}
 
-std::shared_ptr<Arrival::Topic> Arrivals::addTopic(const std::string& name) {
-  const auto waiting = waiting_.lock();
-  const auto [topic, is_new] = waiting->topics.try_emplace(name, waiting->topics.size());
-  if (is_new) {
-    waiting->of_topic.push_back(0);
-  }
-  return std::make_shared<Arrival::Topic>(name, topic->second);
-}
-
 void Arrivals::add(Arrival arrival) {
   bool wake = false;
   {
     const auto waiting = waiting_.lock();
-    std::uint32_t& of_topic = waiting->of_topic[arrival.topic->number];
-    if (of_topic >= queue_size_) {
-      ++waiting->dropped;
+    const std::size_t content = arrival.content ? arrival.content->size() : 0;
+    std::uint32_t& of_connection = waiting->of_connection[arrival.header.get()];
+    // A single message is taken however long it is.
+    const bool too_long = waiting->content > 0 && waiting->content + content > kMostContent;
+    if (of_connection >= queue_size_ || too_long) {
+      drop(*waiting, arrival);
       return;
     }
+    waiting->content += content;
     // Half: there is room for what comes until it is taken.
-    wake = ++of_topic == queue_size_ / 2 + 1;
+    wake = ++of_connection == queue_size_ / 2 + 1;
     const std::int64_t interval = core::floorToGrid(arrival.stamp, waiting->interval);
     wake = wake || interval != waiting->last_interval;
     waiting->last_interval = interval;
@@ -37,15 +34,25 @@ void Arrivals::add(Arrival arrival) {
   }
 }
 
+void Arrivals::drop(Waiting& waiting, const Arrival& arrival) {
+  ++waiting.dropped;
+  if (std::none_of(waiting.dropped_of.begin(), waiting.dropped_of.end(),
+                   [&](const Dropped& known) { return known.header == arrival.header; })) {
+    waiting.dropped_of.push_back({arrival.topic, arrival.header});
+  }
+}
+
 void Arrivals::setInterval(std::int64_t interval) {
   waiting_.lock()->interval = interval;
 }
 
-void Arrivals::take(std::vector<Arrival>& arrivals) {
+std::vector<Arrivals::Dropped> Arrivals::take(std::vector<Arrival>& arrivals) {
   arrivals.clear();
   const auto waiting = waiting_.lock();
   arrivals.swap(waiting->arrivals);
-  std::fill(waiting->of_topic.begin(), waiting->of_topic.end(), 0);
+  waiting->of_connection.clear();
+  waiting->content = 0;
+  return std::exchange(waiting->dropped_of, {});
 }
 
 }  // namespace self_awareness::ros1

@@ -29,6 +29,10 @@ bool wasSet(std::int64_t ros_advance, std::int64_t steady_advance, bool simulate
 bool ClockWatch::look(std::int64_t ros_now, std::int64_t steady_now, bool simulated) {
   const bool set =
       last_ && wasSet(ros_now - last_->ros_time, steady_now - last_->steady_time, simulated);
+  if (!last_ || !simulated || ros_now != last_->ros_time) {
+    advanced_at_ = steady_now;
+  }
+  pause_ = last_ ? steady_now - last_->steady_time : 0;
   last_ = Look{ros_now, steady_now};
   if (set) {
     set_at_ = ros_now;

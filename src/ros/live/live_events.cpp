@@ -9,6 +9,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "../text.h"
+
 namespace self_awareness::ros1 {
 
 /// Has the thread that serves the callback queue take what has arrived.
@@ -41,6 +43,16 @@ void LiveEvents::setEncoder(std::shared_ptr<const Encoder> encoder, OwnOutput ow
   encoder_ = std::move(encoder);
   own_output_ = std::move(own_output);
   arrivals_.setInterval(window);
+  encodeAgain();
+}
+
+void LiveEvents::setGraph(const Graph& graph) {
+  if (own_output_.setGraph(graph) && encoder_) {
+    encodeAgain();
+  }
+}
+
+void LiveEvents::encodeAgain() {
   for (auto& [key, live] : connections_) {
     live.encoder = connect(connectionFrom(*live.header, live.topic->name));
     if (live.encoder) {
@@ -66,9 +78,15 @@ std::size_t LiveEvents::connections() const {
 }
 
 void LiveEvents::deliver() {
-  arrivals_.take(delivered_);
+  const std::vector<Arrivals::Dropped> dropped = arrivals_.take(delivered_);
   for (const Arrival& arrival : delivered_) {
     onArrival(arrival);
+  }
+  for (const Arrivals::Dropped& of : dropped) {
+    const auto known = connections_.find(of.header.get());
+    if (known != connections_.end() && known->second.encoder && handlers_.on_dropped) {
+      handlers_.on_dropped({connectionFrom(*of.header, of.topic->name).callerid, of.topic->name});
+    }
   }
   delivered_.clear();  // now: whether a connection is closed is seen by the users of its header
 }
@@ -94,7 +112,7 @@ void LiveEvents::onArrival(const Arrival& arrival) {
     event.id = read(*arrival.content, *encoder);
   } catch (const std::out_of_range& error) {
     ROS_ERROR_THROTTLE(10, "%s: %s; the message is left out", arrival.topic->name.c_str(),
-                       error.what());
+                       printable(error.what(), kLongestName).c_str());
     return;
   }
   handlers_.on_event(event);
@@ -136,15 +154,18 @@ void LiveEvents::chooseContent(Arrival::Topic& topic) const {
       });
 }
 
-std::optional<ConnectionEncoder> LiveEvents::connect(const Connection& connection) const {
+std::optional<ConnectionEncoder> LiveEvents::connect(const Connection& connection) {
   if (own_output_.covers(connection.callerid, connection.topic)) {
     return std::nullopt;
   }
   try {
     return encoder_->connect(connection);
   } catch (const std::invalid_argument& error) {
-    ROS_ERROR("%s from %s: %s; its messages are left out", connection.topic.c_str(),
-              connection.callerid.c_str(), error.what());
+    if (complained_of_.add(connection.callerid + " " + connection.topic)) {
+      ROS_ERROR("%s from %s: %s; its messages are left out", connection.topic.c_str(),
+                printable(connection.callerid, kLongestName).c_str(),
+                printable(error.what(), kLongestName).c_str());
+    }
     return std::nullopt;
   }
 }

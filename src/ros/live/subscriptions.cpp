@@ -2,6 +2,7 @@
 
 #include <ros/console.h>
 
+#include "../text.h"
 #include "topic_subscription.h"
 
 namespace self_awareness::ros1 {
@@ -20,9 +21,10 @@ void Subscriptions::setTopics(const std::set<std::string>& topics, const Graph& 
       expected = datatype;
     }
     const bool type_changed = !datatype.empty() && datatype != "*" && datatype != expected;
-    if (type_changed) {
+    if (type_changed && changed_.add(subscription->first)) {
       ROS_WARN("%s: the type changed from %s to %s; subscribing again",
-               subscription->first.c_str(), expected.c_str(), datatype.c_str());
+               subscription->first.c_str(), printable(expected, kLongestName).c_str(),
+               printable(datatype, kLongestName).c_str());
     }
     if (type_changed || topics.count(subscription->first) == 0) {
       subscription = subscriptions_.erase(subscription);
@@ -48,11 +50,9 @@ void Subscriptions::adaptReading() {
   }
 }
 
-void Subscriptions::renew(const Graph& graph) {
-  for (const auto& [name, topic] : graph.topics) {
-    if (!topic.publishers.empty()) {
-      subscriptions_.erase(name);
-    }
+void Subscriptions::renew(const std::set<std::string>& topics) {
+  for (const std::string& topic : topics) {
+    subscriptions_.erase(topic);
   }
 }
 

@@ -38,7 +38,7 @@ TopicSubscription::TopicSubscription(const ros::NodeHandle& node_handle, Arrival
                                      const std::string& topic)
     : node_handle_(node_handle),
       arrivals_(arrivals),
-      topic_(arrivals.addTopic(topic)),
+      topic_(std::make_shared<Arrival::Topic>(topic)),
       queue_(std::make_unique<ImmediateQueue>()),
       subscribers_{subscribe(0, reads_content_)} {}
 

@@ -12,6 +12,7 @@ from self_awareness import EncodingRules, encoding_file
 from self_awareness.calibration import limits
 from self_awareness.commands import cli
 from self_awareness.learning import programs
+from self_awareness.learning.leaving import limit_goodbye
 from self_awareness.learning.learner import Learner, Plan
 from self_awareness.output_files import MODEL, check_outputs
 
@@ -32,6 +33,7 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 
 def _learn(arguments: argparse.Namespace) -> None:
+    limit_goodbye()
     rospy.init_node('self_awareness')
     model = str(rospy.get_param('~model', ''))
     if not model:

@@ -7,6 +7,8 @@ from typing import Dict
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
+from self_awareness.msg import SelfAwareness
+
 _PERIOD_S = 1.0
 
 
@@ -19,6 +21,9 @@ class Announcer:
 
     def __init__(self) -> None:
         self._publisher = rospy.Publisher('/diagnostics', DiagnosticArray, queue_size=10)
+        # The monitor's, which will come. By its type, other monitors know this node for one of
+        # this package, whatever its name is.
+        self._status_topic = rospy.Publisher('~status', SelfAwareness, queue_size=1)
         self._name = f'{rospy.get_name()[1:]}: communication'
         self._hardware_id = str(rospy.get_param('~hardware_id', 'none'))
         self._lock = threading.Lock()

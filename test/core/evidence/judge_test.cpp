@@ -178,6 +178,24 @@ TEST_F(EvidenceJudgeTest, WhatSettlesIsNotJudgedAndAllElseIs) {
   EXPECT_EQ(evidenceAt(now, kC, now + 1), "overdue, pairs");  // unknown to the model
 }
 
+TEST_F(EvidenceJudgeTest, WhatWasMissedIsNotJudgedAndAllElseIs) {
+  limits_.tracks[track(Channel::kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
+  limits_.tracks[track(Channel::kDelay, kB, kA)] = 1;
+  const std::unique_ptr<core::Judge> judge = newJudge(limits_);
+  feed(*judge, 5);
+  const std::int64_t now = 45 * kPeriod;
+  judge->leaveOut({kB}, now + 1);
+  EXPECT_EQ(judge->judge({now, {}}, now + 3 * kSecond, NameSuspects::kNever).evidence, "overdue");
+  judge->leaveOut({kA, kC}, now + 2 * kSecond);
+  EXPECT_FALSE(
+      judge->judge({now + kSecond, {}}, now + 3 * kSecond, NameSuspects::kNever).abnormal);
+  judge->leaveOut({kA}, now + kSecond);  // it was left out for longer before
+  EXPECT_FALSE(
+      judge->judge({now + kSecond, {}}, now + 3 * kSecond, NameSuspects::kNever).abnormal);
+  EXPECT_TRUE(
+      judge->judge({now + 2 * kSecond, {}}, now + 3 * kSecond, NameSuspects::kNever).abnormal);
+}
+
 TEST_F(EvidenceJudgeTest, AfterARestartNothingSettlesThatDidBefore) {
   limits_.tracks[track(Channel::kOverdue, kA, kA)] = 1;
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);

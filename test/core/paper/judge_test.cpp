@@ -63,6 +63,18 @@ TEST_F(PaperJudgeTest, ARestartForgetsTheScoresOfTheOpenWindow) {
   EXPECT_FALSE(judge(kPeriod).score);
 }
 
+TEST_F(PaperJudgeTest, AllSettlesWhereOneOfTheModelWasMissed) {
+  const auto settlingAt = [this](std::int64_t start) {
+    window_.start = start;
+    return judge(start + 1).settling;
+  };
+  judge_->leaveOut({kUnknownId}, 2 * kPeriod);
+  EXPECT_FALSE(settlingAt(kPeriod));
+  judge_->leaveOut({1}, 2 * kPeriod);
+  EXPECT_TRUE(settlingAt(kPeriod));
+  EXPECT_FALSE(settlingAt(2 * kPeriod));
+}
+
 TEST_F(PaperJudgeTest, NamesSuspectsOnlyWhereTheyAreAskedFor) {
   const auto unknownWindow = [this](NameSuspects suspects) {
     add({kPeriod, kUnknownId});

@@ -27,6 +27,11 @@ class ToldJudge : public Judge {
   void settle(const Event& first, std::int64_t settle_time) override {
     settling_[first.id] = first.stamp + settle_time;
   }
+  void leaveOut(const std::vector<EventId>& ids, std::int64_t until) override {
+    for (const EventId id : ids) {
+      settling_[id] = until;
+    }
+  }
   Judgement judge(const Window& /*window*/, std::int64_t /*end*/, NameSuspects suspects) override {
     Judgement judgement = *told_;
     if (suspects == NameSuspects::kAlways ||
@@ -117,6 +122,36 @@ TEST_F(DetectorLevelsTest, NormalOperationIsNoSuspicion) {
   EXPECT_FALSE(verdict_.alarm);
   EXPECT_TRUE(verdict_.suspects.empty());
   EXPECT_EQ(changes_, 0);
+}
+
+TEST_F(DetectorLevelsTest, AfterAPauseNothingIsSaidUntilAllHasSettled) {
+  start();
+  detector_->onPause(now_ + 2 * kSecond);
+  detector_->advance(now_ += 2 * kSecond);
+  for (int i = 0; i < 30; ++i) {
+    abnormalWindow();
+    EXPECT_TRUE(verdict_.settling);
+    EXPECT_FALSE(verdict_.suspicion || verdict_.alarm);
+  }
+  EXPECT_FALSE(window().settling);
+}
+
+TEST_F(DetectorLevelsTest, AnAlarmThatStandsOutlastsAPause) {
+  start();
+  EXPECT_TRUE(alarmWindow({suspect("/a", 0)}).alarm);
+  detector_->onPause(now_);
+  windows(30);
+  EXPECT_TRUE(verdict_.alarm);
+  EXPECT_EQ(changes_, 1);
+  windows(100);
+  EXPECT_FALSE(verdict_.alarm);
+}
+
+TEST_F(DetectorLevelsTest, WhatWasMissedSettles) {
+  start();
+  detector_->onMissed({3, 4}, 70 * kSecond);
+  EXPECT_EQ(judge_->settling().at(3), 73 * kSecond);
+  EXPECT_EQ(judge_->settling().at(4), 73 * kSecond);
 }
 
 TEST_F(DetectorLevelsTest, OneAbnormalWindowIsASuspicionThatEndsAfterTheHoldTime) {

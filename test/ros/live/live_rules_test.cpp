@@ -7,8 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "self_awareness/ros/encoding.h"
 #include "self_awareness/ros/graph.h"
 #include "self_awareness/ros/live/clock_watch.h"
+#include "self_awareness/ros/live/lost_publishers.h"
+#include "self_awareness/ros/live/named_once.h"
 #include "self_awareness/ros/live/own_output.h"
 
 namespace self_awareness::ros1 {
@@ -43,8 +46,121 @@ TEST(ChooseTopics, ModelTakesTheModelsTopicsPublishedOrNot) {
   EXPECT_EQ(choose(SubscribePolicy::kModel), (Topics{"/pose"}));
 }
 
+TEST(ChooseTopics, LeavesOutWhatRoscppCannotSubscribeTo) {
+  Graph graph;
+  const std::string longest = "/" + std::string(kLongestName - 1, 'a');
+  for (const std::string& name : {std::string("/foo-bar"), std::string("/a b"),
+                                  std::string("/x:y"), std::string("/\xc3\xbc"), std::string("~x"),
+                                  std::string(), longest + "a", longest, std::string("/a_1/B")}) {
+    graph.topics[name] = {"std_msgs/String", {"/anybody"}, {"/other"}};
+  }
+  const Encoder encoder(EncodingRules(), [](const core::EventType& /*type*/) { return 0; });
+  EXPECT_EQ(chooseTopics(
+                graph, SubscribePolicy::kAll, {"/scan-front", "/scan"},
+                [&](const std::string& topic) { return encoder.includesTopic(topic); }, "/own"),
+            (Topics{"/a_1/B", longest, "/scan"}));
+}
+
+TEST(OwnOutput, LeavesOutWhatOtherNodesOfThePackageSayOfThemselves) {
+  OwnOutput own("/watch", {{"/base", "/rosout"}});
+  Graph graph;
+  graph.topics["/second/status"] = {"self_awareness/SelfAwareness", {"/second", "/base"}, {}};
+  graph.topics["/scan"] = {"sensor_msgs/LaserScan", {"/player"}, {}};
+  EXPECT_FALSE(own.covers("/second", "/rosout"));
+  EXPECT_TRUE(own.setGraph(graph));
+  EXPECT_FALSE(own.setGraph(graph));
+  EXPECT_TRUE(own.covers("/second", "/rosout"));
+  EXPECT_TRUE(own.covers("/second", "/diagnostics"));
+  EXPECT_FALSE(own.covers("/second", "/scan"));
+  EXPECT_FALSE(own.covers("/player", "/rosout"));
+  EXPECT_FALSE(own.covers("/base", "/rosout")) << "the model knows it";
+  EXPECT_TRUE(own.covers("/base", "/diagnostics"));
+}
+
+TEST(NamedOnce, NamesEachOnceAndNotTooMany) {
+  NamedOnce named;
+  EXPECT_TRUE(named.add("/a"));
+  EXPECT_FALSE(named.add("/a"));
+  std::size_t count = 1;
+  for (int i = 0; i < 1000; ++i) {
+    count += named.add("/b" + std::to_string(i)) ? 1 : 0;
+  }
+  EXPECT_EQ(count, NamedOnce::kMost);
+}
+
+constexpr char kUri[] = "http://robot:4711/";
+
+class LostPublishersTest : public testing::Test {
+ protected:
+  /// Looks at a node with two topics, and at another one that is connected all the time.
+  Topics look(const std::string& connection, std::int64_t second) {
+    return lost_.look({{kUri, "/scan", connection},
+                       {kUri, "/rare", connection},
+                       {"http://robot:1/", "/scan", "other"}},
+                      second * kSecond);
+  }
+
+  Reached reached_ = Reached::kYes;
+  int asked_ = 0;
+  LostPublishers lost_{[this](const std::string& uri) {
+    ++asked_;
+    EXPECT_EQ(uri, kUri);
+    return reached_;
+  }};
+};
+
+TEST_F(LostPublishersTest, ConnectsAgainToTheTopicsOfANodeThatLives) {
+  EXPECT_EQ(look("a", 0), Topics());
+  EXPECT_EQ(look("a", 1), Topics());
+  EXPECT_EQ(asked_, 0);
+  reached_ = Reached::kRefused;
+  EXPECT_EQ(look("b", 2), Topics());
+  EXPECT_EQ(look("c", 3), Topics());
+  EXPECT_EQ(look("c", 4), Topics());
+  EXPECT_EQ(asked_, 3);
+  reached_ = Reached::kYes;
+  EXPECT_EQ(look("c", 5), (Topics{"/rare", "/scan"}));
+  EXPECT_EQ(look("d", 6), Topics()) << "the new connection";
+  EXPECT_EQ(look("d", 7), Topics());
+  EXPECT_EQ(asked_, 4);
+}
+
+TEST_F(LostPublishersTest, LeavesAloneWhatRoscppHasGivenUp) {
+  look("a", 0);
+  reached_ = Reached::kRefused;
+  look("b", 1);
+  reached_ = Reached::kYes;
+  EXPECT_EQ(lost_.look({}, 2 * kSecond), Topics());
+  EXPECT_EQ(look("c", 3), Topics());
+  EXPECT_EQ(asked_, 1);
+}
+
+TEST_F(LostPublishersTest, WhoComesAndGoesDoesNotDisturbOthersAllTheTime) {
+  int renewed = 0;
+  for (int second = 0; second < 600; ++second) {
+    renewed += look(std::to_string(second), second).empty() ? 0 : 1;
+  }
+  EXPECT_GT(renewed, 2);
+  EXPECT_LT(renewed, 20);
+}
+
+TEST_F(LostPublishersTest, AMachineThatIsOffIsAskedLessAndLess) {
+  look("a", 0);
+  reached_ = Reached::kNoAnswer;
+  for (int second = 1; second < 600; ++second) {
+    look("b", second);
+  }
+  EXPECT_LT(asked_, 20);
+  reached_ = Reached::kYes;
+  Topics again;
+  for (int second = 600; second < 700; ++second) {
+    again.merge(look("b", second));
+  }
+  EXPECT_EQ(again, (Topics{"/rare", "/scan"}));
+}
+
 TEST(OwnOutput, IsWhatTheModelDoesNotKnowFromTheProcess) {
-  const OwnOutput own("/manager", {"/scan", "/rosout"});
+  const OwnOutput own("/manager", {{"/manager", "/scan"}, {"/manager", "/rosout"}});
   EXPECT_TRUE(own.covers("/manager", "/watch/status"));
   EXPECT_TRUE(own.covers("/manager", "/rosout"));
   EXPECT_FALSE(own.covers("/manager", "/scan"));
@@ -77,6 +193,20 @@ TEST(ClockWatch, ASimulatedClockMayRunAtAnyPaceAndPause) {
   EXPECT_FALSE(watch.look(12 * kSecond, 25 * kMillisecond, true));  // eighty times as fast
   EXPECT_FALSE(watch.look(12 * kSecond, 300 * kSecond, true));      // paused
   EXPECT_FALSE(watch.look(12050 * kMillisecond, 301 * kSecond, true));
+}
+
+TEST(ClockWatch, SaysHowLongASimulatedClockStandsStill) {
+  ClockWatch watch;
+  watch.look(0, 5 * kSecond, true);
+  watch.look(0, 7 * kSecond, true);
+  EXPECT_EQ(watch.standsStillFor(), 2 * kSecond);
+  watch.look(1000 * kSecond, 8 * kSecond, true);
+  EXPECT_EQ(watch.standsStillFor(), 0);
+  watch.look(1000 * kSecond, 20 * kSecond, true);
+  EXPECT_EQ(watch.standsStillFor(), 12 * kSecond);
+  EXPECT_EQ(watch.pause(), 12 * kSecond);
+  watch.look(1000 * kSecond, 21 * kSecond, false);
+  EXPECT_EQ(watch.standsStillFor(), 0);
 }
 
 TEST(ClockWatch, SeesABagThatLoopsAndASimulationThatIsReset) {

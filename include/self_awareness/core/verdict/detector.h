@@ -64,6 +64,12 @@ class Detector : private WindowObserver {
   /// and a new recording starts with this event.
   /// @return false if the clock was set
   bool add(const Event& event);
+  /// Takes note that this program was too slow, and has missed events of these types up to the
+  /// time `now` [ns]: they settle as if they were new, for 3 s at least.
+  void onMissed(const std::vector<EventId>& ids, std::int64_t now);
+  /// Takes note that this program stood still up to the time `now` [ns], and heard nothing: all
+  /// settle as at the start, for 3 s at least, and an alarm that stands goes on meanwhile.
+  void onPause(std::int64_t now);
   /// Judges the windows that are over at the time `now` [ns], whether events came or not.
   void advance(std::int64_t now);
   /// Ends the recording and judges the open window.

@@ -46,6 +46,9 @@ class Judge {
   /// @param first event of the type, which add() follows
   /// @param settle_time from the event on [ns]
   virtual void settle(const Event& first, std::int64_t settle_time) = 0;
+  /// Takes note that events of these types were missed: what is unusual of them up to `until` [ns]
+  /// says nothing of who sends them.
+  virtual void leaveOut(const std::vector<EventId>& ids, std::int64_t until) = 0;
   /// Judges a window that is over. Its events are all those taken in since the window before it.
   /// Without calibration, the judge names no suspects.
   /// @param end up to where the window is known [ns], as for WindowObserver::close()

@@ -7,9 +7,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <memory>
 #include <string>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -26,11 +26,9 @@ namespace self_awareness::ros1 {
 struct Arrival {
   /// A topic, while it is subscribed to or messages of it are waiting.
   struct Topic {
-    Topic(std::string topic, std::size_t topic_number)
-        : name(std::move(topic)), number(topic_number) {}
+    explicit Topic(std::string topic) : name(std::move(topic)) {}
 
     const std::string name;
-    const std::size_t number;  ///< counted by Arrivals; a topic that comes again has the same
     /// Whether the content of its messages is wanted. At first it is: which messages need not be
     /// read is not known before the first of them have told the type.
     std::atomic<bool> content_wanted{true};
@@ -43,32 +41,47 @@ struct Arrival {
 };
 
 /// Keeps what arrives, in any thread, for the one thread that takes it, many messages at a time.
+///
+/// Each connection has a queue of its own: a publisher that floods a topic makes no other one lose
+/// messages.
 class Arrivals {
  public:
-  /// @param queue_size messages a topic may have waiting; what comes then is dropped
+  /// Most bytes of content that may wait, of all connections together.
+  static constexpr std::size_t kMostContent = 200000000;
+
+  /// A connection of which messages were dropped.
+  struct Dropped {
+    std::shared_ptr<Arrival::Topic> topic;
+    boost::shared_ptr<ros::M_string> header;
+  };
+
+  /// @param queue_size messages a connection may have waiting; what comes then is dropped
   /// @param wake called by any thread when what waits should be taken soon; must not block
   Arrivals(std::uint32_t queue_size, std::function<void()> wake);
 
-  /// A topic whose messages will arrive.
-  std::shared_ptr<Arrival::Topic> addTopic(const std::string& name);
   void add(Arrival arrival);
 
   /// Wakes with the first arrival in each interval [ns] of the absolute grid.
   void setInterval(std::int64_t interval);
   /// Puts what waits into `arrivals`, in the order of its arrival, in place of what is there.
-  void take(std::vector<Arrival>& arrivals);
+  /// @return connections of which messages were dropped since the last call
+  std::vector<Dropped> take(std::vector<Arrival>& arrivals);
   /// Number of messages that were dropped since the start.
   std::uint64_t dropped() const { return waiting_.lock()->dropped; }
 
  private:
   struct Waiting {
     std::vector<Arrival> arrivals;
-    std::map<std::string, std::size_t> topics;  // numbers by name
-    std::vector<std::uint32_t> of_topic;        // how many arrivals, by the topic's number
+    // How many arrivals, by the connection's header, which the arrivals keep alive.
+    std::unordered_map<const ros::M_string*, std::uint32_t> of_connection;
+    std::size_t content = 0;  // bytes
+    std::vector<Dropped> dropped_of;
     std::uint64_t dropped = 0;
     std::int64_t interval = core::kDefaultWindow;
     std::int64_t last_interval = 0;  // start of the last arrival's
   };
+
+  static void drop(Waiting& waiting, const Arrival& arrival);
 
   const std::uint32_t queue_size_;
   const std::function<void()> wake_;

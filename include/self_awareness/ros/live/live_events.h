@@ -8,15 +8,23 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <unordered_map>
 #include <vector>
 
 #include "self_awareness/core/stream/event.h"
 #include "self_awareness/ros/encoding.h"
 #include "self_awareness/ros/live/arrivals.h"
+#include "self_awareness/ros/live/named_once.h"
 #include "self_awareness/ros/live/own_output.h"
 
 namespace self_awareness::ros1 {
+
+/// A node that publishes on a topic.
+struct Publication {
+  std::string node;  ///< full name, with the number of an anonymous one
+  std::string topic;
+};
 
 /// Turns messages of any type into events, stamped with the time of their receipt.
 ///
@@ -32,10 +40,13 @@ class LiveEvents {
     /// Called by the callback queue when deliver() should not wait any longer: by the first
     /// message after the end of a window, or where a topic's queue fills.
     std::function<void()> on_arrivals;
+    /// Messages of this publisher were dropped since the last deliver(), unless the rules leave it
+    /// out. May be empty.
+    std::function<void(const Publication&)> on_dropped;
   };
 
   /// @param node_handle whose callback queue is used
-  /// @param queue_size messages a topic may have waiting; what comes then is dropped
+  /// @param queue_size messages a connection may have waiting; what comes then is dropped
   LiveEvents(const ros::NodeHandle& node_handle, std::uint32_t queue_size, Handlers handlers);
   /// Nothing may arrive any more.
   ~LiveEvents();
@@ -51,6 +62,8 @@ class LiveEvents {
   /// @param window length [ns]
   void setEncoder(std::shared_ptr<const Encoder> encoder, OwnOutput own_output,
                   std::int64_t window);
+  /// Takes in who publishes what now: the other nodes of this package are left out.
+  void setGraph(const Graph& graph);
   /// Turns what has arrived into events. Messages wait for this call.
   void deliver();
   /// Forgets connections that are closed.
@@ -69,13 +82,15 @@ class LiveEvents {
     std::optional<ConnectionEncoder> encoder;  // none: left out by the rules
   };
 
+  /// Chooses anew what is left out, of connections that were heard.
+  void encodeAgain();
   void onArrival(const Arrival& arrival);
   /// @throw std::out_of_range if the message is shorter than its definition says
   core::EventId read(const topic_tools::ShapeShifter& content, ConnectionEncoder& encoder);
   LiveConnection& connectionOf(const Arrival& arrival);
   /// The content of the topic's messages is wanted if any of its connections needs it.
   void chooseContent(Arrival::Topic& topic) const;
-  std::optional<ConnectionEncoder> connect(const Connection& connection) const;
+  std::optional<ConnectionEncoder> connect(const Connection& connection);
   std::uint64_t wakeId() const { return reinterpret_cast<std::uintptr_t>(this); }
 
   ros::NodeHandle node_handle_;
@@ -88,6 +103,7 @@ class LiveEvents {
   std::unordered_map<const ros::M_string*, LiveConnection> connections_;
   std::vector<Arrival> delivered_;     // kept for its memory
   std::vector<std::uint8_t> content_;  // kept for its memory
+  NamedOnce complained_of_;            // connections
   std::uint64_t unread_ = 0;           // messages that would have had to be read
 };
 

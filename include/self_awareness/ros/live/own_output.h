@@ -4,27 +4,35 @@
 #include <string>
 #include <utility>
 
+#include "self_awareness/ros/graph.h"
+#include "self_awareness/ros/siblings.h"
+
 namespace self_awareness::ros1 {
 
-/// What the monitor's own process publishes, which is no communication of the robot. In a manager
-/// that it shares with nodelets of the robot, the monitor has their node name: only what the model
-/// does not know from that process is its own.
+/// What the monitor's own process publishes, and the other nodes of this package (Siblings): that
+/// is no communication of the robot. In a manager that it shares with nodelets of the robot, the
+/// monitor has their node name: only what the model does not know from that process is its own.
 class OwnOutput {
  public:
+  /// Topics that the model knows, by source.
+  using Known = std::set<std::pair<std::string, std::string>>;
+
   OwnOutput() = default;  ///< nothing
   /// @param node full name of the monitor's process
-  /// @param model_topics where the model knows events of that process
-  OwnOutput(std::string node, std::set<std::string> model_topics)
-      : node_(std::move(node)), model_topics_(std::move(model_topics)) {}
+  /// @param known what is communication of the robot
+  OwnOutput(std::string node, Known known) : node_(std::move(node)), known_(std::move(known)) {}
 
-  bool covers(const std::string& node, const std::string& topic) const {
-    return node == node_ &&
-           (topic == "/rosout" || topic == "/diagnostics" || model_topics_.count(topic) == 0);
-  }
+  /// Takes in who publishes what now. To be called where the encoding tells sources apart, as a
+  /// replay has one name for all.
+  /// @return whether this changes what is covered
+  bool setGraph(const Graph& graph);
+
+  bool covers(const std::string& node, const std::string& topic) const;
 
  private:
   std::string node_;
-  std::set<std::string> model_topics_;
+  Known known_;
+  Siblings siblings_;
 };
 
 }  // namespace self_awareness::ros1

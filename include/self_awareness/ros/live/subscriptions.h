@@ -9,6 +9,7 @@
 
 #include "self_awareness/ros/graph.h"
 #include "self_awareness/ros/live/arrivals.h"
+#include "self_awareness/ros/live/named_once.h"
 
 namespace self_awareness::ros1 {
 
@@ -35,9 +36,9 @@ class Subscriptions {
   /// nowhere else. Does not ask the master.
   void adaptReading();
 
-  /// Lets the next setTopics() subscribe again where the master knows a publisher: after a restart
-  /// of the master, roscpp does not hear of those that registered before it did.
-  void renew(const Graph& graph);
+  /// Lets the next setTopics() subscribe to these topics again: roscpp connects to their
+  /// publishers anew. Does ask the master.
+  void renew(const std::set<std::string>& topics);
 
  private:
   struct Subscription {
@@ -48,6 +49,7 @@ class Subscriptions {
   ros::NodeHandle node_handle_;
   Arrivals& arrivals_;
   std::map<std::string, Subscription> subscriptions_;
+  NamedOnce changed_;  // topics whose type did
 };
 
 }  // namespace self_awareness::ros1

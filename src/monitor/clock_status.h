@@ -1,0 +1,19 @@
+#pragma once
+
+#include <diagnostic_updater/DiagnosticStatusWrapper.h>
+
+#include <cstdint>
+
+namespace self_awareness {
+
+/// Whether simulated time has stood still for so long [ns of steady time] that what was said last
+/// may be over.
+bool clockStands(std::int64_t stands_still_for);
+
+/// Adds that simulated time stands still, or has not begun: a warning, and an error from 10 s on,
+/// since nothing is judged or recorded meanwhile.
+/// @param ros_now ROS time [ns]
+void tellClock(std::int64_t stands_still_for, std::int64_t ros_now,
+               diagnostic_updater::DiagnosticStatusWrapper& status);
+
+}  // namespace self_awareness

@@ -1,0 +1,420 @@
+#!/usr/bin/python3
+"""The monitor among nodes that die, hang, flood, lie, make up names: it goes on, and says so."""
+
+import argparse
+import glob
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from contextlib import ExitStack
+from typing import Iterator, List, Optional, Set
+from xmlrpc.client import ServerProxy
+
+import rosgraph
+import rospy
+import rostest
+from diagnostic_msgs.msg import DiagnosticStatus
+from nodelet.srv import NodeletList, NodeletLoad, NodeletUnload
+from std_msgs.msg import Empty, String
+
+from live_system import (MonitorListener, Process, again_if_clock_was_set, await_condition,
+                         operation, pid_of, write_bag)
+from monitor_case import MonitorCase, Talker, publishers
+from self_awareness.msg import SelfAwareness
+
+MEGABYTE = 10**6
+OVERLOADED = 'overloaded: '
+
+
+def driver() -> Process:
+    """The node that dies; its periods vary as those of operation()."""
+    return talker('driver', '/scan', 12.5)
+
+
+def talker(name: str, topic: str, rate: float) -> Process:
+    return Process('rosrun', 'self_awareness', 'talker.py', '__name:=' + name, '_output:=' + topic,
+                   '_rate:={}'.format(rate), '_variation:=0.3')
+
+
+def storm(**parameters: float) -> Process:
+    """storm.cpp: it publishes much, on /storm0 and so on."""
+    return Process('rosrun', 'self_awareness', 'storm', '__name:=storm',
+                   *['_{}:={}'.format(key, value) for key, value in parameters.items()])
+
+
+def resident_bytes(pid: int) -> int:
+    with open('/proc/{}/statm'.format(pid)) as statm:
+        return int(statm.read().split()[1]) * os.sysconf('SC_PAGESIZE')
+
+
+class OtherString(String):
+    """A type of the same name as std_msgs/String, with another md5 sum and definition."""
+
+    _md5sum = '0123456789abcdef0123456789abcdef'
+    _full_text = 'string data\nstring more\n'
+
+
+class MadeUpPublishers:
+    """Topics and nodes that only the master knows: it takes any name, and any address."""
+
+    def __init__(self, names: List[str], uri: str = 'http://127.0.0.1:9') -> None:
+        self._names = names
+        self._uri = uri
+
+    def __enter__(self) -> 'MadeUpPublishers':
+        self._call('registerPublisher', 'std_msgs/String', self._uri)
+        return self
+
+    def __exit__(self, *_) -> None:
+        self._call('unregisterPublisher', self._uri)
+
+    def _call(self, method: str, *arguments: str) -> None:
+        master = ServerProxy(rosgraph.get_master_uri())
+        for number, name in enumerate(self._names):
+            getattr(master, method)('/made_up_{}'.format(number), name, *arguments)
+
+
+class ChaosTest(MonitorCase):
+    unloads = 0
+    types = 0
+    trained = ''
+
+    @classmethod
+    def setUpClass(cls) -> None:
+        """Trains a model with limits, of the driver and of two nodes that run all the time.
+
+        One of them publishes on the driver's topic.
+        """
+        folder = tempfile.mkdtemp()
+        cls.addClassCleanup(shutil.rmtree, folder)
+        cls.trained = os.path.join(folder, 'trained')
+        nodes = [('/driver', '/scan', 0.08), ('/base', '/odom', 0.1), ('/second', '/scan', 0.1)]
+        bags = [write_bag(os.path.join(folder, '{}.bag'.format(seed)), operation(nodes, 120, seed))
+                for seed in (1, 2)]
+        subprocess.run(['rosrun', 'self_awareness', 'train', *bags, '-o', cls.trained],
+                       check=True, stdout=subprocess.DEVNULL)
+        for name, topic in (('base', '/odom'), ('second', '/scan')):
+            cls.addClassCleanup(talker(name, topic, 10).stop)
+
+    def judging_monitor(self, **parameters) -> Process:
+        """A monitor by the default detector, which says what it never saw in training."""
+        return self.monitor(self.trained, **dict(
+            {'detector': 'evidence', 'unknown': 'warn', 'settle_time': 1.0, 'subscribe': 'all'},
+            **parameters))
+
+    def await_heard(self, listener: MonitorListener) -> None:
+        """Waits until the nodes are heard, and judged."""
+        for node in ('/driver', '/base', '/second'):
+            await_condition(node + ' is heard', lambda: (
+                float(listener.value(node, 'events a second') or 0) > 5), 30)
+        listener.await_settled()
+
+    def next_statuses(self, listener: MonitorListener, number: int) -> List[SelfAwareness]:
+        seen = len(listener.statuses)
+        await_condition('{} statuses'.format(number),
+                        lambda: len(listener.statuses) >= seen + number, 40)
+        return listener.statuses[seen:]
+
+    def await_said(self, listener: MonitorListener, task: str, part: str, level: int,
+                   timeout: float = 30) -> DiagnosticStatus:
+        return await_condition('{} at level {}'.format(part, level), lambda: next(
+            (s for s in listener.diagnostics(task) if part in s.message and s.level == level),
+            None), timeout)
+
+    def check_no_alarm(self, listener: MonitorListener) -> None:
+        self.assertEqual([alarm.message for alarm in listener.alarms
+                          if alarm.level == SelfAwareness.ERROR], [])
+
+    def check_alarm_names(self, listener: MonitorListener, victim: Process,
+                          number: int = signal.SIGKILL) -> None:
+        """The monitor still finds what is wrong: the driver is killed."""
+        victim.send(number)
+        alarm = listener.await_alarm(30)
+        self.assertEqual((alarm.suspects[0].source, alarm.suspects[0].scope),
+                         ('/driver', '/scan'))
+
+    # Names
+
+    @again_if_clock_was_set
+    def test_names_that_nobody_can_subscribe_to_are_named_once_and_left_out(self) -> None:
+        longest = '/' + 999 * 'a'
+        illegal = ['/foo-bar', '/\xfc', longest + 'a', '/' + 30000 * 'b']
+        # The master refuses these. A bag may have them.
+        trained = ['/scan-front', '/a:b', '~x', '/with_blank ']
+        model = self.model(topics=('/a', *trained))
+        with Talker('/a'), Talker(longest), MadeUpPublishers(illegal), \
+                self.monitor(model, subscribe='all') as monitor, MonitorListener() as listener:
+            listener.await_settled()
+            await_condition('all are heard', lambda: (
+                listener.value('monitor', 'publishers heard') == '4'), 20)
+            seen = len(listener.heartbeats)
+            await_condition('more polls', lambda: len(listener.heartbeats) > seen + 2, 20)
+            self.assertTrue(monitor.running())
+            self.check_no_alarm(listener)
+            monitor.stop()  # what it logs comes when the buffer is emptied
+            left_out = re.findall(r"the topic '(.*)': its name is illegal; it is left out",
+                                  monitor.output)
+            self.assertEqual(sorted(left_out), sorted(
+                name[:100] for name in illegal + trained))
+
+    @again_if_clock_was_set
+    def test_nodes_of_this_package_are_known_whatever_their_names(self) -> None:
+        with driver(), self.judging_monitor(), MonitorListener() as listener:
+            self.await_heard(listener)
+            with self.judging_monitor(name='another'), \
+                    Process('rosrun', 'self_awareness', 'record_events', '__name:=third',
+                            '_subscribe:=all', '_min_space:=0',
+                            '_output:=' + self.path('log')), \
+                    MonitorListener('/another') as another:
+                self.await_heard(another)
+                await_condition('the recorder has begun', lambda: publishers('/third/start'), 20)
+                self.next_statuses(listener, 30)
+                unknown = [each.message for each in listener.statuses + another.statuses
+                           if each.unknown_events and not each.settling]
+            self.assertEqual(unknown, [])
+            self.check_no_alarm(listener)
+
+    @again_if_clock_was_set
+    def test_new_names_without_end_silence_nothing(self) -> None:
+        topics = ['/come_and_go_{}'.format(number) for number in range(200)]
+        stop = threading.Event()
+
+        def come_and_go() -> None:
+            for number in range(1000):
+                if stop.is_set():
+                    return
+                with Process('rosrun', 'self_awareness', 'storm', '_seconds:=0.5',
+                             '__name:=newcomer_{}x'.format(number)), \
+                        MadeUpPublishers(topics):
+                    stop.wait(0.7)
+
+        with driver() as victim, self.judging_monitor(), MonitorListener() as listener:
+            self.await_heard(listener)
+            attack = threading.Thread(target=come_and_go)
+            attack.start()
+            self.addCleanup(attack.join)
+            self.addCleanup(stop.set)
+            await_condition('they are there', lambda: publishers(topics[-1]), 20)
+            seen = len(listener.heartbeats)
+            await_condition('some time', lambda: len(listener.heartbeats) > seen + 2, 20)
+            self.check_alarm_names(listener, victim)
+
+    # Nodes
+
+    @again_if_clock_was_set
+    def test_a_node_that_is_stopped_killed_and_respawned(self) -> None:
+        with driver() as victim, self.judging_monitor(), MonitorListener() as listener:
+            self.await_heard(listener)
+            self.check_alarm_names(listener, victim, signal.SIGSTOP)
+            victim.send(signal.SIGCONT)
+            self.await_level(listener, SelfAwareness.OK)
+            self.check_alarm_names(listener, victim)
+            with driver():
+                self.await_level(listener, SelfAwareness.OK)
+
+    def await_level(self, listener: MonitorListener, level: int) -> None:
+        await_condition('level {}'.format(level),
+                        lambda: listener.statuses[-1].level == level, 30)
+
+    @again_if_clock_was_set
+    def test_a_type_of_the_same_name_with_another_md5_sum(self) -> None:
+        with self.monitor(self.model()), MonitorListener() as listener:
+            with Talker('/a'):
+                listener.await_settled()
+            with Talker('/a', OtherString):
+                await_condition('its messages are heard, and are those of the model', lambda: (
+                    all(s.events > 0 and s.level == SelfAwareness.OK and not s.unknown_events
+                        for s in listener.statuses[-15:])
+                    and '/a' not in listener.diagnostics('communication')[-1].message), 30)
+
+    # Messages
+
+    @again_if_clock_was_set
+    def test_messages_of_no_bytes_and_of_64_megabytes(self) -> None:
+        large = rospy.Publisher('/large', String, queue_size=1)
+        self.addCleanup(large.unregister)
+        with Talker('/a'), Talker('/empty', Empty), \
+                self.monitor(self.model(type_fields={'std_msgs/String': 'data'}, threshold=-1.0),
+                             subscribe='all'), MonitorListener() as listener:
+            listener.await_settled()
+            await_condition('the monitor listens', large.get_num_connections, 20)
+            pid = pid_of('/self_awareness')
+            before = resident_bytes(pid)
+            for _ in range(4):
+                large.publish('x' * 64 * MEGABYTE)
+            await_condition('all are heard', lambda: (
+                listener.value('monitor', 'publishers heard') == '5'), 40)
+            self.next_statuses(listener, 10)
+            self.assertLess(resident_bytes(pid), before + 150 * MEGABYTE)
+            self.check_no_alarm(listener)
+
+    @again_if_clock_was_set
+    def test_twenty_thousand_messages_a_second(self) -> None:
+        with driver() as victim, self.judging_monitor(unknown='ignore') as monitor, \
+                MonitorListener() as listener:
+            self.await_heard(listener)
+            with storm(rate=20000, topics=20):
+                await_condition('they are heard', lambda: (
+                    float(listener.value('monitor', 'events a second') or 0) > 18000), 40)
+                self.next_statuses(listener, 30)
+                self.check_no_alarm(listener)
+                self.check_alarm_names(listener, victim)
+            self.assertTrue(monitor.running())
+            self.assertLess(max(later - earlier for earlier, later in zip(
+                listener.heartbeats, listener.heartbeats[1:])), 3)
+
+    @again_if_clock_was_set
+    def test_a_queue_that_overflows_is_said_and_is_no_fault_of_others(self) -> None:
+        with driver() as victim, self.judging_monitor(queue_size=5), \
+                MonitorListener() as listener:
+            self.await_heard(listener)
+            with storm(rate=5000):
+                self.await_said(listener, 'monitor', OVERLOADED, DiagnosticStatus.WARN)
+                self.next_statuses(listener, 20)
+                self.check_no_alarm(listener)
+                self.check_alarm_names(listener, victim)
+            self.assertGreater(int(listener.value('monitor', 'dropped messages') or 0), 0)
+
+    @again_if_clock_was_set
+    def test_a_monitor_that_stood_still_raises_no_false_alarm(self) -> None:
+        with driver() as victim, self.judging_monitor() as monitor, \
+                MonitorListener() as listener:
+            self.await_heard(listener)
+            monitor.send(signal.SIGSTOP)
+            seen = len(listener.statuses)
+            time.sleep(2)  # the fault: there is nothing to wait for
+            monitor.send(signal.SIGCONT)
+            self.await_said(listener, 'monitor', OVERLOADED + 'this program stood still',
+                            DiagnosticStatus.WARN)
+            listener.await_settled()
+            self.next_statuses(listener, 10)
+            self.assertTrue(any(s.settling for s in listener.statuses[seen:]))
+            self.check_no_alarm(listener)
+            self.check_alarm_names(listener, victim)
+
+    @again_if_clock_was_set
+    def test_the_system_clock_is_set(self) -> None:
+        step = self.path('step')
+        with driver() as victim, ExitStack() as monitor, MonitorListener() as listener:
+            library, = glob.glob('/usr/lib/*/faketime/libfaketimeMT.so.1')
+            for name, value in (('LD_PRELOAD', library), ('FAKETIME_TIMESTAMP_FILE', step),
+                                ('FAKETIME_DONT_FAKE_MONOTONIC', '1'), ('FAKETIME_NO_CACHE', '1')):
+                os.environ[name] = value
+                monitor.callback(os.environ.pop, name)
+            self.write(step, '+0')
+            monitor.enter_context(self.judging_monitor())
+            self.await_heard(listener)
+            for hours in ('+1', '-1'):
+                seen = len(listener.statuses)
+                self.write(step, hours + 'h')
+                await_condition('it is noticed', lambda: any(
+                    s.settling for s in listener.statuses[seen:]), 20)
+                listener.await_settled()
+                self.next_statuses(listener, 10)
+                ahead = listener.statuses[-1].header.stamp.to_sec() - time.time()
+                self.assertAlmostEqual(ahead, int(hours) * 3600, delta=60)
+                self.check_no_alarm(listener)
+            self.assertEqual(listener.value('monitor', 'times the clock was set'), '2')
+            self.check_alarm_names(listener, victim)
+
+    def write(self, path: str, text: str) -> None:
+        with open(path + '.new', 'w') as file:
+            file.write(text)
+        os.rename(path + '.new', path)
+
+    @again_if_clock_was_set
+    def test_event_types_without_end_take_no_memory(self) -> None:
+        model = self.model(type_fields={'std_msgs/String': 'data'}, threshold=-1.0)
+        with Talker('/a'), self.monitor(model, subscribe='all') as monitor, \
+                MonitorListener() as listener:
+            listener.await_settled()
+            pid = pid_of('/self_awareness')
+            with storm(rate=1000, values=10**9):
+                said = self.await_said(
+                    listener, 'monitor', 'more than 1000 event types', DiagnosticStatus.WARN)
+                self.assertIn('not told apart', said.message)
+                before = resident_bytes(pid)
+                await_condition('many types', lambda: self.events(listener) > self.types,
+                                60 + self.types / 500)
+                self.assertLess(resident_bytes(pid), before + 8 * MEGABYTE)
+            self.assertLess(int(listener.value(
+                'monitor', 'event types that the model does not know') or 0), 1010)
+            self.check_no_alarm(listener)
+            monitor.stop()
+            self.assertLess(len(monitor.output), 20000, 'the log is not filled')
+
+    def events(self, listener: MonitorListener) -> int:
+        return sum(status.events for status in listener.statuses)
+
+    # The nodelet
+
+    @again_if_clock_was_set
+    def test_the_nodelet_is_unloaded_and_loaded_again(self) -> None:
+        """In a manager that lives on; every second time while an alarm stands."""
+        rospy.set_param('/watch', {'model': self.model(), 'detector': 'paper',
+                                   'settle_time': 0.1, 'poll_interval': 0.1, 'hold_time': 600.0,
+                                   'recorder': {'directory': self.path('recorder')}})
+        self.addCleanup(rospy.delete_param, '/watch')
+        sizes = []  # type: List[int]
+        with Process('rosrun', 'nodelet', 'nodelet', 'manager', '__name:=manager') as manager, \
+                MonitorListener('/watch') as listener:
+            await_condition('the manager serves', lambda: self.loaded() is not None, 30)
+            for number in range(self.unloads + 1):
+                talking = ExitStack()
+                talking.enter_context(Talker('/a'))
+                seen = len(listener.statuses)
+                self.load()
+                await_condition('load {} is settled'.format(number), lambda: any(
+                    not s.settling and s.events for s in listener.statuses[seen:]), 40)
+                if number % 2 == 0:
+                    talking.close()
+                    listener.await_alarm()
+                self.unload()
+                talking.close()
+                await_condition('nothing is left', lambda: not self.left(), 20)
+                self.assertTrue(manager.running())
+                sizes.append(resident_bytes(pid_of('/manager')))
+        half = len(sizes) // 2
+        growth = (sizes[-1] - sizes[half]) / max(len(sizes) - 1 - half, 1)
+        self.assertLess(growth, 0.3 * MEGABYTE, sizes)
+
+    def loaded(self) -> Optional[List[str]]:
+        try:
+            return list(rospy.ServiceProxy('/manager/list', NodeletList)().nodelets)
+        except rospy.ServiceException:
+            return None
+
+    def load(self) -> None:
+        self.assertTrue(rospy.ServiceProxy('/manager/load_nodelet', NodeletLoad)(
+            '/watch', 'self_awareness/SelfAwareness', [], [], [], '').success)
+
+    def unload(self) -> None:
+        self.assertTrue(rospy.ServiceProxy('/manager/unload_nodelet', NodeletUnload)(
+            '/watch').success)
+
+    def left(self) -> Set[str]:
+        """What the monitor has left at the master."""
+        state = rosgraph.Master(rospy.get_name()).getSystemState()
+        return set(self.names_of_manager(state))
+
+    def names_of_manager(self, state: list) -> Iterator[str]:
+        for kind in state:
+            for name, nodes in kind:
+                if '/manager' in nodes and (name.startswith('/watch') or name in ('/a',)):
+                    yield name
+
+
+if __name__ == '__main__':
+    rospy.init_node('chaos')  # as rostest calls it, too
+    parser = argparse.ArgumentParser()
+    parser.add_argument('--unloads', type=int, required=True, help='of the nodelet')
+    parser.add_argument('--types', type=int, required=True, help='that training never saw')
+    numbers = parser.parse_known_args(rospy.myargv()[1:])[0]
+    ChaosTest.unloads, ChaosTest.types = numbers.unloads, numbers.types
+    rostest.rosrun('self_awareness', 'chaos', ChaosTest, sys.argv)
