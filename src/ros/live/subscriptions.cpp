@@ -3,6 +3,7 @@
 #include <ros/console.h>
 
 #include "../text.h"
+#include "self_awareness/ros/encoding.h"
 #include "topic_subscription.h"
 
 namespace self_awareness::ros1 {
