@@ -1,13 +1,13 @@
 #pragma once
 
-#include <diagnostic_updater/diagnostic_updater.h>
+#include <diagnostic_updater/DiagnosticStatusWrapper.h>
 #include <ros/node_handle.h>
+#include <ros/publisher.h>
 
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "flight_recorder.h"
 #include "ros/verdict/diagnostic_status.h"
@@ -34,24 +34,22 @@ class Diagnostics {
  public:
   /// @param name of the monitor, which the statuses' names begin with
   /// @param component_statuses whether every component has a status of its own
-  Diagnostics(const ros::NodeHandle& node_handle, const ros::NodeHandle& private_node_handle,
-              const std::string& name, const std::string& hardware_id, bool component_statuses);
+  Diagnostics(ros::NodeHandle node_handle, const std::string& name, const std::string& hardware_id,
+              bool component_statuses);
 
   /// Publishes the state now.
-  void publish(const MonitorState& state);
+  void publish(const MonitorState& state) const;
 
  private:
   using Status = diagnostic_updater::DiagnosticStatusWrapper;
 
-  void updateComponents();
-  void communication(Status& status) const;
-  void monitor(Status& status) const;
-  static void recorder(const FlightRecorder::Report& report, Status& status);
+  static void tellMonitor(const MonitorState& state, Status& status);
+  static void tellRecorder(const FlightRecorder::Report& report, Status& status);
 
+  std::string name_;
+  std::string hardware_id_;
   bool component_statuses_;
-  MonitorState state_;
-  std::vector<std::string> components_;  // that have a status
-  diagnostic_updater::Updater updater_;
+  ros::Publisher publisher_;
 };
 
 }  // namespace self_awareness

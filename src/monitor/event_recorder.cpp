@@ -14,6 +14,7 @@
 #include "encoding_parameters.h"
 #include "now.h"
 #include "parameter_reader.h"
+#include "ros/verdict/diagnostic_status.h"
 #include "self_awareness/ros/bag/bag_reader.h"
 #include "self_awareness/ros/output_file.h"
 
@@ -62,14 +63,12 @@ EventRecorder::EventRecorder(const ros::NodeHandle& node_handle,
       private_node_handle_(private_node_handle),
       end_(std::move(end)),
       parameters_(Parameters::load(private_node_handle)),
-      diagnostics_(node_handle, private_node_handle, ros::this_node::getName()),
       tells_sources_(parameters_.encoding.source == ros1::EncodingRules::Source::kCallerId),
       robot_start_(std::llround(parameters_.robot_start * 1e9)),
       spinner_(1, &queue_) {
   node_handle_.setCallbackQueue(&queue_);
   private_node_handle_.setCallbackQueue(&queue_);
-  diagnostics_.setHardwareID("none");
-  diagnostics_.add("recording", [this](auto& status) { diagnose(status); });
+  diagnostics_ = node_handle_.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 1);
   start_publisher_ =
       private_node_handle_.advertise<self_awareness::EventLogStart>("start", 1, true);
   finish_ = private_node_handle_.advertiseService("finish", &EventRecorder::onFinish, this);
@@ -126,7 +125,7 @@ void EventRecorder::onTick(const ros::SteadyTimerEvent& /*tick*/) {
   if (core::toSeconds(steadyNow() - diagnosed_) >= parameters_.diagnostic_period) {
     diagnosed_ = steadyNow();
     live_events_->forgetClosedConnections();
-    diagnostics_.force_update();
+    publishDiagnostics();
   }
 }
 
@@ -253,8 +252,9 @@ bool EventRecorder::onFinish(std_srvs::Trigger::Request& /*request*/,
   return true;
 }
 
-void EventRecorder::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) const {
+void EventRecorder::publishDiagnostics() const {
   using diagnostic_msgs::DiagnosticStatus;
+  diagnostic_updater::DiagnosticStatusWrapper status;
   if (problem_.empty()) {
     status.summary(DiagnosticStatus::OK, "recording");
   } else {
@@ -273,6 +273,9 @@ void EventRecorder::diagnose(diagnostic_updater::DiagnosticStatusWrapper& status
              static_cast<double>(bytes_ + (file_ ? file_->log.size() : 0)) / kMegabyte);
   status.add("dropped messages", live_events_->dropped());
   status.add("event types", vocabulary_.size());
+  ros1::DiagnosticStatuses statuses(ros::this_node::getName(), ros1::kNoHardware, rosNow());
+  statuses.add("recording", status);
+  diagnostics_.publish(statuses.message());
 }
 
 }  // namespace self_awareness

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <diagnostic_updater/diagnostic_updater.h>
 #include <ros/callback_queue.h>
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
@@ -92,7 +91,7 @@ class EventRecorder : public NodeProgram {
   void onEvent(const core::Event& event);
   void onTick(const ros::SteadyTimerEvent& tick);
   bool onFinish(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
-  void diagnose(diagnostic_updater::DiagnosticStatusWrapper& status) const;
+  void publishDiagnostics() const;
 
   /// Begins a recording in a file of its own, if there is space.
   void begin(std::int64_t now);
@@ -113,7 +112,7 @@ class EventRecorder : public NodeProgram {
   const std::function<void()> end_;
   Parameters parameters_;
   core::Vocabulary vocabulary_;
-  diagnostic_updater::Updater diagnostics_;
+  ros::Publisher diagnostics_;
   ros::Publisher start_publisher_;
   ros::ServiceServer finish_;
   ros::SteadyTimer timer_;

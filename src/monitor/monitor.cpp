@@ -37,8 +37,7 @@ Monitor::Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& priv
     : node_handle_(node_handle),
       private_node_handle_(private_node_handle),
       parameters_(MonitorParameters::load(private_node_handle)),
-      diagnostics_(node_handle, private_node_handle, name, parameters_.hardware_id,
-                   parameters_.source_diagnostics),
+      diagnostics_(node_handle, name, parameters_.hardware_id, parameters_.source_diagnostics),
       announcer_({[this](const self_awareness::SelfAwareness& status) {
                     status_publisher_.publish(status);
                   },

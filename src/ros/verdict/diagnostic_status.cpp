@@ -25,6 +25,18 @@ void CommunicationState::take(const AlarmState& alarm, const HeardReport& report
   heard = report;
 }
 
+DiagnosticStatuses::DiagnosticStatuses(const std::string& node, const std::string& hardware_id,
+                                       std::int64_t now)
+    : prefix_(node.substr(node.find_first_not_of('/')) + ": "), hardware_id_(hardware_id) {
+  message_.header.stamp = toRosTime(now);
+}
+
+void DiagnosticStatuses::add(const std::string& name, const DiagnosticStatusWrapper& status) {
+  DiagnosticStatus& added = message_.status.emplace_back(status);
+  added.name = prefix_ + name;
+  added.hardware_id = hardware_id_;
+}
+
 std::string number(double value) {
   if (std::isnan(value)) {
     return "none";
@@ -90,22 +102,16 @@ void tellComponent(const CommunicationState& state, const std::string& name,
 
 diagnostic_msgs::DiagnosticArray toDiagnostics(const CommunicationState& state,
                                                const std::string& node, std::int64_t now) {
-  diagnostic_msgs::DiagnosticArray array;
-  array.header.stamp = toRosTime(now);
-  const auto add = [&](const std::string& name, const DiagnosticStatusWrapper& told) {
-    DiagnosticStatus& status = array.status.emplace_back(told);
-    status.name = node + ": " + name;
-    status.hardware_id = kNoHardware;
-  };
+  DiagnosticStatuses statuses(node, kNoHardware, now);
   DiagnosticStatusWrapper whole;
   tellCommunication(state, whole);
-  add("communication", whole);
+  statuses.add("communication", whole);
   for (const auto& [name, component] : state.heard.components) {
     DiagnosticStatusWrapper status;
     tellComponent(state, name, status);
-    add(name, status);
+    statuses.add(name, status);
   }
-  return array;
+  return statuses.message();
 }
 
 }  // namespace self_awareness::ros1

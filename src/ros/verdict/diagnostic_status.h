@@ -32,6 +32,26 @@ struct CommunicationState {
 /// The hardware id where none is set: diagnostics want one.
 constexpr char kNoHardware[] = "none";
 
+/// What one node publishes on /diagnostics at a time. diagnostic_updater::Updater does more: it
+/// asks the master for its period when it publishes, and throws when that, or ROS time, is at its
+/// end.
+class DiagnosticStatuses {
+ public:
+  /// @param node its name, which the names of the statuses begin with
+  /// @param now ROS time [ns]
+  DiagnosticStatuses(const std::string& node, const std::string& hardware_id, std::int64_t now);
+
+  /// @param status its name and hardware id are filled in
+  void add(const std::string& name, const diagnostic_updater::DiagnosticStatusWrapper& status);
+
+  const diagnostic_msgs::DiagnosticArray& message() const { return message_; }
+
+ private:
+  std::string prefix_;
+  std::string hardware_id_;
+  diagnostic_msgs::DiagnosticArray message_;
+};
+
 /// A number as the diagnostics show it; "none" for NaN.
 std::string number(double value);
 /// Fills in the level, message and values of the status of the whole.
@@ -42,7 +62,7 @@ void tellCommunication(const CommunicationState& state,
 void tellComponent(const CommunicationState& state, const std::string& name,
                    diagnostic_updater::DiagnosticStatusWrapper& status);
 /// The statuses of the whole and of every component, as a node publishes them on /diagnostics.
-/// @param node its name, without the leading slash, which the names of the statuses begin with
+/// @param node its name, which the names of the statuses begin with
 /// @param now ROS time [ns]
 diagnostic_msgs::DiagnosticArray toDiagnostics(const CommunicationState& state,
                                                const std::string& node, std::int64_t now);
