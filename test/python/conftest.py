@@ -6,7 +6,7 @@ import os
 import random
 import time
 from pathlib import Path
-from typing import Any, Callable, Iterable, Optional, Tuple
+from typing import Any, Callable, Iterable, List, Optional, Tuple
 
 import pytest
 import rosbag
@@ -17,6 +17,11 @@ from self_awareness import LimitFindings, TrainedModel
 
 Message = Tuple[float, str, str]
 """Stamp [s], source, topic."""
+
+
+def pytest_collection_modifyitems(items: List[pytest.Item]) -> None:
+    """Start with what mostly waits: other processes run the rest meanwhile."""
+    items.sort(key=lambda item: 'test_tutorial' not in item.nodeid)
 
 
 @pytest.fixture(scope='session')

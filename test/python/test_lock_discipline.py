@@ -56,6 +56,7 @@ def _sources() -> list:
 
 
 def test_there_is_no_other_lock() -> None:
-    locks = re.compile(r'#include <(mutex|shared_mutex)>|boost::\w*mutex|pthread_')
+    locks = re.compile(r'#include <(mutex|shared_mutex)>|boost::\w*mutex'
+                       r'|pthread_(mutex|rwlock|spin)')
     assert [str(path) for path in _sources()
             if locks.search(path.read_text())] == [str(GUARDED)]

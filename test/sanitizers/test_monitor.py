@@ -170,7 +170,7 @@ def call(service: str) -> str:
 @pytest.mark.skipif(TOOL != 'valgrind', reason='the others stand a load')
 def test_start_and_stop(programs: Programs, model: Path, tmp_path: Path) -> None:
     with programs.start('self_awareness_node', '__name:=node', model=model,
-                        **{'recorder/directory': tmp_path / 'recorder'}) as node, \
+                        **{'recorder/directory': str(tmp_path / 'recorder')}) as node, \
             MonitorListener('/node') as listener:
         listener.await_settled(SLOWLY_S)
         assert Path(call('/node/dump').split()[-1]).is_absolute()
@@ -183,7 +183,7 @@ def test_load_and_alarms_and_services(programs: Programs, robot: Dict[str, Proce
     """As a node and as a nodelet at the same time: an alarm, all services, in the alarm, too."""
     manager = programs.start('nodelet', 'manager', '__name:=manager', preload=runtime())
     node = programs.start('self_awareness_node', '__name:=node', model=model,
-                          **{'recorder/directory': tmp_path / 'node'})
+                          **{'recorder/directory': str(tmp_path / 'node')})
     with manager, node, MonitorListener('/node') as of_node, \
             MonitorListener('/nodelet') as of_nodelet:
         for _ in range(TIMES):
