@@ -245,8 +245,10 @@ class MasterTest(unittest.TestCase):
             self.start_component('/talker')
             listener.await_message('diagnostics', task='/talker', message='heard')
             for recorder in ('/recorder_1', '/learner_recorder'):
-                await_condition(recorder + ' records', lambda: (
-                    self.registered(0, recorder + '/start')), 30)
+                await_condition(recorder + ' listens', lambda: (
+                    recorder in self.registered(1, '/from/talker')), 30)
+            seen = time.monotonic()
+            listener.await_message('status', seen, number=10)  # messages for the recorders, too
             master.send(signal.SIGSTOP if hangs else signal.SIGKILL)
             late = self.start_monitor('late')  # waits for the master from the start
             told = time.monotonic()

@@ -1,7 +1,9 @@
 #include "self_awareness/ros/live/lost_publishers.h"
 
+#include <arpa/inet.h>
 #include <fcntl.h>
 #include <netdb.h>
+#include <netinet/in.h>
 #include <poll.h>
 #include <ros/network.h>
 #include <ros/this_node.h>
@@ -13,6 +15,10 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
+#include <cstddef>
+#include <optional>
+#include <system_error>
 
 #include "self_awareness/core/stream/event.h"
 
@@ -49,7 +55,40 @@ Reached connectTo(const addrinfo& address) {
                                  : Reached::kNoAnswer;
 }
 
+std::optional<int> numberAfter(const std::string& words, const std::string& text) {
+  const std::size_t at = text.rfind(words);
+  int number = 0;
+  if (at == std::string::npos ||
+      std::from_chars(text.data() + at + words.size(), text.data() + text.size(), number).ec !=
+          std::errc()) {
+    return std::nullopt;
+  }
+  return number;
+}
+
+int portOf(const sockaddr_storage& address) {
+  return ntohs(address.ss_family == AF_INET6
+                   ? reinterpret_cast<const sockaddr_in6&>(address).sin6_port
+                   : reinterpret_cast<const sockaddr_in&>(address).sin_port);
+}
+
 }  // namespace
+
+bool isConnected(const std::string& description) {
+  const std::optional<int> port = numberAfter("connection on port ", description);
+  const std::optional<int> connection = numberAfter(" on socket ", description);
+  if (!port || !connection) {
+    return true;  // another roscpp describes it otherwise
+  }
+  sockaddr_storage own{};
+  sockaddr_storage other{};
+  socklen_t size = sizeof own;
+  socklen_t other_size = sizeof other;
+  // The number of a socket that was closed may be in use for another one.
+  return getsockname(*connection, reinterpret_cast<sockaddr*>(&own), &size) == 0 &&
+         portOf(own) == *port &&
+         getpeername(*connection, reinterpret_cast<sockaddr*>(&other), &other_size) == 0;
+}
 
 std::vector<Link> linksToPublishers() {
   // roscpp tells them to who asks by its slave API, and nowhere else.
@@ -75,7 +114,7 @@ std::vector<Link> linksToPublishers() {
     XmlRpc::XmlRpcValue& connection = connections[i];
     if (connection.size() > 6 && static_cast<std::string>(connection[2]) == "i" &&
         static_cast<std::string>(connection[3]) == "TCPROS") {
-      links.push_back({connection[1], connection[4], connection[6]});
+      links.push_back({connection[1], connection[4], isConnected(connection[6])});
     }
   }
   return links;
@@ -109,11 +148,12 @@ std::set<std::string> LostPublishers::look(const std::vector<Link>& links, std::
   int unanswered = 0;
   for (auto lost = lost_.begin(); lost != lost_.end();) {
     auto& [uri, attempt] = *lost;
-    if (attempt.topics.empty() && now >= attempt.try_at + kLongestPause) {
+    const bool nothing_to_do = attempt.topics.empty() && attempt.asked.empty();
+    if (nothing_to_do && now >= attempt.try_at + kLongestPause) {
       lost = lost_.erase(lost);
       continue;
     }
-    if (!attempt.topics.empty() && now >= attempt.try_at && unanswered < kMostUnanswered) {
+    if (!nothing_to_do && now >= attempt.try_at && unanswered < kMostUnanswered) {
       unanswered += tryAgain(uri, attempt, now, again) == Reached::kNoAnswer ? 1 : 0;
     }
     ++lost;
@@ -122,21 +162,24 @@ std::set<std::string> LostPublishers::look(const std::vector<Link>& links, std::
 }
 
 void LostPublishers::compare(const std::vector<Link>& links, std::int64_t now) {
-  std::map<Publication, std::string> connections;
+  std::set<Publication> all;
   for (const Link& link : links) {
     const Publication publication(link.uri, link.topic);
-    const auto before = connections_.find(publication);
-    if (before != connections_.end() && before->second != link.connection) {
-      lost_.try_emplace(link.uri, Lost{{}, now, kShortestPause})
+    const auto lost = lost_.find(link.uri);
+    if (link.connected && lost != lost_.end()) {
+      lost->second.topics.erase(link.topic);
+      lost->second.asked.erase(link.topic);
+    } else if (!link.connected && links_.count(publication) > 0) {
+      lost_.try_emplace(link.uri, Lost{{}, {}, now, kShortestPause})
           .first->second.topics.insert(link.topic);
     }
-    connections[publication] = link.connection;
+    all.insert(publication);
   }
-  connections_ = std::move(connections);
+  links_ = std::move(all);
   // A node that is registered at another URI now, or no more, is none of ours to find.
   for (auto& [uri, lost] : lost_) {
     for (auto topic = lost.topics.begin(); topic != lost.topics.end();) {
-      topic = connections_.count({uri, *topic}) == 0 ? lost.topics.erase(topic) : std::next(topic);
+      topic = links_.count({uri, *topic}) == 0 ? lost.topics.erase(topic) : std::next(topic);
     }
   }
 }
@@ -144,14 +187,20 @@ void LostPublishers::compare(const std::vector<Link>& links, std::int64_t now) {
 Reached LostPublishers::tryAgain(const std::string& uri, Lost& lost, std::int64_t now,
                                  std::set<std::string>& again) {
   const Reached reached = reach_(uri);
+  const bool again_only = lost.topics.empty();
   if (reached == Reached::kYes) {
-    for (const std::string& topic : lost.topics) {
-      again.insert(topic);
-      connections_.erase({uri, topic});  // the next one is new
-    }
+    // A node that has just begun may not know of its topics yet; roscpp asks it only once.
+    lost.asked.merge(lost.topics);
     lost.topics.clear();
+    for (const std::string& topic : lost.asked) {
+      again.insert(topic);
+      links_.erase({uri, topic});  // the next one is new
+    }
   }
-  if (reached != Reached::kRefused) {
+  if (again_only && lost.pause == kLongestPause) {
+    lost.asked.clear();  // another program may listen there by now
+  }
+  if (again_only || reached != Reached::kRefused) {
     lost.try_at = now + lost.pause;
     lost.pause = std::min(2 * lost.pause, kLongestPause);
   }

@@ -10,12 +10,16 @@
 
 namespace self_awareness::ros1 {
 
-/// One of this process's connections to publishers, as roscpp describes it.
+/// One of this process's connections to publishers.
 struct Link {
   std::string uri;  ///< of the publisher's XML-RPC server
   std::string topic;
-  std::string connection;  ///< changes when it was lost and roscpp tries to connect again
+  bool connected = false;
 };
+
+/// Whether a connection stands. roscpp does not say, but describes each by its port and socket:
+/// when it has lost one, it may leave the description as it was for ever.
+bool isConnected(const std::string& description);
 
 /// All of them; none if roscpp is shutting down. Asks this process itself by XML-RPC: with a
 /// hundred connections, that costs a few milliseconds.
@@ -46,20 +50,21 @@ class LostPublishers {
 
  private:
   struct Lost {
-    std::set<std::string> topics;  // empty: there is nothing to do
+    std::set<std::string> topics;  // to ask for
+    std::set<std::string> asked;   // and not connected again yet
     std::int64_t try_at = 0;
     std::int64_t pause = 0;  // after the next try
   };
   using Publication = std::pair<std::string, std::string>;  // URI and topic
 
-  /// Notes which connections were lost since the last look.
+  /// Notes which connections are lost: at two looks, since one may just be made.
   void compare(const std::vector<Link>& links, std::int64_t now);
   Reached tryAgain(const std::string& uri, Lost& lost, std::int64_t now,
                    std::set<std::string>& again);
 
   const std::function<Reached(const std::string& uri)> reach_;
-  std::map<Publication, std::string> connections_;  // at the last look
-  std::map<std::string, Lost> lost_;                // by URI
+  std::set<Publication> links_;       // at the last look
+  std::map<std::string, Lost> lost_;  // by URI
 };
 
 }  // namespace self_awareness::ros1
