@@ -206,6 +206,19 @@ class ChaosTest(MonitorCase):
             await_condition('some time', lambda: len(listener.heartbeats) > seen + 2, 20)
             self.check_alarm_names(listener, victim)
 
+    @again_if_clock_was_set
+    def test_a_node_with_a_name_that_is_too_long_is_left_out(self) -> None:
+        name = 'n' * 1000  # and a slash
+        with Talker('/a'), self.monitor(self.model(), subscribe='all') as monitor, \
+                MonitorListener() as listener, \
+                Process('rosrun', 'self_awareness', 'storm', '__name:=' + name, '_rate:=50'):
+            listener.await_settled()
+            complaint = re.compile("'/nnn.* is too long; its messages are left out")
+            await_condition('it is named', lambda: complaint.search(monitor.output), 30)
+            self.next_statuses(listener, 10)
+            self.assertEqual(len(complaint.findall(monitor.output)), 1)
+            self.check_no_alarm(listener)
+
     # Nodes
 
     @again_if_clock_was_set

@@ -158,6 +158,10 @@ std::optional<ConnectionEncoder> LiveEvents::connect(const Connection& connectio
   if (own_output_.covers(connection.callerid, connection.topic)) {
     return std::nullopt;
   }
+  const std::string why = whyLeftOut(connection);
+  if (!why.empty() && complained_of_.add(why)) {
+    ROS_WARN("%s; its messages are left out", why.c_str());
+  }
   try {
     return encoder_->connect(connection);
   } catch (const std::invalid_argument& error) {
