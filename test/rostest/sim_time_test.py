@@ -282,8 +282,9 @@ class SimTimeTest(unittest.TestCase):
                 await_condition('ERROR of the topic', lambda: any(
                     status.level == DiagnosticStatus.ERROR
                     for status in listener.diagnostics('/scan')), 5)
-            self.assertEqual({status.level for status in listener.diagnostics('/charge')},
-                             {DiagnosticStatus.OK})
+            # A busy machine may hold its messages back, too, and make it a suspect for a while.
+            self.assertNotIn(DiagnosticStatus.ERROR,
+                             {status.level for status in listener.diagnostics('/charge')})
 
 
 if __name__ == '__main__':
