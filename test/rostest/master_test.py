@@ -305,6 +305,9 @@ class MasterTest(unittest.TestCase):
         for task in ('/talker', '/beside'):
             listener.await_message('diagnostics', task=task, message='heard')
         listener.await_message('diagnostics', task='monitor', message='listening')
+        heard = time.monotonic()  # until then, one of them was missing
+        listener.await_message('status', heard, settling=False, abnormal=False, number=20)
+        self.check_no_alarm(listener, heard)
 
 
 if __name__ == '__main__':
