@@ -13,7 +13,7 @@ import tempfile
 import threading
 import time
 from contextlib import ExitStack
-from typing import Iterator, List, Optional, Set
+from typing import Iterator, List, Optional, Set, Tuple
 from xmlrpc.client import ServerProxy
 
 import rosgraph
@@ -28,6 +28,8 @@ from live_system import (MonitorListener, Process, again_if_clock_was_set, await
 from monitor_case import MonitorCase, Talker, publishers
 from self_awareness.msg import SelfAwareness
 
+Message = Tuple[float, str, str]
+"""Stamp [s], source, topic."""
 MEGABYTE = 10**6
 OVERLOADED = 'overloaded: '
 
@@ -51,6 +53,28 @@ def storm(**parameters: float) -> Process:
 def resident_bytes(pid: int) -> int:
     with open('/proc/{}/statm'.format(pid)) as statm:
         return int(statm.read().split()[1]) * os.sysconf('SC_PAGESIZE')
+
+
+def recording(seed: int) -> List[Message]:
+    """Of normal operation; one topic has two publishers."""
+    return list(operation(
+        [('/driver', '/scan', 0.08), ('/base', '/odom', 0.1), ('/second', '/scan', 0.1)],
+        120, seed))
+
+
+def bursts(burst: int, seed: int) -> List[Message]:
+    """What storm() sends ten times a second, in bursts that take a millisecond."""
+    return [(stamp + 0.001 * k / burst, source, topic)
+            for stamp, source, topic in operation([('/storm', '/storm0', 0.1)], 120, seed)
+            for k in range(burst)]
+
+
+def train(model: str, recordings: List[List[Message]]) -> None:
+    """Writes a model with limits; its recordings lie beside it."""
+    bags = [write_bag('{}_{}.bag'.format(model, number), messages)
+            for number, messages in enumerate(recordings)]
+    subprocess.run(['rosrun', 'self_awareness', 'train', *bags, '-o', model],
+                   check=True, stdout=subprocess.DEVNULL)
 
 
 class OtherString(String):
@@ -94,17 +118,13 @@ class ChaosTest(MonitorCase):
         folder = tempfile.mkdtemp()
         cls.addClassCleanup(shutil.rmtree, folder)
         cls.trained = os.path.join(folder, 'trained')
-        nodes = [('/driver', '/scan', 0.08), ('/base', '/odom', 0.1), ('/second', '/scan', 0.1)]
-        bags = [write_bag(os.path.join(folder, '{}.bag'.format(seed)), operation(nodes, 120, seed))
-                for seed in (1, 2)]
-        subprocess.run(['rosrun', 'self_awareness', 'train', *bags, '-o', cls.trained],
-                       check=True, stdout=subprocess.DEVNULL)
+        train(cls.trained, [recording(seed) for seed in (1, 2)])
         for name, topic in (('base', '/odom'), ('second', '/scan')):
             cls.addClassCleanup(talker(name, topic, 10).stop)
 
-    def judging_monitor(self, **parameters) -> Process:
+    def judging_monitor(self, model: str = '', **parameters) -> Process:
         """A monitor by the default detector, which says what it never saw in training."""
-        return self.monitor(self.trained, **dict(
+        return self.monitor(model or self.trained, **dict(
             {'detector': 'evidence', 'unknown': 'warn', 'settle_time': 1.0, 'subscribe': 'all'},
             **parameters))
 
@@ -295,6 +315,18 @@ class ChaosTest(MonitorCase):
                 self.check_no_alarm(listener)
                 self.check_alarm_names(listener, victim)
             self.assertGreater(int(listener.value('monitor', 'dropped messages') or 0), 0)
+
+    @again_if_clock_was_set
+    def test_what_a_queue_loses_is_no_fault_of_who_sent_it(self) -> None:
+        burst = 30
+        model = self.path('bursts')
+        train(model, [recording(seed) + bursts(burst, seed) for seed in (1, 2)])
+        with driver() as victim, storm(rate=10 * burst, burst=burst), \
+                self.judging_monitor(model=model, queue_size=1), MonitorListener() as listener:
+            self.await_said(listener, 'monitor', OVERLOADED, DiagnosticStatus.WARN)
+            self.next_statuses(listener, 50)
+            self.check_no_alarm(listener)
+            self.check_alarm_names(listener, victim)
 
     @again_if_clock_was_set
     def test_a_monitor_that_stood_still_raises_no_false_alarm(self) -> None:

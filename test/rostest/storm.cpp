@@ -1,8 +1,8 @@
 // A node for tests that publishes much, or in bad style.
 //
 // Private parameters: ~topics (std_msgs/String on /storm0, /storm1, ...), ~rate [messages a
-// second, all together], ~size [bytes of each], ~values (of the messages: value0, value1, ..., in
-// turn; 0: all are alike), ~seconds (then it ends; 0: never).
+// second, all together], ~burst (so many at a time), ~size [bytes of each], ~values (of the
+// messages: value0, value1, ..., in turn; 0: all are alike), ~seconds (then it ends; 0: never).
 
 #include <ros/ros.h>
 #include <std_msgs/String.h>
@@ -20,6 +20,7 @@ int main(int argc, char** argv) {
         node_handle.advertise<std_msgs::String>("/storm" + std::to_string(i), 10000));
   }
   const int rate = parameters.param("rate", 100);
+  const int burst = parameters.param("burst", 1);
   const int values = parameters.param("values", 0);
   const double seconds = parameters.param("seconds", 0.0);
   std_msgs::String message;
@@ -28,11 +29,13 @@ int main(int argc, char** argv) {
   std::int64_t sent = 0;
   for (double now = 0; ros::ok() && (seconds == 0 || now < seconds);
        now = (ros::SteadyTime::now() - start).toSec()) {
-    for (; sent < static_cast<std::int64_t>(now * rate); ++sent) {
-      if (values > 0) {
-        message.data = "value" + std::to_string(sent % values);
+    while (sent + burst <= static_cast<std::int64_t>(now * rate)) {
+      for (const std::int64_t end = sent + burst; sent < end; ++sent) {
+        if (values > 0) {
+          message.data = "value" + std::to_string(sent % values);
+        }
+        publishers[static_cast<std::size_t>(sent) % publishers.size()].publish(message);
       }
-      publishers[static_cast<std::size_t>(sent) % publishers.size()].publish(message);
     }
     ros::WallDuration(0.001).sleep();
   }
