@@ -30,7 +30,7 @@ mkdir -p "$folder/root/self_awareness"
 git -C "$checkout" ls-files --cached --others --exclude-standard -z |
   tar --create --directory "$checkout" --null --files-from - |
   tar --extract --directory "$folder/root/self_awareness"
-cp /etc/resolv.conf "$folder/etc/resolv.conf"
+cp /etc/hosts /etc/resolv.conf "$folder/etc/"
 
 say "$release: ${command[*]}"
 # Mounts and processes of its own, which are gone when it ends, however it does.

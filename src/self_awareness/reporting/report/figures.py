@@ -206,7 +206,7 @@ def _score_axis(timeline: Timeline) -> Figure:
     if timeline.limit is None:
         return {'title': {'text': 'score'}, 'zeroline': False}
     if timeline.limit < 0:
-        low = max(-SHOWN, float(np.nanmin(timeline.lowest, initial=timeline.limit)))
+        low = max(-SHOWN, float(np.nanmin(np.append(timeline.lowest, timeline.limit))))
         return {'title': {'text': 'score [limits]'}, 'zeroline': False,
                 'range': [min(low, -1.5) * 1.05, 0.05], 'dtick': 1}
     return {'title': {'text': 'score [thresholds]'}, 'zeroline': False, 'rangemode': 'tozero'}
