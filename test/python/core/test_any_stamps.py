@@ -9,8 +9,8 @@ from typing import Dict, List, Sequence, Tuple
 
 import numpy as np
 import pytest
-from any_stamps import LETTERS, MS, SECOND, Event, long_recordings, pieces, recordings
-from hypothesis import HealthCheck, assume, given, reject, settings
+from any_stamps import LEFT_OUT, LETTERS, MS, SECOND, Event, long_recordings, pieces, recordings
+from hypothesis import assume, given, reject, settings
 from hypothesis import strategies as st
 from reference import Reference
 from reference_evidence import BINS, Counts, lower_edge
@@ -30,8 +30,7 @@ MUCH = st.lists(long_recordings(), min_size=1, max_size=2)
 
 # The same examples in every run: a test that fails does so for everybody.
 examples = settings(max_examples=30, deadline=None, derandomize=True, database=None,
-                    suppress_health_check=[HealthCheck.too_slow, HealthCheck.data_too_large,
-                                           HealthCheck.function_scoped_fixture])
+                    suppress_health_check=LEFT_OUT)
 
 
 def arrays(events: Sequence[Event]) -> Tuple[np.ndarray, np.ndarray]:

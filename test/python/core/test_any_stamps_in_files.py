@@ -6,8 +6,8 @@ from typing import List
 
 import rosbag
 import rospy
-from any_stamps import SECOND, Event, recordings
-from hypothesis import HealthCheck, assume, given, settings
+from any_stamps import LEFT_OUT, SECOND, Event, recordings
+from hypothesis import assume, given, settings
 from std_msgs.msg import String
 
 from self_awareness import EncodingRules, EventLogWriter, read_events
@@ -24,7 +24,7 @@ def write_bag(path: Path, events: List[Event]) -> None:
 
 
 @settings(max_examples=40, deadline=None, derandomize=True, database=None,
-          suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture])
+          suppress_health_check=LEFT_OUT)
 @given(recordings())
 def test_a_log_has_the_stamps_of_the_bag(tmp_path: Path, events: List[Event]) -> None:
     # As for rosbag, a stamp of 0 is none.
