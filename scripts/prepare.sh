@@ -95,6 +95,7 @@ build() {
   # Debian 11's catkin caches that it has found GMock: a second run of CMake does not look for it
   # again, and has no targets of gtest. Without GMock, catkin builds gtest from its sources.
   ! on_debian_11 || options+=(-DCMAKE_DISABLE_FIND_PACKAGE_GMock=TRUE)
+  find_plugins_of_debian_11
   # "|| return", because set -e has no effect inside a condition.
   catkin_make --directory "$workspace" "${options[@]}" "$@" || return
   source_ros "$workspace/devel/setup.bash"
@@ -102,10 +103,13 @@ build() {
 }
 
 # Debian 11's pluginlib does not look where Debian 11 installs the libraries of plugins, such as
-# those of diagnostic_aggregator. It does look in a prefix that has them in lib/.
+# those of diagnostic_aggregator. It does look in a prefix that has them in lib/. Tests have the
+# prefixes that were there before CMake ran.
 find_plugins_of_debian_11() {
   on_debian_11 || return 0
-  mkdir -p "$workspace/debian-11"
-  ln -sfn "/usr/lib/$(gcc -dumpmachine)" "$workspace/debian-11/lib"
-  export CMAKE_PREFIX_PATH=$CMAKE_PREFIX_PATH:$workspace/debian-11
+  local prefix=$workspace/debian-11
+  mkdir -p "$prefix"
+  ln -sfn "/usr/lib/$(gcc -dumpmachine)" "$prefix/lib"
+  [[ :${CMAKE_PREFIX_PATH:-}: == *:$prefix:* ]] ||
+    export CMAKE_PREFIX_PATH=${CMAKE_PREFIX_PATH:+$CMAKE_PREFIX_PATH:}$prefix
 }
