@@ -152,9 +152,11 @@ def test_devices_and_pipes_are_written_and_stay(files: Dict[str, str], written: 
     assert os.stat('/dev/null').st_ino == device.st_ino and stat.S_ISCHR(device.st_mode)
     pipe = tmp_path / 'pipe'
     os.mkfifo(pipe)
-    with subprocess.Popen(['cat', str(pipe)], stdout=subprocess.PIPE) as reader:
+    read = tmp_path / 'read'  # into a file: a reader that nobody reads from would wait, too
+    with open(read, 'wb') as out, subprocess.Popen(['cat', str(pipe)], stdout=out) as reader:
         assert score.main([*table[1:], str(pipe)]) == 0
-        assert reader.communicate(timeout=10)[0] == written['score --csv']
+        assert reader.wait(timeout=10) == 0
+    assert read.read_bytes() == written['score --csv']
     assert stat.S_ISFIFO(pipe.stat().st_mode)
     for way in ('train', 'convert', 'score --result-bag'):
         program, arguments, _ = line_of(way, pipe, files)
