@@ -12,7 +12,6 @@ install_packages
 build
 build tests
 
-export ROS_IP=127.0.0.1  # whatever this machine's name resolves to
-unset ROS_HOSTNAME ROS_MASTER_URI ROS_NAMESPACE
+use_loopback
 
 exec rostest --text "$checkout/test/chaos.test" "unloads:=${1:-100}" "types:=${2:-20000}"

@@ -85,6 +85,12 @@ source_ros() {  # ROS's setup files use variables that are not set
 
 on_debian_11() { [ "$(. /etc/os-release && echo "$ID-${VERSION_ID:-}")" = debian-11 ]; }
 
+# Masters and nodes of tests stay on this machine, whatever its name resolves to.
+use_loopback() {
+  export ROS_IP=127.0.0.1
+  unset ROS_HOSTNAME ROS_MASTER_URI ROS_NAMESPACE
+}
+
 # build [TARGET...]
 build() {
   say "Building in $workspace"

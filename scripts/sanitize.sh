@@ -29,8 +29,7 @@ install_packages
 install_apt valgrind
 build  # the programs in Python that the tests use
 
-export ROS_IP=127.0.0.1
-unset ROS_HOSTNAME ROS_MASTER_URI ROS_NAMESPACE
+use_loopback
 tests=$checkout/test/sanitizers
 export ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1
 export UBSAN_OPTIONS=print_stacktrace=1

@@ -7,8 +7,7 @@ install_packages
 build
 build tests
 
-export ROS_IP=127.0.0.1  # whatever this machine's name resolves to
-unset ROS_HOSTNAME ROS_MASTER_URI ROS_NAMESPACE
+use_loopback
 
 say "Testing"
 results=$workspace/build/test_results

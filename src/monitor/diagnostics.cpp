@@ -28,11 +28,7 @@ void Diagnostics::publish(const MonitorState& state) const {
   tellMonitor(state, monitor);
   statuses.add("monitor", monitor);
   if (component_statuses_) {
-    for (const auto& [name, component] : state.communication.heard.components) {
-      Status status;
-      ros1::tellComponent(state.communication, name, status);
-      statuses.add(name, status);
-    }
+    ros1::addComponents(state.communication, statuses);
   }
   publisher_.publish(statuses.message());
 }

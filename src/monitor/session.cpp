@@ -68,9 +68,7 @@ ros1::OwnOutput Session::ownOutput(const std::string& node) const {
 }
 
 void Session::addEdges(const ros1::Graph& graph, const std::string& node) {
-  if (graph_->edges().size() < kMostEdges) {
-    ros1::addEdges(graph, node, *graph_);
-  }
+  ros1::addEdges(graph, node, *graph_);
 }
 
 }  // namespace self_awareness

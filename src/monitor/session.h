@@ -25,8 +25,6 @@ class Session {
  public:
   /// Event types that the model does not know and that are told apart; further ones share an id.
   static constexpr std::size_t kMostUnknownTypes = 1000;
-  /// Edges of the graph from which on no more are added: nodes may have ever new names.
-  static constexpr std::size_t kMostEdges = 50000;
 
   /// @param handler called with the verdict of every window in turn
   /// @throw std::invalid_argument if the calibration does not fit the model

@@ -11,7 +11,7 @@ import sys
 import tempfile
 import time
 import unittest
-from typing import Any, Dict, List, TypeVar
+from typing import Any, Dict, List, Tuple, TypeVar
 from urllib.parse import urlsplit
 
 import rosgraph
@@ -129,6 +129,18 @@ class MasterTest(unittest.TestCase):
     def start_listener(self) -> Listener:
         return self.keep(Listener(sys.executable, script('listener.py'), env=self.environment))
 
+    def start_robot(self) -> Tuple[Listener, Process]:
+        """Starts the monitor and both components, and waits until all is normal.
+
+        Returns: the monitor's listener, and the talker.
+        """
+        self.start_monitor()
+        listener = self.start_listener()
+        self.start_component('/beside')
+        talker = self.start_component('/talker')
+        self.await_normal(listener)
+        return listener, talker
+
     def master(self) -> rosgraph.Master:
         return rosgraph.Master('/master_test', master_uri=self.uri)
 
@@ -166,11 +178,7 @@ class MasterTest(unittest.TestCase):
     @again_if_clock_was_set
     def test_dead_node_stays_registered(self) -> None:
         self.start_master()
-        self.start_monitor()
-        listener = self.start_listener()
-        self.start_component('/beside')
-        talker = self.start_component('/talker')
-        self.await_normal(listener)
+        listener, talker = self.start_robot()
 
         killed = time.monotonic()
         talker.send(signal.SIGKILL)
@@ -182,11 +190,7 @@ class MasterTest(unittest.TestCase):
     @again_if_clock_was_set
     def test_master_hangs_and_dies(self) -> None:
         master = self.start_master()
-        self.start_monitor()
-        listener = self.start_listener()
-        self.start_component('/beside')
-        talker = self.start_component('/talker')
-        self.await_normal(listener)
+        listener, talker = self.start_robot()
 
         hung = time.monotonic()
         master.send(signal.SIGSTOP)
@@ -218,11 +222,7 @@ class MasterTest(unittest.TestCase):
     def test_a_node_is_started_again_at_the_same_address(self) -> None:
         """roscpp takes it for the one that it was connected to, and does not connect again."""
         self.start_master()
-        self.start_monitor()
-        listener = self.start_listener()
-        self.start_component('/beside')
-        talker = self.start_component('/talker')
-        self.await_normal(listener)
+        listener, talker = self.start_robot()
         uri = self.master().lookupNode('/talker')
         for _ in range(2):
             killed = time.monotonic()

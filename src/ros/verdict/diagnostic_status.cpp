@@ -100,17 +100,21 @@ void tellComponent(const CommunicationState& state, const std::string& name,
   status.add("events a second", number(component.rate));
 }
 
+void addComponents(const CommunicationState& state, DiagnosticStatuses& statuses) {
+  for (const auto& [name, component] : state.heard.components) {
+    DiagnosticStatusWrapper status;
+    tellComponent(state, name, status);
+    statuses.add(name, status);
+  }
+}
+
 diagnostic_msgs::DiagnosticArray toDiagnostics(const CommunicationState& state,
                                                const std::string& node, std::int64_t now) {
   DiagnosticStatuses statuses(node, kNoHardware, now);
   DiagnosticStatusWrapper whole;
   tellCommunication(state, whole);
   statuses.add("communication", whole);
-  for (const auto& [name, component] : state.heard.components) {
-    DiagnosticStatusWrapper status;
-    tellComponent(state, name, status);
-    statuses.add(name, status);
-  }
+  addComponents(state, statuses);
   return statuses.message();
 }
 

@@ -61,6 +61,8 @@ void tellCommunication(const CommunicationState& state,
 /// @param name one of state.heard.components
 void tellComponent(const CommunicationState& state, const std::string& name,
                    diagnostic_updater::DiagnosticStatusWrapper& status);
+/// Adds the status of every component.
+void addComponents(const CommunicationState& state, DiagnosticStatuses& statuses);
 /// The statuses of the whole and of every component, as a node publishes them on /diagnostics.
 /// @param node its name, which the names of the statuses begin with
 /// @param now ROS time [ns]
