@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/evidence/log_bins.h"
-#include "self_awareness/core/evidence/limits.h"
+#include "core/evidence/count/log_bins.h"
+#include "self_awareness/core/evidence/limits/limits.h"
 #include "self_awareness/core/stream/clock.h"
 #include "self_awareness/core/stream/clock_steps.h"
 #include "self_awareness/core/stream/event.h"

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "bindings.h"
-#include "self_awareness/core/evidence/model.h"
+#include "self_awareness/core/evidence/channel/model.h"
 #include "self_awareness/ros/model/model_file.h"
 
 namespace self_awareness::python {

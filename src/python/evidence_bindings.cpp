@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "bindings.h"
-#include "core/evidence/scorer.h"
-#include "self_awareness/core/evidence/cross_fit.h"
-#include "self_awareness/core/evidence/limits.h"
-#include "self_awareness/core/evidence/model.h"
+#include "core/evidence/channel/scorer.h"
+#include "self_awareness/core/evidence/channel/model.h"
+#include "self_awareness/core/evidence/limits/cross_fit.h"
+#include "self_awareness/core/evidence/limits/limits.h"
 #include "self_awareness/ros/model/model_file.h"
 
 namespace self_awareness::python {

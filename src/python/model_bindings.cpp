@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "bindings.h"
-#include "core/evidence/log_bins.h"
+#include "core/evidence/count/log_bins.h"
 #include "self_awareness/ros/model/evidence_message.h"
 #include "self_awareness/ros/model/model_bytes.h"
 #include "self_awareness/ros/model/model_file.h"

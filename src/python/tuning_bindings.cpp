@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "bindings.h"
-#include "self_awareness/core/evidence/tracks.h"
 #include "self_awareness/core/evidence/tuning.h"
+#include "self_awareness/core/evidence/watch/tracks.h"
 
 namespace self_awareness::python {
 namespace {

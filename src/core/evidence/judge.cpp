@@ -9,12 +9,12 @@
 #include <utility>
 #include <vector>
 
-#include "core/evidence/blame.h"
-#include "core/evidence/busy_machine.h"
-#include "core/evidence/hindsight.h"
-#include "core/evidence/never_heard.h"
-#include "core/evidence/scorer.h"
-#include "core/evidence/strangers.h"
+#include "core/evidence/blame/blame.h"
+#include "core/evidence/blame/busy_machine.h"
+#include "core/evidence/blame/hindsight.h"
+#include "core/evidence/blame/never_heard.h"
+#include "core/evidence/blame/strangers.h"
+#include "core/evidence/channel/scorer.h"
 
 namespace self_awareness::core::evidence {
 namespace {

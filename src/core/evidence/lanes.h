@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "self_awareness/core/evidence/channel/model.h"
 #include "self_awareness/core/evidence/judge.h"
-#include "self_awareness/core/evidence/model.h"
 
 namespace self_awareness::core::evidence {
 

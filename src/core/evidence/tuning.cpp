@@ -4,7 +4,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "self_awareness/core/evidence/tracks.h"
+#include "self_awareness/core/evidence/watch/tracks.h"
 
 namespace self_awareness::core::evidence {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "self_awareness/core/evidence/model.h"
+#include "self_awareness/core/evidence/channel/model.h"
 #include "self_awareness/core/verdict/judge.h"
 #include "self_awareness/core/verdict/source_graph.h"
 
