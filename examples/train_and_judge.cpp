@@ -6,10 +6,10 @@
 #include <optional>
 #include <vector>
 
+#include "self_awareness/core/evidence/channel/watched.h"
 #include "self_awareness/core/evidence/judge.h"
 #include "self_awareness/core/evidence/limits/cross_fit.h"
 #include "self_awareness/core/evidence/limits/limits.h"
-#include "self_awareness/core/evidence/watch/tracks.h"
 #include "self_awareness/core/training.h"
 #include "self_awareness/core/verdict/detector.h"
 #include "self_awareness/core/verdict/source_graph.h"

@@ -2,13 +2,14 @@
 #include <pybind11/stl.h>
 
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "bindings.h"
+#include "self_awareness/core/evidence/channel/track.h"
 #include "self_awareness/core/evidence/tuning.h"
-#include "self_awareness/core/evidence/watch/tracks.h"
 
 namespace self_awareness::python {
 namespace {
@@ -77,10 +78,10 @@ void bindTuning(py::module& m) {
       .def(
           "leave_out",
           [](Tuning& self, const std::string& channel) {
-            Tuning changed = self;
-            changed.without.insert(channel);
-            changed.validate();
-            self = changed;
+            if (core::evidence::channelNamed(channel) == nullptr) {
+              throw std::invalid_argument("the method has no channel '" + channel + "'");
+            }
+            self.without.insert(channel);
           },
           py::arg("channel"), "Switches a channel off. ValueError if there is none of this name.")
       .def("least_effect_on_delay", &Tuning::leastEffectOnDelay, py::arg("period"),

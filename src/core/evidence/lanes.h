@@ -18,7 +18,6 @@ class Lanes {
   /// A stretch of time.
   struct Column {
     std::vector<float> shares;         ///< the largest, by component
-    float linker = 0;                  ///< the largest
     float strongest_share = 0;         ///< the largest of all tracks
     std::optional<std::size_t> track;  ///< that has it; none: no track has any evidence
   };

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "check.h"
-#include "self_awareness/core/evidence/watch/tracks.h"
+#include "self_awareness/core/evidence/channel/watched.h"
 
 namespace self_awareness::ros1 {
 

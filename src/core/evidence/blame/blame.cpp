@@ -4,10 +4,10 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numeric>
 #include <set>
 #include <utility>
 
+#include "core/evidence/blame/root_first.h"
 #include "core/evidence/blame/strangers.h"
 
 namespace self_awareness::core::evidence {
@@ -19,11 +19,10 @@ Blame::Blame(std::shared_ptr<const Model> model, std::shared_ptr<const SourceGra
       rare_silence_(std::log(tuning_.rare_silence)) {}
 
 std::vector<Suspect> Blame::suspects(const std::vector<double>& shares, const Scorer& scorer,
-                                     const Hindsight& hindsight, const Window& window) const {
-  const Reasons reasons(scorer, hindsight);
+                                     const RecentEvents& events, const Window& window) const {
   const Followers::Leads leads = followers_.leads(shares);
-  std::vector<Candidate> candidates = silent(shares, reasons, leads);
-  std::vector<Candidate> others = unusual(shares, reasons, leads);
+  std::vector<Candidate> candidates = silent(shares, scorer, leads);
+  std::vector<Candidate> others = unusual(shares, scorer, events, leads);
   const auto roots = rootsOfSilence(candidates, others, scorer, leads);
   candidates.insert(candidates.begin(), others.begin(), roots);
   candidates.insert(candidates.end(), roots, others.end());
@@ -32,7 +31,7 @@ std::vector<Suspect> Blame::suspects(const std::vector<double>& shares, const Sc
   std::set<EventId> named;
   std::set<std::string> components;
   const auto add = [&](const Candidate& candidate) {
-    Suspect suspect = reasons.of(candidate.track);
+    Suspect suspect = suspectOf(candidate.track, scorer, events);
     suspect.component = model_->component(suspect.id);
     suspect.abnormal = shares[candidate.track] > 1;
     components.insert(suspect.component);
@@ -58,29 +57,27 @@ std::vector<Suspect> Blame::suspects(const std::vector<double>& shares, const Sc
 }
 
 std::vector<Blame::Candidate> Blame::silent(const std::vector<double>& shares,
-                                            const Reasons& reasons,
+                                            const Scorer& scorer,
                                             const Followers::Leads& leads) const {
   std::set<EventId> missing;
   std::map<EventId, std::size_t> unanswered;  // tracks
   for (std::size_t track = 0; track < shares.size(); ++track) {
-    const Channel channel = model_->tracks()[track].channel;
-    if (shares[track] > tuning_.near_limit && channel == Channel::kDeadline) {
+    if (shares[track] > tuning_.near_limit && model_->finding(track) == Finding::kUnanswered) {
       unanswered.emplace(model_->tracks()[track].to, track);
     }
-    if (shares[track] > tuning_.near_limit &&
-        (channel == Channel::kOverdue || channel == Channel::kAnswer)) {
+    if (shares[track] > tuning_.near_limit && model_->finding(track) == Finding::kSilent) {
       missing.insert(model_->tracks()[track].to);
     }
   }
   std::vector<Candidate> candidates;
   for (const EventId id : missing) {
-    const double survival = logSurvival(id, reasons);
+    const double survival = logSurvival(id, scorer);
     if (survival < rare_silence_) {
       candidates.push_back({trackOfSilence(id, shares), survival});
     }
   }
   for (const auto& [id, track] : unanswered) {
-    const double survival = logSurvival(id, reasons);
+    const double survival = logSurvival(id, scorer);
     if (missing.count(id) == 0 || survival >= rare_silence_) {
       candidates.push_back({track, std::min(survival, rare_silence_)});
     }
@@ -101,8 +98,9 @@ std::vector<Blame::Candidate>::iterator Blame::rootsOfSilence(
     return std::any_of(silent.begin(), silent.end(), [&](const Candidate& candidate) {
       return leads.count({model_->component(toOf(other)), model_->component(toOf(candidate))}) >
                  0 &&
-             (scorer.lastSeen(toOf(candidate)) >= scorer.lastSeen(toOf(other)) ||
-              static_cast<double>(scorer.age(toOf(other))) < model_->meanGap(toOf(other)) / 2);
+             (scorer.heard().lastSeen(toOf(candidate)) >= scorer.heard().lastSeen(toOf(other)) ||
+              static_cast<double>(scorer.heard().age(toOf(other))) <
+                  model_->meanGap(toOf(other)) / 2);
     });
   };
   const auto leadsRoot = [&](const Candidate& other) {
@@ -122,47 +120,26 @@ std::vector<Blame::Candidate>::iterator Blame::rootsOfSilence(
   });
 }
 
-// Upstream before downstream is no total order: the candidate with the fewest others upstream is
-// next. Sources are compared, not candidates: when a whole robot falls silent, every event type is
-// a candidate, but there are few components.
 std::vector<Blame::Candidate> Blame::rootFirst(std::vector<Candidate> candidates,
                                                const Followers::Leads& leads) const {
   std::stable_sort(candidates.begin(), candidates.end(), likelier);
-  std::map<std::string, std::vector<std::size_t>> by_component;  // indexes of candidates
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    by_component[model_->component(toOf(candidates[i]))].push_back(i);
-  }
-  std::vector<std::size_t> upstream(candidates.size(), 0);  // number of those left that are
-  std::map<std::string, std::vector<std::size_t>> downstream;
-  for (const auto& [source, members] : by_component) {
-    for (const auto& [other, victims] : by_component) {
-      if (graph_->isUpstream(source, other) ||
-          (leads.count({source, other}) > 0 && !graph_->isUpstream(other, source))) {
-        downstream[source].insert(downstream[source].end(), victims.begin(), victims.end());
-        for (const std::size_t victim : victims) {
-          upstream[victim] += members.size();
-        }
-      }
-    }
+  std::vector<std::string> components;
+  for (const Candidate& candidate : candidates) {
+    components.push_back(model_->component(toOf(candidate)));
   }
   std::vector<Candidate> ordered;
-  std::vector<std::size_t> left(candidates.size());
-  std::iota(left.begin(), left.end(), 0);
-  while (!left.empty()) {
-    const auto root =
-        std::min_element(left.begin(), left.end(),
-                         [&](std::size_t a, std::size_t b) { return upstream[a] < upstream[b]; });
-    ordered.push_back(candidates[*root]);
-    for (const std::size_t victim : downstream[model_->component(toOf(candidates[*root]))]) {
-      --upstream[victim];
-    }
-    left.erase(root);
+  for (const std::size_t next :
+       evidence::rootFirst(components, [&](const std::string&source, const std::string&other) {
+         return graph_->isUpstream(source, other) ||
+                (leads.count({source, other}) > 0 && !graph_->isUpstream(other, source));
+       })) {
+    ordered.push_back(candidates[next]);
   }
   return ordered;
 }
 
 std::vector<Blame::Candidate> Blame::unusual(const std::vector<double>& shares,
-                                             const Reasons& reasons,
+                                             const Scorer& scorer, const RecentEvents& events,
                                              const Followers::Leads& leads) const {
   struct Involved {
     double sum = 0;
@@ -174,24 +151,26 @@ std::vector<Blame::Candidate> Blame::unusual(const std::vector<double>& shares,
   std::map<std::string, Involved> components;
   std::vector<std::size_t> late;  // tracks
   for (std::size_t track = 0; track < shares.size(); ++track) {
-    const auto& [channel, to, from] = model_->tracks()[track];
-    if (shares[track] < tuning_.least_share || channel == Channel::kSlowDelay ||
+    const EventId to = model_->tracks()[track].to;
+    const EventId from = model_->tracks()[track].from;
+    const Finding finding = model_->finding(track);
+    if (shares[track] < tuning_.least_share ||
         // An age that is usual has some share of its limit, too.
-        (channel == Channel::kOverdue && logSurvival(to, reasons) >= rare_silence_)) {
+        (finding == Finding::kSilent && logSurvival(to, scorer) >= rare_silence_)) {
       continue;
     }
     const double share = std::min(shares[track], tuning_.most_share);
     const bool other =
-        channel == Channel::kDelay && model_->component(from) != model_->component(to);
-    const bool earlier = other && isEarlier(reasons.of(track));
+        finding == Finding::kBetween && model_->component(from) != model_->component(to);
+    const bool earlier = other && isEarlier(suspectOf(track, scorer, events));
     Involved& later = components[model_->component(to)];
     later.sum += earlier ? tuning_.share_of_other * share : share;
     if (other && !earlier) {
       later.late = true;
       late.push_back(track);
     }
-    later.own |= shares[track] > tuning_.near_limit && channel != Channel::kOverdue &&
-                 (channel != Channel::kDelay || from == to);
+    later.own |= shares[track] > tuning_.near_limit && finding != Finding::kSilent &&
+                 finding != Finding::kBetween;
     if (share > later.largest) {
       later.largest = share;
       later.track = track;
@@ -200,7 +179,7 @@ std::vector<Blame::Candidate> Blame::unusual(const std::vector<double>& shares,
       components[model_->component(from)].sum += earlier ? share : tuning_.share_of_other * share;
     }
   }
-  for (const std::size_t track : followers_.lateBefore(late, shares, reasons)) {
+  for (const std::size_t track : followers_.lateBefore(late, shares, scorer, events)) {
     Involved& involved = components[model_->component(model_->tracks()[track].to)];
     involved.late = true;
     if (involved.largest == 0) {
@@ -225,8 +204,8 @@ std::vector<Blame::Candidate> Blame::unusual(const std::vector<double>& shares,
   return ordered;
 }
 
-double Blame::logSurvival(EventId id, const Reasons& reasons) const {
-  return model_->logSurvival(id, reasons.age(id));
+double Blame::logSurvival(EventId id, const Scorer& scorer) const {
+  return model_->logSurvival(id, scorer.heard().silence(id));
 }
 
 // Its age, if that alone is abnormal; else what is nearer to its limit: at half its rate, say, its
@@ -235,13 +214,12 @@ std::size_t Blame::trackOfSilence(EventId id, const std::vector<double>& shares)
   std::size_t most = 0;
   double largest = -1;
   for (std::size_t track = 0; track < shares.size(); ++track) {
-    const Channel channel = model_->tracks()[track].channel;
+    const Finding finding = model_->finding(track);
     if (model_->tracks()[track].to != id ||
-        (channel != Channel::kOverdue && channel != Channel::kFewer &&
-         channel != Channel::kAnswer)) {
+        (finding != Finding::kSilent && finding != Finding::kFewer)) {
       continue;
     }
-    if (channel == Channel::kOverdue && shares[track] > 1) {
+    if (finding == Finding::kSilent && shares[track] > 1) {
       return track;
     }
     if (shares[track] > largest) {

@@ -6,8 +6,6 @@
 #include <vector>
 
 #include "core/evidence/blame/followers.h"
-#include "core/evidence/blame/hindsight.h"
-#include "core/evidence/blame/reasons.h"
 #include "core/evidence/channel/scorer.h"
 #include "self_awareness/core/stream/windows.h"
 #include "self_awareness/core/verdict/source_graph.h"
@@ -25,12 +23,12 @@ class Blame {
   Blame(std::shared_ptr<const Model> model, std::shared_ptr<const SourceGraph> graph);
 
   /// @param shares of their limits that the tracks of the model have reached
-  /// @param hindsight of the scorer's recording
+  /// @param events of the scorer's recording
   /// @param window that the scorer closed last
   /// @return at most kMostSuspects, the most likely first, each event type once; after them, of
   /// each further component whose evidence alone is abnormal the most likely event type
   std::vector<Suspect> suspects(const std::vector<double>& shares, const Scorer& scorer,
-                                const Hindsight& hindsight, const Window& window) const;
+                                const RecentEvents& events, const Window& window) const;
 
  private:
   struct Candidate {
@@ -42,10 +40,10 @@ class Blame {
   static bool likelier(const Candidate& a, const Candidate& b) { return a.rank < b.rank; }
   std::vector<Candidate> rootFirst(std::vector<Candidate> candidates,
                                    const Followers::Leads& leads) const;
-  std::vector<Candidate> silent(const std::vector<double>& shares, const Reasons& reasons,
+  std::vector<Candidate> silent(const std::vector<double>& shares, const Scorer& scorer,
                                 const Followers::Leads& leads) const;
-  std::vector<Candidate> unusual(const std::vector<double>& shares, const Reasons& reasons,
-                                 const Followers::Leads& leads) const;
+  std::vector<Candidate> unusual(const std::vector<double>& shares, const Scorer& scorer,
+                                 const RecentEvents& events, const Followers::Leads& leads) const;
   /// Moves to the front of `others` those whose followers are silent, although they answered the
   /// last one: at half the rate of what they follow, say.
   /// @return the end of these
@@ -53,7 +51,7 @@ class Blame {
                                                   std::vector<Candidate>& others,
                                                   const Scorer& scorer,
                                                   const Followers::Leads& leads) const;
-  double logSurvival(EventId id, const Reasons& reasons) const;
+  double logSurvival(EventId id, const Scorer& scorer) const;
   std::size_t trackOfSilence(EventId id, const std::vector<double>& shares) const;
   EventId toOf(const Candidate& candidate) const { return model_->tracks()[candidate.track].to; }
 

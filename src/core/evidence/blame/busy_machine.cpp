@@ -20,8 +20,8 @@ std::optional<Busy> BusyMachine::closeWindow(const std::vector<double>& shares,
   for (std::size_t track = 0; track < shares.size(); ++track) {
     const EventId id = model_->tracks()[track].to;
     const std::size_t component = model_->componentIndex(id);
-    heard[component] = heard[component] || scorer.lastSeen(id).has_value();
-    if (model_->tracks()[track].channel == Channel::kOverdue) {
+    heard[component] = heard[component] || scorer.heard().hasSeen(id);
+    if (model_->finding(track) == Finding::kSilent) {
       silent[component] = silent[component] || shares[track] > 1;
     } else {
       largest[component] = std::max(largest[component], shares[track]);

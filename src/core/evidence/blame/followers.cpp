@@ -5,6 +5,13 @@
 
 namespace self_awareness::core::evidence {
 
+Suspect suspectOf(std::size_t track, const Scorer& scorer, const RecentEvents& events) {
+  Suspect suspect;
+  suspect.id = scorer.model().tracks().at(track).to;
+  scorer.explain(track, events, suspect);
+  return suspect;
+}
+
 bool isEarlier(const Suspect& suspect) {
   return suspect.times > 0 && std::isnan(suspect.scatter) && suspect.delay < suspect.usual_delay;
 }
@@ -20,7 +27,7 @@ bool Followers::follows(const Track& track) const {
     return false;
   }
   const double period = std::min(model_->meanGap(track.from), model_->meanGap(track.to));
-  return model_->usualDelay(track.from, track.to, 0.5) * 1e9 < period / 2;
+  return model_->usualDelay(track.from, track.to, 0.5) < period / 2;
 }
 
 Followers::Leads Followers::leads(const std::vector<double>& shares) const {
@@ -44,14 +51,15 @@ Followers::Leads Followers::leads(const std::vector<double>& shares) const {
 
 std::vector<std::size_t> Followers::lateBefore(const std::vector<std::size_t>& late,
                                                const std::vector<double>& shares,
-                                               const Reasons& reasons) const {
+                                               const Scorer& scorer,
+                                               const RecentEvents& events) const {
   const std::vector<Track>& tracks = model_->tracks();
   std::vector<std::size_t> found;
   const auto addOf = [&](EventId third, EventId from) {
     for (std::size_t track = 0; track < tracks.size(); ++track) {
-      if (tracks[track].channel == Channel::kDelay && tracks[track].to == third &&
+      if (model_->finding(track) == Finding::kBetween && tracks[track].to == third &&
           tracks[track].from == from && follows_[track]) {
-        const Suspect suspect = reasons.of(track);
+        const Suspect suspect = suspectOf(track, scorer, events);
         if (suspect.times > 0 && !isEarlier(suspect)) {
           found.push_back(track);
         }
@@ -60,7 +68,7 @@ std::vector<std::size_t> Followers::lateBefore(const std::vector<std::size_t>& l
   };
   for (const std::size_t victim : late) {
     for (std::size_t track = 0; track < tracks.size(); ++track) {
-      if (tracks[track].channel == Channel::kDelay && tracks[track].to == tracks[victim].to &&
+      if (model_->finding(track) == Finding::kBetween && tracks[track].to == tracks[victim].to &&
           follows_[track] && shares[track] < model_->tuning().least_share) {
         addOf(tracks[track].from, tracks[victim].from);
       }

@@ -7,8 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "core/evidence/blame/reasons.h"
+#include "core/evidence/channel/scorer.h"
+#include "core/evidence/watch/recent_events.h"
 #include "self_awareness/core/evidence/channel/model.h"
+#include "self_awareness/core/verdict/suspect.h"
 
 namespace self_awareness::core::evidence {
 
@@ -30,8 +32,8 @@ class Followers {
   /// @param late tracks of event types that come late
   /// @return tracks of the third ones: how late they come after the same event types
   std::vector<std::size_t> lateBefore(const std::vector<std::size_t>& late,
-                                      const std::vector<double>& shares,
-                                      const Reasons& reasons) const;
+                                      const std::vector<double>& shares, const Scorer& scorer,
+                                      const RecentEvents& events) const;
 
  private:
   bool follows(const Track& track) const;
@@ -39,6 +41,9 @@ class Followers {
   std::shared_ptr<const Model> model_;
   std::vector<bool> follows_;  // whether `to` usually comes soon after `from`, by track
 };
+
+/// The event type that a track watches as a suspect, with the reason.
+Suspect suspectOf(std::size_t track, const Scorer& scorer, const RecentEvents& events);
 
 /// Whether the delays of a suspect became shorter: that what comes before it is late makes them
 /// so.

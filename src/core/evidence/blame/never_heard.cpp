@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <utility>
+
+#include "core/evidence/blame/root_first.h"
 
 namespace self_awareness::core::evidence {
 NeverHeard::NeverHeard(const Model& model, const Limits& limits,
@@ -80,19 +81,18 @@ void NeverHeard::closeWindow(std::int64_t end, std::int64_t settle_time) {
 }
 
 std::vector<NeverHeard::Expected> NeverHeard::rootFirst(std::vector<Expected> missing) const {
-  std::map<std::string, std::size_t> upstream;  // number of missing components, by component
+  std::vector<std::string> components;
   for (const Expected& expected : missing) {
-    upstream[component(expected.id)] = 0;
+    components.push_back(component(expected.id));
   }
-  for (auto& [name, number] : upstream) {
-    number = static_cast<std::size_t>(std::count_if(
-        upstream.begin(), upstream.end(),
-        [&, &name = name](const auto& other) { return graph_->isUpstream(other.first, name); }));
+  std::vector<Expected> ordered;
+  for (const std::size_t next :
+       evidence::rootFirst(components, [&](const std::string&source, const std::string&other) {
+         return graph_->isUpstream(source, other);
+       })) {
+    ordered.push_back(missing[next]);
   }
-  std::stable_sort(missing.begin(), missing.end(), [&](const Expected& a, const Expected& b) {
-    return upstream.at(component(a.id)) < upstream.at(component(b.id));
-  });
-  return missing;
+  return ordered;
 }
 
 std::vector<std::pair<EventId, double>> NeverHeard::shares() const {

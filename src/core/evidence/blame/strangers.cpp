@@ -44,7 +44,7 @@ void Strangers::add(const Event& event) {
 std::vector<Suspect> Strangers::suspects(const Window& window, const Scorer& scorer) const {
   std::vector<Suspect> suspects;
   for (const auto& [id, last] : last_) {
-    const std::int64_t age = scorer.windowEnd() - last;
+    const std::int64_t age = scorer.heard().windowEnd() - last;
     if (age > kRateSpan || !isStranger(id, scorer)) {
       continue;
     }
@@ -72,7 +72,7 @@ bool Strangers::isStranger(EventId id, const Scorer& scorer) const {
   return std::none_of(known->second.begin(), known->second.end(),
                       [&](EventId other) { return vocabulary.at(other).source == type.source; }) &&
          std::any_of(known->second.begin(), known->second.end(),
-                     [&](EventId other) { return scorer.lastSeen(other).has_value(); });
+                     [&](EventId other) { return scorer.heard().hasSeen(other); });
 }
 
 }  // namespace self_awareness::core::evidence

@@ -20,19 +20,19 @@ namespace {
 using Partner = Statistics::Partner;
 using Partners = Statistics::Partners;
 
-constexpr Statistics::Delays kNoDelays{};
+constexpr DelayHistogram kNoDelays{};
 
 bool lowerId(const Partner& partner, EventId id) {
   return partner.id < id;
 }
 
 template <typename Counts>
-void addCounts(const Counts& counts, Statistics::SumOfDelays& sum) {
+void addCounts(const Counts& counts, SumOfDelays& sum) {
   asArray(sum) += asArray(counts).template cast<std::uint64_t>();
 }
 
 // The years of a fleet may be more than a count holds: it then stays at the largest number.
-void addCounts(const Statistics::Delays& counts, Statistics::Delays& sum) {
+void addCounts(const DelayHistogram& counts, DelayHistogram& sum) {
   asArray(sum) += asArray(counts).min(std::numeric_limits<std::uint32_t>::max() - asArray(sum));
 }
 
@@ -178,13 +178,9 @@ void Statistics::addRecording(Recording recording) {
   recordings_.insert(place, std::move(recording));
 }
 
-const Statistics::Delays& Statistics::delays(EventId from, EventId to) const {
+const DelayHistogram& Statistics::delays(EventId from, EventId to) const {
   const Partner* partner = find(partners_.at(to), from);
   return partner != nullptr ? partner->delays : kNoDelays;
-}
-
-std::uint64_t Statistics::total(EventId from, EventId to) const {
-  return asArray(delays(from, to)).cast<std::uint64_t>().sum();
 }
 
 std::uint64_t Statistics::answers(EventId from, EventId to) const {
@@ -214,7 +210,7 @@ Statistics::Partners& Statistics::allPartners(EventId id) {
   return partners;
 }
 
-std::vector<Statistics::SumOfDelays> Statistics::delaysToAny() const {
+std::vector<SumOfDelays> Statistics::delaysToAny() const {
   std::vector<SumOfDelays> sums;
   sums.reserve(size());
   for (const Type& type : types_) {

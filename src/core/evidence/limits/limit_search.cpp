@@ -5,22 +5,17 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <set>
 #include <utility>
 
-#include "core/evidence/watch/relations.h"
+#include "core/evidence/channel/channels.h"
+#include "core/evidence/count/starts.h"
 
 namespace self_awareness::core::evidence {
 namespace {
 
 constexpr double kHour = 3600e9;  // [ns]
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-
-// The linker depends on what the robot is doing, and that changes from hour to hour.
-constexpr double kLeastLinkerMargin = 1.5;
-constexpr double kLeastLinkerLimit = 2;  // components
-// Each pool and the linker have an equal share of the budget, but slow delays, which raise no
-// alarm.
-constexpr double kShares = 8;
 
 double hoursOf(std::uint64_t windows, std::int64_t window) {
   return static_cast<double>(windows) * static_cast<double>(window) / kHour;
@@ -49,6 +44,15 @@ double budgetOf(const LimitFinder::Findings& findings, const LimitFinder::Parame
                   1 / (most_of_training * hoursOf(windows, parameters.window)));
 }
 
+/// Number of pools that share the budget: silences have three.
+double numberOfPools() {
+  std::set<std::string> labels;
+  for (const Channel* channel : channels()) {
+    labels.insert(channel->finding() == Finding::kSilent ? "" : channel->label());
+  }
+  return static_cast<double>(labels.size() + 2);
+}
+
 }  // namespace
 
 LimitSearch::LimitSearch(const Model& model, const LimitFinder::Findings& findings,
@@ -58,27 +62,17 @@ LimitSearch::LimitSearch(const Model& model, const LimitFinder::Findings& findin
       tuning_(model.tuning()),
       parameters_(parameters),
       limits_(model.tracks().size(), kNone) {
-  share_ = budgetOf(findings, parameters, tuning_.most_of_training) / kShares;
   gatherParts(findings);
   std::map<Pool, std::vector<Seen>> pools;
   for (std::size_t track = 0; track < model_.tracks().size(); ++track) {
-    if (!relations[track].watched) {
-      continue;
+    if (relations[track].watched) {
+      auto [pool, seen] = seenBy(track);
+      pools[pool].push_back(std::move(seen));
     }
-    Pool pool = poolOf(model_.tracks()[track].channel);
-    Seen seen{track, model_.leastLimit(track), {}};
-    if (pool == Pool::kOthers) {
-      seen.largest = gapsOf(model_.tracks()[track].to);
-      pool = poolOfGaps(seen);
-    } else {
-      for (const LimitFinder::Recording::Part* part : judged_parts_) {
-        seen.largest.push_back(part->evidence[track]);
-      }
-    }
-    pools[pool].push_back(std::move(seen));
   }
+  const double share = budgetOf(findings, parameters, tuning_.most_of_training) / numberOfPools();
   for (const auto& [pool, tracks] : pools) {
-    search(pool, tracks);
+    search(pool.first, tracks, share);
   }
 }
 
@@ -109,27 +103,16 @@ void LimitSearch::gatherParts(const LimitFinder::Findings& findings) {
   }
 }
 
-LimitSearch::Pool LimitSearch::poolOf(Channel channel) {
-  switch (channel) {
-    case Channel::kOverdue:
-      return Pool::kOthers;
-    case Channel::kFewer:
-    case Channel::kMore:
-      return Pool::kRates;
-    case Channel::kDelay:
-      return Pool::kDelays;
-    case Channel::kSlowDelay:
-      return Pool::kSlowDelays;
-    case Channel::kAnswer:
-      return Pool::kAnswers;
-    case Channel::kDeadline:
-      break;
+std::pair<LimitSearch::Pool, LimitSearch::Seen> LimitSearch::seenBy(std::size_t track) const {
+  Seen seen{track, model_.leastLimit(track), {}};
+  if (model_.finding(track) == Finding::kSilent) {
+    seen.largest = gapsOf(model_.tracks()[track].to);
+    return {{kindOfGaps(seen), ""}, seen};
   }
-  return Pool::kDeadlines;
-}
-
-double LimitSearch::leastMargin(Pool pool) const {
-  return pool == Pool::kDeadlines ? tuning_.least_deadline_margin : tuning_.least_margin;
+  for (const LimitFinder::Recording::Part* part : judged_parts_) {
+    seen.largest.push_back(part->evidence[track]);
+  }
+  return {{Kind::kEvidence, channelLabel(model_.tracks()[track])}, seen};
 }
 
 std::vector<double> LimitSearch::gapsOf(EventId id) const {
@@ -148,26 +131,26 @@ std::vector<double> LimitSearch::gapsOf(EventId id) const {
   return longest;
 }
 
-LimitSearch::Pool LimitSearch::poolOfGaps(const Seen& seen) const {
+LimitSearch::Kind LimitSearch::kindOfGaps(const Seen& seen) const {
   const double mean_gap = model_.meanGap(model_.tracks()[seen.track].to);
   std::vector<double> sorted = seen.largest;
   std::sort(sorted.rbegin(), sorted.rend());
   const double second = sorted.size() > 1 && sorted[1] > 0 ? sorted[1] : sorted[0];
-  return second - window() >= tuning_.regular * mean_gap ? Pool::kOthers
-         : mean_gap < tuning_.fast * window()            ? Pool::kFastTimers
-                                                         : Pool::kTimers;
+  return second - window() >= tuning_.regular * mean_gap ? Kind::kOthers
+         : mean_gap < tuning_.fast * window()            ? Kind::kFastTimers
+                                                         : Kind::kTimers;
 }
 
-void LimitSearch::search(Pool pool, const std::vector<Seen>& tracks) {
-  const bool timers = pool == Pool::kTimers || pool == Pool::kFastTimers;
-  const bool gaps = timers || pool == Pool::kOthers;
+void LimitSearch::search(Kind kind, const std::vector<Seen>& tracks, double share) {
+  const bool timers = kind == Kind::kTimers || kind == Kind::kFastTimers;
+  const bool gaps = kind != Kind::kEvidence;
   HeldOut held_out(gaps ? with_gaps_ : judged_, timers ? tuning_.scale_of_timers : tuning_.scale,
                    tuning_);
   for (const Seen& seen : tracks) {
     held_out.add(seen.largest, seen.least);
   }
-  const double margin = std::min(held_out.margin(share_, leastMargin(pool)),
-                                 gaps ? tuning_.most_gap_margin : tuning_.most_margin);
+  const Margins margins = model_.tracks()[tracks.front().track].channel->margins(tuning_);
+  const double margin = std::min(held_out.margin(share, margins.least), margins.most);
   double rate_of_tails = 0;
   for (const Seen& seen : tracks) {
     // A track that would have raised an alarm had its worst start been left out gets a wider
@@ -179,43 +162,21 @@ void LimitSearch::search(Pool pool, const std::vector<Seen>& tracks) {
     const double found =
         std::max(seen.least, own * std::max(largest, tuning_.share_of_least * seen.least));
     double& limit = limits_[seen.track];
-    if (pool == Pool::kOthers) {
-      const GapTail tail = tailOf(seen);
-      const double age = std::max(found - window(),
-                                  std::min(tail.age(share_ / static_cast<double>(tracks.size())),
-                                           tuning_.most_tail_margin * (largest - window())));
-      limit = limitOfAge(seen.track, age);
-      rate_of_tails += std::isnan(limit) ? 0 : tail.rate(age);
-    } else {
-      limit = limitOf(seen.track, found);
+    if (!gaps) {
+      limit = model_.expectation(seen.track).isUsable(seen.track, found) ? found : kNone;
+      continue;
     }
-  }
-  if (pool != Pool::kSlowDelays) {  // they raise no alarm
-    const double rate = held_out.rate(margin);
-    rate_ += pool == Pool::kOthers ? std::min(rate, rate_of_tails) : rate;
-  }
-}
-
-double LimitSearch::limitOf(std::size_t track, double found) const {
-  const auto& [channel, to, from] = model_.tracks()[track];
-  switch (channel) {
-    case Channel::kOverdue:
-      return limitOfAge(track, found - window());
-    case Channel::kDelay:
-    case Channel::kSlowDelay:
-      return found > tuning_.most_delay_limit ? kNone : found;
-    case Channel::kAnswer:
-      return found / model_.missed(track) * model_.meanGap(from) > tuning_.longest_wait * 1e9
-                 ? kNone
-                 : found;
-    case Channel::kDeadline: {
-      const double usual =
-          model_.countsRequests(track) ? model_.usualDelay(from, from, 0.5) : 1;  // [s]
-      return found * usual > tuning_.longest_deadline ? kNone : found;
+    double age = found - window();
+    const GapTail tail = tailOf(seen);
+    if (kind == Kind::kOthers) {
+      age = std::max(age, std::min(tail.age(share / static_cast<double>(tracks.size())),
+                                   tuning_.most_tail_margin * (largest - window())));
     }
-    default:
-      return found;
+    limit = limitOfAge(seen.track, age);
+    rate_of_tails += std::isnan(limit) ? 0 : tail.rate(age);
   }
+  const double rate = held_out.rate(margin);
+  rate_ += kind == Kind::kOthers ? std::min(rate, rate_of_tails) : rate;
 }
 
 double LimitSearch::limitOfAge(std::size_t track, double age) const {
@@ -234,32 +195,6 @@ GapTail LimitSearch::tailOf(const Seen& seen) const {
   }
   return {gaps.longest_gaps, sumOf(with_gaps_), tuning_.regular * model_.meanGap(id),
           static_cast<std::size_t>(tuning_.tail_gaps)};
-}
-
-LimitSearch::Linker LimitSearch::linker(const LimitFinder::Findings& findings,
-                                        const LimitFinder::Parameters& parameters,
-                                        const Tuning& tuning) {
-  std::vector<Span> spans;
-  for (const LimitFinder::Recording& recording : findings) {
-    spans.push_back({recording.start, recording.end, recording.robot_start});
-  }
-  const std::vector<std::size_t> starts = startsOf(spans, toNanoseconds(tuning.same_start));
-  std::vector<Part> parts;
-  std::vector<double> largest;
-  for (std::size_t k = 0; k < findings.size(); ++k) {
-    for (const LimitFinder::Recording::Part& part : findings[k].parts) {
-      parts.push_back({starts[k], hoursOf(part.windows, parameters.window)});
-      largest.push_back(part.linker);
-    }
-  }
-  HeldOut held_out(parts, tuning.scale, tuning);
-  held_out.add(largest, kLeastLinkerLimit);
-  const double margin = held_out.margin(
-      budgetOf(findings, parameters, tuning.most_of_training) / kShares, kLeastLinkerMargin);
-  const double most = *std::max_element(largest.begin(), largest.end());
-  return {std::max(kLeastLinkerLimit,
-                   margin * std::max(most, tuning.share_of_least * kLeastLinkerLimit)),
-          held_out.rate(margin)};
 }
 
 }  // namespace self_awareness::core::evidence

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "core/evidence/limits/gap_tail.h"
@@ -10,12 +12,11 @@
 
 namespace self_awareness::core::evidence {
 
-/// Finds the limits of a model's tracks, and of the linker, from what recordings of normal
-/// operation showed (docs/method.md, sections 5.2 and 5.3). LimitFinder gathers that.
+/// Finds the limits of a model's tracks from what recordings of normal operation showed
+/// (docs/method.md, sections 5.2 and 5.3). LimitFinder gathers that.
 class LimitSearch {
  public:
   /// @param model must outlive this, as the findings and the relations must
-  /// @param findings of the first pass
   /// @param relations by track; those that are not watched get no limit
   LimitSearch(const Model& model, const LimitFinder::Findings& findings,
               const std::vector<Relation>& relations, const LimitFinder::Parameters& parameters);
@@ -25,26 +26,12 @@ class LimitSearch {
   /// False alarms an hour to be expected of all tracks.
   double rate() const { return rate_; }
 
-  struct Linker {
-    double limit = 0;
-    double rate = 0;  ///< false alarms an hour to be expected
-  };
-  /// @param findings of the second pass, at least one
-  static Linker linker(const LimitFinder::Findings& findings,
-                       const LimitFinder::Parameters& parameters, const Tuning& tuning);
-
  private:
-  /// Tracks whose values exceed those of other recordings in the same way share what they show.
-  enum class Pool {
-    kFastTimers,
-    kTimers,
-    kOthers,
-    kRates,
-    kDelays,
-    kSlowDelays,
-    kAnswers,
-    kDeadlines
-  };
+  /// Tracks whose values exceed those of other recordings in the same way share what they show:
+  /// silences of fast timers, of other timers, and of what comes irregularly; else those of
+  /// channels with one label.
+  enum class Kind { kFastTimers, kTimers, kOthers, kEvidence };
+  using Pool = std::pair<Kind, std::string>;
   /// A track and its largest values.
   struct Seen {
     std::size_t track = 0;
@@ -52,14 +39,13 @@ class LimitSearch {
     std::vector<double> largest;  // by part
   };
 
-  static Pool poolOf(Channel channel);
-  double leastMargin(Pool pool) const;
   void gatherParts(const LimitFinder::Findings& findings);
+  /// What a track showed, and the pool that it belongs to.
+  std::pair<Pool, Seen> seenBy(std::size_t track) const;
   /// Longest gaps by part [ns], as long as windows can tell them.
   std::vector<double> gapsOf(EventId id) const;
-  Pool poolOfGaps(const Seen& seen) const;
-  void search(Pool pool, const std::vector<Seen>& tracks);
-  double limitOf(std::size_t track, double found) const;
+  Kind kindOfGaps(const Seen& seen) const;
+  void search(Kind kind, const std::vector<Seen>& tracks, double share);
   /// Limit of a silence [ns].
   double limitOfAge(std::size_t track, double age) const;
   /// Of the gaps of training and of the recordings.
@@ -75,7 +61,6 @@ class LimitSearch {
   std::vector<const LimitFinder::Recording::Part*> judged_parts_;
   std::vector<Part> with_gaps_;  // the recordings of the training first
   std::vector<const LimitFinder::Recording::Part*> gap_parts_;
-  double share_ = 0;  // of the budget, for a pool
 
   std::vector<double> limits_;
   double rate_ = 0;

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "core/evidence/channel/channel.h"
 #include "core/evidence/channel/scorer.h"
 #include "core/evidence/limits/limit_search.h"
 #include "core/evidence/limits/misleading_pairs.h"
@@ -42,9 +43,6 @@ void LimitFinder::startRecording(std::shared_ptr<const Model> model, std::int64_
 
 void LimitFinder::startScoring() {
   scorer_ = std::make_unique<Scorer>(judging_, parameters_.window);
-  if (second_pass_) {
-    scorer_->capAt(limits_);  // as the detector does
-  }
   recording_ = {};
   recording_.robot_start = robot_start_;
   recording_.trained_on = judging_ != model_;
@@ -64,7 +62,7 @@ ObservedEvent LimitFinder::observe(const Event& event) {
   }
   recording_.end = event.stamp;
   const ObservedEvent observed{event, !model_->knows(event.id), scorer_->add(event)};
-  if (!second_pass_ && !observed.unknown) {
+  if (!observed.unknown) {
     if (observed.gap) {
       std::int64_t& longest = recording_.parts.back().longest_gaps[event.id];
       longest = std::max(longest, *observed.gap);
@@ -94,8 +92,8 @@ void LimitFinder::startPart() {
     joinParts();
   }
   Recording::Part part;
-  part.evidence.resize(second_pass_ ? 0 : model_->tracks().size());
-  part.longest_gaps.resize(second_pass_ ? 0 : model_->size());
+  part.evidence.resize(model_->tracks().size());
+  part.longest_gaps.resize(model_->size());
   recording_.parts.push_back(std::move(part));
 }
 
@@ -108,7 +106,6 @@ void LimitFinder::joinParts() {
     Recording::Part& part = recording_.parts[2 * k];
     const Recording::Part& next = recording_.parts[2 * k + 1];
     part.windows += next.windows;
-    part.linker = std::max(part.linker, next.linker);
     largest(part.evidence, next.evidence);
     largest(part.longest_gaps, next.longest_gaps);
     if (k > 0) {
@@ -124,13 +121,9 @@ void LimitFinder::endRecording() {
     return;
   }
   first_stamp_.reset();
-  if (!second_pass_) {
-    misleading_->finish();
-    for (const MisleadingPairs::Said said : misleading_->takeFindings()) {
-      recording_.said.push_back(static_cast<Said>(said));
-    }
-  }
-  (second_pass_ ? linker_findings_ : findings_).push_back(std::move(recording_));
+  misleading_->finish();
+  recording_.said = misleading_->takeFindings();
+  findings_.push_back(std::move(recording_));
   recording_ = {};
 }
 
@@ -148,13 +141,8 @@ void LimitFinder::close(const Window& window, std::int64_t end) {
   Recording::Part& part = recording_.parts.back();
   ++part.windows;
   ++recording_.windows;
-  if (second_pass_) {
-    part.linker =
-        std::max(part.linker, static_cast<float>(sumUp(evidence, *judging_, limits_).linker));
-    return;
-  }
   for (std::size_t track = 0; track < evidence.size(); ++track) {
-    if (model_->tracks()[track].channel != Channel::kOverdue) {
+    if (model_->finding(track) != Finding::kSilent) {
       part.evidence[track] = std::max(part.evidence[track], static_cast<float>(evidence[track]));
     }
   }
@@ -168,8 +156,7 @@ std::uint64_t LimitFinder::windows() const {
   return windows;
 }
 
-void LimitFinder::startSecondPass() {
-  finish();
+LimitFinder::Found LimitFinder::find() const {
   if (model_->tracks().empty()) {
     throw std::invalid_argument("the model watches nothing, as no event type has " +
                                 std::to_string(std::llround(model_->tuning().fewest_gaps)) +
@@ -189,76 +176,44 @@ void LimitFinder::startSecondPass() {
                                 std::to_string(std::llround(model_->tuning().least_time)) +
                                 " s are needed after the first seconds of every recording");
   }
-  findRelations();
-  const LimitSearch search(*model_, findings_, relations_, parameters_);
-  limits_.tracks = search.limits();
-  tracks_rate_ = search.rate();
-  second_pass_ = true;
-}
-
-void LimitFinder::startSecondPass(Limits limits) {
-  if (limits.tracks.size() != model_->tracks().size()) {
-    throw std::invalid_argument("the limits are those of another model");
-  }
-  finish();
-  limits_ = std::move(limits);
-  second_pass_ = true;
+  Found found;
+  found.relations = findRelations();
+  const LimitSearch search(*model_, findings_, found.relations, parameters_);
+  found.limits.tracks = search.limits();
+  found.expected_rate = search.rate();
+  return found;
 }
 
 void LimitFinder::merge(const Findings& other) {
   for (const Recording& recording : other) {
     for (const Recording::Part& part : recording.parts) {
-      if (!second_pass_ && (part.evidence.size() != model_->tracks().size() ||
-                            part.longest_gaps.size() != model_->size())) {
+      if (part.evidence.size() != model_->tracks().size() ||
+          part.longest_gaps.size() != model_->size()) {
         throw std::invalid_argument("the findings are those of another model");
       }
     }
   }
-  Findings& mine = second_pass_ ? linker_findings_ : findings_;
-  mine.insert(mine.end(), other.begin(), other.end());
+  findings_.insert(findings_.end(), other.begin(), other.end());
 }
 
-void LimitFinder::findRelations() {
+std::vector<Relation> LimitFinder::findRelations() const {
   const Relations relations(model_->statistics(), graph_, model_->tuning());
+  std::vector<Relation> found;
   for (std::size_t track = 0; track < model_->tracks().size(); ++track) {
-    const auto& [channel, to, from] = model_->tracks()[track];
-    Relation relation;
-    if (channel == Channel::kAnswer) {
-      relation = relations.answers(from, to);
-    } else if (channel == Channel::kDeadline) {
-      relation = relations.deadline(from, to);
-    } else if (channel == Channel::kDelay || channel == Channel::kSlowDelay) {
-      std::vector<Span> as_usual;
-      for (const Recording& recording : findings_) {
-        if (!recording.trained_on && recording.said[track] == Said::kAsUsual) {
-          as_usual.push_back({recording.start, recording.end, recording.robot_start});
-        }
+    const Track& watched = model_->tracks()[track];
+    const bool may_mislead = watched.channel->mayMislead();
+    std::vector<Span> as_usual;
+    bool misleads = false;
+    for (const Recording& recording : findings_) {
+      if (!recording.trained_on && recording.said[track] == Said::kAsUsual) {
+        as_usual.push_back({recording.start, recording.end, recording.robot_start});
       }
-      relation = relations.delays(from, to, as_usual);
-      for (const Recording& recording : findings_) {
-        relation.watched &= from == to || recording.said[track] != Said::kMisleading;
-      }
-    } else {
-      relation.watched = true;
+      misleads = misleads || (may_mislead && recording.said[track] == Said::kMisleading);
     }
-    relations_.push_back(relation);
+    Relation& relation = found.emplace_back(watched.channel->reason(watched, relations, as_usual));
+    relation.watched = relation.watched && !misleads;
   }
-}
-
-Limits LimitFinder::limits() const {
-  if (linker_findings_.empty()) {
-    throw std::logic_error("limits are known after the second pass");
-  }
-  Limits limits = limits_;
-  limits.linker = LimitSearch::linker(linker_findings_, parameters_, model_->tuning()).limit;
-  return limits;
-}
-
-double LimitFinder::expectedRate() const {
-  if (linker_findings_.empty()) {
-    throw std::logic_error("the expected rate is known after the second pass");
-  }
-  return tracks_rate_ + LimitSearch::linker(linker_findings_, parameters_, model_->tuning()).rate;
+  return found;
 }
 
 }  // namespace self_awareness::core::evidence

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/evidence/channel/channel.h"
 #include "core/evidence/count/bin_arrays.h"
+#include "core/evidence/watch/gain.h"
 
 namespace self_awareness::core::evidence {
 namespace {
@@ -16,16 +18,16 @@ MisleadingPairs::MisleadingPairs(const Model& model)
     : tuning_(model.tuning()), pairs_(model.size()), said_(model.tracks().size(), Said::kNothing) {
   const Statistics& training = model.statistics();
   const InformationGain gain(training, training, tuning_.fewest_delays);
-  const std::vector<Statistics::SumOfDelays> to_any = training.delaysToAny();
+  const std::vector<SumOfDelays> to_any = training.delaysToAny();
   for (std::size_t track = 0; track < model.tracks().size(); ++track) {
     const auto& [channel, to, from] = model.tracks()[track];
-    if (channel != Channel::kDelay) {
+    if (!channel->mayMislead()) {
       continue;
     }
     Pair pair;
     pair.from = from;
     pair.track = track;
-    const LogProbabilities of_pair = logProbabilities(training.delays(from, to));
+    const LogProbabilities of_pair = training.delays(from, to).logProbabilities();
     const LogProbabilities of_any = logProbabilities(to_any[from]);
     asArray(pair.log_ratios) = asArray(of_pair) - asArray(of_any);
     pair.usual_gain = gain(from, to);
@@ -57,7 +59,7 @@ void MisleadingPairs::finish() {
   closePart();
 }
 
-std::vector<MisleadingPairs::Said> MisleadingPairs::takeFindings() {
+std::vector<Said> MisleadingPairs::takeFindings() {
   std::vector<Said> said(said_.size(), Said::kNothing);
   said.swap(said_);
   return said;
@@ -85,7 +87,7 @@ void MisleadingPairs::closePart() {
       const double gain = (delays * asArray(pair.log_ratios)).sum() / number;
       const Said said =
           gain < tuning_.least_gain_left * pair.usual_gain ? Said::kMisleading : Said::kAsUsual;
-      said_[pair.track] = said_[pair.track + 1] = std::max(said_[pair.track], said);
+      said_[pair.track] = std::max(said_[pair.track], said);
     }
   }
   startPart();

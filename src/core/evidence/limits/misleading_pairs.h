@@ -7,6 +7,7 @@
 
 #include "core/evidence/count/log_bins.h"
 #include "self_awareness/core/evidence/channel/model.h"
+#include "self_awareness/core/evidence/watch/relation.h"
 
 namespace self_awareness::core::evidence {
 
@@ -22,18 +23,16 @@ class MisleadingPairs {
   void add(const Event& event);
   /// Ends the recording.
   void finish();
-  /// What a delay track said in a recording.
-  enum class Said : std::uint8_t { kNothing, kAsUsual, kMisleading };
   /// Returns what the recording said that has ended, by track, and forgets it.
   std::vector<Said> takeFindings();
 
  private:
   struct Pair {
     EventId from = 0;
-    std::size_t track = 0;                           // the first of its two
+    std::size_t track = 0;
     std::array<double, log_bins::kBins> log_ratios;  // log P_ij - log Q_i [nat], by bin
     double usual_gain = 0;                           // their mean in training [nat]
-    Statistics::Delays delays{};                     // of the part
+    DelayHistogram delays{};                         // of the part
   };
 
   void startPart();

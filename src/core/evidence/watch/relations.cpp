@@ -33,12 +33,9 @@ Relations::Relations(const Statistics& counts, const SourceGraph& graph, const T
   double types = 0;
   for (EventId id = 0; id < counts.size(); ++id) {
     const Statistics::Type& type = counts.type(id);
-    mean_gaps_.push_back(
-        type.gaps == 0 ? 0 : static_cast<double>(type.gap_sum) / static_cast<double>(type.gaps));
     types += static_cast<double>(type.gaps) >= tuning.fewest_gaps ? 1 : 0;
-    const Statistics::Delays& delays = counts.delays(id, id);
-    const double longest =
-        type.longest_gaps.empty() ? 0 : static_cast<double>(type.longest_gaps.front());
+    const DelayHistogram& delays = counts.delays(id, id);
+    const auto longest = static_cast<double>(type.longestGap());
     for (std::size_t bin = 0; bin < delays.size(); ++bin) {
       if (delays[bin] > 0) {
         gaps_[id].push_back({std::min(log_bins::middle(bin), longest),
@@ -54,7 +51,7 @@ Relations::Relations(const Statistics& counts, const SourceGraph& graph, const T
       }
       Gap& last = gaps_[id].back();
       const double edge = last.length;
-      const double beyond = std::max((mean_gaps_[id] - others) / last.share - edge, 0.0);
+      const double beyond = std::max((meanGap(id) - others) / last.share - edge, 0.0);
       const double share = last.share / kTailPoints;
       gaps_[id].pop_back();
       double mean = 0;  // of the points below
@@ -93,44 +90,28 @@ bool Relations::reaches(EventId from, EventId to) const {
 bool Relations::isIrregular(EventId from, EventId to) const {
   // As little as the gaps can vary by their bins, against as much as the delays can.
   const auto range = [&](EventId first, EventId second, bool widest) {
-    const Statistics::Delays& delays = counts_.delays(first, second);
-    const double total = static_cast<double>(counts_.total(first, second));
-    double below = 0;
-    std::size_t low = 0;
-    std::size_t high = 0;
-    for (std::size_t bin = 0; bin < delays.size(); ++bin) {
-      low = below <= total * 0.05 ? bin : low;
-      high = below < total * 0.95 ? bin : high;
-      below += delays[bin];
-    }
+    const DelayHistogram::Bins bins = counts_.delays(first, second).middle(0.9);
     const auto edge = [&](std::size_t bin) {
       return bin < log_bins::kBins ? static_cast<double>(log_bins::lowerEdge(bin))
                                    : std::numeric_limits<double>::infinity();
     };
-    return widest ? edge(high + 1) - edge(low) : std::max(edge(high) - edge(low + 1), 0.0);
+    return widest ? edge(bins.last + 1) - edge(bins.first)
+                  : std::max(edge(bins.last) - edge(bins.first + 1), 0.0);
   };
   const double delays = range(from, to, true);
   return std::min(range(from, from, false), range(to, to, false)) > tuning_.irregular * delays;
 }
 
 double Relations::period(EventId from, EventId to) const {
-  return std::min(mean_gaps_[from], mean_gaps_[to]);
+  return std::min(meanGap(from), meanGap(to));
 }
 
 double Relations::medianDelay(EventId from, EventId to) const {
-  const Statistics::Delays& delays = counts_.delays(from, to);
-  const auto total = static_cast<double>(counts_.total(from, to));
-  double below = 0;
-  std::size_t median = 0;
-  for (std::size_t bin = 0; bin < delays.size() && below < total / 2; ++bin) {
-    below += delays[bin];
-    median = bin;
-  }
-  return log_bins::middle(median);
+  return log_bins::middle(counts_.delays(from, to).middle(0).last);
 }
 
 double Relations::spread(EventId from, EventId to, double left_out) const {
-  const Statistics::Delays& delays = counts_.delays(from, to);
+  const DelayHistogram& delays = counts_.delays(from, to);
   const double wanted = (1 - left_out) * static_cast<double>(counts_.total(from, to));
   const double period = this->period(from, to);
   if (wanted <= 0 || period <= 0) {
@@ -215,7 +196,7 @@ Relation Relations::delays(EventId from, EventId to, const std::vector<Span>& mo
 }
 
 double Relations::missRateByChance(EventId from, EventId to) const {
-  if (mean_gaps_[to] <= 0) {
+  if (meanGap(to) <= 0) {
     return 0;
   }
   double misses = 0;
@@ -224,10 +205,10 @@ double Relations::missRateByChance(EventId from, EventId to) const {
       misses += asked.share * gap.share * std::max(gap.length - asked.length, 0.0);
     }
   }
-  return std::min(misses / mean_gaps_[to], 1.0);
+  return std::min(misses / meanGap(to), 1.0);
 }
 
-Relation Relations::answers(EventId from, EventId to) const {
+Relation Relations::owed(EventId from, EventId to) const {
   Relation relation;
   const auto gaps = static_cast<double>(counts_.type(from).gaps);
   const double misses = missRate(counts_.type(from).gaps, counts_.answers(from, to));
@@ -235,27 +216,19 @@ Relation Relations::answers(EventId from, EventId to) const {
   relation.reaches = reaches(from, to);
   relation.irregular = by_chance >= tuning_.least_chance_misses &&
                        misses <= tuning_.most_of_chance_misses * by_chance;
-  relation.watched = relation.irregular && divergence(gaps, misses, by_chance) >
-                                               std::log(looked_at_ / tuning_.chance_of_any);
+  // Two that answer to the same come one after the other, now in this order, now in that.
+  const DelayHistogram::Bins usual = counts_.delays(from, to).middle(0.9);
+  const bool in_order =
+      log_bins::middle(usual.first) >= tuning_.least_of_longest * log_bins::middle(usual.last);
+  relation.watched =
+      relation.irregular && in_order && (graph_.empty() || relation.reaches) &&
+      divergence(gaps, misses, by_chance) > std::log(looked_at_ / tuning_.chance_of_any);
   return relation;
 }
 
-Relation Relations::deadline(EventId from, EventId to) const {
-  Relation relation = answers(from, to);
-  // Two that answer to the same come one after the other, now in this order, now in that.
-  const Statistics::Delays& delays = counts_.delays(from, to);
-  const auto total = static_cast<double>(counts_.total(from, to));
-  double below = 0;
-  double shortest = 0;
-  double longest = 0;
-  for (std::size_t bin = 0; bin < delays.size(); ++bin) {
-    shortest = below <= 0.05 * total ? log_bins::middle(bin) : shortest;
-    longest = below < 0.95 * total ? log_bins::middle(bin) : longest;
-    below += delays[bin];
-  }
-  relation.watched &=
-      shortest >= tuning_.least_of_longest * longest && (graph_.empty() || relation.reaches);
-  return relation;
+double missRate(std::uint64_t gaps, std::uint64_t answers) {
+  const auto all = static_cast<double>(gaps);
+  return (all - static_cast<double>(answers) + 0.5) / (all + 1);
 }
 
 }  // namespace self_awareness::core::evidence

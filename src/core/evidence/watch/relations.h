@@ -1,19 +1,21 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "core/evidence/count/starts.h"
-#include "self_awareness/core/evidence/channel/model.h"
 #include "self_awareness/core/evidence/count/statistics.h"
+#include "self_awareness/core/evidence/tuning.h"
+#include "self_awareness/core/evidence/watch/relation.h"
 #include "self_awareness/core/verdict/source_graph.h"
 
 namespace self_awareness::core::evidence {
 
 /// Says of two event types whether what they do together has a reason, or may be chance
-/// (docs/method.md, section 3.6). Two timers that have nothing to do with each other keep one
+/// (docs/method.md, section 3.5). Two timers that have nothing to do with each other keep one
 /// phase for as long as they run, and so look like question and answer within a start.
 class Relations {
  public:
@@ -24,12 +26,9 @@ class Relations {
   /// Reasons to watch the delays from `from` to `to`.
   /// @param more recordings that were not trained on, in which the delays were as in training
   Relation delays(EventId from, EventId to, const std::vector<Span>& more = {}) const;
-  /// Reasons to watch whether `to` comes after `from`: that it does says more than what `to` does
-  /// at any time.
-  Relation answers(EventId from, EventId to) const;
-
-  /// Reasons to watch whether `to` comes in time after `from`.
-  Relation deadline(EventId from, EventId to) const;
+  /// Reasons to watch whether `to` comes in time after `from` asks for it: that it comes says more
+  /// than what `to` does at any time.
+  Relation owed(EventId from, EventId to) const;
 
   /// Share of the gaps of `from` in which no `to` would come if they had nothing to do with each
   /// other, 0 to 1.
@@ -43,6 +42,7 @@ class Relations {
 
   bool reaches(EventId from, EventId to) const;
   bool isIrregular(EventId from, EventId to) const;
+  double meanGap(EventId id) const { return counts_.type(id).meanGap(); }  // [ns]
   /// The shorter of the two mean gaps [ns].
   double period(EventId from, EventId to) const;
   double medianDelay(EventId from, EventId to) const;  // [ns]
@@ -56,7 +56,10 @@ class Relations {
   std::set<std::string> broadcasts_;    // topics that everybody hears
   double looked_at_ = 1;                // number of pairs
   std::vector<std::vector<Gap>> gaps_;  // by id
-  std::vector<double> mean_gaps_;       // [ns] by id
 };
+
+/// Share of the gaps of an event type in which another did not answer, above 0 and below 1: p of
+/// docs/method.md, section 3.4.
+double missRate(std::uint64_t gaps, std::uint64_t answers);
 
 }  // namespace self_awareness::core::evidence

@@ -1,5 +1,3 @@
-#include "self_awareness/core/evidence/watch/tracks.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,6 +8,7 @@
 #include <vector>
 
 #include "../recordings.h"
+#include "self_awareness/core/evidence/channel/watched.h"
 #include "self_awareness/core/verdict/suspect.h"
 
 namespace self_awareness::core::evidence {

@@ -1,20 +1,16 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
+#include "self_awareness/core/evidence/count/delay_histogram.h"
 #include "self_awareness/core/stream/event.h"
 #include "self_awareness/core/stream/recent_counts.h"
 #include "self_awareness/core/stream/vocabulary.h"
 
 namespace self_awareness::core::evidence {
-
-/// Number of bins in which delays are counted: four an octave from 2.5 ms to 10.24 s, one for all
-/// shorter and one for all longer delays (docs/method.md, section 3.1).
-constexpr std::size_t kDelayBins = 50;
 
 /// The rate of an event type is its number of events in this time [ns] (docs/method.md, section
 /// 1.4).
@@ -31,11 +27,6 @@ class Statistics {
   /// So many of the longest gaps of a type are kept: limits are extrapolated from them.
   static constexpr std::size_t kLongestGaps = 32;
 
-  /// Counts of delays, by bin.
-  using Delays = std::array<std::uint32_t, kDelayBins>;
-  /// Sums of such counts, which may need more bits.
-  using SumOfDelays = std::array<std::uint64_t, kDelayBins>;
-
   /// Counts of one event type.
   struct Type {
     std::uint64_t events = 0;
@@ -47,13 +38,20 @@ class Statistics {
     /// Delays since the last event of the type in pairs that only() left out.
     SumOfDelays left_out{};
 
+    /// Keeps the gap [ns] if it is one of the longest.
     void addGap(std::int64_t gap);
+    /// Mean gap [ns]; 0 if there was none.
+    double meanGap() const {
+      return gaps == 0 ? 0 : static_cast<double>(gap_sum) / static_cast<double>(gaps);
+    }
+    /// Longest gap [ns]; 0 if there was none.
+    std::int64_t longestGap() const { return longest_gaps.empty() ? 0 : longest_gaps.front(); }
   };
   /// What the events of a type e count about another type.
   struct Partner {
     EventId id = 0;             ///< of the other type
     std::uint64_t answers = 0;  ///< gaps between two e in which the other came
-    Delays delays{};            ///< from the last event of the other to an e
+    DelayHistogram delays{};    ///< from the last event of the other to an e
   };
   /// Ordered by id, each once.
   using Partners = std::vector<Partner>;
@@ -87,9 +85,9 @@ class Statistics {
   Type& type(EventId id) { return types_.at(id); }
   const Type& type(EventId id) const { return types_.at(id); }
   /// Delays from the last `from` to a `to`; zeros where none was counted.
-  const Delays& delays(EventId from, EventId to) const;
+  const DelayHistogram& delays(EventId from, EventId to) const;
   /// Number of these delays.
-  std::uint64_t total(EventId from, EventId to) const;
+  std::uint64_t total(EventId from, EventId to) const { return delays(from, to).total(); }
   /// Gaps of `from` in which a `to` came.
   std::uint64_t answers(EventId from, EventId to) const;
   const Partners& partners(EventId id) const { return partners_.at(id); }

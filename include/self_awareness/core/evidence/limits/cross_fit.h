@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "self_awareness/core/evidence/channel/model.h"
-#include "self_awareness/core/evidence/watch/tracks.h"
+#include "self_awareness/core/evidence/channel/watched.h"
 
 namespace self_awareness::core::evidence {
 

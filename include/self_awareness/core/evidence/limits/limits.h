@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "self_awareness/core/evidence/channel/model.h"
+#include "self_awareness/core/evidence/watch/relation.h"
 #include "self_awareness/core/stream/windows.h"
 #include "self_awareness/core/verdict/source_graph.h"
 
@@ -15,8 +16,7 @@ class MisleadingPairs;
 class Scorer;
 
 /// Finds the limits of a model's evidence on recordings of normal operation (docs/method.md,
-/// section 5). The first pass finds those of the tracks, the second pass over the same recordings
-/// that of the linker. A number of false alarms an hour is allowed to all of them together.
+/// section 5). A number of false alarms an hour is allowed to all of them together.
 class LimitFinder : private WindowObserver {
  public:
   struct Parameters {
@@ -28,12 +28,6 @@ class LimitFinder : private WindowObserver {
     void validate() const;
   };
 
-  /// What a delay track said in a recording.
-  enum class Said : std::uint8_t {
-    kNothing,    ///< there were too few delays
-    kAsUsual,    ///< as much as in training
-    kMisleading  ///< less than in training, in a part of the recording
-  };
   /// What one recording says. It is cut into at most kMostParts parts of one length.
   struct Recording {
     std::int64_t start = 0;        ///< stamp of the first event [ns]
@@ -44,9 +38,8 @@ class LimitFinder : private WindowObserver {
     /// A part of it.
     struct Part {
       std::uint64_t windows = 0;               ///< looked at
-      std::vector<float> evidence;             ///< the largest, by track; 0 for overdue
+      std::vector<float> evidence;             ///< the largest, by track; 0 for silences
       std::vector<std::int64_t> longest_gaps;  ///< [ns], by id; 0: none
-      float linker = 0;                        ///< the largest of the second pass
     };
     std::vector<Part> parts;
     std::vector<Said> said;  ///< by track
@@ -69,38 +62,30 @@ class LimitFinder : private WindowObserver {
   void restart();
   /// Ends the recording.
   void finish();
-  /// Ends the first pass and finds the limits of the tracks. All recordings must then come once
-  /// more, but those that were merged from an earlier search.
-  /// @throw std::invalid_argument if there was too little data: less than its tuning asks for, or
-  /// so little to train on that the model has no tracks
-  void startSecondPass();
-  /// Starts the second pass with the limits that a first one elsewhere found.
-  /// @throw std::invalid_argument if they belong to another model
-  void startSecondPass(Limits limits);
-  /// What the recordings that have ended said, in this pass; in the second, of the linker only.
-  const Findings& findings() const { return second_pass_ ? linker_findings_ : findings_; }
-  /// What they said in the first pass.
-  const Findings& firstFindings() const { return findings_; }
-  /// Adds what recordings said elsewhere, in the same pass as here.
+  /// What the recordings that have ended said.
+  const Findings& findings() const { return findings_; }
+  /// Adds what recordings said elsewhere.
   /// @throw std::invalid_argument if the findings belong to another model
   void merge(const Findings& other);
-  /// Limits of the tracks alone, once the second pass has started: the linker's is still missing.
-  const Limits& trackLimits() const { return limits_; }
-  /// Limits of the tracks and of the linker.
-  /// @throw std::logic_error before the second pass, or if it has had no recording so far
-  Limits limits() const;
-  /// False alarms an hour to be expected with these limits: what recordings show that are left out
-  /// in turn.
-  /// @throw std::logic_error as limits()
-  double expectedRate() const;
-  /// What speaks for the relation that a track watches, from the second pass on; the own history
-  /// of an event type is always watched.
-  const std::vector<Relation>& relations() const { return relations_; }
+
+  /// What comes of the findings.
+  struct Found {
+    Limits limits;
+    /// False alarms an hour to be expected with these limits: what recordings show that are left
+    /// out in turn.
+    double expected_rate = 0;
+    /// What speaks for the relation that a track watches, by track; what looks at one event type
+    /// is always watched.
+    std::vector<Relation> relations;
+  };
+  /// Finds the limits by all findings.
+  /// @throw std::invalid_argument if there was too little data: less than its tuning asks for, or
+  /// so little to train on that the model has no tracks
+  Found find() const;
 
   const Parameters& parameters() const { return parameters_; }
   const SourceGraph& graph() const { return graph_; }
-  bool inSecondPass() const { return second_pass_; }
-  /// Number of windows that were looked at, in the first pass.
+  /// Number of windows that were looked at.
   std::uint64_t windows() const;
 
   static constexpr std::size_t kMostParts = 16;
@@ -114,7 +99,7 @@ class LimitFinder : private WindowObserver {
   void startPart();
   /// Joins neighbouring parts: they then last twice as long.
   void joinParts();
-  void findRelations();
+  std::vector<Relation> findRelations() const;
 
   std::shared_ptr<const Model> model_;
   Parameters parameters_;
@@ -129,11 +114,6 @@ class LimitFinder : private WindowObserver {
   std::unique_ptr<MisleadingPairs> misleading_;
 
   Findings findings_;
-  Findings linker_findings_;
-  bool second_pass_ = false;
-  Limits limits_;
-  std::vector<Relation> relations_;  // by track
-  double tracks_rate_ = 0;           // expected false alarms an hour of the tracks
 };
 
 }  // namespace self_awareness::core::evidence
