@@ -124,6 +124,8 @@ void bindOutputFiles(py::module& module);
 void bindEventLogs(py::module& module);
 /// Binds the encoding, and the reading of bags and event logs (recording_bindings.cpp).
 void bindRecordings(py::module& module);
+/// Binds what files say of their versions (file_version_bindings.cpp).
+void bindFileVersions(py::module& module);
 /// Binds model files (model_bindings.cpp).
 void bindModel(py::module& module);
 /// Binds the training (training_bindings.cpp).

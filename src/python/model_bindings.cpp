@@ -155,6 +155,8 @@ void bindModel(py::module& m) {
           "trained on")
       .def_property_readonly(
           "stamp", [](const TrainedModel& self) { return self.stamp.toNSec(); }, "[ns]")
+      .def_readonly("version", &TrainedModel::version,
+                    "FileVersion of its file; of this version if it has none")
       .def_readwrite("calibration", &TrainedModel::calibration,
                      "of the paper's detector; None: not calibrated")
       .def_readwrite("findings", &TrainedModel::findings,
