@@ -88,7 +88,6 @@ void bindModel(py::module& m) {
       .def(py::init<>())
       .def_readwrite("method", &EvidenceCalibration::method)
       .def_readwrite("limits", &EvidenceCalibration::limits)
-      .def_readwrite("linker_limit", &EvidenceCalibration::linker_limit)
       .def_property(
           "relations",
           [](const EvidenceCalibration& self) {
@@ -153,6 +152,8 @@ void bindModel(py::module& m) {
           "trained on")
       .def_property_readonly(
           "stamp", [](const TrainedModel& self) { return self.stamp.toNSec(); }, "[ns]")
+      .def_readonly("version", &TrainedModel::version,
+                    "FileVersion of its file; of this version if it has none")
       .def_readwrite("calibration", &TrainedModel::calibration,
                      "of the paper's detector; None: not calibrated")
       .def_readwrite("findings", &TrainedModel::findings,
