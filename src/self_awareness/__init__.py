@@ -29,7 +29,6 @@ from self_awareness._core import (  # noqa: F401
     EvidenceModel,
     FileError,
     FileVersion,
-    LeastEffect,
     LimitFinder,
     LimitFindings,
     LimitsFound,
