@@ -19,7 +19,8 @@ constexpr double kLeastLinked = 0.5;
 
 inline bool Scorer::arm(Arming& arming, double excess, double usual) const {
   arming.excess += excess;
-  const std::uint32_t needed = arming_events_ << std::min(arming.failures, most_failures_);
+  const std::uint64_t needed = std::uint64_t{arming_events_}
+                               << std::min(arming.failures, most_failures_);
   if (++arming.events < needed) {
     return false;
   }
