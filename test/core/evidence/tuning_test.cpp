@@ -2,15 +2,19 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <memory>
 #include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "recordings.h"
+#include "self_awareness/core/evidence/channel/model.h"
+#include "self_awareness/core/evidence/limits/limits.h"
 #include "self_awareness/core/evidence/watch/tracks.h"
 
 namespace self_awareness::core::evidence {
@@ -151,6 +155,57 @@ TEST(EvidenceTuning, AChannelThatIsSwitchedOffIsNotWatched) {
   }
   EXPECT_EQ(channels({"own gaps", "relations"}), channels({"pairs"}));
   EXPECT_EQ(channels({"linker"}), all);
+}
+
+// A comes at random, and B follows it.
+Events robot(unsigned seed) {
+  const Events asked = irregular(kA, 0, 70 * kSecond, 200 * kMillisecond, seed);
+  return later(together({asked, answers(kB, asked, 20 * kMillisecond)}), seed * kStart);
+}
+
+TEST(EvidenceTuning, EveryEndOfARangeGivesLimitsOrSaysWhyNot) {
+  const Statistics first = countsOf({robot(1)});
+  const Statistics second = countsOf({robot(2)});
+  for (const TuningNumber& number : tuningNumbers()) {
+    for (const double end : {number.least, number.most}) {
+      SCOPED_TRACE(number.name + " = " + std::to_string(end));
+      Tuning tuning;
+      set(tuning, number.name, end);
+      const auto model = std::make_shared<Model>(watch(first, second, {}, tuning));
+      LimitFinder finder(model, {kWindow, 5 * kSecond, 0.5});
+      const std::string error = errorOf([&] {
+        for (const bool second_pass : {false, true}) {
+          if (second_pass) {
+            finder.startSecondPass();
+          }
+          for (const unsigned seed : {3U, 4U}) {
+            finder.startRecording(model);
+            for (const Event& event : robot(seed)) {
+              finder.add(event);
+            }
+            finder.finish();
+          }
+        }
+      });
+      if (error.empty()) {
+        EXPECT_FALSE(std::isnan(finder.expectedRate()));
+        EXPECT_FALSE(std::isnan(finder.limits().linker));
+        const std::vector<double> limits = finder.limits().tracks;
+        EXPECT_EQ(limits.size(), model->tracks().size());
+        EXPECT_FALSE(std::all_of(limits.begin(), limits.end(),
+                                 [](double limit) { return std::isnan(limit); }));
+      }
+    }
+  }
+}
+
+TEST(EvidenceTuning, WithoutARecordingThereAreNoLimitsWhateverTheLeastTime) {
+  Tuning tuning;
+  set(tuning, "least_time", tuningNumber("least_time").least);
+  const auto model =
+      std::make_shared<Model>(watch(countsOf({robot(1)}), countsOf({robot(2)}), {}, tuning));
+  LimitFinder finder(model, {kWindow, 5 * kSecond, 0.5});
+  EXPECT_THROW(finder.startSecondPass(), std::invalid_argument);
 }
 
 }  // namespace
