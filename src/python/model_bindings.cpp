@@ -138,7 +138,9 @@ void bindModel(py::module& m) {
             return self;
           },
           "A small copy, with only the counts that the evidence detector judges by.")
-      .def_readonly("tuning", &TrainedModel::tuning, "the numbers of the method")
+      .def_property_readonly(
+          "tuning", [](const TrainedModel& self) { return self.tuning; },
+          "a copy of the numbers of the method")
       .def_property_readonly(
           "only_half", &TrainedModel::onlyHalf,
           "the half of the training that all recordings belong to; None: there are some of both")

@@ -88,7 +88,7 @@ void bindTuning(py::module& m) {
            "on the delay after an event type with this mean gap [ns], in ns")
       .def("least_effect_on_gap", &Tuning::leastEffectOnGap, py::arg("period"),
            "on the gaps of an event type with this mean gap [ns], in ns")
-      .def("__eq__", [](const Tuning& self, const Tuning& other) { return self == other; })
+      .def(py::self == py::self)
       .def(py::pickle(&stateOf, &fromState));
 }
 

@@ -67,6 +67,7 @@ def _evidence(model: TrainedModel, evidence: EvidenceModel) -> Dict[str, Any]:
         'not_judged': [str(kind) for index, kind in enumerate(model.event_types)
                        if index not in watched],
         'tuning': {number.name: model.tuning.get(number.name) for number in Tuning.numbers()},
+        'without': model.tuning.without,
         'calibration': None,
     }
     if model.evidence_calibration is not None:

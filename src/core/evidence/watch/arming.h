@@ -37,11 +37,12 @@ class Arming {
   /// doubles the next one.
   void add(double surprise, const Numbers& numbers) {
     excess_ += surprise;
-    const std::uint32_t needed = numbers.events << std::min(failures_, numbers.most_failures);
+    const std::uint64_t needed = std::uint64_t{numbers.events}
+                                 << std::min(failures_, numbers.most_failures);
     if (++events_ < needed) {
       return;
     }
-    armed_ = excess_ <= numbers.usual * needed;
+    armed_ = excess_ <= numbers.usual * static_cast<double>(needed);
     failures_ += armed_ ? 0 : 1;
     excess_ = 0;
     events_ = 0;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <string>
@@ -119,7 +120,8 @@ TEST_F(EvidenceBlameTest, ARootThatIsNearItsLimitIsNamedAlready) {
 
 TEST_F(EvidenceBlameTest, ASilentOneIsWordedByTheTrackThatSpeaksAgainstIt) {
   const std::int64_t end = last_ + 2 * model_->longestGap(kA);
-  ASSERT_LT(model_->logSurvival(kA, end - *scorer_.lastSeen(kA)), kRareSilence);
+  ASSERT_LT(model_->logSurvival(kA, end - *scorer_.lastSeen(kA)),
+            std::log(model_->tuning().rare_silence));
   const Track fewer{Channel::kFewer, kA, kA};
   const Track answer{Channel::kAnswer, kB, kA};
   // At half its rate its age is rare, too, but no more than that.

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 #include <vector>
 
@@ -239,53 +238,47 @@ TEST(EvidenceModel, SmallEffectsAreNoFault) {
 }
 
 // B comes 20 ms after A, which comes at random, about every 200 ms.
-Watched withLeastEffect(const LeastEffect& least_effect) {
+Watched withTuning(const Tuning& tuning) {
   const auto start = [](unsigned seed) {
     const Events asked = irregular(kA, 0, 100 * kSecond, 200 * kMillisecond, seed);
     return countsOf(
         {later(together({asked, answers(kB, asked, 20 * kMillisecond)}), seed * kStart)}, 2);
   };
   Watched watched = watch(start(1), start(2));
-  watched.least_effect = least_effect;
+  watched.tuning = tuning;
   return watched;
+}
+
+// Of a time [s], and a share of the period.
+Tuning leastEffect(double time, double of_period) {
+  Tuning tuning;
+  tuning.least_effect = time;
+  tuning.least_effect_of_period = of_period;
+  return tuning;
 }
 
 TEST(EvidenceModel, WhatASmallEffectIsCanBeSaid) {
   // Usual is the bin from 20 to 23.8 ms. Another one is forgiven if all of it is near enough.
-  const auto surprise = [](const LeastEffect& least_effect, std::int64_t milliseconds,
-                           EventId to = kB) {
-    const Model model(withLeastEffect(least_effect));
-    const std::size_t track = indexOf(model.tracks(), Channel::kDelay, to, kA);
+  const auto surprise = [](const Tuning& tuning, std::int64_t milliseconds) {
+    const Model model(withTuning(tuning));
+    const std::size_t track = indexOf(model.tracks(), Channel::kDelay, kB, kA);
     return model.surprises(track).at(log_bins::bin(milliseconds * kMillisecond));
   };
-  EXPECT_LE(surprise({10e6, 0}, 26), 0);
-  EXPECT_GT(surprise({2e6, 0}, 26), kLeastSurprise);
-  EXPECT_GT(surprise({10e6, 0}, 60), kLeastSurprise);
-  EXPECT_LE(surprise({60e6, 0}, 60), 0);
+  EXPECT_LE(surprise(leastEffect(0.01, 0), 26), 0);
+  EXPECT_GT(surprise(leastEffect(0.002, 0), 26), kLeastSurprise);
+  EXPECT_GT(surprise(leastEffect(0.01, 0), 60), kLeastSurprise);
+  EXPECT_LE(surprise(leastEffect(0.06, 0), 60), 0);
   // The larger of the two counts; A comes about every 200 ms.
-  EXPECT_LE(surprise({2e6, 0.3}, 60), 0);
-  EXPECT_GT(surprise({2e6, 0.03}, 60), kLeastSurprise);
+  EXPECT_LE(surprise(leastEffect(0.002, 0.3), 60), 0);
+  EXPECT_GT(surprise(leastEffect(0.002, 0.03), 60), kLeastSurprise);
 }
 
-TEST(EvidenceModel, EffectsOutOfTheirRangeAreRefused) {
-  const double endless = std::numeric_limits<double>::infinity();
-  const double none = std::numeric_limits<double>::quiet_NaN();
-  for (const LeastEffect& wrong :
-       {LeastEffect{-1, 0.03}, LeastEffect{endless, 0.03}, LeastEffect{none, 0.03},
-        LeastEffect{10e6, -0.01}, LeastEffect{10e6, 1}, LeastEffect{10e6, none}}) {
-    EXPECT_THROW(Model(withLeastEffect(wrong)), std::invalid_argument);
-  }
-  EXPECT_NO_THROW(Model(withLeastEffect({0, 0})));
-  EXPECT_NO_THROW(Model(withLeastEffect({10e6, 0.99})));
-}
-
-TEST(EvidenceModel, ALeastEffectIsTheLargerOfTimeAndShare) {
-  const LeastEffect effect{10e6, 0.03};
-  EXPECT_EQ(effect.onDelay(100e6), 10e6);
-  EXPECT_DOUBLE_EQ(effect.onDelay(1e9), 30e6);
-  // Both ends of a gap move.
-  EXPECT_EQ(effect.onGap(50e6), 20e6);
-  EXPECT_DOUBLE_EQ(effect.onGap(1e9), 300e6);
+TEST(EvidenceModel, ANumberOutOfItsRangeIsRefused) {
+  EXPECT_THROW(Model(withTuning(leastEffect(-1e-9, 0.03))), std::invalid_argument);
+  EXPECT_THROW(Model(withTuning(leastEffect(0.01, 1))), std::invalid_argument);
+  EXPECT_NO_THROW(Model(withTuning(leastEffect(0, 0))));
+  const Tuning tuning = leastEffect(0.01, 0.99);
+  EXPECT_TRUE(Model(withTuning(tuning)).tuning() == tuning);
 }
 
 TEST(EvidenceModel, ADelayNearZeroIsANeighbourOfAPeriod) {

@@ -12,10 +12,11 @@ namespace {
 const std::vector<Part> kThreeHours{{0, 1}, {1, 1}, {2, 1}};
 // What is believed of the logarithms of excesses before anything is seen.
 constexpr double kScale = 0.2;
+const Tuning kTuning;
 
 // Tracks whose largest value is this many times the next one.
 HeldOut afterExcesses(const std::vector<double>& excesses) {
-  HeldOut held_out(kThreeHours, kScale);
+  HeldOut held_out(kThreeHours, kScale, kTuning);
   for (const double excess : excesses) {
     held_out.add({10, 10 * excess, 7}, 5);
   }
@@ -23,29 +24,29 @@ HeldOut afterExcesses(const std::vector<double>& excesses) {
 }
 
 TEST(HeldOut, TheExcessIsOverTheLargestOfAllOtherStarts) {
-  const HeldOut held_out({{0, 1}, {0, 1}, {1, 1}, {2, 1}}, kScale);
+  const HeldOut held_out({{0, 1}, {0, 1}, {1, 1}, {2, 1}}, kScale, kTuning);
   EXPECT_DOUBLE_EQ(held_out.excess({1, 3, 6, 2}, 1), 2);
   EXPECT_DOUBLE_EQ(held_out.excess({6, 6, 3, 2}, 1), 2) << "parts of one start belong together";
   EXPECT_DOUBLE_EQ(held_out.excess({6, 6, 6, 6}, 1), 1);
 }
 
 TEST(HeldOut, WhatStaysBelowTheLeastLimitDoesNotMatter) {
-  const HeldOut held_out(kThreeHours, kScale);
+  const HeldOut held_out(kThreeHours, kScale, kTuning);
   EXPECT_DOUBLE_EQ(held_out.excess({1, 0.9, 0.1}, 1), 1);
-  EXPECT_DOUBLE_EQ(held_out.excess({3, 0, 0}, 1), 3 / HeldOut::kLeastShare);
+  EXPECT_DOUBLE_EQ(held_out.excess({3, 0, 0}, 1), 3 / kTuning.share_of_least);
   EXPECT_DOUBLE_EQ(held_out.excess({3, 0.9, 0}, 1), 3 / 0.9);
   EXPECT_DOUBLE_EQ(held_out.excess({0, 0, 0}, 0), 1);
   EXPECT_DOUBLE_EQ(held_out.excess({0, 7, 0}, 0), 1) << "the others know nothing of it";
 }
 
 TEST(HeldOut, WhatIsLongerThanTheRestIsNotJudgedByIt) {
-  const HeldOut held_out({{0, 5}, {1, 1}, {2, 1}}, kScale);
+  const HeldOut held_out({{0, 5}, {1, 1}, {2, 1}}, kScale, kTuning);
   EXPECT_DOUBLE_EQ(held_out.excess({8, 2, 2}, 1), 1);
   EXPECT_DOUBLE_EQ(held_out.excess({2, 8, 2}, 1), 4);
 }
 
 TEST(HeldOut, OneRecordingAllowsNoEstimate) {
-  HeldOut held_out({{0, 1}}, kScale);
+  HeldOut held_out({{0, 1}}, kScale, kTuning);
   held_out.add({100}, 1);
   EXPECT_DOUBLE_EQ(held_out.margin(1e-9, 1.25), 1.25);
   EXPECT_DOUBLE_EQ(held_out.rate(1.25), 0);
@@ -53,7 +54,7 @@ TEST(HeldOut, OneRecordingAllowsNoEstimate) {
 }
 
 TEST(HeldOut, OneStartIsStillJudgedByItsParts) {
-  HeldOut held_out({{0, 1}, {0, 1}, {0, 1}}, kScale);
+  HeldOut held_out({{0, 1}, {0, 1}, {0, 1}}, kScale, kTuning);
   held_out.add({10, 20, 10}, 5);
   EXPECT_DOUBLE_EQ(held_out.excess({10, 20, 10}, 5), 1) << "of starts";
   EXPECT_GT(held_out.rate(1.25), 0);
@@ -103,8 +104,8 @@ TEST(HeldOut, AMarginGrowsAsTheAllowedRateFalls) {
 }
 
 TEST(HeldOut, ASmallerScaleIsBelievedUntilMoreIsSeen) {
-  HeldOut timers(kThreeHours, kScale / 4);
-  HeldOut others(kThreeHours, kScale);
+  HeldOut timers(kThreeHours, kScale / 4, kTuning);
+  HeldOut others(kThreeHours, kScale, kTuning);
   EXPECT_LT(timers.margin(0.01, 1), others.margin(0.01, 1));
   for (int k = 0; k < 1000; ++k) {
     timers.add({10, 20, 10}, 5);

@@ -18,6 +18,8 @@ namespace self_awareness::core::evidence {
 namespace {
 
 constexpr std::int64_t kPeriod = 200 * kMillisecond;
+const std::int64_t kShortestPart = toNanoseconds(Tuning{}.shortest_part);
+const std::int64_t kLeastTime = toNanoseconds(Tuning{}.least_time);
 
 // A comes irregularly, B follows it after a delay, and C comes at random.
 Events robot(std::int64_t length, unsigned seed, std::int64_t delay = 20 * kMillisecond) {
@@ -139,8 +141,8 @@ TEST_F(LimitFinderTest, AnAnswerThatIsAskedForTooSeldomIsNotJudged) {
 TEST_F(LimitFinderTest, LessThanTheLeastTimeIsTooLittle) {
   LimitFinder finder(model_, {kWindow, 5 * kSecond, 0.5});
   // Two recordings, each with 5 s to settle: together they are a little too short.
-  feed(finder, model_, robot(LimitFinder::kLeastTime / 2 + 4 * kSecond, 3));
-  feed(finder, model_, later(robot(LimitFinder::kLeastTime / 2 + 4 * kSecond, 4)));
+  feed(finder, model_, robot(kLeastTime / 2 + 4 * kSecond, 3));
+  feed(finder, model_, later(robot(kLeastTime / 2 + 4 * kSecond, 4)));
   EXPECT_THROW(finder.startSecondPass(), std::invalid_argument);
   feed(finder, model_, later(robot(9 * kSecond, 5), 2 * kStart));
   EXPECT_NO_THROW(finder.startSecondPass());
@@ -235,7 +237,7 @@ TEST_F(LimitFinderTest, WhatRecordingsSayElsewhereAddsUp) {
 TEST_F(LimitFinderTest, FindingsDoNotGrowWithTheRecording) {
   LimitFinder finder(model_, {kWindow, 5 * kSecond, 0.5});
   for (const std::int64_t parts : {1, 4, 16, 17, 40}) {
-    feed(finder, model_, robot(parts * LimitFinder::kShortestPart + 5 * kSecond, 3));
+    feed(finder, model_, robot(parts * kShortestPart + 5 * kSecond, 3));
     const LimitFinder::Recording& recording = finder.findings().back();
     EXPECT_LE(recording.parts.size(), LimitFinder::kMostParts);
     EXPECT_GE(2 * recording.parts.size(), std::min<std::size_t>(parts, LimitFinder::kMostParts));
@@ -272,7 +274,7 @@ TEST_F(LimitFinderTest, PartsTogetherSayWhatTheRecordingDoes) {
     return longest;
   };
   EXPECT_GE(largestOf(60 * kSecond), kSecond);
-  EXPECT_GE(largestOf(40 * LimitFinder::kShortestPart), largestOf(60 * kSecond));
+  EXPECT_GE(largestOf(40 * kShortestPart), largestOf(60 * kSecond));
 }
 
 TEST_F(LimitFinderTest, AStepOfTheClockIsTheStartOfAnotherRecording) {

@@ -1,3 +1,5 @@
+#include "self_awareness/core/evidence/watch/tracks.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,13 +10,12 @@
 #include <vector>
 
 #include "../recordings.h"
-#include "self_awareness/core/evidence/channel/watched.h"
-#include "self_awareness/core/verdict/suspect.h"
 
 namespace self_awareness::core::evidence {
 namespace {
 
 constexpr std::int64_t kLength = 60 * kSecond;
+const double kFewestDelays = Tuning{}.fewest_delays;
 
 std::vector<Track> chosen(const Statistics& first, const Statistics& second) {
   return watch(first, second).tracks;
@@ -57,7 +58,7 @@ TEST(EvidenceTracks, APhaseThatOneHalfDoesNotConfirmIsNot) {
 }
 
 TEST(EvidenceTracks, FewGapsAreNotJudged) {
-  const auto needed = static_cast<std::int64_t>(kFewestGaps);
+  const auto needed = static_cast<std::int64_t>(Tuning{}.fewest_gaps);
   const std::vector<Track> few = chosen(gapsOf(kA, needed - 1), countsOf({}));
   EXPECT_TRUE(few.empty());
   const std::vector<Track> enough = chosen(gapsOf(kA, needed - 10), gapsOf(kA, 10));
@@ -96,7 +97,7 @@ TEST(EvidenceTracks, TheThreeBestPredecessorsAreWatched) {
     }
   }
   trainer.finish();
-  const InformationGain gain(counts, counts);
+  const InformationGain gain(counts, counts, kFewestDelays);
   const std::vector<Track> tracks = chosen(counts, counts);
   for (EventId to = 1; to < kNumber; ++to) {
     std::vector<double> watched;
@@ -145,7 +146,10 @@ TEST(EvidenceTracks, WhatComesByChanceIsNoAnswer) {
 TEST(EvidenceTracks, AsManyPredecessorsAreWatchedAsAreAskedFor) {
   const Statistics counts = followed(1);
   for (const std::size_t predecessors : {0U, 1U}) {
-    const Watched watched = watch(counts, counts, predecessors);
+    Tuning tuning;
+    set(tuning, "predecessors", static_cast<double>(predecessors));
+    const Watched watched = watch(counts, counts, {}, tuning);
+    EXPECT_TRUE(watched.tuning == tuning);
     const auto of_b = std::count_if(
         watched.tracks.begin(), watched.tracks.end(),
         [](const Track& track) { return track.channel == Channel::kDelay && track.to == kB; });
@@ -197,7 +201,7 @@ TEST(InformationGain, IsTheMeanLogRatioOnTheOtherHalf) {
   Statistics::Delays& delays = measured.allPartners(kB)[kA].delays;
   delays[10] = 30;
   delays[20] = 20;
-  const InformationGain gain(learned, measured);
+  const InformationGain gain(learned, measured, kFewestDelays);
   // P: 51 and 1 of 100; Q: 51 and 101 of 200.
   EXPECT_NEAR(gain(kA, kB), (30 * std::log(2.0) + 20 * std::log(2.0 / 101)) / 50, 1e-12);
   EXPECT_EQ(gain(kA, kA), 0);  // not measured
@@ -209,8 +213,8 @@ TEST(InformationGain, IsTheMeanLogRatioOnTheOtherHalf) {
 TEST(InformationGain, IsZeroForATypeThatTheOtherHalfLacks) {
   const Statistics learned = followed(1);
   const Statistics measured = countsOf({irregular(kA, 0, kLength, 200 * kMillisecond, 2)}, 1);
-  EXPECT_GT(InformationGain(learned, learned)(kA, kB), 0.3);
-  EXPECT_EQ(InformationGain(learned, measured)(kA, kB), 0);
+  EXPECT_GT(InformationGain(learned, learned, kFewestDelays)(kA, kB), 0.3);
+  EXPECT_EQ(InformationGain(learned, measured, kFewestDelays)(kA, kB), 0);
 }
 
 TEST(LogProbabilities, HaveOneMoreCountInEveryBin) {
