@@ -35,7 +35,6 @@ struct Tuning {
   double least_chance_misses = 0.2;
   double most_of_chance_misses = 0.5;
   double most_misses = 0.1;
-  double fewest_answers = 30;
   double least_of_longest = 0.1;
   double fewest_of_broadcast = 4;
 
@@ -53,7 +52,6 @@ struct Tuning {
   double most_of_limit = 1.5;
   double arming_events = 30;
   double usual_surprise = 0.3;
-  double most_failures = 10;
   double gone_gaps = 5;
   double accept_after = 60;
 
@@ -64,14 +62,11 @@ struct Tuning {
   double due_times = 2;
   double due_later = 5;
   double alarm_times = 4;
-  double alarm_later = 60;
 
   // A machine that stands still, or is busy.
-  double longest_usual_stall = 1.25;
   double shortest_stall = 0.05;
   double longest_stall = 0.7;
   double between_stalls = 30;
-  double busy_share = 0.75;
   double still_busy_share = 0.5;
   double fewest_busy = 4;
   double busy_one_in = 3;
@@ -85,7 +80,6 @@ struct Tuning {
   double scale = 0.2;
   double scale_of_timers = 0.05;
   double many_tracks = 20;
-  double beyond_all = 1.25;
   double share_of_least = 0.5;
   double least_margin = 1.25;
   double least_deadline_margin = 2;
@@ -103,10 +97,8 @@ struct Tuning {
   double most_delay_limit = 100;
   double longest_wait = 10;
   double most_mean_gaps = 3;
-  double longest_deadline = 20;
 
   // From evidence to an alarm, and to who is to blame.
-  double confirmation = 0.1;
   double rare_silence = 0.01;
   double near_limit = 0.75;
   double least_share = 0.3;

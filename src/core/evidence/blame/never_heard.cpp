@@ -12,7 +12,7 @@ NeverHeard::NeverHeard(const Model& model, const Limits& limits,
                        std::shared_ptr<const SourceGraph> graph)
     : vocabulary_(model.vocabulary()),
       alarm_times_(model.tuning().alarm_times),
-      alarm_later_(toNanoseconds(model.tuning().alarm_later)),
+      alarm_later_(toNanoseconds(model.tuning().start_time)),
       graph_(std::move(graph)) {
   const Statistics& statistics = model.statistics();
   for (EventId id = 0; id < model.size(); ++id) {

@@ -14,7 +14,7 @@
 namespace self_awareness::core::evidence {
 
 /// Notices event types that do not come after the start, although they came in every recording of
-/// the training (docs/method.md, section 3.9). A type that comes late as it always does is normal.
+/// the training (docs/method.md, section 3.8). A type that comes late as it always does is normal.
 class NeverHeard {
  public:
   /// @param graph whose messages reach whom; may grow

@@ -8,9 +8,7 @@ namespace {
 class SilenceState : public ChannelState {
  public:
   SilenceState(const Model& model, const std::vector<std::size_t>& tracks)
-      : model_(model),
-        tracks_(tracks),
-        confirmation_(toNanoseconds(model.tuning().confirmation)) {}
+      : model_(model), tracks_(tracks) {}
 
   void closeWindow(const Heard& heard, std::vector<double>& evidence) override {
     for (const std::size_t track : tracks_) {
@@ -20,7 +18,7 @@ class SilenceState : public ChannelState {
   }
   bool isCertain(std::size_t track, double limit, const Heard& heard) const override {
     const EventId id = model_.tracks()[track].to;
-    return model_.overdue(id, heard.age(id) - confirmation_) > limit;
+    return model_.overdue(id, heard.age(id) - heard.window()) > limit;
   }
   void explain(std::size_t /*track*/, const Heard& heard, const RecentEvents& /*events*/,
                Suspect& suspect) const override {
@@ -36,7 +34,6 @@ class SilenceState : public ChannelState {
  private:
   const Model& model_;
   const std::vector<std::size_t>& tracks_;
-  std::int64_t confirmation_;  // [ns]
 };
 
 class ExpectedSilence : public Expectation {

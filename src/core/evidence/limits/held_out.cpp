@@ -83,7 +83,7 @@ double HeldOut::margin(double rate, double least) const {
       const double logarithm =
           std::log(tuning_.least_excess) + scale(level) * std::max(std::log(expected), 0.0);
       const double most = static_cast<double>(tracks_) >= tuning_.many_tracks
-                              ? level.most + std::log(tuning_.beyond_all)
+                              ? level.most + std::log(tuning_.least_margin)
                               : logarithm;
       margin = std::max(margin, std::exp(std::min(logarithm, most)));
     }
