@@ -6,9 +6,9 @@ from typing import List, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
-from self_awareness import (DEFAULT_WINDOW, EVIDENCE_THRESHOLD, PREDECESSORS, DetectorParameters,
+from self_awareness import (DEFAULT_WINDOW, EVIDENCE_THRESHOLD, DetectorParameters,
                             EncodingRules, EventType, EvidenceModel, Model, Recording,
-                            TrainedModel, Training, Verdicts, judge_by_evidence)
+                            TrainedModel, Training, Tuning, Verdicts, judge_by_evidence)
 from self_awareness.calibration import limits
 from self_awareness.calibration.limits import HeldOut, InMemory
 from self_awareness.evaluation.systems import (Judged, SystemAlarm, common_threshold, distinct,
@@ -58,22 +58,22 @@ class Evidence:
     Args:
         graph: publisher, topic and subscriber, as the model holds it after a training while the
             robot runs; empty: it was trained on bags alone.
-        predecessors: of an event type that are watched at most.
+        tuning: the numbers of the method; None: the defaults.
         budget: false alarms an hour that the limits allow.
     """
 
-    def __init__(self, graph: Set[Tuple[str, str, str]], predecessors: int = PREDECESSORS,
+    def __init__(self, graph: Set[Tuple[str, str, str]], tuning: Optional[Tuning] = None,
                  budget: float = limits.BUDGET) -> None:
         self.name = 'evidence' if graph else 'evidence_no_graph'
         self._graph = graph
-        self._predecessors = predecessors
+        self._tuning = tuning or Tuning()
         self._budget = budget
         self._trained: Optional[TrainedModel] = None
         self._model: Optional[EvidenceModel] = None
 
     def train(self, recordings: Sequence[WindowedEvents]) -> None:
         """Count the delays and gaps."""
-        trained = _counted(recordings, self._predecessors)
+        trained = _counted(recordings, self._tuning)
         trained.graph = self._graph
         trained.watch()
         if len(recordings) > 1:
@@ -113,10 +113,10 @@ class Evidence:
                                  encoded.ids, encoded.end - 1, encoded.event_types)
 
 
-def _counted(recordings: Sequence[WindowedEvents], predecessors: int = PREDECESSORS,
+def _counted(recordings: Sequence[WindowedEvents], tuning: Optional[Tuning] = None,
              paper: bool = False) -> TrainedModel:
-    training = Training(EncodingRules(), window=DEFAULT_WINDOW, predecessors=predecessors,
-                        evidence=not paper, paper=paper)
+    training = Training(EncodingRules(), window=DEFAULT_WINDOW, evidence=not paper, paper=paper,
+                        tuning=tuning or Tuning())
     for recording in recordings:
         said = Recording()
         said.fingerprint = recording.fingerprint

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Iterator, List, Optional, Sequence, Tuple
+from typing import Iterator, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
@@ -150,16 +150,23 @@ class Records:
                                  self._family.watched_start)
             left -= WATCHED_S
 
-    def faults(self, kinds: Tuple[str, ...]) -> Iterator[FaultRecord]:
-        """Yield a recording of every fault of some kinds, of each component in turn."""
+    def faults(self, kinds: Tuple[str, ...],
+               most: Optional[int] = None) -> Iterator[FaultRecord]:
+        """Yield a recording of every fault of some kinds, of each component in turn.
+
+        Args:
+            kinds: of KINDS.
+            most: only of so many components for each kind, spread evenly; None: of all.
+        """
         regular, answering = self.robot.regular, self.robot.answering
         who = {CRASH: regular, HALF_RATE: regular,
                LATE: [source for source in regular if source in answering],
                DEATH: [source for source in answering if source not in regular]}
         number = 0
         for kind in KINDS:
-            for source in who[kind]:
-                if kind in kinds:
+            chosen = _spread(len(who[kind]), most) if kind in kinds else set()
+            for index, source in enumerate(who[kind]):
+                if index in chosen:
                     yield from self._fault(kind, source, number)
                 number += 1
 
@@ -187,3 +194,9 @@ class Records:
             return self.robot.start(_ONE_START, seconds, fault,
                                     section.from_s + number * section.every_s)
         return self.robot.start(section.first + number, seconds, fault)
+
+
+def _spread(number: int, most: Optional[int]) -> Set[int]:
+    """Return the indices of all of a number of things, or of the most that are wanted."""
+    wanted = number if most is None else min(most, number)
+    return {index * number // wanted for index in range(wanted)}

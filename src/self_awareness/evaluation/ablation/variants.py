@@ -1,0 +1,83 @@
+"""The variants of the method: one thing changed in each."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Iterator, List, Optional, Sequence, Tuple
+
+from self_awareness import Tuning
+from self_awareness.evaluation import tunings
+
+DEFAULT, CHANNEL, RULE, NUMBER = 'default', 'channel', 'rule', 'number'
+"""Kinds of variants."""
+
+HALF, DOUBLE = 0.5, 2.0
+
+
+@dataclass(frozen=True)
+class Variant:
+    """The method with one change.
+
+    Args:
+        kind: DEFAULT: none. CHANNEL: one is left out. RULE: a number switches it off. NUMBER: one
+            has another value.
+        name: of the channel or the number; empty: DEFAULT.
+        value: of the number.
+    """
+
+    kind: str
+    name: str = ''
+    value: Optional[float] = None
+
+    def __str__(self) -> str:
+        if self.kind == CHANNEL:
+            return f'without {self.name}'
+        return self.kind if self.value is None else f'{self.name}={self.value:.10g}'
+
+    def tuning(self) -> Tuning:
+        """Return the method with the change."""
+        if self.kind == CHANNEL:
+            return tunings.changed([], [self.name])
+        return tunings.changed([] if self.value is None else [(self.name, self.value)], [])
+
+
+def variants(channels: Optional[Sequence[str]] = None,
+             numbers: Optional[Sequence[str]] = None) -> List[Variant]:
+    """Return the method as it is, and the variants.
+
+    Args:
+        channels: that are left out in turn; None: all.
+        numbers: that are switched off, halved and doubled; None: all.
+
+    Raises:
+        ValueError: there is no such channel or number.
+    """
+    for name in channels or ():
+        Tuning().leave_out(name)
+    for name in numbers or ():
+        Tuning().get(name)
+    known = [number for number in Tuning.numbers() if numbers is None or number.name in numbers]
+    found = [Variant(DEFAULT)]
+    found += [Variant(CHANNEL, name) for name in
+              (Tuning.channels() if channels is None else channels)]
+    found += [Variant(RULE, number.name, number.off) for number in known
+              if number.off is not None and number.off != number.default]
+    found += [Variant(NUMBER, number.name, value) for number in known
+              for value in _values(number)]
+    return found
+
+
+def _values(number: object) -> Iterator[float]:
+    """Yield half of a number and twice that, within its range, unless it stays what it was."""
+    default, seen = number.default, {number.default, number.off}
+    for factor in (HALF, DOUBLE):
+        value = min(max(factor * default, number.least), number.most)
+        if number.integer:
+            value = float(round(value))
+        if value not in seen:
+            seen.add(value)
+            yield value
+
+
+def changes(number: object) -> Tuple[float, ...]:
+    """Return the values that a number is changed to."""
+    return tuple(_values(number))
