@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, Dict, List, Sequence
 
 import page
+from self_awareness import Tuning
 from self_awareness.evaluation.detectors import Evidence, scenario_graph
 from self_awareness.evaluation.simulated import experiment, summary
 from self_awareness.evaluation.simulated.experiment import Plan
@@ -40,7 +41,9 @@ def _measure_seed(plan: Plan, seed: int) -> List[Row]:
     records = experiment.make_records(plan, load_scenario(), seed)
     rows = []
     for bound in BOUNDS:
-        system = Evidence(scenario_graph(), bound)
+        tuning = Tuning()
+        tuning.set('predecessors', bound)
+        system = Evidence(scenario_graph(), tuning)
         system.train(records.training)
         system.calibrate([records.calibration])
         normal = system.judge(records.normal)

@@ -128,6 +128,8 @@ void bindRecordings(py::module& module);
 void bindModel(py::module& module);
 /// Binds the training (training_bindings.cpp).
 void bindTraining(py::module& module);
+/// Binds the numbers of the method (tuning_bindings.cpp).
+void bindTuning(py::module& module);
 /// Binds what a training counted (counts_bindings.cpp).
 void bindCounts(py::module& module);
 /// Binds evidence and its limits (evidence_bindings.cpp).

@@ -19,7 +19,7 @@ namespace evidence = core::evidence;
 class EvidenceCounts {
  public:
   EvidenceCounts(const ros1::TrainedModel& trained, std::optional<std::size_t> half)
-      : model_({{}, trained.evidence, trained.least_effect}, learnedOf(half)),
+      : model_({{}, trained.evidence, trained.tuning}, learnedOf(half)),
         counts_(half ? trained.evidence.at(*half) : model_.statistics()) {}
 
   const evidence::Statistics& counts() const { return counts_; }
@@ -83,7 +83,6 @@ void bindCounts(py::module& m) {
           },
           py::arg("from_id"), py::arg("to_id"), py::arg("share"),
           "delay [s] that this share (0 to 1) of the delays did not exceed; as of EvidenceModel");
-  m.attr("LEAST_RATE_EFFECT") = evidence::kLeastRateEffect;
   m.attr("RATE_SPAN") = evidence::kRateSpan;  // [ns]
 }
 

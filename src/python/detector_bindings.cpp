@@ -316,7 +316,6 @@ void bindVerdicts(py::module& m) {
   m.attr("LONGEST_SILENCE") = core::kLongestSilence;  // [ns]
   m.attr("FEWEST_GAPS") = core::kFewestGaps;
   m.attr("LEAST_KNOWN") = core::kLeastKnown;
-  m.attr("PREDECESSORS") = core::evidence::kPredecessors;
   m.attr("USUAL_SHARES") = py::make_tuple(core::kUsualFrom, core::kUsualTo);
 }
 

@@ -139,9 +139,7 @@ void bindModel(py::module& m) {
             return self;
           },
           "A small copy, with only the counts that the evidence detector judges by.")
-      .def_readonly("predecessors", &TrainedModel::predecessors,
-                    "most that are watched of an event type")
-      .def_readonly("least_effect", &TrainedModel::least_effect)
+      .def_readonly("tuning", &TrainedModel::tuning, "the numbers of the method")
       .def_property_readonly(
           "only_half", &TrainedModel::onlyHalf,
           "the half of the training that all recordings belong to; None: there are some of both")

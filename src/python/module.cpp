@@ -9,6 +9,7 @@ PYBIND11_MODULE(_core, m) {
   self_awareness::python::bindOutputFiles(m);
   self_awareness::python::bindEventLogs(m);
   self_awareness::python::bindModel(m);
+  self_awareness::python::bindTuning(m);
   self_awareness::python::bindTraining(m);
   self_awareness::python::bindCounts(m);
   self_awareness::python::bindEvidence(m);

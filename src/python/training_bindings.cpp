@@ -28,12 +28,13 @@ std::int64_t middleOf(const Stamps& stamps) {
 class Training {
  public:
   Training(ros1::EncodingRules rules, const core::Training::Parameters& parameters,
-           std::size_t predecessors, const core::evidence::LeastEffect& least_effect)
+           const core::evidence::Tuning& tuning)
       : training_(parameters),
         rules_(std::move(rules)),
         window_(parameters.window),
-        predecessors_(predecessors),
-        least_effect_(least_effect) {}
+        tuning_(tuning) {
+    tuning.validate();
+  }
 
   void addEvents(const std::vector<core::EventType>& types, const Stamps& stamps, const Ids& ids,
                  const std::optional<self_awareness::Recording>& recording,
@@ -78,8 +79,7 @@ class Training {
     model.window = window_;
     model.statistics = std::move(counts.delays);
     model.evidence = std::move(counts.halves);
-    model.predecessors = predecessors_;
-    model.least_effect = least_effect_;
+    model.tuning = tuning_;
     if (watch) {
       model.watch();
     }
@@ -118,8 +118,7 @@ class Training {
   core::Training training_;
   ros1::EncodingRules rules_;
   std::int64_t window_;
-  std::size_t predecessors_;
-  core::evidence::LeastEffect least_effect_;
+  core::evidence::Tuning tuning_;
   std::vector<self_awareness::Recording> recordings_;
   bool ended_ = false;
 };
@@ -127,33 +126,6 @@ class Training {
 }  // namespace
 
 void bindTraining(py::module& m) {
-  using core::evidence::LeastEffect;
-  using LeastEffectState = std::pair<double, double>;
-  const auto make_least_effect = [](double time, double of_period) {
-    const LeastEffect effect{time, of_period};
-    effect.validate();
-    return effect;
-  };
-  py::class_<LeastEffect>(m, "LeastEffect",
-                          "What a delay must differ by to be a fault: the larger of the two.")
-      .def(py::init(make_least_effect), py::arg("time") = LeastEffect{}.time,
-           py::arg("of_period") = LeastEffect{}.of_period,
-           "ValueError if one is out of its range.")
-      .def_readonly("time", &LeastEffect::time, "[ns], 0 or more")
-      .def_readonly("of_period", &LeastEffect::of_period,
-                    "share of the mean gap of what the delay counts from, 0 to below 1")
-      .def("on_delay", &LeastEffect::onDelay, py::arg("period"),
-           "on the delay after an event type with this mean gap [ns], in ns")
-      .def("on_gap", &LeastEffect::onGap, py::arg("period"),
-           "on the gaps of an event type with this mean gap [ns], in ns")
-      .def(py::pickle(
-          [](const LeastEffect& self) {
-            return LeastEffectState{self.time, self.of_period};
-          },
-          [make_least_effect](const LeastEffectState& state) {
-            return make_least_effect(state.first, state.second);
-          }));
-
   m.def("half_of", &core::evidence::halfOf, py::arg("fingerprint"),
         "The half of a training that a recording belongs to, 0 or 1.");
   m.def("middle_of", &middleOf, py::arg("stamps"),
@@ -162,23 +134,21 @@ void bindTraining(py::module& m) {
 
   py::class_<Training>(m, "Training", "Trains on one recording after the other.")
       .def(py::init([](ros1::EncodingRules rules, std::int64_t bin_size, std::int64_t window,
-                       std::int64_t horizon_bins, std::size_t predecessors, bool evidence,
-                       bool paper, const core::evidence::LeastEffect& least_effect) {
+                       std::int64_t horizon_bins, bool evidence, bool paper,
+                       const core::evidence::Tuning& tuning) {
              core::Training::Parameters parameters;
              parameters.evidence = evidence;
              parameters.paper = paper;
              parameters.window = window;
              parameters.binning = {bin_size, horizon_bins};
-             return std::make_unique<Training>(std::move(rules), parameters, predecessors,
-                                               least_effect);
+             return std::make_unique<Training>(std::move(rules), parameters, tuning);
            }),
            py::arg("encoding"), py::arg("bin_size") = core::paper::Binning{}.bin_size,
            py::arg("window") = core::kDefaultWindow, py::arg("horizon_bins") = 0,
-           py::arg("predecessors") = core::evidence::kPredecessors, py::arg("evidence") = true,
-           py::arg("paper") = false, py::arg("least_effect") = core::evidence::LeastEffect{},
-           "bin_size, window: [ns]; horizon_bins 0: unbounded; predecessors: most that the\n"
-           "evidence detector watches of an event type; least_effect: that a changed delay must\n"
-           "have to be a fault")
+           py::arg("evidence") = true, py::arg("paper") = false,
+           py::arg("tuning") = core::evidence::Tuning{},
+           "bin_size, window: [ns]; horizon_bins 0: unbounded; tuning: the numbers of the\n"
+           "evidence detector")
       .def("add_events", &Training::addEvents, py::arg("event_types"), py::arg("stamps"),
            py::arg("ids"), py::arg("recording") = py::none(), py::arg("before") = py::none(),
            py::arg("clock_steps") = std::vector<std::int64_t>(),

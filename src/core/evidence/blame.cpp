@@ -11,19 +11,12 @@
 #include "core/evidence/strangers.h"
 
 namespace self_awareness::core::evidence {
-namespace {
-
-// Of one track, no more than this share of its limit counts.
-constexpr double kMostShare = 2;
-// When a victim's evidence passes its limit, the root's may still be on the way.
-constexpr double kNearLimit = 0.75;
-// Of an unusual delay between two event types, the other one is a little less to blame.
-constexpr double kShareOfOther = 0.9;
-
-}  // namespace
-
 Blame::Blame(std::shared_ptr<const Model> model, std::shared_ptr<const SourceGraph> graph)
-    : model_(std::move(model)), graph_(std::move(graph)), followers_(model_) {}
+    : model_(std::move(model)),
+      graph_(std::move(graph)),
+      followers_(model_),
+      tuning_(model_->tuning()),
+      rare_silence_(std::log(tuning_.rare_silence)) {}
 
 std::vector<Suspect> Blame::suspects(const std::vector<double>& shares, const Scorer& scorer,
                                      const Hindsight& hindsight, const Window& window) const {
@@ -71,10 +64,10 @@ std::vector<Blame::Candidate> Blame::silent(const std::vector<double>& shares,
   std::map<EventId, std::size_t> unanswered;  // tracks
   for (std::size_t track = 0; track < shares.size(); ++track) {
     const Channel channel = model_->tracks()[track].channel;
-    if (shares[track] > kNearLimit && channel == Channel::kDeadline) {
+    if (shares[track] > tuning_.near_limit && channel == Channel::kDeadline) {
       unanswered.emplace(model_->tracks()[track].to, track);
     }
-    if (shares[track] > kNearLimit &&
+    if (shares[track] > tuning_.near_limit &&
         (channel == Channel::kOverdue || channel == Channel::kAnswer)) {
       missing.insert(model_->tracks()[track].to);
     }
@@ -82,14 +75,14 @@ std::vector<Blame::Candidate> Blame::silent(const std::vector<double>& shares,
   std::vector<Candidate> candidates;
   for (const EventId id : missing) {
     const double survival = logSurvival(id, reasons);
-    if (survival < kRareSilence) {
+    if (survival < rare_silence_) {
       candidates.push_back({trackOfSilence(id, shares), survival});
     }
   }
   for (const auto& [id, track] : unanswered) {
     const double survival = logSurvival(id, reasons);
-    if (missing.count(id) == 0 || survival >= kRareSilence) {
-      candidates.push_back({track, std::min(survival, kRareSilence)});
+    if (missing.count(id) == 0 || survival >= rare_silence_) {
+      candidates.push_back({track, std::min(survival, rare_silence_)});
     }
   }
   return rootFirst(std::move(candidates), leads);
@@ -182,36 +175,36 @@ std::vector<Blame::Candidate> Blame::unusual(const std::vector<double>& shares,
   std::vector<std::size_t> late;  // tracks
   for (std::size_t track = 0; track < shares.size(); ++track) {
     const auto& [channel, to, from] = model_->tracks()[track];
-    if (shares[track] < kLeastShare || channel == Channel::kSlowDelay ||
+    if (shares[track] < tuning_.least_share || channel == Channel::kSlowDelay ||
         // An age that is usual has some share of its limit, too.
-        (channel == Channel::kOverdue && logSurvival(to, reasons) >= kRareSilence)) {
+        (channel == Channel::kOverdue && logSurvival(to, reasons) >= rare_silence_)) {
       continue;
     }
-    const double share = std::min(shares[track], kMostShare);
+    const double share = std::min(shares[track], tuning_.most_share);
     const bool other =
         channel == Channel::kDelay && model_->component(from) != model_->component(to);
     const bool earlier = other && isEarlier(reasons.of(track));
     Involved& later = components[model_->component(to)];
-    later.sum += earlier ? kShareOfOther * share : share;
+    later.sum += earlier ? tuning_.share_of_other * share : share;
     if (other && !earlier) {
       later.late = true;
       late.push_back(track);
     }
-    later.own |= shares[track] > kNearLimit && channel != Channel::kOverdue &&
+    later.own |= shares[track] > tuning_.near_limit && channel != Channel::kOverdue &&
                  (channel != Channel::kDelay || from == to);
     if (share > later.largest) {
       later.largest = share;
       later.track = track;
     }
     if (other) {
-      components[model_->component(from)].sum += earlier ? share : kShareOfOther * share;
+      components[model_->component(from)].sum += earlier ? share : tuning_.share_of_other * share;
     }
   }
   for (const std::size_t track : followers_.lateBefore(late, shares, reasons)) {
     Involved& involved = components[model_->component(model_->tracks()[track].to)];
     involved.late = true;
     if (involved.largest == 0) {
-      involved.largest = kLeastShare;
+      involved.largest = tuning_.least_share;
       involved.track = track;
     }
   }

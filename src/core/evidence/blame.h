@@ -60,6 +60,8 @@ class Blame {
   std::shared_ptr<const Model> model_;
   std::shared_ptr<const SourceGraph> graph_;
   Followers followers_;
+  const Tuning& tuning_;
+  double rare_silence_;  // log of its probability
 };
 
 }  // namespace self_awareness::core::evidence

@@ -4,20 +4,6 @@
 #include <utility>
 
 namespace self_awareness::core::evidence {
-namespace {
-
-// Evidence from this share of its limit on is late: not all that have too little time have passed
-// their limits already.
-constexpr double kLate = 0.75;
-// As long as the machine is busy, this is enough.
-constexpr double kStillLate = 0.5;
-// Fewer that do not follow each other may be late for reasons of their own.
-constexpr std::size_t kFewestLate = 4;
-// The machine is busy if one of so many components is late.
-constexpr std::size_t kOneIn = 3;
-
-}  // namespace
-
 BusyMachine::BusyMachine(std::shared_ptr<const Model> model)
     : model_(std::move(model)), followers_(model_) {}
 
@@ -26,6 +12,7 @@ std::optional<Busy> BusyMachine::closeWindow(const std::vector<double>& shares,
   if (!abnormal && !busy_) {
     return std::nullopt;
   }
+  const Tuning& tuning = model_->tuning();
   const std::vector<std::string>& names = model_->components();
   std::vector<bool> heard(names.size(), false);
   std::vector<bool> silent(names.size(), false);
@@ -42,7 +29,8 @@ std::optional<Busy> BusyMachine::closeWindow(const std::vector<double>& shares,
   }
   const Followers::Leads leads = followers_.leads(shares);
   const auto isLate = [&](std::size_t component) {
-    return !silent[component] && largest[component] > (busy_ ? kStillLate : kLate);
+    return !silent[component] &&
+           largest[component] > (busy_ ? tuning.still_busy_share : tuning.busy_share);
   };
   // Who follows as usual one that is late or silent is only its victim.
   std::vector<bool> led(names.size(), false);
@@ -62,7 +50,10 @@ std::optional<Busy> BusyMachine::closeWindow(const std::vector<double>& shares,
     silences += silent[component] ? 1 : 0;
   }
   // Silences of a busy machine end soon. Where many last, something else is wrong.
-  busy_ = roots >= kFewestLate && busy.late * kOneIn >= busy.components && busy.late >= silences;
+  busy_ = static_cast<double>(roots) >= tuning.fewest_busy &&
+          static_cast<double>(busy.late) * tuning.busy_one_in >=
+              static_cast<double>(busy.components) &&
+          busy.late >= silences;
   return busy_ ? std::optional<Busy>(busy) : std::nullopt;
 }
 

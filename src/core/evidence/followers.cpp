@@ -28,7 +28,7 @@ Followers::Leads Followers::leads(const std::vector<double>& shares) const {
   Leads unusual;
   for (std::size_t track = 0; track < shares.size(); ++track) {
     if (follows_[track]) {
-      (shares[track] < kLeastShare ? usual : unusual)
+      (shares[track] < model_->tuning().least_share ? usual : unusual)
           .emplace(model_->component(model_->tracks()[track].from),
                    model_->component(model_->tracks()[track].to));
     }
@@ -61,7 +61,7 @@ std::vector<std::size_t> Followers::lateBefore(const std::vector<std::size_t>& l
   for (const std::size_t victim : late) {
     for (std::size_t track = 0; track < tracks.size(); ++track) {
       if (tracks[track].channel == Channel::kDelay && tracks[track].to == tracks[victim].to &&
-          follows_[track] && shares[track] < kLeastShare) {
+          follows_[track] && shares[track] < model_->tuning().least_share) {
         addOf(tracks[track].from, tracks[victim].from);
       }
     }

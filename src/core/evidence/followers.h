@@ -12,9 +12,6 @@
 
 namespace self_awareness::core::evidence {
 
-/// Evidence below this share of its limit does not say who is involved.
-constexpr double kLeastShare = 0.3;
-
 /// Says which components follow which others, and do so as usual at present: what is wrong with
 /// both of them began with the one that is followed (docs/method.md, section 6). It needs no
 /// graph, only relations that are known from training.

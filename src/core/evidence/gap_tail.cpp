@@ -7,19 +7,14 @@
 #include <numeric>
 
 namespace self_awareness::core::evidence {
-namespace {
-
-constexpr std::size_t kTailGaps = 20;
-
-}  // namespace
-
-GapTail::GapTail(const std::vector<std::int64_t>& longest_gaps, double hours, double usual) {
+GapTail::GapTail(const std::vector<std::int64_t>& longest_gaps, double hours, double usual,
+                 std::size_t most) {
   const auto end = std::find_if(
       longest_gaps.begin(),
-      longest_gaps.begin() + static_cast<std::ptrdiff_t>(std::min(longest_gaps.size(), kTailGaps)),
+      longest_gaps.begin() + static_cast<std::ptrdiff_t>(std::min(longest_gaps.size(), most)),
       [&](std::int64_t gap) { return static_cast<double>(gap) <= usual; });
   const auto number = static_cast<std::size_t>(end - longest_gaps.begin());
-  shortest_ = number == kTailGaps ? static_cast<double>(*std::prev(end)) : usual;
+  shortest_ = number == most ? static_cast<double>(*std::prev(end)) : usual;
   all_ = static_cast<double>(number) / hours;
   if (number > 0) {
     mean_excess_ =

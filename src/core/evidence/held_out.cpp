@@ -5,21 +5,8 @@
 #include <utility>
 
 namespace self_awareness::core::evidence {
-namespace {
-
-// What is believed before anything is seen counts as so many exceedances.
-constexpr double kPriorExceedances = 5;
-// As if so many exceedances had been seen where there were none.
-constexpr double kFewest = 0.5;
-// Smaller excesses (logarithms) are those of what hardly varies.
-const double kLeastExcess = std::log(1.1);
-// Where many tracks were seen, what goes so much (a logarithm) beyond them all need not be feared.
-constexpr std::size_t kManyTracks = 20;
-const double kBeyond = std::log(1.25);
-
-}  // namespace
-
-HeldOut::HeldOut(const std::vector<Part>& parts, double scale) : prior_scale_(scale) {
+HeldOut::HeldOut(const std::vector<Part>& parts, double scale, const Tuning& tuning)
+    : prior_scale_(scale), tuning_(tuning) {
   std::vector<std::size_t> by_start;
   std::vector<std::size_t> by_part;
   for (const Part& part : parts) {
@@ -48,7 +35,8 @@ HeldOut::Level HeldOut::levelOf(const std::vector<Part>& parts,
   return level;
 }
 
-double HeldOut::exceedance(const Level& level, const std::vector<double>& largest, double least) {
+double HeldOut::exceedance(const Level& level, const std::vector<double>& largest,
+                           double least) const {
   std::vector<double> of_group(level.hours.size(), 0);
   for (std::size_t part = 0; part < largest.size(); ++part) {
     double& group = of_group[level.group_of[part]];
@@ -61,8 +49,8 @@ double HeldOut::exceedance(const Level& level, const std::vector<double>& larges
   }
   const double most = *first;
   *first = 0;
-  const double second =
-      std::max(*std::max_element(of_group.begin(), of_group.end()), kLeastShare * least);
+  const double second = std::max(*std::max_element(of_group.begin(), of_group.end()),
+                                 tuning_.share_of_least * least);
   if (second <= 0) {
     return 0;  // the others know nothing of it
   }
@@ -70,17 +58,17 @@ double HeldOut::exceedance(const Level& level, const std::vector<double>& larges
 }
 
 double HeldOut::scale(const Level& level) const {
-  return (level.logarithms + prior_scale_ * kPriorExceedances) /
-         (level.exceedances + kPriorExceedances);
+  return (level.logarithms + prior_scale_ * tuning_.prior_exceedances) /
+         (level.exceedances + tuning_.prior_exceedances);
 }
 
 void HeldOut::add(const std::vector<double>& largest, double least) {
   ++tracks_;
   for (Level& level : levels_) {
     const double logarithm = exceedance(level, largest, least);
-    if (logarithm > kLeastExcess) {
+    if (logarithm > std::log(tuning_.least_excess)) {
       level.exceedances += 1;
-      level.logarithms += logarithm - kLeastExcess;
+      level.logarithms += logarithm - std::log(tuning_.least_excess);
       level.most = std::max(level.most, logarithm);
     }
   }
@@ -90,9 +78,13 @@ double HeldOut::margin(double rate, double least) const {
   double margin = least;
   for (const Level& level : levels_) {
     if (level.eligible_hours > 0) {
-      const double expected = std::max(level.exceedances, kFewest) / (level.eligible_hours * rate);
-      const double logarithm = kLeastExcess + scale(level) * std::max(std::log(expected), 0.0);
-      const double most = tracks_ >= kManyTracks ? level.most + kBeyond : logarithm;
+      const double expected =
+          std::max(level.exceedances, tuning_.fewest_exceedances) / (level.eligible_hours * rate);
+      const double logarithm =
+          std::log(tuning_.least_excess) + scale(level) * std::max(std::log(expected), 0.0);
+      const double most = static_cast<double>(tracks_) >= tuning_.many_tracks
+                              ? level.most + std::log(tuning_.beyond_all)
+                              : logarithm;
       margin = std::max(margin, std::exp(std::min(logarithm, most)));
     }
   }
@@ -103,7 +95,7 @@ double HeldOut::rate(double margin) const {
   double rate = 0;
   for (const Level& level : levels_) {
     if (level.eligible_hours > 0) {
-      const double beyond = std::max(std::log(margin) - kLeastExcess, 0.0);
+      const double beyond = std::max(std::log(margin) - std::log(tuning_.least_excess), 0.0);
       rate = std::max(rate,
                       level.exceedances / level.eligible_hours * std::exp(-beyond / scale(level)));
     }

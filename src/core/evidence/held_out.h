@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "self_awareness/core/evidence/tuning.h"
+
 namespace self_awareness::core::evidence {
 
 /// A part of a recording.
@@ -20,7 +22,8 @@ class HeldOut {
   /// @param parts all that was looked at; none may be empty
   /// @param scale by how much values exceed others on average (a logarithm), as is believed before
   /// anything is seen
-  HeldOut(const std::vector<Part>& parts, double scale);
+  /// @param tuning must outlive this
+  HeldOut(const std::vector<Part>& parts, double scale, const Tuning& tuning);
 
   /// Takes in a track.
   /// @param largest value in every part, 0 or more
@@ -37,9 +40,6 @@ class HeldOut {
   /// or if there is nothing to compare it with.
   double excess(const std::vector<double>& largest, double least) const;
 
-  /// Smallest value that counts, as a share of the least limit.
-  static constexpr double kLeastShare = 0.5;
-
  private:
   /// One way to leave out: groups of parts in turn.
   struct Level {
@@ -53,10 +53,11 @@ class HeldOut {
 
   static Level levelOf(const std::vector<Part>& parts, std::vector<std::size_t> group_of);
   /// log of by how much the largest group exceeds the others; 0 if it does not.
-  static double exceedance(const Level& level, const std::vector<double>& largest, double least);
+  double exceedance(const Level& level, const std::vector<double>& largest, double least) const;
   double scale(const Level& level) const;
 
   double prior_scale_;
+  const Tuning& tuning_;
   std::size_t tracks_ = 0;
   std::vector<Level> levels_;  // by start first
 };

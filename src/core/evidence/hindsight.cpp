@@ -115,13 +115,15 @@ std::optional<Hindsight::Delays> Hindsight::delays(std::size_t track, double cap
   std::optional<std::int64_t> since;  // stamp of the last `from`, until a `to` comes after it
   std::optional<std::int64_t> last;   // stamp of the last `to`
   double regime = 0;
+  const double drift = model_->tuning().drift;
+  const std::int64_t regime_time = toNanoseconds(model_->tuning().regime);
   for (const Event& event : eventsOf(from, to)) {
     if (event.id == to && since) {
       const std::int64_t delay = std::max<std::int64_t>(event.stamp - *since, 0);
       const double surprise = model_->surprise(track, delay);
       seen.push_back(
-          {event.stamp, static_cast<double>(delay), surprise - std::max(regime, 0.0) - kDrift});
-      regime += (surprise - regime) * shareOfRegime(last ? event.stamp - *last : 0);
+          {event.stamp, static_cast<double>(delay), surprise - std::max(regime, 0.0) - drift});
+      regime += (surprise - regime) * shareOf(regime_time, last ? event.stamp - *last : 0);
       since.reset();
     }
     if (event.id == to) {

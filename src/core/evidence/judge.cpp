@@ -23,9 +23,6 @@ namespace {
 constexpr double kSuspicious = 0.75;
 // The score of a busy machine whose evidence is within all limits: just abnormal.
 constexpr double kStillBusy = 1.01 * kThreshold;
-// An event type that was overdue this long ago [ns] already is silent: further windows would say
-// nothing new.
-constexpr std::int64_t kConfirmation = kNanosecondsPerSecond / 10;
 
 class Judge : public core::Judge {
  public:
@@ -157,7 +154,7 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
     }
   }
   const Sum sum = sumUp(evidence, *model_, *limits_);
-  const double linker = sum.linker / limits_->linker;
+  const double linker = model_->tuning().isOn("linker") ? sum.linker / limits_->linker : 0;
   never_heard_.closeWindow(end, settle_time_);
   if (tell_shares_) {
     tell_shares_(window, {shares_, linker, never_heard_.shares()});
@@ -209,10 +206,11 @@ std::vector<Suspect> Judge::namedIn(const Window& window, bool silent_first) con
 
 bool Judge::isSilent() const {
   const std::vector<Track>& tracks = model_->tracks();
+  const std::int64_t confirmation = toNanoseconds(model_->tuning().confirmation);
   for (std::size_t track = 0; track < tracks.size(); ++track) {
     const EventId id = tracks[track].to;
     if (tracks[track].channel == Channel::kOverdue && shares_[track] > 1 &&
-        model_->overdue(id, scorer_.age(id) - kConfirmation) > limits_->tracks[track]) {
+        model_->overdue(id, scorer_.age(id) - confirmation) > limits_->tracks[track]) {
       return true;
     }
   }

@@ -15,38 +15,12 @@ namespace {
 constexpr double kHour = 3600e9;  // [ns]
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-// What was seen once in normal operation is normal, and so is a little more (docs/method.md,
-// section 5.2).
-constexpr double kLeastMargin = 1.25;
-// More would find nothing any more: where the data say so, the budget cannot be kept.
-constexpr double kMostMargin = 4;
-constexpr double kMostGapMargin = 1.6;  // of the longest gaps: what is silent is to be found soon
-constexpr double kMostOwnMargin = 2;    // of one track
-constexpr double kMostTailMargin = 2;   // of the longest gap of what comes irregularly
 // The linker depends on what the robot is doing, and that changes from hour to hour.
 constexpr double kLeastLinkerMargin = 1.5;
 constexpr double kLeastLinkerLimit = 2;  // components
-// An answer may take so many times the longest wait that was seen.
-constexpr double kLeastDeadlineMargin = 2;
-// By how much recordings exceed each other on average (a logarithm), as long as little is known.
-constexpr double kScale = 0.2;
-constexpr double kScaleOfTimers = 0.05;
-// A gap shorter than this many mean gaps is one of a timer that lost nothing.
-constexpr double kRegular = 1.5;
-// A timer with shorter mean gaps, in windows, exceeds them by the host's hiccups.
-constexpr double kFast = 2;
-
 // Each pool and the linker have an equal share of the budget, but slow delays, which raise no
 // alarm.
 constexpr double kShares = 8;
-
-// Evidence that takes longer than this [ns] after a component's death is of no use.
-constexpr double kLongestWait = 10e9;
-constexpr double kLongestDeadline = 20;  // [s]
-// A pair with a larger limit would need 20 or more improbable delays in a row.
-constexpr double kMostDelayLimit = 100;
-// An event type that may wait longer than this many mean gaps comes when something happens.
-constexpr double kMostMeanGaps = 3;
 
 double hoursOf(std::uint64_t windows, std::int64_t window) {
   return static_cast<double>(windows) * static_cast<double>(window) / kHour;
@@ -62,8 +36,8 @@ double sumOf(const std::vector<Part>& parts) {
 
 /// False alarms an hour that limits are made for. By the training alone, they promise one in so
 /// many times the time that was seen at best.
-constexpr double kMostOfTraining = 10;
-double budgetOf(const LimitFinder::Findings& findings, const LimitFinder::Parameters& parameters) {
+double budgetOf(const LimitFinder::Findings& findings, const LimitFinder::Parameters& parameters,
+                double most_of_training) {
   std::uint64_t windows = 0;
   for (const LimitFinder::Recording& recording : findings) {
     if (!recording.trained_on) {
@@ -72,7 +46,7 @@ double budgetOf(const LimitFinder::Findings& findings, const LimitFinder::Parame
     windows += recording.windows;
   }
   return std::max(parameters.false_alarms_per_hour,
-                  1 / (kMostOfTraining * hoursOf(windows, parameters.window)));
+                  1 / (most_of_training * hoursOf(windows, parameters.window)));
 }
 
 }  // namespace
@@ -80,8 +54,11 @@ double budgetOf(const LimitFinder::Findings& findings, const LimitFinder::Parame
 LimitSearch::LimitSearch(const Model& model, const LimitFinder::Findings& findings,
                          const std::vector<Relation>& relations,
                          const LimitFinder::Parameters& parameters)
-    : model_(model), parameters_(parameters), limits_(model.tracks().size(), kNone) {
-  share_ = budgetOf(findings, parameters) / kShares;
+    : model_(model),
+      tuning_(model.tuning()),
+      parameters_(parameters),
+      limits_(model.tracks().size(), kNone) {
+  share_ = budgetOf(findings, parameters, tuning_.most_of_training) / kShares;
   gatherParts(findings);
   std::map<Pool, std::vector<Seen>> pools;
   for (std::size_t track = 0; track < model_.tracks().size(); ++track) {
@@ -114,7 +91,7 @@ void LimitSearch::gatherParts(const LimitFinder::Findings& findings) {
   for (const LimitFinder::Recording& recording : findings) {
     spans.push_back({recording.start, recording.end, recording.robot_start});
   }
-  const std::vector<std::size_t> starts = startsOf(spans);
+  const std::vector<std::size_t> starts = startsOf(spans, toNanoseconds(tuning_.same_start));
   for (std::size_t k = 0; k < training.size(); ++k) {
     with_gaps_.push_back(
         {starts[k], static_cast<double>(training[k].end - training[k].start) / kHour});
@@ -151,8 +128,8 @@ LimitSearch::Pool LimitSearch::poolOf(Channel channel) {
   return Pool::kDeadlines;
 }
 
-double LimitSearch::leastMargin(Pool pool) {
-  return pool == Pool::kDeadlines ? kLeastDeadlineMargin : kLeastMargin;
+double LimitSearch::leastMargin(Pool pool) const {
+  return pool == Pool::kDeadlines ? tuning_.least_deadline_margin : tuning_.least_margin;
 }
 
 std::vector<double> LimitSearch::gapsOf(EventId id) const {
@@ -176,36 +153,37 @@ LimitSearch::Pool LimitSearch::poolOfGaps(const Seen& seen) const {
   std::vector<double> sorted = seen.largest;
   std::sort(sorted.rbegin(), sorted.rend());
   const double second = sorted.size() > 1 && sorted[1] > 0 ? sorted[1] : sorted[0];
-  return second - window() >= kRegular * mean_gap ? Pool::kOthers
-         : mean_gap < kFast * window()            ? Pool::kFastTimers
-                                                  : Pool::kTimers;
+  return second - window() >= tuning_.regular * mean_gap ? Pool::kOthers
+         : mean_gap < tuning_.fast * window()            ? Pool::kFastTimers
+                                                         : Pool::kTimers;
 }
 
 void LimitSearch::search(Pool pool, const std::vector<Seen>& tracks) {
   const bool timers = pool == Pool::kTimers || pool == Pool::kFastTimers;
   const bool gaps = timers || pool == Pool::kOthers;
-  HeldOut held_out(gaps ? with_gaps_ : judged_, timers ? kScaleOfTimers : kScale);
+  HeldOut held_out(gaps ? with_gaps_ : judged_, timers ? tuning_.scale_of_timers : tuning_.scale,
+                   tuning_);
   for (const Seen& seen : tracks) {
     held_out.add(seen.largest, seen.least);
   }
-  const double margin =
-      std::min(held_out.margin(share_, leastMargin(pool)), gaps ? kMostGapMargin : kMostMargin);
+  const double margin = std::min(held_out.margin(share_, leastMargin(pool)),
+                                 gaps ? tuning_.most_gap_margin : tuning_.most_margin);
   double rate_of_tails = 0;
   for (const Seen& seen : tracks) {
     // A track that would have raised an alarm had its worst start been left out gets a wider
     // limit.
     const double own = gaps ? margin
                             : std::max(margin, std::min(held_out.excess(seen.largest, seen.least),
-                                                        kMostOwnMargin));
+                                                        tuning_.most_own_margin));
     const double largest = *std::max_element(seen.largest.begin(), seen.largest.end());
     const double found =
-        std::max(seen.least, own * std::max(largest, HeldOut::kLeastShare * seen.least));
+        std::max(seen.least, own * std::max(largest, tuning_.share_of_least * seen.least));
     double& limit = limits_[seen.track];
     if (pool == Pool::kOthers) {
       const GapTail tail = tailOf(seen);
       const double age = std::max(found - window(),
                                   std::min(tail.age(share_ / static_cast<double>(tracks.size())),
-                                           kMostTailMargin * (largest - window())));
+                                           tuning_.most_tail_margin * (largest - window())));
       limit = limitOfAge(seen.track, age);
       rate_of_tails += std::isnan(limit) ? 0 : tail.rate(age);
     } else {
@@ -225,13 +203,15 @@ double LimitSearch::limitOf(std::size_t track, double found) const {
       return limitOfAge(track, found - window());
     case Channel::kDelay:
     case Channel::kSlowDelay:
-      return found > kMostDelayLimit ? kNone : found;
+      return found > tuning_.most_delay_limit ? kNone : found;
     case Channel::kAnswer:
-      return found / model_.missed(track) * model_.meanGap(from) > kLongestWait ? kNone : found;
+      return found / model_.missed(track) * model_.meanGap(from) > tuning_.longest_wait * 1e9
+                 ? kNone
+                 : found;
     case Channel::kDeadline: {
       const double usual =
           model_.countsRequests(track) ? model_.usualDelay(from, from, 0.5) : 1;  // [s]
-      return found * usual > kLongestDeadline ? kNone : found;
+      return found * usual > tuning_.longest_deadline ? kNone : found;
     }
     default:
       return found;
@@ -241,7 +221,8 @@ double LimitSearch::limitOf(std::size_t track, double found) const {
 double LimitSearch::limitOfAge(std::size_t track, double age) const {
   const EventId id = model_.tracks()[track].to;
   // What comes when something happens may stay away for as long as nothing does.
-  const bool irregular = age > kLongestWait && age > kMostMeanGaps * model_.meanGap(id);
+  const bool irregular =
+      age > tuning_.longest_wait * 1e9 && age > tuning_.most_mean_gaps * model_.meanGap(id);
   return irregular ? kNone : model_.overdue(id, std::llround(age));
 }
 
@@ -251,16 +232,18 @@ GapTail LimitSearch::tailOf(const Seen& seen) const {
   for (const LimitFinder::Recording::Part* part : gap_parts_) {
     gaps.addGap(part->longest_gaps[id]);
   }
-  return {gaps.longest_gaps, sumOf(with_gaps_), kRegular * model_.meanGap(id)};
+  return {gaps.longest_gaps, sumOf(with_gaps_), tuning_.regular * model_.meanGap(id),
+          static_cast<std::size_t>(tuning_.tail_gaps)};
 }
 
 LimitSearch::Linker LimitSearch::linker(const LimitFinder::Findings& findings,
-                                        const LimitFinder::Parameters& parameters) {
+                                        const LimitFinder::Parameters& parameters,
+                                        const Tuning& tuning) {
   std::vector<Span> spans;
   for (const LimitFinder::Recording& recording : findings) {
     spans.push_back({recording.start, recording.end, recording.robot_start});
   }
-  const std::vector<std::size_t> starts = startsOf(spans);
+  const std::vector<std::size_t> starts = startsOf(spans, toNanoseconds(tuning.same_start));
   std::vector<Part> parts;
   std::vector<double> largest;
   for (std::size_t k = 0; k < findings.size(); ++k) {
@@ -269,13 +252,13 @@ LimitSearch::Linker LimitSearch::linker(const LimitFinder::Findings& findings,
       largest.push_back(part.linker);
     }
   }
-  HeldOut held_out(parts, kScale);
+  HeldOut held_out(parts, tuning.scale, tuning);
   held_out.add(largest, kLeastLinkerLimit);
-  const double margin =
-      held_out.margin(budgetOf(findings, parameters) / kShares, kLeastLinkerMargin);
+  const double margin = held_out.margin(
+      budgetOf(findings, parameters, tuning.most_of_training) / kShares, kLeastLinkerMargin);
   const double most = *std::max_element(largest.begin(), largest.end());
   return {std::max(kLeastLinkerLimit,
-                   margin * std::max(most, HeldOut::kLeastShare * kLeastLinkerLimit)),
+                   margin * std::max(most, tuning.share_of_least * kLeastLinkerLimit)),
           held_out.rate(margin)};
 }
 

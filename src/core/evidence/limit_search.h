@@ -31,7 +31,7 @@ class LimitSearch {
   };
   /// @param findings of the second pass, at least one
   static Linker linker(const LimitFinder::Findings& findings,
-                       const LimitFinder::Parameters& parameters);
+                       const LimitFinder::Parameters& parameters, const Tuning& tuning);
 
  private:
   /// Tracks whose values exceed those of other recordings in the same way share what they show.
@@ -53,7 +53,7 @@ class LimitSearch {
   };
 
   static Pool poolOf(Channel channel);
-  static double leastMargin(Pool pool);
+  double leastMargin(Pool pool) const;
   void gatherParts(const LimitFinder::Findings& findings);
   /// Longest gaps by part [ns], as long as windows can tell them.
   std::vector<double> gapsOf(EventId id) const;
@@ -67,6 +67,7 @@ class LimitSearch {
   double window() const { return static_cast<double>(parameters_.window); }
 
   const Model& model_;
+  const Tuning& tuning_;
   const LimitFinder::Parameters& parameters_;
   // Of the training, the gaps of each recording are known; the other evidence only where its
   // recordings were judged by each other.

@@ -48,8 +48,8 @@ void LimitFinder::startScoring() {
   recording_ = {};
   recording_.robot_start = robot_start_;
   recording_.trained_on = judging_ != model_;
-  part_windows_ =
-      static_cast<std::uint64_t>(std::max<std::int64_t>(kShortestPart / parameters_.window, 1));
+  part_windows_ = static_cast<std::uint64_t>(std::max<std::int64_t>(
+      toNanoseconds(model_->tuning().shortest_part) / parameters_.window, 1));
 }
 
 void LimitFinder::add(const Event& event) {
@@ -172,7 +172,7 @@ void LimitFinder::startSecondPass() {
   finish();
   if (model_->tracks().empty()) {
     throw std::invalid_argument("the model watches nothing, as no event type has " +
-                                std::to_string(kFewestGaps) +
+                                std::to_string(std::llround(model_->tuning().fewest_gaps)) +
                                 " gaps in its training: train it on more");
   }
   // What the training showed does not replace recordings that it has never seen.
@@ -183,9 +183,10 @@ void LimitFinder::startSecondPass() {
   for (const Recording& recording : findings_) {
     windows += recording.trained_on && held_out ? 0 : recording.windows;
   }
-  if (static_cast<std::int64_t>(windows) * parameters_.window < kLeastTime) {
+  if (static_cast<std::int64_t>(windows) * parameters_.window <
+      toNanoseconds(model_->tuning().least_time)) {
     throw std::invalid_argument("too little normal operation to find limits: at least " +
-                                std::to_string(kLeastTime / kNanosecondsPerSecond) +
+                                std::to_string(std::llround(model_->tuning().least_time)) +
                                 " s are needed after the first seconds of every recording");
   }
   findRelations();
@@ -218,7 +219,7 @@ void LimitFinder::merge(const Findings& other) {
 }
 
 void LimitFinder::findRelations() {
-  const Relations relations(model_->statistics(), graph_);
+  const Relations relations(model_->statistics(), graph_, model_->tuning());
   for (std::size_t track = 0; track < model_->tracks().size(); ++track) {
     const auto& [channel, to, from] = model_->tracks()[track];
     Relation relation;
@@ -249,7 +250,7 @@ Limits LimitFinder::limits() const {
     throw std::logic_error("limits are known after the second pass");
   }
   Limits limits = limits_;
-  limits.linker = LimitSearch::linker(linker_findings_, parameters_).limit;
+  limits.linker = LimitSearch::linker(linker_findings_, parameters_, model_->tuning()).limit;
   return limits;
 }
 
@@ -257,7 +258,7 @@ double LimitFinder::expectedRate() const {
   if (linker_findings_.empty()) {
     throw std::logic_error("the expected rate is known after the second pass");
   }
-  return tracks_rate_ + LimitSearch::linker(linker_findings_, parameters_).rate;
+  return tracks_rate_ + LimitSearch::linker(linker_findings_, parameters_, model_->tuning()).rate;
 }
 
 }  // namespace self_awareness::core::evidence

@@ -8,16 +8,14 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-constexpr std::int64_t kPart = 100 * kNanosecondsPerSecond;
-constexpr double kLeastGainLeft = 0.7;
 constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::min();
 
 }  // namespace
 
 MisleadingPairs::MisleadingPairs(const Model& model)
-    : pairs_(model.size()), said_(model.tracks().size(), Said::kNothing) {
+    : tuning_(model.tuning()), pairs_(model.size()), said_(model.tracks().size(), Said::kNothing) {
   const Statistics& training = model.statistics();
-  const InformationGain gain(training, training);
+  const InformationGain gain(training, training, tuning_.fewest_delays);
   const std::vector<Statistics::SumOfDelays> to_any = training.delaysToAny();
   for (std::size_t track = 0; track < model.tracks().size(); ++track) {
     const auto& [channel, to, from] = model.tracks()[track];
@@ -50,7 +48,7 @@ void MisleadingPairs::add(const Event& event) {
     }
   }
   last_seen_[event.id] = event.stamp;
-  if (duration_ >= kPart) {
+  if (duration_ >= toNanoseconds(tuning_.part_of_gain)) {
     closePart();
   }
 }
@@ -81,12 +79,12 @@ void MisleadingPairs::closePart() {
     for (const Pair& pair : pairs) {
       const auto delays = asArray(pair.delays).cast<double>();
       const double number = delays.sum();
-      if (number < InformationGain::kFewestDelays) {
+      if (number < tuning_.fewest_delays) {
         continue;
       }
       const double gain = (delays * asArray(pair.log_ratios)).sum() / number;
       const Said said =
-          gain < kLeastGainLeft * pair.usual_gain ? Said::kMisleading : Said::kAsUsual;
+          gain < tuning_.least_gain_left * pair.usual_gain ? Said::kMisleading : Said::kAsUsual;
       said_[pair.track] = said_[pair.track + 1] = std::max(said_[pair.track], said);
     }
   }

@@ -39,6 +39,7 @@ class MisleadingPairs {
   void startPart();
   void closePart();
 
+  Tuning tuning_;
   std::vector<std::vector<Pair>> pairs_;  // by `to`
   std::vector<std::int64_t> last_seen_;   // [ns] by id, kNever before the first in the part
   std::int64_t newest_stamp_ = 0;         // [ns]

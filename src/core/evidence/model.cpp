@@ -14,27 +14,11 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-// A single event proves little, however improbable.
-constexpr double kMostSurprise = 6;
-// Delays that all fall into one bin vary by nothing.
-constexpr double kLeastDeviation = 0.5;  // [nat]
-
-constexpr double kUsual = 0.9;  // share of the delays that are usual
-
 // Share of the usual answers that a fault takes away: the fault that is looked for.
 constexpr double kLost = 0.5;
 constexpr double kLeastMissRate = 0.1;
 constexpr double kMostMissRate = 0.95;
 
-// Below the least limits, hours of data would be needed to tell chance from fault (docs/method.md,
-// section 5.3).
-constexpr double kLeastRateLimit = 3;
-// One late event makes two unusual delays, one too long and one too short: they must not be
-// enough.
-constexpr double kLeastDelayLimit = 2 * kMostSurprise + 1;
-constexpr double kLeastDeadline = 0.5;     // [s]
-constexpr double kLeastRequests = 3;       // without an answer
-constexpr double kLongestGapOfSeries = 2;  // [s]
 constexpr double kLeastMisses = 4;
 constexpr double kLeastAnswerLimit = 5;  // [nat]
 
@@ -42,6 +26,8 @@ constexpr double kLeastAnswerLimit = 5;  // [nat]
 /// and measured on the other, both ways.
 class HeldOutSurprise {
  public:
+  explicit HeldOutSurprise(double least_deviation) : least_deviation_(least_deviation) {}
+
   void add(const Statistics::Delays& learned, const Statistics::Delays& measured) {
     if ((asArray(learned) == 0).all()) {
       return;
@@ -56,10 +42,11 @@ class HeldOutSurprise {
   double mean() const { return count_ > 0 ? sum_ / count_ : 0; }
   double deviation() const {
     const double variance = count_ > 0 ? squares_ / count_ - mean() * mean() : 0;
-    return std::max(std::sqrt(std::max(variance, 0.0)), kLeastDeviation);
+    return std::max(std::sqrt(std::max(variance, 0.0)), least_deviation_);
   }
 
  private:
+  double least_deviation_;  // delays that all fall into one bin vary by nothing
   double count_ = 0;
   double sum_ = 0;
   double squares_ = 0;
@@ -94,14 +81,12 @@ bool isHarmless(std::size_t bin, const Model::Harmless& harmless) {
 }  // namespace
 
 Model::Model(const Watched& watched, Learned learned)
-    : statistics_(sum(watched.halves)),
-      tracks_(watched.tracks),
-      least_effect_(watched.least_effect) {
+    : statistics_(sum(watched.halves)), tracks_(watched.tracks), tuning_(watched.tuning) {
   if (size() == 0) {
     throw std::invalid_argument("a model needs at least one event");
   }
   checkTracks(tracks_, size());
-  least_effect_.validate();
+  tuning_.validate();
   if (learned != Learned::kBoth) {
     half_ = watched.halves.at(learned == Learned::kFirst ? 0 : 1);
   }
@@ -155,7 +140,7 @@ void Model::learnRates() {
     rate.mean = static_cast<double>(type.rate_sum) / windows;
     const double variance =
         static_cast<double>(type.rate_squares) / windows - rate.mean * rate.mean;
-    const double drift = kLeastRateEffect * rate.mean;
+    const double drift = tuning_.least_rate_effect * rate.mean;
     rate.spread =
         std::sqrt(std::max(variance, 0.0) + std::min(1.0, rate.mean / 4) + 0.25 + drift * drift);
     rates_.push_back(rate);
@@ -169,14 +154,14 @@ void Model::learnDelays(const std::array<Statistics, 2>& halves) {
     if (channel != Channel::kDelay) {
       continue;
     }
-    HeldOutSurprise usual;
+    HeldOutSurprise usual(tuning_.least_deviation);
     usual.add(halves[0].delays(from, to), halves[1].delays(from, to));
     usual.add(halves[1].delays(from, to), halves[0].delays(from, to));
     const LogProbabilities logs = logProbabilities(learned().delays(from, to));
     surprises_of_[track] = surprises_of_[track + 1] = surprises_.size();
     Surprises& surprises = surprises_.emplace_back();
     std::transform(logs.begin(), logs.end(), surprises.begin(), [&](double log) {
-      return std::min((-log - usual.mean()) / usual.deviation(), kMostSurprise);
+      return std::min((-log - usual.mean()) / usual.deviation(), tuning_.most_surprise);
     });
     const Harmless harmless = harmless_.emplace_back(learnHarmless(from, to));
     for (std::size_t bin = 0; bin < surprises.size(); ++bin) {
@@ -193,13 +178,15 @@ Model::Harmless Model::learnHarmless(EventId from, EventId to) const {
   const Statistics::Type& asking = learned().type(from);
   const double period = static_cast<double>(asking.gap_sum) /
                         static_cast<double>(std::max<std::uint64_t>(asking.gaps, 1));
-  const double effect = from == to ? least_effect_.onGap(period) : least_effect_.onDelay(period);
+  const double effect =
+      from == to ? tuning_.leastEffectOnGap(period) : tuning_.leastEffectOnDelay(period);
   Harmless harmless;
   harmless.period = from == to ? 0 : period;  // a gap does not wrap
   double below = 0;
   for (std::size_t bin = 0; bin < delays.size(); ++bin) {
-    harmless.shortest = below <= (1 - kUsual) / 2 * total ? lowerEdge(bin) : harmless.shortest;
-    harmless.longest = below < (1 + kUsual) / 2 * total ? upperEdge(bin) : harmless.longest;
+    harmless.shortest =
+        below <= (1 - tuning_.usual) / 2 * total ? lowerEdge(bin) : harmless.shortest;
+    harmless.longest = below < (1 + tuning_.usual) / 2 * total ? upperEdge(bin) : harmless.longest;
     below += delays[bin];
   }
   harmless.shortest -= effect;
@@ -246,7 +233,7 @@ double Model::overdue(EventId id, std::int64_t age) const {
 
 double Model::logSurvival(EventId id, std::int64_t age) const {
   const Statistics::Type& type = learned().type(id);
-  if (type.gaps < kFewestGaps) {
+  if (static_cast<double>(type.gaps) < tuning_.fewest_gaps) {
     return 0;
   }
   // The longest gaps are known exactly, the others by their bins.
@@ -284,7 +271,7 @@ std::int64_t Model::longestSilence() const {
 
 bool Model::countsRequests(std::size_t track) const {
   const EventId from = tracks_[track].from;
-  return usualDelay(from, from, 0.5) < kLongestGapOfSeries;
+  return usualDelay(from, from, 0.5) < tuning_.longest_gap_of_series;
 }
 
 double Model::meanGap(EventId id) const {
@@ -330,14 +317,15 @@ double Model::leastLimit(std::size_t track) const {
       return 0;
     case Channel::kFewer:
     case Channel::kMore:
-      return kLeastRateLimit;
+      return tuning_.least_rate_limit;
     case Channel::kDelay:
     case Channel::kSlowDelay:
-      return kLeastDelayLimit;
+      // One late event makes two unusual delays, one too long and one too short: they must not do.
+      return 2 * tuning_.most_surprise + 1;
     case Channel::kAnswer:
       return std::max(kLeastMisses * steps_[track].missed, kLeastAnswerLimit);
     case Channel::kDeadline:
-      return countsRequests(track) ? kLeastRequests : kLeastDeadline;
+      return countsRequests(track) ? tuning_.least_requests : tuning_.least_deadline;
   }
   return 0;
 }

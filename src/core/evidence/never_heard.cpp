@@ -1,35 +1,23 @@
 #include "core/evidence/never_heard.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <utility>
 
 namespace self_awareness::core::evidence {
-namespace {
-
-// What always came within 10 s may take 25 s in a start on a busy computer. A type with long gaps
-// may come as late in any recording that began while the robot was running.
-constexpr std::int64_t kTimes = 2;  // the longest time of training
-constexpr std::int64_t kMargin = 5 * kNanosecondsPerSecond;
-// An alarm long after: this many times as late, and at least so much later.
-constexpr std::int64_t kTimesForAlarm = 4;
-constexpr std::int64_t kLeastForAlarm = 60 * kNanosecondsPerSecond;
-
-// Time after the start at which it is an alarm that something is missing that was due [ns].
-std::int64_t alarmDue(std::int64_t due) {
-  return std::max(kTimesForAlarm * due, due + kLeastForAlarm);
-}
-
-}  // namespace
-
 NeverHeard::NeverHeard(const Model& model, const Limits& limits,
                        std::shared_ptr<const SourceGraph> graph)
-    : vocabulary_(model.vocabulary()), graph_(std::move(graph)) {
+    : vocabulary_(model.vocabulary()),
+      alarm_times_(model.tuning().alarm_times),
+      alarm_later_(toNanoseconds(model.tuning().alarm_later)),
+      graph_(std::move(graph)) {
   const Statistics& statistics = model.statistics();
   for (EventId id = 0; id < model.size(); ++id) {
     Expected expected{id, std::numeric_limits<std::int64_t>::max(), 0, 0, 0};
-    bool always = !statistics.recordings().empty() && statistics.type(id).gaps >= kFewestGaps;
+    bool always = !statistics.recordings().empty() &&
+                  static_cast<double>(statistics.type(id).gaps) >= model.tuning().fewest_gaps;
     for (const Statistics::Recording& recording : statistics.recordings()) {
       const std::int64_t first = id < recording.firsts.size() ? recording.firsts[id] : -1;
       always = always && first >= 0;
@@ -42,7 +30,10 @@ NeverHeard::NeverHeard(const Model& model, const Limits& limits,
       expected.longest = std::max(expected.longest, limits.firsts[id]);
     }
     if (always) {
-      expected.due = std::max(kTimes * expected.longest + kMargin, kTimes * model.longestGap(id));
+      const double times = model.tuning().due_times;
+      expected.due = std::llround(
+          std::max(times * static_cast<double>(expected.longest) + model.tuning().due_later * 1e9,
+                   times * static_cast<double>(model.longestGap(id))));
       all_.push_back(expected);
     }
   }
@@ -80,8 +71,10 @@ void NeverHeard::closeWindow(std::int64_t end, std::int64_t settle_time) {
   }
   share_ = 0;
   for (Expected& expected : missing_) {
-    const std::int64_t limit = alarmDue(std::max(expected.due, settle_time));
-    expected.share = static_cast<double>(passed) / static_cast<double>(limit);
+    const std::int64_t due = std::max(expected.due, settle_time);
+    expected.share =
+        static_cast<double>(passed) /
+        std::max(alarm_times_ * static_cast<double>(due), static_cast<double>(due + alarm_later_));
     share_ = std::max(share_, expected.share);
   }
 }

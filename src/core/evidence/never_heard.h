@@ -50,6 +50,8 @@ class NeverHeard {
   std::vector<Expected> rootFirst(std::vector<Expected> missing) const;
 
   Vocabulary vocabulary_;
+  double alarm_times_;        // as late as due, it is an alarm
+  std::int64_t alarm_later_;  // and at least so much later [ns]
   std::shared_ptr<const SourceGraph> graph_;
   std::vector<Expected> all_;
   std::vector<Expected> waiting_;  // of all, those that have not come and are not due

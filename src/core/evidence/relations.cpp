@@ -10,35 +10,9 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-// A start with a smaller share of the events says nothing about all of them.
-constexpr double kLeastShareOfStart = 0.02;
-constexpr std::uint64_t kFewestEventsOfStart = 20;
-// Delays that may lie anywhere: hiccups.
-constexpr double kMostOutliers = 0.1;
-
-// Chance of one relation among all that are looked at, where nothing else speaks for it.
-constexpr double kChanceOfAny = 0.1;
-// Chance of a relation that something else speaks for.
-constexpr double kChanceOfOne = 0.05;
-
-// Of a type with fewer gaps, nothing is known about how regular it is.
-constexpr std::uint64_t kFewestGapsOfPair = 30;
-// An event type is irregular for another if its gaps vary by more than this many times the delays.
-constexpr double kIrregular = 2;
-
-// If unrelated, `to` would be missing in this share of the gaps at least: else the gaps of `to`
-// alone say as much.
-constexpr double kLeastChanceMisses = 0.2;
-constexpr double kMostOfChanceMisses = 0.5;
 // So many lengths, each as probable, stand for the gaps beyond the last bin edge.
 constexpr int kTailPoints = 8;
 
-// Answers that take less than this share of the longest usual ones may as well come before.
-constexpr double kLeastOfLongest = 0.1;
-
-// A topic that so many nodes hear, and more than half of all, reaches everybody: that it does is
-// no reason.
-constexpr std::size_t kFewestOfBroadcast = 4;
 // /tf and /clock are for everybody, however many listen.
 const std::set<std::string> kBroadcasts{"/tf", "/tf_static", "/clock"};
 
@@ -50,14 +24,18 @@ double divergence(double n, double observed, double expected) {
 
 }  // namespace
 
-Relations::Relations(const Statistics& counts, const SourceGraph& graph)
-    : counts_(counts), graph_(graph), broadcasts_(kBroadcasts), gaps_(counts.size()) {
+Relations::Relations(const Statistics& counts, const SourceGraph& graph, const Tuning& tuning)
+    : counts_(counts),
+      graph_(graph),
+      tuning_(tuning),
+      broadcasts_(kBroadcasts),
+      gaps_(counts.size()) {
   double types = 0;
   for (EventId id = 0; id < counts.size(); ++id) {
     const Statistics::Type& type = counts.type(id);
     mean_gaps_.push_back(
         type.gaps == 0 ? 0 : static_cast<double>(type.gap_sum) / static_cast<double>(type.gaps));
-    types += type.gaps >= kFewestGapsOfPair ? 1 : 0;
+    types += static_cast<double>(type.gaps) >= tuning.fewest_gaps ? 1 : 0;
     const Statistics::Delays& delays = counts.delays(id, id);
     const double longest =
         type.longest_gaps.empty() ? 0 : static_cast<double>(type.longest_gaps.front());
@@ -97,7 +75,8 @@ Relations::Relations(const Statistics& counts, const SourceGraph& graph)
     all.insert(edge.subscriber);
   }
   for (const auto& [topic, subscribers] : listeners) {
-    if (subscribers.size() >= kFewestOfBroadcast && 2 * subscribers.size() > all.size()) {
+    if (static_cast<double>(subscribers.size()) >= tuning.fewest_of_broadcast &&
+        2 * subscribers.size() > all.size()) {
       broadcasts_.insert(topic);
     }
   }
@@ -131,7 +110,7 @@ bool Relations::isIrregular(EventId from, EventId to) const {
     return widest ? edge(high + 1) - edge(low) : std::max(edge(high) - edge(low + 1), 0.0);
   };
   const double delays = range(from, to, true);
-  return std::min(range(from, from, false), range(to, to, false)) > kIrregular * delays;
+  return std::min(range(from, from, false), range(to, to, false)) > tuning_.irregular * delays;
 }
 
 double Relations::period(EventId from, EventId to) const {
@@ -205,19 +184,21 @@ Relation Relations::delays(EventId from, EventId to, const std::vector<Span>& mo
       return id < recording.events.size() ? recording.events[id] : 0;
     };
     const double share = static_cast<double>(events(to)) / total;
-    if (share >= kLeastShareOfStart &&
-        std::min(events(from), events(to)) >= kFewestEventsOfStart) {
+    if (share >= tuning_.least_share_of_start &&
+        static_cast<double>(std::min(events(from), events(to))) >=
+            tuning_.fewest_events_of_start) {
       least_share = std::min(least_share, share);
       spans.push_back({recording.start, recording.end, recording.robot_start});
     }
   }
-  relation.starts = numberOfStarts(spans);
-  relation.spread = spread(from, to, std::min(kMostOutliers, least_share / 2));
+  relation.starts = numberOfStarts(spans, toNanoseconds(tuning_.same_start));
+  relation.spread = spread(from, to, std::min(tuning_.most_outliers, least_share / 2));
   relation.reaches = reaches(from, to);
   relation.irregular = isIrregular(from, to);
-  const double level = relation.reaches && relation.irregular   ? 1
-                       : relation.reaches || relation.irregular ? kChanceOfOne
-                                                                : kChanceOfAny / looked_at_;
+  const double level = relation.reaches && relation.irregular ? 1
+                       : relation.reaches || relation.irregular
+                           ? tuning_.chance_of_one
+                           : tuning_.chance_of_any / looked_at_;
   const double starts = std::max<double>(static_cast<double>(relation.starts), 1);
   // Who comes in the second half of a period after another may as well be the one that it asks; of
   // what one node publishes, nobody knows what comes upon what.
@@ -252,10 +233,10 @@ Relation Relations::answers(EventId from, EventId to) const {
   const double misses = missRate(counts_.type(from).gaps, counts_.answers(from, to));
   const double by_chance = missRateByChance(from, to);
   relation.reaches = reaches(from, to);
-  relation.irregular =
-      by_chance >= kLeastChanceMisses && misses <= kMostOfChanceMisses * by_chance;
-  relation.watched = relation.irregular &&
-                     divergence(gaps, misses, by_chance) > std::log(looked_at_ / kChanceOfAny);
+  relation.irregular = by_chance >= tuning_.least_chance_misses &&
+                       misses <= tuning_.most_of_chance_misses * by_chance;
+  relation.watched = relation.irregular && divergence(gaps, misses, by_chance) >
+                                               std::log(looked_at_ / tuning_.chance_of_any);
   return relation;
 }
 
@@ -273,7 +254,7 @@ Relation Relations::deadline(EventId from, EventId to) const {
     below += delays[bin];
   }
   relation.watched &=
-      shortest >= kLeastOfLongest * longest && (graph_.empty() || relation.reaches);
+      shortest >= tuning_.least_of_longest * longest && (graph_.empty() || relation.reaches);
   return relation;
 }
 

@@ -18,8 +18,8 @@ namespace self_awareness::core::evidence {
 class Relations {
  public:
   /// @param counts of the whole training, at least of the pairs that are asked for; must outlive
-  /// the relations, and so must the graph
-  Relations(const Statistics& counts, const SourceGraph& graph);
+  /// the relations, and so must the graph and the tuning
+  Relations(const Statistics& counts, const SourceGraph& graph, const Tuning& tuning);
 
   /// Reasons to watch the delays from `from` to `to`.
   /// @param more recordings that were not trained on, in which the delays were as in training
@@ -52,6 +52,7 @@ class Relations {
 
   const Statistics& counts_;
   const SourceGraph& graph_;
+  const Tuning& tuning_;
   std::set<std::string> broadcasts_;    // topics that everybody hears
   double looked_at_ = 1;                // number of pairs
   std::vector<std::vector<Gap>> gaps_;  // by id

@@ -10,40 +10,16 @@ namespace {
 
 // The drift of the slow sums: a small one lets weak evidence add up.
 constexpr double kSlowDrift = 0.5;
-// Independent timers keep one phase as long as they run, and have another one in every run:
-// training may have met the same one by chance every time. So delays and answers count only after
-// they have once been as in training, and again so when one of the event types comes back after it
-// was gone (docs/method.md, section 3.7).
-constexpr std::uint32_t kArmingEvents = 30;
-constexpr double kUsualSurprise = 0.3;       // standard deviations above the mean of training
-constexpr double kUsualMisses = 0.15;        // share of the gaps above that of training
-constexpr std::int64_t kGoneGaps = 5;        // times the longest gap in training
-constexpr std::uint32_t kMostFailures = 10;  // to arm, that count
-constexpr double kMostEvidence = 200;        // while limits are not known
-constexpr double kMostOfLimit = 1.5;         // in units of the limit
+constexpr double kUsualMisses = 0.15;  // share of the gaps above that of training
+constexpr double kMostEvidence = 200;  // while limits are not known
 // Smaller shares of a limit are what normal operation is made of: they link nothing.
 constexpr double kLeastLinked = 0.5;
-// A type whose message waited has gaps that are too long, and then too short ones: it catches up.
-// It is behind by so many of its mean gaps at most.
-constexpr double kMostBehind = 3;
-// A relation that has been abnormal for so long [ns], while both its event types come, has
-// changed: it is news once (docs/method.md, section 3.7).
-constexpr std::int64_t kAcceptAfter = 60 * kNanosecondsPerSecond;
-
-// Who was not heard so long [ns] after the start of the recording does not start any more.
-constexpr std::int64_t kStartTime = 60 * kNanosecondsPerSecond;
-
-// A stall of the whole robot, where that is longer than usual [ns]; more often, it is something
-// else.
-constexpr std::int64_t kShortestStall = kNanosecondsPerSecond / 20;
-constexpr std::int64_t kLongestStall = kNanosecondsPerSecond * 7 / 10;
-constexpr std::int64_t kBetweenStalls = 30 * kNanosecondsPerSecond;
 
 }  // namespace
 
-inline bool Scorer::arm(Arming& arming, double excess, double usual) {
+inline bool Scorer::arm(Arming& arming, double excess, double usual) const {
   arming.excess += excess;
-  const std::uint32_t needed = kArmingEvents << std::min(arming.failures, kMostFailures);
+  const std::uint32_t needed = arming_events_ << std::min(arming.failures, most_failures_);
   if (++arming.events < needed) {
     return false;
   }
@@ -54,8 +30,20 @@ inline bool Scorer::arm(Arming& arming, double excess, double usual) {
 
 Scorer::Scorer(std::shared_ptr<const Model> model, std::int64_t window)
     : model_(std::move(model)), counts_(model_->size(), rateWindows(window)) {
+  const Tuning& tuning = model_->tuning();
+  drift_ = tuning.drift;
+  regime_ = toNanoseconds(tuning.regime);
+  arming_events_ = static_cast<std::uint32_t>(tuning.arming_events);
+  most_failures_ = static_cast<std::uint32_t>(tuning.most_failures);
+  usual_surprise_ = tuning.usual_surprise;
+  most_behind_ = tuning.most_behind;
+  longest_stall_ = toNanoseconds(tuning.longest_stall);
+  between_stalls_ = toNanoseconds(tuning.between_stalls);
+  start_time_ = toNanoseconds(tuning.start_time);
   addTracks();
-  longest_silence_ = std::max(model_->longestSilence() * 5 / 4, kShortestStall);
+  longest_silence_ = std::max(
+      std::llround(static_cast<double>(model_->longestSilence()) * tuning.longest_usual_stall),
+      std::llround(tuning.shortest_stall * 1e9));
   restart();
 }
 
@@ -88,7 +76,8 @@ void Scorer::addTracks() {
   none.caps.setConstant(kMostEvidence);
   for (EventId id = 0; id < model_->size(); ++id) {
     OfType type;
-    type.gone_after = kGoneGaps * model_->longestGap(id);
+    type.gone_after = static_cast<std::int64_t>(
+        std::min(model_->tuning().gone_gaps * static_cast<double>(model_->longestGap(id)), 9e18));
     type.mean_gap = model_->meanGap(id);
     type.pairs_begin = static_cast<std::uint32_t>(pairs_.size());
     for (const std::size_t track : pairs[id]) {
@@ -158,7 +147,7 @@ std::optional<std::int64_t> Scorer::add(const Event& event) {
   const std::int64_t* const stamps = stamps_.data();
   const std::uint64_t* const numbers = numbers_.data();
   const std::uint64_t last = numbers[event.id];
-  const Eigen::Array2d drifts(kDrift, kSlowDrift);
+  const Eigen::Array2d drifts(drift_, kSlowDrift);
   start_ = number_ == 0 ? event.stamp : start_;
   noteStall(event.stamp);
   const bool stalled = event.stamp < stalled_until_;
@@ -181,7 +170,7 @@ std::optional<std::int64_t> Scorer::add(const Event& event) {
     const double count = first && !stalled ? 1.0 : 0.0;
     const double sign = pair->own && catches_up && surprise > 0 ? -1.0 : 1.0;
     pair->sums.add((surprise - std::max(pair->regime, 0.0) - drifts) * (sign * count));
-    pair->regime += (surprise - pair->regime) * shareOfRegime(event.stamp - last_stamp) * count;
+    pair->regime += (surprise - pair->regime) * shareOf(regime_, event.stamp - last_stamp) * count;
     if (!pair->armed) {
       armPair(static_cast<std::size_t>(pair - pairs_.data()), first, surprise);
     }
@@ -217,14 +206,14 @@ bool Scorer::catchUp(const Event& event) {
   const double late = static_cast<double>(event.stamp - stamps_[event.id]) - mean;
   double& behind = behind_[event.id];
   const bool catches_up = late < 0 && -late < 2 * behind;
-  behind = std::clamp(behind + late, 0.0, kMostBehind * mean);
+  behind = std::clamp(behind + late, 0.0, most_behind_ * mean);
   return catches_up;
 }
 
 void Scorer::noteStall(std::int64_t stamp) {
   const std::int64_t silence = stamp - last_stamp_;
-  if (number_ > 0 && silence > longest_silence_ && silence <= kLongestStall &&
-      (stalled_at_ == 0 || stamp - stalled_at_ > kBetweenStalls)) {
+  if (number_ > 0 && silence > longest_silence_ && silence <= longest_stall_ &&
+      (stalled_at_ == 0 || stamp - stalled_at_ > between_stalls_)) {
     stalled_from_ = last_stamp_;
     stalled_at_ = stamp;
     stalled_until_ = stamp + silence;
@@ -239,7 +228,7 @@ void Scorer::armPair(std::size_t number, bool first, double surprise) {
   } else if (pair.own && pairs_arming_[number].failures == 0) {
     pair.armed = true;  // the history of one event type has no phase that could be another one
   } else if (first) {
-    pair.armed = arm(pairs_arming_[number], surprise, kUsualSurprise);
+    pair.armed = arm(pairs_arming_[number], surprise, usual_surprise_);
   }
 }
 
@@ -277,7 +266,7 @@ void Scorer::capAt(const Limits& limits) {
   has_limits_ = true;
   const auto cap = [&](std::size_t track, double& of_sum) {
     if (limits.tracks[track] > 0) {  // never so where it is NaN
-      of_sum = kMostOfLimit * limits.tracks[track];
+      of_sum = model_->tuning().most_of_limit * limits.tracks[track];
     }
   };
   for (std::size_t track = 0; track < model_->tracks().size(); ++track) {
@@ -335,14 +324,16 @@ void Scorer::disarmAnswer(std::size_t number) {
 }
 
 void Scorer::accept(std::int64_t end) {
+  const double most_of_limit = model_->tuning().most_of_limit;
+  const std::int64_t accept_after = toNanoseconds(model_->tuning().accept_after);
   for (std::size_t number = 0; number < pairs_.size(); ++number) {
     const Sums& sums = pairs_[number].sums;
     std::int64_t& since = pairs_abnormal_since_[number];
-    if (!pairs_[number].armed || (sums.values * kMostOfLimit <= sums.caps).all()) {
+    if (!pairs_[number].armed || (sums.values * most_of_limit <= sums.caps).all()) {
       since = 0;
     } else if (since == 0) {
       since = end;
-    } else if (end - since >= kAcceptAfter) {
+    } else if (end - since >= accept_after) {
       ++pairs_arming_[number].failures;
       disarmPair(number);
     }
@@ -350,11 +341,11 @@ void Scorer::accept(std::int64_t end) {
   for (std::size_t number = 0; number < answers_.size(); ++number) {
     const Answer& answer = answers_[number];
     std::int64_t& since = answers_abnormal_since_[number];
-    if (!answer.armed || answer.sum * kMostOfLimit <= answer.cap) {
+    if (!answer.armed || answer.sum * most_of_limit <= answer.cap) {
       since = 0;
     } else if (since == 0) {
       since = end;
-    } else if (end - since >= kAcceptAfter && stamps_[answer.to] > since) {
+    } else if (end - since >= accept_after && stamps_[answer.to] > since) {
       ++answers_arming_[number].failures;
       disarmAnswer(number);
     }
@@ -369,7 +360,7 @@ const std::vector<double>& Scorer::closeWindow(std::int64_t end) {
   }
   // While all are silent, none is more so than the others.
   const std::int64_t silence = number_ > 0 ? end - last_stamp_ : 0;
-  stall_ = silence > longest_silence_ && silence <= kLongestStall ? silence : 0;
+  stall_ = silence > longest_silence_ && silence <= longest_stall_ ? silence : 0;
   const bool stalled = stall_ > 0 || (stalled_at_ > 0 && end < stalled_until_ + kRateSpan);
   const std::vector<Track>& tracks = model_->tracks();
   for (std::size_t track = 0; track < tracks.size(); ++track) {
@@ -403,7 +394,7 @@ const std::vector<double>& Scorer::closeWindow(std::int64_t end) {
       case Channel::kDeadline: {
         const Deadline& deadline = deadlines_[state_of_[track]];
         // Who was not heard yet may still be starting.
-        const bool started = seen || end - start_ >= kStartTime;
+        const bool started = seen || end - start_ >= start_time_;
         evidence_[track] = deadline.requests == 0 || !started ? 0
                            : deadline.in_requests             ? deadline.requests
                                                               : toSeconds(end - deadline.since);

@@ -14,16 +14,11 @@
 
 namespace self_awareness::core::evidence {
 
-/// What every delay takes from the sum of its track, in standard deviations: a large drift finds
-/// strong evidence without false alarms.
-constexpr double kDrift = 1;
-/// Delays count relative to those of the last minutes [ns], their regime: load changes with the
-/// time of day.
-constexpr std::int64_t kRegime = 120 * kNanosecondsPerSecond;
-/// Share of the regime's mean that a delay makes, which came so long [ns] after the one before.
-constexpr double shareOfRegime(std::int64_t elapsed) {
-  return static_cast<double>(std::clamp<std::int64_t>(elapsed, 0, kRegime)) /
-         static_cast<double>(kRegime);
+/// Share of a mean over some time that a value makes which came so long after the one before;
+/// both in [ns].
+constexpr double shareOf(std::int64_t time, std::int64_t elapsed) {
+  return static_cast<double>(std::clamp<std::int64_t>(elapsed, 0, time)) /
+         static_cast<double>(time);
 }
 
 /// Collects the evidence of every track from the events of one recording (docs/method.md, sections
@@ -137,7 +132,7 @@ class Scorer {
   /// Takes in one event of a track that is not armed.
   /// @param usual largest mean excess that counts as in training
   /// @return whether the track is armed now
-  static bool arm(Arming& arming, double excess, double usual);
+  bool arm(Arming& arming, double excess, double usual) const;
   void addTracks();
   /// Takes in a delay of a pair that is not armed.
   /// @param first whether it counts
@@ -159,6 +154,16 @@ class Scorer {
   void accept(std::int64_t end);
 
   std::shared_ptr<const Model> model_;
+  // Of the model's tuning, as an event needs them.
+  double drift_ = 0;
+  std::int64_t regime_ = 0;  // [ns]
+  std::uint32_t arming_events_ = 0;
+  std::uint32_t most_failures_ = 0;
+  double usual_surprise_ = 0;
+  double most_behind_ = 0;
+  std::int64_t longest_stall_ = 0;                  // [ns]
+  std::int64_t between_stalls_ = 0;                 // [ns]
+  std::int64_t start_time_ = 0;                     // [ns]
   std::vector<OfType> types_;                       // by id
   std::vector<DelayPair> pairs_;                    // by `to`
   std::vector<const Model::Harmless*> harmless_;    // by number of the pair

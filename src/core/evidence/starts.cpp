@@ -8,14 +8,8 @@
 #include "self_awareness/core/stream/event.h"
 
 namespace self_awareness::core::evidence {
-namespace {
 
-// Recordings with less than this between them [ns] are of one start.
-constexpr std::int64_t kSameStart = 60 * kNanosecondsPerSecond;
-
-}  // namespace
-
-std::vector<std::size_t> startsOf(const std::vector<Span>& recordings) {
+std::vector<std::size_t> startsOf(const std::vector<Span>& recordings, std::int64_t same_start) {
   std::vector<std::size_t> by_time(recordings.size());
   std::iota(by_time.begin(), by_time.end(), 0);
   std::sort(by_time.begin(), by_time.end(), [&](std::size_t a, std::size_t b) {
@@ -34,7 +28,7 @@ std::vector<std::size_t> startsOf(const std::vector<Span>& recordings) {
       starts[k] = start->second;
       continue;
     }
-    if (!end || recording.start - *end >= kSameStart) {
+    if (!end || recording.start - *end >= same_start) {
       unknown = number++;
       end = recording.end;
     }
@@ -44,8 +38,8 @@ std::vector<std::size_t> startsOf(const std::vector<Span>& recordings) {
   return starts;
 }
 
-std::size_t numberOfStarts(const std::vector<Span>& recordings) {
-  const std::vector<std::size_t> starts = startsOf(recordings);
+std::size_t numberOfStarts(const std::vector<Span>& recordings, std::int64_t same_start) {
+  const std::vector<std::size_t> starts = startsOf(recordings, same_start);
   return starts.empty() ? 0 : *std::max_element(starts.begin(), starts.end()) + 1;
 }
 

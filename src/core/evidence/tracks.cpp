@@ -14,18 +14,7 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-// With a smaller gain, pairs of timers that beat against each other would be watched.
-constexpr double kLeastGain = 0.3;  // [nat]
-constexpr std::uint64_t kFewestDelaysOfPair = 200;
-
-// Events that are fewer in kRateSpan come in bursts, or when something happens.
-constexpr double kLeastRate = 1.5;
-
 constexpr std::size_t kAsked = 8;
-// A deadline needs fewer: a request is rare, and its answer hardly ever fails to come.
-constexpr std::size_t kDeadlines = 3;
-constexpr std::uint64_t kFewestAnswers = 30;
-constexpr double kMostMissesOfDeadline = 0.1;
 constexpr std::uint64_t kFewestGapsOfAnswers = 100;
 constexpr double kMostMisses = 0.6;
 
@@ -34,16 +23,17 @@ using Halves = std::array<const Statistics*, 2>;
 /// Gains of all pairs: the mean of learning from either half (docs/method.md, section 3.4).
 class Gains {
  public:
-  explicit Gains(const Halves& halves) : size_(halves[0]->size()), gains_(size_ * size_, 0) {
-    add(*halves[0], *halves[1]);
-    add(*halves[1], *halves[0]);
+  Gains(const Halves& halves, double fewest_delays)
+      : size_(halves[0]->size()), gains_(size_ * size_, 0) {
+    add(*halves[0], *halves[1], fewest_delays);
+    add(*halves[1], *halves[0], fewest_delays);
   }
 
   double operator()(EventId from, EventId to) const { return gains_[to * size_ + from]; }
 
  private:
-  void add(const Statistics& learned_from, const Statistics& measured_on) {
-    const InformationGain gain(learned_from, measured_on);
+  void add(const Statistics& learned_from, const Statistics& measured_on, double fewest_delays) {
+    const InformationGain gain(learned_from, measured_on, fewest_delays);
     for (EventId to = 0; to < size_; ++to) {
       for (EventId from = 0; from < size_; ++from) {
         gains_[to * size_ + from] += gain(from, to) / 2;
@@ -58,13 +48,13 @@ class Gains {
 /// Chooses what to watch, by the counts of both halves.
 class Choice {
  public:
-  Choice(const Statistics& both, const Halves& halves, std::size_t predecessors,
-         const SourceGraph& graph)
+  Choice(const Statistics& both, const Halves& halves, const SourceGraph& graph,
+         const Tuning& tuning)
       : halves_(halves),
-        predecessors_(predecessors),
-        gains_(halves),
+        tuning_(tuning),
+        gains_(halves, tuning.fewest_delays),
         types_(both),
-        relations_(both, graph) {}
+        relations_(both, graph, tuning) {}
 
   std::vector<Track> tracks() const {
     std::vector<Track> tracks;
@@ -72,6 +62,16 @@ class Choice {
     addDelayTracks(tracks);
     addAnswerTracks(tracks);
     addDeadlineTracks(tracks);
+    tracks.erase(
+        std::remove_if(tracks.begin(), tracks.end(),
+                       [&](const Track& track) {
+                         const bool own = track.channel == Channel::kDelay ||
+                                          track.channel == Channel::kSlowDelay;
+                         return !tuning_.isOn(channelName(track.channel)) ||
+                                (own &&
+                                 !tuning_.isOn(track.to == track.from ? "own gaps" : "relations"));
+                       }),
+        tracks.end());
     return tracks;
   }
 
@@ -81,10 +81,10 @@ class Choice {
 
   void addTracksOfTypes(std::vector<Track>& tracks) const {
     for (EventId id = 0; id < types_.size(); ++id) {
-      if (types_.type(id).gaps >= kFewestGaps) {
+      if (static_cast<double>(types_.type(id).gaps) >= tuning_.fewest_gaps) {
         tracks.push_back({Channel::kOverdue, id, id});
         if (static_cast<double>(types_.type(id).rate_sum) >=
-            kLeastRate * static_cast<double>(types_.rateWindows())) {
+            tuning_.least_rate * static_cast<double>(types_.rateWindows())) {
           tracks.push_back({Channel::kFewer, id, id});
           tracks.push_back({Channel::kMore, id, id});
         }
@@ -96,12 +96,13 @@ class Choice {
     for (EventId to = 0; to < types_.size(); ++to) {
       RankedPairs best;  // first those that are watched, by negative gain
       for (EventId from = 0; from < types_.size(); ++from) {
-        if (gains_(from, to) >= kLeastGain &&
-            halves_[0]->total(from, to) + halves_[1]->total(from, to) >= kFewestDelaysOfPair) {
+        if (gains_(from, to) >= tuning_.least_gain &&
+            static_cast<double>(halves_[0]->total(from, to) + halves_[1]->total(from, to)) >=
+                tuning_.fewest_delays_of_pair) {
           best.emplace_back(!relations_.delays(from, to).watched, -gains_(from, to), from);
         }
       }
-      keepBest(predecessors_, best);
+      keepBest(static_cast<std::size_t>(tuning_.predecessors), best);
       for (const auto& [waits, gain, from] : best) {
         tracks.push_back({Channel::kDelay, to, from});
         tracks.push_back({Channel::kSlowDelay, to, from});
@@ -118,7 +119,7 @@ class Choice {
         const Statistics::Type& asking = types_.type(from);
         if (from == to || asking.gaps < kFewestGapsOfAnswers ||
             types_.type(to).gaps < kFewestGapsOfAnswers ||
-            gains_(to, from) > gains_(from, to) + kLeastGain) {
+            gains_(to, from) > gains_(from, to) + tuning_.least_gain) {
           continue;
         }
         const double misses =
@@ -142,13 +143,13 @@ class Choice {
       for (EventId from = 0; from < types_.size(); ++from) {
         const std::uint64_t gaps = types_.type(from).gaps;
         const std::uint64_t answers = types_.answers(from, to);
-        if (from != to && answers >= kFewestAnswers &&
-            missRate(gaps, answers) <= kMostMissesOfDeadline &&
+        if (from != to && static_cast<double>(answers) >= tuning_.fewest_answers &&
+            missRate(gaps, answers) <= tuning_.most_misses &&
             relations_.deadline(from, to).watched) {
           best.emplace_back(missRate(gaps, answers), from);
         }
       }
-      keepBest(kDeadlines, best);
+      keepBest(static_cast<std::size_t>(tuning_.deadlines), best);
       for (const auto& [misses, from] : best) {
         tracks.push_back({Channel::kDeadline, to, from});
       }
@@ -164,7 +165,7 @@ class Choice {
   }
 
   Halves halves_;
-  std::size_t predecessors_;
+  const Tuning& tuning_;
   Gains gains_;
   const Statistics& types_;  // counts of both halves
   Relations relations_;
@@ -224,8 +225,13 @@ std::string channelName(Channel channel) {
   return "";
 }
 
-InformationGain::InformationGain(const Statistics& learned_from, const Statistics& measured_on)
-    : learned_from_(learned_from), measured_on_(measured_on) {
+std::vector<std::string> channelNames() {
+  return {"overdue", "rate", "pairs", "own gaps", "relations", "answers", "deadlines", "linker"};
+}
+
+InformationGain::InformationGain(const Statistics& learned_from, const Statistics& measured_on,
+                                 double fewest_delays)
+    : learned_from_(learned_from), measured_on_(measured_on), fewest_delays_(fewest_delays) {
   for (const EventType& type : learned_from.vocabulary().types()) {
     id_there_.push_back(measured_on.vocabulary().find(type));
   }
@@ -242,7 +248,7 @@ double InformationGain::operator()(EventId from, EventId to) const {
   const std::uint64_t number = asArray(measured).cast<std::uint64_t>().sum();
   const Statistics::Delays& learned = learned_from_.delays(from, to);
   const std::uint64_t learned_number = asArray(learned).cast<std::uint64_t>().sum();
-  if (number < kFewestDelays || learned_number == 0) {
+  if (static_cast<double>(number) < fewest_delays_ || learned_number == 0) {
     return 0;
   }
   const double total = static_cast<double>(learned_number) + log_bins::kBins;
@@ -263,17 +269,17 @@ LogProbabilities logProbabilities(const Statistics::SumOfDelays& counts) {
   return logsOf(counts);
 }
 
-Watched watch(const Statistics& first, const Statistics& second, std::size_t predecessors,
-              const SourceGraph& graph) {
+Watched watch(const Statistics& first, const Statistics& second, const SourceGraph& graph,
+              const Tuning& tuning) {
   if (first.vocabulary().types() != second.vocabulary().types()) {
-    return watch(withTypes(first, second, first), withTypes(first, second, second), predecessors,
-                 graph);
+    return watch(withTypes(first, second, first), withTypes(first, second, second), graph, tuning);
   }
   const Halves halves{&first, &second};
   Watched watched;
+  watched.tuning = tuning;
   Statistics both = first;
   both.merge(second);
-  watched.tracks = Choice(both, halves, predecessors, graph).tracks();
+  watched.tracks = Choice(both, halves, graph, tuning).tracks();
   const std::vector<Statistics::Pair> pairs = pairsOf(watched.tracks, first.size());
   watched.halves = {first.only(pairs), second.only(pairs)};
   return watched;

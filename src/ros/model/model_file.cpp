@@ -22,6 +22,7 @@
 #include "self_awareness/ros/graph.h"
 #include "self_awareness/ros/model/delays_message.h"
 #include "self_awareness/ros/model/evidence_message.h"
+#include "self_awareness/ros/model/tuning_message.h"
 #include "self_awareness/ros/output_file.h"
 
 namespace self_awareness::ros1 {
@@ -236,8 +237,7 @@ std::size_t TrainedModel::pairs() const {
 
 void TrainedModel::watch() {
   check(hasEvidence(), "loaded without its counts");
-  watched = core::evidence::watch(evidence[0], evidence[1], predecessors, graph);
-  watched.least_effect = least_effect;
+  watched = core::evidence::watch(evidence[0], evidence[1], graph, tuning);
 }
 
 void TrainedModel::dropCounts() {
@@ -273,9 +273,7 @@ self_awareness::Model toMessage(const TrainedModel& model) {
     event_type.count = model.statistics.eventCount(id);
     message.event_types.push_back(event_type);
   }
-  message.predecessors = static_cast<std::uint32_t>(model.predecessors);
-  message.least_effect = model.least_effect.time;
-  message.least_effect_of_period = model.least_effect.of_period;
+  message.tuning = toMessage(model.tuning);
   for (const core::evidence::Track& track : model.watched.tracks) {
     message.tracks.push_back(toMessage(track));
   }
@@ -307,10 +305,8 @@ TrainedModel fromMessage(const self_awareness::Model& message) {
   model.encoding = fromMessage(message.encoding);
   model.window = message.window.toNSec();
   model.statistics = eventTypesOf(message);
-  model.predecessors = message.predecessors;
-  model.least_effect = {message.least_effect, message.least_effect_of_period};
-  model.least_effect.validate();
-  model.watched.least_effect = model.least_effect;
+  model.tuning = tuningOf(message);
+  model.watched.tuning = model.tuning;
   for (const self_awareness::Track& track : message.tracks) {
     model.watched.tracks.push_back(fromMessage(track));
   }

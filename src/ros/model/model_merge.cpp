@@ -29,11 +29,18 @@ void requireSame(const std::string& what, std::int64_t one, std::int64_t other,
   }
 }
 
-std::string text(const core::evidence::LeastEffect& effect) {
-  std::ostringstream text;
-  text << std::setprecision(12) << effect.time * 1e-6 << " ms or " << effect.of_period
-       << " of the period";
-  return text.str();
+void requireSameTuning(const core::evidence::Tuning& one, const core::evidence::Tuning& other) {
+  for (const core::evidence::TuningNumber& number : core::evidence::tuningNumbers()) {
+    if (one.*number.value != other.*number.value) {
+      std::ostringstream problem;
+      problem << std::setprecision(12) << "another tuning: " << number.name << " is "
+              << other.*number.value << ", not " << one.*number.value;
+      throw std::invalid_argument(problem.str());
+    }
+  }
+  if (one.without != other.without) {
+    throw std::invalid_argument("another tuning: other channels are switched off");
+  }
 }
 
 void requireSameEncoding(const EncodingRules& one, const EncodingRules& other) {
@@ -64,16 +71,7 @@ void merge(TrainedModel& model, const TrainedModel& other) {
   requireSame("length of the windows", model.window, other.window, "0 s");
   requireSame("bin size", binning.bin_size, others.bin_size, "0 s");
   requireSame("horizon", horizon(binning), horizon(others), "none");
-  if (model.predecessors != other.predecessors) {
-    throw std::invalid_argument(
-        "another number of watched predecessors: " + std::to_string(other.predecessors) +
-        ", not " + std::to_string(model.predecessors));
-  }
-  const core::evidence::LeastEffect& effect = model.least_effect;
-  if (effect.time != other.least_effect.time || effect.of_period != other.least_effect.of_period) {
-    throw std::invalid_argument("another least effect: " + text(other.least_effect) + ", not " +
-                                text(effect));
-  }
+  requireSameTuning(model.tuning, other.tuning);
   if (model.hasEvidence() != other.hasEvidence() || model.hasDelays() != other.hasDelays()) {
     throw std::invalid_argument("trained for another detector: " + other.detectors() + ", not " +
                                 model.detectors() + "; train both with the same --detector");

@@ -11,7 +11,7 @@ from self_awareness import (FEWEST_GAPS, EventType, Model, TrainedModel,
 from self_awareness.commands import cli
 from self_awareness.judging import EVIDENCE
 from self_awareness.reporting import histogram_text
-from self_awareness.reporting import relations_text
+from self_awareness.reporting import relations_text, tuning_text
 from self_awareness.reporting.event_log_summary import summarise_event_log
 from self_awareness.reporting.evidence_report import counts
 from self_awareness.reporting.model_summary import summarise
@@ -33,6 +33,8 @@ def _info(arguments: argparse.Namespace) -> None:
     model = TrainedModel.load(arguments.model)
     if arguments.pair is not None:
         _print_pair(model, *(_find(model.event_types, text) for text in arguments.pair))
+    elif arguments.tuning:
+        _print_lines(tuning_text.lines(model.tuning))
     elif arguments.json:
         print(json.dumps(summarise(model), indent=2, allow_nan=False))
     else:
@@ -40,8 +42,9 @@ def _info(arguments: argparse.Namespace) -> None:
 
 
 def _info_of_log(arguments: argparse.Namespace, recordings: int) -> None:
-    if arguments.pair is not None:
-        raise ValueError(f'--pair: is for models, and {arguments.model} is an event log')
+    for option, given in (('pair', arguments.pair), ('tuning', arguments.tuning)):
+        if given:
+            raise ValueError(f'--{option}: is for models, and {arguments.model} is an event log')
     summary = summarise_event_log(arguments.model, recordings)
     if arguments.json:
         print(json.dumps(summary, indent=2, allow_nan=False))
@@ -135,9 +138,6 @@ def _print_evidence(evidence: Dict[str, Any]) -> None:
     print(f'evidence     tracks: {counts(evidence["tracks"])}')
     if evidence['not_judged']:
         print(f'  not judged: {"; ".join(evidence["not_judged"])}')
-    effect = evidence['least_effect']
-    print(f'  least effect on delays: {effect["time"] * 1000:g} ms, or {effect["of_period"]:g} of '
-          'the period')
     calibration = evidence['calibration']
     if calibration is None:
         print('limits       not calibrated (rosrun self_awareness calibrate)')
@@ -228,6 +228,8 @@ def _parser() -> argparse.ArgumentParser:
                         help='file written by train or calibrate, or an event log')
     how = parser.add_mutually_exclusive_group()
     how.add_argument('--json', action='store_true', help='all but the counts, for programs')
+    how.add_argument('--tuning', action='store_true',
+                     help='the numbers of the method that the model was trained with')
     how.add_argument('--pair', nargs=2, metavar=('A', 'B'),
                      help="draw the delays from the last A to the current B; event types are "
                           "written 'SOURCE SCOPE TYPE', and a part that only one has is enough")

@@ -7,8 +7,7 @@ from contextlib import closing
 from dataclasses import replace
 from typing import Dict, List, Optional, Sequence, Set, Tuple
 
-from self_awareness import (PREDECESSORS, BagError, LeastEffect, TrainedModel, encoding_file,
-                            progress)
+from self_awareness import BagError, TrainedModel, encoding_file, progress
 from self_awareness.calibration.limits import TooLittleError
 from self_awareness.commands import cli
 from self_awareness.judging import BOTH, EVIDENCE, PAPER
@@ -20,9 +19,7 @@ from self_awareness.training import live_graph, many_bags
 from self_awareness.training.many_bags import Counting, Trained
 from self_awareness.workers import Cluster, InProcess, Processes, Workers
 
-_MS_NS = SECOND_NS // 1000
-_OF_THE_MODEL = ('detector', 'bin', 'window', 'horizon', 'encoding', 'predecessors',
-                 'least-effect', 'least-effect-of-period')
+_OF_THE_MODEL = ('detector', 'bin', 'window', 'horizon', 'encoding')
 
 _EPILOG = """\
 The recordings should show all that is normal, but not the start-up: leave it out with --start.
@@ -110,14 +107,8 @@ def _counting(arguments: argparse.Namespace, base: Optional[TrainedModel]) -> Co
         raise ValueError(f'--horizon {horizon / SECOND_NS:g} is no multiple of the bin size '
                          f'{bin_size / SECOND_NS:g}; choose one')
     encoding = None if arguments.encoding is None else encoding_file.load(arguments.encoding)
-    default = Counting.least_effect
-    least_effect = LeastEffect(
-        default.time if arguments.least_effect is None else arguments.least_effect,
-        default.of_period if arguments.least_effect_of_period is None
-        else arguments.least_effect_of_period)
     return Counting(encoding, bin_size, window, horizon // bin_size,
-                    PREDECESSORS if arguments.predecessors is None else arguments.predecessors,
-                    arguments.detector or Counting.detector, least_effect)
+                    arguments.detector or Counting.detector)
 
 
 def _parts(arguments: argparse.Namespace) -> List[BagPart]:
@@ -156,23 +147,6 @@ def _cores() -> int:
     return len(os.sched_getaffinity(0))
 
 
-def _milliseconds(text: str) -> float:
-    """Argument type: a least effect in ms, as ns."""
-    return LeastEffect(time=_number(text) * _MS_NS).time
-
-
-def _share(text: str) -> float:
-    """Argument type: a least effect as a share of the period."""
-    return LeastEffect(of_period=_number(text)).of_period
-
-
-def _number(text: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        raise ValueError(f'not a number: {text!r}') from None
-
-
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog='train', description=__doc__.split(': ', 1)[1], epilog=_EPILOG,
@@ -192,17 +166,6 @@ def _parser() -> argparse.ArgumentParser:
                              f'{Counting.window / SECOND_NS:g})')
     parser.add_argument('--horizon', type=cli.seconds, metavar='S',
                         help='delays of this many s or more share one bin (default: no horizon)')
-    parser.add_argument('--predecessors', type=cli.count, metavar='N',
-                        help='of each event type, watch the delays since at most so many others, '
-                             f'the most informative ones (default: {PREDECESSORS})')
-    parser.add_argument('--least-effect', type=cli.checked(_milliseconds), metavar='MS',
-                        help='a delay that differs by less than this from the usual ones is no '
-                             'fault, in ms; a gap between two events of one type, by less than '
-                             f'twice this (default: {Counting.least_effect.time / _MS_NS:g})')
-    parser.add_argument('--least-effect-of-period', type=cli.checked(_share), metavar='SHARE',
-                        help='nor by less than this share of the period, 0 to below 1; a gap, by '
-                             'less than ten times this (default: '
-                             f'{Counting.least_effect.of_period:g})')
     parser.add_argument('--graph', action='store_true',
                         help='ask the master of the running robot who subscribes to what: it '
                              'tells the root of a fault from its victims. What record.launch '

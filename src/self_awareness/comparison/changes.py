@@ -11,7 +11,7 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import Callable, Dict, Iterable, List, Optional, Sequence, Set, Tuple
 
-from self_awareness import LEAST_RATE_EFFECT, RATE_SPAN, USUAL_SHARES, EvidenceCounts
+from self_awareness import RATE_SPAN, USUAL_SHARES, EvidenceCounts
 from self_awareness.comparison import chance
 from self_awareness.comparison.sides import Kind, Side
 from self_awareness.stamps import SECOND_NS
@@ -145,7 +145,8 @@ def _significant(candidates: Sequence[_Candidate], level: float, common: float) 
 
 def _rate(before: Side, after: Side, kind: Kind) -> _Candidate:
     first, second = _measured_rate(before, kind), _measured_rate(after, kind)
-    effect = abs(math.log(second.value / first.value)) / math.log1p(LEAST_RATE_EFFECT)
+    effect = abs(math.log(second.value / first.value)) / math.log1p(
+        before.model.tuning.get('least_rate_effect'))
     return _Candidate(Change(RATE, kind, None, first.value, second.value, effect), first, second)
 
 
@@ -184,8 +185,9 @@ def _shift(what: str, before: Side, after: Side, pair: Tuple[Kind, Kind],
     if len(edges) < 2:
         return None
     period = SECOND_NS * before.duration / before.all.events(pairs[0][0])
-    effect = before.model.least_effect
-    least = effect.on_gap(period) if what == GAP else effect.on_delay(period)
+    effect = before.model.tuning
+    least = (effect.least_effect_on_gap(period) if what == GAP
+             else effect.least_effect_on_delay(period))
     change = Change(what, pair[1], None if what == GAP else pair[0], first, second,
                     SECOND_NS * abs(second - first) / max(least, 1.0))
     return _Candidate(change, *(_measured_share(side, ids, edges[len(edges) // 2])

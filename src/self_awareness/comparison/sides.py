@@ -126,7 +126,7 @@ def _recording_side(name: str, like: TrainedModel) -> Side:
                          f'{parts[0]}')
     recording = recordings.read(like, parts[0])
     training = Training(copy.copy(like.encoding), like.bin_size, like.window, like.horizon_bins,
-                        like.predecessors, True, False, like.least_effect)
+                        True, False, like.tuning)
     training.add_events(recording.event_types, recording.stamps, recording.ids,
                         recording.recording, clock_steps=recording.clock_steps)
     return Side(name, training.model(watch=False), True)

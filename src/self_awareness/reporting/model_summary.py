@@ -6,7 +6,7 @@ from collections import Counter
 from typing import Any, Dict, List, Optional, Tuple
 
 from self_awareness import (FEWEST_GAPS, USUAL_SHARES, Calibration, EvidenceCalibration,
-                            EvidenceModel, Recording, TrainedModel, encoding_file)
+                            EvidenceModel, Recording, TrainedModel, Tuning, encoding_file)
 from self_awareness.reporting import relations_text
 from self_awareness.judging import EVIDENCE, PAPER
 from self_awareness.stamps import SECOND_NS
@@ -64,10 +64,7 @@ def _evidence(model: TrainedModel, evidence: EvidenceModel) -> Dict[str, Any]:
         'tracks': dict(Counter(track.channel for track in tracks)),
         'not_judged': [str(kind) for index, kind in enumerate(model.event_types)
                        if index not in watched],
-        'least_effect': {
-            'time': model.least_effect.time / SECOND_NS,
-            'of_period': model.least_effect.of_period,
-        },
+        'tuning': {number.name: model.tuning.get(number.name) for number in Tuning.numbers()},
         'calibration': None,
     }
     if model.evidence_calibration is not None:

@@ -14,9 +14,9 @@ from typing import Callable, Dict, Iterable, List, Optional, Sequence, Set, Tupl
 
 import numpy as np
 
-from self_awareness import (DEFAULT_WINDOW, PREDECESSORS, BagError, BagSummary,
-                            DetectorParameters, EncodingRules, LeastEffect, Recording,
-                            TrainedModel, Training, progress, read_events, recordings,
+from self_awareness import (DEFAULT_WINDOW, BagError, BagSummary,
+                            DetectorParameters, EncodingRules, Recording,
+                            TrainedModel, Training, Tuning, progress, read_events, recordings,
                             summarise_bag)
 from self_awareness.calibration import limits
 from self_awareness.calibration.limits import TrainedOn
@@ -41,25 +41,23 @@ class Counting:
         bin_size: of delays [ns].
         window: length of a window [ns].
         horizon_bins: delays of so many bins or more share one; 0: unbounded.
-        predecessors: of an event type that are watched at most.
         detector: who is counted for: evidence, paper or both. The paper's counts take three
             quarters of the time, and most of the file.
-        least_effect: that a changed delay must have to be a fault.
+        tuning: the numbers of the evidence detector.
     """
 
     encoding: Optional[EncodingRules] = None
     bin_size: int = 10_000_000
     window: int = DEFAULT_WINDOW
     horizon_bins: int = 0
-    predecessors: int = PREDECESSORS
     detector: str = EVIDENCE
-    least_effect: LeastEffect = LeastEffect()
+    tuning: Tuning = field(default_factory=Tuning)
 
     @classmethod
     def of(cls, model: TrainedModel) -> Counting:
         """Return how the bags of a model were counted."""
         return cls(copy.copy(model.encoding), model.bin_size, model.window, model.horizon_bins,
-                   model.predecessors, model.detectors, model.least_effect)
+                   model.detectors, model.tuning)
 
 
 @dataclass
@@ -281,8 +279,8 @@ def _count(how: _How, part: BagPart) -> _Sum:
         recording.fingerprint = events.fingerprint
         recording.robot_start = events.robot_start
         training = Training(encoding, counting.bin_size, counting.window, counting.horizon_bins,
-                            counting.predecessors, counting.detector in (EVIDENCE, BOTH),
-                            counting.detector in (PAPER, BOTH), counting.least_effect)
+                            counting.detector in (EVIDENCE, BOTH),
+                            counting.detector in (PAPER, BOTH), counting.tuning)
         training.add_events(events.event_types, events.stamps, events.ids,
                             recording, _before(encoding, events), events.clock_steps)
         model = training.model(watch=False)

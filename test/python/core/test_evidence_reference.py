@@ -12,8 +12,8 @@ from reference_evidence_limits import Judged, ReferenceLimits
 from reference_relations import ReferenceRelations, number_of_starts, watched
 from reference_scorer import ReferenceScorer
 
-from self_awareness import (EncodingRules, EventType, EvidenceModel, LeastEffect, LimitFinder,
-                            Recording, TrainedModel, Training)
+from self_awareness import (EncodingRules, EventType, EvidenceModel, LimitFinder,
+                            Recording, TrainedModel, Training, Tuning)
 from self_awareness.stamps import SECOND_NS
 
 MS = 1_000_000
@@ -79,15 +79,19 @@ class Robot:
         self.reference, *self.reference_of_half = (
             ReferenceModel(tracks, first, second, both, learned, least_effect)
             for learned in (both, second, first))
-        self.trained = self._trained(everything, LeastEffect(*least_effect))
+        self.trained = self._trained(everything, least_effect)
         self.model = EvidenceModel(self.trained)
         self.ids: Dict[str, int] = {
             kind.scope: index for index, kind in enumerate(self.trained.event_types)}
         assert list(self.ids) == types
 
     @staticmethod
-    def _trained(recordings: List[List[Event]], least_effect: LeastEffect) -> TrainedModel:
-        training = Training(EncodingRules(), window=WINDOW, paper=True, least_effect=least_effect)
+    def _trained(recordings: List[List[Event]],
+                 least_effect: Tuple[float, float]) -> TrainedModel:
+        tuning = Tuning()
+        tuning.set('least_effect', least_effect[0] / SECOND_NS)
+        tuning.set('least_effect_of_period', least_effect[1])
+        training = Training(EncodingRules(), window=WINDOW, paper=True, tuning=tuning)
         every_type = [EventType('', letter, '') for letter in LETTERS]
         for half, events in enumerate(recordings):
             recording = Recording()

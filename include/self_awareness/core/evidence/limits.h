@@ -71,8 +71,8 @@ class LimitFinder : private WindowObserver {
   void finish();
   /// Ends the first pass and finds the limits of the tracks. All recordings must then come once
   /// more, but those that were merged from an earlier search.
-  /// @throw std::invalid_argument if there was too little data: less than kLeastTime, or so little
-  /// to train on that the model has no tracks
+  /// @throw std::invalid_argument if there was too little data: less than its tuning asks for, or
+  /// so little to train on that the model has no tracks
   void startSecondPass();
   /// Starts the second pass with the limits that a first one elsewhere found.
   /// @throw std::invalid_argument if they belong to another model
@@ -103,11 +103,7 @@ class LimitFinder : private WindowObserver {
   /// Number of windows that were looked at, in the first pass.
   std::uint64_t windows() const;
 
-  /// Shorter parts are no sample of what a robot does [ns].
-  static constexpr std::int64_t kShortestPart = 30 * kNanosecondsPerSecond;
   static constexpr std::size_t kMostParts = 16;
-  /// Less time than this is too little to find limits [ns].
-  static constexpr std::int64_t kLeastTime = 50 * kNanosecondsPerSecond;
 
  private:
   ObservedEvent observe(const Event& event) override;

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "self_awareness/core/evidence/least_effect.h"
 #include "self_awareness/core/evidence/statistics.h"
 #include "self_awareness/core/evidence/tracks.h"
+#include "self_awareness/core/evidence/tuning.h"
 
 namespace self_awareness::core::evidence {
 
@@ -35,9 +35,11 @@ class Model {
   enum class Learned { kBoth, kFirst, kSecond };
 
   /// @throw std::invalid_argument if there is no event type, the tracks do not fit the event
-  /// types, or the least effect is out of its range
+  /// types, or a number of the tuning is out of its range
   explicit Model(const Watched& watched, Learned learned = Learned::kBoth);
 
+  /// The numbers of the method that it was made with.
+  const Tuning& tuning() const { return tuning_; }
   const Vocabulary& vocabulary() const { return statistics_.vocabulary(); }
   std::size_t size() const { return statistics_.size(); }
   /// Whether training saw the event type; the ids after those of training stand for unknown
@@ -154,7 +156,7 @@ class Model {
   Statistics statistics_;           // of both halves
   std::optional<Statistics> half_;  // the one that is learned from, with the same ids
   std::vector<Track> tracks_;
-  LeastEffect least_effect_;
+  Tuning tuning_;
   std::vector<std::string> components_;
   std::vector<std::size_t> component_of_;  // by id
   std::vector<Gaps> gaps_;                 // by id

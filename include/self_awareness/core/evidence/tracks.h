@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "self_awareness/core/evidence/least_effect.h"
 #include "self_awareness/core/evidence/statistics.h"
+#include "self_awareness/core/evidence/tuning.h"
 #include "self_awareness/core/verdict/source_graph.h"
 
 namespace self_awareness::core::evidence {
@@ -26,6 +26,8 @@ enum class Channel {
 
 /// The channel's name as people read it: overdue, rate, pairs, answers or deadlines.
 std::string channelName(Channel channel);
+/// Names of what can be switched off (Tuning::without).
+std::vector<std::string> channelNames();
 
 /// One thing that is watched all the time. What is watched follows from the counts of training.
 struct Track {
@@ -58,10 +60,9 @@ LogProbabilities logProbabilities(const Statistics::SumOfDelays& counts);
 /// no information.
 class InformationGain {
  public:
-  /// With fewer delays to measure on, a gain is 0.
-  static constexpr std::uint64_t kFewestDelays = 50;
-
-  InformationGain(const Statistics& learned_from, const Statistics& measured_on);
+  /// @param fewest_delays with fewer to measure on, a gain is 0 (Tuning)
+  InformationGain(const Statistics& learned_from, const Statistics& measured_on,
+                  double fewest_delays);
 
   /// Gain [nat]; 0 if there are too few delays to learn from or to measure on. Ids are those of
   /// `learned_from`.
@@ -70,29 +71,24 @@ class InformationGain {
  private:
   const Statistics& learned_from_;
   const Statistics& measured_on_;
+  double fewest_delays_;
   std::vector<std::optional<EventId>> id_there_;  // in measured_on_, by id
   std::vector<LogProbabilities> any_;             // of the delays since e_i at any event, by i
 };
-
-/// Default number of predecessors of an event type that are watched. Measured
-/// (docs/performance.md): with fewer, late answers are found later; many cost false alarms.
-constexpr std::size_t kPredecessors = 3;
 
 /// What the evidence detector keeps of a training: what is watched, and the counts that this
 /// needs.
 struct Watched {
   std::vector<Track> tracks;
   std::array<Statistics, 2> halves;  ///< of the training, with the same event types
-  LeastEffect least_effect{};  ///< that a changed delay must have; watch() does not choose it
+  Tuning tuning;                     ///< by which they were chosen
 };
 
 /// Chooses what to watch by the counts of the two halves of the training (docs/method.md, sections
 /// 3.2 to 3.6). Each half gets the event types that it lacks from the other.
-/// @param predecessors number of those of an event type that are watched, the most informative
-/// ones
 /// @param graph who hears whom; empty: not known
-Watched watch(const Statistics& first, const Statistics& second,
-              std::size_t predecessors = kPredecessors, const SourceGraph& graph = {});
+Watched watch(const Statistics& first, const Statistics& second, const SourceGraph& graph = {},
+              const Tuning& tuning = {});
 
 /// Checks tracks that come from outside.
 /// @param types number of event types

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 #include <tuple>
@@ -46,6 +47,10 @@ constexpr std::int64_t kNanosecondsPerSecond = 1000000000;
 /// Nanoseconds to seconds, for showing and for floating point formulas.
 inline double toSeconds(std::int64_t nanoseconds) {
   return static_cast<double>(nanoseconds) * 1e-9;
+}
+/// Seconds to whole nanoseconds: of a number of the method.
+inline std::int64_t toNanoseconds(double seconds) {
+  return static_cast<std::int64_t>(std::llround(seconds * 1e9));
 }
 
 }  // namespace self_awareness::core

@@ -39,10 +39,8 @@ struct TrainedModel {
   core::evidence::Halves evidence;
   /// The part of them that the evidence detector judges by.
   core::evidence::Watched watched;
-  std::size_t predecessors =
-      core::evidence::kPredecessors;         ///< most that are watched of an event type
-  core::evidence::LeastEffect least_effect;  ///< that a changed delay must have to be a fault
-  core::SourceGraph graph;                   ///< whose messages reach whom; empty: not known
+  core::evidence::Tuning tuning;  ///< the numbers of the method
+  core::SourceGraph graph;        ///< whose messages reach whom; empty: not known
   std::vector<self_awareness::Recording> recordings;       ///< that it was trained on
   std::optional<self_awareness::Calibration> calibration;  ///< of the paper's detector
   std::optional<self_awareness::EvidenceCalibration> evidence_calibration;

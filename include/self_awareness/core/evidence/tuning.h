@@ -1,0 +1,157 @@
+#pragma once
+
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace self_awareness::core::evidence {
+
+/// Every number of the evidence detector's method (docs/method.md, section 8). They are part of a
+/// trained model: who judges by it uses the numbers that it was trained with. A robot's user
+/// changes none of them; `evaluate` does, to measure what each is worth
+/// (docs/evaluation/ablation.md). tuningNumbers() has the meaning, the unit and the range of each.
+/// Times are in seconds.
+struct Tuning {
+  // What is known well enough to be judged.
+  double fewest_gaps = 30;
+  double fewest_delays = 50;
+  double fewest_delays_of_pair = 200;
+  double least_rate = 1.5;
+  double predecessors = 3;
+  double deadlines = 3;
+
+  // Which relations have a reason.
+  double least_gain = 0.3;
+  double least_gain_left = 0.7;
+  double part_of_gain = 100;
+  double same_start = 60;
+  double least_share_of_start = 0.02;
+  double fewest_events_of_start = 20;
+  double most_outliers = 0.1;
+  double chance_of_any = 0.1;
+  double chance_of_one = 0.05;
+  double irregular = 2;
+  double least_chance_misses = 0.2;
+  double most_of_chance_misses = 0.5;
+  double most_misses = 0.1;
+  double fewest_answers = 30;
+  double least_of_longest = 0.1;
+  double fewest_of_broadcast = 4;
+
+  // The evidence of delays.
+  double most_surprise = 6;
+  double least_deviation = 0.5;
+  double usual = 0.9;
+  double least_effect = 0.005;
+  double least_effect_of_period = 0.02;
+  double effect_on_gaps = 2;
+  double effect_on_gaps_of_period = 10;
+  double drift = 1;
+  double regime = 120;
+  double most_behind = 3;
+  double most_of_limit = 1.5;
+  double arming_events = 30;
+  double usual_surprise = 0.3;
+  double most_failures = 10;
+  double gone_gaps = 5;
+  double accept_after = 60;
+
+  // Rates, owed answers, and who never came.
+  double least_rate_effect = 0.04;
+  double longest_gap_of_series = 2;
+  double start_time = 60;
+  double due_times = 2;
+  double due_later = 5;
+  double alarm_times = 4;
+  double alarm_later = 60;
+
+  // A machine that stands still, or is busy.
+  double longest_usual_stall = 1.25;
+  double shortest_stall = 0.05;
+  double longest_stall = 0.7;
+  double between_stalls = 30;
+  double busy_share = 0.75;
+  double still_busy_share = 0.5;
+  double fewest_busy = 4;
+  double busy_one_in = 3;
+
+  // From what recordings show to limits.
+  double shortest_part = 30;
+  double least_time = 50;
+  double least_excess = 1.1;
+  double prior_exceedances = 5;
+  double fewest_exceedances = 0.5;
+  double scale = 0.2;
+  double scale_of_timers = 0.05;
+  double many_tracks = 20;
+  double beyond_all = 1.25;
+  double share_of_least = 0.5;
+  double least_margin = 1.25;
+  double least_deadline_margin = 2;
+  double most_margin = 4;
+  double most_gap_margin = 1.6;
+  double most_own_margin = 2;
+  double most_tail_margin = 2;
+  double tail_gaps = 20;
+  double regular = 1.5;
+  double fast = 2;
+  double most_of_training = 10;
+  double least_rate_limit = 3;
+  double least_deadline = 0.5;
+  double least_requests = 3;
+  double most_delay_limit = 100;
+  double longest_wait = 10;
+  double most_mean_gaps = 3;
+  double longest_deadline = 20;
+
+  // From evidence to an alarm, and to who is to blame.
+  double confirmation = 0.1;
+  double rare_silence = 0.01;
+  double near_limit = 0.75;
+  double least_share = 0.3;
+  double most_share = 2;
+  double share_of_other = 0.9;
+
+  /// Channels that are switched off, by their names (channelNames()).
+  std::set<std::string> without;
+
+  /// @throw std::invalid_argument names what is out of its range, or no channel
+  void validate() const;
+  /// Least effect on the delay from one event type to another [ns] (docs/method.md, section 3.4).
+  /// @param period mean gap of the one that the delay counts from [ns]
+  double leastEffectOnDelay(double period) const;
+  /// Least effect on the gaps of one event type [ns].
+  /// @param period mean gap of the event type [ns]
+  double leastEffectOnGap(double period) const;
+  bool isOn(const std::string& channel) const { return without.count(channel) == 0; }
+};
+
+bool operator==(const Tuning& a, const Tuning& b);
+inline bool operator!=(const Tuning& a, const Tuning& b) {
+  return !(a == b);
+}
+
+/// What is known of a number of the method.
+struct TuningNumber {
+  std::string name;
+  double Tuning::*value = nullptr;
+  double least = 0;           ///< smallest value that makes sense
+  double most = 0;            ///< largest one
+  std::string unit;           ///< empty: a pure number
+  std::string meaning;        ///< a sentence
+  std::optional<double> off;  ///< with which the rule that it belongs to is switched off
+
+  bool isValid(double number) const { return number >= least && number <= most; }
+};
+
+/// All numbers, in the order of Tuning.
+const std::vector<TuningNumber>& tuningNumbers();
+/// A number by its name.
+/// @throw std::invalid_argument if there is none of this name
+const TuningNumber& tuningNumber(const std::string& name);
+/// Sets a number.
+/// @throw std::invalid_argument if there is none of this name, or the value is out of its range
+void set(Tuning& tuning, const std::string& name, double value);
+
+}  // namespace self_awareness::core::evidence

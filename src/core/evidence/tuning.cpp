@@ -1,0 +1,240 @@
+#include "self_awareness/core/evidence/tuning.h"
+
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
+
+#include "self_awareness/core/evidence/tracks.h"
+
+namespace self_awareness::core::evidence {
+
+const std::vector<TuningNumber>& tuningNumbers() {
+  static const std::vector<TuningNumber> numbers{
+      {"fewest_gaps", &Tuning::fewest_gaps, 2, 1e6, "",
+       "Gaps that an event type needs to be judged.", std::nullopt},
+      {"fewest_delays", &Tuning::fewest_delays, 1, 1e6, "",
+       "Delays by which it is said how much a pair of event types says in a recording.",
+       std::nullopt},
+      {"fewest_delays_of_pair", &Tuning::fewest_delays_of_pair, 1, 1e6, "",
+       "Delays in training that a watched pair of event types needs.", std::nullopt},
+      {"least_rate", &Tuning::least_rate, 0, 1e6, "",
+       "Events in the last 2 s, on average, from which on a rate is judged.", std::nullopt},
+      {"predecessors", &Tuning::predecessors, 0, 1000, "",
+       "Event types after which the delays of another one are watched, at most.", 0},
+      {"deadlines", &Tuning::deadlines, 0, 1000, "",
+       "Event types whose answer another one owes, at most.", 0},
+      {"least_gain", &Tuning::least_gain, 0, 100, "nat",
+       "What delays must say beyond chance to be watched.", std::nullopt},
+      {"least_gain_left", &Tuning::least_gain_left, -100, 1, "",
+       "Share of that gain that every part of a recording must show.", -100},
+      {"part_of_gain", &Tuning::part_of_gain, 1, 1e6, "s", "Length of such a part.", std::nullopt},
+      {"same_start", &Tuning::same_start, 0, 1e9, "s",
+       "Recordings with less time between them are of one start of the robot.", std::nullopt},
+      {"least_share_of_start", &Tuning::least_share_of_start, 0, 1, "",
+       "Share of the events that a start must hold to show a relation.", std::nullopt},
+      {"fewest_events_of_start", &Tuning::fewest_events_of_start, 1, 1e6, "",
+       "Events that a start must hold to show a relation.", std::nullopt},
+      {"most_outliers", &Tuning::most_outliers, 0, 0.9, "",
+       "Share of the delays that may lie anywhere, as hiccups do.", std::nullopt},
+      {"chance_of_any", &Tuning::chance_of_any, 0, 1, "",
+       "Chance of one relation among all that are looked at, where nothing else speaks for it.",
+       std::nullopt},
+      {"chance_of_one", &Tuning::chance_of_one, 0, 1, "",
+       "Chance of a relation that something else speaks for.", std::nullopt},
+      {"irregular", &Tuning::irregular, 0, 1e6, "",
+       "Times as much as the delays that gaps must vary to be a reason.", std::nullopt},
+      {"least_chance_misses", &Tuning::least_chance_misses, 0, 1, "",
+       "Share of the answers that must be missing by chance, else the gaps alone say as much.",
+       std::nullopt},
+      {"most_of_chance_misses", &Tuning::most_of_chance_misses, 0, 1, "",
+       "Share of the misses by chance that a true relation may have.", std::nullopt},
+      {"most_misses", &Tuning::most_misses, 0, 1, "",
+       "Share of the requests that may stay without an answer.", std::nullopt},
+      {"fewest_answers", &Tuning::fewest_answers, 1, 1e6, "",
+       "Answers in training that a deadline needs.", std::nullopt},
+      {"least_of_longest", &Tuning::least_of_longest, 0, 1, "",
+       "Share of the longest usual answer that the shortest must take, else the two come in any "
+       "order.",
+       0},
+      {"fewest_of_broadcast", &Tuning::fewest_of_broadcast, 1, 1e6, "",
+       "Nodes that hear a topic from which on it may be for everybody.", std::nullopt},
+      {"most_surprise", &Tuning::most_surprise, 0.1, 1e3, "deviations",
+       "The most that one delay can say.", std::nullopt},
+      {"least_deviation", &Tuning::least_deviation, 1e-3, 1e3, "nat",
+       "Least deviation of the surprise of usual delays.", std::nullopt},
+      {"usual", &Tuning::usual, 0.01, 0.999, "", "Share of the delays in training that are usual.",
+       std::nullopt},
+      {"least_effect", &Tuning::least_effect, 0, 1e3, "s", "A change of a delay that is no fault.",
+       std::nullopt},
+      {"least_effect_of_period", &Tuning::least_effect_of_period, 0, 0.99, "",
+       "The same as a share of the period.", std::nullopt},
+      {"effect_on_gaps", &Tuning::effect_on_gaps, 0, 1e3, "",
+       "Times as much is no fault of a gap.", std::nullopt},
+      {"effect_on_gaps_of_period", &Tuning::effect_on_gaps_of_period, 0, 1e3, "",
+       "Times as large a share of the period is no fault of a gap.", std::nullopt},
+      {"drift", &Tuning::drift, 0, 100, "deviations",
+       "What every delay takes from the sum of its track.", std::nullopt},
+      {"regime", &Tuning::regime, 1e-3, 1e9, "s",
+       "Time over which the load of the day is followed.", 1e9},
+      {"most_behind", &Tuning::most_behind, 0, 1e3, "mean gaps",
+       "How far a type may be behind and catch up.", 0},
+      {"most_of_limit", &Tuning::most_of_limit, 1, 1e9, "", "Times its limit at which a sum ends.",
+       std::nullopt},
+      {"arming_events", &Tuning::arming_events, 1, 1e6, "",
+       "Events in a row as in training that arm a relation.", 1},
+      {"usual_surprise", &Tuning::usual_surprise, -100, 1e9, "deviations",
+       "Mean surprise that is as in training.", std::nullopt},
+      {"most_failures", &Tuning::most_failures, 0, 20, "",
+       "Failures to arm that double the events it takes.", 0},
+      {"gone_gaps", &Tuning::gone_gaps, 0, 1e9, "longest gaps",
+       "After so long a gap a component was restarted.", 1e9},
+      {"accept_after", &Tuning::accept_after, 1e-3, 1e9, "s",
+       "A relation that is different for so long has changed for good.", 1e9},
+      {"least_rate_effect", &Tuning::least_rate_effect, 0, 1, "",
+       "Share by which a rate may change without a fault.", std::nullopt},
+      {"longest_gap_of_series", &Tuning::longest_gap_of_series, 0, 1e9, "s",
+       "Median gap below which requests come in series and are counted.", std::nullopt},
+      {"start_time", &Tuning::start_time, 0, 1e9, "s",
+       "Time after the start in which answers are not owed by who was not heard yet.",
+       std::nullopt},
+      {"due_times", &Tuning::due_times, 1, 1e3, "",
+       "Times the longest start in training after which a type is due.", std::nullopt},
+      {"due_later", &Tuning::due_later, 0, 1e6, "s", "And so much later at least.", std::nullopt},
+      {"alarm_times", &Tuning::alarm_times, 1, 1e3, "",
+       "Times that time after which it is an alarm.", std::nullopt},
+      {"alarm_later", &Tuning::alarm_later, 0, 1e6, "s", "And so much later at least.",
+       std::nullopt},
+      {"longest_usual_stall", &Tuning::longest_usual_stall, 1, 1e3, "",
+       "Times the longest silence of training from which on all are stalled.", std::nullopt},
+      {"shortest_stall", &Tuning::shortest_stall, 0, 1e3, "s", "A stall lasts at least so long.",
+       std::nullopt},
+      {"longest_stall", &Tuning::longest_stall, 0, 1e3, "s", "And at most so long.", 0},
+      {"between_stalls", &Tuning::between_stalls, 0, 1e9, "s",
+       "Time in which one stall is forgiven.", std::nullopt},
+      {"busy_share", &Tuning::busy_share, 0, 1e3, "limits",
+       "Evidence from which on a component counts as late on a busy machine.", std::nullopt},
+      {"still_busy_share", &Tuning::still_busy_share, 0, 1e3, "limits",
+       "The same while the machine is busy.", std::nullopt},
+      {"fewest_busy", &Tuning::fewest_busy, 1, 1e6, "", "Components that must be late at once.",
+       1e6},
+      {"busy_one_in", &Tuning::busy_one_in, 1, 1e6, "", "One of so many components must be late.",
+       std::nullopt},
+      {"shortest_part", &Tuning::shortest_part, 1, 1e6, "s",
+       "A shorter part of a recording is no sample.", std::nullopt},
+      {"least_time", &Tuning::least_time, 0, 1e6, "s", "Normal operation that limits need.",
+       std::nullopt},
+      {"least_excess", &Tuning::least_excess, 1, 10, "",
+       "Ratio up to which values of recordings do not exceed each other.", std::nullopt},
+      {"prior_exceedances", &Tuning::prior_exceedances, 0, 1e6, "",
+       "Weight of the belief about how far recordings exceed each other.", std::nullopt},
+      {"fewest_exceedances", &Tuning::fewest_exceedances, 1e-6, 1e6, "",
+       "What was not seen counts as so many exceedances.", std::nullopt},
+      {"scale", &Tuning::scale, 1e-3, 10, "",
+       "Mean logarithm by which recordings are believed to exceed each other.", std::nullopt},
+      {"scale_of_timers", &Tuning::scale_of_timers, 1e-3, 10, "", "The same of timers.",
+       std::nullopt},
+      {"many_tracks", &Tuning::many_tracks, 1, 1e9, "",
+       "Tracks of which no next one goes far beyond them all.", 1e9},
+      {"beyond_all", &Tuning::beyond_all, 1, 1e3, "", "How far at most.", std::nullopt},
+      {"share_of_least", &Tuning::share_of_least, 0, 1, "",
+       "Share of the least limit below which values do not matter.", std::nullopt},
+      {"least_margin", &Tuning::least_margin, 1, 1e3, "",
+       "Least margin of a limit over all that was seen.", std::nullopt},
+      {"least_deadline_margin", &Tuning::least_deadline_margin, 1, 1e3, "",
+       "The same of owed answers.", std::nullopt},
+      {"most_margin", &Tuning::most_margin, 1, 1e3, "", "Largest margin.", std::nullopt},
+      {"most_gap_margin", &Tuning::most_gap_margin, 1, 1e3, "", "Largest margin of silence.",
+       std::nullopt},
+      {"most_own_margin", &Tuning::most_own_margin, 1, 1e3, "",
+       "Largest margin of one track of its own.", std::nullopt},
+      {"most_tail_margin", &Tuning::most_tail_margin, 1, 1e3, "",
+       "Largest margin of a silence whose pauses have a tail.", std::nullopt},
+      {"tail_gaps", &Tuning::tail_gaps, 1, 32, "", "Longest gaps that tell the tail.",
+       std::nullopt},
+      {"regular", &Tuning::regular, 1, 1e3, "mean gaps",
+       "A timer that lost nothing has shorter gaps.", std::nullopt},
+      {"fast", &Tuning::fast, 0, 1e6, "windows",
+       "A timer with a shorter mean gap has the hiccups of its host.", std::nullopt},
+      {"most_of_training", &Tuning::most_of_training, 1e-3, 1e6, "",
+       "Times its length in which training alone promises one false alarm.", std::nullopt},
+      {"least_rate_limit", &Tuning::least_rate_limit, 0, 1e3, "spreads", "Least limit of a rate.",
+       std::nullopt},
+      {"least_deadline", &Tuning::least_deadline, 0, 1e6, "s", "Least limit of an owed answer.",
+       std::nullopt},
+      {"least_requests", &Tuning::least_requests, 0, 1e6, "requests",
+       "Least limit of requests without an answer.", std::nullopt},
+      {"most_delay_limit", &Tuning::most_delay_limit, 1, 1e9, "",
+       "A pair with a larger limit is not judged.", std::nullopt},
+      {"longest_wait", &Tuning::longest_wait, 0, 1e9, "s",
+       "A type that may be silent for longer is not judged.", 1e9},
+      {"most_mean_gaps", &Tuning::most_mean_gaps, 0, 1e9, "mean gaps",
+       "Unless that is less than so many mean gaps.", std::nullopt},
+      {"longest_deadline", &Tuning::longest_deadline, 0, 1e9, "s",
+       "An answer that may take longer is not judged.", 1e9},
+      {"confirmation", &Tuning::confirmation, 0, 100, "s",
+       "A silence that was beyond its limit so long ago is certain.", std::nullopt},
+      {"rare_silence", &Tuning::rare_silence, 1e-9, 1, "",
+       "Probability of a silence below which it is named.", std::nullopt},
+      {"near_limit", &Tuning::near_limit, 0, 1, "limits",
+       "Evidence from which on a silence is named.", std::nullopt},
+      {"least_share", &Tuning::least_share, 0, 1, "limits", "Evidence that says who is involved.",
+       std::nullopt},
+      {"most_share", &Tuning::most_share, 0, 1e3, "limits",
+       "The most that one track says of who is involved.", std::nullopt},
+      {"share_of_other", &Tuning::share_of_other, 0, 1, "",
+       "Share of it for the other one of a pair.", std::nullopt},
+  };
+  return numbers;
+}
+
+const TuningNumber& tuningNumber(const std::string& name) {
+  const auto& numbers = tuningNumbers();
+  const auto found = std::find_if(numbers.begin(), numbers.end(),
+                                  [&](const TuningNumber& each) { return each.name == name; });
+  if (found == numbers.end()) {
+    throw std::invalid_argument("the method has no number '" + name +
+                                "'; 'info --tuning' of a model names them all");
+  }
+  return *found;
+}
+
+void set(Tuning& tuning, const std::string& name, double value) {
+  const TuningNumber& number = tuningNumber(name);
+  if (!number.isValid(value)) {
+    std::ostringstream problem;
+    problem << name << " must be from " << number.least << " to " << number.most
+            << (number.unit.empty() ? "" : " ") << number.unit << ", not " << value;
+    throw std::invalid_argument(problem.str());
+  }
+  tuning.*number.value = value;
+}
+
+void Tuning::validate() const {
+  Tuning checked;
+  for (const TuningNumber& number : tuningNumbers()) {
+    set(checked, number.name, this->*number.value);
+  }
+  const std::vector<std::string> channels = channelNames();
+  for (const std::string& channel : without) {
+    if (std::find(channels.begin(), channels.end(), channel) == channels.end()) {
+      throw std::invalid_argument("the method has no channel '" + channel + "'");
+    }
+  }
+}
+
+double Tuning::leastEffectOnDelay(double period) const {
+  return std::max(least_effect * 1e9, least_effect_of_period * period);
+}
+
+double Tuning::leastEffectOnGap(double period) const {
+  return std::max(effect_on_gaps * least_effect * 1e9,
+                  effect_on_gaps_of_period * least_effect_of_period * period);
+}
+
+bool operator==(const Tuning& a, const Tuning& b) {
+  return a.without == b.without &&
+         std::all_of(tuningNumbers().begin(), tuningNumbers().end(),
+                     [&](const TuningNumber& each) { return a.*each.value == b.*each.value; });
+}
+
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,94 @@
+#include <pybind11/operators.h>
+#include <pybind11/stl.h>
+
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "bindings.h"
+#include "self_awareness/core/evidence/tracks.h"
+#include "self_awareness/core/evidence/tuning.h"
+
+namespace self_awareness::python {
+namespace {
+
+using core::evidence::Tuning;
+using core::evidence::TuningNumber;
+using TuningState = std::pair<std::vector<double>, std::set<std::string>>;
+
+TuningState stateOf(const Tuning& tuning) {
+  TuningState state;
+  for (const TuningNumber& number : core::evidence::tuningNumbers()) {
+    state.first.push_back(tuning.*number.value);
+  }
+  state.second = tuning.without;
+  return state;
+}
+
+Tuning fromState(const TuningState& state) {
+  Tuning tuning;
+  const std::vector<TuningNumber>& numbers = core::evidence::tuningNumbers();
+  for (std::size_t k = 0; k < numbers.size(); ++k) {
+    tuning.*numbers[k].value = state.first.at(k);
+  }
+  tuning.without = state.second;
+  return tuning;
+}
+
+}  // namespace
+
+void bindTuning(py::module& m) {
+  py::class_<TuningNumber>(m, "TuningNumber", "What is known of a number of the method.")
+      .def_readonly("name", &TuningNumber::name)
+      .def_property_readonly("default",
+                             [](const TuningNumber& self) { return Tuning{}.*self.value; })
+      .def_readonly("least", &TuningNumber::least, "smallest value that makes sense")
+      .def_readonly("most", &TuningNumber::most, "largest one")
+      .def_readonly("unit", &TuningNumber::unit, "empty: a pure number")
+      .def_readonly("meaning", &TuningNumber::meaning, "a sentence")
+      .def_readonly("off", &TuningNumber::off,
+                    "with which its rule is switched off; None: it cannot be");
+
+  py::class_<Tuning>(m, "Tuning", "Every number of the evidence detector's method.")
+      .def(py::init<>(), "The defaults.")
+      .def_static("numbers", [] { return core::evidence::tuningNumbers(); })
+      .def_static(
+          "channels", [] { return core::evidence::channelNames(); },
+          "names of the channels that can be switched off")
+      .def(
+          "get",
+          [](const Tuning& self, const std::string& name) {
+            return self.*core::evidence::tuningNumber(name).value;
+          },
+          py::arg("name"), "ValueError if there is no number of this name.")
+      .def(
+          "set",
+          [](Tuning& self, const std::string& name, double value) {
+            core::evidence::set(self, name, value);
+          },
+          py::arg("name"), py::arg("value"),
+          "ValueError if there is no number of this name, or the value is out of its range.")
+      .def_property_readonly("without",
+                             [](const Tuning& self) {
+                               return std::vector<std::string>(self.without.begin(),
+                                                               self.without.end());
+                             })
+      .def(
+          "leave_out",
+          [](Tuning& self, const std::string& channel) {
+            Tuning changed = self;
+            changed.without.insert(channel);
+            changed.validate();
+            self = changed;
+          },
+          py::arg("channel"), "Switches a channel off. ValueError if there is none of this name.")
+      .def("least_effect_on_delay", &Tuning::leastEffectOnDelay, py::arg("period"),
+           "on the delay after an event type with this mean gap [ns], in ns")
+      .def("least_effect_on_gap", &Tuning::leastEffectOnGap, py::arg("period"),
+           "on the gaps of an event type with this mean gap [ns], in ns")
+      .def("__eq__", [](const Tuning& self, const Tuning& other) { return self == other; })
+      .def(py::pickle(&stateOf, &fromState));
+}
+
+}  // namespace self_awareness::python
