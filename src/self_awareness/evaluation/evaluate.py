@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, Iterator, Optional, Sequence
 from self_awareness.calibration.limits import BUDGET
 from self_awareness.commands import cli
 from self_awareness.evaluation import catalogue, options, tunings
+from self_awareness.evaluation.ablation import command as ablation
+from self_awareness.evaluation.compare import report as compare
 from self_awareness.evaluation.families import experiment as families, report as families_report
 from self_awareness.evaluation.families.kinds import FAMILIES
 from self_awareness.evaluation.families.protocol import KINDS, Learning
@@ -168,6 +170,15 @@ def parser() -> argparse.ArgumentParser:
     _add_recordings(parts.add_parser(
         'recordings', help='recordings of real robots that others made',
         description='The outages in recordings of real robots, and false alarms on them.'))
+    ablation.add(parts.add_parser(
+        'ablation', help='what each part of the evidence detector buys',
+        description='Leaves out channel after channel, switches off rule after rule, halves and '
+        'doubles number after number, and judges the same robots and recordings each time. What '
+        'is done is kept: the same command goes on where it was interrupted.'))
+    compare.add(parts.add_parser(
+        'compare', help='two versions side by side, by what the same commands measured',
+        description='Writes a page about two folders that families, simulated or recordings wrote '
+        'to with -o, in two versions of this package.'))
     _add_live(parts.add_parser(
         'live', help='the follow-me robot as 15 processes, and the monitor',
         description='Starts master and robot, records, trains and calibrates, starts the monitor, '

@@ -14,7 +14,7 @@ import numpy as np
 from self_awareness import DEFAULT_WINDOW, Tuning
 from self_awareness.calibration.limits import TooLittleError
 from self_awareness.evaluation import row_files
-from self_awareness.evaluation.ablation.bench import (RECORDINGS, Bench, Fault, Lesson, Robot)
+from self_awareness.evaluation.ablation.bench import RECORDINGS, Bench, Fault, Lesson, Robot
 from self_awareness.evaluation.ablation.variants import Variant
 from self_awareness.evaluation.detectors import Evidence
 from self_awareness.evaluation.recordings import outages
@@ -78,8 +78,8 @@ def _robot_rows(robot: Robot, lesson: Lesson, variant: Variant, tuning: Tuning) 
     known = Row(str(variant), robot.part, robot.name, lesson.name, NORMAL)
     system = Evidence(robot.graph, tuning=tuning)
     refused = ''
-    system.train(lesson.training)
     try:
+        system.train(lesson.training)
         system.calibrate(lesson.calibration)
     except TooLittleError as error:
         refused = str(error)
@@ -157,10 +157,6 @@ class RowFile:
 
     def __getitem__(self, variant: Variant) -> List[Row]:
         return self._rows.get(str(variant), [])
-
-    def has(self, variant: Variant, records: int) -> bool:
-        """Return whether a variant has judged so many records, which are all."""
-        return len(self[variant]) == records
 
     def add(self, variant: Variant, rows: List[Row]) -> None:
         """Add the rows of a variant, in place of those that an interrupted run left of it.

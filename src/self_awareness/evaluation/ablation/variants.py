@@ -1,16 +1,17 @@
 """The variants of the method: one thing changed in each."""
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from typing import Iterator, List, Optional, Sequence, Tuple
+from typing import Iterator, List, Optional, Sequence
 
-from self_awareness import Tuning
+from self_awareness import Tuning, TuningNumber
 from self_awareness.evaluation import tunings
 
 DEFAULT, CHANNEL, RULE, NUMBER = 'default', 'channel', 'rule', 'number'
 """Kinds of variants."""
 
-HALF, DOUBLE = 0.5, 2.0
+_HALF, _DOUBLE = 0.5, 2.0
 
 
 @dataclass(frozen=True)
@@ -66,18 +67,17 @@ def variants(channels: Optional[Sequence[str]] = None,
     return found
 
 
-def _values(number: object) -> Iterator[float]:
-    """Yield half of a number and twice that, within its range, unless it stays what it was."""
-    default, seen = number.default, {number.default, number.off}
-    for factor in (HALF, DOUBLE):
+def _values(number: TuningNumber) -> Iterator[float]:
+    """Yield half of a number and twice that, within its range, unless that is known already.
+
+    A pure number that is whole stays whole: it counts something.
+    """
+    default = float(number.default)
+    seen = {default, number.off}
+    for factor in (_HALF, _DOUBLE):
         value = min(max(factor * default, number.least), number.most)
-        if number.integer:
-            value = float(round(value))
+        if not number.unit and default.is_integer():
+            value = float(math.floor(value + 0.5))
         if value not in seen:
             seen.add(value)
             yield value
-
-
-def changes(number: object) -> Tuple[float, ...]:
-    """Return the values that a number is changed to."""
-    return tuple(_values(number))

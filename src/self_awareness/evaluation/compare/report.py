@@ -67,7 +67,7 @@ def page(before: Path, after: Path, command: str) -> str:
 
 def _section(before: Measured, after: Measured) -> List[str]:
     lines = ['## Of the commands', '', *(f'    {command}' for command in before.commands), '',
-             'Rows that are the same to the last digit:', '', *tables.sentences(before, after),
+             'Rows that are the same to the last digit:', '', *tables.same_rows(before, after),
              '']
     for title, rows, part in (('Families of robots', before.normal, tables.families),
                               ('The simulated robot', before.simulated, tables.simulated),

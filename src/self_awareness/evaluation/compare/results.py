@@ -16,7 +16,7 @@ from self_awareness.evaluation.simulated.measures import Row
 _Row = TypeVar('_Row')
 
 _COMMAND = re.compile(r'^Written by `(?P<command>.+)`; do not edit', re.MULTILINE)
-_OUTPUT = re.compile(r' (-o|--output)[ =]\S+')
+_FOLDERS = re.compile(r' (-o|--output|--data)[ =]\S+')
 
 
 @dataclass(frozen=True)
@@ -27,7 +27,7 @@ class Measured:
         normal, faults: of the families.
         simulated: of the simulated robot.
         recordings: of real robots.
-        commands: that wrote it all, without where to.
+        commands: that wrote it all, without the folders.
     """
 
     normal: List[measures.NormalRow]
@@ -79,4 +79,4 @@ def _rows(path: Path, row_type: Type[_Row]) -> List[_Row]:
 
 def _command(page: Path) -> List[str]:
     found = _COMMAND.search(page.read_text(encoding='utf-8')) if page.is_file() else None
-    return [_OUTPUT.sub('', found['command'])] if found else []
+    return [_FOLDERS.sub('', found['command'])] if found else []

@@ -1,7 +1,7 @@
 """Before and after as tables in Markdown: one value where both say the same, else both."""
 from __future__ import annotations
 
-from typing import Callable, Dict, Hashable, List, Sequence, Tuple, TypeVar
+from typing import Any, Callable, List, Optional, Sequence, Tuple, TypeVar, Union
 
 from self_awareness import DEFAULT_WINDOW
 from self_awareness.evaluation.compare.results import Measured
@@ -15,101 +15,100 @@ from self_awareness.evaluation.tally import NONE, Tally, alarms
 from self_awareness.stamps import SECOND_NS
 
 _Row = TypeVar('_Row')
-_Part = Callable[[Measured], str]
+_Subject = Tuple[str, str, Optional[float]]  # learning, system, budget
+_FamilyPart = Callable[[Sequence[NormalRow], Sequence[FaultRow]], str]
+_SimulatedPart = Callable[[Sequence[measures.Row]], str]
 
 _CRASH_S = (1.0, 5.0, 50.0)
 _SOON_S = 5.0
 _HOUR_S = 3600.0
 
 
-def sentences(before: Measured, after: Measured) -> List[str]:
-    """Return how many rows are the same to the last digit."""
-    told = []
-    for name, ours, theirs in (
-            ('families, normal operation', before.normal, after.normal),
-            ('families, faults', before.faults, after.faults),
-            ('simulated robot', before.simulated, after.simulated),
-            ('recordings', before.recordings, after.recordings)):
-        if ours or theirs:
-            same = sum(one == other for one, other in zip(ours, theirs))
-            told.append(f'- {name}: {same} of {max(len(ours), len(theirs))}')
-    return told
+def same_rows(before: Measured, after: Measured) -> List[str]:
+    """Return lines that say how many rows are the same to the last digit."""
+    parts: List[Tuple[str, Sequence[Any], Sequence[Any]]] = [
+        ('families, normal operation', before.normal, after.normal),
+        ('families, faults', before.faults, after.faults),
+        ('simulated robot', before.simulated, after.simulated),
+        ('recordings', before.recordings, after.recordings)]
+    return [f'- {name}: {sum(one == other for one, other in zip(ours, theirs))} of '
+            f'{max(len(ours), len(theirs))}' for name, ours, theirs in parts if ours or theirs]
 
 
 def families(before: Measured, after: Measured) -> List[str]:
     """Return the lines of the tables of the families: all together, and each."""
-    subjects = _keys(before.normal, after.normal,
-                     lambda row: (row.subject.learning, row.subject.system, row.subject.budget))
-    lines = table(['', *(f'{system}, {learning}, budget {budget}'
-                         for learning, system, budget in subjects)],
-                  [[told, *(_both(before, after, lambda each, part=part, subject=subject:
-                                  part(_normal(each, subject), _faults(each, subject)))
-                            for subject in subjects)] for told, part in _OF_FAMILIES])
-    names = _keys(before.normal, after.normal, lambda row: row.subject.family)
-    if len(names) == 1:
-        return lines
-    body = [[family, subject[0], *(
-        _both(before, after, lambda each, part=part: part(_normal(each, subject, family),
-                                                          _faults(each, subject, family)))
-        for _, part in _OF_A_FAMILY)] for subject in subjects for family in names]
+    subjects = _keys([*before.normal, *after.normal], _subject)
+    pooled = [_family_cells(before, after, subject, [part for _, part in _OF_FAMILIES])
+              for subject in subjects]
+    lines = table(['', *(_told(subject) for subject in subjects)],
+                  [[told, *cells] for (told, _), *cells in zip(_OF_FAMILIES, *pooled)])
+    names = _keys([*before.normal, *after.normal], lambda row: row.subject.family)
+    body = [[family, _told(subject), *_family_cells(
+        before, after, subject, [part for _, part in _OF_A_FAMILY], family)]
+        for subject in subjects for family in names]
     return [*lines, '', *table(['family', 'learned from', *(told for told, _ in _OF_A_FAMILY)],
                                body)]
 
 
 def simulated(before: Measured, after: Measured) -> List[str]:
     """Return the lines of the table of the simulated robot."""
-    subjects = _keys(before.simulated, after.simulated,
-                     lambda row: (row.system, row.training_share))
-    kinds = [kind for kind in _keys(before.simulated, after.simulated, lambda row: row.record)
-             if kind != measures.NORMAL]
-    parts: List[Tuple[str, Callable[[Sequence[measures.Row]], str]]] = [
-        ('false alarms', lambda rows: _false(rows)),
-        ('WARN', lambda rows: alarms(sum(row.false_suspicions for row in rows), _hours(rows))),
-        ('every crash within 1 / 5 / 50 s', lambda rows: _found(rows, 'crash').found(*_CRASH_S)),
-        ('guilty first, every crash', lambda rows: _found(rows, 'crash').named_first)]
-    parts += [(kind, lambda rows, kind=kind: _found(rows, kind).found()) for kind in kinds]
-    parts += [(f'guilty first, {kind}', lambda rows, kind=kind: _found(rows, kind).named_first)
-              for kind in kinds if not kind.startswith('crash:')]
+    rows = [*before.simulated, *after.simulated]
+    subjects = _keys(rows, lambda row: (row.system, row.training_share))
+    kinds = [kind for kind in _keys(rows, lambda row: row.record) if kind != measures.NORMAL]
+    parts = [*_OF_SIMULATED, *((kind, _fault(kind)) for kind in kinds),
+             *((f'guilty first, {kind}', _fault_first(kind)) for kind in kinds
+               if not kind.startswith('crash:'))]
+    columns = []
+    for subject in subjects:
+        ours, theirs = ([row for row in each.simulated
+                         if (row.system, row.training_share) == subject]
+                        for each in (before, after))
+        columns.append([_both(part(ours), part(theirs)) for _, part in parts])
     return table(['', *(f'{system}, {100.0 * share:g} % of the training'
                         for system, share in subjects)],
-                 [[told, *(_both(before, after, lambda each, part=part, subject=subject: part(
-                     [row for row in each.simulated
-                      if (row.system, row.training_share) == subject]))
-                     for subject in subjects)] for told, part in parts])
+                 [[told, *cells] for (told, _), *cells in zip(parts, *columns)])
 
 
 def recordings(before: Measured, after: Measured) -> List[str]:
     """Return the lines of the table of the recordings of real robots."""
-    names = _keys(before.recordings, after.recordings, lambda row: (row.recording, row.system))
-    return table(['recording', 'system', *(told for told, _ in _OF_A_RECORDING)],
-                 [[*name, *(_both(before, after, lambda each, part=part, name=name: ' and '.join(
-                     part(row) for row in each.recordings
-                     if (row.recording, row.system) == name) or NONE)
-                     for _, part in _OF_A_RECORDING)] for name in names])
+    ours, theirs = ({(row.recording, row.system): row for row in each.recordings}
+                    for each in (before, after))
+    body = []
+    for name in dict.fromkeys([*ours, *theirs]):
+        pair = [each.get(name) for each in (ours, theirs)]
+        body.append([*name, *(_both(*(NONE if row is None else part(row) for row in pair))
+                              for _, part in _OF_A_RECORDING)])
+    return table(['recording', 'system', *(told for told, _ in _OF_A_RECORDING)], body)
 
 
-def _both(before: Measured, after: Measured, part: _Part) -> str:
-    one, other = part(before), part(after)
-    return one if one == other else f'{one} → **{other}**'
+def _both(before: str, after: str) -> str:
+    return before if before == after else f'{before} → **{after}**'
 
 
-def _keys(before: Sequence[_Row], after: Sequence[_Row],
-          key: Callable[[_Row], Hashable]) -> List:
-    found: Dict[Hashable, None] = dict.fromkeys(key(row) for row in (*before, *after))
-    return list(found)
+def _keys(rows: Sequence[_Row], key: Callable[[_Row], Any]) -> List[Any]:
+    return list(dict.fromkeys(key(row) for row in rows))
 
 
-def _normal(each: Measured, subject: Tuple, family: str = '') -> List[NormalRow]:
-    return [row for row in each.normal if _is_of(row, subject, family)]
+def _subject(row: Union[NormalRow, FaultRow]) -> _Subject:
+    return row.subject.learning, row.subject.system, row.subject.budget
 
 
-def _faults(each: Measured, subject: Tuple, family: str = '') -> List[FaultRow]:
-    return [row for row in each.faults if _is_of(row, subject, family)]
+def _told(subject: _Subject) -> str:
+    learning, system, budget = subject
+    return f'{system}, {learning}' + ('' if budget is None else f', budget {budget:g}')
 
 
-def _is_of(row, subject: Tuple, family: str) -> bool:
-    of = row.subject
-    return (of.learning, of.system, of.budget) == subject and family in ('', of.family)
+def _family_cells(before: Measured, after: Measured, subject: _Subject,
+                  parts: Sequence[_FamilyPart], family: str = '') -> List[str]:
+    """Return what parts of a table say of a subject on a family; empty: on all together."""
+    sides = [([row for row in each.normal if _is_of(row, subject, family)],
+              [row for row in each.faults if _is_of(row, subject, family)])
+             for each in (before, after)]
+    return [_both(*(part(normal, faults) for normal, faults in sides)) for part in parts]
+
+
+def _is_of(row: Union[NormalRow, FaultRow], subject: _Subject, family: str) -> bool:
+    return _subject(row) == subject and family in ('', row.subject.family)
 
 
 def _quiet(normal: Sequence[NormalRow], _: Sequence[FaultRow]) -> str:
@@ -124,12 +123,12 @@ def _stands(normal: Sequence[NormalRow], _: Sequence[FaultRow]) -> str:
     return f'{60.0 * sum(row.standing_hours for row in normal):.3g} min'
 
 
-def _kind(kind: str, *within_s: float) -> Callable[..., str]:
+def _kind(kind: str, *within_s: float) -> _FamilyPart:
     return lambda _, faults: Tally.of(
         (row.latency_s, row.first) for row in faults if row.kind == kind).found(*within_s)
 
 
-def _first(kind: str) -> Callable[..., str]:
+def _first(kind: str) -> _FamilyPart:
     return lambda _, faults: Tally.of((row.latency_s, row.first) for row in faults
                                       if kind in ('', row.kind)).named_first
 
@@ -138,7 +137,7 @@ def _among_three(_: Sequence[NormalRow], faults: Sequence[FaultRow]) -> str:
     return Tally.of((row.latency_s, row.among_three) for row in faults).named_first
 
 
-_OF_FAMILIES = (
+_OF_FAMILIES: Sequence[Tuple[str, _FamilyPart]] = (
     ('false alarms', _quiet), ('alarm stands in normal operation', _stands), ('WARN', _warned),
     ('crashes within 1 / 5 / 50 s', _kind(CRASH, *_CRASH_S)),
     *((f'{kind}, found', _kind(kind)) for kind in KINDS[1:]),
@@ -146,23 +145,41 @@ _OF_FAMILIES = (
     *((f'guilty first, {kind}', _first(kind)) for kind in KINDS),
     ('guilty first, all', _first('')), ('guilty among three, all', _among_three))
 
-_OF_A_FAMILY = (
+_OF_A_FAMILY: Sequence[Tuple[str, _FamilyPart]] = (
     ('false alarms', _quiet), ('WARN', _warned),
     ('crashes within 1 / 5 / 50 s', _kind(CRASH, *_CRASH_S)), ('half rates', _kind(HALF_RATE)),
     ('late answers', _kind(LATE)), ('deaths when asked', _kind(DEATH)),
     ('guilty first', _first('')))
 
 
+def _alarms(rows: Sequence[measures.Row]) -> str:
+    return alarms(sum(row.false_alarms for row in rows), _hours(rows))
+
+
+def _suspicions(rows: Sequence[measures.Row]) -> str:
+    return alarms(sum(row.false_suspicions for row in rows), _hours(rows))
+
+
 def _hours(rows: Sequence[measures.Row]) -> float:
     return sum(row.normal_windows for row in rows) * DEFAULT_WINDOW / SECOND_NS / _HOUR_S
 
 
-def _false(rows: Sequence[measures.Row]) -> str:
-    return alarms(sum(row.false_alarms for row in rows), _hours(rows))
+def _fault(kind: str, *within_s: float) -> _SimulatedPart:
+    return lambda rows: _tally(rows, kind).found(*within_s)
 
 
-def _found(rows: Sequence[measures.Row], kind: str) -> Tally:
+def _fault_first(kind: str) -> _SimulatedPart:
+    return lambda rows: _tally(rows, kind).named_first
+
+
+def _tally(rows: Sequence[measures.Row], kind: str) -> Tally:
     return Tally.of((row.latency_s, row.top1) for row in summary.of_fault(rows, kind))
+
+
+_OF_SIMULATED: Sequence[Tuple[str, _SimulatedPart]] = (
+    ('false alarms', _alarms), ('WARN', _suspicions),
+    ('every crash within 1 / 5 / 50 s', _fault('crash', *_CRASH_S)),
+    ('guilty first, every crash', _fault_first('crash')))
 
 
 def _outage(row: OutageRow) -> str:
@@ -172,7 +189,7 @@ def _outage(row: OutageRow) -> str:
     return f'{found}, stood before' if row.stood_before else found
 
 
-_OF_A_RECORDING: Tuple[Tuple[str, Callable[[OutageRow], str]], ...] = (
+_OF_A_RECORDING: Sequence[Tuple[str, Callable[[OutageRow], str]]] = (
     ('watched', lambda row: str(row.watched)), ('outage', _outage),
     ('false alarms', lambda row: str(row.false_alarms)),
     ('alarm stands in normal operation', lambda row: f'{row.false_s:.2f} s'))
