@@ -58,4 +58,8 @@ class Tally:
 
 def alarms(count: int, hours: float) -> str:
     """Return a number of alarms in some hours, as a rate, too."""
-    return f'{count} in {hours:.3g} h ({count / hours:.2g}/h)' if hours > 0.0 else NONE
+    if hours <= 0.0:
+        return NONE
+    rate = count / hours
+    told = f'{rate:.0f}' if rate >= 9.95 else f'{rate:.2g}'
+    return f'{count} in {hours:.3g} h ({told}/h)'

@@ -11,8 +11,8 @@ import pytest
 from self_awareness import Tuning
 from self_awareness.evaluation import evaluate, row_files
 from self_awareness.evaluation.ablation import bench as benches, experiment, figures, report
-from self_awareness.evaluation.ablation.bench import (FAMILIES, OTHER, OWN, Bench, Fault, Lesson,
-                                                      Plan, Robot)
+from self_awareness.evaluation.ablation.bench import (FAMILIES, OTHER, OWN, Bench, Fault, Plan,
+                                                      Robot)
 from self_awareness.evaluation.ablation.rows import Row, RowFile, judge, same
 from self_awareness.evaluation.ablation.variants import (CHANNEL, DEFAULT, NUMBER, RULE, Variant,
                                                          variants)
@@ -20,10 +20,11 @@ from self_awareness.evaluation.families.protocol import Learning, Records
 from self_awareness.evaluation.families.robot import CRASH
 from self_awareness.evaluation.simulated.measures import NORMAL
 from self_awareness.stamps import SECOND_NS
+from self_awareness.workers import InProcess
 
 from evaluation_robot import START, robot
 
-PLAN = Plan(('events_only',), (1,), (Learning.of(1, 60.0, 60.0),), 0.05, 1, None)
+PLAN = Plan(('events_only',), (1,), (1,), (Learning.of(1, 60.0, 60.0),), 0.05, 1, None)
 AS_IT_IS = Variant(DEFAULT)
 
 
@@ -72,9 +73,8 @@ def test_only_what_is_asked_for_is_changed() -> None:
 def small_bench() -> Bench:
     """Return a robot whose fast topic falls silent."""
     silent = robot(40.0, 4, silent=((20.0, 40.0),))
-    return Bench([Robot(FAMILIES, 'small 1', set(),
-                        [Lesson('two', [robot(60.0, 1), robot(60.0, 2)], [robot(60.0, 3)])],
-                        [robot(60.0, 5)],
+    return Bench([Robot(FAMILIES, 'small 1', set(), 'two', [robot(60.0, 1), robot(60.0, 2)],
+                        [robot(60.0, 3)], [robot(60.0, 5)],
                         [Fault(CRASH, 'player', ('/player',), silent,
                                START + 20 * SECOND_NS)])], None)
 
@@ -94,11 +94,10 @@ def test_a_variant_is_measured_on_every_record() -> None:
 
 
 def test_where_no_limits_can_be_found_nothing_is_judged() -> None:
-    few = small_bench()
-    lesson = Lesson('short', [robot(8.0, 1)], [robot(8.0, 3)])
-    rows = judge(Bench([replace(few.robots[0], lessons=[lesson])], None), AS_IT_IS)
+    few = replace(small_bench().robots[0], training=[robot(8.0, 1)], calibration=[robot(8.0, 3)])
+    rows = judge(Bench([few], None), AS_IT_IS)
     assert len(rows) == 2 and all(row.refused and row.latency_s is None for row in rows)
-    assert figures.refused(rows) == [f'small 1, short: {rows[0].refused}']
+    assert figures.refused(rows) == [f'small 1, two: {rows[0].refused}']
 
 
 def row(variant: str = 'default', **changed: Any) -> Row:
@@ -185,7 +184,7 @@ def test_the_page_marks_what_differs() -> None:
     page = report.page(PLAN, results, 'rosrun self_awareness evaluate ablation')
     lines = page.splitlines()
     crash = '1 / 1 of 1, 0.25 s'
-    nothing = '– | – | – | – | – | – | –'
+    nothing = ' | '.join('–' * 7)
     assert (f'| as it is | 0 in 1.0 h | 0 in 1.0 h | {crash} | {nothing} | 1 of 1 | 100 % |'
             in lines)
     assert (f'| without rate | 0 in 1.0 h | 0 in 1.0 h | {crash} | {nothing} | 1 of 1 | 100 % |'
@@ -213,15 +212,26 @@ def test_faults_are_spread_over_the_components() -> None:
     assert [fault.source for fault in records.faults((CRASH,), 1000)] == every
 
 
+def test_robots_learn_in_turn_from_few_starts_and_many(monkeypatch: pytest.MonkeyPatch) -> None:
+    wanted = []
+    monkeypatch.setattr(benches, '_robot', lambda _, robot: wanted.append(
+        (robot.name, robot.seed, robot.learning.starts)) or small_bench().robots[0])
+    monkeypatch.setattr(benches, 'Processes', lambda jobs: InProcess())
+    two, four = (Learning.of(starts, 60.0, 60.0) for starts in (2, 4))
+    benches.make(Plan(('timers', 'bursty', 'wander'), (1, 2), (7,), (two, four), 0.05, 1, None), 1)
+    assert wanted == [(OWN, 7, 2), ('timers', 1, 2), ('bursty', 1, 4), ('wander', 1, 2),
+                      ('timers', 2, 4), ('bursty', 2, 2), ('wander', 2, 4)]
+
+
 def test_the_command_writes_a_page_and_its_figures(tmp_path: Path,
                                                    monkeypatch: pytest.MonkeyPatch) -> None:
     own = replace(small_bench().robots[0], part=OWN, name='own robot 3')
-    monkeypatch.setattr(benches, '_own', lambda seed: own)
+    monkeypatch.setattr(benches, '_own', lambda wanted: own)
     output = tmp_path / 'new'
-    arguments = ['ablation', '--families', 'events_only', '--seed', '3', '--starts', '1',
-                 '--training', '60', '--calibration', '60', '--hours', '0.1', '--faults', '1',
-                 '--channels', 'overdue', '--numbers', 'least_gain', '--jobs', '2',
-                 '-o', str(output)]
+    arguments = ['ablation', '--families', 'events_only', '--seed', '3', '--own-seeds', '1',
+                 '--starts', '1', '--training', '60', '--calibration', '60', '--hours', '0.1',
+                 '--faults', '1', '--channels', 'overdue', '--numbers', 'least_gain',
+                 '--jobs', '2', '-o', str(output)]
     assert evaluate.main(arguments) == 0
     page = (output / 'ablation.md').read_text(encoding='utf-8')
     assert 'evaluate ablation --families events_only --seed 3' in page

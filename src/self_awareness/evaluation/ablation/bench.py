@@ -21,6 +21,9 @@ FAMILIES, OWN, RECORDINGS = 'families', 'own robot', 'recordings'
 CLOCKS, STARVED, OTHER = 'ac', 'rs', 'other'
 """Kinds of faults besides those of the families: asynchronous clocks, a starved CPU, others."""
 
+AFTER_DEATH_S = 600.0
+"""A record lasts for so long after the death of who speaks only when it is asked [s]."""
+
 _OWN_LEARNING = Learning(len(simulated.TRAINING_NAMES), simulated.RECORD_S, 1, 600.0)
 _WARNED_ONLY = ('extra', 'unknown')  # a suspicion, no alarm
 _OWN_KINDS = {'ac': CLOCKS, 'rs': STARVED, 'lat': LATE, 'half': HALF_RATE, 'crash': CRASH,
@@ -33,8 +36,10 @@ class Plan:
 
     Args:
         families: names, of families.kinds.FAMILIES.
-        seeds: of the robots of each family, and of the records of the own robot.
-        learnings: what is learned from each robot of a family, in turn.
+        seeds: of the robots of each family.
+        own_seeds: of the records of the own robot.
+        learnings: what is learned from the robots of the families: from each one of these, in
+            turn.
         hours: of normal operation that is watched, for each robot of a family.
         faults: the most of each kind, for each robot of a family.
         data: folder of the recordings of real robots; None: without them.
@@ -42,19 +47,11 @@ class Plan:
 
     families: Tuple[str, ...]
     seeds: Tuple[int, ...]
+    own_seeds: Tuple[int, ...]
     learnings: Tuple[Learning, ...]
     hours: float
     faults: int
     data: Optional[Path]
-
-
-@dataclass(frozen=True)
-class Lesson:
-    """What is learned from before the records are judged."""
-
-    name: str
-    training: List[WindowedEvents]
-    calibration: List[WindowedEvents]
 
 
 @dataclass(frozen=True)
@@ -84,7 +81,8 @@ class Robot:
         part: FAMILIES or OWN.
         name: with its seed.
         graph: see Evidence.
-        lessons: in turn.
+        learning: what is learned from, in short.
+        training, calibration: that.
         normal: normal operation to watch.
         faults: see Fault.
     """
@@ -92,7 +90,9 @@ class Robot:
     part: str
     name: str
     graph: Set[Tuple[str, str, str]]
-    lessons: List[Lesson]
+    learning: str
+    training: List[WindowedEvents]
+    calibration: List[WindowedEvents]
     normal: List[WindowedEvents]
     faults: List[Fault]
 
@@ -107,39 +107,49 @@ class Bench:
 
 def make(plan: Plan, jobs: int) -> Bench:
     """Simulate all robots, `jobs` of them at a time."""
-    wanted = [(name, seed) for seed in plan.seeds for name in (OWN, *plan.families)]
+    turns = len(plan.learnings)
+    wanted = [_Wanted(OWN, seed, _OWN_LEARNING) for seed in plan.own_seeds]
+    wanted += [_Wanted(family, seed, plan.learnings[(turn + shift) % turns])
+               for shift, seed in enumerate(plan.seeds)
+               for turn, family in enumerate(plan.families)]
     with closing(Processes(jobs).map(_robot, plan, wanted, 'simulating')) as robots:
         return Bench(list(robots), plan.data)
 
 
-def _robot(plan: Plan, wanted: Tuple[str, int]) -> Robot:
-    name, seed = wanted
-    return _own(seed) if name == OWN else _of_family(plan, name, seed)
+@dataclass(frozen=True)
+class _Wanted:
+    """A robot to simulate: the own one, or one of a family."""
+
+    name: str
+    seed: int
+    learning: Learning
 
 
-def _of_family(plan: Plan, family: str, seed: int) -> Robot:
-    records = Records(family, seed)
+def _robot(plan: Plan, wanted: _Wanted) -> Robot:
+    return _own(wanted) if wanted.name == OWN else _of_family(plan, wanted)
+
+
+def _of_family(plan: Plan, wanted: _Wanted) -> Robot:
+    records = Records(wanted.name, wanted.seed)
     return Robot(
-        FAMILIES, f'{family} {seed}', records.robot.graph,
-        [Lesson(str(learning), records.training(learning), records.calibration(learning))
-         for learning in plan.learnings],
+        FAMILIES, f'{wanted.name} {wanted.seed}', records.robot.graph, str(wanted.learning),
+        records.training(wanted.learning), records.calibration(wanted.learning),
         list(records.watched(plan.hours)),
         [Fault(fault.kind, fault.source, (fault.source,), fault.recording, fault.onset)
-         for fault in records.faults(KINDS, plan.faults)])
+         for fault in records.faults(KINDS, plan.faults, AFTER_DEATH_S)])
 
 
-def _own(seed: int) -> Robot:
-    scenario = load_scenario()
+def _own(wanted: _Wanted) -> Robot:
+    scenario, seed, learning = load_scenario(), wanted.seed, wanted.learning
 
     def normal(name: str, length_s: float) -> WindowedEvents:
         return simulated.normal_record(scenario, seed, name, length_s)
 
-    lesson = Lesson(
-        str(_OWN_LEARNING),
-        [normal(name, _OWN_LEARNING.training_s) for name in simulated.TRAINING_NAMES],
-        [normal(simulated.CALIBRATION_NAME, _OWN_LEARNING.calibration_s)])
-    return Robot(OWN, f'{OWN} {seed}', scenario_graph(), [lesson],
-                 [normal(NORMAL, simulated.NORMAL_TEST_S)], list(_own_faults(seed)))
+    return Robot(
+        OWN, f'{OWN} {seed}', scenario_graph(), str(learning),
+        [normal(name, learning.training_s) for name in simulated.TRAINING_NAMES],
+        [normal(simulated.CALIBRATION_NAME, learning.calibration_s)],
+        [normal(NORMAL, simulated.NORMAL_TEST_S)], list(_own_faults(seed)))
 
 
 def _own_faults(seed: int) -> Iterator[Fault]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 import argparse
 import os
 from pathlib import Path
+from typing import Tuple
 
 from self_awareness import Tuning
 from self_awareness.commands import cli
@@ -30,12 +31,13 @@ def add(parser: argparse.ArgumentParser) -> None:
                         metavar='FAMILY', help='robots of these: '
                         f'{", ".join(FAMILIES)} (default: {" ".join(_FAMILIES)})')
     parser.add_argument('--seeds', type=cli.count, default=1, metavar='N',
-                        help='robots of each family, and records of the own robot, each with the '
-                        'next seed (default: 1)')
+                        help='robots of each family, each with the next seed (default: 1)')
+    parser.add_argument('--own-seeds', type=cli.count, default=3, metavar='N',
+                        help='the same for the records of the own robot (default: 3)')
     parser.add_argument('--seed', type=cli.count, default=1, help='the first seed (default: 1)')
     parser.add_argument('--starts', type=options.starts, nargs='+', default=[2, 4], metavar='N',
-                        help='starts to train on, in turn; half as many, but one at least, are '
-                        'calibrated on (default: 2 4)')
+                        help='starts to train on, for one robot after the other in turn; half as '
+                        'many, but one at least, are calibrated on (default: 2 4)')
     parser.add_argument('--training', type=options.calibration_s, default=150.0, metavar='S',
                         help='length of a recording to train on [s] (default: 150)')
     parser.add_argument('--calibration', type=options.calibration_s, default=150.0, metavar='S',
@@ -63,7 +65,8 @@ def _work(arguments: argparse.Namespace, command: str) -> None:
     if arguments.data is not None:
         outages.check_data(arguments.data)
     plan = Plan(
-        tuple(arguments.families), tuple(range(arguments.seed, arguments.seed + arguments.seeds)),
+        tuple(arguments.families), _seeds(arguments.seed, arguments.seeds),
+        _seeds(arguments.seed, arguments.own_seeds),
         tuple(Learning.of(starts, arguments.training, arguments.calibration)
               for starts in arguments.starts),
         arguments.hours, arguments.faults, arguments.data)
@@ -72,3 +75,7 @@ def _work(arguments: argparse.Namespace, command: str) -> None:
     results = experiment.run(plan, chosen, full / f'{report.NAME}.csv', arguments.jobs)
     for path in report.write(arguments.output, plan, results, command):
         print(f'written: {path}')
+
+
+def _seeds(first: int, number: int) -> Tuple[int, ...]:
+    return tuple(range(first, first + number))

@@ -46,8 +46,9 @@ class Cell:
 
     def differs(self, other: Cell) -> bool:
         """Return whether it is told as another one."""
-        return any(one != two and not abs(one - two) <= within for one, two, within
-                   in zip(self.values, other.values, self.same_within))
+        return self.text != other.text and any(
+            one != two and not abs(one - two) <= within
+            for one, two, within in zip(self.values, other.values, self.same_within))
 
 
 def cells(rows: Sequence[Row], default: Sequence[Row]) -> Dict[str, Cell]:

@@ -7,7 +7,8 @@ from typing import Any, Dict, List, Sequence, Tuple
 from self_awareness import Tuning
 from self_awareness.evaluation import row_files
 from self_awareness.evaluation.ablation import figures
-from self_awareness.evaluation.ablation.bench import FAMILIES, OWN, RECORDINGS, Plan
+from self_awareness.evaluation.ablation.bench import (AFTER_DEATH_S, FAMILIES, OWN,
+                                                      RECORDINGS, Plan)
 from self_awareness.evaluation.ablation.experiment import Results
 from self_awareness.evaluation.ablation.variants import DEFAULT, NUMBER, Variant
 from self_awareness.evaluation.simulated.tables import table
@@ -27,9 +28,10 @@ Written by `{command}`; do not edit.
 The evidence detector with one change at a time: a channel left out, a rule switched off, a number
 halved or doubled. All variants learn from and judge the same records:
 
-- robots of the families {families} ([what they are](families.md)), seeds {seeds}: learned from
-  {learnings}; {hours:g} h of normal operation each, and up to {faults} faults of every kind;
-- the project's own robot ([what is recorded](simulated.md)), the same seeds: all faults but those
+- robots of the families {families} ([what they are](families.md)), seeds {seeds}, which learn in
+  turn from {learnings}; {hours:g} h of normal operation each, and up to {faults} faults of every
+  kind (after a death, the record goes on for {death_s:g} s);
+- the project's own robot ([what is recorded](simulated.md)), seeds {own}: all faults but those
   that are a suspicion only; AC: a host's clock is out of step, RS: the CPU is taken away;
 - {recordings}.
 
@@ -85,7 +87,8 @@ def page(plan: Plan, results: Results, command: str) -> str:
     lines = [_INTRODUCTION.format(
         command=command, name=NAME, families=', '.join(f'`{name}`' for name in plan.families),
         seeds=', '.join(str(seed) for seed in plan.seeds),
-        learnings='; '.join(str(learning) for learning in plan.learnings), hours=plan.hours,
+        own=', '.join(str(seed) for seed in plan.own_seeds), death_s=AFTER_DEATH_S,
+        learnings=' and '.join(str(learning) for learning in plan.learnings), hours=plan.hours,
         faults=plan.faults, recordings='the recordings of real robots '
         '([which](recordings.md))' if plan.data else 'without the recordings of real robots'),
         _PARTS.format(latency_s=figures.LEAST_LATENCY_S, cost=100.0 * figures.LEAST_COST),

@@ -14,7 +14,7 @@ import numpy as np
 from self_awareness import DEFAULT_WINDOW, Tuning
 from self_awareness.calibration.limits import TooLittleError
 from self_awareness.evaluation import row_files
-from self_awareness.evaluation.ablation.bench import RECORDINGS, Bench, Fault, Lesson, Robot
+from self_awareness.evaluation.ablation.bench import RECORDINGS, Bench, Fault, Robot
 from self_awareness.evaluation.ablation.variants import Variant
 from self_awareness.evaluation.detectors import Evidence
 from self_awareness.evaluation.recordings import outages
@@ -66,21 +66,20 @@ class Row:
 def judge(bench: Bench, variant: Variant) -> List[Row]:
     """Let a variant learn from all robots and judge all records."""
     tuning = variant.tuning()
-    rows = [row for robot in bench.robots for lesson in robot.lessons
-            for row in _robot_rows(robot, lesson, variant, tuning)]
+    rows = [row for robot in bench.robots for row in _robot_rows(robot, variant, tuning)]
     if bench.data is not None:
         rows += [row for case in outages.CASES
                  for row in _case_rows(case, bench.data, variant, tuning)]
     return rows
 
 
-def _robot_rows(robot: Robot, lesson: Lesson, variant: Variant, tuning: Tuning) -> Iterator[Row]:
-    known = Row(str(variant), robot.part, robot.name, lesson.name, NORMAL)
+def _robot_rows(robot: Robot, variant: Variant, tuning: Tuning) -> Iterator[Row]:
+    known = Row(str(variant), robot.part, robot.name, robot.learning, NORMAL)
     system = Evidence(robot.graph, tuning=tuning)
     refused = ''
     try:
-        system.train(lesson.training)
-        system.calibrate(lesson.calibration)
+        system.train(robot.training)
+        system.calibrate(robot.calibration)
     except TooLittleError as error:
         refused = str(error)
     for recording in robot.normal:

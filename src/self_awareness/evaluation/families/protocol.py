@@ -150,13 +150,14 @@ class Records:
                                  self._family.watched_start)
             left -= WATCHED_S
 
-    def faults(self, kinds: Tuple[str, ...],
-               most: Optional[int] = None) -> Iterator[FaultRecord]:
+    def faults(self, kinds: Tuple[str, ...], most: Optional[int] = None,
+               after_death_s: float = AFTER_DEATH_S) -> Iterator[FaultRecord]:
         """Yield a recording of every fault of some kinds, of each component in turn.
 
         Args:
             kinds: of KINDS.
             most: only of so many components for each kind, spread evenly; None: of all.
+            after_death_s: a recording lasts for so long after a death [s].
         """
         regular, answering = self.robot.regular, self.robot.answering
         who = {CRASH: regular, HALF_RATE: regular,
@@ -167,14 +168,17 @@ class Records:
             chosen = _spread(len(who[kind]), most) if kind in kinds else set()
             for index, source in enumerate(who[kind]):
                 if index in chosen:
-                    yield from self._fault(kind, source, number)
+                    yield from self._fault(
+                        kind, source, number,
+                        after_death_s if kind == DEATH else AFTER_ONSET_S)
                 number += 1
 
-    def _fault(self, kind: str, source: str, number: int) -> Iterator[FaultRecord]:
+    def _fault(self, kind: str, source: str, number: int,
+               after_s: float) -> Iterator[FaultRecord]:
         """Yield the recording with a fault; none if nothing is missing after a death."""
         spread = np.random.default_rng((self.robot.seed, number)).uniform(0.0, _ONSET_SPREAD_S)
         onset_s = _ONSET_S + float(spread)
-        seconds = onset_s + (AFTER_DEATH_S if kind == DEATH else AFTER_ONSET_S)
+        seconds = onset_s + after_s
         fault = Fault(CRASH if kind == DEATH else kind, source, onset_s)
         same_start = self._family.watched_start
         recording = self._recorded(_FAULTS, number, seconds, same_start, fault)
