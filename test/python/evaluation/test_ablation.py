@@ -65,9 +65,10 @@ def test_numbers_are_halved_and_doubled_within_their_range() -> None:
 def test_only_what_is_asked_for_is_changed() -> None:
     assert variants([], []) == [AS_IT_IS]
     assert variants(['rate'], []) == [AS_IT_IS, Variant(CHANNEL, 'rate')]
-    for channels, numbers in ((['smell'], []), ([], ['luck'])):
-        with pytest.raises(ValueError, match='smell|luck'):
-            variants(channels, numbers)
+    with pytest.raises(ValueError, match='smell'):
+        variants(['smell'], [])
+    with pytest.raises(ValueError, match='luck'):
+        variants([], ['luck'])
 
 
 def small_bench() -> Bench:
@@ -214,8 +215,12 @@ def test_faults_are_spread_over_the_components() -> None:
 
 def test_robots_learn_in_turn_from_few_starts_and_many(monkeypatch: pytest.MonkeyPatch) -> None:
     wanted = []
-    monkeypatch.setattr(benches, '_robot', lambda _, robot: wanted.append(
-        (robot.name, robot.seed, robot.learning.starts)) or small_bench().robots[0])
+
+    def simulated(_: Plan, robot_wanted: Any) -> Robot:
+        wanted.append((robot_wanted.name, robot_wanted.seed, robot_wanted.learning.starts))
+        return small_bench().robots[0]
+
+    monkeypatch.setattr(benches, '_robot', simulated)
     monkeypatch.setattr(benches, 'Processes', lambda jobs: InProcess())
     two, four = (Learning.of(starts, 60.0, 60.0) for starts in (2, 4))
     benches.make(Plan(('timers', 'bursty', 'wander'), (1, 2), (7,), (two, four), 0.05, 1, None), 1)

@@ -61,8 +61,9 @@ def _folders(tmp_path: Path) -> List[str]:
 
 
 def test_rows_are_read_as_they_were_written(tmp_path: Path) -> None:
-    for rows in (NORMALS, FAULTS, ROWS, [OUTAGE]):
-        path = tmp_path / 'rows.csv'
+    path = tmp_path / 'rows.csv'
+    every: List[List[Any]] = [NORMALS, FAULTS, ROWS, [OUTAGE]]
+    for rows in every:
         row_files.save(path, rows, type(rows[0]))
         assert row_files.load(path, type(rows[0])) == rows
     path.write_text('recording,system\na,b\n', encoding='utf-8')

@@ -15,6 +15,9 @@ from self_awareness.evaluation.families.protocol import Learning
 from evaluation_robot import robot
 
 
+WITHOUT: List[List[str]] = [[], ['overdue']]
+
+
 def asked(*arguments: str) -> Tuning:
     parser = argparse.ArgumentParser()
     tunings.add(parser)
@@ -65,7 +68,7 @@ def test_a_channel_that_is_left_out_finds_nothing() -> None:
     training = [robot(60.0, seed) for seed in (1, 2, 3)]
     death = robot(30.0, 4, silent=((15.0, 30.0),))
     said = []
-    for without in ([], ['overdue']):
+    for without in WITHOUT:
         system = catalogue.make('evidence', tunings.changed([], without))
         system.train(training[:2])
         system.calibrate(training[2:])
@@ -75,7 +78,7 @@ def test_a_channel_that_is_left_out_finds_nothing() -> None:
 
 def test_robots_of_families_are_judged_by_the_method_asked_for() -> None:
     of_variants = []
-    for without in ([], ['overdue']):
+    for without in WITHOUT:
         plan = families.Plan(('events_only',), (1,), (Learning.of(1, 60.0, 60.0),),
                              ('evidence',), (0.5,), 0.05, ('crash',),
                              tunings.changed([], without))
