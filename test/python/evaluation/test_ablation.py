@@ -65,6 +65,7 @@ def test_numbers_are_halved_and_doubled_within_their_range() -> None:
 def test_only_what_is_asked_for_is_changed() -> None:
     assert variants([], []) == [AS_IT_IS]
     assert variants(['rate'], []) == [AS_IT_IS, Variant(CHANNEL, 'rate')]
+    assert {variant.kind for variant in variants(kinds=[RULE])} == {DEFAULT, RULE}
     with pytest.raises(ValueError, match='smell'):
         variants(['smell'], [])
     with pytest.raises(ValueError, match='luck'):

@@ -11,7 +11,7 @@ from self_awareness.commands import cli
 from self_awareness.evaluation import options
 from self_awareness.evaluation.ablation import experiment, report
 from self_awareness.evaluation.ablation.bench import Plan
-from self_awareness.evaluation.ablation.variants import variants
+from self_awareness.evaluation.ablation.variants import KINDS, variants
 from self_awareness.evaluation.families.experiment import check_hours
 from self_awareness.evaluation.families.kinds import FAMILIES
 from self_awareness.evaluation.families.protocol import Learning
@@ -55,12 +55,15 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--numbers', nargs='*', metavar='NAME',
                         help='change these in turn, none if no name follows; `info --tuning` '
                         'lists them (default: all)')
+    parser.add_argument('--kinds', nargs='+', choices=KINDS, default=KINDS, metavar='KIND',
+                        help=f'variants of these only: {", ".join(KINDS)}, where a rule is '
+                        'switched off by a number (default: all)')
     parser.add_argument('--jobs', type=cli.count, default=os.cpu_count(), metavar='N',
                         help='variants at a time (default: as many as there are cores)')
 
 
 def _work(arguments: argparse.Namespace, command: str) -> None:
-    chosen = variants(arguments.channels, arguments.numbers)
+    chosen = variants(arguments.channels, arguments.numbers, arguments.kinds)
     check_hours(arguments.families, arguments.hours)
     if arguments.data is not None:
         outages.check_data(arguments.data)

@@ -11,6 +11,9 @@ from self_awareness.evaluation import tunings
 DEFAULT, CHANNEL, RULE, NUMBER = 'default', 'channel', 'rule', 'number'
 """Kinds of variants."""
 
+KINDS = (CHANNEL, RULE, NUMBER)
+"""Those with a change."""
+
 _HALF, _DOUBLE = 0.5, 2.0
 
 
@@ -42,12 +45,14 @@ class Variant:
 
 
 def variants(channels: Optional[Sequence[str]] = None,
-             numbers: Optional[Sequence[str]] = None) -> List[Variant]:
+             numbers: Optional[Sequence[str]] = None,
+             kinds: Sequence[str] = KINDS) -> List[Variant]:
     """Return the method as it is, and the variants.
 
     Args:
         channels: that are left out in turn; None: all.
         numbers: that are switched off, halved and doubled; None: all.
+        kinds: that are returned, besides DEFAULT.
 
     Raises:
         ValueError: there is no such channel or number.
@@ -64,7 +69,7 @@ def variants(channels: Optional[Sequence[str]] = None,
               if number.off is not None and number.off != number.default]
     found += [Variant(NUMBER, number.name, value) for number in known
               for value in _values(number)]
-    return found
+    return [variant for variant in found if variant.kind in (DEFAULT, *kinds)]
 
 
 def _values(number: TuningNumber) -> Iterator[float]:
