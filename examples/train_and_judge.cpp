@@ -6,10 +6,10 @@
 #include <optional>
 #include <vector>
 
-#include "self_awareness/core/evidence/cross_fit.h"
+#include "self_awareness/core/evidence/channel/watched.h"
 #include "self_awareness/core/evidence/judge.h"
-#include "self_awareness/core/evidence/limits.h"
-#include "self_awareness/core/evidence/tracks.h"
+#include "self_awareness/core/evidence/limits/cross_fit.h"
+#include "self_awareness/core/evidence/limits/limits.h"
 #include "self_awareness/core/training.h"
 #include "self_awareness/core/verdict/detector.h"
 #include "self_awareness/core/verdict/source_graph.h"
@@ -47,8 +47,7 @@ int main() {
   // watch what two do together, and tells the root of a fault from its victims.
   const auto graph = std::make_shared<core::SourceGraph>();
   graph->connect("/laser", "/scan", "/slam");
-  const evidence::CrossFit models(
-      evidence::watch(counts.halves[0], counts.halves[1], evidence::kPredecessors, *graph));
+  const evidence::CrossFit models(evidence::watch(counts.halves[0], counts.halves[1], *graph));
 
   // 3. Limits say what is too unusual. The recordings come twice; who judges one has not learned
   // from it.

@@ -33,7 +33,7 @@ export LSAN_OPTIONS=suppressions=$checkout/test/fuzz/leaks.supp:print_suppressio
 
 status=0
 # A bag of format 1.2 takes ten times as long, since rosbag reads it: it has a corpus of its own.
-for corpus in message_field encoding bag former_bag event_log model; do
+for corpus in message_field message_upgrade encoding bag former_bag event_log model; do
   say "Fuzzing: $corpus, $seconds s"
   mkdir -p "$workspace/corpus/$corpus"
   program=$programs/fuzz_${corpus#former_}

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/evidence/log_bins.h"
-#include "self_awareness/core/evidence/limits.h"
+#include "core/evidence/count/log_bins.h"
+#include "self_awareness/core/evidence/limits/limits.h"
 #include "self_awareness/core/stream/clock.h"
 #include "self_awareness/core/stream/clock_steps.h"
 #include "self_awareness/core/stream/event.h"
@@ -110,7 +110,7 @@ inline void judgeRecording(core::Detector& detector, const Stamps& stamps, const
 /// Delays of a pair of event types: shortest delay [ns] and count by bin.
 inline std::vector<std::pair<std::int64_t, std::uint32_t>> delaysOf(
     const core::evidence::Statistics& statistics, core::EventId from, core::EventId to) {
-  const core::evidence::Statistics::Delays& counts = statistics.delays(from, to);
+  const core::evidence::DelayHistogram& counts = statistics.delays(from, to);
   std::vector<std::pair<std::int64_t, std::uint32_t>> delays;
   for (std::size_t bin = 0; bin < counts.size(); ++bin) {
     delays.emplace_back(core::evidence::log_bins::lowerEdge(bin), counts[bin]);
@@ -124,6 +124,8 @@ void bindOutputFiles(py::module& module);
 void bindEventLogs(py::module& module);
 /// Binds the encoding, and the reading of bags and event logs (recording_bindings.cpp).
 void bindRecordings(py::module& module);
+/// Binds what files say of their versions (file_version_bindings.cpp).
+void bindFileVersions(py::module& module);
 /// Binds model files (model_bindings.cpp).
 void bindModel(py::module& module);
 /// Binds the training (training_bindings.cpp).

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "bindings.h"
-#include "self_awareness/core/evidence/model.h"
+#include "self_awareness/core/evidence/channel/model.h"
 #include "self_awareness/ros/model/model_file.h"
 
 namespace self_awareness::python {
@@ -79,7 +79,7 @@ void bindCounts(py::module& m) {
       .def(
           "usual_delay",
           [](const Counts& self, core::EventId from, core::EventId to, double share) {
-            return self.model().usualDelay(from, to, share);
+            return self.model().usualDelay(from, to, share) * 1e-9;
           },
           py::arg("from_id"), py::arg("to_id"), py::arg("share"),
           "delay [s] that this share (0 to 1) of the delays did not exceed; as of EvidenceModel");

@@ -153,12 +153,12 @@ std::string reasonName(core::Suspect::Reason reason) {
       return "rate";
     case Reason::kDelay:
       return "delay";
-    case Reason::kAnswer:
-      return "answer";
     case Reason::kUnanswered:
       return "unanswered";
     case Reason::kNeverHeard:
       return "never heard";
+    case Reason::kOther:
+      return "other";
   }
   throw std::invalid_argument("a reason without a name");
 }
@@ -171,7 +171,8 @@ void bindVerdicts(py::module& m) {
       .def_readonly("abnormal", &core::Suspect::abnormal, "it alone would be abnormal")
       .def_property_readonly(
           "reason", [](const core::Suspect& self) { return reasonName(self.reason); },
-          "silent, late, unknown, unusual, rate, delay, answer, unanswered or never heard")
+          "silent, late, unknown, unusual, rate, delay, unanswered, never heard\n"
+          "or other")
       .def_readonly("since", &core::Suspect::since,
                     "when the alarm or the suspicion first named its component [ns]")
       .def_readonly("silence", &core::Suspect::silence, "[s]; NaN: that is not the reason")
@@ -182,12 +183,12 @@ void bindVerdicts(py::module& m) {
       .def_readonly("usual_fewest", &core::Suspect::usual_fewest, "rate: in 2 s")
       .def_readonly("usual_most", &core::Suspect::usual_most, "rate: in 2 s")
       .def_readonly("other", &core::Suspect::other,
-                    "delay, answer, unanswered: the other event type; empty: its own")
+                    "delay, unanswered: the other event type; empty: its own")
       .def_readonly("delay", &core::Suspect::delay, "delay: seen, median [s]; 0: not known")
       .def_readonly("usual_delay", &core::Suspect::usual_delay, "delay: median [s]")
-      .def_readonly("lasted", &core::Suspect::lasted, "delay, answer: seen in the last so many s")
-      .def_readonly("of", &core::Suspect::of, "delay: delays; answer: questions")
-      .def_readonly("times", &core::Suspect::times, "of them, unusual or left out")
+      .def_readonly("lasted", &core::Suspect::lasted, "delay: seen in the last so many s")
+      .def_readonly("of", &core::Suspect::of, "delay: delays; unanswered: requests")
+      .def_readonly("times", &core::Suspect::times, "of them, unusual")
       .def("describe", py::overload_cast<const core::Suspect&>(&core::describe),
            "the reason in words and numbers");
 

@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "bindings.h"
-#include "core/evidence/scorer.h"
-#include "self_awareness/core/evidence/cross_fit.h"
-#include "self_awareness/core/evidence/limits.h"
-#include "self_awareness/core/evidence/model.h"
+#include "core/evidence/channel/scorer.h"
+#include "self_awareness/core/evidence/channel/model.h"
+#include "self_awareness/core/evidence/limits/cross_fit.h"
+#include "self_awareness/core/evidence/limits/limits.h"
 #include "self_awareness/ros/model/model_file.h"
 
 namespace self_awareness::python {
@@ -27,13 +27,9 @@ struct LimitSearch {
               const evidence::LimitFinder::Parameters& parameters, const core::SourceGraph& graph)
       : cross_fit(std::move(models)), finder(cross_fit->model(), parameters, graph) {}
 
-  /// A search without findings, for the same model and in the same pass.
+  /// A search without findings, for the same model.
   std::unique_ptr<LimitSearch> part() const {
-    auto search = std::make_unique<LimitSearch>(cross_fit, finder.parameters(), finder.graph());
-    if (finder.inSecondPass()) {
-      search->finder.startSecondPass(finder.trackLimits());
-    }
-    return search;
+    return std::make_unique<LimitSearch>(cross_fit, finder.parameters(), finder.graph());
   }
   void addEvents(const Stamps& stamps, const Ids& ids, std::optional<std::size_t> half,
                  std::int64_t robot_start, std::vector<std::int64_t> clock_steps) {
@@ -45,23 +41,13 @@ struct LimitSearch {
         [&] { finder.restart(); });
     finder.finish();
   }
-  evidence::Limits startSecondPass(const std::optional<evidence::Limits>& limits) {
-    if (limits) {
-      finder.startSecondPass(*limits);
-    } else {
-      finder.startSecondPass();
-    }
-    return finder.trackLimits();
-  }
 
   std::shared_ptr<const evidence::CrossFit> cross_fit;
   evidence::LimitFinder finder;
 };
 
-using LimitsState = std::tuple<std::vector<double>, double>;
-
 using Findings = evidence::LimitFinder::Findings;
-using PartState = std::tuple<std::uint64_t, std::vector<float>, std::vector<std::int64_t>, float>;
+using PartState = std::tuple<std::uint64_t, std::vector<float>, std::vector<std::int64_t>>;
 using RecordingState = std::tuple<std::int64_t, std::int64_t, std::int64_t, bool, std::uint64_t,
                                   std::vector<PartState>, std::vector<std::uint8_t>>;
 using FindingsState = std::vector<RecordingState>;
@@ -70,11 +56,11 @@ FindingsState stateOf(const Findings& findings) {
   FindingsState state;
   for (const evidence::LimitFinder::Recording& recording : findings) {
     std::vector<PartState> parts;
-    for (const auto& [windows, evidence, gaps, linker] : recording.parts) {
-      parts.emplace_back(windows, evidence, gaps, linker);
+    for (const auto& [windows, evidence, gaps] : recording.parts) {
+      parts.emplace_back(windows, evidence, gaps);
     }
     std::vector<std::uint8_t> said;
-    for (const evidence::LimitFinder::Said each : recording.said) {
+    for (const evidence::Said each : recording.said) {
       said.push_back(static_cast<std::uint8_t>(each));
     }
     state.emplace_back(recording.start, recording.end, recording.robot_start, recording.trained_on,
@@ -92,11 +78,11 @@ Findings fromState(const FindingsState& state) {
     recording.robot_start = robot_start;
     recording.trained_on = trained_on;
     recording.windows = windows;
-    for (const auto& [part_windows, evidence, gaps, linker] : parts) {
-      recording.parts.push_back({part_windows, evidence, gaps, linker});
+    for (const auto& [part_windows, evidence, gaps] : parts) {
+      recording.parts.push_back({part_windows, evidence, gaps});
     }
     for (const std::uint8_t each : said) {
-      recording.said.push_back(static_cast<evidence::LimitFinder::Said>(each));
+      recording.said.push_back(static_cast<evidence::Said>(each));
     }
   }
   return findings;
@@ -146,8 +132,11 @@ void bindEvidence(py::module& m) {
   using evidence::Track;
   py::class_<Track>(m, "Track", "One thing that the evidence detector watches.")
       .def_property_readonly(
-          "channel", [](const Track& self) { return evidence::channelName(self.channel); },
-          "overdue, rate, pairs, answers or deadlines")
+          "channel", [](const Track& self) { return evidence::channelLabel(self); },
+          "as people read it: overdue, rate, pairs or deadlines")
+      .def_property_readonly(
+          "name", [](const Track& self) { return evidence::channelName(self); },
+          "of the channel (Tuning.channels)")
       .def_readonly("to_id", &Track::to)
       .def_readonly("from_id", &Track::from,
                     "same as to_id if the channel looks at one event type");
@@ -160,10 +149,14 @@ void bindEvidence(py::module& m) {
            }),
            py::arg("trained"))
       .def_property_readonly("tracks", &evidence::Model::tracks)
-      .def("usual_delay", &evidence::Model::usualDelay, py::arg("from_id"), py::arg("to_id"),
-           py::arg("share"),
-           "delay [s] that this share (0 to 1) of the delays in training did not exceed,\n"
-           "as exactly as the bins are")
+      .def(
+          "usual_delay",
+          [](const evidence::Model& self, core::EventId from, core::EventId to, double share) {
+            return self.usualDelay(from, to, share) * 1e-9;
+          },
+          py::arg("from_id"), py::arg("to_id"), py::arg("share"),
+          "delay [s] that this share (0 to 1) of the delays in training did not exceed,\n"
+          "as exactly as the bins are")
       .def(
           "delays",
           [](const evidence::Model& self, core::EventId from, core::EventId to) {
@@ -176,17 +169,6 @@ void bindEvidence(py::module& m) {
       .def("log_survival", &evidence::Model::logSurvival, py::arg("id"), py::arg("age"))
       .def("evidence", &evidenceOf, py::arg("window"), py::arg("stamps"), py::arg("ids"),
            "Evidence at the end of every window of a recording: float64 [windows, tracks].");
-
-  py::class_<evidence::Limits>(m, "EvidenceLimits", "The largest evidence that is normal.")
-      .def_readonly("tracks", &evidence::Limits::tracks, "by track; NaN: not judged")
-      .def_readonly("linker", &evidence::Limits::linker)
-      .def(py::pickle(
-          [](const evidence::Limits& self) {
-            return LimitsState{self.tracks, self.linker};
-          },
-          [](const LimitsState& state) {
-            return evidence::Limits{std::get<0>(state), std::get<1>(state)};
-          }));
 
   py::class_<evidence::Relation>(m, "Relation", "What speaks for a relation.")
       .def_readonly("watched", &evidence::Relation::watched)
@@ -202,10 +184,18 @@ void bindEvidence(py::module& m) {
       .def(py::pickle([](const Findings& self) { return stateOf(self); },
                       [](const FindingsState& state) { return fromState(state); }));
 
+  using Found = evidence::LimitFinder::Found;
+  py::class_<Found>(m, "LimitsFound", "What comes of LimitFindings.")
+      .def_property_readonly(
+          "limits", [](const Found& self) { return self.limits.tracks; },
+          "the largest evidence that is normal, by track; NaN: not judged")
+      .def_readonly("expected_rate", &Found::expected_rate, "false alarms an hour to be expected")
+      .def_readonly("relations", &Found::relations, "by track");
+
   py::class_<LimitSearch>(
       m, "LimitFinder",
-      "Finds limits in two passes over the same recordings of normal operation.\n"
-      "Other finders, in other processes, may do parts of a pass; merge() adds their findings.")
+      "Finds limits on recordings of normal operation.\n"
+      "Other finders, in other processes, may judge some of them; merge() adds their findings.")
       .def(
           py::init([](const ros1::TrainedModel& trained, std::int64_t settle_time, double budget) {
             trained.requireWatched();
@@ -222,23 +212,17 @@ void bindEvidence(py::module& m) {
            "Takes in a recording; half: 0 or 1 if that half of the training learned from it;\n"
            "robot_start: of the robot [ns], 0: not known; clock_steps: with which the clock was\n"
            "set forward (find_clock_steps).")
-      .def("part", &LimitSearch::part, "A finder without findings, for the same model and pass.")
+      .def("part", &LimitSearch::part, "A finder without findings, for the same model.")
       .def(
           "findings", [](const LimitSearch& self) { return self.finder.findings(); },
-          "LimitFindings of what was added, in this pass.")
-      .def(
-          "first_findings", [](const LimitSearch& self) { return self.finder.firstFindings(); },
-          "LimitFindings of the first pass.")
-      .def("expected_rate", [](const LimitSearch& self) { return self.finder.expectedRate(); })
-      .def("relations", [](const LimitSearch& self) { return self.finder.relations(); })
+          "LimitFindings of what was added.")
       .def(
           "merge",
           [](LimitSearch& self, const Findings& findings) { self.finder.merge(findings); },
           py::arg("findings"))
-      .def("start_second_pass", &LimitSearch::startSecondPass, py::arg("limits") = py::none(),
-           "Returns the EvidenceLimits of the tracks; another finder may start its own second\n"
-           "pass with them. ValueError if the recordings were too short.")
-      .def("limits", [](const LimitSearch& self) { return self.finder.limits(); })
+      .def(
+          "find", [](const LimitSearch& self) { return self.finder.find(); },
+          "LimitsFound; ValueError if the recordings were too short.")
       .def_property_readonly("windows",
                              [](const LimitSearch& self) { return self.finder.windows(); });
 }

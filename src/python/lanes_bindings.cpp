@@ -70,10 +70,6 @@ void bindLanes(py::module& m) {
       .def_property_readonly("shares", &sharesOf,
                              "the largest share of its limit, float32 [components, stretches]")
       .def_property_readonly(
-          "linker",
-          [](const Lanes& self) { return ofColumns(self, &evidence::Lanes::Column::linker); },
-          "the linker's largest share of its limit, float32 [stretches]")
-      .def_property_readonly(
           "strongest",
           [](const Lanes& self) {
             return ofColumns(self, &evidence::Lanes::Column::strongest_share);

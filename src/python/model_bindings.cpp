@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "bindings.h"
-#include "core/evidence/log_bins.h"
+#include "core/evidence/count/log_bins.h"
 #include "self_awareness/ros/model/evidence_message.h"
 #include "self_awareness/ros/model/model_bytes.h"
 #include "self_awareness/ros/model/model_file.h"
@@ -88,7 +88,6 @@ void bindModel(py::module& m) {
       .def(py::init<>())
       .def_readwrite("method", &EvidenceCalibration::method)
       .def_readwrite("limits", &EvidenceCalibration::limits)
-      .def_readwrite("linker_limit", &EvidenceCalibration::linker_limit)
       .def_property(
           "relations",
           [](const EvidenceCalibration& self) {
@@ -139,7 +138,9 @@ void bindModel(py::module& m) {
             return self;
           },
           "A small copy, with only the counts that the evidence detector judges by.")
-      .def_readonly("tuning", &TrainedModel::tuning, "the numbers of the method")
+      .def_property_readonly(
+          "tuning", [](const TrainedModel& self) { return self.tuning; },
+          "a copy of the numbers of the method")
       .def_property_readonly(
           "only_half", &TrainedModel::onlyHalf,
           "the half of the training that all recordings belong to; None: there are some of both")
@@ -153,6 +154,8 @@ void bindModel(py::module& m) {
           "trained on")
       .def_property_readonly(
           "stamp", [](const TrainedModel& self) { return self.stamp.toNSec(); }, "[ns]")
+      .def_readonly("version", &TrainedModel::version,
+                    "FileVersion of its file; of this version if it has none")
       .def_readwrite("calibration", &TrainedModel::calibration,
                      "of the paper's detector; None: not calibrated")
       .def_readwrite("findings", &TrainedModel::findings,

@@ -8,6 +8,7 @@ PYBIND11_MODULE(_core, m) {
   self_awareness::python::bindRecordings(m);
   self_awareness::python::bindOutputFiles(m);
   self_awareness::python::bindEventLogs(m);
+  self_awareness::python::bindFileVersions(m);
   self_awareness::python::bindModel(m);
   self_awareness::python::bindTuning(m);
   self_awareness::python::bindTraining(m);

@@ -2,12 +2,13 @@
 #include <pybind11/stl.h>
 
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "bindings.h"
-#include "self_awareness/core/evidence/tracks.h"
+#include "self_awareness/core/evidence/channel/track.h"
 #include "self_awareness/core/evidence/tuning.h"
 
 namespace self_awareness::python {
@@ -77,17 +78,17 @@ void bindTuning(py::module& m) {
       .def(
           "leave_out",
           [](Tuning& self, const std::string& channel) {
-            Tuning changed = self;
-            changed.without.insert(channel);
-            changed.validate();
-            self = changed;
+            if (core::evidence::channelNamed(channel) == nullptr) {
+              throw std::invalid_argument("the method has no channel '" + channel + "'");
+            }
+            self.without.insert(channel);
           },
           py::arg("channel"), "Switches a channel off. ValueError if there is none of this name.")
       .def("least_effect_on_delay", &Tuning::leastEffectOnDelay, py::arg("period"),
            "on the delay after an event type with this mean gap [ns], in ns")
       .def("least_effect_on_gap", &Tuning::leastEffectOnGap, py::arg("period"),
            "on the gaps of an event type with this mean gap [ns], in ns")
-      .def("__eq__", [](const Tuning& self, const Tuning& other) { return self == other; })
+      .def(py::self == py::self)
       .def(py::pickle(&stateOf, &fromState));
 }
 

@@ -17,6 +17,8 @@ class MessageCursor {
       : rest_(reinterpret_cast<const char*>(data), size) {}
 
   bool atEnd() const { return rest_.empty(); }
+  /// What has not been crossed yet.
+  std::string_view rest() const { return rest_; }
 
   template <typename Number>
   Number number() {

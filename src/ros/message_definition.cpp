@@ -40,7 +40,7 @@ std::string packageOf(const std::string& datatype) {
 
 // "Header" is the one type that every package may name without a package.
 std::string fullType(const std::string& type, const std::string& package) {
-  if (type == "string" || builtInSizes().count(type) > 0 || type.find('/') != std::string::npos) {
+  if (MessageDefinition::isBuiltIn(type) || type.find('/') != std::string::npos) {
     return type;
   }
   return type == "Header" ? "std_msgs/Header" : package + "/" + type;
@@ -210,6 +210,23 @@ MessageDefinition::Field MessageDefinition::field(const std::string& path) const
          "; only integers, bool and string tell what a message does");
   }
   return found;
+}
+
+bool MessageDefinition::isBuiltIn(const std::string& type) {
+  return type == "string" || builtInSizes().count(type) > 0;
+}
+
+std::size_t MessageDefinition::sizeOf(const std::string& type) {
+  return builtInSizes().at(type);
+}
+
+std::vector<MessageSteps> MessageDefinition::stepsOf(const std::string& type) const {
+  std::vector<MessageSteps> steps;
+  Expansion expansion(*this);
+  for (const Line& line : linesOf(type)) {
+    expansion.append(line, steps.emplace_back());
+  }
+  return steps;
 }
 
 MessageSteps MessageDefinition::whole() const {

@@ -42,6 +42,30 @@ class MessageDefinition {
   /// @throw std::invalid_argument if the text is too long
   MessageDefinition(const std::string& text, std::string datatype);
 
+  /// A field of a type, as the text says it.
+  struct Line {
+    std::string type;   ///< in full and without brackets, e.g. uint8 or std_msgs/Header
+    std::string array;  ///< "": no array, "[]": of any length, "[N]": of N elements
+    std::string name;
+
+    bool operator==(const Line& other) const {
+      return type == other.type && array == other.array && name == other.name;
+    }
+  };
+  using Lines = std::vector<Line>;
+
+  const std::string& datatype() const { return datatype_; }
+  /// Whether a type is one of those that all messages are made of: numbers, times and string.
+  static bool isBuiltIn(const std::string& type);
+  /// Size of a built-in type but string [bytes].
+  static std::size_t sizeOf(const std::string& type);
+  /// The fields of a type, in their order.
+  /// @throw std::invalid_argument if the definition of the type is missing
+  const Lines& linesOf(const std::string& type) const;
+  /// The steps across each of them.
+  /// @throw std::invalid_argument if a bound is exceeded, or the definition of a type is missing
+  std::vector<MessageSteps> stepsOf(const std::string& type) const;
+
   struct Field {
     MessageSteps before;  ///< what lies before it
     std::string type;     ///< an integer, bool or string
@@ -55,16 +79,9 @@ class MessageDefinition {
   MessageSteps whole() const;
 
  private:
-  struct Line {
-    std::string type;   // without brackets
-    std::string array;  // "": no array, "[]": of any length, "[N]": of N elements
-    std::string name;
-  };
-  using Lines = std::vector<Line>;
   class Expansion;
 
   static Lines parse(std::istream& text, std::string& next_type, const std::string& package);
-  const Lines& linesOf(const std::string& type) const;
 
   std::string datatype_;
   std::map<std::string, Lines> types_;

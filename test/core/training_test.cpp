@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/paper/delay_trainer.h"
-#include "self_awareness/core/evidence/cross_fit.h"
-#include "self_awareness/core/evidence/tracks.h"
+#include "self_awareness/core/evidence/channel/watched.h"
+#include "self_awareness/core/evidence/limits/cross_fit.h"
 
 namespace self_awareness::core {
 namespace {

@@ -5,8 +5,8 @@
 #include <stdexcept>
 
 #include "fuzzed_file.h"
+#include "self_awareness/core/evidence/channel/model.h"
 #include "self_awareness/core/evidence/judge.h"
-#include "self_awareness/core/evidence/model.h"
 #include "self_awareness/core/paper/judge.h"
 #include "self_awareness/core/verdict/detector.h"
 #include "self_awareness/ros/model/model_file.h"

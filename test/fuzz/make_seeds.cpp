@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "bag_bytes.h"
+#include "self_awareness/EventLogGraph.h"
 #include "self_awareness/core/training.h"
 #include "self_awareness/ros/bag/bag_reader.h"
 #include "self_awareness/ros/bag/bag_to_event_log.h"
@@ -109,18 +110,23 @@ void writeEventLogs(const std::string& folder) {
   writeAllCompressions(folder + "log", folder + "log_");
 }
 
+template <typename Message>
+std::string serialized(const Message& message) {
+  std::string bytes(ros::serialization::serializationLength(message), '\0');
+  ros::serialization::OStream stream(reinterpret_cast<std::uint8_t*>(&bytes[0]),
+                                     static_cast<std::uint32_t>(bytes.size()));
+  ros::serialization::serialize(stream, message);
+  return bytes;
+}
+
 void writeMessages(const std::string& folder) {
   namespace traits = ros::message_traits;
   visualization_msgs::Marker marker;
   marker.header.frame_id = "map";
   marker.points.resize(2);
   marker.text = "Ada";
-  std::string bytes(ros::serialization::serializationLength(marker), '\0');
-  ros::serialization::OStream stream(reinterpret_cast<std::uint8_t*>(&bytes[0]),
-                                     static_cast<std::uint32_t>(bytes.size()));
-  ros::serialization::serialize(stream, marker);
-  ros1::bag_bytes::writeFile(folder + "marker",
-                             traits::definition<visualization_msgs::Marker>() + ('\0' + bytes));
+  ros1::bag_bytes::writeFile(folder + "marker", traits::definition<visualization_msgs::Marker>() +
+                                                    ('\0' + serialized(marker)));
   for (const auto& [name, definition] :
        {std::pair{"ring", "visualization_msgs/Marker self\nint32 action\n"},
         std::pair{"long", "string[4294967295] x\nuint8[99999999999999999999] y\nint32 action\n"},
@@ -129,6 +135,28 @@ void writeMessages(const std::string& folder) {
                   "MSG: std_msgs/Header\nuint32 seq\ntime stamp\nstring frame_id\n"}}) {
     ros1::bag_bytes::writeFile(folder + name, definition + std::string(40, '\0'));
   }
+}
+
+/// A model and a graph, as this version and as others lay them out.
+void writeStored(const std::string& folder, const std::string& model) {
+  namespace traits = ros::message_traits;
+  const std::string bytes = '\0' + serialized(ros1::toMessage(ros1::loadModel(model)));
+  const std::string definition = traits::definition<self_awareness::Model>();
+  ros1::bag_bytes::writeFile(folder + "model", definition + bytes);
+  for (const char* name : {"uint32 predecessors", "uint8 channel", "string topic"}) {
+    std::string other = definition;
+    const std::size_t at = other.find(name);
+    if (at != std::string::npos) {
+      ros1::bag_bytes::writeFile(folder + "renamed_" + std::to_string(at),
+                                 other.insert(other.find(' ', at) + 1, "other_") + bytes);
+    }
+  }
+  self_awareness::EventLogGraph graph;
+  graph.topics.resize(2);
+  graph.topics[0].publishers = {"/a", "/b"};
+  ros1::bag_bytes::writeFile(
+      folder + "graph",
+      traits::definition<self_awareness::EventLogGraph>() + ('\0' + serialized(graph)));
 }
 
 void writeEncodings(const std::string& folder) {
@@ -159,5 +187,6 @@ int main(int argc, char** argv) {
   const std::string models = folderOf(argv[1], "model");
   writeModel(models + "model");
   writeAllCompressions(models + "model", models + "model_");
+  writeStored(folderOf(argv[1], "message_upgrade"), models + "model");
   return 0;
 }

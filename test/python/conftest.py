@@ -6,14 +6,14 @@ import os
 import random
 import time
 from pathlib import Path
-from typing import Any, Callable, Iterable, List, Optional, Tuple
+from typing import Any, Callable, Iterable, List, Optional, Sequence, Tuple
 
 import pytest
 import rosbag
 import rospy
 from std_msgs.msg import Header, String
 
-from self_awareness import LimitFindings, TrainedModel
+from self_awareness import LimitFindings, TrainedModel, Tuning
 
 Message = Tuple[float, str, str]
 """Stamp [s], source, topic."""
@@ -94,7 +94,7 @@ def learned(model: TrainedModel, calibrations: bool = False) -> bytes:
         limits.stamp = 0
         model.evidence_calibration = limits
     state = model.__getstate__()
-    stamp = 2 * 32 + 4  # after the md5 of two messages and the length of the first
+    stamp = 3 * 32 + 4  # after the md5 of three messages and the length of the first
     return state[:stamp] + state[stamp + 8:]
 
 
@@ -112,6 +112,20 @@ def robot_bags(tmp_path_factory: pytest.TempPathFactory) -> Tuple[str, str]:
     folder = tmp_path_factory.mktemp('robot')
     return (write_bag(folder / 'first.bag', robot(1000.0)),
             write_bag(folder / 'second.bag', robot(2000.033)))
+
+
+def train_tuned(bags: Sequence[str], path: Path, detector: str = 'evidence',
+                **numbers: float) -> str:
+    """Train with other numbers of the method, which no program does; return the model's path."""
+    from self_awareness.recordings import BagPart
+    from self_awareness.training import many_bags
+    tuning = Tuning()
+    for name, value in numbers.items():
+        tuning.set(name, value)
+    trained = many_bags.train([BagPart(bag) for bag in bags],
+                              many_bags.Counting(detector=detector, tuning=tuning))
+    trained.model.save(str(path))
+    return str(path)
 
 
 @pytest.fixture(scope='session')

@@ -64,7 +64,7 @@ def test_flake8() -> None:
 @pytest.mark.parametrize('options', [
     ('src/self_awareness', *_python_programs()),
     (*LENIENT, 'benchmark', 'test/count_results.py', 'test/python', 'test/rostest',
-     'test/sanitizers'),
+     'test/sanitizers', 'test/data'),
 ], ids=['package', 'tests'])
 def test_mypy(options: Sequence[str], tmp_path: Path) -> None:
     pytest.importorskip('mypy', reason='mypy is not installed')

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "allocated_bytes.h"
-#include "core/evidence/log_bins.h"
-#include "core/evidence/scorer.h"
+#include "core/evidence/channel/scorer.h"
+#include "core/evidence/count/log_bins.h"
 #include "event_loop.h"
-#include "self_awareness/core/evidence/model.h"
-#include "self_awareness/core/evidence/statistics.h"
+#include "self_awareness/core/evidence/channel/model.h"
+#include "self_awareness/core/evidence/count/statistics.h"
 #include "synthetic_system.h"
 
 namespace self_awareness::benchmarks {

@@ -5,8 +5,8 @@
 #include <memory>
 #include <optional>
 
-#include "self_awareness/core/evidence/halves.h"
-#include "self_awareness/core/evidence/statistics.h"
+#include "self_awareness/core/evidence/count/halves.h"
+#include "self_awareness/core/evidence/count/statistics.h"
 #include "self_awareness/core/paper/binning.h"
 #include "self_awareness/core/paper/delay_statistics.h"
 #include "self_awareness/core/stream/event.h"

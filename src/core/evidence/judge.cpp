@@ -9,18 +9,15 @@
 #include <utility>
 #include <vector>
 
-#include "core/evidence/blame.h"
-#include "core/evidence/busy_machine.h"
-#include "core/evidence/hindsight.h"
-#include "core/evidence/never_heard.h"
-#include "core/evidence/scorer.h"
-#include "core/evidence/strangers.h"
+#include "core/evidence/blame/blame.h"
+#include "core/evidence/blame/busy_machine.h"
+#include "core/evidence/blame/never_heard.h"
+#include "core/evidence/blame/strangers.h"
+#include "core/evidence/channel/scorer.h"
 
 namespace self_awareness::core::evidence {
 namespace {
 
-// Above this share of its limit, the linker is suspicious.
-constexpr double kSuspicious = 0.75;
 // The score of a busy machine whose evidence is within all limits: just abnormal.
 constexpr double kStillBusy = 1.01 * kThreshold;
 
@@ -31,10 +28,14 @@ class Judge : public core::Judge {
         SharesHandler shares);
 
   ObservedEvent add(const Event& event) override {
-    hindsight_.add(event);
     never_heard_.add(event);
     strangers_.add(event);
-    return {event, !model_->knows(event.id), scorer_.add(event)};
+    const bool known = model_->knows(event.id);
+    const std::optional<std::int64_t> gap = scorer_.add(event);
+    if (known) {
+      events_.add(event, scorer_.stalled());
+    }
+    return {event, !known, gap};
   }
   void settle(const Event& first, std::int64_t settle_time) override;
   void leaveOut(const std::vector<EventId>& ids, std::int64_t until) override;
@@ -46,7 +47,8 @@ class Judge : public core::Judge {
   void leaveOutFewer(std::vector<double>& evidence) const;
   /// Takes back what the tracks say of event types that settle.
   void leaveOutNew(std::int64_t now, std::vector<double>& evidence) const;
-  bool isSilent() const;
+  /// Whether a track beyond its limit is so beyond all doubt.
+  bool isCertain() const;
   /// The suspects of a window.
   /// @param silent_first whether those come before what was never heard that tracks speak against
   std::vector<Suspect> namedIn(const Window& window, bool silent_first) const;
@@ -55,7 +57,7 @@ class Judge : public core::Judge {
   std::optional<Limits> limits_;
   std::int64_t window_;  // length of a whole one [ns]
   Scorer scorer_;
-  Hindsight hindsight_;
+  RecentEvents events_;
   Blame blame_;
   NeverHeard never_heard_;
   Strangers strangers_;
@@ -74,7 +76,7 @@ Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, s
       limits_(std::move(limits)),
       window_(window),
       scorer_(model_, window),
-      hindsight_(model_),
+      events_(model_->size()),
       blame_(model_, graph),
       never_heard_(*model_, limits_.value_or(Limits{}), std::move(graph)),
       strangers_(*model_, std::move(heard)),
@@ -82,8 +84,7 @@ Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, s
       shares_(model_->tracks().size(), 0),
       tell_shares_(std::move(shares)),
       settled_at_(model_->size(), std::numeric_limits<std::int64_t>::min()) {
-  if (limits_ && (limits_->tracks.size() != model_->tracks().size() ||
-                  !std::isfinite(limits_->linker) || limits_->linker <= 0)) {
+  if (limits_ && limits_->tracks.size() != model_->tracks().size()) {
     throw std::invalid_argument("the limits are not those of the model: calibrate it again");
   }
   if (limits_) {
@@ -107,7 +108,7 @@ void Judge::leaveOut(const std::vector<EventId>& ids, std::int64_t until) {
 
 void Judge::restart() {
   scorer_.restart();
-  hindsight_.restart();
+  events_.restart();
   never_heard_.restart();
   strangers_.restart();
   busy_machine_.restart();
@@ -117,7 +118,7 @@ void Judge::restart() {
 
 void Judge::leaveOutFewer(std::vector<double>& evidence) const {
   for (std::size_t track = 0; track < evidence.size(); ++track) {
-    if (model_->tracks()[track].channel == Channel::kFewer) {
+    if (model_->finding(track) == Finding::kFewer) {
       evidence[track] = 0;
     }
   }
@@ -128,8 +129,8 @@ void Judge::leaveOutNew(std::int64_t now, std::vector<double>& evidence) const {
     return;
   }
   for (std::size_t track = 0; track < evidence.size(); ++track) {
-    const auto& [channel, to, from] = model_->tracks()[track];
-    if (now < std::max(settled_at_[to], settled_at_[from])) {
+    const Track& watched = model_->tracks()[track];
+    if (now < std::max(settled_at_[watched.to], settled_at_[watched.from])) {
       evidence[track] = 0;
     }
   }
@@ -146,20 +147,20 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
   }
   leaveOutNew(window.start, evidence);
   std::set<std::string> channels;
+  double largest = 0;
   for (std::size_t track = 0; track < evidence.size(); ++track) {
     const double share = evidence[track] / limits_->tracks[track];
     shares_[track] = std::isnan(share) ? 0 : share;
-    if (shares_[track] > 1 && model_->tracks()[track].channel != Channel::kSlowDelay) {
-      channels.insert(channelName(model_->tracks()[track].channel));
+    largest = std::max(largest, shares_[track]);
+    if (shares_[track] > 1) {
+      channels.insert(channelLabel(model_->tracks()[track]));
     }
   }
-  const Sum sum = sumUp(evidence, *model_, *limits_);
-  const double linker = model_->tuning().isOn("linker") ? sum.linker / limits_->linker : 0;
   never_heard_.closeWindow(end, settle_time_);
   if (tell_shares_) {
-    tell_shares_(window, {shares_, linker, never_heard_.shares()});
+    tell_shares_(window, {shares_, never_heard_.shares()});
   }
-  judgement.score = -std::max({sum.largest, linker, never_heard_.share()});
+  judgement.score = -std::max(largest, never_heard_.share());
   judgement.threshold = kThreshold;
   judgement.busy = busy_machine_.closeWindow(shares_, scorer_, *judgement.score < kThreshold);
   if (judgement.busy) {
@@ -168,11 +169,8 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
     channels.insert("busy");
   }
   judgement.abnormal = *judgement.score < kThreshold;
-  judgement.certain = linker > 1 || never_heard_.share() > 1 || isSilent();
-  judgement.suspicious = linker > kSuspicious || never_heard_.share() > 0;
-  if (linker > kSuspicious) {
-    channels.insert("linker");
-  }
+  judgement.certain = never_heard_.share() > 1 || isCertain();
+  judgement.suspicious = never_heard_.share() > 0;
   if (never_heard_.share() > 0) {
     channels.insert("never heard");
   }
@@ -181,13 +179,13 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
   }
   if (suspects == NameSuspects::kAlways ||
       (suspects == NameSuspects::kIfUnusual && (judgement.abnormal || judgement.suspicious))) {
-    judgement.suspects = namedIn(window, std::max(sum.largest, linker) > 1);
+    judgement.suspects = namedIn(window, largest > 1);
   }
   return judgement;
 }
 
 std::vector<Suspect> Judge::namedIn(const Window& window, bool silent_first) const {
-  std::vector<Suspect> first = blame_.suspects(shares_, scorer_, hindsight_, window);
+  std::vector<Suspect> first = blame_.suspects(shares_, scorer_, events_, window);
   std::vector<Suspect> second = never_heard_.suspects();
   if (!silent_first) {
     std::swap(first, second);
@@ -204,13 +202,9 @@ std::vector<Suspect> Judge::namedIn(const Window& window, bool silent_first) con
   return named;
 }
 
-bool Judge::isSilent() const {
-  const std::vector<Track>& tracks = model_->tracks();
-  const std::int64_t confirmation = toNanoseconds(model_->tuning().confirmation);
-  for (std::size_t track = 0; track < tracks.size(); ++track) {
-    const EventId id = tracks[track].to;
-    if (tracks[track].channel == Channel::kOverdue && shares_[track] > 1 &&
-        model_->overdue(id, scorer_.age(id) - confirmation) > limits_->tracks[track]) {
+bool Judge::isCertain() const {
+  for (std::size_t track = 0; track < shares_.size(); ++track) {
+    if (shares_[track] > 1 && scorer_.isCertain(track, limits_->tracks[track])) {
       return true;
     }
   }

@@ -29,7 +29,7 @@ void Lanes::add(const Window& window, const Shares& shares) {
   };
   for (std::size_t track = 0; track < shares.tracks.size(); ++track) {
     const auto share = static_cast<float>(shares.tracks[track]);
-    if (share <= 0 || model_->tracks()[track].channel == Channel::kSlowDelay) {
+    if (share <= 0) {
       continue;
     }
     raise(model_->tracks()[track].to, share);
@@ -41,7 +41,6 @@ void Lanes::add(const Window& window, const Shares& shares) {
   for (const auto& [id, share] : shares.never_heard) {
     raise(id, static_cast<float>(share));
   }
-  column.linker = std::max(column.linker, static_cast<float>(shares.linker));
 }
 
 }  // namespace self_awareness::core::evidence

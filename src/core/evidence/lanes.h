@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include "self_awareness/core/evidence/channel/model.h"
 #include "self_awareness/core/evidence/judge.h"
-#include "self_awareness/core/evidence/model.h"
 
 namespace self_awareness::core::evidence {
 
@@ -18,7 +18,6 @@ class Lanes {
   /// A stretch of time.
   struct Column {
     std::vector<float> shares;         ///< the largest, by component
-    float linker = 0;                  ///< the largest
     float strongest_share = 0;         ///< the largest of all tracks
     std::optional<std::size_t> track;  ///< that has it; none: no track has any evidence
   };

@@ -43,9 +43,6 @@ struct BagIndex {
   bool recorded = false;   ///< its connections have headers as `rosbag record` writes them
 };
 
-/// Whether these are the connections of an event log, and of nothing else.
-bool areOfEventLog(const std::vector<Connection>& connections);
-
 /// Only the connections, which takes no time even where the bag is large; none if the file is no
 /// bag, or only rosbag can read it.
 /// @throw rosbag::BagException as readBagIndex()

@@ -9,6 +9,7 @@
 
 #include "bag_index.h"
 #include "bag_messages.h"
+#include "event_log_file.h"
 #include "open_bag.h"
 #include "self_awareness/ros/siblings.h"
 
@@ -101,7 +102,7 @@ std::pair<std::int64_t, std::int64_t> limitsIn(const BagSummary& summary, const 
 
 BagReader::BagReader(const std::string& path)
     : index_(std::make_unique<const BagIndex>(openBag(path))) {
-  if (areOfEventLog(index_->connections)) {
+  if (isEventLog(path, *index_)) {
     throw BagError(
         path + ": an event log, not a bag of the robot's messages; its recordings have numbers");
   }

@@ -9,10 +9,9 @@
 #include <utility>
 #include <vector>
 
-#include "../message_check.h"
 #include "../text.h"
 #include "bag_index.h"
-#include "bag_messages.h"
+#include "event_log_file.h"
 #include "open_bag.h"
 #include "packed_events.h"
 #include "self_awareness/EventLog.h"
@@ -20,30 +19,11 @@
 #include "self_awareness/EventLogStart.h"
 #include "self_awareness/ros/bag/event_log_packer.h"
 #include "self_awareness/ros/encoding_message.h"
+#include "stored_messages.h"
+#include "version_of_bag.h"
 
 namespace self_awareness::ros1 {
 namespace {
-
-template <typename Message>
-bool holds(const Connection& connection) {
-  return connection.datatype == ros::message_traits::datatype<Message>();
-}
-
-bool isOfEventLog(const Connection& connection) {
-  return holds<self_awareness::EventLogStart>(connection) ||
-         holds<self_awareness::EventLog>(connection) ||
-         holds<self_awareness::EventLogGraph>(connection);
-}
-
-template <typename Message>
-void checkVersion(const std::string& path, const Connection& connection) {
-  if (holds<Message>(connection) && connection.md5sum != ros::message_traits::md5sum<Message>()) {
-    throw BagError(path + ": an event log of another version of self_awareness (md5 " +
-                   connection.md5sum + ", this one reads " +
-                   ros::message_traits::md5sum<Message>() +
-                   "); record it again, or convert its bag again");
-  }
-}
 
 std::int64_t nanoseconds(const ros::Time& time) {
   return static_cast<std::int64_t>(time.toNSec());
@@ -53,13 +33,12 @@ std::int64_t nanoseconds(const ros::Time& time) {
 class LogMessages {
  public:
   LogMessages(std::string path, const BagIndex& index)
-      : path_(std::move(path)), messages_(BagMessages::open(path_, index)) {}
+      : path_(std::move(path)), messages_(path_, index) {}
 
   template <typename Message>
   Message read(const BagIndexEntry& entry) {
     try {
-      messages_->read(entry, content_);
-      return readMessage<Message>(content_.data(), content_.size());
+      return messages_.read<Message>(entry);
     } catch (const rosbag::BagException& error) {
       fail(error.what());
     } catch (const std::invalid_argument& error) {
@@ -75,8 +54,7 @@ class LogMessages {
 
  private:
   std::string path_;
-  std::unique_ptr<BagMessages> messages_;
-  std::vector<std::uint8_t> content_;
+  StoredMessages messages_;
 };
 
 /// In the order in which they were written: the clock may have been set in between.
@@ -96,10 +74,6 @@ void add(const self_awareness::EventLogGraph& message, Graph& graph) {
 
 }  // namespace
 
-bool areOfEventLog(const std::vector<Connection>& connections) {
-  return !connections.empty() && std::all_of(connections.begin(), connections.end(), isOfEventLog);
-}
-
 struct EventLogReader::Parts {
   BagIndex index;
   std::vector<BagIndexEntry> entries;  // of this recording's events
@@ -107,10 +81,13 @@ struct EventLogReader::Parts {
 
 std::optional<std::size_t> recordingsInEventLog(const std::string& path) {
   try {
-    if (!areOfEventLog(readBagConnections(path))) {
+    if (!mayBeEventLog(readBagConnections(path))) {
       return std::nullopt;
     }
     const BagIndex index = openBag(path);
+    if (!isEventLog(path, index)) {
+      return std::nullopt;
+    }
     return static_cast<std::size_t>(
         std::count_if(index.entries.begin(), index.entries.end(), [&](const BagIndexEntry& entry) {
           return holds<self_awareness::EventLogStart>(index.connections[entry.connection]);
@@ -125,19 +102,18 @@ std::optional<std::size_t> recordingsInEventLog(const std::string& path) {
 EventLogReader::EventLogReader(const std::string& path, std::size_t recording) {
   auto parts = std::make_unique<Parts>();
   parts->index = openBag(path);
-  if (!areOfEventLog(parts->index.connections)) {
+  if (!isEventLog(path, parts->index)) {
     throw BagError(path + ": no event log; name a bag as it is");
   }
-  for (const Connection& connection : parts->index.connections) {
-    checkVersion<self_awareness::EventLogStart>(path, connection);
-    checkVersion<self_awareness::EventLog>(path, connection);
-    checkVersion<self_awareness::EventLogGraph>(path, connection);
-  }
+  checkedVersion(path, parts->index, kEventLogFile);
   sortByPosition(parts->index.entries);
   LogMessages messages(path, parts->index);
   std::size_t starts = 0;
   for (const BagIndexEntry& entry : parts->index.entries) {
     const Connection& connection = parts->index.connections[entry.connection];
+    if (!isOfEventLog(connection)) {
+      continue;
+    }
     const bool is_start = holds<self_awareness::EventLogStart>(connection);
     starts += is_start ? 1 : 0;
     if (starts == 0) {
@@ -167,7 +143,7 @@ EventLogReader::EventLogReader(const std::string& path, std::size_t recording) {
       summary_.copied = start.copied;
     } else if (holds<self_awareness::EventLogGraph>(connection)) {
       add(messages.read<self_awareness::EventLogGraph>(entry), summary_.graph);
-    } else {
+    } else if (holds<self_awareness::EventLog>(connection)) {
       parts->entries.push_back(entry);
     }
   }

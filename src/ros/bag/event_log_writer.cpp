@@ -6,6 +6,7 @@
 
 #include "self_awareness/EventLogGraph.h"
 #include "self_awareness/ros/encoding_message.h"
+#include "self_awareness/ros/file_version.h"
 #include "self_awareness/ros/ros_time.h"
 
 namespace self_awareness::ros1 {
@@ -42,6 +43,9 @@ void EventLogWriter::start(const self_awareness::EventLogStart& start) {
   parts_ = 0;
   events_ = 0;
   graph_ = {};
+  if (!std::exchange(tells_version_, true)) {
+    bag_.write({kVersionTopic}, inBag(start.begin), versionOf(kEventLogFile));
+  }
   bag_.write({kEventLogStartTopic}, inBag(start.begin), start);
 }
 

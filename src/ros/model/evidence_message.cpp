@@ -177,24 +177,16 @@ void setPairs(const self_awareness::EvidencePairs& message, evidence::Statistics
 
 self_awareness::Track toMessage(const evidence::Track& track) {
   self_awareness::Track message;
-  message.channel = static_cast<std::uint8_t>(track.channel);
+  message.name = channelName(track);
   message.to_id = track.to;
   message.from_id = track.from;
   return message;
 }
 
 evidence::Track fromMessage(const self_awareness::Track& message) {
-  using self_awareness::Track;
-  static_assert(static_cast<int>(evidence::Channel::kOverdue) == Track::OVERDUE &&
-                    static_cast<int>(evidence::Channel::kFewer) == Track::FEWER &&
-                    static_cast<int>(evidence::Channel::kMore) == Track::MORE &&
-                    static_cast<int>(evidence::Channel::kDelay) == Track::DELAY &&
-                    static_cast<int>(evidence::Channel::kSlowDelay) == Track::SLOW_DELAY &&
-                    static_cast<int>(evidence::Channel::kAnswer) == Track::ANSWER &&
-                    static_cast<int>(evidence::Channel::kDeadline) == Track::DEADLINE,
-                "the message has the channels of the core");
-  check(message.channel <= Track::DEADLINE, "it watches what this version does not know");
-  return {static_cast<evidence::Channel>(message.channel), message.to_id, message.from_id};
+  const evidence::Channel* channel = evidence::channelNamed(message.name);
+  check(channel != nullptr, "it watches what this version does not know");
+  return {channel, message.to_id, message.from_id};
 }
 
 self_awareness::RecordingFindings toMessage(const evidence::LimitFinder::Recording& recording) {
@@ -209,7 +201,7 @@ self_awareness::RecordingFindings toMessage(const evidence::LimitFinder::Recordi
     message.longest_gaps.insert(message.longest_gaps.end(), part.longest_gaps.begin(),
                                 part.longest_gaps.end());
   }
-  for (const evidence::LimitFinder::Said said : recording.said) {
+  for (const evidence::Said said : recording.said) {
     message.said.push_back(static_cast<std::uint8_t>(said));
   }
   return message;
@@ -219,9 +211,10 @@ evidence::LimitFinder::Recording fromMessage(const self_awareness::RecordingFind
                                              std::size_t tracks, std::size_t types) {
   using Findings = self_awareness::RecordingFindings;
   using evidence::LimitFinder;
-  static_assert(static_cast<int>(LimitFinder::Said::kNothing) == Findings::NOTHING &&
-                    static_cast<int>(LimitFinder::Said::kAsUsual) == Findings::AS_USUAL &&
-                    static_cast<int>(LimitFinder::Said::kMisleading) == Findings::MISLEADING,
+  using evidence::Said;
+  static_assert(static_cast<int>(Said::kNothing) == Findings::NOTHING &&
+                    static_cast<int>(Said::kAsUsual) == Findings::AS_USUAL &&
+                    static_cast<int>(Said::kMisleading) == Findings::MISLEADING,
                 "the message says what the core says");
   const std::size_t parts = message.part_windows.size();
   check(message.evidence.size() == parts * tracks &&
@@ -243,12 +236,11 @@ evidence::LimitFinder::Recording fromMessage(const self_awareness::RecordingFind
     const auto gaps = message.longest_gaps.begin() + static_cast<std::ptrdiff_t>(k * types);
     recording.parts.push_back({message.part_windows[k],
                                {evidence, evidence + static_cast<std::ptrdiff_t>(tracks)},
-                               {gaps, gaps + static_cast<std::ptrdiff_t>(types)},
-                               0});
+                               {gaps, gaps + static_cast<std::ptrdiff_t>(types)}});
   }
   for (const std::uint8_t said : message.said) {
     check(said <= Findings::MISLEADING, "its findings say what this version does not know");
-    recording.said.push_back(static_cast<LimitFinder::Said>(said));
+    recording.said.push_back(static_cast<Said>(said));
   }
   return recording;
 }
@@ -270,7 +262,7 @@ evidence::Relation fromMessage(const self_awareness::Relation& message) {
 }
 
 evidence::Limits limitsOf(const self_awareness::EvidenceCalibration& message) {
-  return {message.limits, message.linker_limit, message.firsts};
+  return {message.limits, message.firsts};
 }
 
 }  // namespace self_awareness::ros1

@@ -23,7 +23,8 @@ constexpr unsigned kEvidence = 2;
 
 std::string version() {
   return std::string(ros::message_traits::md5sum<self_awareness::Model>()) +
-         ros::message_traits::md5sum<self_awareness::DelayHistograms>();
+         ros::message_traits::md5sum<self_awareness::DelayHistograms>() +
+         ros::message_traits::md5sum<self_awareness::FileVersion>();
 }
 
 /// Appends the length of a message, and the message.
@@ -82,6 +83,7 @@ class Reader {
 std::string toBytes(const TrainedModel& model) {
   std::string bytes = version();
   append(toMessage(model), bytes);
+  append(model.version, bytes);
   bytes.push_back(static_cast<char>((model.hasDelays() ? kDelays : 0U) |
                                     (model.hasEvidence() ? kEvidence : 0U)));
   for (core::EventId id = 0; id < model.vocabulary().size(); ++id) {
@@ -106,6 +108,7 @@ TrainedModel fromBytes(const std::string& bytes) {
   }
   Reader reader(bytes, expected.size());
   TrainedModel model = fromMessage(reader.take<self_awareness::Model>());
+  model.version = reader.take<self_awareness::FileVersion>();
   const unsigned counts = reader.takeByte();
   for (core::EventId id = 0; id < model.vocabulary().size(); ++id) {
     if ((counts & kDelays) != 0) {

@@ -13,9 +13,10 @@
 #include <utility>
 
 #include "../bag/bag_index.h"
-#include "../bag/bag_messages.h"
-#include "../message_check.h"
+#include "../bag/stored_messages.h"
+#include "../bag/version_of_bag.h"
 #include "check.h"
+#include "model_upgrade.h"
 #include "self_awareness/ros/bag/bag_reader.h"
 #include "self_awareness/ros/bag/bag_writer.h"
 #include "self_awareness/ros/encoding_message.h"
@@ -57,6 +58,15 @@ core::paper::DelayStatistics eventTypesOf(const self_awareness::Model& message) 
   return statistics;
 }
 
+void checkEffort(const self_awareness::Model& message) {
+  check(message.window.toNSec() >= core::kShortestWindow &&
+            message.window.toNSec() <= core::kLongestWindow,
+        "the length of its windows cannot be");
+  check(message.event_types.size() <= kMostEventTypes, "it has too many event types");
+  check(message.tracks.size() <= kMostTracks, "it watches too much");
+  check(message.graph.size() <= kMostEdges, "it has too many edges");
+}
+
 /// The messages of a model file.
 class ModelMessages {
  public:
@@ -66,8 +76,11 @@ class ModelMessages {
       throw ModelFileError(path_ + ": not a model file");
     }
     index_ = std::move(*index);
-    messages_ = BagMessages::open(path_, index_, kLargestChunk);
+    messages_ = std::make_unique<StoredMessages>(path_, index_, kLargestChunk);
   }
+
+  /// @throw BagError as checkedVersion()
+  self_awareness::FileVersion version() const { return checkedVersion(path_, index_, kModelFile); }
 
   /// Calls visit(message) for every message on a topic; returns their number.
   template <typename Message, typename Visit>
@@ -75,18 +88,10 @@ class ModelMessages {
     std::size_t number = 0;
     for (const BagIndexEntry& entry : index_.entries) {
       const Connection& connection = index_.connections[entry.connection];
-      if (connection.topic != topic ||
-          connection.datatype != ros::message_traits::datatype<Message>()) {
-        continue;
+      if (connection.topic == topic && holds<Message>(connection)) {
+        visit(messages_->read<Message>(entry));
+        ++number;
       }
-      if (connection.md5sum != ros::message_traits::md5sum<Message>()) {
-        throw ModelFileError(path_ + ": written by another version of self_awareness (md5 " +
-                             connection.md5sum + ", this one reads " +
-                             ros::message_traits::md5sum<Message>() + "); train the model again");
-      }
-      messages_->read(entry, content_);
-      visit(readMessage<Message>(content_.data(), content_.size()));
-      ++number;
     }
     return number;
   }
@@ -96,14 +101,19 @@ class ModelMessages {
  private:
   std::string path_;
   BagIndex index_;
-  std::unique_ptr<BagMessages> messages_;
-  std::vector<std::uint8_t> content_;
+  std::unique_ptr<StoredMessages> messages_;
 };
 
 TrainedModel read(ModelMessages& messages, ModelCounts counts) {
+  const self_awareness::FileVersion version = messages.version();
   std::optional<TrainedModel> model;
-  const std::size_t models = messages.forEach<self_awareness::Model>(
-      kTopic, [&](const self_awareness::Model& message) { model = fromMessage(message); });
+  const std::size_t models =
+      messages.forEach<self_awareness::Model>(kTopic, [&](self_awareness::Model message) {
+        checkEffort(message);
+        upgrade(message, version.format);
+        model = fromMessage(message);
+        model->version = version;
+      });
   check(models <= 1, "it holds more than one model");
   if (!model) {
     throw ModelFileError(messages.path() +
@@ -133,6 +143,9 @@ TrainedModel read(ModelMessages& messages, ModelCounts counts) {
 void write(const TrainedModel& model, BagWriter& bag) {
   // A bag cannot hold a message with the time 0.
   const ros::Time stamp = std::max(model.stamp, ros::TIME_MIN);
+  self_awareness::FileVersion version = versionOf(kModelFile);
+  version.method = model.version.method;
+  bag.write({kVersionTopic}, stamp, version);
   bag.write({kTopic}, stamp, toMessage(model));
   for (core::EventId id = 0; id < model.vocabulary().size(); ++id) {
     if (model.hasDelays()) {
@@ -152,8 +165,7 @@ bool isNoRate(double value) {
 void checkCalibration(const self_awareness::EvidenceCalibration& calibration,
                       const TrainedModel& model) {
   const std::size_t tracks = model.watched.tracks.size();
-  check(calibration.limits.size() == tracks && std::isfinite(calibration.linker_limit) &&
-            calibration.linker_limit > 0,
+  check(calibration.limits.size() == tracks,
         "its limits are not those of its evidence; calibrate it again");
   // NaN: the track is not judged.
   check(std::none_of(calibration.limits.begin(), calibration.limits.end(),
@@ -169,15 +181,6 @@ void checkCalibration(const self_awareness::EvidenceCalibration& calibration,
         "its first events are not those of its event types");
   check(!isNoRate(calibration.budget) && !isNoRate(calibration.false_alarms_per_hour),
         "a rate of its false alarms cannot be");
-}
-
-void checkEffort(const self_awareness::Model& message) {
-  check(message.window.toNSec() >= core::kShortestWindow &&
-            message.window.toNSec() <= core::kLongestWindow,
-        "the length of its windows cannot be");
-  check(message.event_types.size() <= kMostEventTypes, "it has too many event types");
-  check(message.tracks.size() <= kMostTracks, "it watches too much");
-  check(message.graph.size() <= kMostEdges, "it has too many edges");
 }
 
 }  // namespace
@@ -364,6 +367,8 @@ TrainedModel loadModel(const std::string& path, ModelCounts counts) {
   try {
     ModelMessages messages(path);
     return read(messages, counts);
+  } catch (const BagError& error) {
+    throw ModelFileError(error.what());
   } catch (const rosbag::BagException& error) {
     throw ModelFileError(path + ": not a model file, or a damaged one (" + error.what() + ")");
   } catch (const std::invalid_argument& error) {

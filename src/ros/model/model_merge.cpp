@@ -94,6 +94,7 @@ void merge(TrainedModel& model, const TrainedModel& other) {
   model.calibration.reset();
   model.evidence_calibration.reset();
   model.stamp = std::max(model.stamp, other.stamp);
+  model.version.method = std::min(model.version.method, other.version.method);
 }
 
 }  // namespace self_awareness::ros1

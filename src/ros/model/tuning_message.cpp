@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "check.h"
-#include "self_awareness/core/evidence/tracks.h"
+#include "self_awareness/core/evidence/channel/watched.h"
 
 namespace self_awareness::ros1 {
 
@@ -28,7 +28,7 @@ evidence::Tuning tuningOf(const self_awareness::Model& message) {
   check(given.names.size() == given.values.size(), "its tuning has names without numbers");
   if (given.names.empty()) {  // format 1
     evidence::set(tuning, "predecessors", message.predecessors);
-    evidence::set(tuning, "least_effect", message.least_effect * 1e-9);
+    evidence::set(tuning, "least_effect", message.least_effect / 1e9);
     evidence::set(tuning, "least_effect_of_period", message.least_effect_of_period);
   }
   for (const evidence::TuningNumber& number : evidence::tuningNumbers()) {

@@ -4,9 +4,11 @@
 #include <rosbag/view.h>
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "self_awareness/ros/bag/bag_reader.h"
+#include "self_awareness/ros/file_version.h"
 #include "self_awareness/ros/ros_time.h"
 #include "verdict_message.h"
 
@@ -37,17 +39,26 @@ ResultBag::ResultBag(const std::string& path, const std::string& named)
 
 ResultBag::~ResultBag() = default;
 
+template <typename Message>
+void ResultBag::write(const std::string& topic, bool latching, std::int64_t now,
+                      const Message& message) {
+  if (!std::exchange(tells_version_, true)) {
+    bag_.write(topicOf(kVersionTopic), inBag(now), versionOf(kResultBag));
+  }
+  bag_.write(topicOf(topic, latching), inBag(now), message);
+}
+
 void ResultBag::writeStatus(std::int64_t now, const self_awareness::SelfAwareness& status) {
-  bag_.write(topicOf(privateTopic("status")), inBag(now), status);
+  write(privateTopic("status"), false, now, status);
 }
 
 void ResultBag::writeAlarm(std::int64_t now, const self_awareness::SelfAwareness& alarm) {
-  bag_.write(topicOf(privateTopic("alarm"), true), inBag(now), alarm);
+  write(privateTopic("alarm"), true, now, alarm);
 }
 
 void ResultBag::writeDiagnostics(std::int64_t now,
                                  const diagnostic_msgs::DiagnosticArray& diagnostics) {
-  bag_.write(topicOf("/diagnostics"), inBag(now), diagnostics);
+  write("/diagnostics", false, now, diagnostics);
 }
 
 bool ResultBag::isOne(const std::string& path) {

@@ -11,7 +11,8 @@
 namespace self_awareness::ros1 {
 
 /// A bag of what the monitor would have published of recordings, as if it had been recorded with
-/// them: /self_awareness/status, /self_awareness/alarm (latching) and /diagnostics.
+/// them: /self_awareness/status, /self_awareness/alarm (latching) and /diagnostics. Its version
+/// (kVersionTopic) comes first.
 ///
 /// All methods that write throw BagError if that fails.
 class ResultBag {
@@ -38,7 +39,11 @@ class ResultBag {
   static bool isOne(const std::string& path);
 
  private:
+  template <typename Message>
+  void write(const std::string& topic, bool latching, std::int64_t now, const Message& message);
+
   BagWriter bag_;
+  bool tells_version_ = false;  // what has been written says it
 };
 
 }  // namespace self_awareness::ros1

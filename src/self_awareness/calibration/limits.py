@@ -1,8 +1,7 @@
 """Finds the limits above which evidence is abnormal, on normal operation not trained on.
 
-Every recording is judged twice: first for the limits of the tracks, then for that of the linker
-(docs/method.md, section 5). Each recording is judged by itself, in any process, and the findings
-are added up.
+Each recording is judged by itself, in any process, and the findings are added up (docs/method.md,
+section 5).
 """
 from __future__ import annotations
 
@@ -13,8 +12,8 @@ from typing import Any, Iterable, List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from self_awareness import (EvidenceCalibration, EvidenceLimits, LimitFinder, LimitFindings,
-                            TrainedModel, half_of, middle_of, recordings)
+from self_awareness import (EvidenceCalibration, LimitFinder, LimitFindings, TrainedModel,
+                            half_of, middle_of, recordings)
 from self_awareness.recordings import BagPart, RecordingEvents
 from self_awareness.stamps import SECOND_NS
 from self_awareness.workers import InProcess, Workers
@@ -191,18 +190,18 @@ def find(trained: TrainedModel, settle_time: int, budget: float, tasks: Sequence
     judging = _Judging(trained, settle_time, budget)
     if not keep_findings:
         judging.finder.merge(trained.findings)
-    judging.add_all(tasks, workers, 'limits, first pass')
+    judging.add_all(tasks, workers, 'limits')
     if keep_findings:
         trained.findings = judging.finder.findings()
-    judging.start_second_pass()
-    judging.add_all(tasks, workers, 'limits, second pass')
-    limits = judging.finder.limits()
+    try:
+        found = judging.finder.find()
+    except ValueError as error:
+        raise TooLittleError(str(error)) from error
     calibration = EvidenceCalibration()
-    calibration.limits = limits.tracks
-    calibration.linker_limit = limits.linker
-    calibration.relations = judging.finder.relations()
+    calibration.limits = found.limits
+    calibration.relations = found.relations
     calibration.budget = budget
-    calibration.false_alarms_per_hour = judging.finder.expected_rate()
+    calibration.false_alarms_per_hour = found.expected_rate
     calibration.windows = judging.finder.windows
     calibration.firsts = _latest_firsts(len(trained.event_types),
                                         [task for task in tasks if isinstance(task, HeldOut)])
@@ -231,35 +230,20 @@ class TooLittleError(ValueError):
 class _Judging:
     """What every recording is judged by. Another process gets it without what was found."""
 
-    def __init__(self, trained: TrainedModel, settle_time: int, budget: float,
-                 limits: Optional[EvidenceLimits] = None) -> None:
+    def __init__(self, trained: TrainedModel, settle_time: int, budget: float) -> None:
         self._state = (trained.watched_only(), settle_time, budget)
         self.settle_time = settle_time
-        self._limits = limits  # of the first pass
         self.trained = trained
         self.finder = LimitFinder(trained, settle_time, budget)
-        if limits is not None:
-            self.finder.start_second_pass(limits)
 
     def __reduce__(self) -> Tuple[Any, ...]:
-        return _Judging, (*self._state, self._limits)
+        return _Judging, self._state
 
     def add_all(self, tasks: Sequence[Any], workers: Workers, description: str) -> None:
         """Judge recordings, and add up what they say."""
         with closing(workers.map(_judge, self, tasks, description)) as findings:
             for found in findings:
                 self.finder.merge(found)
-
-    def start_second_pass(self) -> None:
-        """Find the limits of the tracks.
-
-        Raises:
-            TooLittleError: the recordings are too short.
-        """
-        try:
-            self._limits = self.finder.start_second_pass()
-        except ValueError as error:
-            raise TooLittleError(str(error)) from error
 
 
 def _judge(judging: _Judging, task: Any) -> LimitFindings:

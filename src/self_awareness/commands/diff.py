@@ -18,7 +18,7 @@ _EPILOG = """\
 A and B are models, or one of them a recording: BAG, or a part of it, BAG@START-END. A recording is
 counted with the encoding of the model. What matters most comes first: what is gone or new, then
 the largest changes of rates, gaps and delays. Not listed is what could be chance, and what is
-less than the model's least effect (train --least-effect).
+less than the model's least effect (info --tuning).
 examples:
   diff before_update.model after_update.model
   diff robot.model today.bag --html today.html

@@ -1,4 +1,4 @@
-"""`rosrun self_awareness info`: shows what is in a model, or in an event log."""
+"""`rosrun self_awareness info`: shows what is in a model, an event log or a result bag."""
 from __future__ import annotations
 
 import argparse
@@ -6,7 +6,7 @@ import json
 import shutil
 from typing import Any, Dict, List, Optional, Sequence
 
-from self_awareness import (FEWEST_GAPS, EventType, Model, TrainedModel,
+from self_awareness import (FEWEST_GAPS, EventType, Model, ResultBag, TrainedModel,
                             recordings_in_event_log)
 from self_awareness.commands import cli
 from self_awareness.judging import EVIDENCE
@@ -15,6 +15,8 @@ from self_awareness.reporting import relations_text, tuning_text
 from self_awareness.reporting.event_log_summary import summarise_event_log
 from self_awareness.reporting.evidence_report import counts
 from self_awareness.reporting.model_summary import summarise
+from self_awareness.reporting.result_summary import summarise_results
+from self_awareness.reporting.version_summary import describe_version
 from self_awareness.stamps import utc
 
 _DRAWN = 0.99  # share of the delays that have rows of their own
@@ -29,6 +31,9 @@ def _info(arguments: argparse.Namespace) -> None:
     recordings = recordings_in_event_log(arguments.model)
     if recordings is not None:
         _info_of_log(arguments, recordings)
+        return
+    if ResultBag.is_one(arguments.model):
+        _info_of_results(arguments)
         return
     model = TrainedModel.load(arguments.model)
     if arguments.pair is not None:
@@ -52,8 +57,25 @@ def _info_of_log(arguments: argparse.Namespace, recordings: int) -> None:
         _print_log(summary)
 
 
+def _info_of_results(arguments: argparse.Namespace) -> None:
+    if arguments.pair is not None:
+        raise ValueError(f'--pair: is for models, and {arguments.model} is a result bag')
+    summary = summarise_results(arguments.model)
+    if arguments.json:
+        print(json.dumps(summary, indent=2, allow_nan=False))
+        return
+    print(f'result bag   {summary["size"] / 1e6:.1f} MB, {summary["messages"]} messages')
+    _print_version(summary['version'])
+    print(f'results      {utc(summary["start_ns"])} - {utc(summary["end_ns"])} UTC')
+
+
+def _print_version(version: Dict[str, Any]) -> None:
+    print(f'written by   {describe_version(version)}')
+
+
 def _print_log(summary: Dict[str, Any]) -> None:
     print(f'event log    {summary["size"] / 1e6:.1f} MB')
+    _print_version(summary['version'])
     print(f'recordings   {len(summary["recordings"])}, {summary["duration"]:.1f} s'
           + (f', starts of the robot: {summary["starts"]}' if summary['starts'] else ''))
     for number, recording in enumerate(summary['recordings'], 1):
@@ -80,6 +102,7 @@ def _print_log(summary: Dict[str, Any]) -> None:
 def _print(summary: Dict[str, Any]) -> None:
     horizon = summary['horizon']
     print(f'trained      {utc(summary["trained_ns"])} UTC')
+    _print_version(summary['version'])
     print(f'detector     {summary["detectors"]}')
     print(f'recordings   {len(summary["recordings"])}, {summary["duration"]:.1f} s')
     _print_recordings(summary['recordings'])
@@ -144,8 +167,7 @@ def _print_evidence(evidence: Dict[str, Any]) -> None:
         return
     print(f'limits       {calibration["method"]}, for {calibration["budget"]:g} false alarms an '
           f'hour, calibrated {utc(calibration["calibrated_ns"])} UTC')
-    print(f'  of {counts(calibration["judged_tracks"])}, linker '
-          f'{calibration["linker_limit"]:.4g}')
+    print(f'  of {counts(calibration["judged_tracks"])}')
     print(f'  {calibration["windows"]} windows, false alarms to be expected: '
           f'{_or_none(calibration["false_alarms_per_hour"])} an hour')
     for line in relations_text.lines(calibration['relations']):
@@ -225,7 +247,8 @@ def _find(event_types: Sequence[EventType], text: str) -> int:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog='info', description=__doc__.split(': ', 1)[1])
     parser.add_argument('model', metavar='MODEL',
-                        help='file written by train or calibrate, or an event log')
+                        help='file written by train or calibrate, an event log, or a result bag '
+                             'of score')
     how = parser.add_mutually_exclusive_group()
     how.add_argument('--json', action='store_true', help='all but the counts, for programs')
     how.add_argument('--tuning', action='store_true',

@@ -12,9 +12,9 @@ from self_awareness.reporting.training_report import print_summary
 from self_awareness.training.many_bags import DistinctRecordings
 
 _EPILOG = """\
-The models must agree in encoding, windows, bins, horizon and least effect. What they learned adds
-up, as if one training had seen all of their recordings; limits and thresholds do not: calibrate
-the result.
+The models must agree in encoding, windows, bins, horizon and tuning. What they learned adds up, as
+if one training had seen all of their recordings; limits and thresholds do not: calibrate the
+result.
 example:
   merge robot1.model robot2.model robot3.model -o fleet.model
 """

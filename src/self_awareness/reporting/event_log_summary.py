@@ -7,7 +7,9 @@ from typing import Any, Dict, List
 
 import numpy as np
 
-from self_awareness import BagSummary, encoding_file, read_events, summarise_bag
+from self_awareness import (BagSummary, FileVersion, encoding_file, read_events,
+                            summarise_bag)
+from self_awareness.reporting.version_summary import summarise_version
 from self_awareness.stamps import SECOND_NS
 from self_awareness.training.robot_graph import RobotGraph
 
@@ -34,6 +36,7 @@ def summarise_event_log(path: str, recordings: int) -> Dict[str, Any]:
         found.append(_recording(summary))
     duration = sum(recording['duration'] for recording in found)
     return {
+        'version': summarise_version(FileVersion.of_event_log(path)),
         'size': os.path.getsize(path),
         'duration': duration,
         'events': sum(counts.values()),

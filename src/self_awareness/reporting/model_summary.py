@@ -8,6 +8,7 @@ from typing import Any, Dict, List, Optional, Tuple
 from self_awareness import (FEWEST_GAPS, USUAL_SHARES, Calibration, EvidenceCalibration,
                             EvidenceModel, Recording, TrainedModel, Tuning, encoding_file)
 from self_awareness.reporting import relations_text
+from self_awareness.reporting.version_summary import summarise_version
 from self_awareness.judging import EVIDENCE, PAPER
 from self_awareness.stamps import SECOND_NS
 
@@ -24,6 +25,7 @@ def summarise(model: TrainedModel) -> Dict[str, Any]:
              for index in range(len(model.event_types))]
     rates = [entry['rate'] for entry in types if entry['rate'] is not None]
     return {
+        'version': summarise_version(model.version),
         'trained_ns': model.stamp,
         'detectors': model.detectors,
         'window': model.window / SECOND_NS,
@@ -65,6 +67,7 @@ def _evidence(model: TrainedModel, evidence: EvidenceModel) -> Dict[str, Any]:
         'not_judged': [str(kind) for index, kind in enumerate(model.event_types)
                        if index not in watched],
         'tuning': {number.name: model.tuning.get(number.name) for number in Tuning.numbers()},
+        'without': model.tuning.without,
         'calibration': None,
     }
     if model.evidence_calibration is not None:
@@ -139,7 +142,6 @@ def _evidence_calibration(calibration: EvidenceCalibration) -> Dict[str, Any]:
         'calibrated_ns': calibration.stamp,
         'method': calibration.method,
         'budget': calibration.budget,
-        'linker_limit': calibration.linker_limit,
         'windows': calibration.windows,
         'false_alarms_per_hour': _number(calibration.false_alarms_per_hour),
         'normal': _recordings(calibration.recordings),

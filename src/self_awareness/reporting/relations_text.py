@@ -6,7 +6,7 @@ from typing import Any, Dict, List
 
 from self_awareness import EvidenceModel, TrainedModel
 
-RELATIONS = ('pairs', 'answers', 'deadlines')
+RELATIONS = ('pairs', 'deadlines')
 """The channels that look at two event types."""
 
 _MOST_LINES = 10

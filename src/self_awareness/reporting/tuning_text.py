@@ -16,7 +16,9 @@ def lines(tuning: Tuning) -> List[str]:
         value = tuning.get(number.name)
         changed = '' if value == number.default else f' (default: {number.default:g})'
         unit = f' {number.unit}' if number.unit else ''
-        text.append(f'{number.name:<26} {f"{value:g}{unit}":<18} {number.meaning}{changed}')
+        span = f'{number.least:g} to {number.most:g}'
+        text.append(f'{number.name:<26} {f"{value:g}{unit}":<18} {span:<16} '
+                    f'{number.meaning}{changed}')
     for channel in tuning.without:
         text.append(f'without the channel {channel}')
     return text

@@ -4,7 +4,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, Dict, Set, Tuple
 
-from self_awareness import stable_name, yaml_file
+from self_awareness import FileVersion, stable_name, yaml_file
 from self_awareness.output_files import replacing
 
 _Nodes = Dict[str, Set[str]]
@@ -12,6 +12,11 @@ _Nodes = Dict[str, Set[str]]
 _HEADER = """\
 # Who published and who subscribed to what, by topic, as the robot's master knew it.
 """
+_VERSION = 'version'
+"""Key of what the file says of its version (docs/files.md); no topic is called so."""
+
+_FIRST = {'format': 1, 'oldest_reader': 1}
+"""Of a file that does not say: release 0.1.0 wrote it."""
 
 
 @dataclass
@@ -49,23 +54,31 @@ class RobotGraph:
         content = {topic: {'publishers': sorted(self.publishers.get(topic, ())),
                            'subscribers': sorted(self.subscribers.get(topic, ()))}
                    for topic in topics}
+        ours = FileVersion.of_graph()
+        version = {_VERSION: {'format': ours.format, 'oldest_reader': ours.oldest_reader,
+                              'package': ours.package}}
         with replacing(path) as temporary, open(temporary, 'w', encoding='utf-8') as file:
             file.write(_HEADER)
-            yaml.safe_dump(content, file, default_flow_style=None, width=1000)
+            yaml.safe_dump(version, file, default_flow_style=None)
+            if content:
+                yaml.safe_dump(content, file, default_flow_style=None, width=1000)
 
     @classmethod
     def load(cls, path: str) -> RobotGraph:
-        """Read a file.
+        """Read a file of any version.
 
         Raises:
             OSError: it cannot be read.
-            ValueError: it does not hold a graph; the message names the file.
+            ValueError: it does not hold a graph, or is too new; the message names the file.
         """
         content = yaml_file.load(path)
         if not isinstance(content, dict):
             raise ValueError(f'{path}: expected topics, each with publishers and subscribers')
+        newer = _format(path, content.pop(_VERSION, _FIRST)) > FileVersion.of_graph().format
         graph = cls()
         for topic, nodes in content.items():
+            if newer and not str(topic).startswith('/'):
+                continue  # what this version does not know
             graph.publishers[topic] = _nodes(path, topic, nodes, 'publishers')
             graph.subscribers[topic] = _nodes(path, topic, nodes, 'subscribers')
         return graph
@@ -80,6 +93,23 @@ def graph_file(bag: str) -> str:
     for end in ('.active', '.bag'):
         bag = bag[:-len(end)] if bag.endswith(end) else bag
     return f'{bag}.graph.yaml'
+
+
+def _format(path: str, version: Any) -> int:
+    """Return the format of a file by what it says of its version.
+
+    Raises:
+        ValueError: this version of the package does not understand it, or it says nothing.
+    """
+    says: Dict[Any, Any] = version if isinstance(version, dict) else {}
+    number: Any = says.get('format')
+    oldest_reader: Any = says.get('oldest_reader')
+    if not all(type(each) is int and 0 < each < 1 << 32 for each in (number, oldest_reader)):
+        raise ValueError(f'{path}: expected {_VERSION} with format and oldest_reader')
+    problem = FileVersion.why_graph_too_new(number, oldest_reader, str(says.get('package')))
+    if problem:
+        raise ValueError(f'{path}: {problem}')
+    return number
 
 
 def _nodes(path: str, topic: Any, nodes: Any, key: str) -> Set[str]:

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "recordings.h"
-#include "self_awareness/core/evidence/cross_fit.h"
 #include "self_awareness/core/evidence/judge.h"
-#include "self_awareness/core/evidence/limits.h"
+#include "self_awareness/core/evidence/limits/cross_fit.h"
+#include "self_awareness/core/evidence/limits/limits.h"
 #include "self_awareness/core/verdict/detector.h"
 
 namespace self_awareness::core::evidence {

@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
-#include "self_awareness/core/evidence/statistics.h"
-#include "self_awareness/core/evidence/tracks.h"
+#include "self_awareness/core/evidence/channel/watched.h"
+#include "self_awareness/core/evidence/count/statistics.h"
 
 /// Small recordings for the tests of the evidence detector.
 namespace self_awareness::core::evidence {

@@ -10,10 +10,10 @@ from pathlib import Path
 from typing import Any, Dict
 
 import pytest
-from conftest import robot
+from conftest import robot, train_tuned
 
-from self_awareness import EvidenceModel, TrainedModel
-from self_awareness.commands import calibrate, info, train
+from self_awareness import EvidenceModel, TrainedModel, Tuning
+from self_awareness.commands import calibrate, convert, info, train
 from self_awareness.reporting.histogram_text import draw
 
 LASER, SLAM = '/laser /scan std_msgs/String', '/slam /map std_msgs/String'
@@ -61,7 +61,8 @@ def test_json_holds_the_evidence(evidence_model: str, capsys) -> None:
     assert found['tracks']['overdue'] == 3 and found['tracks']['rate'] == 6
     assert sum(found['tracks'].values()) == len(EvidenceModel(model).tracks)
     assert found['not_judged'] == []
-    assert found['least_effect'] == {'time': 0.005, 'of_period': 0.02}
+    assert found['tuning'] == {each.name: each.default for each in Tuning.numbers()}
+    assert found['without'] == []
     calibration = found['calibration']
     assert (calibration['method'], calibration['budget']) == ('held-out', 0.5)
     assert calibration['windows'] == stored.windows
@@ -93,18 +94,27 @@ def test_json_holds_preliminary_limits_and_the_graph(long_bags, tmp_path, capsys
     assert 'sources that somebody listens to: 1, connections: 2' in capsys.readouterr().out
 
 
-def test_the_least_effect_of_the_training_stays_and_is_shown(long_bags, tmp_path, capsys) -> None:
-    output = str(tmp_path / 'm')
-    assert train.main([long_bags[0], '--least-effect', '2.5', '--least-effect-of-period', '0.005',
-                       '-o', output]) == 0
+def test_the_tuning_of_the_training_stays_and_is_shown(long_bags, tmp_path, capsys) -> None:
+    output = train_tuned(long_bags[:1], tmp_path / 'm', least_effect=0.0025, predecessors=2)
     assert calibrate.main(['--model', output, '--normal', long_bags[1], '-o', output]) == 0
     capsys.readouterr()
     evidence = as_json(capsys, output)['evidence']
     assert evidence['calibration']['method'] == 'held-out'
-    assert evidence['least_effect'] == {'time': 0.0025, 'of_period': 0.005}
-    assert info.main([output]) == 0
-    assert ('\n  least effect on delays: 2.5 ms, or 0.005 of the period\n'
-            in capsys.readouterr().out)
+    assert evidence['tuning']['least_effect'] == 0.0025
+    assert info.main([output, '--tuning']) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines] == [each.name for each in Tuning.numbers()]
+    assert [line.split()[:2] for line in lines if '(default: ' in line] == [
+        ['predecessors', '2'], ['least_effect', '0.0025']]
+
+
+def test_an_event_log_has_no_tuning(robot_bags, tmp_path, capsys) -> None:
+    log = str(tmp_path / 'log')
+    assert convert.main([robot_bags[0], '-o', log]) == 0
+    capsys.readouterr()
+    assert info.main([log, '--tuning']) == 1
+    assert capsys.readouterr().err == (
+        f'info: error: --tuning: is for models, and {log} is an event log\n')
 
 
 def test_types_that_are_not_judged_are_named(make_bag, tmp_path, capsys) -> None:
@@ -123,7 +133,6 @@ def test_people_read_the_evidence(evidence_model: str, capsys) -> None:
     assert info.main([evidence_model]) == 0
     text = capsys.readouterr().out
     for part in ('evidence     tracks: overdue 3, rate 6',
-                 'least effect on delays: 5 ms, or 0.02 of the period',
                  'limits       held-out, for 0.5 false', 'graph        none', 'tuesday.bag',
                  'linker '):
         assert part in text

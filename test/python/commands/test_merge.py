@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Callable, List
 
 import pytest
-from conftest import learned, robot
+from conftest import learned, robot, train_tuned
 
 from self_awareness import TrainedModel
 from self_awareness.commands import merge, train
@@ -75,8 +75,6 @@ def test_the_graph_is_that_of_all(model_file: str, evidence_model: str, tmp_path
     (['--bin', '0.02'], 'another bin size: 0.02 s, not 0.01 s'),
     (['--window', '0.25'], 'another length of the windows: 0.25 s, not 0.1 s'),
     (['--horizon', '10'], 'another horizon: 10 s, not none'),
-    (['--least-effect', '3', '--least-effect-of-period', '0.01'],
-     'another least effect: 3 ms or 0.01 of the period, not 5 ms or 0.02 of the period'),
     (['--encoding', 'source'], 'another encoding: source differs'),
     (['--encoding', 'exclude_topics'], 'another encoding: exclude_topics differs')])
 def test_what_does_not_fit_is_told(options: List[str], told: str, model_file: str, robot_bags,
@@ -91,14 +89,21 @@ def test_what_does_not_fit_is_told(options: List[str], told: str, model_file: st
     assert not (tmp_path / 'm').exists()
 
 
-def test_models_of_the_same_least_effect_add_up(robot_bags, trained: Callable[..., str],
-                                                tmp_path: Path) -> None:
-    options = ['--least-effect', '3', '--least-effect-of-period', '0.01']
-    paths = [trained(str(number), bag, *options) for number, bag in enumerate(robot_bags)]
+def test_another_tuning_is_told_by_name(model_file: str, robot_bags, tmp_path: Path,
+                                        capsys) -> None:
+    other = train_tuned(robot_bags[1:], tmp_path / 'other', 'both', least_effect=0.003)
+    error = error_of([model_file, other, '-o', str(tmp_path / 'm')], capsys)
+    assert (f'{other}: does not fit {model_file}: another tuning: least_effect is 0.003, '
+            'not 0.005') in error
+    assert not (tmp_path / 'm').exists()
+
+
+def test_models_of_the_same_tuning_add_up(robot_bags, tmp_path: Path) -> None:
+    paths = [train_tuned([bag], tmp_path / str(number), least_effect=0.003)
+             for number, bag in enumerate(robot_bags)]
     output = str(tmp_path / 'm')
     assert merge.main([*paths, '-o', output]) == 0
-    effect = TrainedModel.load(output).least_effect
-    assert (effect.time, effect.of_period) == (3e6, 0.01)
+    assert TrainedModel.load(output).tuning == TrainedModel.load(paths[0]).tuning
 
 
 def test_a_recording_does_not_count_twice(robot_bags, model_file: str, trained, tmp_path: Path,

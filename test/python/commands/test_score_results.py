@@ -14,6 +14,7 @@ from conftest import jittery_robot
 from self_awareness.commands import score
 
 STATUS, ALARM, DIAGNOSTICS = '/self_awareness/status', '/self_awareness/alarm', '/diagnostics'
+VERSION = '/version'
 OK, WARN, ERROR = 0, 1, 2
 
 
@@ -72,9 +73,10 @@ def test_times_are_those_of_the_recording(results: Tuple[str, str], dead_laser: 
     path, _ = results
     with rosbag.Bag(path) as bag, rosbag.Bag(dead_laser) as recording:
         assert bag.get_compression_info().compression == 'lz4'
-        assert set(bag.get_type_and_topic_info().topics) == {STATUS, ALARM, DIAGNOSTICS}
+        assert set(bag.get_type_and_topic_info().topics) == {VERSION, STATUS, ALARM, DIAGNOSTICS}
+        assert next(bag.read_messages()).topic == VERSION
         stamps = []
-        for topic, message, stamp in bag.read_messages():
+        for topic, message, stamp in bag.read_messages([STATUS, ALARM, DIAGNOSTICS]):
             assert message.header.stamp == stamp, topic
             stamps.append(stamp)
         assert stamps == sorted(stamps)
@@ -82,8 +84,8 @@ def test_times_are_those_of_the_recording(results: Tuple[str, str], dead_laser: 
         assert stamps[-1].to_sec() == pytest.approx(recording.get_end_time(), abs=0.11)
         assert {connection.topic: (connection.header['callerid'], connection.header['latching'])
                 for connection in bag._get_connections()} == {
-                    STATUS: (b'/self_awareness', b'0'), ALARM: (b'/self_awareness', b'1'),
-                    DIAGNOSTICS: (b'/self_awareness', b'0')}
+                    VERSION: (b'/self_awareness', b'0'), STATUS: (b'/self_awareness', b'0'),
+                    ALARM: (b'/self_awareness', b'1'), DIAGNOSTICS: (b'/self_awareness', b'0')}
     starts = [message.window_start.to_nsec() for message, _ in read(path, STATUS)]
     assert {b - a for a, b in zip(starts, starts[1:])} == {10**8}
 

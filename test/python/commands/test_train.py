@@ -6,16 +6,14 @@ import os
 import subprocess
 import sys
 import threading
-from collections import Counter
 from pathlib import Path
-from typing import Callable, Dict, List, Tuple
+from typing import Callable, List, Tuple
 from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
 from conftest import robot, wait_until
 
-from self_awareness import (PREDECESSORS, EvidenceModel, LeastEffect, Model, TrainedModel,
-                            stable_name)
+from self_awareness import EvidenceModel, Model, TrainedModel, Tuning, stable_name
 from self_awareness.commands import train
 
 Bags = Tuple[str, str]
@@ -88,52 +86,13 @@ def test_the_options_reach_the_model(robot_bags: Bags, tmp_path, capsys) -> None
     assert 1010.0 <= start < 1010.05 and 1019.95 < end <= 1020.0
 
 
-def test_no_more_predecessors_are_watched_than_asked_for(robot_bags: Bags, tmp_path,
-                                                         capsys) -> None:
-    def of_types(*options: str) -> Dict[int, int]:
-        output = str(tmp_path / 'm')
-        said(capsys, [*robot_bags, '-o', output, *options])
-        model = TrainedModel.load(output)
-        assert model.predecessors == (int(options[1]) if options else PREDECESSORS)
-        # Every pair has two tracks.
-        return Counter(track.to_id for track in EvidenceModel(model).tracks
-                       if track.channel == 'pairs')
-    assert max(of_types('--predecessors', '1').values()) == 2
-    assert 2 < max(of_types('--predecessors', '2').values()) <= 4
-    assert max(of_types().values()) <= 2 * PREDECESSORS
-
-
-def test_the_least_effect_is_that_of_the_options(robot_bags: Bags, long_bags: Bags, tmp_path,
-                                                 capsys) -> None:
-    output, added = str(tmp_path / 'm'), str(tmp_path / 'added')
-    default = LeastEffect()
-    options = ['--least-effect', '2.5', '--least-effect-of-period', '0.25']
-    for number, expected in ((0, (default.time, default.of_period)),
-                             (2, (2.5e6, default.of_period)), (4, (2.5e6, 0.25))):
-        said(capsys, [*robot_bags, '-o', output, '--jobs', '2', *options[:number]])
-        found = TrainedModel.load(output).least_effect
-        assert (found.time, found.of_period) == expected
-    said(capsys, ['--add-to', output, long_bags[0], '-o', added])
-    found = TrainedModel.load(added).least_effect
-    assert (found.time, found.of_period) == (2.5e6, 0.25)
-    for option in ('--least-effect', '--least-effect-of-period'):
-        assert train.main(['--add-to', output, long_bags[0], '-o', added, option, '0.1']) == 1
-        assert f'{option}: is that of {output} (--add-to)' in capsys.readouterr().err
-
-
-@pytest.mark.parametrize('option, wrong, told', [
-    ('--least-effect', '-1', 'must be a finite time of 0 ms or more, not -1 ms'),
-    ('--least-effect', 'inf', 'must be a finite time of 0 ms or more, not inf ms'),
-    ('--least-effect', 'short', "not a number: 'short'"),
-    ('--least-effect-of-period', '-0.1', 'must be a share of the period from 0 to below 1'),
-    ('--least-effect-of-period', '1', 'must be a share of the period from 0 to below 1, not 1'),
-    ('--least-effect-of-period', 'nan', 'must be a share of the period from 0 to below 1')])
-def test_impossible_least_effects_are_refused(option: str, wrong: str, told: str,
-                                              robot_bags: Bags, tmp_path, capsys) -> None:
-    assert train.main([robot_bags[0], '-o', str(tmp_path / 'm'), f'{option}={wrong}']) == 2
-    error = capsys.readouterr().err
-    assert f'argument {option}: ' in error and told in error
-    assert not (tmp_path / 'm').exists()
+def test_the_numbers_of_the_method_are_no_options(robot_bags: Bags, tmp_path, capsys) -> None:
+    output = tmp_path / 'm'
+    for option in ('--predecessors', '--least-effect', '--least-effect-of-period'):
+        assert train.main([robot_bags[0], '-o', str(output), option, '1']) == 2
+        assert option in capsys.readouterr().err and not output.exists()
+    said(capsys, [robot_bags[0], '-o', str(output)])
+    assert TrainedModel.load(str(output)).tuning == Tuning()
 
 
 def test_what_is_watched_can_be_loaded_alone(robot_bags: Bags, tmp_path, capsys) -> None:

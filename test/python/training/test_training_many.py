@@ -2,15 +2,16 @@
 from __future__ import annotations
 
 import pickle
+from collections import Counter
 from pathlib import Path
 from typing import Callable, List, Tuple
 
 import numpy as np
 import pytest
-from conftest import jittery_robot, learned, robot, write_bag
+from conftest import jittery_robot, learned, robot, train_tuned, write_bag
 
-from self_awareness import (EncodingRules, EventType, EvidenceCounts, TrainedModel, Training,
-                            read_events)
+from self_awareness import (EncodingRules, EventType, EvidenceCounts, EvidenceModel, TrainedModel,
+                            Training, Tuning, read_events)
 from self_awareness.commands import train
 from self_awareness.training.robot_graph import RobotGraph
 
@@ -180,6 +181,18 @@ def test_what_is_in_the_model_already_is_not_added(bags: List[str], tmp_path: Pa
     assert bags[1] in error and '1.bag, which the model was trained on' in error
     assert model.read_bytes() == before
     assert len(trained([bags[1]], model, '--add-to', str(model), '--start', '21').recordings) == 3
+
+
+def test_the_tuning_of_a_model_stays_when_more_is_added(bags: List[str], tmp_path: Path) -> None:
+    def most_watched(model: TrainedModel) -> int:
+        # Every pair has two tracks.
+        return max(Counter(track.to_id for track in EvidenceModel(model).tracks
+                           if track.channel == 'pairs').values()) // 2
+
+    base = train_tuned(bags[:2], tmp_path / 'base', predecessors=1)
+    model = trained(bags[2:4], tmp_path / 'm', '--add-to', base, '--jobs', '2')
+    assert model.tuning == TrainedModel.load(base).tuning != Tuning()
+    assert most_watched(model) == 1 < most_watched(trained(bags[:4], tmp_path / 'default'))
 
 
 @pytest.mark.parametrize('option', [('--bin', '0.01'), ('--window', '0.1'), ('--horizon', '1'),

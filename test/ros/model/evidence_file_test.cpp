@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -10,6 +13,7 @@
 #include "self_awareness/Model.h"
 #include "self_awareness/ros/model/evidence_message.h"
 #include "self_awareness/ros/model/model_bytes.h"
+#include "self_awareness/ros/model/tuning_message.h"
 
 namespace self_awareness::ros1 {
 namespace {
@@ -18,7 +22,10 @@ TEST_F(ModelFileTest, TheEvidenceItsLimitsAndTheGraphComeBackAsTheyWereSaved) {
   TrainedModel model = calibratedModel();
   model.graph.connect("/a", "/x", "/b");
   model.graph.connect("/a", "/y", "/c");
-  model.least_effect = {3e6, 0.01};
+  model.tuning.least_effect = 0.003;
+  model.tuning.share_of_other = 0.8;  // the first and the last one are no exceptions
+  model.tuning.fewest_gaps = 31;
+  model.tuning.without = {"linker", "rate"};
   ASSERT_GE(model.evidence_calibration->limits.size(), 6U);
   saveModel(model, path("m"));
   const TrainedModel loaded = loadModel(path("m"));
@@ -32,11 +39,8 @@ TEST_F(ModelFileTest, TheEvidenceItsLimitsAndTheGraphComeBackAsTheyWereSaved) {
     EXPECT_EQ(loaded.watched.tracks[track].to, model.watched.tracks[track].to);
     EXPECT_EQ(loaded.watched.tracks[track].from, model.watched.tracks[track].from);
   }
-  EXPECT_EQ(loaded.predecessors, model.predecessors);
-  EXPECT_EQ(loaded.least_effect.time, 3e6);
-  EXPECT_EQ(loaded.least_effect.of_period, 0.01);
-  EXPECT_EQ(loaded.watched.least_effect.time, 3e6);
-  EXPECT_EQ(loaded.watched.least_effect.of_period, 0.01);
+  EXPECT_TRUE(loaded.tuning == model.tuning);
+  EXPECT_TRUE(loaded.watched.tuning == model.tuning);
   EXPECT_EQ(loaded.graph.edges().size(), 2U);
   EXPECT_TRUE(loaded.graph.edges() == model.graph.edges());
   const core::evidence::Limits limits = loaded.limits().value();
@@ -168,13 +172,42 @@ TEST_F(ModelFileTest, DamagedEvidenceIsRefused) {
             file + "has not two halves");
 }
 
-TEST_F(ModelFileTest, ImpossibleLeastEffectsAreRefused) {
+TEST_F(ModelFileTest, AnImpossibleTuningIsRefused) {
   using Message = self_awareness::Model;
-  const std::string file = path("damaged") + ": a damaged model file: the least effect must be a ";
-  EXPECT_EQ(damagedModel([](Message& m) { m.least_effect = -1e6; }),
-            file + "finite time of 0 ms or more, not -1 ms");
-  EXPECT_EQ(damagedModel([](Message& m) { m.least_effect_of_period = 1.5; }),
-            file + "share of the period from 0 to below 1, not 1.5");
+  const std::string file = path("damaged") + ": a damaged model file: ";
+  EXPECT_EQ(damagedModel([](Message& m) {
+              std::vector<std::string>& names = m.tuning.names;
+              const auto name = std::find(names.begin(), names.end(), "least_effect");
+              m.tuning.values.at(static_cast<std::size_t>(name - names.begin())) = -0.001;
+            }),
+            file + "least_effect must be from 0 to 1000 s, not -0.001");
+  EXPECT_EQ(damagedModel([](Message& m) { m.tuning.values.pop_back(); }),
+            file + "its tuning has names without numbers");
+}
+
+TEST(TuningMessage, WhatIsMissingHasItsDefaultAndWhatIsUnknownIsLeftOut) {
+  self_awareness::Model message;
+  message.tuning.names = {"of_tomorrow", "least_effect"};
+  message.tuning.values = {-7, 0.003};
+  message.tuning.without = {"of tomorrow", "rate"};
+  core::evidence::Tuning expected;
+  expected.least_effect = 0.003;
+  expected.without = {"rate"};
+  EXPECT_TRUE(tuningOf(message) == expected);
+}
+
+TEST(TuningMessage, AFileOfFormat1HasThreeNumbers) {
+  self_awareness::Model message;
+  message.predecessors = 2;
+  message.least_effect = 7e6;  // [ns]
+  message.least_effect_of_period = 0.01;
+  core::evidence::Tuning expected;
+  expected.predecessors = 2;
+  expected.least_effect = 0.007;
+  expected.least_effect_of_period = 0.01;
+  EXPECT_TRUE(tuningOf(message) == expected);
+  message.least_effect = -1e6;
+  EXPECT_THROW(tuningOf(message), std::invalid_argument);
 }
 
 TEST_F(ModelFileTest, ImpossibleTracksAreRefused) {

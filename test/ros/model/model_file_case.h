@@ -11,8 +11,8 @@
 #include <string>
 
 #include "core/paper/delay_trainer.h"
-#include "self_awareness/core/evidence/limits.h"
-#include "self_awareness/core/evidence/model.h"
+#include "self_awareness/core/evidence/channel/model.h"
+#include "self_awareness/core/evidence/limits/limits.h"
 #include "self_awareness/ros/model/model_file.h"
 
 namespace self_awareness::ros1 {

@@ -95,18 +95,18 @@ TEST_F(ModelMergeTest, EdgesAreThoseOfBothAndTheStampTheLater) {
   EXPECT_EQ(first_.stamp, ros::Time(3));
 }
 
-TEST_F(ModelMergeTest, TheLeastEffectIsKept) {
+TEST_F(ModelMergeTest, TheTuningIsKept) {
+  core::evidence::Tuning tuning;
+  tuning.least_effect = 0.003;
+  tuning.without = {"rate"};
   for (TrainedModel* model : {&first_, &second_}) {
-    model->least_effect = {3e6, 0.01};
+    model->tuning = tuning;
   }
   first_.watch();
   merge(first_, second_);
   first_.watch();
-  for (const core::evidence::LeastEffect& kept :
-       {first_.least_effect, first_.watched.least_effect}) {
-    EXPECT_EQ(kept.time, 3e6);
-    EXPECT_EQ(kept.of_period, 0.01);
-  }
+  EXPECT_TRUE(first_.tuning == tuning);
+  EXPECT_TRUE(first_.watched.tuning == tuning);
 }
 
 TEST_F(ModelMergeTest, CalibrationsAreDropped) {
@@ -128,10 +128,12 @@ TEST_F(ModelMergeTest, SaysWhatDoesNotFitAndLeavesTheModelAsItWas) {
   EXPECT_EQ(errorOf(bins(5000000, 0)), "another horizon: none, not 0.1 s");
   EXPECT_EQ(errorOf([](TrainedModel& model) { model.window = 200000000; }),
             "another length of the windows: 0.2 s, not 0.1 s");
-  EXPECT_EQ(errorOf([](TrainedModel& model) { model.least_effect.time = 2.5e6; }),
-            "another least effect: 2.5 ms or 0.02 of the period, not 5 ms or 0.02 of the period");
-  EXPECT_EQ(errorOf([](TrainedModel& model) { model.least_effect.of_period = 0.05; }),
-            "another least effect: 5 ms or 0.05 of the period, not 5 ms or 0.02 of the period");
+  EXPECT_EQ(errorOf([](TrainedModel& model) { model.tuning.predecessors = 5; }),
+            "another tuning: predecessors is 5, not 3");
+  EXPECT_EQ(errorOf([](TrainedModel& model) { model.tuning.least_effect = 0.0025; }),
+            "another tuning: least_effect is 0.0025, not 0.005");
+  EXPECT_EQ(errorOf([](TrainedModel& model) { model.tuning.without = {"rate"}; }),
+            "another tuning: other channels are switched off");
   const std::string encoding = "another encoding: ";
   EXPECT_EQ(
       errorOf([](TrainedModel& model) { model.encoding.source = EncodingRules::Source::kNone; }),

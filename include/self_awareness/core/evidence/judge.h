@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "self_awareness/core/evidence/model.h"
+#include "self_awareness/core/evidence/channel/model.h"
 #include "self_awareness/core/verdict/judge.h"
 #include "self_awareness/core/verdict/source_graph.h"
 
@@ -20,10 +20,8 @@ constexpr double kThreshold = -1;
 /// What a window says in units of the limits: 1 is the limit. The largest of all is the score,
 /// with a minus sign, unless the machine is busy (docs/method.md, section 4.1).
 struct Shares {
-  /// By track of the model; 0: no evidence, or not judged. Slow delay tracks count in the linker
-  /// only.
+  /// By track of the model; 0: no evidence, or not judged.
   const std::vector<double>& tracks;
-  double linker = 0;
   /// Of event types that should have come after the start (docs/method.md, section 3.9).
   std::vector<std::pair<EventId, double>> never_heard;
 };
@@ -31,8 +29,7 @@ struct Shares {
 using SharesHandler = std::function<void(const Window&, const Shares&)>;
 
 /// Makes the judge of the evidence detector (docs/method.md, sections 3, 4.1 and 4.3): the largest
-/// evidence in units of its limit decides over a window; the linker decides over the last tens of
-/// seconds.
+/// evidence in units of its limit decides over a window.
 /// @param limits none: not calibrated, windows have no score and are never abnormal
 /// @param window length [ns]
 /// @param graph who is upstream of whom; shared, so it may grow meanwhile

@@ -116,7 +116,7 @@ struct Tuning {
   /// Channels that are switched off, by their names (channelNames()).
   std::set<std::string> without;
 
-  /// @throw std::invalid_argument names what is out of its range, or no channel
+  /// @throw std::invalid_argument names what is out of its range
   void validate() const;
   /// Least effect on the delay from one event type to another [ns] (docs/method.md, section 3.4).
   /// @param period mean gap of the one that the delay counts from [ns]

@@ -32,9 +32,9 @@ struct Suspect {
     kUnusual,     ///< came at delays after the others that were rare or absent in training
     kRate,        ///< comes more or less often than it should
     kDelay,       ///< comes sooner or later after another event type than it should
-    kAnswer,      ///< is left out after another event type more often than it should
     kUnanswered,  ///< has not come since another event type asked for it
-    kNeverHeard   ///< has not come since the start, although it always does
+    kNeverHeard,  ///< has not come since the start, although it always does
+    kOther        ///< as `words` say
   };
 
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -49,6 +49,9 @@ struct Suspect {
   /// [ns].
   std::int64_t since = 0;
   Reason reason = Reason::kSilent;
+  /// The reason in words and numbers, from the channel that found it; empty: describe() knows
+  /// them.
+  std::string words;
   double silence = kNone;         ///< kSilent, kLate: time without such an event [s]; kUnanswered:
                                   ///< time since it was asked for; kNeverHeard: since the
                                   ///< start; kUnknown: since the last one, if there is none in
@@ -67,18 +70,16 @@ struct Suspect {
   double usual_most = 0;          ///< kRate: the mean of training plus two spreads
   double score = 0;               ///< kUnusual: their mean score
   double usual_score = 0;         ///< kUnusual: the score to expect by training
-  std::string other;              ///< kDelay, kAnswer, kUnanswered: the other event type;
+  std::string other;              ///< kDelay, kUnanswered: the other event type;
                                   ///< empty: its own
-  double lasted = 0;              ///< kDelay, kAnswer: the numbers below are of the last so many s
-  std::size_t of = 0;             ///< kDelay: delays; kAnswer: events of the other type;
+  double lasted = 0;              ///< kDelay: the numbers below are of the last so many s
+  std::size_t of = 0;             ///< kDelay: delays;
                                   ///< kUnanswered: those without an answer, if they are counted
-  std::size_t times = 0;   ///< kDelay: delays of them that were unusual; kAnswer: answers of
-                           ///< them that were left out
-  double delay = 0;        ///< kDelay: median of the unusual ones, or of all if none is [s]
-  double usual_delay = 0;  ///< kDelay: median before, or in training [s]
-  double scatter = kNone;  ///< kDelay: some were earlier than usual, some later, by so much
-                           ///< (median) [s]; NaN: nearly all of them on the same side
-  double usual_share = 0;  ///< kAnswer: share of the answers left out in training, 0 to 1
+  std::size_t times = 0;          ///< kDelay: delays of them that were unusual
+  double delay = 0;               ///< kDelay: median of the unusual ones, or of all if none is [s]
+  double usual_delay = 0;         ///< kDelay: median before, or in training [s]
+  double scatter = kNone;         ///< kDelay: some were earlier than usual, some later, by so much
+                                  ///< (median) [s]; NaN: nearly all of them on the same side
 };
 
 /// The reason in words and numbers: "silent for 2.31 s, usually every 0.083 s, at most 0.104 s".

@@ -17,8 +17,8 @@ std::optional<std::size_t> recordingsInEventLog(const std::string& path);
 class EventLogReader {
  public:
   /// @param recording its number in the log, from 0
-  /// @throw BagError if the file cannot be read, is no event log, is one of another version or
-  /// damaged, or does not hold this recording
+  /// @throw BagError if the file cannot be read, is no event log, is damaged or too new for this
+  /// version, or does not hold this recording
   EventLogReader(const std::string& path, std::size_t recording);
   ~EventLogReader();
 

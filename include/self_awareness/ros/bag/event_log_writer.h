@@ -12,7 +12,7 @@
 namespace self_awareness::ros1 {
 
 /// Writes an event log: one recording after the other (docs/event_log.md). It is a bag with these
-/// topics and no others:
+/// topics, kVersionTopic, and no others:
 constexpr char kEventLogStartTopic[] = "/event_log/start";  ///< EventLogStart
 constexpr char kEventLogTopic[] = "/event_log/events";      ///< EventLog
 constexpr char kEventLogGraphTopic[] = "/event_log/graph";  ///< EventLogGraph
@@ -47,9 +47,10 @@ class EventLogWriter {
 
  private:
   BagWriter bag_;
-  std::uint32_t parts_ = 0;   // of this recording
-  std::uint64_t events_ = 0;  // of this recording
-  Graph graph_;               // as it was written last
+  bool tells_version_ = false;  // what has been written says it
+  std::uint32_t parts_ = 0;     // of this recording
+  std::uint64_t events_ = 0;    // of this recording
+  Graph graph_;                 // as it was written last
 };
 
 }  // namespace self_awareness::ros1

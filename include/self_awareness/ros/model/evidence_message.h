@@ -8,9 +8,9 @@
 #include "self_awareness/RecordingFindings.h"
 #include "self_awareness/Relation.h"
 #include "self_awareness/Track.h"
-#include "self_awareness/core/evidence/limits.h"
-#include "self_awareness/core/evidence/model.h"
-#include "self_awareness/core/evidence/statistics.h"
+#include "self_awareness/core/evidence/channel/model.h"
+#include "self_awareness/core/evidence/count/statistics.h"
+#include "self_awareness/core/evidence/limits/limits.h"
 
 namespace self_awareness::ros1 {
 

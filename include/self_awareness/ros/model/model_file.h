@@ -11,13 +11,14 @@
 #include "self_awareness/EvidenceCalibration.h"
 #include "self_awareness/Model.h"
 #include "self_awareness/Recording.h"
-#include "self_awareness/core/evidence/halves.h"
-#include "self_awareness/core/evidence/limits.h"
-#include "self_awareness/core/evidence/model.h"
+#include "self_awareness/core/evidence/channel/model.h"
+#include "self_awareness/core/evidence/count/halves.h"
+#include "self_awareness/core/evidence/limits/limits.h"
 #include "self_awareness/core/paper/delay_statistics.h"
 #include "self_awareness/core/stream/windows.h"
 #include "self_awareness/core/verdict/source_graph.h"
 #include "self_awareness/ros/encoding.h"
+#include "self_awareness/ros/file_version.h"
 
 namespace self_awareness::ros1 {
 
@@ -47,6 +48,9 @@ struct TrainedModel {
   /// What the recordings of the training showed to each other; none: not looked at.
   core::evidence::LimitFinder::Findings findings;
   ros::Time stamp;  ///< when it was trained
+  /// Of the file that it was read from; of this version if there is none. When it is saved, only
+  /// its method stays: that of the oldest counts and limits in it.
+  self_awareness::FileVersion version = versionOf(kModelFile);
 
   const core::Vocabulary& vocabulary() const { return statistics.vocabulary(); }
   /// Whether the model holds the counts of the paper's detector.
@@ -95,7 +99,8 @@ TrainedModel fromMessage(const self_awareness::Model& message);
 /// @throw ModelFileError if the file cannot be written
 /// @throw std::logic_error if watch() was not called, or counts were dropped
 void saveModel(const TrainedModel& model, const std::string& path);
-/// @throw ModelFileError if the file is missing, not a model, of another version, or damaged
+/// Reads a file of any version since the first (docs/files.md).
+/// @throw ModelFileError if the file is missing, not a model, too new for this version, or damaged
 TrainedModel loadModel(const std::string& path, ModelCounts counts = ModelCounts::kAll);
 
 }  // namespace self_awareness::ros1

@@ -75,8 +75,6 @@ def _seen(suspect: Suspect) -> Optional[Tuple[Optional[float], str]]:
             return _RATE_SPAN_S, 'now: none in 2 s'
         gap = _RATE_SPAN_S / suspect.events
         return gap, f'now: {seconds(gap)} on the average'
-    if suspect.reason == 'answer' and suspect.of > 0:
-        return None, f'now: left out {suspect.times} of {suspect.of} times'
     if suspect.reason == 'unanswered':
         return None, f'now: none after the last {suspect.of}'
     return None

@@ -10,7 +10,7 @@ from self_awareness.reporting.report import delays
 from self_awareness.reporting.report.delays import Histogram
 from self_awareness.reporting.report.judged import Judged
 from self_awareness.reporting.report.neighbours import Neighbourhood, neighbourhood
-from self_awareness.reporting.report.timeline import LINKER, Overview, strongest_track
+from self_awareness.reporting.report.timeline import Overview, strongest_track
 from self_awareness.stamps import utc
 
 ALARM, SUSPICION = 'alarm', 'suspicion'
@@ -23,7 +23,7 @@ MOST_LISTED = 400
 
 _RATE_SPAN_S = 2.0
 _SHORT = {'silent': 'stopped sending', 'late': 'paused for too long', 'unknown': 'is new',
-          'unusual': 'came at unusual times', 'answer': 'leaves out answers',
+          'unusual': 'came at unusual times',
           'unanswered': 'does not answer', 'never heard': 'was not heard'}
 
 
@@ -153,7 +153,7 @@ def _began(suspect: Suspect, start: float) -> Optional[float]:
     """Return when the trouble began [s]: what the suspect's numbers look back to."""
     if suspect.reason in ('silent', 'late', 'unanswered', 'never heard'):
         return None if math.isnan(suspect.silence) else start - suspect.silence
-    if suspect.reason in ('delay', 'answer') and suspect.lasted > 0:
+    if suspect.reason == 'delay' and suspect.lasted > 0:
         return start - suspect.lasted
     return start - _RATE_SPAN_S if suspect.reason == 'rate' else None
 
@@ -161,10 +161,9 @@ def _began(suspect: Suspect, start: float) -> Optional[float]:
 def _decided(judged: Judged, found: Overview, time: float) -> str:
     if found.evidence is None:
         return ''
-    linker = float(found.evidence.linker[found.stretch(time)])
     strongest = strongest_track(found, judged, time)
-    if strongest is None or linker > strongest[1]:
-        return f'{LINKER}: {linker:.2f} of its limit' if linker > 0 else ''
+    if strongest is None:
+        return ''
     track, share = strongest
     kinds = judged.by.trained.event_types
     name = str(kinds[track.to_id])

@@ -12,7 +12,6 @@ from self_awareness.reporting.report.judged import Judged
 
 MOST_LANES = 40
 """Components that have a lane of their own, at most so many."""
-LINKER = 'all together (linker)'
 
 
 @dataclass(frozen=True)
@@ -103,8 +102,7 @@ def strongest_track(found: Overview, judged: Judged, time: float) -> Optional[Tu
 
 def select_lanes(found: EvidenceLanes, first: Sequence[str]) -> Lanes:
     """Return the lanes of the named components, and of those with the most evidence."""
-    shares = np.vstack([found.shares, found.linker[np.newaxis]])
-    names = [*found.components, LINKER]
+    shares, names = found.shares, found.components
     largest = shares.max(axis=1, initial=0.0)
     rank = {name: index for index, name in enumerate(dict.fromkeys(first))}
     order = sorted(np.flatnonzero(largest > 0).tolist(),

@@ -1,0 +1,119 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "self_awareness/core/evidence/channel/model.h"
+#include "self_awareness/core/evidence/watch/relation.h"
+#include "self_awareness/core/stream/windows.h"
+#include "self_awareness/core/verdict/source_graph.h"
+
+namespace self_awareness::core::evidence {
+
+class MisleadingPairs;
+class Scorer;
+
+/// Finds the limits of a model's evidence on recordings of normal operation (docs/method.md,
+/// section 5). A number of false alarms an hour is allowed to all of them together.
+class LimitFinder : private WindowObserver {
+ public:
+  struct Parameters {
+    std::int64_t window = kDefaultWindow;   ///< length of a window [ns]
+    std::int64_t settle_time = 5000000000;  ///< left out at a recording's start [ns]
+    double false_alarms_per_hour = 0.5;     ///< allowed, > 0
+
+    /// @throw std::invalid_argument if a value is out of range.
+    void validate() const;
+  };
+
+  /// What one recording says. It is cut into at most kMostParts parts of one length.
+  struct Recording {
+    std::int64_t start = 0;        ///< stamp of the first event [ns]
+    std::int64_t end = 0;          ///< stamp of the last one [ns]
+    std::int64_t robot_start = 0;  ///< when the robot was started [ns]; 0: not known
+    bool trained_on = false;       ///< it was judged by what the other half of the training says
+    std::uint64_t windows = 0;     ///< looked at
+    /// A part of it.
+    struct Part {
+      std::uint64_t windows = 0;               ///< looked at
+      std::vector<float> evidence;             ///< the largest, by track; 0 for silences
+      std::vector<std::int64_t> longest_gaps;  ///< [ns], by id; 0: none
+    };
+    std::vector<Part> parts;
+    std::vector<Said> said;  ///< by track
+  };
+  /// What recordings say. Findings of some add up to those of all, in any order.
+  using Findings = std::vector<Recording>;
+
+  /// @param graph who hears whom
+  LimitFinder(std::shared_ptr<const Model> model, const Parameters& parameters,
+              SourceGraph graph = {});
+  ~LimitFinder() override;
+
+  /// Starts a recording: the next events belong to it.
+  /// @param model that judges it: that of the constructor, or one with the same tracks that was
+  /// learned from the other half of the training (CrossFit)
+  /// @param robot_start when the robot was started [ns]; 0: not known
+  void startRecording(std::shared_ptr<const Model> model, std::int64_t robot_start = 0);
+  void add(const Event& event);
+  /// The clock was set, which the stamps do not say by themselves (stream/clock_steps.h).
+  void restart();
+  /// Ends the recording.
+  void finish();
+  /// What the recordings that have ended said.
+  const Findings& findings() const { return findings_; }
+  /// Adds what recordings said elsewhere.
+  /// @throw std::invalid_argument if the findings belong to another model
+  void merge(const Findings& other);
+
+  /// What comes of the findings.
+  struct Found {
+    Limits limits;
+    /// False alarms an hour to be expected with these limits: what recordings show that are left
+    /// out in turn.
+    double expected_rate = 0;
+    /// What speaks for the relation that a track watches, by track; what looks at one event type
+    /// is always watched.
+    std::vector<Relation> relations;
+  };
+  /// Finds the limits by all findings.
+  /// @throw std::invalid_argument if there was too little data: less than its tuning asks for, or
+  /// so little to train on that the model has no tracks
+  Found find() const;
+
+  const Parameters& parameters() const { return parameters_; }
+  const SourceGraph& graph() const { return graph_; }
+  /// Number of windows that were looked at.
+  std::uint64_t windows() const;
+
+  static constexpr std::size_t kMostParts = 16;
+
+ private:
+  ObservedEvent observe(const Event& event) override;
+  void close(const Window& window, std::int64_t end) override;
+  void onClockStep() override;
+  void endRecording();
+  void startScoring();
+  void startPart();
+  /// Joins neighbouring parts: they then last twice as long.
+  void joinParts();
+  std::vector<Relation> findRelations() const;
+
+  std::shared_ptr<const Model> model_;
+  Parameters parameters_;
+  SourceGraph graph_;
+  std::shared_ptr<const Model> judging_;
+  std::unique_ptr<Scorer> scorer_;
+  Windows windows_;
+  std::int64_t robot_start_ = 0;             // of the recording [ns]; 0: not known
+  std::optional<std::int64_t> first_stamp_;  // of the recording [ns]
+  Recording recording_;                      // the open one
+  std::uint64_t part_windows_ = 0;           // length of its parts
+  std::unique_ptr<MisleadingPairs> misleading_;
+
+  Findings findings_;
+};
+
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,233 @@
+#include "core/evidence/blame/blame.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "core/evidence/blame/root_first.h"
+#include "core/evidence/blame/strangers.h"
+
+namespace self_awareness::core::evidence {
+Blame::Blame(std::shared_ptr<const Model> model, std::shared_ptr<const SourceGraph> graph)
+    : model_(std::move(model)),
+      graph_(std::move(graph)),
+      followers_(model_),
+      tuning_(model_->tuning()),
+      rare_silence_(std::log(tuning_.rare_silence)) {}
+
+std::vector<Suspect> Blame::suspects(const std::vector<double>& shares, const Scorer& scorer,
+                                     const RecentEvents& events, const Window& window) const {
+  const Followers::Leads leads = followers_.leads(shares);
+  std::vector<Candidate> candidates = silent(shares, scorer, leads);
+  std::vector<Candidate> others = unusual(shares, scorer, events, leads);
+  const auto roots = rootsOfSilence(candidates, others, scorer, leads);
+  candidates.insert(candidates.begin(), others.begin(), roots);
+  candidates.insert(candidates.end(), roots, others.end());
+
+  std::vector<Suspect> suspects;
+  std::set<EventId> named;
+  std::set<std::string> components;
+  const auto add = [&](const Candidate& candidate) {
+    Suspect suspect = suspectOf(candidate.track, scorer, events);
+    suspect.component = model_->component(suspect.id);
+    suspect.abnormal = shares[candidate.track] > 1;
+    components.insert(suspect.component);
+    suspects.push_back(std::move(suspect));
+  };
+  for (const Candidate& candidate : candidates) {
+    if (suspects.size() < kMostSuspects && named.insert(toOf(candidate)).second) {
+      add(candidate);
+    }
+  }
+  for (const ObservedEvent& observed : window.events) {
+    if (observed.unknown && suspects.size() < kMostSuspects &&
+        named.insert(observed.event.id).second) {
+      suspects.push_back(unknownSuspect(observed.event.id, window));
+    }
+  }
+  for (const Candidate& candidate : candidates) {
+    if (shares[candidate.track] > 1 && components.count(model_->component(toOf(candidate))) == 0) {
+      add(candidate);
+    }
+  }
+  return suspects;
+}
+
+std::vector<Blame::Candidate> Blame::silent(const std::vector<double>& shares,
+                                            const Scorer& scorer,
+                                            const Followers::Leads& leads) const {
+  std::set<EventId> missing;
+  std::map<EventId, std::size_t> unanswered;  // tracks
+  for (std::size_t track = 0; track < shares.size(); ++track) {
+    if (shares[track] > tuning_.near_limit && model_->finding(track) == Finding::kUnanswered) {
+      unanswered.emplace(model_->tracks()[track].to, track);
+    }
+    if (shares[track] > tuning_.near_limit && model_->finding(track) == Finding::kSilent) {
+      missing.insert(model_->tracks()[track].to);
+    }
+  }
+  std::vector<Candidate> candidates;
+  for (const EventId id : missing) {
+    const double survival = logSurvival(id, scorer);
+    if (survival < rare_silence_) {
+      candidates.push_back({trackOfSilence(id, shares), survival});
+    }
+  }
+  for (const auto& [id, track] : unanswered) {
+    const double survival = logSurvival(id, scorer);
+    if (missing.count(id) == 0 || survival >= rare_silence_) {
+      candidates.push_back({track, std::min(survival, rare_silence_)});
+    }
+  }
+  return rootFirst(std::move(candidates), leads);
+}
+
+std::vector<Blame::Candidate>::iterator Blame::rootsOfSilence(
+    const std::vector<Candidate>& silent, std::vector<Candidate>& others, const Scorer& scorer,
+    const Followers::Leads& leads) const {
+  std::set<std::string> roots;
+  const auto isSilent = [&](const Candidate& other) {
+    return std::any_of(silent.begin(), silent.end(), [&](const Candidate& candidate) {
+      return model_->component(toOf(other)) == model_->component(toOf(candidate));
+    });
+  };
+  const auto answered = [&](const Candidate& other) {
+    return std::any_of(silent.begin(), silent.end(), [&](const Candidate& candidate) {
+      return leads.count({model_->component(toOf(other)), model_->component(toOf(candidate))}) >
+                 0 &&
+             (scorer.heard().lastSeen(toOf(candidate)) >= scorer.heard().lastSeen(toOf(other)) ||
+              static_cast<double>(scorer.heard().age(toOf(other))) <
+                  model_->meanGap(toOf(other)) / 2);
+    });
+  };
+  const auto leadsRoot = [&](const Candidate& other) {
+    return std::any_of(roots.begin(), roots.end(), [&](const std::string& root) {
+      return leads.count({model_->component(toOf(other)), root}) > 0;
+    });
+  };
+  for (bool found = true; found;) {
+    found = false;
+    for (const Candidate& other : others) {
+      found |= other.own && !isSilent(other) && (answered(other) || leadsRoot(other)) &&
+               roots.insert(model_->component(toOf(other))).second;
+    }
+  }
+  return std::stable_partition(others.begin(), others.end(), [&](const Candidate& other) {
+    return roots.count(model_->component(toOf(other))) > 0;
+  });
+}
+
+std::vector<Blame::Candidate> Blame::rootFirst(std::vector<Candidate> candidates,
+                                               const Followers::Leads& leads) const {
+  std::stable_sort(candidates.begin(), candidates.end(), likelier);
+  std::vector<std::string> components;
+  for (const Candidate& candidate : candidates) {
+    components.push_back(model_->component(toOf(candidate)));
+  }
+  std::vector<Candidate> ordered;
+  for (const std::size_t next :
+       evidence::rootFirst(components, [&](const std::string&source, const std::string&other) {
+         return graph_->isUpstream(source, other) ||
+                (leads.count({source, other}) > 0 && !graph_->isUpstream(other, source));
+       })) {
+    ordered.push_back(candidates[next]);
+  }
+  return ordered;
+}
+
+std::vector<Blame::Candidate> Blame::unusual(const std::vector<double>& shares,
+                                             const Scorer& scorer, const RecentEvents& events,
+                                             const Followers::Leads& leads) const {
+  struct Involved {
+    double sum = 0;
+    std::size_t track = 0;  // with the largest share
+    double largest = 0;
+    bool own = false;   // something is wrong with it, whatever the others do
+    bool late = false;  // comes later after another one
+  };
+  std::map<std::string, Involved> components;
+  std::vector<std::size_t> late;  // tracks
+  for (std::size_t track = 0; track < shares.size(); ++track) {
+    const EventId to = model_->tracks()[track].to;
+    const EventId from = model_->tracks()[track].from;
+    const Finding finding = model_->finding(track);
+    if (shares[track] < tuning_.least_share ||
+        // An age that is usual has some share of its limit, too.
+        (finding == Finding::kSilent && logSurvival(to, scorer) >= rare_silence_)) {
+      continue;
+    }
+    const double share = std::min(shares[track], tuning_.most_share);
+    const bool other =
+        finding == Finding::kBetween && model_->component(from) != model_->component(to);
+    const bool earlier = other && isEarlier(suspectOf(track, scorer, events));
+    Involved& later = components[model_->component(to)];
+    later.sum += earlier ? tuning_.share_of_other * share : share;
+    if (other && !earlier) {
+      later.late = true;
+      late.push_back(track);
+    }
+    later.own |= shares[track] > tuning_.near_limit && finding != Finding::kSilent &&
+                 finding != Finding::kBetween;
+    if (share > later.largest) {
+      later.largest = share;
+      later.track = track;
+    }
+    if (other) {
+      components[model_->component(from)].sum += earlier ? share : tuning_.share_of_other * share;
+    }
+  }
+  for (const std::size_t track : followers_.lateBefore(late, shares, scorer, events)) {
+    Involved& involved = components[model_->component(model_->tracks()[track].to)];
+    involved.late = true;
+    if (involved.largest == 0) {
+      involved.largest = tuning_.least_share;
+      involved.track = track;
+    }
+  }
+  std::array<std::vector<Candidate>, 3> groups;
+  for (const auto& [name, involved] : components) {
+    if (involved.largest > 0) {
+      groups[involved.own    ? 0
+             : involved.late ? 1
+                             : 2]
+          .push_back({involved.track, -involved.sum, involved.own});
+    }
+  }
+  std::vector<Candidate> ordered;
+  for (std::vector<Candidate>& group : groups) {
+    group = rootFirst(std::move(group), leads);
+    ordered.insert(ordered.end(), group.begin(), group.end());
+  }
+  return ordered;
+}
+
+double Blame::logSurvival(EventId id, const Scorer& scorer) const {
+  return model_->logSurvival(id, scorer.heard().silence(id));
+}
+
+// Its age, if that alone is abnormal; else what is nearer to its limit: at half its rate, say, its
+// age may be rare as well, but that is not what is wrong.
+std::size_t Blame::trackOfSilence(EventId id, const std::vector<double>& shares) const {
+  std::size_t most = 0;
+  double largest = -1;
+  for (std::size_t track = 0; track < shares.size(); ++track) {
+    const Finding finding = model_->finding(track);
+    if (model_->tracks()[track].to != id ||
+        (finding != Finding::kSilent && finding != Finding::kFewer)) {
+      continue;
+    }
+    if (finding == Finding::kSilent && shares[track] > 1) {
+      return track;
+    }
+    if (shares[track] > largest) {
+      largest = shares[track];
+      most = track;
+    }
+  }
+  return most;
+}
+
+}  // namespace self_awareness::core::evidence

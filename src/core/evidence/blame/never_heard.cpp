@@ -1,0 +1,127 @@
+#include "core/evidence/blame/never_heard.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/evidence/blame/root_first.h"
+
+namespace self_awareness::core::evidence {
+NeverHeard::NeverHeard(const Model& model, const Limits& limits,
+                       std::shared_ptr<const SourceGraph> graph)
+    : vocabulary_(model.vocabulary()),
+      alarm_times_(model.tuning().alarm_times),
+      alarm_later_(toNanoseconds(model.tuning().alarm_later)),
+      graph_(std::move(graph)) {
+  const Statistics& statistics = model.statistics();
+  for (EventId id = 0; id < model.size(); ++id) {
+    Expected expected{id, std::numeric_limits<std::int64_t>::max(), 0, 0, 0};
+    bool always = !statistics.recordings().empty() &&
+                  static_cast<double>(statistics.type(id).gaps) >= model.tuning().fewest_gaps;
+    for (const Statistics::Recording& recording : statistics.recordings()) {
+      const std::int64_t first = id < recording.firsts.size() ? recording.firsts[id] : -1;
+      always = always && first >= 0;
+      expected.shortest = std::min(expected.shortest, first);
+      expected.longest = std::max(expected.longest, first);
+    }
+    if (id < limits.firsts.size()) {
+      always = always && limits.firsts[id] >= 0;
+      expected.shortest = std::min(expected.shortest, limits.firsts[id]);
+      expected.longest = std::max(expected.longest, limits.firsts[id]);
+    }
+    if (always) {
+      const double times = model.tuning().due_times;
+      expected.due = std::llround(
+          std::max(times * static_cast<double>(expected.longest) + model.tuning().due_later * 1e9,
+                   times * static_cast<double>(model.longestGap(id))));
+      all_.push_back(expected);
+    }
+  }
+  waiting_ = all_;
+}
+
+void NeverHeard::add(const Event& event) {
+  start_ = start_.value_or(event.stamp);
+  for (std::vector<Expected>* list : {&waiting_, &missing_}) {
+    const auto same = std::find_if(list->begin(), list->end(),
+                                   [&](const Expected& each) { return each.id == event.id; });
+    if (same != list->end()) {
+      list->erase(same);
+    }
+  }
+}
+
+void NeverHeard::restart() {
+  waiting_ = all_;
+  missing_.clear();
+  start_.reset();
+  share_ = 0;
+}
+
+void NeverHeard::closeWindow(std::int64_t end, std::int64_t settle_time) {
+  end_ = end;
+  const std::int64_t passed = end - start_.value_or(end);
+  const auto first_due = std::stable_partition(
+      waiting_.begin(), waiting_.end(),
+      [&](const Expected& expected) { return passed <= std::max(expected.due, settle_time); });
+  if (first_due != waiting_.end()) {
+    missing_.insert(missing_.end(), first_due, waiting_.end());
+    waiting_.erase(first_due, waiting_.end());
+    missing_ = rootFirst(std::move(missing_));
+  }
+  share_ = 0;
+  for (Expected& expected : missing_) {
+    const std::int64_t due = std::max(expected.due, settle_time);
+    expected.share =
+        static_cast<double>(passed) /
+        std::max(alarm_times_ * static_cast<double>(due), static_cast<double>(due + alarm_later_));
+    share_ = std::max(share_, expected.share);
+  }
+}
+
+std::vector<NeverHeard::Expected> NeverHeard::rootFirst(std::vector<Expected> missing) const {
+  std::vector<std::string> components;
+  for (const Expected& expected : missing) {
+    components.push_back(component(expected.id));
+  }
+  std::vector<Expected> ordered;
+  for (const std::size_t next :
+       evidence::rootFirst(components, [&](const std::string&source, const std::string&other) {
+         return graph_->isUpstream(source, other);
+       })) {
+    ordered.push_back(missing[next]);
+  }
+  return ordered;
+}
+
+std::vector<std::pair<EventId, double>> NeverHeard::shares() const {
+  std::vector<std::pair<EventId, double>> shares;
+  for (const Expected& expected : missing_) {
+    shares.emplace_back(expected.id, expected.share);
+  }
+  return shares;
+}
+
+std::vector<Suspect> NeverHeard::suspects() const {
+  std::vector<Suspect> suspects;
+  for (const Expected& expected : missing_) {
+    Suspect suspect;
+    suspect.id = expected.id;
+    suspect.component = component(expected.id);
+    suspect.abnormal = expected.share > 1;
+    suspect.reason = Suspect::Reason::kNeverHeard;
+    suspect.silence = toSeconds(end_ - *start_);
+    suspect.usual_shortest = toSeconds(expected.shortest);
+    suspect.usual_longest = toSeconds(expected.longest);
+    suspects.push_back(suspect);
+  }
+  return suspects;
+}
+
+const std::string& NeverHeard::component(EventId id) const {
+  const EventType& type = vocabulary_.at(id);
+  return componentOf(type.source, type.scope);
+}
+
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "self_awareness/core/evidence/channel/model.h"
+#include "self_awareness/core/verdict/source_graph.h"
+#include "self_awareness/core/verdict/suspect.h"
+
+namespace self_awareness::core::evidence {
+
+/// Notices event types that do not come after the start, although they came in every recording of
+/// the training (docs/method.md, section 3.9). A type that comes late as it always does is normal.
+class NeverHeard {
+ public:
+  /// @param graph whose messages reach whom; may grow
+  NeverHeard(const Model& model, const Limits& limits, std::shared_ptr<const SourceGraph> graph);
+
+  /// Takes in the next event, of any id. The first one is the start.
+  void add(const Event& event);
+  /// Forgets what was heard: the next event is the start.
+  void restart();
+  /// Looks at what is missing at the end of a window.
+  /// @param end of the window [ns]
+  /// @param settle_time least time after the start in which everything may be missing [ns]
+  void closeWindow(std::int64_t end, std::int64_t settle_time);
+  /// The largest share of its limit that the absence of an event type has reached; 0 if nothing
+  /// should have come by now. Above 1, it is abnormal.
+  double share() const { return share_; }
+  /// Those of the event types that should have come by now.
+  std::vector<std::pair<EventId, double>> shares() const;
+  /// The event types that should have come by now, sources upstream of others first.
+  std::vector<Suspect> suspects() const;
+
+ private:
+  /// An event type that comes after every start.
+  struct Expected {
+    EventId id = 0;
+    std::int64_t shortest = 0;  // usual time from the start to its first event [ns]
+    std::int64_t longest = 0;   // [ns]
+    std::int64_t due = 0;       // after the start, if the settling is over [ns]
+    double share = 0;           // of its limit that its absence has reached, once it is due
+  };
+
+  const std::string& component(EventId id) const;
+  std::vector<Expected> rootFirst(std::vector<Expected> missing) const;
+
+  Vocabulary vocabulary_;
+  double alarm_times_;        // as late as due, it is an alarm
+  std::int64_t alarm_later_;  // and at least so much later [ns]
+  std::shared_ptr<const SourceGraph> graph_;
+  std::vector<Expected> all_;
+  std::vector<Expected> waiting_;  // of all, those that have not come and are not due
+  std::vector<Expected> missing_;  // those that are due, sources upstream of others first
+  std::optional<std::int64_t> start_;
+  std::int64_t end_ = 0;  // of the last window [ns]
+  double share_ = 0;
+};
+
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,78 @@
+#include "core/evidence/blame/strangers.h"
+
+#include <algorithm>
+#include <set>
+#include <utility>
+
+#include "self_awareness/core/stream/recent_counts.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+// Every new node may send here: that it does explains nothing.
+const std::set<std::string> kForEverybody{"/rosout", "/diagnostics", "/tf", "/tf_static"};
+
+}  // namespace
+
+Suspect unknownSuspect(EventId id, const Window& window) {
+  Suspect suspect;
+  suspect.id = id;
+  suspect.abnormal = true;
+  suspect.reason = Suspect::Reason::kUnknown;
+  suspect.events = static_cast<std::size_t>(
+      std::count_if(window.events.begin(), window.events.end(),
+                    [id](const ObservedEvent& other) { return other.event.id == id; }));
+  return suspect;
+}
+
+Strangers::Strangers(const Model& model, std::shared_ptr<const Vocabulary> heard)
+    : size_(model.size()), heard_(std::move(heard)) {
+  for (EventId id = 0; id < size_; ++id) {
+    const std::string& topic = model.vocabulary().at(id).scope;
+    if (kForEverybody.count(topic) == 0) {
+      known_[topic].push_back(id);
+    }
+  }
+}
+
+void Strangers::add(const Event& event) {
+  if (event.id >= size_) {
+    last_[event.id] = event.stamp;
+  }
+}
+
+std::vector<Suspect> Strangers::suspects(const Window& window, const Scorer& scorer) const {
+  std::vector<Suspect> suspects;
+  for (const auto& [id, last] : last_) {
+    const std::int64_t age = scorer.heard().windowEnd() - last;
+    if (age > kRateSpan || !isStranger(id, scorer)) {
+      continue;
+    }
+    Suspect suspect = unknownSuspect(id, window);
+    if (suspect.events == 0) {
+      suspect.silence = toSeconds(age);
+    }
+    suspects.push_back(std::move(suspect));
+  }
+  return suspects;
+}
+
+// A node that comes under another name with every start takes the place of the one that training
+// knows: that one is not heard.
+bool Strangers::isStranger(EventId id, const Scorer& scorer) const {
+  if (!heard_ || id >= heard_->size()) {
+    return false;
+  }
+  const EventType& type = heard_->at(id);
+  const auto known = known_.find(type.scope);
+  if (known == known_.end()) {
+    return false;
+  }
+  const Vocabulary& vocabulary = *heard_;
+  return std::none_of(known->second.begin(), known->second.end(),
+                      [&](EventId other) { return vocabulary.at(other).source == type.source; }) &&
+         std::any_of(known->second.begin(), known->second.end(),
+                     [&](EventId other) { return scorer.heard().hasSeen(other); });
+}
+
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/evidence/channel/scorer.h"
+#include "self_awareness/core/evidence/channel/model.h"
+#include "self_awareness/core/stream/windows.h"
+#include "self_awareness/core/verdict/suspect.h"
+
+namespace self_awareness::core::evidence {
+
+/// An event type that training never saw, as a suspect of a window.
+Suspect unknownSuspect(EventId id, const Window& window);
+
+/// Knows the senders that training never saw, on topics that it knows from others: what is unusual
+/// while they send is most likely their doing (docs/method.md, section 6).
+class Strangers {
+ public:
+  /// @param heard event types by id, those of the model first, then those that it does not know;
+  /// may grow. None: they are not known, so nobody is a stranger
+  Strangers(const Model& model, std::shared_ptr<const Vocabulary> heard);
+
+  /// Takes in the next event, of any id.
+  void add(const Event& event);
+  /// Forgets who was heard: a new recording starts, or the clock was set.
+  void restart() { last_.clear(); }
+  /// Those that were heard in the last kRateSpan.
+  /// @param scorer of the same recording, at the end of the window
+  std::vector<Suspect> suspects(const Window& window, const Scorer& scorer) const;
+
+ private:
+  bool isStranger(EventId id, const Scorer& scorer) const;
+
+  std::map<std::string, std::vector<EventId>> known_;  // event types of the model, by topic
+  std::size_t size_;                                   // of the model
+  std::shared_ptr<const Vocabulary> heard_;
+  std::map<EventId, std::int64_t> last_;  // stamp of the last event of an unknown type [ns]
+};
+
+}  // namespace self_awareness::core::evidence

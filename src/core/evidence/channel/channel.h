@@ -1,0 +1,124 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/evidence/count/starts.h"
+#include "core/evidence/watch/gain.h"
+#include "core/evidence/watch/heard.h"
+#include "core/evidence/watch/recent_events.h"
+#include "core/evidence/watch/relations.h"
+#include "self_awareness/core/evidence/channel/track.h"
+#include "self_awareness/core/evidence/count/halves.h"
+#include "self_awareness/core/evidence/tuning.h"
+#include "self_awareness/core/verdict/suspect.h"
+
+namespace self_awareness::core::evidence {
+
+class Model;
+
+/// What a channel chooses its tracks by.
+struct Choice {
+  const Statistics& both;  ///< counts of both halves of the training
+  const Gains& gains;
+  const Relations& relations;
+  const Tuning& tuning;
+
+  /// Whether enough is known of an event type to judge it.
+  bool isJudged(EventId id) const {
+    return static_cast<double>(both.type(id).gaps) >= tuning.fewest_gaps;
+  }
+};
+
+/// Evidence of one channel in a recording: what it must remember of the events.
+class ChannelState {
+ public:
+  virtual ~ChannelState() = default;
+
+  /// Whether add() does anything: it takes time with every event.
+  virtual bool listens() const { return false; }
+  /// Takes in an event of the model, before `heard` has it.
+  virtual void add(const Heard::Arrival& /*arrival*/, const Heard& /*heard*/) {}
+  /// Forgets what it knows of an event type: its component was restarted.
+  virtual void disarm(EventId /*id*/) {}
+  /// Forgets what was heard.
+  virtual void restart() {}
+  /// Caps what it adds up a little above its limit: an alarm must not last much longer than its
+  /// cause. Also knows then what is abnormal.
+  /// @param limits by track of the model; NaN: not judged
+  virtual void capAt(const std::vector<double>& /*limits*/) {}
+  /// Sets the evidence of its tracks at the end of a window; 0: none.
+  /// @param evidence by track of the model
+  virtual void closeWindow(const Heard& heard, std::vector<double>& evidence) = 0;
+  /// Whether further windows would say nothing new of a track that is beyond its limit.
+  virtual bool isCertain(std::size_t /*track*/, double /*limit*/, const Heard& /*heard*/) const {
+    return false;
+  }
+  /// Says why `to` of a track is a suspect: the numbers, and the words where the verdict has none.
+  virtual void explain(std::size_t track, const Heard& heard, const RecentEvents& events,
+                       Suspect& suspect) const = 0;
+};
+
+/// What a channel expects of its tracks. It is computed once from counts and never changes, so
+/// threads may share it.
+class Expectation {
+ public:
+  /// @param tracks of the model that are the channel's
+  explicit Expectation(std::vector<std::size_t> tracks) : tracks_(std::move(tracks)) {}
+  virtual ~Expectation() = default;
+
+  const std::vector<std::size_t>& tracks() const { return tracks_; }
+  /// The state at the start of a recording; this must outlive it.
+  virtual std::unique_ptr<ChannelState> start() const = 0;
+  /// Least limit that a track may have, in units of its evidence (docs/method.md, section 5.3).
+  virtual double leastLimit(std::size_t track) const = 0;
+  /// Whether a track with such a limit is of any use (docs/method.md, section 5.4).
+  virtual bool isUsable(std::size_t /*track*/, double /*limit*/) const { return true; }
+
+ private:
+  std::vector<std::size_t> tracks_;
+};
+
+/// By how much limits lie above all that was seen (docs/method.md, section 5.2).
+struct Margins {
+  double least = 0;
+  double most = 0;
+};
+
+/// A kind of evidence (docs/method.md, section 3): all that the method knows of it. The list of
+/// all is channels().
+class Channel {
+ public:
+  virtual ~Channel() = default;
+
+  /// In model files, and in Tuning::without.
+  virtual std::string name() const = 0;
+  /// As people read it; channels of one label share what recordings show of their limits.
+  virtual std::string label() const { return name(); }
+  virtual Finding finding() const = 0;
+  /// What it watches, given the counts of the training and the graph.
+  virtual std::vector<Track> watch(const Choice& choice) const = 0;
+  /// What it expects of its tracks.
+  /// @param halves of the training that the model is learned from
+  virtual std::unique_ptr<const Expectation> expect(const Model& model, const Halves& halves,
+                                                    std::vector<std::size_t> tracks) const = 0;
+  /// What speaks for a track.
+  /// @param as_usual recordings that were not trained on, in which its delays were as in training
+  virtual Relation reason(const Track& /*track*/, const Relations& /*relations*/,
+                          const std::vector<Span>& /*as_usual*/) const {
+    Relation own;
+    own.watched = true;  // what looks at one event type needs no reason
+    return own;
+  }
+  /// Whether a recording can show that its delays mislead.
+  virtual bool mayMislead() const { return false; }
+  virtual Margins margins(const Tuning& tuning) const {
+    return {tuning.least_margin, tuning.most_margin};
+  }
+};
+
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,44 @@
+#include <algorithm>
+
+#include "core/evidence/channel/channels.h"
+#include "core/evidence/channel/owed.h"
+#include "core/evidence/channel/own_gaps.h"
+#include "core/evidence/channel/pairs.h"
+#include "core/evidence/channel/rate.h"
+#include "core/evidence/channel/silence.h"
+
+namespace self_awareness::core::evidence {
+
+std::vector<const Channel*> channelsOfTheMethod() {
+  static const Silence silence;
+  static const Rate fewer(Rate::Side::kFewer);
+  static const Rate more(Rate::Side::kMore);
+  static const OwnGaps own_gaps;
+  static const Pairs pairs;
+  static const Owed owed;
+  return {&silence, &fewer, &more, &own_gaps, &pairs, &owed};
+}
+
+std::string channelName(const Track& track) {
+  return track.channel->name();
+}
+
+std::string channelLabel(const Track& track) {
+  return track.channel->label();
+}
+
+std::vector<std::string> channelNames() {
+  std::vector<std::string> names;
+  for (const Channel* channel : channels()) {
+    names.push_back(channel->name());
+  }
+  return names;
+}
+
+const Channel* channelNamed(const std::string& name) {
+  const auto found = std::find_if(channels().begin(), channels().end(),
+                                  [&](const Channel* each) { return each->name() == name; });
+  return found == channels().end() ? nullptr : *found;
+}
+
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,158 @@
+#include "core/evidence/channel/owed.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "self_awareness/core/evidence/channel/model.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+class ExpectedAnswers : public Expectation {
+ public:
+  ExpectedAnswers(const Model& model, std::vector<std::size_t> tracks)
+      : Expectation(std::move(tracks)), model_(model) {}
+
+  std::unique_ptr<ChannelState> start() const override;
+  double leastLimit(std::size_t track) const override {
+    return countsRequests(track) ? model_.tuning().least_requests : model_.tuning().least_deadline;
+  }
+  bool isUsable(std::size_t track, double limit) const override {
+    const double seconds = countsRequests(track) ? usualGap(track) * 1e-9 : 1;
+    return limit * seconds <= model_.tuning().longest_deadline;
+  }
+  /// Whether requests come in series, and are counted.
+  bool countsRequests(std::size_t track) const {
+    return usualGap(track) < model_.tuning().longest_gap_of_series * 1e9;
+  }
+  const Model& model() const { return model_; }
+
+ private:
+  /// Median gap of the requests [ns].
+  double usualGap(std::size_t track) const {
+    const EventId from = model_.tracks()[track].from;
+    return model_.usualDelay(from, from, 0.5);
+  }
+
+  const Model& model_;
+};
+
+class OwedState : public ChannelState {
+ public:
+  explicit OwedState(const ExpectedAnswers& expected);
+
+  bool listens() const override { return !owed_.empty(); }
+  void add(const Heard::Arrival& arrival, const Heard& /*heard*/) override {
+    for (const std::uint32_t number : asks_[arrival.id].answered) {
+      owed_[number].requests = 0;
+    }
+    for (const std::uint32_t number : asks_[arrival.id].asked) {
+      Answer& answer = owed_[number];
+      answer.since = answer.requests > 0 ? answer.since : arrival.stamp;
+      ++answer.requests;
+    }
+  }
+  void restart() override {
+    for (Answer& answer : owed_) {
+      answer.requests = 0;
+    }
+  }
+  void closeWindow(const Heard& heard, std::vector<double>& evidence) override;
+  void explain(std::size_t track, const Heard& heard, const RecentEvents& events,
+               Suspect& suspect) const override;
+
+ private:
+  struct Answer {
+    std::size_t track = 0;
+    bool in_requests = false;    // else in seconds
+    std::uint32_t requests = 0;  // without an answer
+    std::int64_t since = 0;      // stamp of the first of them [ns], if there is one
+  };
+  /// Numbers of answers: that an event type asks for, and that it is.
+  struct OfType {
+    std::vector<std::uint32_t> asked;
+    std::vector<std::uint32_t> answered;
+  };
+
+  static double waiting(const Answer& answer, const Heard& heard) {
+    return answer.in_requests ? answer.requests : toSeconds(heard.windowEnd() - answer.since);
+  }
+
+  const Model& model_;
+  std::int64_t start_time_;  // [ns]
+  std::vector<Answer> owed_;
+  std::vector<OfType> asks_;  // by id
+};
+
+std::unique_ptr<ChannelState> ExpectedAnswers::start() const {
+  return std::make_unique<OwedState>(*this);
+}
+
+OwedState::OwedState(const ExpectedAnswers& expected)
+    : model_(expected.model()),
+      start_time_(toNanoseconds(model_.tuning().start_time)),
+      asks_(model_.size()) {
+  for (const std::size_t track : expected.tracks()) {
+    const auto number = static_cast<std::uint32_t>(owed_.size());
+    asks_[model_.tracks()[track].from].asked.push_back(number);
+    asks_[model_.tracks()[track].to].answered.push_back(number);
+    owed_.push_back({track, expected.countsRequests(track), 0, 0});
+  }
+}
+
+void OwedState::closeWindow(const Heard& heard, std::vector<double>& evidence) {
+  const bool started = heard.windowEnd() - heard.start() >= start_time_;
+  for (const Answer& answer : owed_) {
+    // Who was not heard yet may still be starting.
+    const bool owes = started || heard.hasSeen(model_.tracks()[answer.track].to);
+    evidence[answer.track] = answer.requests == 0 || !owes ? 0 : waiting(answer, heard);
+  }
+}
+
+void OwedState::explain(std::size_t track, const Heard& heard, const RecentEvents& /*events*/,
+                        Suspect& suspect) const {
+  suspect.reason = Suspect::Reason::kUnanswered;
+  suspect.other = toString(model_.vocabulary().at(model_.tracks()[track].from));
+  const auto answer = std::find_if(owed_.begin(), owed_.end(),
+                                   [track](const Answer& each) { return each.track == track; });
+  char text[60];
+  if (answer->in_requests) {
+    suspect.of = answer->requests;
+    std::snprintf(text, sizeof text, "has not come after the last %zu ", suspect.of);
+  } else {
+    suspect.silence = answer->requests > 0 ? waiting(*answer, heard) : 0;
+    std::snprintf(text, sizeof text, "has not come for %.2f s after ", suspect.silence);
+  }
+  suspect.words = text + suspect.other;
+}
+
+}  // namespace
+
+// Those that ask are ranked by the share of requests without an answer.
+std::vector<Track> Owed::watch(const Choice& choice) const {
+  std::vector<Track> tracks;
+  for (EventId to = 0; to < choice.both.size(); ++to) {
+    std::vector<std::pair<double, EventId>> best;
+    for (EventId from = 0; from < choice.both.size(); ++from) {
+      const std::uint64_t answers = choice.both.answers(from, to);
+      const double misses = missRate(choice.both.type(from).gaps, answers);
+      if (from != to && static_cast<double>(answers) >= choice.tuning.fewest_answers &&
+          misses <= choice.tuning.most_misses && choice.relations.owed(from, to).watched) {
+        best.emplace_back(misses, from);
+      }
+    }
+    std::sort(best.begin(), best.end());
+    best.resize(std::min(best.size(), static_cast<std::size_t>(choice.tuning.deadlines)));
+    for (const auto& [misses, from] : best) {
+      tracks.push_back({this, to, from});
+    }
+  }
+  return tracks;
+}
+
+std::unique_ptr<const Expectation> Owed::expect(const Model& model, const Halves& /*halves*/,
+                                                std::vector<std::size_t> tracks) const {
+  return std::make_unique<ExpectedAnswers>(model, std::move(tracks));
+}
+
+}  // namespace self_awareness::core::evidence

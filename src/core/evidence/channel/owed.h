@@ -1,0 +1,26 @@
+#pragma once
+
+#include "core/evidence/channel/channel.h"
+
+namespace self_awareness::core::evidence {
+
+/// Owed answers (docs/method.md, section 3.4): the `to` that `from` asks for does not come in
+/// time. Evidence is the time since the first request without an answer [s], or, where requests
+/// come in series, their number.
+class Owed : public Channel {
+ public:
+  std::string name() const override { return "deadlines"; }
+  Finding finding() const override { return Finding::kUnanswered; }
+  std::vector<Track> watch(const Choice& choice) const override;
+  std::unique_ptr<const Expectation> expect(const Model& model, const Halves& /*halves*/,
+                                            std::vector<std::size_t> tracks) const override;
+  Relation reason(const Track& track, const Relations& relations,
+                  const std::vector<Span>& /*as_usual*/) const override {
+    return relations.owed(track.from, track.to);
+  }
+  Margins margins(const Tuning& tuning) const override {
+    return {tuning.least_deadline_margin, tuning.most_margin};
+  }
+};
+
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,215 @@
+#include "core/evidence/channel/pairs.h"
+
+#include <algorithm>
+#include <optional>
+#include <tuple>
+
+#include "core/evidence/channel/delays.h"
+#include "self_awareness/core/evidence/channel/model.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+class ExpectedPairs : public ExpectedDelays {
+ public:
+  using ExpectedDelays::ExpectedDelays;
+  std::unique_ptr<ChannelState> start() const override;
+};
+
+class PairsState : public ChannelState {
+ public:
+  explicit PairsState(const ExpectedPairs& expected);
+
+  bool listens() const override { return !pairs_.empty(); }
+  void add(const Heard::Arrival& arrival, const Heard& heard) override {
+    // Constant local copies: the compiler would look up again what it does not know to be
+    // constant.
+    const std::int64_t* const stamps = heard.stamps();
+    const std::uint64_t* const numbers = heard.numbers();
+    const double share = numbers_.shareOfRegime(arrival.stamp - arrival.last_stamp);
+    const Range range = pairs_of_[arrival.id];
+    for (std::uint32_t number = range.begin; number < range.end; ++number) {
+      Pair& pair = pairs_[number];
+      // Only the first event after another counts: later ones, while the other pauses, would count
+      // one pause many times. No branch, since the processor cannot predict which one is first.
+      const bool first = numbers[pair.from] >= arrival.last;
+      const double surprise = (*pair.surprise)(arrival.stamp - stamps[pair.from]);
+      pair.sum.add(surprise, first && !arrival.stalled ? 1.0 : 0.0, 1.0, share, numbers_);
+      if (!pair.armed) {
+        arm(number, numbers[pair.from] > 0, first, surprise);
+      }
+    }
+  }
+  void disarm(EventId id) override {
+    for (const std::uint32_t number : with_[id]) {
+      clear(number);
+      arming_[number].disarm();
+    }
+  }
+  void restart() override;
+  void capAt(const std::vector<double>& limits) override;
+  void closeWindow(const Heard& heard, std::vector<double>& evidence) override;
+  void explain(std::size_t track, const Heard& heard, const RecentEvents& events,
+               Suspect& suspect) const override;
+
+ private:
+  // All that an event needs of a pair lies together, and so do the pairs of an event type: most of
+  // the time goes into fetching them.
+  struct Pair {
+    EventId from = 0;
+    bool armed = false;
+    const DelaySurprise* surprise = nullptr;
+    DelaySum sum;
+  };
+  struct Range {
+    std::uint32_t begin = 0;
+    std::uint32_t end = 0;
+  };
+
+  /// Takes in a delay of a pair that is not armed. Of one whose other event type was never heard,
+  /// what was added to the sum is taken back here: so the many others need no check.
+  void arm(std::uint32_t number, bool heard, bool first, double surprise);
+  void clear(std::uint32_t number) {
+    pairs_[number].sum.clear();
+    pairs_[number].armed = false;
+  }
+
+  const ExpectedPairs& expected_;
+  DelayNumbers numbers_;
+  Arming::Numbers arming_numbers_;
+  bool has_limits_ = false;
+  std::vector<Pair> pairs_;                       // by `to`
+  std::vector<Range> pairs_of_;                   // by id of `to`
+  std::vector<std::size_t> track_of_;             // by number of the pair
+  std::vector<Arming> arming_;                    // by number of the pair
+  std::vector<std::vector<std::uint32_t>> with_;  // numbers of the pairs of a type, by id
+};
+
+std::unique_ptr<ChannelState> ExpectedPairs::start() const {
+  return std::make_unique<PairsState>(*this);
+}
+
+PairsState::PairsState(const ExpectedPairs& expected)
+    : expected_(expected),
+      numbers_(expected.model().tuning()),
+      arming_numbers_(expected.model().tuning()),
+      arming_(expected.tracks().size()),
+      with_(expected.model().size()) {
+  std::vector<std::vector<std::size_t>> by_to(expected.model().size());
+  for (std::size_t number = 0; number < expected.tracks().size(); ++number) {
+    by_to[expected.track(number).to].push_back(number);
+  }
+  for (const std::vector<std::size_t>& of_type : by_to) {
+    Range range;
+    range.begin = static_cast<std::uint32_t>(pairs_.size());
+    for (const std::size_t number : of_type) {
+      const auto here = static_cast<std::uint32_t>(pairs_.size());
+      const Track& track = expected.track(number);
+      with_[track.to].push_back(here);
+      with_[track.from].push_back(here);
+      track_of_.push_back(expected.tracks()[number]);
+      pairs_.push_back({track.from, false, &expected.surprise(number), {}});
+    }
+    range.end = static_cast<std::uint32_t>(pairs_.size());
+    pairs_of_.push_back(range);
+  }
+}
+
+void PairsState::arm(std::uint32_t number, bool heard, bool first, double surprise) {
+  if (!heard) {
+    pairs_[number].sum.value = 0;
+  } else if (first) {
+    arming_[number].add(surprise, arming_numbers_);
+    pairs_[number].armed = arming_[number].armed();
+  }
+}
+
+void PairsState::restart() {
+  for (std::uint32_t number = 0; number < pairs_.size(); ++number) {
+    clear(number);
+    arming_[number] = {};
+  }
+}
+
+void PairsState::capAt(const std::vector<double>& limits) {
+  has_limits_ = true;
+  for (std::size_t number = 0; number < pairs_.size(); ++number) {
+    pairs_[number].sum.capAt(limits[track_of_[number]], numbers_);
+  }
+}
+
+void PairsState::closeWindow(const Heard& heard, std::vector<double>& evidence) {
+  for (std::uint32_t number = 0; number < pairs_.size(); ++number) {
+    Pair& pair = pairs_[number];
+    if (has_limits_ && arming_[number].accepts(pair.sum.isAbnormal(numbers_), heard.windowEnd(),
+                                               arming_numbers_)) {
+      clear(number);
+    }
+    evidence[track_of_[number]] = pair.armed ? pair.sum.value : 0;
+  }
+}
+
+void PairsState::explain(std::size_t track, const Heard& heard, const RecentEvents& events,
+                         Suspect& suspect) const {
+  const Model& model = expected_.model();
+  const EventId to = suspect.id;
+  const EventId from = model.tracks()[track].from;
+  const auto place = std::find(track_of_.begin(), track_of_.end(), track);
+  const Pair& pair = pairs_[static_cast<std::size_t>(place - track_of_.begin())];
+  DelaySum sum;
+  sum.cap = pair.sum.cap;
+  std::vector<SeenDelay> seen;
+  std::optional<std::int64_t> since;  // stamp of the last `from`, until a `to` comes after it
+  std::optional<std::int64_t> last;   // stamp of the last `to`
+  for (const RecentEvents::Remembered& event : events.of(from, to)) {
+    if (event.id == from) {
+      since = event.stamp;
+      continue;
+    }
+    if (since) {
+      const std::int64_t delay = std::max<std::int64_t>(event.stamp - *since, 0);
+      const double step =
+          sum.add((*pair.surprise)(delay), event.stalled ? 0.0 : 1.0, 1.0,
+                  numbers_.shareOfRegime(last ? event.stamp - *last : 0), numbers_);
+      seen.push_back({event.stamp, static_cast<double>(delay), step});
+      since.reset();
+    }
+    last = event.stamp;
+  }
+  suspect.other = toString(model.vocabulary().at(from));
+  suspect.usual_shortest = 1e-9 * model.usualDelay(from, to, 0.05);
+  suspect.usual_longest = 1e-9 * model.usualDelay(from, to, 0.95);
+  describeDelays(seen, sum.cap, model.usualDelay(from, to, 0.5), heard.windowEnd(), suspect);
+}
+
+}  // namespace
+
+// Of every event type the predecessors that say most of it, those with a reason first. The others
+// fill the places that are left: recordings of the calibration may give them a reason.
+std::vector<Track> Pairs::watch(const Choice& choice) const {
+  std::vector<Track> tracks;
+  for (EventId to = 0; to < choice.both.size(); ++to) {
+    std::vector<std::tuple<bool, double, EventId>> best;
+    for (EventId from = 0; from < choice.both.size(); ++from) {
+      const double gain = choice.gains(from, to);
+      if (from != to && gain >= choice.tuning.least_gain &&
+          static_cast<double>(choice.both.total(from, to)) >=
+              choice.tuning.fewest_delays_of_pair) {
+        best.emplace_back(!choice.relations.delays(from, to).watched, -gain, from);
+      }
+    }
+    std::sort(best.begin(), best.end());
+    best.resize(std::min(best.size(), static_cast<std::size_t>(choice.tuning.predecessors)));
+    for (const auto& [waits, gain, from] : best) {
+      tracks.push_back({this, to, from});
+    }
+  }
+  return tracks;
+}
+
+std::unique_ptr<const Expectation> Pairs::expect(const Model& model, const Halves& halves,
+                                                 std::vector<std::size_t> tracks) const {
+  return std::make_unique<ExpectedPairs>(model, halves, std::move(tracks));
+}
+
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,69 @@
+#include "core/evidence/channel/scorer.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace self_awareness::core::evidence {
+namespace {
+
+constexpr double kForEver = 9e18;  // [ns]
+
+}  // namespace
+
+Scorer::Scorer(std::shared_ptr<const Model> model, std::int64_t window)
+    : model_(std::move(model)),
+      heard_(model_->size(), window, model_->longestSilence(), model_->tuning()),
+      state_of_(model_->tracks().size()),
+      evidence_(model_->tracks().size(), 0) {
+  for (const auto& expectation : model_->expectations()) {
+    for (const std::size_t track : expectation->tracks()) {
+      state_of_[track] = states_.size();
+    }
+    states_.push_back(expectation->start());
+    if (states_.back()->listens()) {
+      listening_.push_back(states_.back().get());
+    }
+  }
+  for (EventId id = 0; id < model_->size(); ++id) {
+    gone_after_.push_back(static_cast<std::int64_t>(std::min(
+        model_->tuning().gone_gaps * static_cast<double>(model_->longestGap(id)), kForEver)));
+  }
+}
+
+void Scorer::capAt(const Limits& limits) {
+  for (const auto& state : states_) {
+    state->capAt(limits.tracks);
+  }
+}
+
+void Scorer::restart() {
+  heard_.restart();
+  std::fill(evidence_.begin(), evidence_.end(), 0);
+  for (const auto& state : states_) {
+    state->restart();
+  }
+}
+
+void Scorer::disarm(EventId id) {
+  for (const auto& state : states_) {
+    state->disarm(id);
+  }
+}
+
+const std::vector<double>& Scorer::closeWindow(std::int64_t end) {
+  heard_.closeWindow(end);
+  for (const auto& state : states_) {
+    state->closeWindow(heard_, evidence_);
+  }
+  return evidence_;
+}
+
+bool Scorer::isCertain(std::size_t track, double limit) const {
+  return stateOf(track).isCertain(track, limit, heard_);
+}
+
+void Scorer::explain(std::size_t track, const RecentEvents& events, Suspect& suspect) const {
+  stateOf(track).explain(track, heard_, events, suspect);
+}
+
+}  // namespace self_awareness::core::evidence

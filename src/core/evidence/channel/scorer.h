@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/evidence/channel/channel.h"
+#include "self_awareness/core/evidence/channel/model.h"
+
+namespace self_awareness::core::evidence {
+
+/// Collects the evidence of every track from the events of one recording (docs/method.md, section
+/// 3): it holds what was heard, and the state of every channel.
+class Scorer {
+ public:
+  /// @param window length [ns] of the windows that rates are counted in
+  Scorer(std::shared_ptr<const Model> model, std::int64_t window);
+
+  /// Lets the channels know their limits.
+  void capAt(const Limits& limits);
+
+  /// @param event ignored if the model does not know its id
+  /// @return delay since the last event of the same type [ns], if there was one
+  std::optional<std::int64_t> add(const Event& event) {
+    if (event.id >= gone_after_.size()) {
+      return std::nullopt;
+    }
+    const Heard::Arrival arrival = heard_.begin(event);
+    stalled_ = arrival.stalled;
+    for (ChannelState* const channel : listening_) {
+      channel->add(arrival, heard_);
+    }
+    std::optional<std::int64_t> gap;
+    if (arrival.last > 0) {
+      gap = event.stamp - arrival.last_stamp;
+      if (*gap > gone_after_[event.id]) {
+        disarm(event.id);
+      }
+    }
+    heard_.end(arrival);
+    return gap;
+  }
+  /// Closes a window.
+  /// @param end of the window [ns]
+  /// @return evidence by track; 0: none
+  const std::vector<double>& closeWindow(std::int64_t end);
+  /// Forgets what was seen: a new recording starts, or the clock was set.
+  void restart();
+
+  const Model& model() const { return *model_; }
+  const Heard& heard() const { return heard_; }
+  /// Whether the event that was added last may have waited while the whole robot stood still.
+  bool stalled() const { return stalled_; }
+  /// Whether a track that is beyond its limit is so beyond all doubt.
+  bool isCertain(std::size_t track, double limit) const;
+  /// Why an event type is a suspect, as a track says it.
+  void explain(std::size_t track, const RecentEvents& events, Suspect& suspect) const;
+
+ private:
+  void disarm(EventId id);
+  const ChannelState& stateOf(std::size_t track) const { return *states_[state_of_[track]]; }
+
+  std::shared_ptr<const Model> model_;
+  Heard heard_;
+  std::vector<std::unique_ptr<ChannelState>> states_;
+  std::vector<ChannelState*> listening_;  // those of them that need events
+  std::vector<std::size_t> state_of_;     // index of its state, by track
+  std::vector<std::int64_t> gone_after_;  // a longer gap [ns] is that of a restart, by id
+  std::vector<double> evidence_;          // by track
+  bool stalled_ = false;
+};
+
+}  // namespace self_awareness::core::evidence

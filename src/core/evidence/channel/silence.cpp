@@ -1,0 +1,73 @@
+#include "core/evidence/channel/silence.h"
+
+#include "self_awareness/core/evidence/channel/model.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+class SilenceState : public ChannelState {
+ public:
+  SilenceState(const Model& model, const std::vector<std::size_t>& tracks)
+      : model_(model),
+        tracks_(tracks),
+        confirmation_(toNanoseconds(model.tuning().confirmation)) {}
+
+  void closeWindow(const Heard& heard, std::vector<double>& evidence) override {
+    for (const std::size_t track : tracks_) {
+      const EventId id = model_.tracks()[track].to;
+      evidence[track] = heard.hasSeen(id) ? model_.overdue(id, heard.age(id)) : 0;
+    }
+  }
+  bool isCertain(std::size_t track, double limit, const Heard& heard) const override {
+    const EventId id = model_.tracks()[track].to;
+    return model_.overdue(id, heard.age(id) - confirmation_) > limit;
+  }
+  void explain(std::size_t /*track*/, const Heard& heard, const RecentEvents& /*events*/,
+               Suspect& suspect) const override {
+    const EventId id = suspect.id;
+    suspect.reason = Suspect::Reason::kSilent;
+    suspect.silence = toSeconds(heard.silence(id));
+    suspect.usual_shortest = model_.usualDelay(id, id, kUsualFrom) * 1e-9;
+    suspect.usual_longest = model_.usualDelay(id, id, kUsualTo) * 1e-9;
+    suspect.usual_gap = model_.meanGap(id) * 1e-9;
+    suspect.longest_gap = toSeconds(model_.longestGap(id));
+  }
+
+ private:
+  const Model& model_;
+  const std::vector<std::size_t>& tracks_;
+  std::int64_t confirmation_;  // [ns]
+};
+
+class ExpectedSilence : public Expectation {
+ public:
+  ExpectedSilence(const Model& model, std::vector<std::size_t> tracks)
+      : Expectation(std::move(tracks)), model_(model) {}
+
+  std::unique_ptr<ChannelState> start() const override {
+    return std::make_unique<SilenceState>(model_, tracks());
+  }
+  double leastLimit(std::size_t /*track*/) const override { return 0; }
+
+ private:
+  const Model& model_;
+};
+
+}  // namespace
+
+std::vector<Track> Silence::watch(const Choice& choice) const {
+  std::vector<Track> tracks;
+  for (EventId id = 0; id < choice.both.size(); ++id) {
+    if (choice.isJudged(id)) {
+      tracks.push_back({this, id, id});
+    }
+  }
+  return tracks;
+}
+
+std::unique_ptr<const Expectation> Silence::expect(const Model& model, const Halves& /*halves*/,
+                                                   std::vector<std::size_t> tracks) const {
+  return std::make_unique<ExpectedSilence>(model, std::move(tracks));
+}
+
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,22 @@
+#pragma once
+
+#include "core/evidence/channel/channel.h"
+
+namespace self_awareness::core::evidence {
+
+/// Overdue (docs/method.md, section 3.2): an event type that should have come by now. Evidence
+/// [nat] is -log of the probability, at a random moment of normal operation, that the last one is
+/// so long ago.
+class Silence : public Channel {
+ public:
+  std::string name() const override { return "overdue"; }
+  Finding finding() const override { return Finding::kSilent; }
+  std::vector<Track> watch(const Choice& choice) const override;
+  std::unique_ptr<const Expectation> expect(const Model& model, const Halves& /*halves*/,
+                                            std::vector<std::size_t> tracks) const override;
+  Margins margins(const Tuning& tuning) const override {
+    return {tuning.least_margin, tuning.most_gap_margin};
+  }
+};
+
+}  // namespace self_awareness::core::evidence

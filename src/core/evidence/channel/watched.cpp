@@ -1,0 +1,66 @@
+#include "self_awareness/core/evidence/channel/watched.h"
+
+#include <stdexcept>
+
+#include "core/evidence/channel/channels.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+/// The counts of one half, with the event types of both and the same ids.
+Statistics withTypes(const Statistics& first, const Statistics& second, const Statistics& counts) {
+  Statistics all;
+  for (const Statistics* half : {&first, &second}) {
+    for (const EventType& type : half->vocabulary().types()) {
+      all.intern(type);
+    }
+  }
+  all.merge(counts);
+  return all;
+}
+
+std::vector<Statistics::Pair> pairsOf(const std::vector<Track>& tracks, std::size_t types) {
+  std::vector<Statistics::Pair> pairs;
+  for (EventId id = 0; id < types; ++id) {
+    pairs.push_back({id, id});  // the gaps between two of a type
+  }
+  for (const Track& track : tracks) {
+    pairs.push_back({track.from, track.to});
+  }
+  return pairs;
+}
+
+}  // namespace
+
+Watched watch(const Statistics& first, const Statistics& second, const SourceGraph& graph,
+              const Tuning& tuning) {
+  if (first.vocabulary().types() != second.vocabulary().types()) {
+    return watch(withTypes(first, second, first), withTypes(first, second, second), graph, tuning);
+  }
+  Statistics both = first;
+  both.merge(second);
+  const Gains gains({&first, &second}, tuning.fewest_delays);
+  const Relations relations(both, graph, tuning);
+  const Choice choice{both, gains, relations, tuning};
+  Watched watched;
+  watched.tuning = tuning;
+  for (const Channel* channel : channels()) {
+    if (tuning.isOn(channel->name())) {
+      const std::vector<Track> tracks = channel->watch(choice);
+      watched.tracks.insert(watched.tracks.end(), tracks.begin(), tracks.end());
+    }
+  }
+  const std::vector<Statistics::Pair> pairs = pairsOf(watched.tracks, first.size());
+  watched.halves = {first.only(pairs), second.only(pairs)};
+  return watched;
+}
+
+void checkTracks(const std::vector<Track>& tracks, std::size_t types) {
+  for (const Track& track : tracks) {
+    if (track.channel == nullptr || track.to >= types || track.from >= types) {
+      throw std::invalid_argument("it watches an event type that it does not have");
+    }
+  }
+}
+
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,200 @@
+#include "core/evidence/limits/limit_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <set>
+#include <utility>
+
+#include "core/evidence/channel/channels.h"
+#include "core/evidence/count/starts.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+constexpr double kHour = 3600e9;  // [ns]
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+double hoursOf(std::uint64_t windows, std::int64_t window) {
+  return static_cast<double>(windows) * static_cast<double>(window) / kHour;
+}
+
+double sumOf(const std::vector<Part>& parts) {
+  double hours = 0;
+  for (const Part& part : parts) {
+    hours += part.hours;
+  }
+  return hours;
+}
+
+/// False alarms an hour that limits are made for. By the training alone, they promise one in so
+/// many times the time that was seen at best.
+double budgetOf(const LimitFinder::Findings& findings, const LimitFinder::Parameters& parameters,
+                double most_of_training) {
+  std::uint64_t windows = 0;
+  for (const LimitFinder::Recording& recording : findings) {
+    if (!recording.trained_on) {
+      return parameters.false_alarms_per_hour;
+    }
+    windows += recording.windows;
+  }
+  return std::max(parameters.false_alarms_per_hour,
+                  1 / (most_of_training * hoursOf(windows, parameters.window)));
+}
+
+/// Number of pools that share the budget: silences have three.
+double numberOfPools() {
+  std::set<std::string> labels;
+  for (const Channel* channel : channels()) {
+    labels.insert(channel->finding() == Finding::kSilent ? "" : channel->label());
+  }
+  return static_cast<double>(labels.size() + 2);
+}
+
+}  // namespace
+
+LimitSearch::LimitSearch(const Model& model, const LimitFinder::Findings& findings,
+                         const std::vector<Relation>& relations,
+                         const LimitFinder::Parameters& parameters)
+    : model_(model),
+      tuning_(model.tuning()),
+      parameters_(parameters),
+      limits_(model.tracks().size(), kNone) {
+  gatherParts(findings);
+  std::map<Pool, std::vector<Seen>> pools;
+  for (std::size_t track = 0; track < model_.tracks().size(); ++track) {
+    if (relations[track].watched) {
+      auto [pool, seen] = seenBy(track);
+      pools[pool].push_back(std::move(seen));
+    }
+  }
+  const double share = budgetOf(findings, parameters, tuning_.most_of_training) / numberOfPools();
+  for (const auto& [pool, tracks] : pools) {
+    search(pool.first, tracks, share);
+  }
+}
+
+void LimitSearch::gatherParts(const LimitFinder::Findings& findings) {
+  const std::vector<Statistics::Recording>& training = model_.statistics().recordings();
+  std::vector<Span> spans;
+  for (const Statistics::Recording& recording : training) {
+    spans.push_back({recording.start, recording.end, recording.robot_start});
+  }
+  for (const LimitFinder::Recording& recording : findings) {
+    spans.push_back({recording.start, recording.end, recording.robot_start});
+  }
+  const std::vector<std::size_t> starts = startsOf(spans, toNanoseconds(tuning_.same_start));
+  for (std::size_t k = 0; k < training.size(); ++k) {
+    with_gaps_.push_back(
+        {starts[k], static_cast<double>(training[k].end - training[k].start) / kHour});
+  }
+  for (std::size_t k = 0; k < findings.size(); ++k) {
+    for (const LimitFinder::Recording::Part& part : findings[k].parts) {
+      const Part hours{starts[training.size() + k], hoursOf(part.windows, parameters_.window)};
+      judged_.push_back(hours);
+      judged_parts_.push_back(&part);
+      if (!findings[k].trained_on) {
+        with_gaps_.push_back(hours);
+        gap_parts_.push_back(&part);
+      }
+    }
+  }
+}
+
+std::pair<LimitSearch::Pool, LimitSearch::Seen> LimitSearch::seenBy(std::size_t track) const {
+  Seen seen{track, model_.leastLimit(track), {}};
+  if (model_.finding(track) == Finding::kSilent) {
+    seen.largest = gapsOf(model_.tracks()[track].to);
+    return {{kindOfGaps(seen), ""}, seen};
+  }
+  for (const LimitFinder::Recording::Part* part : judged_parts_) {
+    seen.largest.push_back(part->evidence[track]);
+  }
+  return {{Kind::kEvidence, channelLabel(model_.tracks()[track])}, seen};
+}
+
+std::vector<double> LimitSearch::gapsOf(EventId id) const {
+  std::vector<double> longest;
+  for (const Statistics::Recording& recording : model_.statistics().recordings()) {
+    longest.push_back(
+        id < recording.longest_gaps.size() ? static_cast<double>(recording.longest_gaps[id]) : 0);
+  }
+  for (const LimitFinder::Recording::Part* part : gap_parts_) {
+    longest.push_back(static_cast<double>(part->longest_gaps[id]));
+  }
+  // Windows tell ages no better than this, and hiccups of a host add to a gap, however long.
+  for (double& gap : longest) {
+    gap += gap > 0 ? window() : 0;
+  }
+  return longest;
+}
+
+LimitSearch::Kind LimitSearch::kindOfGaps(const Seen& seen) const {
+  const double mean_gap = model_.meanGap(model_.tracks()[seen.track].to);
+  std::vector<double> sorted = seen.largest;
+  std::sort(sorted.rbegin(), sorted.rend());
+  const double second = sorted.size() > 1 && sorted[1] > 0 ? sorted[1] : sorted[0];
+  return second - window() >= tuning_.regular * mean_gap ? Kind::kOthers
+         : mean_gap < tuning_.fast * window()            ? Kind::kFastTimers
+                                                         : Kind::kTimers;
+}
+
+void LimitSearch::search(Kind kind, const std::vector<Seen>& tracks, double share) {
+  const bool timers = kind == Kind::kTimers || kind == Kind::kFastTimers;
+  const bool gaps = kind != Kind::kEvidence;
+  HeldOut held_out(gaps ? with_gaps_ : judged_, timers ? tuning_.scale_of_timers : tuning_.scale,
+                   tuning_);
+  for (const Seen& seen : tracks) {
+    held_out.add(seen.largest, seen.least);
+  }
+  const Margins margins = model_.tracks()[tracks.front().track].channel->margins(tuning_);
+  const double margin = std::min(held_out.margin(share, margins.least), margins.most);
+  double rate_of_tails = 0;
+  for (const Seen& seen : tracks) {
+    // A track that would have raised an alarm had its worst start been left out gets a wider
+    // limit.
+    const double own = gaps ? margin
+                            : std::max(margin, std::min(held_out.excess(seen.largest, seen.least),
+                                                        tuning_.most_own_margin));
+    const double largest = *std::max_element(seen.largest.begin(), seen.largest.end());
+    const double found =
+        std::max(seen.least, own * std::max(largest, tuning_.share_of_least * seen.least));
+    double& limit = limits_[seen.track];
+    if (!gaps) {
+      limit = model_.expectation(seen.track).isUsable(seen.track, found) ? found : kNone;
+      continue;
+    }
+    double age = found - window();
+    const GapTail tail = tailOf(seen);
+    if (kind == Kind::kOthers) {
+      age = std::max(age, std::min(tail.age(share / static_cast<double>(tracks.size())),
+                                   tuning_.most_tail_margin * (largest - window())));
+    }
+    limit = limitOfAge(seen.track, age);
+    rate_of_tails += std::isnan(limit) ? 0 : tail.rate(age);
+  }
+  const double rate = held_out.rate(margin);
+  rate_ += kind == Kind::kOthers ? std::min(rate, rate_of_tails) : rate;
+}
+
+double LimitSearch::limitOfAge(std::size_t track, double age) const {
+  const EventId id = model_.tracks()[track].to;
+  // What comes when something happens may stay away for as long as nothing does.
+  const bool irregular =
+      age > tuning_.longest_wait * 1e9 && age > tuning_.most_mean_gaps * model_.meanGap(id);
+  return irregular ? kNone : model_.overdue(id, std::llround(age));
+}
+
+GapTail LimitSearch::tailOf(const Seen& seen) const {
+  const EventId id = model_.tracks()[seen.track].to;
+  Statistics::Type gaps = model_.statistics().type(id);
+  for (const LimitFinder::Recording::Part* part : gap_parts_) {
+    gaps.addGap(part->longest_gaps[id]);
+  }
+  return {gaps.longest_gaps, sumOf(with_gaps_), tuning_.regular * model_.meanGap(id),
+          static_cast<std::size_t>(tuning_.tail_gaps)};
+}
+
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/evidence/limits/gap_tail.h"
+#include "core/evidence/limits/held_out.h"
+#include "self_awareness/core/evidence/channel/model.h"
+#include "self_awareness/core/evidence/limits/limits.h"
+
+namespace self_awareness::core::evidence {
+
+/// Finds the limits of a model's tracks from what recordings of normal operation showed
+/// (docs/method.md, sections 5.2 and 5.3). LimitFinder gathers that.
+class LimitSearch {
+ public:
+  /// @param model must outlive this, as the findings and the relations must
+  /// @param relations by track; those that are not watched get no limit
+  LimitSearch(const Model& model, const LimitFinder::Findings& findings,
+              const std::vector<Relation>& relations, const LimitFinder::Parameters& parameters);
+
+  /// Limits by track; NaN: not judged.
+  const std::vector<double>& limits() const { return limits_; }
+  /// False alarms an hour to be expected of all tracks.
+  double rate() const { return rate_; }
+
+ private:
+  /// Tracks whose values exceed those of other recordings in the same way share what they show:
+  /// silences of fast timers, of other timers, and of what comes irregularly; else those of
+  /// channels with one label.
+  enum class Kind { kFastTimers, kTimers, kOthers, kEvidence };
+  using Pool = std::pair<Kind, std::string>;
+  /// A track and its largest values.
+  struct Seen {
+    std::size_t track = 0;
+    double least = 0;             // limit
+    std::vector<double> largest;  // by part
+  };
+
+  void gatherParts(const LimitFinder::Findings& findings);
+  /// What a track showed, and the pool that it belongs to.
+  std::pair<Pool, Seen> seenBy(std::size_t track) const;
+  /// Longest gaps by part [ns], as long as windows can tell them.
+  std::vector<double> gapsOf(EventId id) const;
+  Kind kindOfGaps(const Seen& seen) const;
+  void search(Kind kind, const std::vector<Seen>& tracks, double share);
+  /// Limit of a silence [ns].
+  double limitOfAge(std::size_t track, double age) const;
+  /// Of the gaps of training and of the recordings.
+  GapTail tailOf(const Seen& seen) const;
+  double window() const { return static_cast<double>(parameters_.window); }
+
+  const Model& model_;
+  const Tuning& tuning_;
+  const LimitFinder::Parameters& parameters_;
+  // Of the training, the gaps of each recording are known; the other evidence only where its
+  // recordings were judged by each other.
+  std::vector<Part> judged_;
+  std::vector<const LimitFinder::Recording::Part*> judged_parts_;
+  std::vector<Part> with_gaps_;  // the recordings of the training first
+  std::vector<const LimitFinder::Recording::Part*> gap_parts_;
+
+  std::vector<double> limits_;
+  double rate_ = 0;
+};
+
+}  // namespace self_awareness::core::evidence

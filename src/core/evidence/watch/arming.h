@@ -1,0 +1,80 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "self_awareness/core/evidence/tuning.h"
+#include "self_awareness/core/stream/event.h"
+
+namespace self_awareness::core::evidence {
+
+/// Whether what is watched counts (docs/method.md, section 3.6). Independent timers keep one phase
+/// as long as they run, and have another one in every run: training may have met the same one by
+/// chance every time. So a relation counts only after it has once been as in training. What is
+/// different for long, and stable, has changed: it is news once, and then must be as in training
+/// again.
+class Arming {
+ public:
+  /// The numbers that all have in common.
+  struct Numbers {
+    explicit Numbers(const Tuning& tuning)
+        : events(static_cast<std::uint32_t>(tuning.arming_events)),
+          most_failures(static_cast<std::uint32_t>(tuning.most_failures)),
+          usual(tuning.usual_surprise),
+          accept_after(toNanoseconds(tuning.accept_after)) {}
+
+    std::uint32_t events;
+    std::uint32_t most_failures;
+    double usual;               // largest mean surprise that is as in training
+    std::int64_t accept_after;  // [ns]
+  };
+
+  bool armed() const { return armed_; }
+  /// Whether it once was not as in training, since the start.
+  bool failed() const { return failures_ > 0; }
+  void arm() { armed_ = true; }
+  /// Takes in one event of what is not armed; every block of events that is not as in training
+  /// doubles the next one.
+  void add(double surprise, const Numbers& numbers) {
+    excess_ += surprise;
+    const std::uint64_t needed = std::uint64_t{numbers.events}
+                                 << std::min(failures_, numbers.most_failures);
+    if (++events_ < needed) {
+      return;
+    }
+    armed_ = excess_ <= numbers.usual * static_cast<double>(needed);
+    failures_ += armed_ ? 0 : 1;
+    excess_ = 0;
+    events_ = 0;
+  }
+  /// It must be as in training once more: one of its event types was gone.
+  void disarm() { *this = Arming(failures_); }
+  /// Takes in a window.
+  /// @param abnormal whether it is beyond its limit
+  /// @param end of the window [ns]
+  /// @return whether it has changed for good: it is disarmed
+  bool accepts(bool abnormal, std::int64_t end, const Numbers& numbers) {
+    if (!armed_ || !abnormal) {
+      abnormal_since_ = 0;
+    } else if (abnormal_since_ == 0) {
+      abnormal_since_ = end;
+    } else if (end - abnormal_since_ >= numbers.accept_after) {
+      *this = Arming(failures_ + 1);
+      return true;
+    }
+    return false;
+  }
+
+  Arming() = default;
+
+ private:
+  explicit Arming(std::uint32_t failures) : failures_(failures) {}
+
+  double excess_ = 0;  // of the last events over the mean in training
+  std::uint32_t events_ = 0;
+  std::uint32_t failures_ = 0;
+  bool armed_ = false;
+  std::int64_t abnormal_since_ = 0;  // [ns]; 0: it is normal
+};
+
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,36 @@
+#include "core/evidence/watch/heard.h"
+
+namespace self_awareness::core::evidence {
+
+Heard::Heard(std::size_t types, std::int64_t window, std::int64_t longest_silence,
+             const Tuning& tuning)
+    : counts_(types, rateWindows(window)),
+      stalls_(longest_silence, tuning),
+      stamps_(types, 0),
+      first_stamps_(types, 0),
+      numbers_(types, 0) {}
+
+void Heard::restart() {
+  counts_.restart();
+  stalls_.restart();
+  stamps_.assign(stamps_.size(), 0);
+  first_stamps_.assign(stamps_.size(), 0);
+  numbers_.assign(stamps_.size(), 0);
+  number_ = 0;
+}
+
+void Heard::closeWindow(std::int64_t end) {
+  window_end_ = end;
+  counts_.close();
+  stalls_.closeWindow(end, number_ > 0);
+}
+
+std::optional<std::uint32_t> Heard::rate(EventId id) const {
+  // A topic that began within the span has too few for that reason alone.
+  const bool valid = counts_.full() && hasSeen(id) &&
+                     window_end_ - first_stamps_[id] >= kRateSpan &&
+                     !stalls_.disturbsRates(window_end_);
+  return valid ? std::optional<std::uint32_t>(recentCount(id)) : std::nullopt;
+}
+
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/evidence/watch/stalls.h"
+#include "self_awareness/core/evidence/count/statistics.h"
+#include "self_awareness/core/evidence/tuning.h"
+#include "self_awareness/core/stream/event.h"
+#include "self_awareness/core/stream/recent_counts.h"
+
+namespace self_awareness::core::evidence {
+
+/// What was heard of a recording so far, as all channels need it: who came when last, how often,
+/// and whether the whole robot stood still (docs/method.md, sections 1.4 and 3.6).
+class Heard {
+ public:
+  /// @param types number of event types
+  /// @param window length [ns] of the windows that rates are counted in
+  /// @param longest_silence that is usual: the longest time without any event in training [ns]
+  Heard(std::size_t types, std::int64_t window, std::int64_t longest_silence,
+        const Tuning& tuning);
+
+  /// The event that is taken in: what it is to those before.
+  struct Arrival {
+    std::int64_t stamp = 0;  ///< [ns]
+    EventId id = 0;
+    std::uint64_t last = 0;       ///< number of the event of its type before it; 0: there was none
+    std::int64_t last_stamp = 0;  ///< of that one [ns]; its own if there was none
+    bool stalled = false;         ///< it may have waited while the whole robot stood still
+  };
+  /// Begins to take in an event; the channels see it before end() does.
+  Arrival begin(const Event& event) {
+    counts_.add(event.id);
+    start_ = number_ == 0 ? event.stamp : start_;
+    stalls_.add(event.stamp, number_ > 0);
+    const std::uint64_t last = numbers_[event.id];
+    return {event.stamp, event.id, last, last > 0 ? stamps_[event.id] : event.stamp,
+            stalls_.holdsBack(event.stamp)};
+  }
+  void end(const Arrival& arrival) {
+    if (arrival.last == 0) {
+      first_stamps_[arrival.id] = arrival.stamp;
+    }
+    stamps_[arrival.id] = arrival.stamp;
+    numbers_[arrival.id] = ++number_;
+  }
+  void closeWindow(std::int64_t end);
+  /// Forgets what was heard: a new recording starts, or the clock was set.
+  void restart();
+
+  /// Stamps of the last events [ns], by id.
+  const std::int64_t* stamps() const { return stamps_.data(); }
+  /// Numbers of the last events in the recording, from 1, by id; 0: there was none.
+  const std::uint64_t* numbers() const { return numbers_.data(); }
+  bool hasSeen(EventId id) const { return numbers_.at(id) > 0; }
+  /// Stamp of the last event of a type [ns]; none before the first.
+  std::optional<std::int64_t> lastSeen(EventId id) const {
+    return hasSeen(id) ? std::optional<std::int64_t>(stamps_[id]) : std::nullopt;
+  }
+  /// Stamp of the first event of the recording [ns].
+  std::int64_t start() const { return start_; }
+  /// End of the window that was closed last [ns].
+  std::int64_t windowEnd() const { return window_end_; }
+  /// Time since the last event of a type, at the end of the last window [ns]; 0 before the first.
+  std::int64_t silence(EventId id) const { return hasSeen(id) ? window_end_ - stamps_[id] : 0; }
+  /// The same without the time in which the whole robot stood still: then nobody's silence grows.
+  std::int64_t age(EventId id) const {
+    return hasSeen(id) ? silence(id) - stalls_.standstillSince(stamps_[id], window_end_) : 0;
+  }
+  /// Events of a type in the last kRateSpan; none where that says nothing: since the start, or the
+  /// first event of the type, less time has passed, or the robot stood still.
+  std::optional<std::uint32_t> rate(EventId id) const;
+  /// Events of a type in the last kRateSpan.
+  std::uint32_t recentCount(EventId id) const { return counts_.counts().at(id); }
+
+ private:
+  RecentCounts counts_;
+  Stalls stalls_;
+  std::int64_t start_ = 0;                  // [ns], once there was an event
+  std::vector<std::int64_t> stamps_;        // of the last event [ns], by id
+  std::vector<std::int64_t> first_stamps_;  // of the first event since the start [ns], by id
+  std::vector<std::uint64_t> numbers_;      // of the last event in the recording, by id; 0: none
+  std::uint64_t number_ = 0;
+  std::int64_t window_end_ = 0;  // [ns]
+};
+
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,35 @@
+#include "core/evidence/watch/stalls.h"
+
+#include <algorithm>
+
+#include "self_awareness/core/evidence/count/statistics.h"
+#include "self_awareness/core/stream/event.h"
+
+namespace self_awareness::core::evidence {
+
+Stalls::Stalls(std::int64_t longest_silence, const Tuning& tuning)
+    : usual_(std::max(toNanoseconds(tuning.longest_usual_stall * toSeconds(longest_silence)),
+                      toNanoseconds(tuning.shortest_stall))),
+      longest_(toNanoseconds(tuning.longest_stall)),
+      between_(toNanoseconds(tuning.between_stalls)) {}
+
+void Stalls::restart() {
+  last_stamp_ = now_ = at_ = until_ = 0;
+}
+
+void Stalls::closeWindow(std::int64_t end, bool heard) {
+  // While all are silent, none is more so than the others.
+  const std::int64_t silence = heard ? end - last_stamp_ : 0;
+  now_ = silence > usual_ && silence <= longest_ ? silence : 0;
+}
+
+std::int64_t Stalls::standstillSince(std::int64_t stamp, std::int64_t end) const {
+  const bool over = now_ > 0 || end >= until_ + kRateSpan || stamp > from_;
+  return over ? now_ : at_ - from_;
+}
+
+bool Stalls::disturbsRates(std::int64_t end) const {
+  return now_ > 0 || (at_ > 0 && end < until_ + kRateSpan);
+}
+
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,77 @@
+#include "version_of_bag.h"
+
+#include <rosbag/exceptions.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "../text.h"
+#include "open_bag.h"
+#include "self_awareness/ros/bag/bag_reader.h"
+#include "self_awareness/ros/bag/read_file_version.h"
+#include "stored_messages.h"
+
+namespace self_awareness::ros1 {
+namespace {
+
+constexpr std::size_t kLongestKind = 32;  // of a stranger's text in an error [bytes]
+
+bool tellsVersion(const Connection& connection) {
+  return connection.topic == kVersionTopic && holds<self_awareness::FileVersion>(connection);
+}
+
+/// The same, not checked against what this version reads.
+self_awareness::FileVersion versionOfKind(const std::string& path, const BagIndex& index,
+                                          const FileKind& kind) {
+  const std::optional<self_awareness::FileVersion> version = versionOfBag(path, index);
+  if (version && version->kind != kind.name) {
+    throw BagError(path + ": no " + kind.name +
+                   ", but by its own words: " + printable(version->kind, kLongestKind));
+  }
+  return version.value_or(firstVersionOf(kind));
+}
+
+}  // namespace
+
+bool tellVersion(const std::vector<Connection>& connections) {
+  return std::any_of(connections.begin(), connections.end(), tellsVersion);
+}
+
+std::optional<self_awareness::FileVersion> versionOfBag(const std::string& path,
+                                                        const BagIndex& index) {
+  if (!tellVersion(index.connections)) {
+    return std::nullopt;
+  }
+  const auto first =
+      std::find_if(index.entries.begin(), index.entries.end(), [&](const BagIndexEntry& entry) {
+        return tellsVersion(index.connections[entry.connection]);
+      });
+  if (first == index.entries.end()) {
+    return std::nullopt;
+  }
+  try {
+    return StoredMessages(path, index).read<self_awareness::FileVersion>(*first);
+  } catch (const rosbag::BagException& error) {
+    throw BagError(path + ": what it says of its version is damaged (" + error.what() + ")");
+  } catch (const std::invalid_argument& error) {
+    throw BagError(path + ": what it says of its version is damaged (" + error.what() + ")");
+  } catch (const std::bad_alloc&) {
+    throw BagError(path + ": what it says of its version is damaged");
+  }
+}
+
+self_awareness::FileVersion checkedVersion(const std::string& path, const BagIndex& index,
+                                           const FileKind& kind) {
+  self_awareness::FileVersion version = versionOfKind(path, index, kind);
+  const std::string problem = whyTooNew(version, kind);
+  if (!problem.empty()) {
+    throw BagError(path + ": " + problem);
+  }
+  return version;
+}
+
+self_awareness::FileVersion readFileVersion(const std::string& path, const FileKind& kind) {
+  return versionOfKind(path, openBag(path), kind);
+}
+
+}  // namespace self_awareness::ros1

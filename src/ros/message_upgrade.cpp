@@ -1,0 +1,209 @@
+#include "message_upgrade.h"
+
+#include <algorithm>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "message_cursor.h"
+#include "text.h"
+
+namespace self_awareness::ros1 {
+namespace {
+
+constexpr std::size_t kLongestQuote = 64;  // of a stranger's text in an error [bytes]
+
+[[noreturn]] void fail(const std::string& what) {
+  throw std::invalid_argument(what);
+}
+
+std::string quote(const std::string& text) {
+  return printable(text, kLongestQuote);
+}
+
+}  // namespace
+
+/// From the one layout of a type to the other.
+struct MessageUpgrade::Layout {
+  /// A field of the new layout.
+  struct Field {
+    std::optional<std::size_t> piece;        // of the old message; none: it lacks the field
+    std::vector<std::uint8_t> blank;         // takes its place then
+    std::shared_ptr<const Layout> elements;  // none: the piece is copied as it is
+    bool is_array = false;
+    std::optional<std::uint32_t> length;  // of the array; none: the message says it
+  };
+
+  std::vector<MessageSteps> pieces;  // of the old message, in its order
+  std::vector<Field> fields;         // in the new order
+  bool takes_bytes = false;          // each old message of this type
+};
+
+class MessageUpgrade::Builder {
+ public:
+  Builder(const MessageDefinition& from, const MessageDefinition& to) : from_(from), to_(to) {}
+
+  std::shared_ptr<const Layout> layoutOf(const std::string& type) const {
+    auto layout = std::make_shared<Layout>();
+    std::vector<MessageSteps> steps = from_.stepsOf(type);  // bounds their number
+    const MessageDefinition::Lines& old = from_.linesOf(type);
+    std::vector<std::optional<std::size_t>> taken(old.size());  // index in the new fields
+    for (const MessageDefinition::Line& line : to_.linesOf(type)) {
+      const auto same = std::find_if(old.begin(), old.end(),
+                                     [&](const auto& each) { return each.name == line.name; });
+      if (same != old.end()) {
+        taken[static_cast<std::size_t>(same - old.begin())] = layout->fields.size();
+        layout->fields.push_back(fieldFrom(type, *same, line));
+      } else {
+        layout->fields.emplace_back();
+        appendBlank(line, layout->fields.back().blank);
+      }
+    }
+    // What is left out is crossed together with what is left out before it: a field that takes no
+    // byte must take no time.
+    bool open = false;
+    for (std::size_t k = 0; k < old.size(); ++k) {
+      layout->takes_bytes = layout->takes_bytes || !steps[k].empty();
+      if (taken[k]) {
+        layout->fields[*taken[k]].piece = layout->pieces.size();
+        layout->pieces.push_back(std::move(steps[k]));
+        open = false;
+      } else if (!steps[k].empty()) {
+        if (!std::exchange(open, true)) {
+          layout->pieces.emplace_back();
+        }
+        MessageSteps& piece = layout->pieces.back();
+        std::move(steps[k].begin(), steps[k].end(), std::back_inserter(piece));
+      }
+    }
+    return layout;
+  }
+
+ private:
+  Layout::Field fieldFrom(const std::string& type, const MessageDefinition::Line& old,
+                          const MessageDefinition::Line& line) const {
+    if (old.type != line.type || old.array != line.array) {
+      fail("field " + line.name + " of " + type + " is of the type " +
+           quote(old.type + old.array) + " in the file, and here " + line.type + line.array);
+    }
+    Layout::Field field;
+    if (!sameLayout(line.type)) {
+      field.elements = layoutOf(line.type);
+      field.is_array = !line.array.empty();
+      if (field.is_array && line.array != "[]") {
+        field.length = static_cast<std::uint32_t>(std::stoul(line.array.substr(1)));
+      }
+    }
+    return field;
+  }
+
+  // Follows the new definition, which ends, however deep the old one goes.
+  bool sameLayout(const std::string& type) const {
+    if (MessageDefinition::isBuiltIn(type)) {
+      return true;
+    }
+    const MessageDefinition::Lines& lines = to_.linesOf(type);
+    return from_.linesOf(type) == lines &&
+           std::all_of(lines.begin(), lines.end(),
+                       [this](const auto& line) { return sameLayout(line.type); });
+  }
+
+  void appendBlank(const MessageDefinition::Line& line, std::vector<std::uint8_t>& blank) const {
+    if (line.array == "[]") {
+      blank.resize(blank.size() + sizeof(std::uint32_t));
+      return;
+    }
+    const std::size_t number = line.array.empty() ? 1 : std::stoul(line.array.substr(1));
+    for (std::size_t k = 0; k < number; ++k) {
+      appendBlank(line.type, blank);
+    }
+  }
+
+  void appendBlank(const std::string& type, std::vector<std::uint8_t>& blank) const {
+    if (type == "string") {
+      blank.resize(blank.size() + sizeof(std::uint32_t));
+    } else if (MessageDefinition::isBuiltIn(type)) {
+      blank.resize(blank.size() + MessageDefinition::sizeOf(type));
+    } else {
+      for (const MessageDefinition::Line& line : to_.linesOf(type)) {
+        appendBlank(line, blank);
+      }
+    }
+  }
+
+  const MessageDefinition& from_;
+  const MessageDefinition& to_;
+};
+
+class MessageUpgrade::Writer {
+ public:
+  void append(const Layout& layout, MessageCursor& cursor) {
+    std::vector<std::string_view> pieces;
+    pieces.reserve(layout.pieces.size());
+    for (const MessageSteps& steps : layout.pieces) {
+      const std::string_view before = cursor.rest();
+      cursor.cross(steps, [](std::string_view /*passed*/) {});
+      pieces.push_back(before.substr(0, before.size() - cursor.rest().size()));
+    }
+    for (const Layout::Field& field : layout.fields) {
+      if (!field.piece) {
+        append(field.blank.data(), field.blank.size());
+      } else if (field.elements) {
+        append(field, pieces[*field.piece]);
+      } else {
+        append(pieces[*field.piece].data(), pieces[*field.piece].size());
+      }
+    }
+  }
+
+  std::vector<std::uint8_t> take() { return std::move(bytes_); }
+
+ private:
+  void append(const Layout::Field& field, std::string_view piece) {
+    MessageCursor cursor(reinterpret_cast<const std::uint8_t*>(piece.data()), piece.size());
+    std::uint32_t elements = 1;
+    if (field.is_array) {
+      elements = field.length ? *field.length : cursor.number<std::uint32_t>();
+      if (!field.length) {
+        append(&elements, sizeof elements);
+      }
+      if (elements > 0 && !field.elements->takes_bytes) {
+        fail("an array in it has elements without any field");
+      }
+    }
+    for (std::uint32_t k = 0; k < elements; ++k) {
+      append(*field.elements, cursor);
+    }
+  }
+
+  void append(const void* data, std::size_t size) {
+    if (bytes_.size() + size > MessageDefinition::kLargestMessage) {
+      fail("it is larger than a message can be");
+    }
+    const auto* begin = static_cast<const std::uint8_t*>(data);
+    bytes_.insert(bytes_.end(), begin, begin + size);
+  }
+
+  std::vector<std::uint8_t> bytes_;
+};
+
+MessageUpgrade::MessageUpgrade(const MessageDefinition& from, const MessageDefinition& to)
+    : layout_(Builder(from, to).layoutOf(to.datatype())) {}
+
+std::vector<std::uint8_t> MessageUpgrade::apply(const std::uint8_t* data, std::size_t size) const {
+  MessageCursor cursor(data, size);
+  Writer writer;
+  try {
+    writer.append(*layout_, cursor);
+  } catch (const std::out_of_range&) {
+    fail("a length in it is wrong");
+  }
+  if (!cursor.atEnd()) {
+    fail("there is more in it than belongs to it");
+  }
+  return writer.take();
+}
+
+}  // namespace self_awareness::ros1

@@ -1,0 +1,81 @@
+#include "model_upgrade.h"
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "check.h"
+#include "self_awareness/Track.h"
+#include "self_awareness/core/evidence/channel/track.h"
+#include "self_awareness/ros/file_version.h"
+
+namespace self_awareness::ros1 {
+namespace {
+
+/// Removes from a table with a column for each track those of the tracks that do not stay.
+template <typename Value>
+void removeColumns(const std::vector<bool>& stays, std::vector<Value>& table) {
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < table.size(); ++k) {
+    if (stays[k % stays.size()]) {
+      table[kept++] = std::move(table[k]);
+    }
+  }
+  table.resize(kept);
+}
+
+/// Name of the channel of a track; empty: it went with its rule.
+std::string nameInFormat1(const self_awareness::Track& track) {
+  static const std::map<std::uint8_t, std::string> kNames{
+      {0, "overdue"}, {1, "fewer"}, {2, "more"}, {6, "deadlines"}};
+  constexpr std::uint8_t kDelays = 3;
+  if (track.channel == kDelays) {
+    return track.to_id == track.from_id ? "own gaps" : "pairs";
+  }
+  const auto name = kNames.find(track.channel);
+  return name == kNames.end() ? "" : name->second;
+}
+
+}  // namespace
+
+void upgrade(self_awareness::Model& message, std::uint32_t format) {
+  if (format == 1) {
+    for (self_awareness::Track& track : message.tracks) {
+      track.name = nameInFormat1(track);
+    }
+  }
+  if (format != kModelFile.format) {
+    const std::vector<std::string> channels = core::evidence::channelNames();
+    removeOtherTracks(message, {channels.begin(), channels.end()});
+  }
+}
+
+void removeOtherTracks(self_awareness::Model& message, const std::set<std::string>& channels) {
+  std::vector<bool> stays;
+  for (const self_awareness::Track& track : message.tracks) {
+    stays.push_back(channels.count(track.name) > 0);
+  }
+  if (std::all_of(stays.begin(), stays.end(), [](bool stay) { return stay; })) {
+    return;
+  }
+  const std::size_t tracks = stays.size();
+  removeColumns(stays, message.tracks);
+  for (self_awareness::RecordingFindings& findings : message.findings) {
+    check(findings.evidence.size() == findings.part_windows.size() * tracks &&
+              findings.said.size() == tracks,
+          "its findings do not fit its tracks");
+    removeColumns(stays, findings.evidence);
+    removeColumns(stays, findings.said);
+  }
+  for (self_awareness::EvidenceCalibration& calibration : message.evidence_calibration) {
+    check(calibration.limits.size() == tracks, "its limits are not those of its evidence");
+    check(calibration.relations.empty() || calibration.relations.size() == tracks,
+          "its relations are not those of its evidence");
+    removeColumns(stays, calibration.limits);
+    removeColumns(stays, calibration.relations);
+  }
+}
+
+}  // namespace self_awareness::ros1

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstdint>
+#include <set>
+#include <string>
+
+#include "self_awareness/Model.h"
+
+namespace self_awareness::ros1 {
+
+/// Gives the message of a model file of another format the meaning that it has in this one. The
+/// bytes were laid out anew already (MessageUpgrade): fields that the file lacks are zero or
+/// empty.
+/// @param format of the file; 1: it says nothing
+/// @throw std::invalid_argument as removeOtherTracks()
+void upgrade(self_awareness::Model& message, std::uint32_t format);
+
+/// Removes what is watched on channels of other names, and all that is said by track: in findings,
+/// limits and relations.
+/// @throw std::invalid_argument if what is said by track does not fit the tracks
+void removeOtherTracks(self_awareness::Model& message, const std::set<std::string>& channels);
+
+}  // namespace self_awareness::ros1

@@ -1,0 +1,334 @@
+#include "core/evidence/blame/blame.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../recordings.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+using Reason = Suspect::Reason;
+
+// A comes at random, about every 200 ms, B 20 ms after it, and C often.
+Events robot(std::int64_t length, unsigned seed) {
+  const Events asked = irregular(kA, 0, length, 200 * kMillisecond, seed);
+  return together({asked, answers(kB, asked, 20 * kMillisecond),
+                   irregular(kC, 0, length, 30 * kMillisecond, seed + 100)});
+}
+
+class EvidenceBlameTest : public testing::Test {
+ protected:
+  EvidenceBlameTest() {
+    for (const Event& event : robot(10 * kSecond, 3)) {
+      add(event);
+    }
+  }
+  void add(const Event& event) {
+    scorer_.add(event);
+    hindsight_.add(event);
+    last_ = event.stamp;
+  }
+  // Names the suspects when tracks have reached these shares of their limits.
+  std::vector<Suspect> suspects(const std::vector<std::pair<Track, double>>& reached,
+                                std::int64_t end, const Window& window = {}) {
+    std::vector<double> shares(model_->tracks().size(), 0);
+    for (const auto& [track, share] : reached) {
+      shares.at(indexOf(model_->tracks(), track.channel, track.to, track.from)) = share;
+    }
+    scorer_.closeWindow(end);
+    return Blame(model_, graph_).suspects(shares, scorer_, hindsight_, window);
+  }
+  static std::vector<EventId> ids(const std::vector<Suspect>& suspects) {
+    std::vector<EventId> ids;
+    ids.reserve(suspects.size());
+    for (const Suspect& suspect : suspects) {
+      ids.push_back(suspect.id);
+    }
+    return ids;
+  }
+  static Track overdue(EventId id) { return {Channel::kOverdue, id, id}; }
+
+  std::shared_ptr<const Model> model_ = std::make_shared<Model>(
+      watch(countsOf({robot(100 * kSecond, 1)}), countsOf({later(robot(100 * kSecond, 2))})));
+  std::shared_ptr<SourceGraph> graph_ = std::make_shared<SourceGraph>();
+  Scorer scorer_{model_, kWindow};
+  Hindsight hindsight_{model_};
+  std::int64_t last_ = 0;
+};
+
+TEST_F(EvidenceBlameTest, NoEvidenceNamesNoSuspect) {
+  EXPECT_TRUE(suspects({}, last_ + kWindow).empty());
+}
+
+TEST_F(EvidenceBlameTest, WithoutAGraphTheLeastProbableSilenceComesFirst) {
+  const std::int64_t end = last_ + 5 * kSecond;
+  ASSERT_LT(model_->logSurvival(kC, end - *scorer_.lastSeen(kC)),
+            model_->logSurvival(kA, end - *scorer_.lastSeen(kA)));
+  const std::vector<Suspect> named = suspects({{overdue(kA), 1.5}, {overdue(kC), 1.2}}, end);
+  EXPECT_EQ(ids(named), (std::vector<EventId>{kC, kA}));
+  for (const Suspect& suspect : named) {
+    EXPECT_EQ(suspect.reason, Reason::kSilent);
+    EXPECT_NEAR(suspect.silence, 5, 0.5);
+    EXPECT_LT(suspect.usual_shortest, suspect.usual_longest);
+  }
+}
+
+TEST_F(EvidenceBlameTest, SaysOfASilentOneWhatWasMeasuredInTraining) {
+  const Suspect silent = suspects({{overdue(kA), 1.5}}, last_ + 5 * kSecond).at(0);
+  EXPECT_DOUBLE_EQ(silent.usual_gap * 1e9, model_->meanGap(kA));
+  EXPECT_DOUBLE_EQ(silent.longest_gap * 1e9, static_cast<double>(model_->longestGap(kA)));
+  char text[100];
+  std::snprintf(text, sizeof text, "silent for %.2f s, usually every %.3f s, at most %.3f s",
+                silent.silence, silent.usual_gap, silent.longest_gap);
+  EXPECT_EQ(describe(silent), text);
+}
+
+TEST_F(EvidenceBlameTest, TheRootOfTheSilentComesBeforeItsVictims) {
+  graph_->connect("/a", "/a/out", "/b");
+  graph_->connect("/b", "/b/out", "/c");
+  const std::vector<Suspect> named =
+      suspects({{overdue(kA), 1.1}, {overdue(kB), 1.5}, {overdue(kC), 3}}, last_ + 5 * kSecond);
+  EXPECT_EQ(ids(named), (std::vector<EventId>{kA, kB, kC}));
+}
+
+TEST_F(EvidenceBlameTest, InALoopTheShorterWayDecides) {
+  graph_->connect("/b", "/b/out", "/a");
+  graph_->connect("/a", "/a/out", "/c");
+  graph_->connect("/c", "/c/out", "/b");
+  const std::int64_t end = last_ + 5 * kSecond;
+  EXPECT_EQ(ids(suspects({{overdue(kC), 1.5}, {overdue(kA), 1.5}}, end)),
+            (std::vector<EventId>{kA, kC}));
+  EXPECT_EQ(ids(suspects({{overdue(kA), 1.5}, {overdue(kB), 1.5}}, end)),
+            (std::vector<EventId>{kB, kA}));
+}
+
+TEST_F(EvidenceBlameTest, ARootThatIsNearItsLimitIsNamedAlready) {
+  graph_->connect("/a", "/a/out", "/b");
+  const std::int64_t end = last_ + 5 * kSecond;
+  const std::vector<Suspect> named = suspects({{overdue(kA), 0.8}, {overdue(kB), 1.5}}, end);
+  EXPECT_EQ(ids(named), (std::vector<EventId>{kA, kB}));
+  EXPECT_FALSE(named[0].abnormal);
+  EXPECT_TRUE(named[1].abnormal);
+}
+
+TEST_F(EvidenceBlameTest, ASilentOneIsWordedByTheTrackThatSpeaksAgainstIt) {
+  const std::int64_t end = last_ + 2 * model_->longestGap(kA);
+  ASSERT_LT(model_->logSurvival(kA, end - *scorer_.lastSeen(kA)),
+            std::log(model_->tuning().rare_silence));
+  const Track fewer{Channel::kFewer, kA, kA};
+  const Track answer{Channel::kAnswer, kB, kA};
+  // At half its rate its age is rare, too, but no more than that.
+  EXPECT_EQ(suspects({{overdue(kA), 0.9}, {fewer, 1.4}}, end).at(0).reason, Reason::kRate);
+  EXPECT_EQ(suspects({{overdue(kA), 0.9}, {fewer, 0.8}}, end).at(0).reason, Reason::kSilent);
+  EXPECT_EQ(suspects({{overdue(kA), 1.1}, {fewer, 1.4}}, end).at(0).reason, Reason::kSilent);
+  EXPECT_EQ(suspects({{overdue(kB), 0.9}, {answer, 1.2}}, end).at(0).reason, Reason::kAnswer);
+}
+
+TEST_F(EvidenceBlameTest, LateAnswersAreWordedByWhatTheirSumSaw) {
+  for (int i = 0; i < 12; ++i) {
+    const std::int64_t stamp = last_ + 100 * kMillisecond;
+    add({stamp, kA});
+    add({stamp + 70 * kMillisecond, kB});
+  }
+  const Suspect late = suspects({{{Channel::kDelay, kB, kA}, 1.5}}, last_ + kMillisecond).at(0);
+  EXPECT_EQ(describe(late),
+            "50.0 ms later than usual 12 times of 12 after /a /x T in the last 1.9 s, usually "
+            "0.020 s");
+}
+
+TEST_F(EvidenceBlameTest, AnswersThatAreLeftOutAreWordedByWhatTheirSumSaw) {
+  for (int i = 0; i < 12; ++i) {
+    add({last_ + 100 * kMillisecond, kA});
+    if (i % 3 == 2) {
+      add({last_ + 20 * kMillisecond, kB});
+    }
+  }
+  const Suspect silent = suspects({{{Channel::kAnswer, kB, kA}, 1.5}}, last_).at(0);
+  EXPECT_EQ(describe(silent),
+            "left out 8 times of 11 after /a /x T in the last 1.2 s, usually never");
+}
+
+TEST_F(EvidenceBlameTest, ALateAnswererIsNamedBeforeTheOneThatAsks) {
+  const std::vector<Suspect> named = suspects({{{Channel::kDelay, kB, kA}, 1.5}}, last_ + kWindow);
+  ASSERT_EQ(ids(named), std::vector<EventId>{kB});
+  EXPECT_EQ(named.front().reason, Reason::kDelay);
+  EXPECT_EQ(named.front().other, toString(kTypes[kA]));
+  EXPECT_NEAR(named.front().delay, 0.020, 1e-9);
+  EXPECT_NEAR(named.front().usual_shortest, 0.020, 0.004);
+}
+
+// A asks, B answers after 20 ms, and C answers B after 30 ms.
+Events chain(std::int64_t start, std::int64_t length, std::int64_t delay, unsigned seed) {
+  const Events asked = irregular(kA, start, start + length, 200 * kMillisecond, seed);
+  const Events relayed = answers(kB, asked, delay);
+  return together({asked, relayed, answers(kC, relayed, 30 * kMillisecond)});
+}
+
+class EvidenceBlameOfAChainTest : public EvidenceBlameTest {
+ protected:
+  EvidenceBlameOfAChainTest() {
+    Watched watched = watch(countsOf({chain(0, 100 * kSecond, 20 * kMillisecond, 1)}),
+                            countsOf({chain(kStart, 100 * kSecond, 20 * kMillisecond, 2)}));
+    model_ = std::make_shared<Model>(watched);
+    scorer_ = Scorer(model_, kWindow);
+    hindsight_ = Hindsight(model_);
+    for (const Event& event : chain(0, 20 * kSecond, 20 * kMillisecond, 3)) {
+      add(event);
+    }
+  }
+  void addLate() {
+    for (const Event& event :
+         chain(last_ + 100 * kMillisecond, 2 * kSecond, 80 * kMillisecond, 4)) {
+      add(event);
+    }
+  }
+  static Track delay(EventId to, EventId from) { return {Channel::kDelay, to, from}; }
+};
+
+TEST_F(EvidenceBlameOfAChainTest, TheOneWhoseDelayGrewComesBeforeWhoFollowsItAsUsual) {
+  addLate();
+  const std::vector<Suspect> named =
+      suspects({{delay(kB, kA), 1.1}, {delay(kC, kA), 1.9}}, last_ + kMillisecond);
+  EXPECT_EQ(ids(named), (std::vector<EventId>{kB, kC}));
+}
+
+TEST_F(EvidenceBlameOfAChainTest, WhoDoesNotFollowAsUsualIsToBlameItself) {
+  addLate();
+  const std::vector<Suspect> named = suspects(
+      {{delay(kB, kA), 1.1}, {delay(kC, kA), 1.9}, {delay(kC, kB), 1.5}}, last_ + kMillisecond);
+  EXPECT_EQ(ids(named), (std::vector<EventId>{kC, kB}));
+}
+
+TEST_F(EvidenceBlameOfAChainTest, TheOneBetweenIsNamedEvenIfItsOwnDelaysAreNotJudged) {
+  addLate();
+  const std::vector<Suspect> named = suspects({{delay(kC, kA), 1.5}}, last_ + kMillisecond);
+  ASSERT_EQ(ids(named), (std::vector<EventId>{kB, kC}));
+  EXPECT_FALSE(named[0].abnormal);
+  EXPECT_EQ(named[0].other, toString(kTypes[kA]));
+  EXPECT_NEAR(named[0].delay, 0.080, 1e-9);
+}
+
+TEST_F(EvidenceBlameOfAChainTest, WhoIsInTimeIsNotNamedBetween) {
+  const std::vector<Suspect> named = suspects({{delay(kC, kA), 1.5}}, last_ + kMillisecond);
+  EXPECT_EQ(ids(named), std::vector<EventId>{kC});
+}
+
+TEST_F(EvidenceBlameOfAChainTest, WithoutAGraphTheRootOfTheSilentIsWhoIsFollowed) {
+  const std::vector<Suspect> named =
+      suspects({{overdue(kC), 3}, {overdue(kB), 1.5}, {overdue(kA), 1.1}}, last_ + 5 * kSecond);
+  EXPECT_EQ(ids(named), (std::vector<EventId>{kA, kB, kC}));
+}
+
+TEST_F(EvidenceBlameOfAChainTest, WhoIsToBlameForASilenceComesBeforeIt) {
+  // A goes on, at another rate, and C has answered.
+  const std::int64_t end = *scorer_.lastSeen(kC) + 2 * model_->longestGap(kC);
+  const std::vector<Suspect> named =
+      suspects({{overdue(kC), 0.9}, {{Channel::kFewer, kB, kB}, 1.5}}, end);
+  EXPECT_EQ(ids(named), (std::vector<EventId>{kB, kC}));
+}
+
+TEST_F(EvidenceBlameTest, AComponentThatLeavesAnswersOutIsNamed) {
+  const std::vector<Suspect> named =
+      suspects({{{Channel::kAnswer, kB, kA}, 1.5}}, last_ + kWindow);
+  ASSERT_EQ(ids(named), std::vector<EventId>{kB});
+  EXPECT_EQ(named.front().reason, Reason::kAnswer);
+  EXPECT_EQ(named.front().other, toString(kTypes[kA]));
+}
+
+TEST_F(EvidenceBlameTest, ATypeThatComesTooOftenIsNamedWithNumbers) {
+  const std::vector<Suspect> named = suspects({{{Channel::kMore, kC, kC}, 1.5}}, last_ + kWindow);
+  ASSERT_EQ(ids(named), std::vector<EventId>{kC});
+  EXPECT_EQ(named.front().reason, Reason::kRate);
+  EXPECT_EQ(named.front().events, scorer_.recentCount(kC));
+  EXPECT_DOUBLE_EQ(named.front().usual_most, model_->usualCount(kC, 2));
+}
+
+TEST_F(EvidenceBlameTest, SilentOnesComeBeforeUnusualOnes) {
+  const std::vector<Suspect> named =
+      suspects({{{Channel::kMore, kC, kC}, 2}, {overdue(kA), 1.1}}, last_ + 5 * kSecond);
+  EXPECT_EQ(ids(named), (std::vector<EventId>{kA, kC}));
+}
+
+TEST_F(EvidenceBlameTest, OwnFaultsCountMoreThanDelaysAfterOthers) {
+  // B's delays after A are unusual because A comes at another rate.
+  const std::vector<Suspect> named = suspects(
+      {{{Channel::kDelay, kB, kA}, 1.9}, {{Channel::kMore, kA, kA}, 1.1}}, last_ + kWindow);
+  EXPECT_EQ(ids(named), (std::vector<EventId>{kA, kB}));
+}
+
+TEST_F(EvidenceBlameTest, UnknownEventsAreNamedLast) {
+  Window window;
+  for (const EventId id : {5U, 4U, 5U}) {
+    window.events.push_back({{last_, id}, true, std::nullopt});
+  }
+  window.events.push_back({{last_, kA}, false, std::nullopt});
+  const std::vector<Suspect> named = suspects({{overdue(kA), 1.5}}, last_ + 5 * kSecond, window);
+  ASSERT_EQ(ids(named), (std::vector<EventId>{kA, 5, 4}));
+  EXPECT_EQ(named[1].reason, Reason::kUnknown);
+  EXPECT_EQ(named[1].events, 2U);
+  EXPECT_EQ(named[2].events, 1U);
+}
+
+TEST_F(EvidenceBlameTest, NoMoreThanFiveAreNamed) {
+  Window window;
+  for (EventId id = 10; id < 20; ++id) {
+    window.events.push_back({{last_, id}, true, std::nullopt});
+  }
+  EXPECT_EQ(suspects({}, last_ + kWindow, window).size(), kMostSuspects);
+}
+
+TEST_F(EvidenceBlameTest, FurtherComponentsFollowIfTheirEvidenceAloneIsAbnormal) {
+  Statistics counts;
+  for (const std::string name : {"/a", "/b", "/c", "/d", "/e", "/e", "/f", "/g"}) {
+    counts.intern({name, "/topic" + std::to_string(counts.size()), "T"});
+  }
+  Events events;
+  for (EventId id = 0; id < counts.size(); ++id) {
+    events = together({events, timer(id, 0, 100 * kSecond, (90 + 10 * id) * kMillisecond)});
+  }
+  Trainer trainer(counts, kWindow);
+  for (const Event& event : events) {
+    trainer.add(event);
+  }
+  model_ = std::make_shared<Model>(watch(counts, {}));
+  scorer_ = Scorer(model_, kWindow);
+  hindsight_ = Hindsight(model_);
+  for (const Event& event : events) {
+    add(event);
+  }
+  std::vector<std::pair<Track, double>> reached;
+  for (EventId id = 0; id < counts.size(); ++id) {
+    reached.emplace_back(overdue(id), id == 6 ? 0.9 : 1.5);
+  }
+  // The shortest gaps first; 5 is another type of a component that is named, 6 is near its limit.
+  const std::vector<Suspect> named = suspects(reached, last_ + 3 * kSecond);
+  EXPECT_EQ(ids(named), (std::vector<EventId>{0, 1, 2, 3, 4, 7}));
+  EXPECT_EQ(named.back().component, "/g");
+  EXPECT_TRUE(named.back().abnormal);
+}
+
+TEST_F(EvidenceBlameTest, ATopicIsNamedIfItsSenderIsNotKnown) {
+  Statistics counts;
+  for (const EventType& type : kTypes) {
+    counts.intern({"", type.scope, type.type});
+  }
+  Trainer trainer(counts, kWindow);
+  for (const Event& event : robot(100 * kSecond, 1)) {
+    trainer.add(event);
+  }
+  model_ = std::make_shared<Model>(watch(counts, {}));
+  graph_->connect("/x", "/x/out", "/z");
+  const std::vector<Suspect> named =
+      suspects({{overdue(kA), 1.5}, {overdue(kC), 1.5}}, last_ + 5 * kSecond);
+  EXPECT_EQ(ids(named), (std::vector<EventId>{kA, kC}));
+}
+
+}  // namespace
+}  // namespace self_awareness::core::evidence

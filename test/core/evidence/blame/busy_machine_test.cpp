@@ -1,0 +1,102 @@
+#include "core/evidence/blame/busy_machine.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "../recordings.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+constexpr EventId kComponents = 9;
+
+// All at random but the last one, which answers the first one.
+Events robot(std::int64_t start, unsigned seed) {
+  Events events;
+  for (EventId id = 0; id + 1 < kComponents; ++id) {
+    const Events its = irregular(id, start, start + 60 * kSecond, 200 * kMillisecond, seed + id);
+    events = together({events, its});
+    if (id == 0) {
+      events = together({events, answers(kComponents - 1, its, 20 * kMillisecond)});
+    }
+  }
+  return events;
+}
+
+class BusyMachineTest : public testing::Test {
+ protected:
+  BusyMachineTest() {
+    for (const Event& event : robot(0, 300)) {
+      scorer_.add(event);
+    }
+    scorer_.closeWindow(60 * kSecond);
+  }
+  static std::vector<EventType> types() {
+    std::vector<EventType> types;
+    for (EventId id = 0; id < kComponents; ++id) {
+      const std::string name = "/c" + std::to_string(id);
+      types.push_back({name, name + "/out", "T"});
+    }
+    return types;
+  }
+  // The components from `first` on have these shares of their limits.
+  std::optional<Busy> at(double share, EventId first, EventId number, bool abnormal = true,
+                         Channel channel = Channel::kFewer) {
+    std::vector<double> shares(model_->tracks().size(), 0);
+    for (EventId id = first; id < first + number; ++id) {
+      shares.at(indexOf(model_->tracks(), channel, id, id)) = share;
+    }
+    return machine_.closeWindow(shares, scorer_, abnormal);
+  }
+
+  std::shared_ptr<const Model> model_ = std::make_shared<Model>(
+      watch(countsOf({robot(0, 100)}, types()), countsOf({robot(kStart, 200)}, types())));
+  Scorer scorer_{model_, kWindow};
+  BusyMachine machine_{model_};
+};
+
+TEST_F(BusyMachineTest, ManyThatAreLateAtOnceHaveABusyMachine) {
+  EXPECT_FALSE(at(1.2, 1, 3));
+  const std::optional<Busy> busy = at(1.2, 1, 5);
+  ASSERT_TRUE(busy);
+  EXPECT_EQ(describe(*busy), "the machine may be busy: 5 of 9 components are late");
+  EXPECT_EQ(describe(*busy, "load 7.9 on 2 cores"),
+            "the machine may be busy (load 7.9 on 2 cores): 5 of 9 components are late");
+}
+
+TEST_F(BusyMachineTest, ItIsBusyForAsLongAsManyAreLate) {
+  EXPECT_FALSE(at(0.6, 1, 5));
+  EXPECT_TRUE(at(1.2, 1, 5));
+  EXPECT_TRUE(at(0.6, 1, 5, false));
+  EXPECT_TRUE(at(0.6, 3, 4, false));
+  EXPECT_FALSE(at(0.4, 1, 5, false));
+  EXPECT_FALSE(at(0.6, 1, 5, false));
+}
+
+TEST_F(BusyMachineTest, ItIsNotWhileAllAreWithinTheirLimits) {
+  EXPECT_FALSE(at(0.9, 1, 7, false));
+  EXPECT_TRUE(at(0.9, 1, 7));
+  machine_.restart();
+  EXPECT_FALSE(at(0.9, 1, 7, false));
+}
+
+TEST_F(BusyMachineTest, WhoIsSilentIsNotLate) {
+  EXPECT_FALSE(at(1.2, 0, kComponents, true, Channel::kOverdue));
+}
+
+TEST_F(BusyMachineTest, WhoFollowsAnotherAsUsualIsNoFurtherOne) {
+  ASSERT_TRUE(isWatched(model_->tracks(), Channel::kDelay, kComponents - 1, 0));
+  std::vector<double> shares(model_->tracks().size(), 0);
+  for (const EventId id : {0U, 1U, 2U, kComponents - 1}) {
+    shares.at(indexOf(model_->tracks(), Channel::kFewer, id, id)) = 1.2;
+  }
+  EXPECT_FALSE(machine_.closeWindow(shares, scorer_, true));
+  shares.at(indexOf(model_->tracks(), Channel::kFewer, 3, 3)) = 1.2;
+  ASSERT_TRUE(machine_.closeWindow(shares, scorer_, true));
+}
+
+}  // namespace
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,217 @@
+#include "core/evidence/blame/never_heard.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "../recordings.h"
+#include "self_awareness/core/evidence/judge.h"
+#include "self_awareness/core/verdict/detector.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+constexpr std::int64_t kSettle = 5 * kSecond;
+constexpr std::int64_t kPeriod = 200 * kMillisecond;
+
+// A robot of which A and B start at once, and C so much later; without it where that is none.
+Events start(std::optional<std::int64_t> c_starts, unsigned seed,
+             std::int64_t length = 60 * kSecond) {
+  return together({irregular(kA, 0, length, kPeriod, seed),
+                   irregular(kB, 50 * kMillisecond, length, kPeriod, seed + 1),
+                   c_starts ? irregular(kC, *c_starts, length, kPeriod, seed + 2) : Events{}});
+}
+
+class NeverHeardTest : public testing::Test {
+ protected:
+  void train(const std::vector<Events>& first, const std::vector<Events>& second) {
+    model_ = std::make_shared<Model>(watch(countsOf(first), countsOf(second)));
+  }
+  NeverHeard neverHeard(const Limits& limits = {}) const {
+    return NeverHeard(*model_, limits, graph_);
+  }
+  // The share after so much time in which only A was heard.
+  static double shareAt(NeverHeard& never_heard, std::int64_t now) {
+    never_heard.closeWindow(now, kSettle);
+    return never_heard.share();
+  }
+  static std::vector<EventId> named(const NeverHeard& never_heard) {
+    std::vector<EventId> ids;
+    for (const Suspect& suspect : never_heard.suspects()) {
+      ids.push_back(suspect.id);
+    }
+    return ids;
+  }
+
+  std::shared_ptr<const Model> model_;
+  std::shared_ptr<SourceGraph> graph_ = std::make_shared<SourceGraph>();
+};
+
+TEST_F(NeverHeardTest, WhatComesLateAsAlwaysIsNormalAndWhatDoesNotComeIsNot) {
+  train({start(14400 * kMillisecond, 1)}, {start(14600 * kMillisecond, 7)});
+  NeverHeard never_heard = neverHeard();
+  never_heard.add({0, kA});
+  never_heard.add({50 * kMillisecond, kB});
+  EXPECT_EQ(shareAt(never_heard, 34 * kSecond), 0);  // due after 2 * 14.6 + 5 s
+  const double due = shareAt(never_heard, 34300 * kMillisecond);
+  EXPECT_GT(due, 0);
+  EXPECT_LT(due, 1);
+  ASSERT_EQ(never_heard.suspects().size(), 1U);
+  const Suspect suspect = never_heard.suspects().front();
+  EXPECT_EQ(suspect.id, kC);
+  EXPECT_EQ(describe(suspect), "not heard since the start, usually within 14.4 to 14.6 s");
+  EXPECT_NEAR(suspect.silence, 34.3, 1e-9);
+  EXPECT_EQ(suspect.component, "/c");
+  EXPECT_FALSE(suspect.abnormal);
+  EXPECT_LT(shareAt(never_heard, 136 * kSecond), 1);  // four times as late
+  EXPECT_GT(shareAt(never_heard, 137 * kSecond), 1);
+  EXPECT_TRUE(never_heard.suspects().front().abnormal);
+  never_heard.add({138 * kSecond, kC});
+  EXPECT_EQ(shareAt(never_heard, 139 * kSecond), 0);
+  EXPECT_TRUE(never_heard.suspects().empty());
+}
+
+TEST_F(NeverHeardTest, WhatComesAtOnceHasTimeUntilItIsDue) {
+  train({start(0, 1)}, {start(0, 7)});
+  NeverHeard never_heard = neverHeard();
+  never_heard.add({0, kA});
+  EXPECT_EQ(shareAt(never_heard, 5 * kSecond), 0);
+  EXPECT_GT(shareAt(never_heard, 6 * kSecond), 0);
+  EXPECT_EQ(named(never_heard), (std::vector<EventId>{kB, kC}));
+  EXPECT_LT(shareAt(never_heard, 64 * kSecond), 1);  // at least 60 s after that
+  EXPECT_GT(shareAt(never_heard, 66 * kSecond), 1);
+}
+
+TEST_F(NeverHeardTest, ALongSettlingTimeIsWaitedFor) {
+  train({start(0, 1)}, {start(0, 7)});
+  NeverHeard never_heard = neverHeard();
+  never_heard.add({0, kA});
+  never_heard.closeWindow(30 * kSecond, 30 * kSecond);
+  EXPECT_EQ(never_heard.share(), 0);
+  never_heard.closeWindow(30 * kSecond + 1, 30 * kSecond);
+  EXPECT_GT(never_heard.share(), 0);
+}
+
+TEST_F(NeverHeardTest, WhatCameInSomeRecordingsOnlyIsNotExpected) {
+  train({start(0, 1), start(std::nullopt, 4)}, {start(0, 7)});
+  NeverHeard never_heard = neverHeard();
+  never_heard.add({0, kA});
+  shareAt(never_heard, 600 * kSecond);
+  EXPECT_EQ(named(never_heard), std::vector<EventId>{kB});
+}
+
+TEST_F(NeverHeardTest, WhatIsSlowHasTwiceItsLongestGap) {
+  const Events slow = timer(kC, 0, 1200 * kSecond, 30 * kSecond);
+  train({together({start(std::nullopt, 1, 1200 * kSecond), slow})},
+        {together({start(std::nullopt, 7, 1200 * kSecond), slow})});
+  NeverHeard never_heard = neverHeard();
+  never_heard.add({0, kA});
+  never_heard.add({0, kB});
+  EXPECT_EQ(shareAt(never_heard, 60 * kSecond), 0);
+  EXPECT_GT(shareAt(never_heard, 61 * kSecond), 0);
+}
+
+TEST_F(NeverHeardTest, TooFewGapsSayNothing) {
+  const Events rare = timer(kC, 0, 15 * kSecond, kSecond);  // 14 gaps in each half
+  train({together({start(std::nullopt, 1), rare})}, {together({start(std::nullopt, 7), rare})});
+  NeverHeard never_heard = neverHeard();
+  never_heard.add({0, kA});
+  shareAt(never_heard, 600 * kSecond);
+  EXPECT_EQ(named(never_heard), std::vector<EventId>{kB});
+}
+
+TEST_F(NeverHeardTest, RecordingsOfTheCalibrationCountToo) {
+  train({start(7180, 1)}, {start(0, 7)});
+  Limits limits;
+  limits.firsts = {0, -1, 20 * kSecond};  // in one, B did not come
+  NeverHeard never_heard = neverHeard(limits);
+  never_heard.add({0, kA});
+  EXPECT_EQ(shareAt(never_heard, 45 * kSecond), 0);
+  EXPECT_GT(shareAt(never_heard, 46 * kSecond), 0);
+  EXPECT_EQ(named(never_heard), std::vector<EventId>{kC});
+  EXPECT_EQ(describe(never_heard.suspects().front()),
+            "not heard since the start, usually within 0 to 20 s");
+}
+
+TEST_F(NeverHeardTest, TheFirstEventOfAnyIdIsTheStart) {
+  train({start(0, 1)}, {start(0, 7)});
+  NeverHeard never_heard = neverHeard();
+  EXPECT_EQ(shareAt(never_heard, 1000 * kSecond), 0);
+  never_heard.add({1000 * kSecond, 99});
+  EXPECT_EQ(shareAt(never_heard, 1005 * kSecond), 0);
+  EXPECT_GT(shareAt(never_heard, 1006 * kSecond), 0);
+  never_heard.restart();
+  EXPECT_EQ(never_heard.share(), 0);
+  never_heard.add({2000 * kSecond, kA});
+  EXPECT_EQ(shareAt(never_heard, 2005 * kSecond), 0);
+  EXPECT_GT(shareAt(never_heard, 2006 * kSecond), 0);
+  EXPECT_EQ(named(never_heard), (std::vector<EventId>{kB, kC}));
+}
+
+TEST_F(NeverHeardTest, TheRootComesFirst) {
+  train({start(0, 1)}, {start(0, 7)});
+  graph_->connect("/c", "/z", "/b");
+  NeverHeard never_heard = neverHeard();
+  never_heard.add({0, kA});
+  shareAt(never_heard, 6 * kSecond);
+  EXPECT_EQ(named(never_heard), (std::vector<EventId>{kC, kB}));
+}
+
+TEST_F(NeverHeardTest, TheJudgeSuspectsAndThenAlarms) {
+  train({start(0, 1)}, {start(0, 7)});
+  Limits limits;
+  limits.tracks.assign(model_->tracks().size(), std::numeric_limits<double>::quiet_NaN());
+  limits.linker = 100;
+  std::optional<double> suspected;
+  std::optional<double> raised;
+  std::vector<Suspect> suspects;
+  std::string evidence;
+  Detector detector(makeJudge(model_, limits, kWindow, graph_), kWindow, {},
+                    [&](const Verdict& verdict) {
+                      const double end = toSeconds(verdict.window->start + kWindow);
+                      if (verdict.suspicion && !suspected) {
+                        suspected = end;
+                      }
+                      if (verdict.alarm && !raised) {
+                        raised = end;
+                        suspects = verdict.suspects;
+                        evidence = verdict.evidence;
+                        EXPECT_LT(*verdict.score, kThreshold);
+                      }
+                    });
+  for (const Event& event : start(std::nullopt, 3, 120 * kSecond)) {
+    detector.add(event);
+  }
+  EXPECT_NEAR(suspected.value(), 5.2, 0.3);
+  EXPECT_NEAR(raised.value(), 65.2, 0.3);
+  EXPECT_EQ(evidence, "never heard");
+  ASSERT_EQ(suspects.size(), 1U);
+  EXPECT_EQ(suspects.front().id, kC);
+  EXPECT_EQ(suspects.front().reason, Suspect::Reason::kNeverHeard);
+}
+
+TEST_F(NeverHeardTest, WhatFellSilentIsNamedBeforeWhatNeverCame) {
+  train({start(0, 1)}, {start(0, 7)});
+  Limits limits;
+  limits.tracks.assign(model_->tracks().size(), std::numeric_limits<double>::quiet_NaN());
+  limits.tracks[indexOf(model_->tracks(), Channel::kOverdue, kB, kB)] = 5;
+  limits.linker = 100;
+  const std::unique_ptr<core::Judge> judge = makeJudge(model_, limits, kWindow, graph_);
+  for (const Event& event : start(std::nullopt, 3, 10 * kSecond)) {
+    judge->add(event);
+  }
+  judge->add({40 * kSecond, kA});
+  const Judgement judgement =
+      judge->judge({40 * kSecond, {}}, 40 * kSecond, NameSuspects::kIfUnusual);
+  ASSERT_EQ(judgement.suspects.size(), 2U);
+  EXPECT_EQ(judgement.suspects[0].id, kB);
+  EXPECT_EQ(judgement.suspects[1].id, kC);
+  EXPECT_EQ(judgement.evidence, "never heard, overdue");
+}
+
+}  // namespace
+}  // namespace self_awareness::core::evidence

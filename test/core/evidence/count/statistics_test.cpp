@@ -1,0 +1,309 @@
+#include "self_awareness/core/evidence/count/statistics.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <stdexcept>
+#include <vector>
+
+#include "../recordings.h"
+#include "core/evidence/count/log_bins.h"
+#include "self_awareness/core/stream/clock.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+Events inMilliseconds(std::initializer_list<Event> events) {
+  Events scaled;
+  for (const Event& event : events) {
+    scaled.push_back({event.stamp * kMillisecond, event.id});
+  }
+  return scaled;
+}
+
+Events randomEvents(unsigned seed, EventId first, EventId last) {
+  std::mt19937 random(seed);
+  Events events;
+  std::int64_t stamp = kSecond;
+  for (int i = 0; i < 2000; ++i) {
+    stamp += static_cast<std::int64_t>(random() % 30000000);
+    events.push_back({stamp, static_cast<EventId>(first + random() % (last - first + 1))});
+  }
+  return events;
+}
+
+// The same counts, with the ids of kTypes.
+Statistics reordered(const Statistics& counts) {
+  Statistics ordered = countsOf({});
+  ordered.merge(counts);
+  return ordered;
+}
+
+TEST(EvidenceTrainer, CountsDelaysGapsAndAnswers) {
+  const Statistics counts = countsOf(
+      {inMilliseconds({{0, kA}, {10, kB}, {100, kA}, {130, kB}, {150, kB}, {300, kA}, {390, kA}})},
+      2);
+  EXPECT_EQ(counts.type(kA).events, 4U);
+  EXPECT_EQ(counts.type(kA).gaps, 3U);
+  EXPECT_EQ(counts.type(kA).gap_sum, 390 * kMillisecond);
+  EXPECT_EQ(
+      counts.type(kA).longest_gaps,
+      (std::vector<std::int64_t>{200 * kMillisecond, 100 * kMillisecond, 90 * kMillisecond}));
+  EXPECT_EQ(counts.duration(), 390 * kMillisecond);
+
+  const auto in = [&](EventId from, EventId to, std::int64_t milliseconds) {
+    return counts.delays(from, to).at(log_bins::bin(milliseconds * kMillisecond));
+  };
+  EXPECT_EQ(counts.total(kA, kB), 3U);
+  EXPECT_EQ(in(kA, kB, 10), 1U);
+  EXPECT_EQ(in(kA, kB, 30), 1U);
+  EXPECT_EQ(in(kA, kB, 50), 1U);  // also the second B after the same A
+  EXPECT_EQ(counts.total(kB, kA), 3U);
+  EXPECT_EQ(in(kB, kA, 90), 1U);
+  EXPECT_EQ(in(kB, kA, 150), 1U);
+  EXPECT_EQ(in(kB, kA, 240), 1U);
+  EXPECT_EQ(counts.answers(kA, kB), 2U);  // none between the last two A
+  EXPECT_EQ(counts.answers(kA, kA), 0U);
+  EXPECT_EQ(counts.answers(kB, kA), 1U);  // between the first two B, none between the last two
+}
+
+TEST(EvidenceTrainer, NoDelaysWhereNoneWasSeen) {
+  const Statistics counts = countsOf({inMilliseconds({{0, kA}, {10, kB}})}, 2);
+  EXPECT_EQ(counts.total(kB, kA), 0U);
+  EXPECT_EQ(counts.total(kA, kB), 1U);
+}
+
+TEST(EvidenceTrainer, CountsRatesInFullSpansOnly) {
+  Statistics counts;
+  counts.intern(kTypes[kA]);
+  Trainer trainer(counts, kSecond);
+  const auto add = [&](std::int64_t milliseconds, EventId id) {
+    trainer.add({milliseconds * kMillisecond, id});
+  };
+  for (const std::int64_t milliseconds : {500, 1500, 1600, 2200}) {
+    add(milliseconds, kA);
+  }
+  counts.intern(kTypes[kB]);  // first seen when A has long been counted
+  add(2500, kB);
+  add(4100, kA);
+  // 1, 2, 1, 0 A in the closed windows: 3, 3, 1 in two of them.
+  EXPECT_EQ(counts.rateWindows(), 3U);
+  EXPECT_EQ(counts.type(kA).rate_sum, 7U);
+  EXPECT_EQ(counts.type(kA).rate_squares, 19U);
+  EXPECT_EQ(counts.type(kB).rate_sum, 2U);
+  EXPECT_EQ(counts.type(kB).rate_squares, 2U);
+}
+
+TEST(EvidenceTrainer, ALateEventHasNoNegativeDelay) {
+  const Statistics counts =
+      countsOf({inMilliseconds({{0, kA}, {100, kA}, {50, kA}, {80, kB}})}, 2);
+  EXPECT_EQ(counts.type(kA).gap_sum, 100 * kMillisecond);
+  EXPECT_EQ(counts.type(kA).longest_gaps.back(), 0);
+  EXPECT_EQ(counts.delays(kA, kA).front(), 1U);
+  EXPECT_EQ(counts.duration(), 100 * kMillisecond);
+}
+
+TEST(EvidenceTrainer, OnlyTheEventBeforeTellsAStepOfTheClock) {
+  // Two late events: each is late compared with the one before it, and no step (clock.h).
+  const Statistics counts =
+      countsOf({inMilliseconds({{1000, kA}, {1160, kA}, {1100, kA}, {1040, kA}, {1200, kA}})}, 1);
+  EXPECT_EQ(counts.type(kA).gaps, 4U);
+  EXPECT_EQ(counts.type(kA).gap_sum, 320 * kMillisecond);
+  EXPECT_EQ(counts.duration(), 200 * kMillisecond);
+}
+
+TEST(EvidenceTrainer, NothingCrossesFromOneRecordingIntoTheNext) {
+  const Events first = timer(kA, 0, 1500 * kMillisecond, 100 * kMillisecond);
+  const Events second = timer(kB, 1500 * kMillisecond, 3000 * kMillisecond, 100 * kMillisecond);
+  const Statistics counts = countsOf({first, second}, 2);
+  EXPECT_EQ(counts.total(kA, kB), 0U);
+  EXPECT_EQ(counts.rateWindows(), 0U);  // neither has 2 s of windows
+  EXPECT_EQ(counts.duration(), 2800 * kMillisecond);
+  const Events joined = together({first, second});
+  EXPECT_EQ(countsOf({joined}, 2).total(kA, kB), 15U);
+  EXPECT_GT(countsOf({joined}, 2).rateWindows(), 0U);
+}
+
+TEST(EvidenceTrainer, AStepOfTheClockStartsAnotherRecording) {
+  for (const std::int64_t later : {10 * kSecond + kLongestSilence + 1, -kSecond}) {
+    const Events before = timer(kA, 0, 10 * kSecond, 100 * kMillisecond);
+    const Events after = timer(kB, later, later + 10 * kSecond, 100 * kMillisecond);
+    Events stepped = before;
+    stepped.insert(stepped.end(), after.begin(), after.end());
+    EXPECT_TRUE(countsOf({stepped}, 2) == countsOf({before, after}, 2)) << later;
+  }
+}
+
+TEST(EvidenceTrainer, SaysWhatEveryRecordingShowed) {
+  const Statistics counts =
+      countsOf({inMilliseconds({{5000, kB}, {5400, kB}, {5500, kA}}),
+                inMilliseconds({{1000, kA}, {1100, kB}, {1150, kA}, {1900, kA}})});
+  ASSERT_EQ(counts.recordings().size(), 2U);
+  const Statistics::Recording& first = counts.recordings()[0];  // in the order of their start
+  EXPECT_EQ(first.start, kSecond);
+  EXPECT_EQ(first.end, 1900 * kMillisecond);
+  EXPECT_EQ(first.longest_silence, 750 * kMillisecond);
+  EXPECT_EQ(first.events, (std::vector<std::uint64_t>{3, 1}));
+  EXPECT_EQ(first.longest_gaps, (std::vector<std::int64_t>{750 * kMillisecond, 0}));
+  const Statistics::Recording& second = counts.recordings()[1];
+  EXPECT_EQ(second.start, 5 * kSecond);
+  EXPECT_EQ(second.longest_silence, 400 * kMillisecond);
+  EXPECT_EQ(second.events, (std::vector<std::uint64_t>{1, 2}));
+  EXPECT_EQ(second.longest_gaps, (std::vector<std::int64_t>{0, 400 * kMillisecond}));
+}
+
+TEST(EvidenceTrainer, TheLastRecordingCountsOnceItHasEnded) {
+  Statistics counts = countsOf({}, 1);
+  Trainer trainer(counts, kWindow);
+  trainer.add({0, kA});
+  EXPECT_TRUE(counts.recordings().empty());
+  trainer.finish();
+  EXPECT_EQ(counts.recordings().size(), 1U);
+  trainer.finish();
+  EXPECT_EQ(counts.recordings().size(), 1U);
+}
+
+TEST(EvidenceTrainer, RefusesAWindowOfNoLength) {
+  Statistics counts;
+  EXPECT_THROW(Trainer(counts, 0), std::invalid_argument);
+  EXPECT_THROW(Trainer(counts, -kWindow), std::invalid_argument);
+}
+
+TEST(EvidenceTrainer, TellsWhenEachTypeCameFirst) {
+  const Statistics counts = countsOf(
+      {inMilliseconds({{1000, kB}, {1010, kA}, {1020, kB}}), inMilliseconds({{5000, kA}})});
+  ASSERT_EQ(counts.recordings().size(), 2U);
+  EXPECT_EQ(counts.recordings()[0].firsts, (std::vector<std::int64_t>{10 * kMillisecond, 0}));
+  EXPECT_EQ(counts.recordings()[1].firsts, (std::vector<std::int64_t>{0}));
+}
+
+TEST(EvidenceTrainer, WhatCameBeforeOnlyTellsWhenItCameFirst) {
+  Statistics counts = countsOf({});
+  Trainer trainer(counts, kWindow);
+  trainer.startRecording(kSecond);
+  trainer.addBefore({3 * kSecond, kB});
+  trainer.addBefore({4 * kSecond, kB});
+  for (const Event& event : timer(kA, 20 * kSecond, 30 * kSecond, kSecond)) {
+    trainer.add(event);
+    trainer.add({event.stamp, kB});
+  }
+  trainer.finish();
+  Statistics same = countsOf({together({timer(kA, 20 * kSecond, 30 * kSecond, kSecond),
+                                        timer(kB, 20 * kSecond, 30 * kSecond, kSecond)})});
+  EXPECT_EQ(counts.type(kB).gaps, same.type(kB).gaps);
+  EXPECT_EQ(counts.delays(kA, kB), same.delays(kA, kB));
+  EXPECT_EQ(counts.duration(), same.duration());
+  ASSERT_EQ(counts.recordings().size(), 1U);
+  EXPECT_EQ(counts.recordings()[0].start, 20 * kSecond);
+  EXPECT_EQ(counts.recordings()[0].firsts, (std::vector<std::int64_t>{19 * kSecond, 2 * kSecond}));
+  EXPECT_FALSE(counts == same);
+}
+
+TEST(EvidenceTrainer, AfterAStepOfTheClockTheStartIsAnother) {
+  const Statistics counts =
+      countsOf({inMilliseconds({{1000, kA}, {1010, kA}, {10, kB}, {30, kA}})});
+  ASSERT_EQ(counts.recordings().size(), 2U);
+  EXPECT_EQ(counts.recordings()[0].firsts, (std::vector<std::int64_t>{20 * kMillisecond, 0}));
+}
+
+TEST(EvidenceStatistics, FirstTimesMeetTheirTypes) {
+  Statistics other;
+  other.intern(kTypes[kC]);
+  other.intern(kTypes[kA]);
+  other.addRecording({7, 9, 0, {1, 1}, {0, 0}, {5, 3}});
+  Statistics counts = countsOf({inMilliseconds({{1000, kB}})});
+  counts.merge(other);
+  ASSERT_EQ(counts.recordings().size(), 2U);
+  EXPECT_EQ(counts.recordings()[0].firsts, (std::vector<std::int64_t>{3, -1, 5}));
+  EXPECT_EQ(counts.recordings()[1].firsts, (std::vector<std::int64_t>{-1, 0}));
+}
+
+TEST(EvidenceStatistics, KeepTheLongestGaps) {
+  Statistics::Type type;
+  std::vector<std::int64_t> gaps(40);
+  std::iota(gaps.begin(), gaps.end(), 1);
+  std::shuffle(gaps.begin(), gaps.end(), std::mt19937(5));
+  for (const std::int64_t gap : gaps) {
+    type.addGap(gap);
+  }
+  ASSERT_EQ(type.longest_gaps.size(), Statistics::kLongestGaps);
+  for (std::size_t k = 0; k < type.longest_gaps.size(); ++k) {
+    EXPECT_EQ(type.longest_gaps[k], static_cast<std::int64_t>(40 - k));
+  }
+}
+
+TEST(EvidenceStatistics, CountsOfTwoTrainingsEqualTrainingOnBoth) {
+  const Events first = randomEvents(1, kA, kB);
+  const Events second = randomEvents(2, kB, kC);
+  Statistics sum = countsOf({first});
+  const Statistics both = countsOf({first, second});
+  EXPECT_FALSE(sum == both);
+  sum.merge(countsOf({second}));
+  EXPECT_TRUE(sum == both);
+}
+
+TEST(EvidenceStatistics, MergingCommutesUpToTheIds) {
+  const Statistics first = countsOf({randomEvents(1, kA, kB)}, 2);
+  Statistics second;  // kTypes in the opposite order
+  for (const EventId id : {kC, kB}) {
+    second.intern(kTypes[id]);
+  }
+  Trainer trainer(second, kWindow);
+  for (const Event& event : randomEvents(2, 0, 1)) {
+    trainer.add(event);
+  }
+  trainer.finish();
+  Statistics one = first;
+  one.merge(second);
+  Statistics other = second;
+  other.merge(first);
+  EXPECT_FALSE(one == other);
+  EXPECT_TRUE(reordered(one) == reordered(other));
+  EXPECT_GT(one.total(kA, kB), 0U);
+}
+
+TEST(EvidenceStatistics, MergingKeepsTheRecordingsOfBothByTheirIds) {
+  Statistics counts = countsOf({inMilliseconds({{9000, kA}, {9100, kA}, {9100, kB}})}, 2);
+  const Statistics other =
+      countsOf({inMilliseconds({{1000, 0}, {1300, 0}, {1350, 1}})}, {kTypes[kC], kTypes[kA]});
+  counts.merge(other);
+  ASSERT_EQ(counts.recordings().size(), 2U);
+  EXPECT_EQ(counts.recordings()[0].events, (std::vector<std::uint64_t>{1, 0, 2}));
+  EXPECT_EQ(counts.recordings()[0].longest_gaps,
+            (std::vector<std::int64_t>{0, 0, 300 * kMillisecond}));
+  EXPECT_EQ(counts.recordings()[0].longest_silence, 300 * kMillisecond);
+  EXPECT_EQ(counts.recordings()[1].events, (std::vector<std::uint64_t>{2, 1}));
+  EXPECT_EQ(counts.only({}).recordings().size(), 2U);
+}
+
+TEST(EvidenceStatistics, CountsDoNotWrapAround) {
+  Statistics counts = countsOf({}, 1);
+  Statistics::Partner partner;
+  partner.delays[3] = 3000000000U;
+  partner.delays[4] = 2000000000U;
+  counts.setPartners(kA, {partner});
+  counts.merge(Statistics(counts));
+  EXPECT_EQ(counts.delays(kA, kA)[3], 4294967295U);
+  EXPECT_EQ(counts.delays(kA, kA)[4], 4000000000U);
+}
+
+TEST(EvidenceStatistics, PartnersComeInOrder) {
+  Statistics counts = countsOf({}, 2);
+  counts.setPartners(kA, {{kB, 3, {}}});
+  EXPECT_EQ(counts.answers(kA, kB), 3U);
+  EXPECT_EQ(counts.answers(kB, kA), 0U);
+  EXPECT_THROW(counts.setPartners(kA, {{kB, 3, {}}, {kA, 1, {}}}), std::invalid_argument);
+  EXPECT_THROW(counts.setPartners(kA, {{kB, 3, {}}, {kB, 1, {}}}), std::invalid_argument);
+  EXPECT_THROW(counts.setPartners(kA, {{kC, 1, {}}}), std::invalid_argument);
+  const Statistics::Partners& all = counts.allPartners(kA);
+  ASSERT_EQ(all.size(), 2U);
+  EXPECT_EQ(all[kA].id, kA);
+  EXPECT_EQ(all[kB].answers, 3U);
+}
+
+}  // namespace
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,212 @@
+#include "self_awareness/core/evidence/tuning.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <set>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "recordings.h"
+#include "self_awareness/core/evidence/channel/model.h"
+#include "self_awareness/core/evidence/limits/limits.h"
+#include "self_awareness/core/evidence/watch/tracks.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+template <typename Action>
+std::string errorOf(const Action& action) {
+  try {
+    action();
+  } catch (const std::invalid_argument& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string errorOfSetting(const std::string& name, double value) {
+  Tuning tuning;
+  const std::string error = errorOf([&] { set(tuning, name, value); });
+  EXPECT_EQ(tuning == Tuning{}, !error.empty()) << "what is refused changes nothing";
+  return error;
+}
+
+TEST(EvidenceTuning, EveryMemberIsInTheTable) {
+  // Without a number in the table, a model file would not keep it.
+  EXPECT_EQ(tuningNumbers().size() * sizeof(double) + sizeof(Tuning::without), sizeof(Tuning));
+  std::set<std::string> names;
+  std::set<const double*> members;
+  const Tuning tuning;
+  for (const TuningNumber& number : tuningNumbers()) {
+    EXPECT_TRUE(names.insert(number.name).second) << number.name << " is there twice";
+    EXPECT_TRUE(members.insert(&(tuning.*number.value)).second)
+        << number.name << " is the member of another one";
+  }
+}
+
+TEST(EvidenceTuning, EveryNumberHasAMeaningAndADefaultWithinItsRange) {
+  const Tuning defaults;
+  for (const TuningNumber& number : tuningNumbers()) {
+    SCOPED_TRACE(number.name);
+    EXPECT_LT(number.least, number.most);
+    EXPECT_TRUE(std::isfinite(number.least) && std::isfinite(number.most));
+    EXPECT_TRUE(number.isValid(defaults.*number.value));
+    EXPECT_TRUE(!number.off || number.isValid(*number.off));
+    ASSERT_FALSE(number.meaning.empty());
+    EXPECT_EQ(number.meaning.back(), '.');
+    EXPECT_EQ(&tuningNumber(number.name), &number);
+  }
+}
+
+TEST(EvidenceTuning, EveryNumberCanBeSetToTheEndsOfItsRange) {
+  for (const TuningNumber& number : tuningNumbers()) {
+    for (const double end : {number.least, number.most}) {
+      Tuning tuning;
+      set(tuning, number.name, end);
+      EXPECT_EQ(tuning.*number.value, end) << number.name;
+      EXPECT_NO_THROW(tuning.validate()) << number.name;
+    }
+  }
+}
+
+TEST(EvidenceTuning, WhatIsOutOfItsRangeIsRefusedInWords) {
+  EXPECT_EQ(errorOfSetting("least_effect", -0.001),
+            "least_effect must be from 0 to 1000 s, not -0.001");
+  EXPECT_EQ(errorOfSetting("least_effect_of_period", 1),
+            "least_effect_of_period must be from 0 to 0.99, not 1");
+  for (const double wrong :
+       {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
+        std::numeric_limits<double>::quiet_NaN()}) {
+    for (const TuningNumber& number : tuningNumbers()) {
+      EXPECT_EQ(errorOfSetting(number.name, wrong).find(number.name + " must be from "), 0U);
+    }
+  }
+}
+
+TEST(EvidenceTuning, AnUnknownNumberIsRefusedAndItIsSaidWhereAllAreNamed) {
+  const std::string told =
+      "the method has no number 'least'; 'info --tuning' of a model names them all";
+  EXPECT_EQ(errorOfSetting("least", 1), told);
+  EXPECT_EQ(errorOf([] { tuningNumber("least"); }), told);
+}
+
+TEST(EvidenceTuning, WhatWasNotSetByItsNameIsCheckedToo) {
+  EXPECT_NO_THROW(Tuning{}.validate());
+  for (const TuningNumber& number : tuningNumbers()) {
+    Tuning tuning;
+    tuning.*number.value = std::nextafter(number.most, 2 * number.most);
+    EXPECT_EQ(errorOf([&] { tuning.validate(); }).find(number.name + " must be from "), 0U);
+  }
+  Tuning tuning;
+  tuning.without = {"rate", "smell"};
+  EXPECT_EQ(errorOf([&] { tuning.validate(); }), "the method has no channel 'smell'");
+}
+
+TEST(EvidenceTuning, IsAnotherOneIfANumberOrAChannelDiffers) {
+  EXPECT_TRUE(Tuning{} == Tuning{});
+  for (const TuningNumber& number : tuningNumbers()) {
+    Tuning tuning;
+    tuning.*number.value += 1;
+    EXPECT_TRUE(tuning != Tuning{}) << number.name;
+  }
+  Tuning tuning;
+  tuning.without = {"rate"};
+  EXPECT_TRUE(tuning != Tuning{});
+}
+
+TEST(EvidenceTuning, ALeastEffectIsTheLargerOfTimeAndShare) {
+  Tuning tuning;
+  tuning.least_effect = 0.01;
+  tuning.least_effect_of_period = 0.03;
+  EXPECT_DOUBLE_EQ(tuning.leastEffectOnDelay(100e6), 10e6);
+  EXPECT_DOUBLE_EQ(tuning.leastEffectOnDelay(1e9), 30e6);
+  // Both ends of a gap move.
+  EXPECT_DOUBLE_EQ(tuning.leastEffectOnGap(50e6), 20e6);
+  EXPECT_DOUBLE_EQ(tuning.leastEffectOnGap(1e9), 300e6);
+}
+
+TEST(EvidenceTuning, AChannelThatIsSwitchedOffIsNotWatched) {
+  const auto start = [](unsigned seed) {
+    const Events asked = irregular(kA, 0, 100 * kSecond, 200 * kMillisecond, seed);
+    return countsOf(
+        {later(together({asked, answers(kB, asked, 20 * kMillisecond)}), seed * kStart)}, 2);
+  };
+  const auto channels = [&](const std::set<std::string>& without) {
+    Tuning tuning;
+    tuning.without = without;
+    std::set<std::string> watched;
+    for (const Track& track : watch(start(1), start(2), {}, tuning).tracks) {
+      watched.insert(channelName(track.channel));
+    }
+    return watched;
+  };
+  const std::set<std::string> all = channels({});
+  EXPECT_EQ(all.count("pairs") + all.count("overdue") + all.count("rate"), 3U);
+  for (const std::string& channel : all) {
+    std::set<std::string> others = all;
+    others.erase(channel);
+    EXPECT_EQ(channels({channel}), others);
+  }
+  EXPECT_EQ(channels({"own gaps", "relations"}), channels({"pairs"}));
+  EXPECT_EQ(channels({"linker"}), all);
+}
+
+// A comes at random, and B follows it.
+Events robot(unsigned seed) {
+  const Events asked = irregular(kA, 0, 70 * kSecond, 200 * kMillisecond, seed);
+  return later(together({asked, answers(kB, asked, 20 * kMillisecond)}), seed * kStart);
+}
+
+TEST(EvidenceTuning, EveryEndOfARangeGivesLimitsOrSaysWhyNot) {
+  const Statistics first = countsOf({robot(1)});
+  const Statistics second = countsOf({robot(2)});
+  for (const TuningNumber& number : tuningNumbers()) {
+    for (const double end : {number.least, number.most}) {
+      SCOPED_TRACE(number.name + " = " + std::to_string(end));
+      Tuning tuning;
+      set(tuning, number.name, end);
+      const auto model = std::make_shared<Model>(watch(first, second, {}, tuning));
+      LimitFinder finder(model, {kWindow, 5 * kSecond, 0.5});
+      const std::string error = errorOf([&] {
+        for (const bool second_pass : {false, true}) {
+          if (second_pass) {
+            finder.startSecondPass();
+          }
+          for (const unsigned seed : {3U, 4U}) {
+            finder.startRecording(model);
+            for (const Event& event : robot(seed)) {
+              finder.add(event);
+            }
+            finder.finish();
+          }
+        }
+      });
+      if (error.empty()) {
+        EXPECT_FALSE(std::isnan(finder.expectedRate()));
+        EXPECT_FALSE(std::isnan(finder.limits().linker));
+        const std::vector<double> limits = finder.limits().tracks;
+        EXPECT_EQ(limits.size(), model->tracks().size());
+        EXPECT_FALSE(std::all_of(limits.begin(), limits.end(),
+                                 [](double limit) { return std::isnan(limit); }));
+      }
+    }
+  }
+}
+
+TEST(EvidenceTuning, WithoutARecordingThereAreNoLimitsWhateverTheLeastTime) {
+  Tuning tuning;
+  set(tuning, "least_time", tuningNumber("least_time").least);
+  const auto model =
+      std::make_shared<Model>(watch(countsOf({robot(1)}), countsOf({robot(2)}), {}, tuning));
+  LimitFinder finder(model, {kWindow, 5 * kSecond, 0.5});
+  EXPECT_THROW(finder.startSecondPass(), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,356 @@
+#include "core/evidence/watch/relations.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "../recordings.h"
+#include "core/evidence/count/log_bins.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+constexpr std::int64_t kLength = 60 * kSecond;
+constexpr std::int64_t kPeriod = 100 * kMillisecond;
+const SourceGraph kNoGraph;
+const Tuning kTuning;
+constexpr std::int64_t kSameStart = 60 * kSecond;
+
+// Two exact timers of one period, and another type at random; the second timer is later by a
+// phase, one in every start.
+Statistics timers(const std::vector<std::int64_t>& phases) {
+  std::vector<Events> recordings;
+  for (const std::int64_t phase : phases) {
+    recordings.push_back(
+        later(together({timer(kA, 0, kLength, kPeriod), timer(kB, phase, kLength, kPeriod),
+                        irregular(kC, 0, kLength, kPeriod, 1)}),
+              static_cast<std::int64_t>(recordings.size()) * kStart));
+  }
+  return countsOf(recordings);
+}
+
+// A comes at random, and B so much after it, in so many starts.
+Statistics followed(unsigned starts,
+                    const std::vector<EventType>& types = {kTypes[kA], kTypes[kB]}) {
+  std::vector<Events> recordings;
+  for (unsigned start = 0; start < starts; ++start) {
+    const Events asked = irregular(kA, 0, kLength, 2 * kPeriod, start + 1);
+    recordings.push_back(
+        later(together({asked, answers(kB, asked, 20 * kMillisecond)}), start * kStart));
+  }
+  return countsOf(recordings, types);
+}
+
+SourceGraph connected(const std::string& topic, int listeners = 1) {
+  SourceGraph graph;
+  graph.connect("/a", topic, "/b");
+  for (int k = 1; k < listeners; ++k) {
+    graph.connect("/a", topic, "/listener" + std::to_string(k));
+  }
+  return graph;
+}
+
+TEST(NumberOfStarts, RecordingsWithinAMinuteAreOneStart) {
+  const auto seconds = [](std::vector<Span> spans) {
+    for (Span& span : spans) {
+      span.start *= kSecond;
+      span.end *= kSecond;
+    }
+    return numberOfStarts(spans, kSameStart);
+  };
+  EXPECT_EQ(seconds({}), 0U);
+  EXPECT_EQ(seconds({{0, 100}}), 1U);
+  EXPECT_EQ(seconds({{0, 100}, {159, 200}}), 1U);
+  EXPECT_EQ(seconds({{0, 100}, {160, 200}}), 2U);
+  EXPECT_EQ(seconds({{160, 200}, {0, 100}}), 2U) << "in any order";
+  EXPECT_EQ(seconds({{0, 1000}, {10, 20}, {1030, 1100}}), 1U) << "the longer one goes on";
+  EXPECT_EQ(seconds({{0, 10}, {50, 60}, {100, 110}, {500, 510}}), 2U);
+}
+
+TEST(NumberOfStarts, WhenTheRobotWasStartedTellsStartsApart) {
+  const auto seconds = [](std::int64_t start, std::int64_t end, std::int64_t robot_start) {
+    return Span{start * kSecond, end * kSecond, robot_start * kSecond};
+  };
+  EXPECT_EQ(numberOfStarts({seconds(10, 20, 5), seconds(25, 30, 22)}, kSameStart), 2U)
+      << "soon after";
+  EXPECT_EQ(numberOfStarts({seconds(10, 20, 5), seconds(900, 950, 5)}, kSameStart), 1U)
+      << "long after";
+  EXPECT_EQ(startsOf({seconds(900, 950, 5), seconds(25, 30, 22), seconds(10, 20, 5)}, kSameStart),
+            (std::vector<std::size_t>{0, 1, 0}));
+  EXPECT_EQ(
+      numberOfStarts({seconds(10, 20, 5), seconds(10, 20, 0), seconds(30, 40, 0)}, kSameStart), 2U)
+      << "of the others it is not known";
+}
+
+TEST(Relations, TheOwnHistoryNeedsNoReason) {
+  const Statistics counts = timers({20 * kMillisecond});
+  EXPECT_TRUE(Relations(counts, kNoGraph, kTuning).delays(kA, kA).watched);
+}
+
+TEST(Relations, TimersThatAgreeInFewStartsMayDoSoByChance) {
+  const std::vector<std::int64_t> phases(6, 20 * kMillisecond);
+  std::vector<bool> watched;
+  for (std::size_t starts = 1; starts <= phases.size(); ++starts) {
+    const Statistics counts = timers({phases.begin(), phases.begin() + starts});
+    const Relation relation = Relations(counts, kNoGraph, kTuning).delays(kA, kB);
+    EXPECT_EQ(relation.starts, starts);
+    EXPECT_LT(relation.spread, 0.1);
+    EXPECT_FALSE(relation.reaches || relation.irregular);
+    EXPECT_EQ(relation.starts_needed == 0, relation.watched);
+    EXPECT_TRUE(relation.watched || relation.starts_needed > starts);
+    watched.push_back(relation.watched);
+  }
+  EXPECT_FALSE(watched.front());
+  EXPECT_TRUE(watched.back());
+}
+
+TEST(Relations, AsManyStartsAreEnoughAsItSaysAreNeeded) {
+  const std::vector<std::int64_t> phases(10, 20 * kMillisecond);
+  const Statistics one = timers({phases.front()});
+  const std::size_t needed = Relations(one, kNoGraph, kTuning).delays(kA, kB).starts_needed;
+  ASSERT_GT(needed, 1U);
+  ASSERT_LT(needed, phases.size());
+  const auto watchedAfter = [&](std::size_t starts) {
+    const Statistics counts =
+        timers({phases.begin(), phases.begin() + static_cast<std::ptrdiff_t>(starts)});
+    return Relations(counts, kNoGraph, kTuning).delays(kA, kB).watched;
+  };
+  EXPECT_FALSE(watchedAfter(needed - 1));
+  EXPECT_TRUE(watchedAfter(needed));
+}
+
+TEST(Relations, TimersThatDoNotAgreeAreNotWatchedAfterAnyNumberOfStarts) {
+  std::vector<std::int64_t> phases;
+  for (std::int64_t start = 0; start < 20; ++start) {
+    phases.push_back((start * 37 % 100) * kMillisecond);
+  }
+  const Statistics counts = timers(phases);
+  const Relation relation = Relations(counts, kNoGraph, kTuning).delays(kA, kB);
+  EXPECT_EQ(relation.starts, 20U);
+  EXPECT_GT(relation.spread, 0.8);
+  EXPECT_FALSE(relation.watched);
+}
+
+TEST(Relations, OneStartThatDiffersCountsHoweverManyAgree) {
+  std::vector<std::int64_t> phases(19, 20 * kMillisecond);
+  const Statistics agree = timers(phases);
+  phases.push_back(70 * kMillisecond);
+  const Statistics differ = timers(phases);
+  EXPECT_GT(Relations(differ, kNoGraph, kTuning).delays(kA, kB).spread,
+            5 * Relations(agree, kNoGraph, kTuning).delays(kA, kB).spread);
+}
+
+TEST(Relations, RecordingsOfOneStartAreNoNewEvidence) {
+  std::vector<Events> recordings;
+  for (int part = 0; part < 6; ++part) {
+    recordings.push_back(later(
+        together({timer(kA, 0, kLength, kPeriod), timer(kB, 20 * kMillisecond, kLength, kPeriod)}),
+        part * (kLength + 30 * kSecond)));
+  }
+  const Statistics counts = countsOf(recordings, 2);
+  const Relation relation = Relations(counts, kNoGraph, kTuning).delays(kA, kB);
+  EXPECT_EQ(relation.starts, 1U);
+  EXPECT_FALSE(relation.watched);
+}
+
+TEST(Relations, RecordingsThatWereNotTrainedOnCountIfTheyAreOfOtherStarts) {
+  const Statistics counts = timers({20 * kMillisecond});
+  const Relations relations(counts, kNoGraph, kTuning);
+  std::vector<Span> more{{10 * kSecond, 30 * kSecond}};
+  EXPECT_EQ(relations.delays(kA, kB, more).starts, 1U);
+  for (int start = 1; start < 6; ++start) {
+    more.push_back({start * kStart, start * kStart + kLength});
+  }
+  EXPECT_EQ(relations.delays(kA, kB, more).starts, 6U);
+  EXPECT_TRUE(relations.delays(kA, kB, more).watched);
+}
+
+TEST(Relations, AStartWithFewEventsSaysNothing) {
+  const Events full =
+      together({timer(kA, 0, kLength, kPeriod), timer(kB, 20 * kMillisecond, kLength, kPeriod)});
+  Events few;
+  for (const Event& event : full) {
+    if (event.stamp < kSecond) {
+      few.push_back(event);
+    }
+  }
+  const Statistics counts = countsOf({full, later(few), later(full, 2 * kStart)}, 2);
+  EXPECT_EQ(Relations(counts, kNoGraph, kTuning).delays(kA, kB).starts, 2U);
+}
+
+TEST(Relations, APhaseAroundZeroIsAsNarrowAsAnyOther) {
+  // B comes a little before A or a little after it: delays near 0 and near a period.
+  Events answered;
+  for (const Event& event : timer(kA, kPeriod, kLength, kPeriod)) {
+    const std::int64_t late = answered.size() % 2 == 0 ? kMillisecond : -kMillisecond;
+    answered.push_back({event.stamp + late, kB});
+  }
+  const Statistics counts = countsOf({together({timer(kA, 0, kLength, kPeriod), answered})}, 2);
+  ASSERT_GT(counts.delays(kA, kB)[log_bins::bin(kMillisecond)], 200U);
+  ASSERT_GT(counts.delays(kA, kB)[log_bins::bin(99 * kMillisecond)], 200U);
+  EXPECT_LT(Relations(counts, kNoGraph, kTuning).delays(kA, kB).spread, 0.1);
+}
+
+TEST(Relations, HiccupsDoNotWidenAPhase) {
+  Events answered = timer(kB, 20 * kMillisecond, kLength, kPeriod);
+  for (std::size_t k = 0; k < answered.size(); k += 50) {
+    answered[k].stamp += 50 * kMillisecond;
+  }
+  const Statistics counts = countsOf({together({timer(kA, 0, kLength, kPeriod), answered})}, 2);
+  EXPECT_LT(Relations(counts, kNoGraph, kTuning).delays(kA, kB).spread, 0.1);
+}
+
+TEST(Relations, WhoComesLateInAPeriodMayBeTheOneThatAsks) {
+  const std::vector<std::int64_t> early(8, 30 * kMillisecond);
+  const std::vector<std::int64_t> late(8, 80 * kMillisecond);
+  const Statistics soon = timers(early);
+  const Statistics afterwards = timers(late);
+  EXPECT_TRUE(Relations(soon, kNoGraph, kTuning).delays(kA, kB).watched);
+  EXPECT_FALSE(Relations(soon, kNoGraph, kTuning).delays(kB, kA).watched);
+  const Relation relation = Relations(afterwards, kNoGraph, kTuning).delays(kA, kB);
+  EXPECT_FALSE(relation.watched);
+  EXPECT_EQ(relation.starts_needed, 0U) << "no number of starts helps";
+  const SourceGraph graph = connected("/x");
+  EXPECT_TRUE(Relations(afterwards, graph, kTuning).delays(kA, kB).watched);
+}
+
+TEST(Relations, AMessageThatGetsThereIsAReason) {
+  const Statistics counts = timers({20 * kMillisecond, 20 * kMillisecond});
+  ASSERT_FALSE(Relations(counts, kNoGraph, kTuning).delays(kA, kB).watched);
+  const SourceGraph graph = connected("/x");
+  const Relation there = Relations(counts, graph, kTuning).delays(kA, kB);
+  EXPECT_TRUE(there.reaches && there.watched);
+  const Relation back = Relations(counts, graph, kTuning).delays(kB, kA);
+  EXPECT_FALSE(back.reaches || back.watched) << "B's messages do not get to A";
+  const SourceGraph other = connected("/other");
+  EXPECT_FALSE(Relations(counts, other, kTuning).delays(kA, kB).reaches)
+      << "it hears another topic";
+}
+
+TEST(Relations, WhatOneNodePublishesIsAReason) {
+  const Statistics counts = countsOf(
+      {together({timer(kA, 0, kLength, kPeriod), timer(kB, 20 * kMillisecond, kLength, kPeriod)})},
+      {{"/a", "/x", "T"}, {"/a", "/y", "T"}});
+  EXPECT_TRUE(Relations(counts, kNoGraph, kTuning).delays(kA, kB).reaches);
+  const Statistics unknown = countsOf({}, {{"", "/x", "T"}, {"", "/y", "T"}});
+  EXPECT_FALSE(Relations(unknown, kNoGraph, kTuning).delays(kA, kB).reaches)
+      << "who sends is not known";
+}
+
+TEST(Relations, WhatEverybodyHearsIsNoReason) {
+  const Statistics counts = timers({20 * kMillisecond, 20 * kMillisecond});
+  const SourceGraph few = connected("/x", 3);
+  EXPECT_TRUE(Relations(counts, few, kTuning).delays(kA, kB).reaches);
+  SourceGraph many = connected("/x", 6);
+  EXPECT_FALSE(Relations(counts, many, kTuning).delays(kA, kB).reaches);
+  for (int k = 0; k < 10; ++k) {  // now it is a small part of all
+    many.connect("/c", "/z", "/more" + std::to_string(k));
+  }
+  EXPECT_TRUE(Relations(counts, many, kTuning).delays(kA, kB).reaches);
+  for (const std::string topic : {"/tf", "/tf_static", "/clock"}) {
+    const Statistics common = followed(1, {{"/a", topic, "T"}, kTypes[kB]});
+    const SourceGraph graph = connected(topic);
+    EXPECT_FALSE(Relations(common, graph, kTuning).delays(kA, kB).reaches) << topic;
+  }
+}
+
+TEST(Relations, AnIrregularTriggerIsAReason) {
+  const Statistics one = followed(1);
+  const Relation relation = Relations(one, kNoGraph, kTuning).delays(kA, kB);
+  EXPECT_TRUE(relation.irregular);
+  EXPECT_FALSE(relation.watched) << "one start is not enough yet";
+  EXPECT_EQ(relation.starts_needed, 2U);
+  const Statistics two = followed(2);
+  EXPECT_TRUE(Relations(two, kNoGraph, kTuning).delays(kA, kB).watched);
+  const SourceGraph graph = connected("/x");
+  EXPECT_TRUE(Relations(one, graph, kTuning).delays(kA, kB).watched)
+      << "both reasons at once are enough";
+}
+
+TEST(Relations, UnrelatedEventsAreNotIrregularForEachOther) {
+  const Statistics counts = countsOf(
+      {together({irregular(kA, 0, kLength, kPeriod, 1), irregular(kB, 0, kLength, kPeriod, 2)})},
+      2);
+  EXPECT_FALSE(Relations(counts, kNoGraph, kTuning).delays(kA, kB).irregular);
+}
+
+TEST(Relations, MissesByChanceAreTheGapsThatFitIntoThoseOfTheOther) {
+  // At random, a gap of A of 1 s lies in a gap of B of 2 s half of the time.
+  const Statistics counts = countsOf(
+      {together({timer(kA, 0, 100 * kSecond, kSecond), timer(kB, 0, 100 * kSecond, 2 * kSecond)})},
+      2);
+  const double a = log_bins::middle(log_bins::bin(kSecond));
+  const double b = log_bins::middle(log_bins::bin(2 * kSecond));
+  const Relations relations(counts, kNoGraph, kTuning);
+  EXPECT_NEAR(relations.missRateByChance(kA, kB), (b - a) / (2.0 * kSecond), 1e-12);
+  EXPECT_NEAR(relations.missRateByChance(kA, kB), 0.5, 0.02);
+  EXPECT_EQ(relations.missRateByChance(kB, kA), 0) << "an A comes in every gap of B";
+  EXPECT_EQ(relations.missRateByChance(kA, kA), 0);
+}
+
+TEST(Relations, MissesByChanceKnowTheGapsBeyondTheLastBin) {
+  const Events seldom = irregular(kA, 0, 3000 * kSecond, 30 * kSecond, 1);
+  const Events others = irregular(kB, 0, 3000 * kSecond, 30 * kSecond, 2);
+  const Statistics counts = countsOf({together({seldom, others})}, 2);
+  std::uint64_t missed = counts.type(kA).gaps - counts.answers(kA, kB);
+  EXPECT_NEAR(Relations(counts, kNoGraph, kTuning).missRateByChance(kA, kB),
+              static_cast<double>(missed) / static_cast<double>(counts.type(kA).gaps), 0.15);
+}
+
+TEST(Relations, AnswersToAnIrregularTriggerAreWatched) {
+  const Statistics counts = followed(1);
+  const Relation relation = Relations(counts, kNoGraph, kTuning).answers(kA, kB);
+  EXPECT_TRUE(relation.irregular);
+  EXPECT_TRUE(relation.watched);
+}
+
+TEST(Relations, ATimersOwnPeriodSaysAsMuchAsWhatItAnswersTo) {
+  const Statistics counts = timers({20 * kMillisecond, 20 * kMillisecond, 20 * kMillisecond});
+  EXPECT_FALSE(Relations(counts, kNoGraph, kTuning).answers(kA, kB).watched);
+  const SourceGraph graph = connected("/x");
+  EXPECT_FALSE(Relations(counts, graph, kTuning).answers(kA, kB).watched);
+}
+
+TEST(Relations, WhatComesAsOftenAsByChanceIsNoAnswer) {
+  const Statistics counts = countsOf(
+      {together({irregular(kA, 0, kLength, kPeriod, 1), irregular(kB, 0, kLength, kPeriod, 2)})},
+      2);
+  EXPECT_FALSE(Relations(counts, kNoGraph, kTuning).answers(kA, kB).watched);
+}
+
+// Requests at random, about every 4 s, each with its answer.
+Events requests(unsigned seed) {
+  return irregular(kA, 0, 400 * kSecond, 4 * kSecond, seed);
+}
+
+TEST(Relations, ADeadlineNeedsAnAnswerThatTakesItsTime) {
+  const Events asked = requests(1);
+  const Statistics counts =
+      countsOf({together({asked, answers(kB, asked, 100 * kMillisecond)})}, 2);
+  EXPECT_TRUE(Relations(counts, kNoGraph, kTuning).deadline(kA, kB).watched);
+  // Two that answer to the same come now in this order, now in that.
+  Events first;
+  Events second;
+  for (const Event& event : asked) {
+    const bool a_is_first = first.size() % 2 == 0;
+    first.push_back({event.stamp + (a_is_first ? 0 : 500) * kMillisecond, kA});
+    second.push_back({event.stamp + (a_is_first ? 3 : 450) * kMillisecond, kB});
+  }
+  const Statistics both = countsOf({together({first, second})}, 2);
+  EXPECT_FALSE(Relations(both, kNoGraph, kTuning).deadline(kA, kB).watched);
+}
+
+TEST(Relations, WithAGraphADeadlineNeedsAMessageThatGetsThere) {
+  const Events asked = requests(1);
+  const Statistics counts =
+      countsOf({together({asked, answers(kB, asked, 100 * kMillisecond)})}, 2);
+  const SourceGraph reached = connected("/x");
+  const SourceGraph other = connected("/other");
+  EXPECT_TRUE(Relations(counts, reached, kTuning).deadline(kA, kB).watched);
+  EXPECT_FALSE(Relations(counts, other, kTuning).deadline(kA, kB).watched);
+}
+
+}  // namespace
+}  // namespace self_awareness::core::evidence

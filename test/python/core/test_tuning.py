@@ -1,0 +1,74 @@
+"""`Tuning`: the numbers of the method, as programs read and change them."""
+from __future__ import annotations
+
+import pickle
+
+import pytest
+
+from self_awareness import Tuning
+from self_awareness.reporting import tuning_text
+
+
+def test_every_number_says_what_it_is() -> None:
+    tuning = Tuning()
+    for number in Tuning.numbers():
+        assert number.least <= number.default <= number.most
+        assert number.off is None or number.least <= number.off <= number.most
+        assert number.meaning.endswith('.')
+        assert tuning.get(number.name) == number.default
+
+
+def test_a_number_is_set_by_its_name() -> None:
+    tuning = Tuning()
+    tuning.set('least_effect', 0.01)
+    assert tuning.get('least_effect') == 0.01
+    assert tuning != Tuning() and tuning is not None
+    tuning.set('least_effect', 0.005)
+    assert tuning == Tuning()
+
+
+def test_least_effects_are_the_larger_of_time_and_share() -> None:
+    tuning = Tuning()
+    assert [tuning.least_effect_on_delay(period) for period in (1e8, 1e9)] == [5e6, 2e7]
+    assert [tuning.least_effect_on_gap(period) for period in (1e7, 1e9)] == [1e7, 2e8]
+
+
+@pytest.mark.parametrize('name, value, told', [
+    ('least', 1.0, "no number 'least'; 'info --tuning' of a model names them all"),
+    ('least_effect', -1.0, 'least_effect must be from 0 to 1000 s, not -1'),
+    ('usual', float('nan'), 'usual must be from 0.01 to 0.999, not nan')])
+def test_what_cannot_be_set_is_told(name: str, value: float, told: str) -> None:
+    tuning = Tuning()
+    with pytest.raises(ValueError, match=told):
+        tuning.set(name, value)
+    assert tuning == Tuning()
+
+
+def test_channels_are_left_out_by_their_names() -> None:
+    tuning = Tuning()
+    for channel in Tuning.channels():
+        tuning.leave_out(channel)
+    assert tuning.without == sorted(Tuning.channels()) and tuning != Tuning()
+    with pytest.raises(ValueError, match="no channel 'smell'"):
+        tuning.leave_out('smell')
+    assert 'smell' not in tuning.without
+
+
+def test_other_processes_get_all_of_it() -> None:
+    tuning = Tuning()
+    for number in Tuning.numbers():
+        tuning.set(number.name, number.least)
+    tuning.leave_out('rate')
+    assert pickle.loads(pickle.dumps(tuning)) == tuning
+
+
+def test_the_text_has_a_line_for_each_number_and_marks_what_is_changed() -> None:
+    tuning = Tuning()
+    tuning.set('least_effect', 0.01)
+    tuning.leave_out('rate')
+    lines = tuning_text.lines(tuning)
+    assert [line.split()[0] for line in lines[:-1]] == [each.name for each in Tuning.numbers()]
+    changed, = [line for line in lines if '(default: ' in line]
+    assert changed.split()[:6] == ['least_effect', '0.01', 's', '0', 'to', '1000']
+    assert changed.endswith('A change of a delay that is no fault. (default: 0.005)')
+    assert lines[-1] == 'without the channel rate'

@@ -1,0 +1,214 @@
+"""Files of every version are read, and say for ever what they said (docs/files.md).
+
+The files are in test/data: README.md there says how they were made.
+"""
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from collections import defaultdict
+from pathlib import Path
+from typing import Any, Dict, List, Set, Tuple
+
+import pytest
+import rosbag
+import yaml
+from conftest import robot
+
+from self_awareness import METHOD, FileVersion, ResultBag, TrainedModel
+from self_awareness.commands import calibrate, info, merge, score, train
+from self_awareness.msg import FileVersion as Message
+from self_awareness.training.robot_graph import RobotGraph
+
+DATA = Path(__file__).resolve().parents[1] / 'data'
+FORMATS = sorted(DATA.glob('format_*'))
+RECORDINGS = ('normal_6.events.bag', 'dead.events.bag', 'late.events.bag')
+FILES = ('robot.model', 'dead.events.bag', 'results.bag')
+
+GONE: Set[str] = set()
+"""Channels that this version does not judge any more."""
+
+every_format = pytest.mark.parametrize('folder', FORMATS, ids=[path.name for path in FORMATS])
+
+Key = Tuple[str, str, str]
+
+
+def says(folder: Path) -> Dict[str, Any]:
+    """Return what the model of a format says now, in a process of its own."""
+    done = subprocess.run(
+        (sys.executable, str(DATA / 'says.py'), 'robot.model', *RECORDINGS), cwd=folder,
+        stdout=subprocess.PIPE, text=True, check=True)
+    return json.loads(done.stdout)
+
+
+def by_track(limits: List[Dict[str, Any]]) -> Dict[Key, List[float]]:
+    """Return the limits of each pair of event types on a channel, in order."""
+    found: Dict[Key, List[float]] = defaultdict(list)
+    for each in limits:
+        if each['channel'] not in GONE:
+            found[each['channel'], each['to'], each['from']].append(each['limit'])
+    return {key: sorted(values) for key, values in found.items()}
+
+
+def printed(capsys: pytest.CaptureFixture, path: Path, *options: str) -> str:
+    assert info.main([str(path), *options]) == 0
+    return capsys.readouterr().out
+
+
+def with_version(path: Path, output: Path, **changes: Any) -> str:
+    """Write a copy of a file that says another version of itself."""
+    with rosbag.Bag(str(path)) as bag, rosbag.Bag(str(output), 'w') as copy:
+        for topic, message, stamp, header in bag.read_messages(
+                raw=True, return_connection_header=True):
+            if topic == '/version':
+                version = Message()
+                version.deserialize(message[1])
+                for name, value in changes.items():
+                    setattr(version, name, value)
+                copy.write(topic, version, stamp, connection_header=header)
+            else:
+                copy.write(topic, message, stamp, raw=True, connection_header=header)
+    return str(output)
+
+
+def test_every_format_has_its_files(tmp_path: Path) -> None:
+    names = [path.name for path in FORMATS]
+    assert names == [f'format_{number}' for number in range(1, len(names) + 1)]
+    for folder in FORMATS:
+        size = sum(path.stat().st_size for path in folder.iterdir())
+        assert size < 300_000, 'they are small'
+    TrainedModel.load(str(FORMATS[-1] / 'robot.model')).save(str(tmp_path / 'now'))
+    now = TrainedModel.load(str(tmp_path / 'now')).version
+    assert now.format == len(FORMATS), 'the newest files are those of what is written now'
+
+
+@every_format
+def test_a_model_says_for_ever_what_it_said(folder: Path) -> None:
+    found, expected = says(folder), json.loads((folder / 'expected.json').read_text())
+    assert found['threshold'] == expected['threshold']
+    limits, said = by_track(found['limits']), by_track(expected['limits'])
+    assert set(limits) == set(said)
+    for key, values in limits.items():
+        # On one channel, a pair may have been watched in more than one way.
+        assert values and set(values) <= set(said[key]), key
+    for name in RECORDINGS:
+        now, then = found['recordings'][name], expected['recordings'][name]
+        assert now['paper'] == then['paper'], name
+        assert now["sum of the paper's scores"] == then["sum of the paper's scores"], name
+        assert len(now['evidence']) == len(then['evidence']), name
+        for alarm, before in zip(now['evidence'], then['evidence']):
+            assert alarm['start'] == pytest.approx(before['start'], abs=0.25)
+            assert alarm['end'] == pytest.approx(before['end'], abs=0.25)
+            assert alarm['suspects'][0] == before['suspects'][0]
+
+
+@every_format
+def test_expectations_hold_what_they_are_for(folder: Path) -> None:
+    expected = json.loads((folder / 'expected.json').read_text())
+    first = {name: [alarm['suspects'][0].split()[0] for alarm in said['evidence']]
+             for name, said in expected['recordings'].items()}
+    assert first == {'normal_6.events.bag': [], 'dead.events.bag': ['/laser'],
+                     'late.events.bag': ['/slam']}
+    assert {each['channel'] for each in expected['limits']} >= {'overdue', 'pairs'}
+
+
+@every_format
+def test_info_prints_the_versions(folder: Path, capsys) -> None:
+    number = int(folder.name.split('_')[1])
+    for name in FILES:
+        version = json.loads(printed(capsys, folder / name, '--json'))['version']
+        assert version['format'] == number and version['oldest_reader'] <= number
+        assert (version['method'] is None) == (name == 'dead.events.bag')
+        text = f'written by   self_awareness {version["package"]}, format {number}'
+        assert text in printed(capsys, folder / name)
+    assert (version['package'], version['method']) == ('0.1.0', 1) or number > 1
+
+
+@every_format
+def test_programs_go_on_with_files_of_any_format(folder: Path, tmp_path: Path, capsys) -> None:
+    model, results = str(tmp_path / 'm'), str(tmp_path / 'results.bag')
+    normal, dead = (str(folder / name) for name in RECORDINGS[:2])
+    assert calibrate.main(['--model', str(folder / 'robot.model'), '--normal', normal,
+                           '-o', model]) == 0
+    before, after = TrainedModel.load(str(folder / 'robot.model')), TrainedModel.load(model)
+    assert after.version.format == len(FORMATS), 'what is written is of this version'
+    assert after.version.method == before.version.method, 'but its counts are not'
+    assert score.main([dead, '--model', model, '--result-bag', results]) == 0
+    assert '1. /laser' in capsys.readouterr().out
+    assert FileVersion.of_result_bag(results).format == len(FORMATS)
+    assert train.main([normal, '--add-to', model, '-o', model]) == 0
+    other = str(tmp_path / 'other')
+    assert train.main([dead, '--detector', 'both', '-o', other]) == 0
+    assert merge.main([other, str(folder / 'robot.model'), '-o', model]) == 0
+    assert TrainedModel.load(model).version.method == min(METHOD, before.version.method)
+
+
+@every_format
+def test_result_bags_of_any_format_are_known(folder: Path) -> None:
+    results = str(folder / 'results.bag')
+    assert ResultBag.is_one(results)
+    assert FileVersion.of_result_bag(results).format == int(folder.name.split('_')[1])
+    with rosbag.Bag(results) as bag:
+        assert any(bag.read_messages('/self_awareness/alarm', raw=True))
+
+
+@every_format
+def test_graphs_of_any_format_are_read(folder: Path, tmp_path: Path) -> None:
+    graph = RobotGraph.load(str(folder / 'dead.graph.yaml'))
+    assert ('/laser', '/scan', '/slam') in graph.edges()
+    graph.save(str(tmp_path / 'g.yaml'))
+    assert RobotGraph.load(str(tmp_path / 'g.yaml')) == graph
+    assert yaml.safe_load((tmp_path / 'g.yaml').read_text())['version']['format'] == 2
+
+
+def test_a_graph_of_a_newer_format_is_read_if_it_says_so(tmp_path: Path) -> None:
+    path = tmp_path / 'g.yaml'
+    topic = '/a: {publishers: [/x], subscribers: [/y], since: 3}\n'
+    path.write_text(f'version: {{format: 9, oldest_reader: 2, new: 1}}\nservices: [/s]\n{topic}')
+    assert RobotGraph.load(str(path)).edges() == {('/x', '/a', '/y')}
+    path.write_text(f'version: {{format: 9, oldest_reader: 9, package: 3.2.1}}\n{topic}')
+    with pytest.raises(ValueError, match=f'^{path}: written by a newer self_awareness .3.2.1, '
+                                         'format 9'):
+        RobotGraph.load(str(path))
+    for version in ('9', '{format: 9}', '{format: x, oldest_reader: 1}',
+                    '{format: 1, oldest_reader: -1}', '{format: 1, oldest_reader: 4294967296}'):
+        path.write_text(f'version: {version}\n{topic}')
+        with pytest.raises(ValueError, match='expected version with format and oldest_reader'):
+            RobotGraph.load(str(path))
+
+
+@pytest.mark.parametrize('name', FILES[:2])
+def test_a_file_that_is_too_new_is_one_line(name: str, tmp_path: Path, capsys) -> None:
+    newest = FORMATS[-1]
+    path = with_version(newest / name, tmp_path / name, format=9, oldest_reader=8,
+                        package='3.2.1')
+    model = path if name == 'robot.model' else str(newest / 'robot.model')
+    recording = path if name != 'robot.model' else str(newest / 'dead.events.bag')
+    for program in (lambda: info.main([path]), lambda: score.main([recording, '--model', model])):
+        assert program() == 1
+        error = capsys.readouterr().err
+        assert f'{path}: written by a newer self_awareness (3.2.1, format 9, for readers' in error
+        assert 'update self_awareness' in error and error.count('\n') == 1
+
+
+@pytest.mark.parametrize('name', FILES)
+def test_a_newer_file_is_read_if_it_says_so(name: str, tmp_path: Path, capsys) -> None:
+    newest = FORMATS[-1]
+    path = with_version(newest / name, tmp_path / name, format=9, package='3.2.1', method=7)
+    out = printed(capsys, Path(path))
+    assert f'self_awareness 3.2.1, format 9, method 7 (this is {METHOD})' in out
+    before = json.loads(printed(capsys, newest / name, '--json'))
+    after = json.loads(printed(capsys, Path(path), '--json'))
+    for summary in (before, after):
+        del summary['version']
+        summary.pop('size', None)
+    assert after == before
+
+
+def test_what_is_written_begins_with_its_version(make_bag, tmp_path: Path) -> None:
+    model = str(tmp_path / 'm')
+    assert train.main([make_bag('a.bag', robot(1000.0)), '-o', model]) == 0
+    with rosbag.Bag(model) as bag:
+        topic, message, _ = next(bag.read_messages())
+    assert topic == '/version' and message.kind == 'model' and message.method == METHOD

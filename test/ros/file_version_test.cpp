@@ -1,0 +1,262 @@
+// Files of other versions: of older ones they are read, of newer ones if those say so.
+
+#include "self_awareness/ros/file_version.h"
+
+#include <gtest/gtest.h>
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+#include <std_msgs/String.h>
+#include <topic_tools/shape_shifter.h>
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "model/model_file_case.h"
+#include "self_awareness/FileVersion.h"
+#include "self_awareness/ros/bag/bag_reader.h"
+#include "self_awareness/ros/bag/event_log_packer.h"
+#include "self_awareness/ros/bag/event_log_reader.h"
+#include "self_awareness/ros/bag/event_log_writer.h"
+#include "self_awareness/ros/bag/read_file_version.h"
+#include "self_awareness/ros/model/model_bytes.h"
+
+namespace self_awareness::ros1 {
+namespace {
+
+using self_awareness::FileVersion;
+using topic_tools::ShapeShifter;
+
+constexpr std::int64_t kBegin = 1790000000LL * core::kNanosecondsPerSecond;
+
+/// Definition and bytes of a message as another version of this package would write it.
+struct Stored {
+  std::string definition;
+  std::vector<std::uint8_t> bytes;
+};
+/// Changes messages by their type; nothing is changed where it does nothing.
+using Change = std::function<void(const std::string& datatype, Stored& stored)>;
+
+class FileVersionTest : public ModelFileTest {
+ protected:
+  std::string model() {
+    saveModel(calibratedModel(), path("model"));
+    return path("model");
+  }
+
+  std::string log() {
+    EventLogWriter log(path("log"));
+    log.start(startOfRecording(rules_, kBegin));
+    EventLogPacker packer([&](self_awareness::EventLog part) { log.write(std::move(part)); });
+    core::Vocabulary vocabulary;
+    for (int k = 0; k < 50; ++k) {
+      packer.add({kBegin + k * 1000000LL, vocabulary.intern({"/a", "/x", "T"})}, vocabulary);
+    }
+    packer.flush(kBegin + core::kNanosecondsPerSecond);
+    log.writeGraph(Graph(), kBegin);
+    log.close();
+    return path("log");
+  }
+
+  /// A copy as another version would have written it.
+  /// @param version what the copy says; none: nothing
+  std::string rewritten(
+      const std::string& file, const std::optional<FileVersion>& version,
+      const Change& change = [](const std::string&, Stored&) {}, bool extra_topic = false) {
+    const rosbag::Bag from(file, rosbag::bagmode::Read);
+    rosbag::Bag to(path("rewritten"), rosbag::bagmode::Write);
+    for (const rosbag::MessageInstance& message : rosbag::View(from)) {
+      if (message.getTopic() == kVersionTopic) {
+        if (version) {
+          to.write(kVersionTopic, message.getTime(), *version);
+        }
+        continue;
+      }
+      Stored stored{message.getMessageDefinition(), {}};
+      stored.bytes.resize(message.size());
+      ros::serialization::OStream stream(stored.bytes.data(), message.size());
+      message.write(stream);
+      change(message.getDataType(), stored);
+      const bool changed = stored.definition != message.getMessageDefinition();
+      ShapeShifter shape;
+      shape.morph(changed ? "0123456789abcdef0123456789abcdef" : message.getMD5Sum(),
+                  message.getDataType(), stored.definition, "0");
+      ros::serialization::IStream bytes(stored.bytes.data(),
+                                        static_cast<std::uint32_t>(stored.bytes.size()));
+      shape.read(bytes);
+      to.write(message.getTopic(), message.getTime(), shape);
+      if (extra_topic) {
+        to.write("/what/is/this", message.getTime(), std_msgs::String());
+      }
+    }
+    to.close();
+    return path("rewritten");
+  }
+
+  static FileVersion newer(const FileKind& kind, std::uint32_t oldest_reader) {
+    FileVersion version = versionOf(kind);
+    version.format = kind.format + 3;
+    version.oldest_reader = oldest_reader;
+    version.package = "7.8.9";
+    return version;
+  }
+
+  std::size_t eventsOf(const std::string& file) const {
+    std::size_t events = 0;
+    EventLogReader(file, 0).read(
+        rules_, [](const core::EventType& /*type*/) { return 0; }, {},
+        [&](const core::Event& /*event*/) { ++events; });
+    return events;
+  }
+
+  static std::string logError(const std::string& file) {
+    try {
+      EventLogReader(file, 0);
+    } catch (const BagError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  EncodingRules rules_ = EncodingRules::defaults();
+};
+
+/// A field that only a newer version knows, at the end of a message.
+void addField(Stored& stored) {
+  const std::size_t end = std::min(stored.definition.find("====="), stored.definition.size());
+  stored.definition.insert(end, "\nstring newer\n");
+  stored.bytes.insert(stored.bytes.end(), {3, 0, 0, 0, 'n', 'e', 'w'});
+}
+
+/// Takes the field at the beginning away, as if an older version did not have it.
+void dropFirstField(const std::string& line, std::size_t bytes, Stored& stored) {
+  const std::size_t at = stored.definition.find(line);
+  ASSERT_NE(at, std::string::npos);
+  stored.definition.erase(at, line.size());
+  stored.bytes.erase(stored.bytes.begin(), stored.bytes.begin() + static_cast<long>(bytes));
+}
+
+TEST_F(FileVersionTest, EachFileBeginsWithItsVersion) {
+  for (const auto& [file, kind] : {std::pair{model(), kModelFile}, {log(), kEventLogFile}}) {
+    const rosbag::Bag bag(file, rosbag::bagmode::Read);
+    rosbag::View view(bag);
+    const auto version = view.begin()->instantiate<FileVersion>();
+    ASSERT_TRUE(version) << file;
+    EXPECT_EQ(*version, versionOf(kind));
+    EXPECT_EQ(readFileVersion(file, kind), versionOf(kind));
+    EXPECT_GE(version->format, 2U);
+    EXPECT_FALSE(version->package.empty());
+  }
+  EXPECT_EQ(loadModel(model()).version, versionOf(kModelFile));
+}
+
+TEST_F(FileVersionTest, AFileThatSaysNothingIsOfTheFirstFormat) {
+  const std::string first = rewritten(model(), std::nullopt);
+  EXPECT_EQ(loadModel(first).version, firstVersionOf(kModelFile));
+  EXPECT_EQ(readFileVersion(first, kModelFile).format, 1U);
+  const std::string old_log = rewritten(log(), std::nullopt);
+  EXPECT_EQ(eventsOf(old_log), 50U);
+  EXPECT_EQ(recordingsInEventLog(old_log), 1U);
+  EXPECT_EQ(readFileVersion(old_log, kEventLogFile).format, 1U);
+}
+
+TEST_F(FileVersionTest, AFileThatNeedsANewerReaderIsRefusedInOneLine) {
+  const std::uint32_t needed = kModelFile.format + 1;
+  const std::string error = modelError(rewritten(model(), newer(kModelFile, needed)));
+  for (const std::string& part :
+       {path("rewritten") + ": written by a newer self_awareness (7.8.9, format ",
+        "readers of format " + std::to_string(needed), versionOf(kModelFile).package,
+        std::string("update self_awareness")}) {
+    EXPECT_NE(error.find(part), std::string::npos) << error;
+  }
+  EXPECT_EQ(error.find('\n'), std::string::npos);
+
+  const std::string new_log = rewritten(log(), newer(kEventLogFile, kEventLogFile.format + 1));
+  EXPECT_EQ(logError(new_log).rfind(new_log + ": written by a newer self_awareness", 0), 0U)
+      << logError(new_log);
+  EXPECT_EQ(recordingsInEventLog(new_log), 1U) << "it is not taken for an ordinary bag";
+  EXPECT_THROW(BagReader{new_log}, BagError);
+  EXPECT_EQ(readFileVersion(new_log, kEventLogFile).package, "7.8.9");
+}
+
+TEST_F(FileVersionTest, WhatANewerPackageSaysOfItselfIsShortAndPrintable) {
+  FileVersion version = newer(kModelFile, kModelFile.format + 1);
+  version.package = "\x1b[2J" + std::string(5000, 'x');
+  const std::string error = modelError(rewritten(model(), version));
+  EXPECT_LT(error.size(), 400U);
+  EXPECT_EQ(error.find('\x1b'), std::string::npos);
+}
+
+TEST_F(FileVersionTest, AModelOfANewerFormatIsReadIfItSaysSo) {
+  const std::string file = rewritten(
+      model(), newer(kModelFile, kModelFile.format),
+      [](const std::string& /*type*/, Stored& stored) { addField(stored); }, true);
+  ASSERT_EQ(modelError(file), "");
+  TrainedModel loaded = loadModel(file);
+  EXPECT_EQ(loaded.version.format, kModelFile.format + 3);
+  loaded.version = versionOf(kModelFile);
+  EXPECT_EQ(toBytes(loaded), toBytes(loadModel(model())));
+}
+
+TEST_F(FileVersionTest, AnEventLogOfANewerFormatIsReadIfItSaysSo) {
+  const std::string file = rewritten(
+      log(), newer(kEventLogFile, kEventLogFile.format),
+      [](const std::string& /*type*/, Stored& stored) { addField(stored); }, true);
+  EXPECT_EQ(recordingsInEventLog(file), 1U);
+  EXPECT_EQ(eventsOf(file), 50U);
+  EXPECT_EQ(readFileVersion(file, kEventLogFile).format, kEventLogFile.format + 3);
+}
+
+TEST_F(FileVersionTest, WhatAnOlderFileLacksIsFilledIn) {
+  const std::string file =
+      rewritten(model(), std::nullopt, [](const std::string& datatype, Stored& stored) {
+        if (datatype == "self_awareness/Model") {
+          dropFirstField("time stamp                # when it was trained\n", 8, stored);
+        }
+      });
+  EXPECT_EQ(loadModel(file).stamp, ros::Time());
+  EXPECT_EQ(loadModel(file).vocabulary().types(), calibratedModel().vocabulary().types());
+  const std::string old_log =
+      rewritten(log(), std::nullopt, [](const std::string& datatype, Stored& stored) {
+        if (datatype == "self_awareness/EventLogGraph") {
+          dropFirstField("time stamp\n", 8, stored);
+        }
+      });
+  EXPECT_EQ(eventsOf(old_log), 50U);
+}
+
+TEST_F(FileVersionTest, AFieldOfAnotherTypeIsNamed) {
+  const std::string file =
+      rewritten(model(), newer(kModelFile, 1), [](const std::string& /*type*/, Stored& stored) {
+        const std::size_t at = stored.definition.find("uint32 predecessors");
+        if (at != std::string::npos) {
+          stored.definition.replace(at, 6, "string");
+        }
+      });
+  EXPECT_NE(modelError(file).find("predecessors"), std::string::npos) << modelError(file);
+}
+
+TEST_F(FileVersionTest, ABagInWhichSomebodyRecordedALogsTopicsIsNoLog) {
+  const std::string file = rewritten(
+      log(), versionOf(kEventLogFile), [](const std::string&, Stored&) {}, true);
+  EXPECT_FALSE(recordingsInEventLog(file));
+  EXPECT_NO_THROW(BagReader{file});
+}
+
+TEST_F(FileVersionTest, AFileOfAnotherKindIsNamed) {
+  EXPECT_NE(modelError(log()).find("event log"), std::string::npos);
+  EXPECT_FALSE(recordingsInEventLog(model()));
+  EXPECT_THROW(readFileVersion(model(), kEventLogFile), BagError);
+}
+
+TEST_F(FileVersionTest, AModelKeepsTheMethodOfItsCounts) {
+  TrainedModel model = calibratedModel();
+  model.version.method = 77;
+  saveModel(model, path("old"));
+  EXPECT_EQ(loadModel(path("old")).version.method, 77U);
+  EXPECT_EQ(loadModel(path("old")).version.format, kModelFile.format);
+  EXPECT_EQ(fromBytes(toBytes(model)).version.method, 77U);
+}
+
+}  // namespace
+}  // namespace self_awareness::ros1

@@ -1,0 +1,127 @@
+// What a model of another version watches and this one does not know is removed, with all that is
+// said of it.
+
+#include "ros/model/model_upgrade.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "model_file_case.h"
+#include "self_awareness/ros/file_version.h"
+
+namespace self_awareness::ros1 {
+namespace {
+
+using self_awareness::Track;
+
+constexpr std::uint8_t kUnknown = 200;
+
+/// The model of the case, with a track of an unknown channel before each other one.
+self_awareness::Model withUnknownTracks(const TrainedModel& model) {
+  self_awareness::Model message = toMessage(model);
+  Track unknown;
+  unknown.channel = kUnknown;
+  for (std::size_t k = message.tracks.size(); k-- > 0;) {
+    message.tracks.insert(message.tracks.begin() + static_cast<std::ptrdiff_t>(k), unknown);
+    auto& calibration = message.evidence_calibration.at(0);
+    calibration.limits.insert(calibration.limits.begin() + static_cast<std::ptrdiff_t>(k), 99);
+    calibration.relations.insert(calibration.relations.begin() + static_cast<std::ptrdiff_t>(k),
+                                 self_awareness::Relation());
+  }
+  for (self_awareness::RecordingFindings& findings : message.findings) {
+    std::vector<float> evidence;
+    for (const float each : findings.evidence) {
+      evidence.insert(evidence.end(), {77, each});
+    }
+    findings.evidence = evidence;
+    std::vector<std::uint8_t> said;
+    for (const std::uint8_t each : findings.said) {
+      said.insert(said.end(), {0, each});
+    }
+    findings.said = said;
+  }
+  return message;
+}
+
+class ModelUpgradeTest : public ModelFileTest {
+ protected:
+  static std::string errorOf(self_awareness::Model message) {
+    try {
+      removeOtherTracks(message, knownChannels());
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "";
+  }
+};
+
+TEST_F(ModelUpgradeTest, TracksOfOtherChannelsGoWithAllThatIsSaidOfThem) {
+  const TrainedModel model = calibratedModel();
+  self_awareness::Model message = withUnknownTracks(model);
+  ASSERT_EQ(message.tracks.size(), 2 * model.watched.tracks.size());
+  upgrade(message, 1);
+  const self_awareness::Model expected = toMessage(model);
+  EXPECT_EQ(message.tracks, expected.tracks);
+  EXPECT_EQ(message.findings, expected.findings);
+  EXPECT_EQ(message.evidence_calibration.at(0).relations,
+            expected.evidence_calibration.at(0).relations);
+  const std::vector<double>& limits = message.evidence_calibration.at(0).limits;
+  ASSERT_EQ(limits.size(), model.watched.tracks.size());
+  EXPECT_TRUE(std::isnan(limits[0]));
+  EXPECT_EQ(std::vector<double>(limits.begin() + 1, limits.end()),
+            std::vector<double>(limits.size() - 1, 2.5));
+  EXPECT_NO_THROW(fromMessage(message));
+}
+
+TEST_F(ModelUpgradeTest, AnyChannelMayGo) {
+  for (std::uint8_t gone = Track::OVERDUE; gone <= Track::DEADLINE; ++gone) {
+    std::set<std::uint8_t> channels = knownChannels();
+    channels.erase(gone);
+    self_awareness::Model message = toMessage(calibratedModel());
+    const auto is_gone = [&](const Track& track) { return track.channel == gone; };
+    const auto going = static_cast<std::size_t>(
+        std::count_if(message.tracks.begin(), message.tracks.end(), is_gone));
+    const std::size_t before = message.tracks.size();
+    removeOtherTracks(message, channels);
+    EXPECT_EQ(message.tracks.size(), before - going);
+    EXPECT_TRUE(std::none_of(message.tracks.begin(), message.tracks.end(), is_gone));
+    EXPECT_EQ(message.evidence_calibration.at(0).limits.size(), before - going);
+    EXPECT_EQ(message.evidence_calibration.at(0).relations.size(), before - going);
+    EXPECT_EQ(message.findings.at(1).evidence.size(), 2 * (before - going));
+    EXPECT_EQ(message.findings.at(1).said.size(), before - going);
+  }
+}
+
+TEST_F(ModelUpgradeTest, AllMayGo) {
+  self_awareness::Model message = toMessage(calibratedModel());
+  removeOtherTracks(message, {});
+  EXPECT_TRUE(message.tracks.empty());
+  EXPECT_TRUE(message.findings.at(1).evidence.empty());
+}
+
+TEST_F(ModelUpgradeTest, AFileOfThisFormatHoldsNoUnknownChannel) {
+  self_awareness::Model message = withUnknownTracks(calibratedModel());
+  upgrade(message, kModelFile.format);
+  EXPECT_THROW(fromMessage(message), std::invalid_argument) << "it is damaged";
+}
+
+TEST_F(ModelUpgradeTest, ColumnsThatDoNotFitTheTracksAreRefused) {
+  const self_awareness::Model whole = withUnknownTracks(calibratedModel());
+  ASSERT_EQ(errorOf(whole), "");
+  for (const auto damage : std::vector<void (*)(self_awareness::Model&)>{
+           [](self_awareness::Model& m) { m.findings.at(0).evidence.pop_back(); },
+           [](self_awareness::Model& m) { m.findings.at(0).said.clear(); },
+           [](self_awareness::Model& m) { m.findings.at(1).part_windows.push_back(1); },
+           [](self_awareness::Model& m) { m.evidence_calibration.at(0).limits.pop_back(); },
+           [](self_awareness::Model& m) { m.evidence_calibration.at(0).relations.pop_back(); }}) {
+    self_awareness::Model damaged = whole;
+    damage(damaged);
+    EXPECT_NE(errorOf(damaged), "");
+  }
+}
+
+}  // namespace
+}  // namespace self_awareness::ros1
