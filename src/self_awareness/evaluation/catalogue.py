@@ -2,8 +2,9 @@
 from __future__ import annotations
 
 from importlib import util
-from typing import Callable, Dict, Sequence
+from typing import Callable, Dict, Optional, Sequence
 
+from self_awareness import Tuning
 from self_awareness.evaluation.detectors import Evidence, Paper, scenario_graph
 from self_awareness.evaluation.peers.frequency import (TOLERANCE, FrequencyMonitor,
                                                        LearnedFrequencyMonitor)
@@ -27,11 +28,11 @@ def _hmm() -> Scorer:
     return HmmScorer()
 
 
-_SYSTEMS: Dict[str, Callable[[], System]] = {
-    'evidence': lambda: Evidence(scenario_graph()),
-    'evidence_no_graph': lambda: Evidence(set()),
-    'paper': Paper,
-    'gaps': GapMonitor,
+_SYSTEMS: Dict[str, Callable[[Tuning], System]] = {
+    'evidence': lambda tuning: Evidence(scenario_graph(), tuning=tuning),
+    'evidence_no_graph': lambda tuning: Evidence(set(), tuning=tuning),
+    'paper': lambda _: Paper(),
+    'gaps': lambda _: GapMonitor(),
 }
 
 _SCORERS: Dict[str, Callable[[], Scorer]] = {
@@ -53,10 +54,15 @@ NAMES = (*_SYSTEMS, *_SCORERS)
 """Of all systems, the package's own detectors first."""
 
 
-def make(name: str) -> System:
-    """Return a new system by its name, one of NAMES."""
+def make(name: str, tuning: Optional[Tuning] = None) -> System:
+    """Return a new system.
+
+    Args:
+        name: one of NAMES.
+        tuning: of the evidence method, if the system is one of it; None: the method as it is.
+    """
     if name in _SYSTEMS:
-        return _SYSTEMS[name]()
+        return _SYSTEMS[name](tuning or Tuning())
     return ScoringSystem(name, _SCORERS[name](), _THRESHOLDS.get(name))
 
 
@@ -72,4 +78,4 @@ def check_libraries(names: Sequence[str]) -> None:
         libraries = ' and '.join(dict.fromkeys(_LIBRARIES[name] for name in missing))
         raise ValueError(f'the Python library {libraries} is not installed: let '
                          'scripts/evaluation_env.sh install it and run this program, or leave '
-                         f'the peers out (--without {" ".join(missing)})')
+                         f'the peers out (--without-systems {" ".join(missing)})')

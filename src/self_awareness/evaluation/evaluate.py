@@ -13,10 +13,12 @@ from typing import TYPE_CHECKING, Iterator, Optional, Sequence
 
 from self_awareness.calibration.limits import BUDGET
 from self_awareness.commands import cli
-from self_awareness.evaluation import catalogue
+from self_awareness.evaluation import catalogue, options, tunings
+from self_awareness.evaluation.ablation import command as ablation
+from self_awareness.evaluation.compare import report as compare
 from self_awareness.evaluation.families import experiment as families, report as families_report
 from self_awareness.evaluation.families.kinds import FAMILIES
-from self_awareness.evaluation.families.protocol import KINDS, MOST_STARTS, Learning
+from self_awareness.evaluation.families.protocol import KINDS, Learning
 from self_awareness.evaluation.recordings import outages, report as recordings_report
 from self_awareness.evaluation.simulated import experiment, report
 from self_awareness.evaluation.simulated.experiment import Plan
@@ -45,17 +47,19 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 
 def _simulated(arguments: argparse.Namespace, command: str) -> None:
-    systems = tuple(name for name in arguments.systems if name not in arguments.without)
+    systems = tuple(name for name in arguments.systems if name not in arguments.without_systems)
     if not systems:
-        raise ValueError('--without: no system is left to evaluate')
+        raise ValueError('--without-systems: no system is left to evaluate')
     catalogue.check_libraries(systems)
+    tuning = tunings.of(arguments)
+    tunings.check_used(tuning, systems)
     scenario = load_scenario()
     faults = tuple(arguments.faults or default_faults(scenario))
     for kind in faults:
         effect_of(scenario, kind)
     plan = Plan(systems, faults,
                 tuple(range(arguments.seed, arguments.seed + arguments.seeds)),
-                arguments.calibration, arguments.training_share)
+                arguments.calibration, arguments.training_share, tuning)
     arguments.output.mkdir(parents=True, exist_ok=True)
     results = experiment.run(plan, scenario, arguments.jobs)
     for path in report.write(arguments.output, plan, results, command):
@@ -63,7 +67,7 @@ def _simulated(arguments: argparse.Namespace, command: str) -> None:
 
 
 def _recordings(arguments: argparse.Namespace, command: str) -> None:
-    rows = outages.evaluate(arguments.data)
+    rows = outages.evaluate(arguments.data, tunings.of(arguments))
     arguments.output.mkdir(parents=True, exist_ok=True)
     for path in recordings_report.write(arguments.output, rows, command):
         print(f'written: {path}')
@@ -77,8 +81,10 @@ def _families(arguments: argparse.Namespace, command: str) -> None:
     plan = families.Plan(
         tuple(arguments.families), tuple(range(arguments.seed, arguments.seed + arguments.robots)),
         tuple(learnings), tuple(arguments.systems), tuple(arguments.budgets), arguments.hours,
-        tuple(kind for kind in KINDS if kind.split()[0] in arguments.faults))
+        tuple(kind for kind in KINDS if kind.split()[0] in arguments.faults),
+        tunings.of(arguments))
     catalogue.check_libraries(plan.systems)
+    tunings.check_used(plan.tuning, plan.systems)
     arguments.output.mkdir(parents=True, exist_ok=True)
     results = families.run(plan, arguments.jobs)
     for path in families_report.write(arguments.output, plan, results, command):
@@ -164,6 +170,15 @@ def parser() -> argparse.ArgumentParser:
     _add_recordings(parts.add_parser(
         'recordings', help='recordings of real robots that others made',
         description='The outages in recordings of real robots, and false alarms on them.'))
+    ablation.add(parts.add_parser(
+        'ablation', help='what each part of the evidence detector buys',
+        description='Leaves out channel after channel, switches off rule after rule, halves and '
+        'doubles number after number, and judges the same robots and recordings each time. What '
+        'is done is kept: the same command goes on where it was interrupted.'))
+    compare.add(parts.add_parser(
+        'compare', help='two versions side by side, by what the same commands measured',
+        description='Writes a page about two folders that families, simulated or recordings wrote '
+        'to with -o, in two versions of this package.'))
     _add_live(parts.add_parser(
         'live', help='the follow-me robot as 15 processes, and the monitor',
         description='Starts master and robot, records, trains and calibrates, starts the monitor, '
@@ -184,30 +199,26 @@ def parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _add_output(parser: argparse.ArgumentParser, written: str) -> None:
-    parser.add_argument('-o', '--output', type=Path, default=Path('docs/evaluation'),
-                        metavar='DIR', help=f'where {written} go (default: docs/evaluation)')
-
-
 def _add_recordings(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(work=_recordings)
-    _add_output(parser, 'the page and the CSV file')
+    options.add_output(parser, 'the page and the CSV file')
     parser.add_argument('--data', type=Path, required=True, metavar='DIR',
                         help='the folder of the recordings')
+    tunings.add(parser)
 
 
 def _add_live(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(work=_live)
-    _add_output(parser, 'the page, the CSV file and the plot')
+    options.add_output(parser, 'the page, the CSV file and the plot')
     parser.add_argument('--rounds', type=cli.count, default=5, metavar='N',
                         help='how often each fault is induced (default: 5)')
-    parser.add_argument('--training', type=cli.checked(_calibration_s), nargs='+',
+    parser.add_argument('--training', type=options.calibration_s, nargs='+',
                         default=(60.0, 60.0), metavar='S',
                         help='lengths of the recordings to learn from [s] (default: 60 60)')
-    parser.add_argument('--calibration', type=cli.checked(_calibration_s), default=240.0,
+    parser.add_argument('--calibration', type=options.calibration_s, default=240.0,
                         metavar='S', help='length of the recording that the limits are found by '
                         '[s] (default: 240)')
-    parser.add_argument('--normal', type=cli.checked(_calibration_s), default=20.0, metavar='S',
+    parser.add_argument('--normal', type=options.calibration_s, default=20.0, metavar='S',
                         help='normal operation in each round [s] (default: 20)')
     _add_folder(parser)
 
@@ -221,17 +232,17 @@ def _add_folder(parser: argparse.ArgumentParser) -> None:
 
 def _add_nodes(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(work=_nodes)
-    _add_output(parser, 'the page and the CSV file')
+    options.add_output(parser, 'the page and the CSV file')
     parser.add_argument('--starts', type=cli.count, default=3, metavar='N',
                         help='starts of the nodes to learn from (default: 3)')
-    parser.add_argument('--training', type=cli.checked(_calibration_s), default=150.0, metavar='S',
+    parser.add_argument('--training', type=options.calibration_s, default=150.0, metavar='S',
                         help='length of the recording of each of them [s] (default: 150)')
     parser.add_argument('--calibrations', type=cli.count, default=1, metavar='N',
                         help='further starts that the limits are found by (default: 1)')
-    parser.add_argument('--calibration', type=cli.checked(_calibration_s), default=250.0,
+    parser.add_argument('--calibration', type=options.calibration_s, default=250.0,
                         metavar='S', help='length of the recording of each of them [s] '
                         '(default: 250)')
-    parser.add_argument('--minutes', type=cli.checked(_minutes), default=60.0, metavar='MIN',
+    parser.add_argument('--minutes', type=options.minutes, default=60.0, metavar='MIN',
                         help='normal operation that is watched (default: 60)')
     _add_folder(parser)
 
@@ -240,7 +251,7 @@ def _add_soak(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(work=_soak)
     parser.add_argument('-o', '--output', type=Path, default=Path('docs'), metavar='DIR',
                         help='folder of reliability.md, whose section is written (default: docs)')
-    parser.add_argument('--minutes', type=cli.checked(_minutes), default=60.0, metavar='MIN',
+    parser.add_argument('--minutes', type=options.minutes, default=60.0, metavar='MIN',
                         help='how long the monitor runs (default: 60)')
     parser.add_argument('--seed', type=cli.count, default=1, help='of the faults and the robot '
                         '(default: 1)')
@@ -248,11 +259,11 @@ def _add_soak(parser: argparse.ArgumentParser) -> None:
                         metavar='N', help='times the usual speed of the robot (default: 10)')
     parser.add_argument('--starts', type=cli.count, default=4, metavar='N',
                         help='starts of the robot to learn from (default: 4)')
-    parser.add_argument('--training', type=cli.checked(_calibration_s), default=90.0, metavar='S',
+    parser.add_argument('--training', type=options.calibration_s, default=90.0, metavar='S',
                         help='length of the recording of each of them [s] (default: 90)')
     parser.add_argument('--calibrations', type=cli.count, default=4, metavar='N',
                         help='further starts that the limits are found by (default: 4)')
-    parser.add_argument('--calibration', type=cli.checked(_calibration_s), default=120.0,
+    parser.add_argument('--calibration', type=options.calibration_s, default=120.0,
                         metavar='S', help='length of the recording of each of them [s] '
                         '(default: 120)')
     parser.add_argument('--budget', type=cli.budget, default=0.1, metavar='B',
@@ -262,21 +273,23 @@ def _add_soak(parser: argparse.ArgumentParser) -> None:
 
 def _add_simulated(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(work=_simulated)
-    _add_output(parser, f'the page, the plots and, in the folder {report.FULL}, all numbers')
+    options.add_output(
+        parser, f'the page, the plots and, in the folder {report.FULL}, all numbers')
     parser.add_argument('--seeds', type=cli.count, default=20, metavar='N',
                         help='number of repetitions, each with the next seed (default: 20)')
     parser.add_argument('--seed', type=int, default=1, help='the first seed (default: 1)')
-    parser.add_argument('--calibration', type=cli.checked(_calibration_s), default=600.0,
+    parser.add_argument('--calibration', type=options.calibration_s, default=600.0,
                         metavar='S', help='length of the record that the threshold is chosen by '
                         '[s]; the paper has 100 (default: 600)')
-    parser.add_argument('--training-share', type=cli.checked(_share), default=0.1, metavar='SHARE',
+    parser.add_argument('--training-share', type=options.share, default=0.1, metavar='SHARE',
                         help='learn once from all of the training records, and once from this '
                         'first share of them; 0: only from all (default: 0.1)')
     parser.add_argument('--systems', nargs='+', choices=catalogue.NAMES, default=catalogue.NAMES,
                         metavar='SYSTEM', help='evaluate these only: '
                         f'{", ".join(catalogue.NAMES)} (default: all)')
-    parser.add_argument('--without', nargs='+', choices=catalogue.NAMES, default=[],
+    parser.add_argument('--without-systems', nargs='+', choices=catalogue.NAMES, default=[],
                         metavar='SYSTEM', help='leave these out')
+    tunings.add(parser)
     parser.add_argument('--faults', nargs='+', metavar='FAULT',
                         help='kinds of faults (default: all, and every regular component crashed '
                         'in turn)')
@@ -286,71 +299,34 @@ def _add_simulated(parser: argparse.ArgumentParser) -> None:
 
 def _add_families(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(work=_families)
-    _add_output(parser, f'the page, its figures and, in the folder {report.FULL}, all numbers')
+    options.add_output(
+        parser, f'the page, its figures and, in the folder {report.FULL}, all numbers')
     parser.add_argument('--families', nargs='+', choices=FAMILIES, default=list(FAMILIES),
                         metavar='FAMILY', help='evaluate robots of these only: '
                         f'{", ".join(FAMILIES)} (default: all)')
     parser.add_argument('--robots', type=cli.count, default=3, metavar='N',
                         help='robots of each family, each with the next seed (default: 3)')
     parser.add_argument('--seed', type=cli.count, default=1, help='the first seed (default: 1)')
-    parser.add_argument('--starts', type=cli.checked(_starts), nargs='+', default=[1, 2, 4, 8],
+    parser.add_argument('--starts', type=options.starts, nargs='+', default=[1, 2, 4, 8],
                         metavar='N', help='starts to train on, in turn; half as many, but one at '
                         'least, are calibrated on (default: 1 2 4 8)')
-    parser.add_argument('--training', type=cli.checked(_calibration_s), default=150.0, metavar='S',
+    parser.add_argument('--training', type=options.calibration_s, default=150.0, metavar='S',
                         help='length of a recording to train on [s] (default: 150)')
-    parser.add_argument('--calibration', type=cli.checked(_calibration_s), default=150.0,
+    parser.add_argument('--calibration', type=options.calibration_s, default=150.0,
                         metavar='S', help='length of one to calibrate on [s] (default: 150)')
     parser.add_argument('--short', action='store_true', help=f'learn from {_SHORT} as well')
-    parser.add_argument('--hours', type=cli.checked(_hours), default=2.0, metavar='H',
+    parser.add_argument('--hours', type=options.hours, default=2.0, metavar='H',
                         help='normal operation that is watched, for each robot (default: 2)')
-    parser.add_argument('--budgets', type=cli.checked(_budget), nargs='+', default=[BUDGET],
+    parser.add_argument('--budgets', type=options.budget, nargs='+', default=[BUDGET],
                         metavar='B', help='false alarms an hour that limits are made for, in '
                         f'turn; faults are judged with the first (default: {BUDGET:g})')
     parser.add_argument('--systems', nargs='+', choices=catalogue.NAMES,
                         default=families.SYSTEMS, metavar='SYSTEM',
                         help=f'evaluate these: {", ".join(catalogue.NAMES)} '
                         f'(default: {" ".join(families.SYSTEMS)})')
+    tunings.add(parser)
     parser.add_argument('--faults', nargs='*', choices=_FAULTS, default=_FAULTS, metavar='FAULT',
                         help=f'kinds of faults: {", ".join(_FAULTS)}; none at all if no name '
                         'follows (default: all)')
     parser.add_argument('--jobs', type=cli.count, default=os.cpu_count(), metavar='N',
                         help='robots at a time (default: as many as there are cores)')
-
-
-def _calibration_s(text: str) -> float:
-    value = float(text)
-    if not 10.0 <= value <= 86400.0:
-        raise ValueError(f'expected seconds from 10 to 86400, not {text}')
-    return value
-
-
-def _share(text: str) -> float:
-    value = float(text)
-    if not 0.0 <= value < 1.0:
-        raise ValueError(f'expected a share from 0 to less than 1, not {text}')
-    return value
-
-
-def _starts(text: str) -> int:
-    value = int(text)
-    if not 1 <= value <= MOST_STARTS:
-        raise ValueError(f'expected starts from 1 to {MOST_STARTS}, not {text}')
-    return value
-
-
-def _minutes(text: str) -> float:
-    return 60.0 * _hours(str(float(text) / 60.0))
-
-
-def _hours(text: str) -> float:
-    value = float(text)
-    if not 0.02 <= value <= 1000.0:
-        raise ValueError(f'expected hours from 0.02 to 1000, not {text}')
-    return value
-
-
-def _budget(text: str) -> float:
-    value = float(text)
-    if not 0.001 <= value <= 1000.0:
-        raise ValueError(f'expected false alarms an hour from 0.001 to 1000, not {text}')
-    return value

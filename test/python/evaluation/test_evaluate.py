@@ -21,7 +21,7 @@ ROOT = Path(__file__).resolve().parents[3]
 def _written(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp('evaluation') / 'new'
     assert evaluate.main(['simulated', '--seeds', '2', '--seed', '5', '--systems', 'paper',
-                          'frequency', 'frequency_learned', '--without', 'frequency',
+                          'frequency', 'frequency_learned', '--without-systems', 'frequency',
                           '--faults', 'cc1', 'rs', '--calibration', '60', '--jobs', '2',
                           '-o', str(folder)]) == 0
     return folder
@@ -99,7 +99,7 @@ def test_a_failure_leaves_the_old_page(written: Path, tmp_path: Path,
         raise OSError('no space left')
 
     monkeypatch.setattr(report, 'page', fail)
-    monkeypatch.setattr(report, '_save_csv', lambda *_: None)
+    monkeypatch.setattr(report.row_files, 'save', lambda *_: None)
     monkeypatch.setattr(report, 'full_page', lambda *_: '')
     with pytest.raises(OSError, match='no space left'):
         report.write(tmp_path, None, Results(), '')
@@ -115,7 +115,7 @@ def test_a_missing_library_is_named_with_the_way_out(tmp_path: Path, capsys: Any
     assert evaluate.main(arguments) == 1
     error = capsys.readouterr().err
     for word in ('sklearn', 'hmmlearn', 'scripts/evaluation_env.sh',
-                 '--without isolation_forest one_class_svm hmm'):
+                 '--without-systems isolation_forest one_class_svm hmm'):
         assert word in error
     assert not (tmp_path / 'out').exists()
     catalogue.check_libraries(['paper', 'frequency', 'markov'])
@@ -124,11 +124,11 @@ def test_a_missing_library_is_named_with_the_way_out(tmp_path: Path, capsys: Any
 @pytest.mark.parametrize('wrong', [['--faults', 'flood'], ['--seeds', '0'], ['--jobs', '0'],
                                    ['--calibration', '5'], ['--calibration', 'x'],
                                    ['--training-share', '1'], ['--systems', 'oracle'],
-                                   ['--systems', 'paper', '--without', 'paper']])
+                                   ['--systems', 'paper', '--without-systems', 'paper']])
 def test_wrong_arguments_are_refused(wrong: list, tmp_path: Path, capsys: Any) -> None:
     arguments = wrong if '--systems' in wrong else ['--systems', 'paper', *wrong]
     assert evaluate.main(['simulated', '-o', str(tmp_path / 'out'), *arguments]) in (1, 2)
-    assert wrong[-1] in capsys.readouterr().err or wrong[-2] == '--without'
+    assert wrong[-1] in capsys.readouterr().err or wrong[-2] == '--without-systems'
     assert not (tmp_path / 'out').exists()
 
 

@@ -10,7 +10,7 @@ from typing import List, Optional, Set, Tuple
 import numpy as np
 import pytest
 
-from self_awareness import DEFAULT_WINDOW
+from self_awareness import DEFAULT_WINDOW, Tuning
 from self_awareness.calibration import confidence
 from self_awareness.evaluation import evaluate
 from self_awareness.evaluation.detectors import Evidence
@@ -192,8 +192,9 @@ def test_the_detector_gets_the_graph_of_the_robot_and_the_budget(
     class Told(Evidence):
         """Remembers what it was told."""
 
-        def __init__(self, graph: Set[Tuple[str, str, str]], budget: float) -> None:
-            super().__init__(graph, budget=budget)
+        def __init__(self, graph: Set[Tuple[str, str, str]], budget: float,
+                     tuning: Tuning) -> None:
+            super().__init__(graph, budget=budget, tuning=tuning)
             made.append((graph, budget))
 
     monkeypatch.setattr(experiment, 'Evidence', Told)

@@ -22,7 +22,7 @@ constexpr double kThreshold = -1;
 struct Shares {
   /// By track of the model; 0: no evidence, or not judged.
   const std::vector<double>& tracks;
-  /// Of event types that should have come after the start (docs/method.md, section 3.9).
+  /// Of event types that should have come after the start (docs/method.md, section 3.8).
   std::vector<std::pair<EventId, double>> never_heard;
 };
 /// Called with every window that is judged; the shares are valid during the call.

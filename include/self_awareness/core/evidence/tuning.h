@@ -15,27 +15,20 @@ namespace self_awareness::core::evidence {
 struct Tuning {
   // What is known well enough to be judged.
   double fewest_gaps = 30;
-  double fewest_delays = 50;
   double fewest_delays_of_pair = 200;
   double least_rate = 1.5;
-  double predecessors = 3;
+  double predecessors = 2;
   double deadlines = 3;
 
   // Which relations have a reason.
   double least_gain = 0.3;
   double least_gain_left = 0.7;
-  double part_of_gain = 100;
-  double same_start = 60;
-  double least_share_of_start = 0.02;
-  double fewest_events_of_start = 20;
-  double most_outliers = 0.1;
   double chance_of_any = 0.1;
   double chance_of_one = 0.05;
   double irregular = 2;
   double least_chance_misses = 0.2;
   double most_of_chance_misses = 0.5;
   double most_misses = 0.1;
-  double fewest_answers = 30;
   double least_of_longest = 0.1;
   double fewest_of_broadcast = 4;
 
@@ -48,30 +41,23 @@ struct Tuning {
   double effect_on_gaps = 2;
   double effect_on_gaps_of_period = 10;
   double drift = 1;
-  double regime = 120;
+  double slow_change = 120;
   double most_behind = 3;
   double most_of_limit = 1.5;
   double arming_events = 30;
   double usual_surprise = 0.3;
-  double most_failures = 10;
   double gone_gaps = 5;
   double accept_after = 60;
 
   // Rates, owed answers, and who never came.
   double least_rate_effect = 0.04;
-  double longest_gap_of_series = 2;
   double start_time = 60;
   double due_times = 2;
-  double due_later = 5;
   double alarm_times = 4;
-  double alarm_later = 60;
 
   // A machine that stands still, or is busy.
-  double longest_usual_stall = 1.25;
-  double shortest_stall = 0.05;
   double longest_stall = 0.7;
   double between_stalls = 30;
-  double busy_share = 0.75;
   double still_busy_share = 0.5;
   double fewest_busy = 4;
   double busy_one_in = 3;
@@ -81,11 +67,9 @@ struct Tuning {
   double least_time = 50;
   double least_excess = 1.1;
   double prior_exceedances = 5;
-  double fewest_exceedances = 0.5;
   double scale = 0.2;
   double scale_of_timers = 0.05;
   double many_tracks = 20;
-  double beyond_all = 1.25;
   double share_of_least = 0.5;
   double least_margin = 1.25;
   double least_deadline_margin = 2;
@@ -93,20 +77,15 @@ struct Tuning {
   double most_gap_margin = 1.6;
   double most_own_margin = 2;
   double most_tail_margin = 2;
-  double tail_gaps = 20;
   double regular = 1.5;
-  double fast = 2;
   double most_of_training = 10;
   double least_rate_limit = 3;
   double least_deadline = 0.5;
   double least_requests = 3;
-  double most_delay_limit = 100;
   double longest_wait = 10;
   double most_mean_gaps = 3;
-  double longest_deadline = 20;
 
   // From evidence to an alarm, and to who is to blame.
-  double confirmation = 0.1;
   double rare_silence = 0.01;
   double near_limit = 0.75;
   double least_share = 0.3;

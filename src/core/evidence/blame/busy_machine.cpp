@@ -30,7 +30,7 @@ std::optional<Busy> BusyMachine::closeWindow(const std::vector<double>& shares,
   const Followers::Leads leads = followers_.leads(shares);
   const auto isLate = [&](std::size_t component) {
     return !silent[component] &&
-           largest[component] > (busy_ ? tuning.still_busy_share : tuning.busy_share);
+           largest[component] > (busy_ ? tuning.still_busy_share : tuning.near_limit);
   };
   // Who follows as usual one that is late or silent is only its victim.
   std::vector<bool> led(names.size(), false);

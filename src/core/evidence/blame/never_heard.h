@@ -14,7 +14,7 @@
 namespace self_awareness::core::evidence {
 
 /// Notices event types that do not come after the start, although they came in every recording of
-/// the training (docs/method.md, section 3.9). A type that comes late as it always does is normal.
+/// the training (docs/method.md, section 3.8). A type that comes late as it always does is normal.
 class NeverHeard {
  public:
   /// @param graph whose messages reach whom; may grow
@@ -42,7 +42,7 @@ class NeverHeard {
     EventId id = 0;
     std::int64_t shortest = 0;  // usual time from the start to its first event [ns]
     std::int64_t longest = 0;   // [ns]
-    std::int64_t due = 0;       // after the start, if the settling is over [ns]
+    std::int64_t due = 0;       // after the start and the settling [ns]
     double share = 0;           // of its limit that its absence has reached, once it is due
   };
 

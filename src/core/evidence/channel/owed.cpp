@@ -17,13 +17,9 @@ class ExpectedAnswers : public Expectation {
   double leastLimit(std::size_t track) const override {
     return countsRequests(track) ? model_.tuning().least_requests : model_.tuning().least_deadline;
   }
-  bool isUsable(std::size_t track, double limit) const override {
-    const double seconds = countsRequests(track) ? usualGap(track) * 1e-9 : 1;
-    return limit * seconds <= model_.tuning().longest_deadline;
-  }
   /// Whether requests come in series, and are counted.
   bool countsRequests(std::size_t track) const {
-    return usualGap(track) < model_.tuning().longest_gap_of_series * 1e9;
+    return usualGap(track) < static_cast<double>(kRateSpan);
   }
   const Model& model() const { return model_; }
 
@@ -136,7 +132,7 @@ std::vector<Track> Owed::watch(const Choice& choice) const {
     for (EventId from = 0; from < choice.both.size(); ++from) {
       const std::uint64_t answers = choice.both.answers(from, to);
       const double misses = missRate(choice.both.type(from).gaps, answers);
-      if (from != to && static_cast<double>(answers) >= choice.tuning.fewest_answers &&
+      if (from != to && static_cast<double>(answers) >= choice.tuning.fewest_gaps &&
           misses <= choice.tuning.most_misses && choice.relations.owed(from, to).watched) {
         best.emplace_back(misses, from);
       }

@@ -1,5 +1,8 @@
 #include "core/evidence/channel/silence.h"
 
+#include <cmath>
+#include <limits>
+
 #include "self_awareness/core/evidence/channel/model.h"
 
 namespace self_awareness::core::evidence {
@@ -8,9 +11,7 @@ namespace {
 class SilenceState : public ChannelState {
  public:
   SilenceState(const Model& model, const std::vector<std::size_t>& tracks)
-      : model_(model),
-        tracks_(tracks),
-        confirmation_(toNanoseconds(model.tuning().confirmation)) {}
+      : model_(model), tracks_(tracks) {}
 
   void closeWindow(const Heard& heard, std::vector<double>& evidence) override {
     for (const std::size_t track : tracks_) {
@@ -20,7 +21,7 @@ class SilenceState : public ChannelState {
   }
   bool isCertain(std::size_t track, double limit, const Heard& heard) const override {
     const EventId id = model_.tracks()[track].to;
-    return model_.overdue(id, heard.age(id) - confirmation_) > limit;
+    return model_.overdue(id, heard.age(id) - heard.window()) > limit;
   }
   void explain(std::size_t /*track*/, const Heard& heard, const RecentEvents& /*events*/,
                Suspect& suspect) const override {
@@ -36,7 +37,6 @@ class SilenceState : public ChannelState {
  private:
   const Model& model_;
   const std::vector<std::size_t>& tracks_;
-  std::int64_t confirmation_;  // [ns]
 };
 
 class ExpectedSilence : public Expectation {
@@ -48,6 +48,15 @@ class ExpectedSilence : public Expectation {
     return std::make_unique<SilenceState>(model_, tracks());
   }
   double leastLimit(std::size_t /*track*/) const override { return 0; }
+  double limit(std::size_t track, double most) const override {
+    const EventId id = model_.tracks()[track].to;
+    const Tuning& tuning = model_.tuning();
+    // What comes when something happens may stay away for as long as nothing does.
+    const bool irregular =
+        most > tuning.longest_wait * 1e9 && most > tuning.most_mean_gaps * model_.meanGap(id);
+    return irregular ? std::numeric_limits<double>::quiet_NaN()
+                     : model_.overdue(id, std::llround(most));
+  }
 
  private:
   const Model& model_;

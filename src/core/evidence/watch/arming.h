@@ -8,23 +8,24 @@
 
 namespace self_awareness::core::evidence {
 
-/// Whether what is watched counts (docs/method.md, section 3.6). Independent timers keep one phase
+/// Whether what is watched counts (docs/method.md, section 3.7). Independent timers keep one phase
 /// as long as they run, and have another one in every run: training may have met the same one by
 /// chance every time. So a relation counts only after it has once been as in training. What is
 /// different for long, and stable, has changed: it is news once, and then must be as in training
 /// again.
 class Arming {
  public:
+  /// So many failures double the events: a day of them at 1 Hz would not do.
+  static constexpr std::uint32_t kMostDoublings = 10;
+
   /// The numbers that all have in common.
   struct Numbers {
     explicit Numbers(const Tuning& tuning)
         : events(static_cast<std::uint32_t>(tuning.arming_events)),
-          most_failures(static_cast<std::uint32_t>(tuning.most_failures)),
           usual(tuning.usual_surprise),
           accept_after(toNanoseconds(tuning.accept_after)) {}
 
     std::uint32_t events;
-    std::uint32_t most_failures;
     double usual;               // largest mean surprise that is as in training
     std::int64_t accept_after;  // [ns]
   };
@@ -38,7 +39,7 @@ class Arming {
   void add(double surprise, const Numbers& numbers) {
     excess_ += surprise;
     const std::uint64_t needed = std::uint64_t{numbers.events}
-                                 << std::min(failures_, numbers.most_failures);
+                                 << std::min(failures_, kMostDoublings);
     if (++events_ < needed) {
       return;
     }

@@ -10,7 +10,7 @@
 namespace self_awareness::core::evidence {
 
 /// What the delay since the last e_i says about e_j beyond what it says about any event: gain(i,
-/// j) of docs/method.md, section 3.4, one way. It is the mean of log P_ij - log Q_i [nat], learned
+/// j) of docs/method.md, section 3.5, one way. It is the mean of log P_ij - log Q_i [nat], learned
 /// from one half of the training and measured on the other; Q_i is the delay since e_i at any
 /// event. What holds within a recording only, such as the phase between two independent timers, is
 /// no information.
@@ -33,7 +33,7 @@ class InformationGain {
   std::vector<LogProbabilities> any_;             // of the delays since e_i at any event, by i
 };
 
-/// Gains of all pairs: the mean of learning from either half (docs/method.md, section 3.4).
+/// Gains of all pairs: the mean of learning from either half (docs/method.md, section 3.5).
 class Gains {
  public:
   /// @param halves of the training, with the same event types

@@ -4,7 +4,8 @@ namespace self_awareness::core::evidence {
 
 Heard::Heard(std::size_t types, std::int64_t window, std::int64_t longest_silence,
              const Tuning& tuning)
-    : counts_(types, rateWindows(window)),
+    : window_(window),
+      counts_(types, rateWindows(window)),
       stalls_(longest_silence, tuning),
       stamps_(types, 0),
       first_stamps_(types, 0),

@@ -14,7 +14,7 @@
 namespace self_awareness::core::evidence {
 
 /// What was heard of a recording so far, as all channels need it: who came when last, how often,
-/// and whether the whole robot stood still (docs/method.md, sections 1.4 and 3.6).
+/// and whether the whole robot stood still (docs/method.md, sections 1.4 and 3.7).
 class Heard {
  public:
   /// @param types number of event types
@@ -70,6 +70,8 @@ class Heard {
   std::int64_t age(EventId id) const {
     return hasSeen(id) ? silence(id) - stalls_.standstillSince(stamps_[id], window_end_) : 0;
   }
+  /// Length of a window [ns].
+  std::int64_t window() const { return window_; }
   /// Events of a type in the last kRateSpan; none where that says nothing: since the start, or the
   /// first event of the type, less time has passed, or the robot stood still.
   std::optional<std::uint32_t> rate(EventId id) const;
@@ -77,6 +79,7 @@ class Heard {
   std::uint32_t recentCount(EventId id) const { return counts_.counts().at(id); }
 
  private:
+  std::int64_t window_;  // [ns]
   RecentCounts counts_;
   Stalls stalls_;
   std::int64_t start_ = 0;                  // [ns], once there was an event

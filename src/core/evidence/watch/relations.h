@@ -15,7 +15,7 @@
 namespace self_awareness::core::evidence {
 
 /// Says of two event types whether what they do together has a reason, or may be chance
-/// (docs/method.md, section 3.5). Two timers that have nothing to do with each other keep one
+/// (docs/method.md, section 3.6). Two timers that have nothing to do with each other keep one
 /// phase for as long as they run, and so look like question and answer within a start.
 class Relations {
  public:

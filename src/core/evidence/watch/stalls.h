@@ -7,7 +7,7 @@
 namespace self_awareness::core::evidence {
 
 /// Notices that the whole robot stops for a moment and goes on: its machine was busy, and no
-/// component is to blame (docs/method.md, section 3.6).
+/// component is to blame (docs/method.md, section 3.7).
 class Stalls {
  public:
   /// @param longest_silence that is usual: the longest time without any event in training [ns]

@@ -6,6 +6,7 @@ from contextlib import closing
 from dataclasses import dataclass, field
 from typing import Iterator, List, Optional, Tuple
 
+from self_awareness import Tuning
 from self_awareness.evaluation import catalogue
 from self_awareness.evaluation.detectors import Evidence
 from self_awareness.evaluation.families.measures import (FaultRow, NormalRow, Subject, fault_row,
@@ -33,6 +34,7 @@ class Plan:
         budgets: false alarms an hour that limits are made for; faults are judged with the first.
         hours: of normal operation that is watched, for each robot.
         faults: kinds, of protocol.KINDS.
+        tuning: of the evidence method.
     """
 
     families: Tuple[str, ...]
@@ -42,6 +44,7 @@ class Plan:
     budgets: Tuple[float, ...]
     hours: float
     faults: Tuple[str, ...]
+    tuning: Tuning = field(default_factory=Tuning)
 
 
 @dataclass
@@ -97,20 +100,20 @@ def _learned(plan: Plan, robot: Tuple[str, int], records: Records) -> Iterator[_
     for learning in plan.learnings:
         training, calibration = records.training(learning), records.calibration(learning)
         for name in plan.systems:
-            for budget, system in _systems(name, records.robot, plan.budgets):
+            for budget, system in _systems(name, records.robot, plan):
                 system.train(training)
                 system.calibrate(calibration)
                 yield _Learned(Subject(*robot, str(learning), name, budget), system,
                                _expected(system))
 
 
-def _systems(name: str, robot: Robot,
-             budgets: Tuple[float, ...]) -> List[Tuple[Optional[float], System]]:
+def _systems(name: str, robot: Robot, plan: Plan) -> List[Tuple[Optional[float], System]]:
     """Return new systems of a name, and their budgets."""
     if name not in (WITH_GRAPH, WITHOUT_GRAPH):
         return [(None, catalogue.make(name))]
     graph = robot.graph if name == WITH_GRAPH else set()
-    return [(budget, Evidence(graph, budget=budget)) for budget in budgets]
+    return [(budget, Evidence(graph, budget=budget, tuning=plan.tuning))
+            for budget in plan.budgets]
 
 
 def _expected(system: System) -> Optional[float]:

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Iterator, List, Optional, Sequence, Tuple
+from typing import Iterator, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
@@ -150,24 +150,35 @@ class Records:
                                  self._family.watched_start)
             left -= WATCHED_S
 
-    def faults(self, kinds: Tuple[str, ...]) -> Iterator[FaultRecord]:
-        """Yield a recording of every fault of some kinds, of each component in turn."""
+    def faults(self, kinds: Tuple[str, ...], most: Optional[int] = None,
+               after_death_s: float = AFTER_DEATH_S) -> Iterator[FaultRecord]:
+        """Yield a recording of every fault of some kinds, of each component in turn.
+
+        Args:
+            kinds: of KINDS.
+            most: only of so many components for each kind, spread evenly; None: of all.
+            after_death_s: a recording lasts for so long after a death [s].
+        """
         regular, answering = self.robot.regular, self.robot.answering
         who = {CRASH: regular, HALF_RATE: regular,
                LATE: [source for source in regular if source in answering],
                DEATH: [source for source in answering if source not in regular]}
         number = 0
         for kind in KINDS:
-            for source in who[kind]:
-                if kind in kinds:
-                    yield from self._fault(kind, source, number)
+            chosen = _spread(len(who[kind]), most) if kind in kinds else set()
+            for index, source in enumerate(who[kind]):
+                if index in chosen:
+                    yield from self._fault(
+                        kind, source, number,
+                        after_death_s if kind == DEATH else AFTER_ONSET_S)
                 number += 1
 
-    def _fault(self, kind: str, source: str, number: int) -> Iterator[FaultRecord]:
+    def _fault(self, kind: str, source: str, number: int,
+               after_s: float) -> Iterator[FaultRecord]:
         """Yield the recording with a fault; none if nothing is missing after a death."""
         spread = np.random.default_rng((self.robot.seed, number)).uniform(0.0, _ONSET_SPREAD_S)
         onset_s = _ONSET_S + float(spread)
-        seconds = onset_s + (AFTER_DEATH_S if kind == DEATH else AFTER_ONSET_S)
+        seconds = onset_s + after_s
         fault = Fault(CRASH if kind == DEATH else kind, source, onset_s)
         same_start = self._family.watched_start
         recording = self._recorded(_FAULTS, number, seconds, same_start, fault)
@@ -187,3 +198,9 @@ class Records:
             return self.robot.start(_ONE_START, seconds, fault,
                                     section.from_s + number * section.every_s)
         return self.robot.start(section.first + number, seconds, fault)
+
+
+def _spread(number: int, most: Optional[int]) -> Set[int]:
+    """Return the indices of all of a number of things, or of the most that are wanted."""
+    wanted = number if most is None else min(most, number)
+    return {index * number // wanted for index in range(wanted)}

@@ -1,16 +1,16 @@
 """Writes what the evaluation on families found: a page, and CSV files."""
 from __future__ import annotations
 
-import csv
 import math
 from pathlib import Path
-from typing import Any, Dict, List, Sequence
+from typing import Any, Dict, List
 
 from self_awareness import DetectorParameters
+from self_awareness.evaluation import row_files
 from self_awareness.evaluation.families import summary
 from self_awareness.evaluation.families.experiment import Plan, Results
 from self_awareness.evaluation.families.kinds import FAMILIES
-from self_awareness.evaluation.families.measures import Subject
+from self_awareness.evaluation.families.measures import FaultRow, NormalRow
 from self_awareness.evaluation.families.protocol import (AFTER_DEATH_S, AFTER_ONSET_S, KINDS,
                                                          WATCHED_S)
 from self_awareness.evaluation.families.summary import Found
@@ -80,9 +80,10 @@ def write(folder: Path, plan: Plan, results: Results, command: str) -> List[Path
     full.mkdir(exist_ok=True)
     paths = [full / f'{NAME}_normal.csv', full / f'{NAME}_faults.csv', folder / f'{NAME}.csv',
              folder / f'{NAME}.md']
-    _save_csv(paths[0], [_flat(row) for row in results.normal])
-    _save_csv(paths[1], [_flat(row) for row in results.faults])
-    _save_csv(paths[2], figures(results))
+    row_files.save(paths[0], results.normal, NormalRow)
+    row_files.save(paths[1], results.faults, FaultRow)
+    of_groups = figures(results)
+    row_files.save_table(paths[2], of_groups, list(of_groups[0]))
     with replacing(str(paths[3])) as temporary:
         Path(temporary).write_text(page(plan, results, command), encoding='utf-8')
     return paths
@@ -138,22 +139,3 @@ def _short(value: Any) -> Any:
     if not isinstance(value, float):
         return value
     return '' if math.isnan(value) else f'{value:.3g}'
-
-
-def _flat(row: Any) -> Dict[str, Any]:
-    """Return a row of the results with its subject's fields beside its own."""
-    found: Dict[str, Any] = {}
-    for name, value in vars(row).items():
-        if isinstance(value, Subject):
-            found.update(vars(value))
-        else:
-            found[name] = '; '.join(value) if isinstance(value, tuple) else value
-    return found
-
-
-def _save_csv(path: Path, rows: Sequence[Dict[str, Any]]) -> None:
-    with replacing(str(path)) as temporary:
-        with open(temporary, 'w', encoding='utf-8', newline='') as file:
-            writer = csv.DictWriter(file, list(rows[0]) if rows else [], lineterminator='\n')
-            writer.writeheader()
-            writer.writerows(rows)

@@ -13,7 +13,7 @@ from typing import Callable, Dict, List, Optional, Sequence, Tuple
 import numpy as np
 
 from self_awareness import (DetectorParameters, EncodingRules, EvidenceModel, Model, Roc,
-                            TrainedModel, recordings)
+                            TrainedModel, Tuning, recordings)
 from self_awareness.evaluation.peers.frequency import LearnedFrequencyMonitor
 from self_awareness.evaluation.systems import ScoringSystem, settling
 from self_awareness.evaluation.windowed_events import WindowedEvents
@@ -111,20 +111,33 @@ CASES = (
 """All cases."""
 
 
-def evaluate(data: Path) -> List[OutageRow]:
+def evaluate(data: Path, tuning: Optional[Tuning] = None) -> List[OutageRow]:
     """Let every system judge every case.
+
+    Args:
+        data: folder of the recordings.
+        tuning: of the evidence method; None: as it is.
 
     Raises:
         ValueError: a recording is not in the folder.
         BagError: one cannot be read.
+    """
+    check_data(data)
+    return [outage_row(case, name, system(case, data, tuning or Tuning())) for case in CASES
+            for name, system in SYSTEMS.items()]
+
+
+def check_data(data: Path) -> None:
+    """Check that a folder has the recordings of all cases.
+
+    Raises:
+        ValueError: one is not in it.
     """
     for case in CASES:
         for path in (case.training.path, case.calibration.path, case.judged):
             if not (data / path).is_file():
                 raise ValueError(f'{data / path}: no such recording; --data names the folder that '
                                  'has it')
-    return [_row(case, name, system(case, data)) for case in CASES
-            for name, system in SYSTEMS.items()]
 
 
 @dataclass(frozen=True)
@@ -136,9 +149,20 @@ class JudgedCase:
     watched: int
 
 
-def _evidence(case: Case, data: Path) -> JudgedCase:
+def judge_by_evidence(case: Case, data: Path, tuning: Tuning) -> JudgedCase:
+    """Let the evidence detector judge a case.
+
+    Args:
+        case: one of CASES.
+        data: folder of the recordings, see check_data().
+        tuning: of the method.
+
+    Raises:
+        BagError: a recording cannot be read.
+        TooLittleError: the recordings are too short for limits.
+    """
     parts = [_below(data, case.training), _below(data, case.calibration)]
-    trained_on = _trained(parts)
+    trained_on = _trained(parts, tuning)
     many_bags.preliminary_limits(trained_on)
     trained, parameters = trained_on.model, DetectorParameters()
     watched = {track.to_id for track, limit in zip(EvidenceModel(trained).tracks,
@@ -148,7 +172,7 @@ def _evidence(case: Case, data: Path) -> JudgedCase:
                   len(watched))
 
 
-def _paper(case: Case, data: Path) -> JudgedCase:
+def _paper(case: Case, data: Path, _: Tuning) -> JudgedCase:
     trained = _trained([_below(data, case.training)]).model
     model, parameters = Model(trained), DetectorParameters()
     normal = recordings.read(trained, _below(data, case.calibration))
@@ -159,7 +183,7 @@ def _paper(case: Case, data: Path) -> JudgedCase:
                   data / case.judged, len(trained.event_types) if threshold > 0.0 else 0)
 
 
-def _frequency_learned(case: Case, data: Path) -> JudgedCase:
+def _frequency_learned(case: Case, data: Path, _: Tuning) -> JudgedCase:
     trained = _trained([_below(data, case.training)]).model  # for the encoding only
     scorer = LearnedFrequencyMonitor()
     scorer.train([_events(recordings.read(trained, _below(data, case.training)))])
@@ -171,8 +195,8 @@ def _frequency_learned(case: Case, data: Path) -> JudgedCase:
                       _span(recording, recording.origin, recording.end)[1], len(scorer.bounds))
 
 
-SYSTEMS: Dict[str, Callable[[Case, Path], JudgedCase]] = {
-    'evidence': _evidence,
+SYSTEMS: Dict[str, Callable[[Case, Path, Tuning], JudgedCase]] = {
+    'evidence': judge_by_evidence,
     'paper': _paper,
     'frequency_learned': _frequency_learned,
 }
@@ -183,8 +207,9 @@ def _below(data: Path, part: BagPart) -> BagPart:
     return BagPart(str(data / part.path), part.start, part.end)
 
 
-def _trained(parts: Sequence[BagPart]) -> Trained:
-    return many_bags.train(parts, Counting(EncodingRules.defaults(), detector=BOTH))
+def _trained(parts: Sequence[BagPart], tuning: Optional[Tuning] = None) -> Trained:
+    return many_bags.train(parts, Counting(EncodingRules.defaults(), detector=BOTH,
+                                           tuning=tuning or Tuning()))
 
 
 def _paper_threshold(scores: np.ndarray) -> float:
@@ -215,7 +240,8 @@ def _span(recording: RecordingEvents, start: int, end: int) -> Span:
     return (start - recording.origin) / SECOND_NS, (end - recording.origin) / SECOND_NS
 
 
-def _row(case: Case, name: str, judged: JudgedCase) -> OutageRow:
+def outage_row(case: Case, name: str, judged: JudgedCase) -> OutageRow:
+    """Return what a system of a name says of a case."""
     normal = [(start, min(end, judged.length)) for start, end in case.normal]
     false = [alarm for alarm in judged.alarms
              if any(start <= alarm[0] < end for start, end in normal)]

@@ -1,11 +1,10 @@
 """Writes what the evaluation on real recordings found: a CSV file, and a page with a table."""
 from __future__ import annotations
 
-import csv
-from dataclasses import astuple, fields
 from pathlib import Path
 from typing import List, Sequence
 
+from self_awareness.evaluation import row_files
 from self_awareness.evaluation.recordings.outages import (CASES, END, MOST_SILENT, RATE, Case,
                                                           OutageRow, Span)
 from self_awareness.evaluation.simulated.tables import seconds, table
@@ -53,11 +52,7 @@ def write(folder: Path, rows: Sequence[OutageRow], command: str) -> List[Path]:
         OSError: a file cannot be written.
     """
     paths = [folder / f'{NAME}.csv', folder / f'{NAME}.md']
-    with replacing(str(paths[0])) as temporary:
-        with open(temporary, 'w', encoding='utf-8', newline='') as file:
-            writer = csv.writer(file, lineterminator='\n')
-            writer.writerow([field.name for field in fields(OutageRow)])
-            writer.writerows(astuple(row) for row in rows)
+    row_files.save(paths[0], rows, OutageRow)
     with replacing(str(paths[1])) as temporary:
         Path(temporary).write_text(page(rows, command), encoding='utf-8')
     return paths

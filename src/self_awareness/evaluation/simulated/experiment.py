@@ -8,7 +8,7 @@ from typing import Dict, List, Tuple
 
 import numpy as np
 
-from self_awareness import progress
+from self_awareness import Tuning, progress
 from self_awareness.evaluation import catalogue
 from self_awareness.evaluation.simulated import tradeoff
 from self_awareness.evaluation.simulated.measures import NORMAL, Row, fault_row, normal_row
@@ -16,6 +16,7 @@ from self_awareness.evaluation.simulated.records import (CALIBRATION_NAME, NORMA
                                                          TRAINING_NAMES, FaultRecord, fault_record,
                                                          normal_record)
 from self_awareness.evaluation.simulated.tradeoff import JudgedFault, TradeOff
+from self_awareness.evaluation.systems import System
 from self_awareness.evaluation.windowed_events import WindowedEvents
 from self_awareness.follow_me.scenario import Scenario
 from self_awareness.stamps import SECOND_NS
@@ -36,6 +37,7 @@ class Plan:
         calibration_s: length of the record of normal operation for the threshold [s].
         training_share: systems learn once from all of the training records, and once from this
             first share of them, above 0 and below 1; 0: only from all.
+        tuning: of the evidence method.
     """
 
     systems: Tuple[str, ...]
@@ -43,6 +45,7 @@ class Plan:
     seeds: Tuple[int, ...]
     calibration_s: float = 600.0
     training_share: float = 0.1
+    tuning: Tuning = field(default_factory=Tuning)
 
 
 @dataclass(frozen=True)
@@ -100,7 +103,7 @@ def run_seed(plan: Plan, scenario: Scenario, seed: int) -> Results:
     for name in plan.systems:
         for share in (1.0, plan.training_share):
             if share > 0.0:
-                _evaluate(name, share, seed, records, results)
+                _evaluate(catalogue.make(name, plan.tuning), share, seed, records, results)
     return results
 
 
@@ -114,9 +117,9 @@ def make_records(plan: Plan, scenario: Scenario, seed: int) -> Records:
         [fault_record(scenario, seed, kind) for kind in plan.faults])
 
 
-def _evaluate(name: str, share: float, seed: int, records: Records, results: Results) -> None:
+def _evaluate(system: System, share: float, seed: int, records: Records, results: Results) -> None:
     """Let one system learn from a share of the training records, and measure it."""
-    system = catalogue.make(name)
+    name = system.name
     system.train([recording.beginning(share) for recording in records.training])
     system.calibrate([records.calibration])
     normal = system.judge(records.normal)

@@ -1,13 +1,12 @@
 """Writes what the evaluation found: a page with plots, and in a folder below all numbers."""
 from __future__ import annotations
 
-import csv
-from dataclasses import astuple, fields
 from pathlib import Path
 from typing import Any, Dict, List, Sequence
 
 from self_awareness import DEFAULT_WINDOW
 from self_awareness.calibration import limits
+from self_awareness.evaluation import row_files
 from self_awareness.evaluation.simulated import figures, tables
 from self_awareness.evaluation.simulated.experiment import Plan, Results
 from self_awareness.evaluation.simulated.measures import Row
@@ -78,7 +77,7 @@ def write(folder: Path, plan: Plan, results: Results, command: str) -> List[Path
     full.mkdir(exist_ok=True)
     paths = [full / f'{NAME}.csv', full / f'{NAME}.md', folder / f'{NAME}.md',
              folder / 'figure2.png', folder / 'overview.png']
-    _save_csv(paths[0], results.rows)
+    row_files.save(paths[0], results.rows, Row)
     _save_text(paths[1], full_page(plan, results, command))
     _save_text(paths[2], page(plan, results, command))
     figures.save_figure2(str(paths[3]), results.traces)
@@ -144,14 +143,6 @@ def _by_system(items: Sequence[Any]) -> Dict[str, List[Any]]:
     for item in items:
         groups.setdefault(item.system, []).append(item)
     return groups
-
-
-def _save_csv(path: Path, rows: Sequence[Row]) -> None:
-    with replacing(str(path)) as temporary:
-        with open(temporary, 'w', encoding='utf-8', newline='') as file:
-            writer = csv.writer(file, lineterminator='\n')
-            writer.writerow([field.name for field in fields(Row)])
-            writer.writerows(astuple(row) for row in rows)
 
 
 def _save_text(path: Path, text: str) -> None:

@@ -5,7 +5,7 @@
 
 namespace self_awareness::core::evidence {
 
-/// A relation between two event types, and what speaks for it (docs/method.md, section 3.5).
+/// A relation between two event types, and what speaks for it (docs/method.md, section 3.6).
 struct Relation {
   bool watched = false;    ///< what speaks for it is enough
   bool reaches = false;    ///< messages of the one reach the node of the other

@@ -1,0 +1,1 @@
+"""What each part of the evidence method buys: channels, rules and numbers changed one by one."""

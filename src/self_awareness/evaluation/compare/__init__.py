@@ -1,0 +1,1 @@
+"""Two versions of the detectors side by side, by what the same commands measured of each."""

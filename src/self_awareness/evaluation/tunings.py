@@ -1,0 +1,89 @@
+"""Numbers and channels of the method that an evaluation changes: --set and --without."""
+from __future__ import annotations
+
+import argparse
+from typing import Sequence, Tuple
+
+from self_awareness import Tuning
+from self_awareness.commands import cli
+
+EVIDENCE = ('evidence', 'evidence_no_graph')
+"""The systems whose method can be changed."""
+
+OFF = 'off'
+"""As a value: the one that switches the rule off."""
+
+Change = Tuple[str, float]
+"""Name and value of a number."""
+
+
+def add(parser: argparse.ArgumentParser) -> None:
+    """Add the options that change the method."""
+    parser.add_argument('--without', type=_channel, nargs='+', action='extend', default=[],
+                        metavar='CHANNEL', help='let evidence judge without these channels: '
+                        f'{", ".join(Tuning.channels())}')
+    parser.add_argument('--set', type=_change, nargs='+', action='extend', default=[],
+                        metavar='NAME=VALUE', help='change these numbers of the evidence method, '
+                        f'as `info --tuning` lists them; {OFF} as a value switches a rule off')
+
+
+def of(arguments: argparse.Namespace) -> Tuning:
+    """Return the method that the arguments of add() ask for."""
+    return changed(arguments.set, arguments.without)
+
+
+def changed(changes: Sequence[Change], without: Sequence[str]) -> Tuning:
+    """Return the method with numbers changed and channels left out.
+
+    Raises:
+        ValueError: there is no such number or channel, or the value is out of its range.
+    """
+    tuning = Tuning()
+    for name, value in changes:
+        tuning.set(name, value)
+    for channel in without:
+        tuning.leave_out(channel)
+    return tuning
+
+
+def check_used(tuning: Tuning, systems: Sequence[str]) -> None:
+    """Check that a method that was changed belongs to a system that is evaluated.
+
+    Raises:
+        ValueError: none of the systems judges by it.
+    """
+    if tuning != Tuning() and not set(EVIDENCE) & set(systems):
+        raise ValueError(f'--set, --without: they change {" and ".join(EVIDENCE)} only, and none '
+                         f'of them is evaluated; add one to --systems')
+
+
+@cli.checked
+def _channel(text: str) -> str:
+    if text not in Tuning.channels():
+        raise ValueError(f'{text}: no channel of the method; there are '
+                         f'{", ".join(Tuning.channels())}')
+    return text
+
+
+@cli.checked
+def _change(text: str) -> Change:
+    name, is_one, value = text.partition('=')
+    if not is_one:
+        raise ValueError(f'expected NAME=VALUE, not {text}')
+    tuning = Tuning()
+    tuning.get(name)  # says so if there is none of this name
+    change = (name, _value(name, value))
+    tuning.set(*change)
+    return change
+
+
+def _value(name: str, text: str) -> float:
+    if text == OFF:
+        off = next(number.off for number in Tuning.numbers() if number.name == name)
+        if off is None:
+            raise ValueError(f'{name}: no value of it switches a rule off')
+        return float(off)
+    try:
+        return float(text)
+    except ValueError:
+        raise ValueError(f'{name}: expected a number, not {text!r}') from None

@@ -1,0 +1,88 @@
+"""`evaluate --set` and `--without`: what is changed, and what is refused in words."""
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any, List
+
+import pytest
+
+from self_awareness import Tuning
+from self_awareness.evaluation import catalogue, evaluate, tunings
+from self_awareness.evaluation.families import experiment as families
+from self_awareness.evaluation.families.protocol import Learning
+
+from evaluation_robot import robot
+
+
+WITHOUT: List[List[str]] = [[], ['overdue']]
+
+
+def asked(*arguments: str) -> Tuning:
+    parser = argparse.ArgumentParser()
+    tunings.add(parser)
+    return tunings.of(parser.parse_args(arguments))
+
+
+def test_nothing_is_changed_by_default() -> None:
+    assert asked() == Tuning()
+
+
+def test_numbers_are_set_and_channels_left_out() -> None:
+    tuning = asked('--set', 'least_gain=0.5', 'fewest_gaps=7', '--without', 'rate',
+                   '--set', 'predecessors=off', '--without', 'own gaps')
+    assert tuning != Tuning()
+    assert [tuning.get(name) for name in ('least_gain', 'fewest_gaps')] == [0.5, 7.0]
+    off = next(number.off for number in Tuning.numbers() if number.name == 'predecessors')
+    assert off is not None and tuning.get('predecessors') == off
+    assert sorted(tuning.without) == ['own gaps', 'rate']
+
+
+@pytest.mark.parametrize('wrong, told', [
+    (['--set', 'luck=3'], ['luck']), (['--set', 'least_gain'], ['NAME=VALUE', 'least_gain']),
+    (['--set', 'least_gain=much'], ['least_gain', 'much']),
+    (['--set', 'least_gain=-1'], ['least_gain', '-1']),
+    (['--set', 'least_gain=off'], ['least_gain', 'off']),
+    (['--set', 'least_gain=nan'], ['least_gain', 'nan']),
+    (['--without', 'smell'], ['smell', 'overdue']),
+    # As it was until now: systems are left out by another option.
+    (['--without', 'paper'], ['paper', 'overdue'])])
+def test_wrong_changes_are_refused(wrong: List[str], told: List[str], tmp_path: Path,
+                                   capsys: Any) -> None:
+    for part in (['simulated'], ['families'], ['recordings', '--data', str(tmp_path)]):
+        assert evaluate.main([*part, '-o', str(tmp_path / 'out'), *wrong]) == 2
+        error = capsys.readouterr().err.splitlines()[-1]
+        assert all(word in error for word in told), error
+        assert not (tmp_path / 'out').exists()
+
+
+@pytest.mark.parametrize('part', ['simulated', 'families'])
+def test_a_change_that_no_system_has_is_refused(part: str, tmp_path: Path, capsys: Any) -> None:
+    assert evaluate.main([part, '--systems', 'frequency', '--without', 'rate',
+                          '-o', str(tmp_path / 'out')]) == 1
+    assert '--systems' in capsys.readouterr().err
+    assert not (tmp_path / 'out').exists()
+
+
+def test_a_channel_that_is_left_out_finds_nothing() -> None:
+    training = [robot(60.0, seed) for seed in (1, 2, 3)]
+    death = robot(30.0, 4, silent=((15.0, 30.0),))
+    said = []
+    for without in WITHOUT:
+        system = catalogue.make('evidence', tunings.changed([], without))
+        system.train(training[:2])
+        system.calibrate(training[2:])
+        said.append([alarm.evidence for alarm in system.judge(death).alarms])
+    assert said[0] == ['overdue'] and 'overdue' not in said[1]
+
+
+def test_robots_of_families_are_judged_by_the_method_asked_for() -> None:
+    of_variants = []
+    for without in WITHOUT:
+        plan = families.Plan(('events_only',), (1,), (Learning.of(1, 60.0, 60.0),),
+                             ('evidence',), (0.5,), 0.05, ('crash',),
+                             tunings.changed([], without))
+        of_variants.append([row.latency_s
+                            for row in families.run_robot(plan, ('events_only', 1)).faults])
+    assert len(of_variants[0]) == len(of_variants[1]) > 0
+    assert of_variants[0] != of_variants[1]
