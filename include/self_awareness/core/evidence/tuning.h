@@ -56,6 +56,7 @@ struct Tuning {
   double alarm_times = 4;
 
   // A machine that stands still, or is busy.
+  double shortest_stall = 0.05;
   double longest_stall = 0.7;
   double between_stalls = 30;
   double still_busy_share = 0.5;
