@@ -15,20 +15,14 @@ namespace self_awareness::core::evidence {
 struct Tuning {
   // What is known well enough to be judged.
   double fewest_gaps = 30;
-  double fewest_delays = 50;
   double fewest_delays_of_pair = 200;
   double least_rate = 1.5;
-  double predecessors = 3;
+  double predecessors = 2;
   double deadlines = 3;
 
   // Which relations have a reason.
   double least_gain = 0.3;
   double least_gain_left = 0.7;
-  double part_of_gain = 100;
-  double same_start = 60;
-  double least_share_of_start = 0.02;
-  double fewest_events_of_start = 20;
-  double most_outliers = 0.1;
   double chance_of_any = 0.1;
   double chance_of_one = 0.05;
   double irregular = 2;
@@ -47,7 +41,7 @@ struct Tuning {
   double effect_on_gaps = 2;
   double effect_on_gaps_of_period = 10;
   double drift = 1;
-  double regime = 120;
+  double slow_change = 120;
   double most_behind = 3;
   double most_of_limit = 1.5;
   double arming_events = 30;
@@ -57,14 +51,11 @@ struct Tuning {
 
   // Rates, owed answers, and who never came.
   double least_rate_effect = 0.04;
-  double longest_gap_of_series = 2;
   double start_time = 60;
   double due_times = 2;
-  double due_later = 5;
   double alarm_times = 4;
 
   // A machine that stands still, or is busy.
-  double shortest_stall = 0.05;
   double longest_stall = 0.7;
   double between_stalls = 30;
   double still_busy_share = 0.5;
@@ -76,7 +67,6 @@ struct Tuning {
   double least_time = 50;
   double least_excess = 1.1;
   double prior_exceedances = 5;
-  double fewest_exceedances = 0.5;
   double scale = 0.2;
   double scale_of_timers = 0.05;
   double many_tracks = 20;
@@ -87,14 +77,11 @@ struct Tuning {
   double most_gap_margin = 1.6;
   double most_own_margin = 2;
   double most_tail_margin = 2;
-  double tail_gaps = 20;
   double regular = 1.5;
-  double fast = 2;
   double most_of_training = 10;
   double least_rate_limit = 3;
   double least_deadline = 0.5;
   double least_requests = 3;
-  double most_delay_limit = 100;
   double longest_wait = 10;
   double most_mean_gaps = 3;
 

@@ -33,8 +33,7 @@ NeverHeard::NeverHeard(const Model& model, const Limits& limits,
     if (always) {
       const double times = model.tuning().due_times;
       expected.due = std::llround(
-          std::max(times * static_cast<double>(expected.longest) + model.tuning().due_later * 1e9,
-                   times * static_cast<double>(model.longestGap(id))));
+          times * static_cast<double>(std::max(expected.longest, model.longestGap(id))));
       all_.push_back(expected);
     }
   }
@@ -64,7 +63,7 @@ void NeverHeard::closeWindow(std::int64_t end, std::int64_t settle_time) {
   const std::int64_t passed = end - start_.value_or(end);
   const auto first_due = std::stable_partition(
       waiting_.begin(), waiting_.end(),
-      [&](const Expected& expected) { return passed <= std::max(expected.due, settle_time); });
+      [&](const Expected& expected) { return passed <= expected.due + settle_time; });
   if (first_due != waiting_.end()) {
     missing_.insert(missing_.end(), first_due, waiting_.end());
     waiting_.erase(first_due, waiting_.end());
@@ -72,7 +71,7 @@ void NeverHeard::closeWindow(std::int64_t end, std::int64_t settle_time) {
   }
   share_ = 0;
   for (Expected& expected : missing_) {
-    const std::int64_t due = std::max(expected.due, settle_time);
+    const std::int64_t due = expected.due + settle_time;
     expected.share =
         static_cast<double>(passed) /
         std::max(alarm_times_ * static_cast<double>(due), static_cast<double>(due + alarm_later_));

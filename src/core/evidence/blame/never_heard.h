@@ -42,7 +42,7 @@ class NeverHeard {
     EventId id = 0;
     std::int64_t shortest = 0;  // usual time from the start to its first event [ns]
     std::int64_t longest = 0;   // [ns]
-    std::int64_t due = 0;       // after the start, if the settling is over [ns]
+    std::int64_t due = 0;       // after the start and the settling [ns]
     double share = 0;           // of its limit that its absence has reached, once it is due
   };
 

@@ -76,8 +76,9 @@ class Expectation {
   virtual std::unique_ptr<ChannelState> start() const = 0;
   /// Least limit that a track may have, in units of its evidence (docs/method.md, section 5.3).
   virtual double leastLimit(std::size_t track) const = 0;
-  /// Whether a track with such a limit is of any use (docs/method.md, section 5.4).
-  virtual bool isUsable(std::size_t /*track*/, double /*limit*/) const { return true; }
+  /// The limit of a track, in units of its evidence; NaN: of no use (docs/method.md, section 5.4).
+  /// @param most that is normal: evidence, or, of silences, their length [ns]
+  virtual double limit(std::size_t /*track*/, double most) const { return most; }
 
  private:
   std::vector<std::size_t> tracks_;

@@ -190,10 +190,6 @@ double ExpectedDelays::leastLimit(std::size_t /*track*/) const {
   return 2 * model_.tuning().most_surprise + 1;
 }
 
-bool ExpectedDelays::isUsable(std::size_t /*track*/, double limit) const {
-  return limit <= model_.tuning().most_delay_limit;
-}
-
 const Track& ExpectedDelays::track(std::size_t number) const {
   return model_.tracks()[tracks()[number]];
 }

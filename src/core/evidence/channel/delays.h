@@ -51,7 +51,7 @@ class DelaySurprise {
 struct DelayNumbers {
   explicit DelayNumbers(const Tuning& tuning)
       : drift(tuning.drift),
-        regime(toNanoseconds(tuning.regime)),
+        regime(toNanoseconds(tuning.slow_change)),
         most_behind(tuning.most_behind),
         most_of_limit(tuning.most_of_limit) {}
 
@@ -126,7 +126,6 @@ class ExpectedDelays : public Expectation {
   ExpectedDelays(const Model& model, const Halves& halves, std::vector<std::size_t> tracks);
 
   double leastLimit(std::size_t track) const override;
-  bool isUsable(std::size_t track, double limit) const override;
   const DelaySurprise& surprise(std::size_t number) const { return surprises_[number]; }
   const Model& model() const { return model_; }
   /// The track of a number from 0 on: its event types.

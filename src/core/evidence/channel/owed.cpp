@@ -19,7 +19,7 @@ class ExpectedAnswers : public Expectation {
   }
   /// Whether requests come in series, and are counted.
   bool countsRequests(std::size_t track) const {
-    return usualGap(track) < model_.tuning().longest_gap_of_series * 1e9;
+    return usualGap(track) < static_cast<double>(kRateSpan);
   }
   const Model& model() const { return model_; }
 

@@ -1,5 +1,8 @@
 #include "core/evidence/channel/silence.h"
 
+#include <cmath>
+#include <limits>
+
 #include "self_awareness/core/evidence/channel/model.h"
 
 namespace self_awareness::core::evidence {
@@ -45,6 +48,15 @@ class ExpectedSilence : public Expectation {
     return std::make_unique<SilenceState>(model_, tracks());
   }
   double leastLimit(std::size_t /*track*/) const override { return 0; }
+  double limit(std::size_t track, double most) const override {
+    const EventId id = model_.tracks()[track].to;
+    const Tuning& tuning = model_.tuning();
+    // What comes when something happens may stay away for as long as nothing does.
+    const bool irregular =
+        most > tuning.longest_wait * 1e9 && most > tuning.most_mean_gaps * model_.meanGap(id);
+    return irregular ? std::numeric_limits<double>::quiet_NaN()
+                     : model_.overdue(id, std::llround(most));
+  }
 
  private:
   const Model& model_;

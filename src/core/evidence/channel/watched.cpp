@@ -39,7 +39,7 @@ Watched watch(const Statistics& first, const Statistics& second, const SourceGra
   }
   Statistics both = first;
   both.merge(second);
-  const Gains gains({&first, &second}, tuning.fewest_delays);
+  const Gains gains({&first, &second}, tuning.fewest_gaps);
   const Relations relations(both, graph, tuning);
   const Choice choice{both, gains, relations, tuning};
   Watched watched;

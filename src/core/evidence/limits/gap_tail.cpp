@@ -7,14 +7,13 @@
 #include <numeric>
 
 namespace self_awareness::core::evidence {
-GapTail::GapTail(const std::vector<std::int64_t>& longest_gaps, double hours, double usual,
-                 std::size_t most) {
-  const auto end = std::find_if(
-      longest_gaps.begin(),
-      longest_gaps.begin() + static_cast<std::ptrdiff_t>(std::min(longest_gaps.size(), most)),
-      [&](std::int64_t gap) { return static_cast<double>(gap) <= usual; });
+GapTail::GapTail(const std::vector<std::int64_t>& longest_gaps, double hours, double usual) {
+  const auto end = std::find_if(longest_gaps.begin(), longest_gaps.end(), [&](std::int64_t gap) {
+    return static_cast<double>(gap) <= usual;
+  });
   const auto number = static_cast<std::size_t>(end - longest_gaps.begin());
-  shortest_ = number == most ? static_cast<double>(*std::prev(end)) : usual;
+  // If all that are kept are pauses, there are more of them.
+  shortest_ = number == longest_gaps.size() ? static_cast<double>(*std::prev(end)) : usual;
   all_ = static_cast<double>(number) / hours;
   if (number > 0) {
     mean_excess_ =

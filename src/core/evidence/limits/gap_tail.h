@@ -13,9 +13,7 @@ class GapTail {
   /// @param longest_gaps [ns], the longest first, at least one
   /// @param hours in which they were the longest, more than 0
   /// @param usual gaps are no longer than this [ns]
-  /// @param number of the longest gaps that tell the tail
-  GapTail(const std::vector<std::int64_t>& longest_gaps, double hours, double usual,
-          std::size_t number);
+  GapTail(const std::vector<std::int64_t>& longest_gaps, double hours, double usual);
 
   /// Age [ns] that gaps reach at a rate.
   /// @param rate of such gaps an hour, more than 0

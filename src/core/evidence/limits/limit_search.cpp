@@ -44,13 +44,13 @@ double budgetOf(const LimitFinder::Findings& findings, const LimitFinder::Parame
                   1 / (most_of_training * hoursOf(windows, parameters.window)));
 }
 
-/// Number of pools that share the budget: silences have three.
+/// Number of pools that share the budget: silences have two.
 double numberOfPools() {
   std::set<std::string> labels;
   for (const Channel* channel : channels()) {
     labels.insert(channel->finding() == Finding::kSilent ? "" : channel->label());
   }
-  return static_cast<double>(labels.size() + 2);
+  return static_cast<double>(labels.size() + 1);
 }
 
 }  // namespace
@@ -85,7 +85,7 @@ void LimitSearch::gatherParts(const LimitFinder::Findings& findings) {
   for (const LimitFinder::Recording& recording : findings) {
     spans.push_back({recording.start, recording.end, recording.robot_start});
   }
-  const std::vector<std::size_t> starts = startsOf(spans, toNanoseconds(tuning_.same_start));
+  const std::vector<std::size_t> starts = startsOf(spans, toNanoseconds(tuning_.start_time));
   for (std::size_t k = 0; k < training.size(); ++k) {
     with_gaps_.push_back(
         {starts[k], static_cast<double>(training[k].end - training[k].start) / kHour});
@@ -136,13 +136,11 @@ LimitSearch::Kind LimitSearch::kindOfGaps(const Seen& seen) const {
   std::vector<double> sorted = seen.largest;
   std::sort(sorted.rbegin(), sorted.rend());
   const double second = sorted.size() > 1 && sorted[1] > 0 ? sorted[1] : sorted[0];
-  return second - window() >= tuning_.regular * mean_gap ? Kind::kOthers
-         : mean_gap < tuning_.fast * window()            ? Kind::kFastTimers
-                                                         : Kind::kTimers;
+  return second - window() >= tuning_.regular * mean_gap ? Kind::kOthers : Kind::kTimers;
 }
 
 void LimitSearch::search(Kind kind, const std::vector<Seen>& tracks, double share) {
-  const bool timers = kind == Kind::kTimers || kind == Kind::kFastTimers;
+  const bool timers = kind == Kind::kTimers;
   const bool gaps = kind != Kind::kEvidence;
   HeldOut held_out(gaps ? with_gaps_ : judged_, timers ? tuning_.scale_of_timers : tuning_.scale,
                    tuning_);
@@ -163,7 +161,7 @@ void LimitSearch::search(Kind kind, const std::vector<Seen>& tracks, double shar
         std::max(seen.least, own * std::max(largest, tuning_.share_of_least * seen.least));
     double& limit = limits_[seen.track];
     if (!gaps) {
-      limit = model_.expectation(seen.track).isUsable(seen.track, found) ? found : kNone;
+      limit = model_.expectation(seen.track).limit(seen.track, found);
       continue;
     }
     double age = found - window();
@@ -172,19 +170,11 @@ void LimitSearch::search(Kind kind, const std::vector<Seen>& tracks, double shar
       age = std::max(age, std::min(tail.age(share / static_cast<double>(tracks.size())),
                                    tuning_.most_tail_margin * (largest - window())));
     }
-    limit = limitOfAge(seen.track, age);
+    limit = model_.expectation(seen.track).limit(seen.track, age);
     rate_of_tails += std::isnan(limit) ? 0 : tail.rate(age);
   }
   const double rate = held_out.rate(margin);
   rate_ += kind == Kind::kOthers ? std::min(rate, rate_of_tails) : rate;
-}
-
-double LimitSearch::limitOfAge(std::size_t track, double age) const {
-  const EventId id = model_.tracks()[track].to;
-  // What comes when something happens may stay away for as long as nothing does.
-  const bool irregular =
-      age > tuning_.longest_wait * 1e9 && age > tuning_.most_mean_gaps * model_.meanGap(id);
-  return irregular ? kNone : model_.overdue(id, std::llround(age));
 }
 
 GapTail LimitSearch::tailOf(const Seen& seen) const {
@@ -193,8 +183,7 @@ GapTail LimitSearch::tailOf(const Seen& seen) const {
   for (const LimitFinder::Recording::Part* part : gap_parts_) {
     gaps.addGap(part->longest_gaps[id]);
   }
-  return {gaps.longest_gaps, sumOf(with_gaps_), tuning_.regular * model_.meanGap(id),
-          static_cast<std::size_t>(tuning_.tail_gaps)};
+  return {gaps.longest_gaps, sumOf(with_gaps_), tuning_.regular * model_.meanGap(id)};
 }
 
 }  // namespace self_awareness::core::evidence

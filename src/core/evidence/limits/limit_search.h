@@ -28,9 +28,9 @@ class LimitSearch {
 
  private:
   /// Tracks whose values exceed those of other recordings in the same way share what they show:
-  /// silences of fast timers, of other timers, and of what comes irregularly; else those of
+  /// silences of timers, and of what comes irregularly; else those of
   /// channels with one label.
-  enum class Kind { kFastTimers, kTimers, kOthers, kEvidence };
+  enum class Kind { kTimers, kOthers, kEvidence };
   using Pool = std::pair<Kind, std::string>;
   /// A track and its largest values.
   struct Seen {
@@ -46,8 +46,6 @@ class LimitSearch {
   std::vector<double> gapsOf(EventId id) const;
   Kind kindOfGaps(const Seen& seen) const;
   void search(Kind kind, const std::vector<Seen>& tracks, double share);
-  /// Limit of a silence [ns].
-  double limitOfAge(std::size_t track, double age) const;
   /// Of the gaps of training and of the recordings.
   GapTail tailOf(const Seen& seen) const;
   double window() const { return static_cast<double>(parameters_.window); }

@@ -17,7 +17,7 @@ constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::min();
 MisleadingPairs::MisleadingPairs(const Model& model)
     : tuning_(model.tuning()), pairs_(model.size()), said_(model.tracks().size(), Said::kNothing) {
   const Statistics& training = model.statistics();
-  const InformationGain gain(training, training, tuning_.fewest_delays);
+  const InformationGain gain(training, training, tuning_.fewest_gaps);
   const std::vector<SumOfDelays> to_any = training.delaysToAny();
   for (std::size_t track = 0; track < model.tracks().size(); ++track) {
     const auto& [channel, to, from] = model.tracks()[track];
@@ -50,7 +50,7 @@ void MisleadingPairs::add(const Event& event) {
     }
   }
   last_seen_[event.id] = event.stamp;
-  if (duration_ >= toNanoseconds(tuning_.part_of_gain)) {
+  if (duration_ >= toNanoseconds(tuning_.slow_change)) {
     closePart();
   }
 }
@@ -81,7 +81,7 @@ void MisleadingPairs::closePart() {
     for (const Pair& pair : pairs) {
       const auto delays = asArray(pair.delays).cast<double>();
       const double number = delays.sum();
-      if (number < tuning_.fewest_delays) {
+      if (number < tuning_.fewest_gaps) {
         continue;
       }
       const double gain = (delays * asArray(pair.log_ratios)).sum() / number;

@@ -165,15 +165,13 @@ Relation Relations::delays(EventId from, EventId to, const std::vector<Span>& mo
       return id < recording.events.size() ? recording.events[id] : 0;
     };
     const double share = static_cast<double>(events(to)) / total;
-    if (share >= tuning_.least_share_of_start &&
-        static_cast<double>(std::min(events(from), events(to))) >=
-            tuning_.fewest_events_of_start) {
+    if (static_cast<double>(std::min(events(from), events(to))) >= tuning_.fewest_gaps) {
       least_share = std::min(least_share, share);
       spans.push_back({recording.start, recording.end, recording.robot_start});
     }
   }
-  relation.starts = numberOfStarts(spans, toNanoseconds(tuning_.same_start));
-  relation.spread = spread(from, to, std::min(tuning_.most_outliers, least_share / 2));
+  relation.starts = numberOfStarts(spans, toNanoseconds(tuning_.start_time));
+  relation.spread = spread(from, to, std::min(1 - tuning_.usual, least_share / 2));
   relation.reaches = reaches(from, to);
   relation.irregular = isIrregular(from, to);
   const double level = relation.reaches && relation.irregular ? 1

@@ -8,8 +8,7 @@
 namespace self_awareness::core::evidence {
 
 Stalls::Stalls(std::int64_t longest_silence, const Tuning& tuning)
-    : usual_(std::max(toNanoseconds(tuning.least_margin * toSeconds(longest_silence)),
-                      toNanoseconds(tuning.shortest_stall))),
+    : usual_(toNanoseconds(tuning.least_margin * toSeconds(longest_silence))),
       longest_(toNanoseconds(tuning.longest_stall)),
       between_(toNanoseconds(tuning.between_stalls)) {}
 

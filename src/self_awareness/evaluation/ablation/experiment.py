@@ -5,7 +5,7 @@ from contextlib import closing
 from pathlib import Path
 from typing import Dict, List, Sequence
 
-from self_awareness import Tuning
+from self_awareness import METHOD, Tuning
 from self_awareness.evaluation.ablation import bench as benches
 from self_awareness.evaluation.ablation.bench import Plan
 from self_awareness.evaluation.ablation.rows import Row, RowFile, judge, same
@@ -56,7 +56,7 @@ def _check_plan(plan: Plan, path: Path) -> None:
     """
     numbers = [f'{number.name} {number.default:g} {number.least:g} {number.most:g} {number.off}'
                for number in Tuning.numbers()]
-    text = '\n'.join([str(plan), *Tuning.channels(), *numbers, ''])
+    text = '\n'.join([f'method {METHOD}', str(plan), *Tuning.channels(), *numbers, ''])
     beside = path.with_suffix('.plan')
     if path.is_file() and (not beside.is_file() or beside.read_text(encoding='utf-8') != text):
         raise ValueError(f'{path}: of another plan, or of another method; remove it or choose '

@@ -4,7 +4,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, Dict, List, Sequence, Tuple
 
-from self_awareness import Tuning
+from self_awareness import METHOD, Tuning
 from self_awareness.evaluation import row_files
 from self_awareness.evaluation.ablation import figures
 from self_awareness.evaluation.ablation.bench import (AFTER_DEATH_S, FAMILIES, OWN,
@@ -25,8 +25,8 @@ _INTRODUCTION = """\
 
 Written by `{command}`; do not edit.
 
-The evidence detector with one change at a time: a channel left out, a rule switched off, a number
-halved or doubled. All variants learn from and judge the same records:
+The evidence detector (method {method}) with one change at a time: a channel left out, a rule
+switched off, a number halved or doubled. All variants learn from and judge the same records:
 
 - robots of the families {families} ([what they are](families.md)), seeds {seeds}, which learn in
   turn from {learnings}; {hours:g} h of normal operation each, and up to {faults} faults of every
@@ -85,7 +85,8 @@ def write(folder: Path, plan: Plan, results: Results, command: str) -> List[Path
 def page(plan: Plan, results: Results, command: str) -> str:
     """Return the page."""
     lines = [_INTRODUCTION.format(
-        command=command, name=NAME, families=', '.join(f'`{name}`' for name in plan.families),
+        command=command, name=NAME, method=METHOD,
+        families=', '.join(f'`{name}`' for name in plan.families),
         seeds=', '.join(str(seed) for seed in plan.seeds),
         own=', '.join(str(seed) for seed in plan.own_seeds), death_s=AFTER_DEATH_S,
         learnings=' and '.join(str(learning) for learning in plan.learnings), hours=plan.hours,
