@@ -51,7 +51,7 @@ def summarise(model: TrainedModel) -> Dict[str, Any]:
 def summarise_evidence(model: TrainedModel) -> Dict[str, Any]:
     """Return what the evidence detector watches, as the key `evidence` of summarise().
 
-    Tracks are counted by channel: overdue, rate, pairs, answers and deadlines.
+    Tracks are counted by channel: overdue, rate, pairs and deadlines.
 
     Raises:
         ValueError: the model was not trained for the evidence detector.
