@@ -23,12 +23,10 @@ LABELS = {'overdue': 'overdue', 'fewer': 'rate', 'more': 'rate', 'own gaps': 'pa
 
 FEWEST_GAPS = 30
 LEAST_GAIN = 0.3
-FEWEST_DELAYS_OF_GAIN = 50
 FEWEST_DELAYS_OF_PAIR = 200
-PREDECESSORS = 3
+PREDECESSORS = 2
 LEAST_RATE = 1.5
 DEADLINES = 3
-FEWEST_ANSWERS = 30
 MOST_MISSES = 0.1
 
 MOST_SURPRISE = 6.0
@@ -190,7 +188,7 @@ def longest_gap(stamps: Sequence[int]) -> int:
 def gain(learned: Counts, measured: Counts, e_i: str, e_j: str) -> float:
     """Return the mean of log P_ij - log Q_i over the delays of other recordings [nat]."""
     delays = measured.delays[e_i, e_j]
-    if not learned.delays[e_i, e_j] or len(delays) < FEWEST_DELAYS_OF_GAIN:
+    if not learned.delays[e_i, e_j] or len(delays) < FEWEST_GAPS:
         return 0.0
     p_ij = log_probabilities(learned.delays[e_i, e_j])
     q_i = log_probabilities([b for k in learned.types for b in learned.delays[e_i, k]])

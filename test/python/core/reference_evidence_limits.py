@@ -5,7 +5,8 @@ import math
 from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
-from reference_evidence import LABELS, SECOND, Counts, Event, ReferenceModel, Seen, Track, gain
+from reference_evidence import (FEWEST_GAPS, LABELS, SECOND, Counts, Event, ReferenceModel, Seen,
+                                Track, gain)
 from reference_relations import ReferenceRelations, Relation, Span, starts_of
 from reference_scorer import ReferenceScorer
 
@@ -17,22 +18,20 @@ MOST_MARGIN = 4.0
 MOST_GAP_MARGIN = 1.6
 MOST_OWN_MARGIN = 2.0
 MOST_TAIL_MARGIN = 2.0
-SCALE = {'timers': 0.05, 'fast timers': 0.05}
+SCALE = {'timers': 0.05}
 """By pool; 0.2 elsewhere."""
 REGULAR = 1.5
-FAST = 2
-"""Windows."""
 LONGEST_WAIT = 10 * SECOND
-MOST_DELAY_LIMIT = 100.0
 MOST_MEAN_GAPS = 3.0
-TAIL_GAPS = 20
-POOLS = ('fast timers', 'timers', 'others', 'rate', 'pairs', 'deadlines')
-CHUNK = 100 * SECOND
+TAIL_GAPS = 32
+POOLS = ('timers', 'others', 'rate', 'pairs', 'deadlines')
+CHUNK = 120 * SECOND
 LEAST_GAIN_LEFT = 0.7
 
 LEAST_SHARE = 0.5
 PRIOR_EXCEEDANCES = 5
-FEWEST_EXCEEDANCES = 0.5
+NOT_SEEN = 0.5
+"""Exceedances that may come."""
 LEAST_EXCESS = math.log(1.1)
 MANY_TRACKS = 20
 BEYOND = math.log(1.25)
@@ -98,7 +97,7 @@ class HeldOut:
         """Return the margin that is exceeded so often an hour."""
         margin = least
         for hours, logs, scale in self._levels:
-            expected = max(len(logs), FEWEST_EXCEEDANCES) / (hours * rate)
+            expected = (len(logs) + NOT_SEEN) / (hours * rate)
             log = LEAST_EXCESS + scale * max(math.log(expected), 0.0)
             if self._many:
                 log = min(log, max(logs, default=0.0) + BEYOND)
@@ -219,7 +218,7 @@ class ReferenceLimits:
         found = []
         for chunk in filter(None, chunks):
             now = Counts([chunk], self._model.types, self._window)
-            if len(now.delays[e_i, e_j]) >= 50:
+            if len(now.delays[e_i, e_j]) >= FEWEST_GAPS:
                 found.append(gain(both, now, e_i, e_j)
                              >= LEAST_GAIN_LEFT * gain(both, both, e_i, e_j))
         return all(found) if found else None
@@ -259,9 +258,7 @@ class ReferenceLimits:
         longest = sorted(gap for gap in self._longest_gaps(kind) if gap > 0)
         second = longest[-2:][0] - self._window
         mean = self._model.both.mean_gap(kind)
-        if second >= REGULAR * mean:
-            return 'others'
-        return 'fast timers' if mean < FAST * self._window else 'timers'
+        return 'others' if second >= REGULAR * mean else 'timers'
 
     def _find(self) -> List[float]:
         with_gaps = [Part(start, (seen.end - seen.start) / HOUR)
@@ -277,7 +274,7 @@ class ReferenceLimits:
                 pools.setdefault(self._pool(index), []).append(index)
         limits = [math.nan] * len(self._model.tracks)
         for pool, tracks in pools.items():
-            of_gaps = pool in ('fast timers', 'timers', 'others')
+            of_gaps = pool in ('timers', 'others')
             seen = [(self._longest_gaps(self._model.tracks[index][1]) if of_gaps
                      else self._largest(index), self._model.least_limit(self._model.tracks[index]))
                     for index in tracks]
@@ -323,6 +320,4 @@ class ReferenceLimits:
             irregular = (age > LONGEST_WAIT
                          and age > MOST_MEAN_GAPS * self._model.both.mean_gap(kind))
             return math.nan if irregular else self._model.overdue(kind, round(age))
-        if LABELS[channel] == 'pairs':
-            return math.nan if found > MOST_DELAY_LIMIT else found
         return found

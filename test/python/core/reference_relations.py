@@ -7,18 +7,13 @@ from __future__ import annotations
 import math
 from typing import Dict, List, NamedTuple, Sequence, Tuple
 
-from reference_evidence import (BINS, DEADLINES, EDGES, FEWEST_ANSWERS, FEWEST_DELAYS_OF_PAIR,
-                                FEWEST_GAPS, LEAST_GAIN, LEAST_RATE, MOST_MISSES, PREDECESSORS,
-                                SECOND, Counts, Track, gain, log_bin, lower_edge, middle,
-                                usual_bins)
+from reference_evidence import (BINS, DEADLINES, EDGES, FEWEST_DELAYS_OF_PAIR, FEWEST_GAPS,
+                                LEAST_GAIN, LEAST_RATE, MOST_MISSES, PREDECESSORS, SECOND, USUAL,
+                                Counts, Track, gain, log_bin, lower_edge, middle, usual_bins)
 
 SAME_START = 60 * SECOND
-LEAST_SHARE_OF_START = 0.02
-FEWEST_EVENTS_OF_START = 20
-MOST_OUTLIERS = 0.1
 CHANCE_OF_ANY = 0.1
 CHANCE_OF_ONE = 0.05
-FEWEST_GAPS_OF_PAIR = 30
 IRREGULAR = 2.0
 LEAST_CHANCE_MISSES = 0.2
 MOST_OF_CHANCE_MISSES = 0.5
@@ -56,7 +51,7 @@ class ReferenceRelations:
 
     def __init__(self, counts: Counts) -> None:
         self._counts = counts
-        types = sum(len(counts.gaps[kind]) >= FEWEST_GAPS_OF_PAIR for kind in counts.types)
+        types = sum(len(counts.gaps[kind]) >= FEWEST_GAPS for kind in counts.types)
         self._looked_at = max(types * (types - 1), 1)
 
     def delays(self, e_i: str, e_j: str, more: Sequence[Span] = ()) -> Relation:
@@ -64,13 +59,11 @@ class ReferenceRelations:
         of_all = sum(seen.events[e_j] for seen in self._counts.recordings)
         spans, shares = list(more), [1.0]
         for seen in self._counts.recordings:
-            share = seen.events[e_j] / of_all
-            if (share >= LEAST_SHARE_OF_START
-                    and min(seen.events[e_i], seen.events[e_j]) >= FEWEST_EVENTS_OF_START):
-                shares.append(share)
+            if min(seen.events[e_i], seen.events[e_j]) >= FEWEST_GAPS:
+                shares.append(seen.events[e_j] / of_all)
                 spans.append((seen.start, seen.end))
         starts = number_of_starts(spans)
-        spread = self._spread(e_i, e_j, min(MOST_OUTLIERS, min(shares) / 2))
+        spread = self._spread(e_i, e_j, min(1 - USUAL, min(shares) / 2))
         irregular = self._is_irregular(e_i, e_j)
         level = CHANCE_OF_ONE if irregular else CHANCE_OF_ANY / self._looked_at
         late = self._is_late(e_i, e_j)
@@ -180,7 +173,7 @@ def watched(first: Counts, second: Counts, both: Counts) -> List[Track]:
 
     def requesting(answer: str) -> List[str]:
         return sorted([kind for kind in types
-                       if kind != answer and both.answers[kind, answer] >= FEWEST_ANSWERS
+                       if kind != answer and both.answers[kind, answer] >= FEWEST_GAPS
                        and both.miss_rate(kind, answer) <= MOST_MISSES
                        and relations.owed(kind, answer).watched],
                       key=lambda kind: both.miss_rate(kind, answer))[:DEADLINES]
