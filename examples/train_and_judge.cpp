@@ -56,9 +56,9 @@ int main() {
     for (const core::Event& event : recordings[fingerprint]) {
       finder.add(event);
     }
+    finder.finish();
   }
-  finder.finish();
-  const evidence::Limits limits = finder.find().limits;
+  const evidence::LimitFinder::Found found = finder.find();
 
   // 4. The detector judges another recording, in which the laser dies after 60 s.
   const auto print = [&models](const core::Verdict& verdict) {
@@ -70,8 +70,9 @@ int main() {
       }
     }
   };
-  core::Detector detector(evidence::makeJudge(models.model(), limits, core::kDefaultWindow, graph),
-                          core::kDefaultWindow, {}, print);
+  core::Detector detector(
+      evidence::makeJudge(models.model(), found.limits, core::kDefaultWindow, graph),
+      core::kDefaultWindow, {}, print);
   for (const core::Event& event : simulatedRecording(5, 100, 60)) {
     detector.add(event);
   }

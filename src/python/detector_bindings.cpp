@@ -315,7 +315,6 @@ void bindVerdicts(py::module& m) {
   m.attr("DEFAULT_WINDOW") = core::kDefaultWindow;    // [ns]
   m.attr("SHORTEST_WINDOW") = core::kShortestWindow;  // [ns]
   m.attr("LONGEST_SILENCE") = core::kLongestSilence;  // [ns]
-  m.attr("FEWEST_GAPS") = core::kFewestGaps;
   m.attr("LEAST_KNOWN") = core::kLeastKnown;
   m.attr("USUAL_SHARES") = py::make_tuple(core::kUsualFrom, core::kUsualTo);
 }

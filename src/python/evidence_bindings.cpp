@@ -4,6 +4,7 @@
 #include <cmath>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -91,8 +92,17 @@ Findings fromState(const FindingsState& state) {
 /// The evidence of every track at the end of every window.
 class EvidenceRows : public core::WindowObserver {
  public:
-  EvidenceRows(const std::shared_ptr<const evidence::Model>& model, std::int64_t window)
-      : model_(*model), scorer_(model, window), window_(window) {}
+  EvidenceRows(const std::shared_ptr<const evidence::Model>& model, std::int64_t window,
+               const std::optional<std::vector<double>>& limits)
+      : model_(*model), scorer_(model, window), window_(window) {
+    if (!limits) {
+      return;
+    }
+    if (limits->size() != model->tracks().size()) {
+      throw std::invalid_argument("limits: one of each track is needed");
+    }
+    scorer_.capAt({*limits, {}});
+  }
 
   core::ObservedEvent observe(const core::Event& event) override {
     return {event, !model_.knows(event.id), scorer_.add(event)};
@@ -114,8 +124,9 @@ class EvidenceRows : public core::WindowObserver {
 
 /// Evidence of a recording, [windows, tracks].
 py::array_t<double> evidenceOf(const std::shared_ptr<evidence::Model>& model, std::int64_t window,
-                               const Stamps& stamps, const Ids& ids) {
-  EvidenceRows observer(model, window);
+                               const Stamps& stamps, const Ids& ids,
+                               const std::optional<std::vector<double>>& limits) {
+  EvidenceRows observer(model, window, limits);
   core::Windows windows(window, observer);
   forEachEvent(stamps, ids, [&](const core::Event& event) { windows.add(event); });
   windows.finish();
@@ -168,7 +179,9 @@ void bindEvidence(py::module& m) {
       .def("overdue", &evidence::Model::overdue, py::arg("id"), py::arg("age"), "age: [ns]")
       .def("log_survival", &evidence::Model::logSurvival, py::arg("id"), py::arg("age"))
       .def("evidence", &evidenceOf, py::arg("window"), py::arg("stamps"), py::arg("ids"),
-           "Evidence at the end of every window of a recording: float64 [windows, tracks].");
+           py::arg("limits") = py::none(),
+           "Evidence at the end of every window of a recording: float64 [windows, tracks].\n"
+           "limits: by track, which sums end a little above; NaN: not judged. None: not known.");
 
   py::class_<evidence::Relation>(m, "Relation", "What speaks for a relation.")
       .def_readonly("watched", &evidence::Relation::watched)

@@ -1,6 +1,8 @@
 #include <pybind11/stl.h>
 #include <ros/serialization.h>
 
+#include <cmath>
+#include <cstdint>
 #include <map>
 #include <optional>
 #include <set>
@@ -11,6 +13,7 @@
 
 #include "bindings.h"
 #include "core/evidence/count/log_bins.h"
+#include "self_awareness/core/verdict/suspect.h"
 #include "self_awareness/ros/model/evidence_message.h"
 #include "self_awareness/ros/model/model_bytes.h"
 #include "self_awareness/ros/model/model_file.h"
@@ -32,6 +35,13 @@ std::vector<std::pair<std::int64_t, std::uint64_t>> sumOfDelays(const ros1::Trai
     delays.emplace_back(core::evidence::log_bins::lowerEdge(bin), count);
   }
   return delays;
+}
+
+/// Gaps that an event type needs to be judged; the evidence detector's number can be set.
+std::uint64_t fewestGaps(const ros1::TrainedModel& model) {
+  return model.detectors() == "paper"
+             ? core::kFewestGaps
+             : static_cast<std::uint64_t>(std::ceil(model.tuning.fewest_gaps));
 }
 
 // Of an edge of the graph: publisher, topic, subscriber.
@@ -208,6 +218,8 @@ void bindModel(py::module& m) {
       .def_property_readonly("pairs", &TrainedModel::pairs,
                              "number of ordered pairs with at least one delay")
       .def("gaps", &TrainedModel::gaps, py::arg("id"), "number of gaps between two of a type")
+      .def_property_readonly("fewest_gaps", &fewestGaps,
+                             "gaps that an event type needs to be judged")
       .def("event_count", [](const TrainedModel& self,
                              core::EventId id) { return self.statistics.eventCount(id); })
       .def(

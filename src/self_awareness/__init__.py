@@ -8,7 +8,6 @@ programs (`self_awareness.commands`).
 from self_awareness._core import (  # noqa: F401
     DEFAULT_WINDOW,
     EVIDENCE_THRESHOLD,
-    FEWEST_GAPS,
     LEAST_KNOWN,
     LONGEST_SILENCE,
     METHOD,

@@ -9,14 +9,14 @@ import subprocess
 import sys
 from collections import defaultdict
 from pathlib import Path
-from typing import Any, Dict, List, Set, Tuple
+from typing import Any, Dict, List, Tuple
 
 import pytest
 import rosbag
 import yaml
 from conftest import robot
 
-from self_awareness import METHOD, FileVersion, ResultBag, TrainedModel
+from self_awareness import METHOD, EvidenceModel, FileVersion, ResultBag, TrainedModel
 from self_awareness.commands import calibrate, info, merge, score, train
 from self_awareness.msg import FileVersion as Message
 from self_awareness.training.robot_graph import RobotGraph
@@ -26,7 +26,7 @@ FORMATS = sorted(DATA.glob('format_*'))
 RECORDINGS = ('normal_6.events.bag', 'dead.events.bag', 'late.events.bag')
 FILES = ('robot.model', 'dead.events.bag', 'results.bag')
 
-GONE: Set[str] = set()
+GONE = {'answers'}
 """Channels that this version does not judge any more."""
 
 every_format = pytest.mark.parametrize('folder', FORMATS, ids=[path.name for path in FORMATS])
@@ -101,6 +101,26 @@ def test_a_model_says_for_ever_what_it_said(folder: Path) -> None:
             assert alarm['start'] == pytest.approx(before['start'], abs=0.25)
             assert alarm['end'] == pytest.approx(before['end'], abs=0.25)
             assert alarm['suspects'][0] == before['suspects'][0]
+
+
+def test_a_model_of_format_1_loses_the_tracks_that_nobody_judges_any_more() -> None:
+    path = FORMATS[0] / 'robot.model'
+    with rosbag.Bag(str(path)) as bag:
+        message = next(message for _, message, _ in bag.read_messages()
+                       if hasattr(message, 'tracks'))
+    names = {0: 'overdue', 1: 'fewer', 2: 'more', 3: 'pairs', 6: 'deadlines'}
+    calibration, = message.evidence_calibration
+    stay = [(('own gaps' if track.channel == 3 and track.to_id == track.from_id
+              else names[track.channel]), track.to_id, track.from_id, limit)
+            for track, limit in zip(message.tracks, calibration.limits)
+            if track.channel in names]
+    assert {track.channel for track in message.tracks} == {*names, 4, 5}, 'it has what went'
+    model = TrainedModel.load(str(path))
+    found = [(track.name, track.to_id, track.from_id, limit)
+             for track, limit in zip(EvidenceModel(model).tracks,
+                                     model.evidence_calibration.limits)]
+    assert repr(found) == repr(stay)  # NaN is equal to nothing
+    assert len(model.evidence_calibration.relations) == len(found)
 
 
 @every_format

@@ -6,8 +6,7 @@ import json
 import shutil
 from typing import Any, Dict, List, Optional, Sequence
 
-from self_awareness import (FEWEST_GAPS, EventType, Model, ResultBag, TrainedModel,
-                            recordings_in_event_log)
+from self_awareness import EventType, Model, ResultBag, TrainedModel, recordings_in_event_log
 from self_awareness.commands import cli
 from self_awareness.judging import EVIDENCE
 from self_awareness.reporting import histogram_text
@@ -118,7 +117,7 @@ def _print(summary: Dict[str, Any]) -> None:
     print(f'event types  {len(summary["event_types"])}{_rates(summary)}')
     print('     count  rate [Hz]  usual delay [s]')
     for kind in summary['event_types']:
-        print(f'  {_event_type(kind)}')
+        print(f'  {_event_type(kind, summary["fewest_gaps"])}')
     print(f'pairs        {summary["pairs"]} of {len(summary["event_types"]) ** 2} with delays')
     print(f'graph        {_graph(summary["graph"])}')
     if summary['evidence'] is not None:
@@ -141,10 +140,10 @@ def _rates(summary: Dict[str, Any]) -> str:
     return f', {summary["lowest_rate"]:.3g} to {summary["highest_rate"]:.3g} Hz'
 
 
-def _event_type(kind: Dict[str, Any]) -> str:
+def _event_type(kind: Dict[str, Any], fewest_gaps: int) -> str:
     rate = '-' if kind['rate'] is None else f'{kind["rate"]:.3g}'
     usual = f'{kind["usual_shortest"]:.3f} - {kind["usual_longest"]:.3f}' if kind['gaps'] else '-'
-    rare = '' if kind['judged'] else f'  (too rare to judge: fewer than {FEWEST_GAPS} gaps)'
+    rare = '' if kind['judged'] else f'  (too rare to judge: fewer than {fewest_gaps} gaps)'
     return (f'{kind["count"]:8d} {rate:>10}  {usual:<16} '
             f'{kind["source"] or "-"} {kind["scope"]} {kind["type"]}{rare}')
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 from statistics import median
 from typing import Dict, List, Optional, Sequence, Tuple
 
-from self_awareness import FEWEST_GAPS, TrainedModel
+from self_awareness import TrainedModel
 from self_awareness.calibration import confidence
 from self_awareness.calibration.results import FalseAlarms
 from self_awareness.calibration.runs import RECORDED, JudgedRun
@@ -32,7 +32,7 @@ def print_limits(trained: TrainedModel, path: str) -> None:
     for line in relations_text.lines(evidence['calibration']['relations']):
         print(f'  {line}')
     if evidence['not_judged']:
-        print(f'  not judged, fewer than {FEWEST_GAPS} gaps in training: '
+        print(f'  not judged, fewer than {trained.fewest_gaps} gaps in training: '
               f'{"; ".join(evidence["not_judged"])}')
 
 

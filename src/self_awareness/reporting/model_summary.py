@@ -5,8 +5,8 @@ import math
 from collections import Counter
 from typing import Any, Dict, List, Optional, Tuple
 
-from self_awareness import (FEWEST_GAPS, USUAL_SHARES, Calibration, EvidenceCalibration,
-                            EvidenceModel, Recording, TrainedModel, Tuning, encoding_file)
+from self_awareness import (USUAL_SHARES, Calibration, EvidenceCalibration, EvidenceModel,
+                            Recording, TrainedModel, Tuning, encoding_file)
 from self_awareness.reporting import relations_text
 from self_awareness.reporting.version_summary import summarise_version
 from self_awareness.judging import EVIDENCE, PAPER
@@ -39,6 +39,7 @@ def summarise(model: TrainedModel) -> Dict[str, Any]:
         'lowest_rate': min(rates, default=None),
         'highest_rate': max(rates, default=None),
         'sources': sorted({kind.source for kind in model.event_types} - {''}),
+        'fewest_gaps': model.fewest_gaps,
         'event_types': types,
         'pairs': model.pairs,
         'graph': [dict(zip(('publisher', 'topic', 'subscriber'), edge))
@@ -51,7 +52,7 @@ def summarise(model: TrainedModel) -> Dict[str, Any]:
 def summarise_evidence(model: TrainedModel) -> Dict[str, Any]:
     """Return what the evidence detector watches, as the key `evidence` of summarise().
 
-    Tracks are counted by channel: overdue, rate, pairs, answers and deadlines.
+    Tracks are counted by channel: overdue, rate, pairs and deadlines.
 
     Raises:
         ValueError: the model was not trained for the evidence detector.
@@ -61,11 +62,10 @@ def summarise_evidence(model: TrainedModel) -> Dict[str, Any]:
 
 def _evidence(model: TrainedModel, evidence: EvidenceModel) -> Dict[str, Any]:
     tracks = evidence.tracks
-    watched = {track.to_id for track in tracks if track.channel == 'overdue'}
     summary: Dict[str, Any] = {
         'tracks': dict(Counter(track.channel for track in tracks)),
         'not_judged': [str(kind) for index, kind in enumerate(model.event_types)
-                       if index not in watched],
+                       if model.gaps(index) < model.fewest_gaps],
         'tuning': {number.name: model.tuning.get(number.name) for number in Tuning.numbers()},
         'without': model.tuning.without,
         'calibration': None,
@@ -92,7 +92,7 @@ def _event_type(model: TrainedModel, evidence: Optional[EvidenceModel], index: i
         'count': count,
         'rate': count / duration if duration > 0 else None,
         'gaps': gaps,
-        'judged': gaps >= FEWEST_GAPS,
+        'judged': gaps >= model.fewest_gaps,
         'usual_shortest': shortest,
         'usual_longest': longest,
     }

@@ -21,17 +21,15 @@ def relations(model: TrainedModel, evidence: EvidenceModel) -> List[Dict[str, An
     calibration = model.evidence_calibration
     if calibration is None:
         return []
-    found: Dict[Any, Dict[str, Any]] = {}
+    found: List[Dict[str, Any]] = []
     for track, limit, relation in zip(evidence.tracks, calibration.limits, calibration.relations):
         if track.channel not in RELATIONS or track.from_id == track.to_id:
             continue
-        key = (track.channel, track.from_id, track.to_id)
-        judged = not math.isnan(limit) or bool(found.get(key, {}).get('judged'))
-        found[key] = {
+        found.append({
             'channel': track.channel,
             'from': str(model.event_types[track.from_id]),
             'to': str(model.event_types[track.to_id]),
-            'judged': judged,
+            'judged': not math.isnan(limit),
             'watched': relation.watched,
             'reaches': relation.reaches,
             'irregular': relation.irregular,
@@ -39,8 +37,8 @@ def relations(model: TrainedModel, evidence: EvidenceModel) -> List[Dict[str, An
             'starts': relation.starts,
             'starts_needed': relation.starts_needed,
             'graph': bool(model.graph),
-        }
-    return list(found.values())
+        })
+    return found
 
 
 def reasons(relation: Dict[str, Any]) -> str:

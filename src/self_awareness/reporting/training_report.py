@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from typing import List, Tuple
 
-from self_awareness import FEWEST_GAPS, TrainedModel
+from self_awareness import TrainedModel
 from self_awareness.stamps import SECOND_NS
 
 
@@ -21,7 +21,8 @@ def print_summary(model: TrainedModel) -> None:
     print(f'pairs        {model.pairs} of {len(types) ** 2} with delays')
     print(f'graph        connections: {len(model.graph) or "none"}')
     rare = _too_rare(model)
-    print(f'too rare to judge (fewer than {FEWEST_GAPS} gaps between two of a kind)  {len(rare)}')
+    print(f'too rare to judge (fewer than {model.fewest_gaps} gaps between two of a kind)  '
+          f'{len(rare)}')
     for name, gaps in rare:
         print(f'  {name}: {gaps} {"gap" if gaps == 1 else "gaps"}')
 
@@ -29,4 +30,4 @@ def print_summary(model: TrainedModel) -> None:
 def _too_rare(model: TrainedModel) -> List[Tuple[str, int]]:
     return [(str(event_type), model.gaps(index))
             for index, event_type in enumerate(model.event_types)
-            if model.gaps(index) < FEWEST_GAPS]
+            if model.gaps(index) < model.fewest_gaps]

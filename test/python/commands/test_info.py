@@ -57,7 +57,7 @@ def test_json_holds_the_evidence(evidence_model: str, capsys) -> None:
     found = as_json(capsys, evidence_model)['evidence']
     model = TrainedModel.load(evidence_model)
     stored = model.evidence_calibration
-    assert set(found['tracks']) <= {'overdue', 'rate', 'pairs', 'answers', 'deadlines'}
+    assert set(found['tracks']) <= {'overdue', 'rate', 'pairs', 'deadlines'}
     assert found['tracks']['overdue'] == 3 and found['tracks']['rate'] == 6
     assert sum(found['tracks'].values()) == len(EvidenceModel(model).tracks)
     assert found['not_judged'] == []
@@ -66,7 +66,6 @@ def test_json_holds_the_evidence(evidence_model: str, capsys) -> None:
     calibration = found['calibration']
     assert (calibration['method'], calibration['budget']) == ('held-out', 0.5)
     assert calibration['windows'] == stored.windows
-    assert calibration['linker_limit'] == stored.linker_limit
     assert calibration['calibrated_ns'] == stored.stamp
     assert calibration['false_alarms_per_hour'] == stored.false_alarms_per_hour >= 0.0
     assert [recording['bag'] for recording in calibration['normal']] == ['tuesday.bag']
@@ -129,12 +128,29 @@ def test_types_that_are_not_judged_are_named(make_bag, tmp_path, capsys) -> None
     assert '  not judged: /door /open std_msgs/String\n' in capsys.readouterr().out
 
 
+def test_too_rare_is_what_has_fewer_gaps_than_the_model_asks_for(long_bags, tmp_path,
+                                                                 capsys) -> None:
+    output = train_tuned(long_bags[:1], tmp_path / 'm', fewest_gaps=1000)  # the battery has 324
+    summary = as_json(capsys, output)
+    assert summary['fewest_gaps'] == 1000
+    judged = {kind['source']: kind['judged'] for kind in summary['event_types']}
+    assert judged == {'/battery': False, '/laser': True, '/slam': True}
+    assert [name.split()[0] for name in summary['evidence']['not_judged']] == ['/battery']
+    assert info.main([output]) == 0
+    assert 'too rare to judge: fewer than 1000 gaps' in capsys.readouterr().out
+    assert calibrate.main(['--model', output, '--normal', long_bags[1], '-o', output]) == 0
+    assert 'not judged, fewer than 1000 gaps in training: /battery' in capsys.readouterr().out
+    assert as_json(capsys, str(output))['fewest_gaps'] == 1000
+    assert train.main([long_bags[0], '-o', str(tmp_path / 'n')]) == 0
+    assert 'too rare to judge (fewer than 30 gaps between two of a kind)  0' in (
+        capsys.readouterr().out)
+
+
 def test_people_read_the_evidence(evidence_model: str, capsys) -> None:
     assert info.main([evidence_model]) == 0
     text = capsys.readouterr().out
     for part in ('evidence     tracks: overdue 3, rate 6',
-                 'limits       held-out, for 0.5 false', 'graph        none', 'tuesday.bag',
-                 'linker '):
+                 'limits       held-out, for 0.5 false', 'graph        none', 'tuesday.bag'):
         assert part in text
 
 

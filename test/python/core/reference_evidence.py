@@ -17,24 +17,17 @@ SECOND = 10 ** 9
 MS = 10 ** 6
 EDGES = [round(2.5e6 * 2.0 ** (k / 4)) for k in range(49)]
 BINS = 50
-DELAYS = {'delay': 1.0, 'slow delay': 0.5}
-"""Channels of delays, and what usual delays take from their sum."""
-KINDS = {'overdue': 'overdue', 'fewer': 'rate', 'more': 'rate', 'delay': 'pairs',
-         'slow delay': 'pairs', 'answer': 'answers', 'deadline': 'deadlines'}
+LABELS = {'overdue': 'overdue', 'fewer': 'rate', 'more': 'rate', 'own gaps': 'pairs',
+          'pairs': 'pairs', 'deadlines': 'deadlines'}
 """What people call the channels."""
 
 FEWEST_GAPS = 30
 LEAST_GAIN = 0.3
-FEWEST_DELAYS_OF_GAIN = 50
 FEWEST_DELAYS_OF_PAIR = 200
-PREDECESSORS = 3
+PREDECESSORS = 2
 LEAST_RATE = 1.5
-ASKED = 8
-FEWEST_GAPS_OF_ANSWERS = 100
-MOST_MISSES = 0.6
 DEADLINES = 3
-FEWEST_ANSWERS = 30
-MOST_MISSES_OF_DEADLINE = 0.1
+MOST_MISSES = 0.1
 
 MOST_SURPRISE = 6.0
 LEAST_DEVIATION = 0.5
@@ -44,8 +37,6 @@ LEAST_EFFECT = (5e6, 0.02)
 GAPS_TO_DELAYS = (2.0, 10.0)
 """Least effects on gaps, in those on delays."""
 LEAST_RATE_EFFECT = 0.04
-LOST = 0.5
-MISS_RATES = (0.1, 0.95)
 LONGEST_GAP_OF_SERIES = 2.0
 
 
@@ -83,6 +74,12 @@ def bin_below(bins: Sequence[int], number: float) -> int:
     """Return the last bin that fewer delays are below; -1: there is none."""
     return max((index for index, below in enumerate(numbers_below(bins)) if below < number),
                default=-1)
+
+
+def usual_bins(bins: Sequence[int]) -> Tuple[int, int]:
+    """Return the first and the last bin of the usual delays; the last is -1 if there is none."""
+    return (bin_at_most(bins, (1 - USUAL) / 2 * len(bins)),
+            bin_below(bins, (1 + USUAL) / 2 * len(bins)))
 
 
 def log_probabilities(bins: Sequence[int]) -> List[float]:
@@ -191,7 +188,7 @@ def longest_gap(stamps: Sequence[int]) -> int:
 def gain(learned: Counts, measured: Counts, e_i: str, e_j: str) -> float:
     """Return the mean of log P_ij - log Q_i over the delays of other recordings [nat]."""
     delays = measured.delays[e_i, e_j]
-    if not learned.delays[e_i, e_j] or len(delays) < FEWEST_DELAYS_OF_GAIN:
+    if not learned.delays[e_i, e_j] or len(delays) < FEWEST_GAPS:
         return 0.0
     p_ij = log_probabilities(learned.delays[e_i, e_j])
     q_i = log_probabilities([b for k in learned.types for b in learned.delays[e_i, k]])
@@ -221,7 +218,7 @@ class ReferenceModel:
         self.longest_silence = max(seen.longest_silence for seen in both.recordings)
         self._gaps = {kind: self._binned(learned.gaps[kind]) for kind in self.types}
         self._surprises = {track: self._standardised(track[2], track[1])
-                           for track in tracks if track[0] in DELAYS}
+                           for track in tracks if LABELS[track[0]] == 'pairs'}
 
     def _standardised(self, e_i: str, e_j: str) -> List[float]:
         first, second = (half.delays[e_i, e_j] for half in self._halves)
@@ -253,9 +250,8 @@ class ReferenceModel:
         in_ns, of_period = (effect * (times if e_i == e_j else 1.0)
                             for effect, times in zip(self._least_effect, GAPS_TO_DELAYS))
         effect = max(in_ns, of_period * self.learned.mean_gap(e_i))
-        shortest = lower_edge(bin_at_most(bins, (1 - USUAL) / 2 * len(bins)))
-        last = bin_below(bins, (1 + USUAL) / 2 * len(bins))
-        return shortest - effect, lower_edge(last + 1) + effect
+        first, last = usual_bins(bins)
+        return lower_edge(first) - effect, lower_edge(last + 1) + effect
 
     @staticmethod
     def _binned(gaps: Sequence[int]) -> List[float]:
@@ -292,32 +288,15 @@ class ReferenceModel:
         harmless = any(shortest <= delay + shift <= longest for shift in shifts)
         return 0.0 if surprise > 0.5 and harmless else surprise
 
-    def usual_misses(self, track: Track) -> float:
-        """Return the share of answers that are usually left out."""
-        least, most = MISS_RATES
-        return min(max(self.learned.miss_rate(track[2], track[1]), least), most)
-
-    def answer_step(self, track: Track, missed: bool) -> float:
-        """Return the log-likelihood ratio of half of the answers being taken away."""
-        usual = self.usual_misses(track)
-        faulty = usual + (1 - usual) * LOST
-        return math.log(faulty / usual if missed else (1 - faulty) / (1 - usual))
-
-    def usual_answer(self, track: Track) -> int:
-        """Return the time that the answer usually takes [ns]."""
-        return round(self.learned.usual_delay(track[2], track[1], 0.5) * 1e9)
-
     def counts_requests(self, track: Track) -> bool:
         """Return whether a deadline counts requests, not seconds."""
         return self.learned.usual_delay(track[2], track[2], 0.5) < LONGEST_GAP_OF_SERIES
 
     def least_limit(self, track: Track) -> float:
         """Return the least limit that the track may have."""
-        channel = track[0]
-        if channel == 'overdue':
+        label = LABELS[track[0]]
+        if label == 'overdue':
             return 0.0
-        if channel == 'answer':
-            return max(4 * self.answer_step(track, True), 5.0)
-        if channel == 'deadline':
+        if label == 'deadlines':
             return 3.0 if self.counts_requests(track) else 0.5
-        return 2 * MOST_SURPRISE + 1 if channel in DELAYS else 3.0
+        return 2 * MOST_SURPRISE + 1 if label == 'pairs' else 3.0

@@ -5,39 +5,33 @@ import math
 from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
-from reference_evidence import DELAYS, SECOND, Counts, Event, ReferenceModel, Seen, Track, gain
+from reference_evidence import (FEWEST_GAPS, LABELS, SECOND, Counts, Event, ReferenceModel, Seen,
+                                Track, gain)
 from reference_relations import ReferenceRelations, Relation, Span, starts_of
 from reference_scorer import ReferenceScorer
 
 HOUR = 3600 * SECOND
 PART = 30 * SECOND
-LEAST_MARGIN = {'deadlines': 2.0, 'linker': 1.5}
+LEAST_MARGIN = {'deadlines': 2.0}
 """By pool; 1.25 elsewhere."""
 MOST_MARGIN = 4.0
 MOST_GAP_MARGIN = 1.6
 MOST_OWN_MARGIN = 2.0
 MOST_TAIL_MARGIN = 2.0
-SCALE = {'timers': 0.05, 'fast timers': 0.05}
+SCALE = {'timers': 0.05}
 """By pool; 0.2 elsewhere."""
-LEAST_LINKER_LIMIT = 2.0
-LEAST_LINKED = 0.5
 REGULAR = 1.5
-FAST = 2
-"""Windows."""
 LONGEST_WAIT = 10 * SECOND
-LONGEST_DEADLINE = 20.0
-MOST_DELAY_LIMIT = 100.0
 MOST_MEAN_GAPS = 3.0
-TAIL_GAPS = 20
-SHARES = 8
-POOLS = {'fewer': 'rates', 'more': 'rates', 'delay': 'delays', 'slow delay': 'slow delays',
-         'answer': 'answers', 'deadline': 'deadlines'}
-CHUNK = 100 * SECOND
+TAIL_GAPS = 32
+POOLS = ('timers', 'others', 'rate', 'pairs', 'deadlines')
+CHUNK = 120 * SECOND
 LEAST_GAIN_LEFT = 0.7
 
 LEAST_SHARE = 0.5
 PRIOR_EXCEEDANCES = 5
-FEWEST_EXCEEDANCES = 0.5
+NOT_SEEN = 0.5
+"""Exceedances that may come."""
 LEAST_EXCESS = math.log(1.1)
 MANY_TRACKS = 20
 BEYOND = math.log(1.25)
@@ -103,7 +97,7 @@ class HeldOut:
         """Return the margin that is exceeded so often an hour."""
         margin = least
         for hours, logs, scale in self._levels:
-            expected = max(len(logs), FEWEST_EXCEEDANCES) / (hours * rate)
+            expected = (len(logs) + NOT_SEEN) / (hours * rate)
             log = LEAST_EXCESS + scale * max(math.log(expected), 0.0)
             if self._many:
                 log = min(log, max(logs, default=0.0) + BEYOND)
@@ -168,24 +162,22 @@ class ReferenceLimits:
         starts = starts_of(spans + [recording.span for recording in recordings])
         self._starts_of_training = starts[:len(spans)]
         self._starts = starts[len(spans):]
-        self._rows = [self._settled(recording, ()) for recording in recordings]
+        self._rows = [self._settled(recording) for recording in recordings]
         self.windows = sum(len(rows) for rows in self._rows)
         if all(recording.trained_on for recording in recordings):
             # The training alone promises no less than one in ten times the time that was seen.
             budget = max(budget, HOUR / (10 * self.windows * window))
-        self._rate = budget / SHARES
+        self._rate = budget / len(POOLS)
         self.relations = [self._relation(track) for track in model.tracks]
         self.expected_rate = 0.0
-        self.tracks = self._find()
-        starts = starts_of([recording.span for recording in recordings])
-        self.linker = self._find_linker(starts)
+        self.limits = self._find()
 
     def _training(self) -> List[Seen]:
         return sorted(self._model.both.recordings, key=lambda seen: (seen.start, seen.end))
 
-    def _settled(self, recording: Judged, limits: Sequence[float]) -> List[List[float]]:
+    def _settled(self, recording: Judged) -> List[List[float]]:
         # The last window lasts longer than the recording.
-        rows = ReferenceScorer(recording.judging, recording.events, self._window, limits).rows[:-1]
+        rows = ReferenceScorer(recording.judging, recording.events, self._window).rows[:-1]
         return rows[self._unsettled(recording):]
 
     def _unsettled(self, recording: Judged) -> int:
@@ -204,11 +196,9 @@ class ReferenceLimits:
     def _relation(self, track: Track) -> Relation:
         channel, to, other = track
         relations = ReferenceRelations(self._model.both)
-        if channel == 'answer':
-            return relations.answers(other, to)
-        if channel == 'deadline':
-            return relations.deadline(other, to)
-        if to == other:
+        if channel == 'deadlines':
+            return relations.owed(other, to)
+        if channel != 'pairs':
             return Relation(True)
         said = [self._said(recording, other, to) for recording in self._recordings]
         as_usual = [recording.span for recording, what in zip(self._recordings, said)
@@ -228,7 +218,7 @@ class ReferenceLimits:
         found = []
         for chunk in filter(None, chunks):
             now = Counts([chunk], self._model.types, self._window)
-            if len(now.delays[e_i, e_j]) >= 50:
+            if len(now.delays[e_i, e_j]) >= FEWEST_GAPS:
                 found.append(gain(both, now, e_i, e_j)
                              >= LEAST_GAIN_LEFT * gain(both, both, e_i, e_j))
         return all(found) if found else None
@@ -264,13 +254,11 @@ class ReferenceLimits:
     def _pool(self, index: int) -> str:
         channel, kind, _ = self._model.tracks[index]
         if channel != 'overdue':
-            return POOLS[channel]
+            return LABELS[channel]
         longest = sorted(gap for gap in self._longest_gaps(kind) if gap > 0)
         second = longest[-2:][0] - self._window
         mean = self._model.both.mean_gap(kind)
-        if second >= REGULAR * mean:
-            return 'others'
-        return 'fast timers' if mean < FAST * self._window else 'timers'
+        return 'others' if second >= REGULAR * mean else 'timers'
 
     def _find(self) -> List[float]:
         with_gaps = [Part(start, (seen.end - seen.start) / HOUR)
@@ -286,7 +274,7 @@ class ReferenceLimits:
                 pools.setdefault(self._pool(index), []).append(index)
         limits = [math.nan] * len(self._model.tracks)
         for pool, tracks in pools.items():
-            of_gaps = pool in ('fast timers', 'timers', 'others')
+            of_gaps = pool in ('timers', 'others')
             seen = [(self._longest_gaps(self._model.tracks[index][1]) if of_gaps
                      else self._largest(index), self._model.least_limit(self._model.tracks[index]))
                     for index in tracks]
@@ -310,7 +298,7 @@ class ReferenceLimits:
                     rate_of_tails += tail.rate(found - self._window)
             if pool == 'others':
                 self.expected_rate += min(held_out.rate(margin), rate_of_tails)
-            elif pool != 'slow delays':
+            else:
                 self.expected_rate += held_out.rate(margin)
         return limits
 
@@ -326,42 +314,10 @@ class ReferenceLimits:
         return Tail(shortest, excess, len(longest) / hours)
 
     def _limit(self, track: Track, found: float) -> float:
-        channel, kind, other = track
+        channel, kind, _ = track
         if channel == 'overdue':
             age = found - self._window
             irregular = (age > LONGEST_WAIT
                          and age > MOST_MEAN_GAPS * self._model.both.mean_gap(kind))
             return math.nan if irregular else self._model.overdue(kind, round(age))
-        if channel in DELAYS:
-            return math.nan if found > MOST_DELAY_LIMIT else found
-        if channel == 'answer':
-            wait = (found / self._model.answer_step(track, True)
-                    * self._model.both.mean_gap(other))
-            return math.nan if wait > LONGEST_WAIT else found
-        if channel == 'deadline':
-            seconds = (found * self._model.learned.usual_delay(other, other, 0.5)
-                       if self._model.counts_requests(track) else found)
-            return math.nan if seconds > LONGEST_DEADLINE else found
         return found
-
-    def _find_linker(self, starts: Sequence[int]) -> float:
-        parts: List[Part] = []
-        largest: List[float] = []
-        for number, (recording, start) in enumerate(zip(self._recordings, starts)):
-            parts += self._parts_of(number, start)
-            largest += [single(max(self._linker(row) for row in part))
-                        for part in self._in_parts(self._settled(recording, self.tracks))]
-        held_out = HeldOut(parts, [(largest, LEAST_LINKER_LIMIT)], 0.2)
-        margin = held_out.margin(self._rate, LEAST_MARGIN['linker'])
-        self.expected_rate += held_out.rate(margin)
-        return max(LEAST_LINKER_LIMIT,
-                   margin * max(*largest, LEAST_SHARE * LEAST_LINKER_LIMIT))
-
-    def _linker(self, row: Sequence[float]) -> float:
-        shares: Dict[str, float] = {}  # every event type is a component of its own here
-        for (channel, kind, _), value, limit in zip(self._model.tracks, row, self.tracks):
-            # Never so where the limit is NaN.
-            if channel in ('slow delay', 'answer') and value / limit > 0:
-                share = min((value / limit - LEAST_LINKED) / (1 - LEAST_LINKED), 1.0)
-                shares[kind] = max(shares.get(kind, 0.0), share)
-        return sum(shares.values())

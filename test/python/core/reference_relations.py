@@ -1,4 +1,4 @@
-"""What is watched and why, literally and slowly: docs/method.md, sections 3.2 to 3.6.
+"""What is watched and why, literally and slowly: docs/method.md, section 3.
 
 The graph is not known here: no message reaches anybody.
 """
@@ -7,19 +7,13 @@ from __future__ import annotations
 import math
 from typing import Dict, List, NamedTuple, Sequence, Tuple
 
-from reference_evidence import (ASKED, BINS, DEADLINES, DELAYS, EDGES, FEWEST_ANSWERS,
-                                FEWEST_DELAYS_OF_PAIR, FEWEST_GAPS, FEWEST_GAPS_OF_ANSWERS,
-                                LEAST_GAIN, LEAST_RATE, MOST_MISSES, MOST_MISSES_OF_DEADLINE,
-                                PREDECESSORS, SECOND, Counts, Track, bin_at_most, bin_below, gain,
-                                log_bin, lower_edge, middle)
+from reference_evidence import (BINS, DEADLINES, EDGES, FEWEST_DELAYS_OF_PAIR, FEWEST_GAPS,
+                                LEAST_GAIN, LEAST_RATE, MOST_MISSES, PREDECESSORS, SECOND, USUAL,
+                                Counts, Track, gain, log_bin, lower_edge, middle, usual_bins)
 
 SAME_START = 60 * SECOND
-LEAST_SHARE_OF_START = 0.02
-FEWEST_EVENTS_OF_START = 20
-MOST_OUTLIERS = 0.1
 CHANCE_OF_ANY = 0.1
 CHANCE_OF_ONE = 0.05
-FEWEST_GAPS_OF_PAIR = 30
 IRREGULAR = 2.0
 LEAST_CHANCE_MISSES = 0.2
 MOST_OF_CHANCE_MISSES = 0.5
@@ -57,23 +51,19 @@ class ReferenceRelations:
 
     def __init__(self, counts: Counts) -> None:
         self._counts = counts
-        types = sum(len(counts.gaps[kind]) >= FEWEST_GAPS_OF_PAIR for kind in counts.types)
+        types = sum(len(counts.gaps[kind]) >= FEWEST_GAPS for kind in counts.types)
         self._looked_at = max(types * (types - 1), 1)
 
     def delays(self, e_i: str, e_j: str, more: Sequence[Span] = ()) -> Relation:
         """Return the reasons to watch the delays."""
-        if e_i == e_j:
-            return Relation(True)
         of_all = sum(seen.events[e_j] for seen in self._counts.recordings)
         spans, shares = list(more), [1.0]
         for seen in self._counts.recordings:
-            share = seen.events[e_j] / of_all
-            if (share >= LEAST_SHARE_OF_START
-                    and min(seen.events[e_i], seen.events[e_j]) >= FEWEST_EVENTS_OF_START):
-                shares.append(share)
+            if min(seen.events[e_i], seen.events[e_j]) >= FEWEST_GAPS:
+                shares.append(seen.events[e_j] / of_all)
                 spans.append((seen.start, seen.end))
         starts = number_of_starts(spans)
-        spread = self._spread(e_i, e_j, min(MOST_OUTLIERS, min(shares) / 2))
+        spread = self._spread(e_i, e_j, min(1 - USUAL, min(shares) / 2))
         irregular = self._is_irregular(e_i, e_j)
         level = CHANCE_OF_ONE if irregular else CHANCE_OF_ANY / self._looked_at
         late = self._is_late(e_i, e_j)
@@ -82,24 +72,18 @@ class ReferenceRelations:
                   else 1 + math.ceil(math.log(level) / math.log(spread)))
         return Relation(watched, False, irregular, spread, starts, needed)
 
-    def answers(self, e_i: str, e_j: str) -> Relation:
-        """Return the reasons to watch whether e_j comes after e_i."""
+    def owed(self, e_i: str, e_j: str) -> Relation:
+        """Return the reasons to watch whether e_j comes in time after e_i."""
         misses = self._counts.miss_rate(e_i, e_j)
         by_chance = self.misses_by_chance(e_i, e_j)
         irregular = (by_chance >= LEAST_CHANCE_MISSES
                      and misses <= MOST_OF_CHANCE_MISSES * by_chance)
-        return Relation(irregular and self._divergence(e_i, misses, by_chance)
-                        > math.log(self._looked_at / CHANCE_OF_ANY), False, irregular)
-
-    def deadline(self, e_i: str, e_j: str) -> Relation:
-        """Return the reasons to watch whether e_j comes in time after e_i."""
         bins = self._counts.delays[e_i, e_j]
-        last = bin_below(bins, 0.95 * len(bins))
-        shortest = middle(bin_at_most(bins, 0.05 * len(bins)))
-        longest = middle(last) if last >= 0 else 0.0
-        answers = self.answers(e_i, e_j)
-        return answers._replace(
-            watched=answers.watched and shortest >= LEAST_OF_LONGEST * longest)
+        first, last = usual_bins(bins)
+        in_order = last < 0 or middle(first) >= LEAST_OF_LONGEST * middle(last)
+        return Relation(irregular and in_order
+                        and self._divergence(e_i, misses, by_chance)
+                        > math.log(self._looked_at / CHANCE_OF_ANY), False, irregular)
 
     def misses_by_chance(self, e_i: str, e_j: str) -> float:
         """Return the share of the gaps of e_i without an e_j, if they had nothing to do with it.
@@ -139,8 +123,8 @@ class ReferenceRelations:
     def _is_irregular(self, e_i: str, e_j: str) -> bool:
         def range_of(first: str, second: str, widest: bool) -> float:
             bins = self._counts.delays[first, second]
-            low = bin_at_most(bins, 0.05 * len(bins))
-            high = max(bin_below(bins, 0.95 * len(bins)), 0)
+            low, high = usual_bins(bins)
+            high = max(high, 0)
             if widest:
                 return lower_edge(high + 1) - lower_edge(low)
             return max(lower_edge(high) - lower_edge(low + 1), 0.0)
@@ -178,40 +162,28 @@ def watched(first: Counts, second: Counts, both: Counts) -> List[Track]:
     gains = {(i, j): (gain(first, second, i, j) + gain(second, first, i, j)) / 2
              for i in types for j in types}
 
-    def predecessors(e_j: str) -> List[str]:
-        good = [i for i in types if gains[i, e_j] >= LEAST_GAIN
-                and len(both.delays[i, e_j]) >= FEWEST_DELAYS_OF_PAIR]
-        return sorted(good, key=lambda i: (not relations.delays(i, e_j).watched,
-                                           -gains[i, e_j]))[:PREDECESSORS]
+    def says_enough(e_i: str, e_j: str) -> bool:
+        return (gains[e_i, e_j] >= LEAST_GAIN
+                and len(both.delays[e_i, e_j]) >= FEWEST_DELAYS_OF_PAIR)
 
-    def asking(answer: str) -> List[str]:
-        return sorted([kind for kind in types
-                       if kind != answer
-                       and min(len(both.gaps[kind]),
-                               len(both.gaps[answer])) >= FEWEST_GAPS_OF_ANSWERS
-                       and both.miss_rate(kind, answer) <= MOST_MISSES
-                       and gains[answer, kind] <= gains[kind, answer] + LEAST_GAIN
-                       and relations.answers(kind, answer).watched],
-                      key=lambda kind: both.mean_gap(kind) / (1 - both.miss_rate(kind, answer))
-                      )[:ASKED]
+    def predecessors(e_j: str) -> List[str]:
+        return sorted([i for i in types if i != e_j and says_enough(i, e_j)],
+                      key=lambda i: (not relations.delays(i, e_j).watched,
+                                     -gains[i, e_j]))[:PREDECESSORS]
 
     def requesting(answer: str) -> List[str]:
         return sorted([kind for kind in types
-                       if kind != answer and both.answers[kind, answer] >= FEWEST_ANSWERS
-                       and both.miss_rate(kind, answer) <= MOST_MISSES_OF_DEADLINE
-                       and relations.deadline(kind, answer).watched],
+                       if kind != answer and both.answers[kind, answer] >= FEWEST_GAPS
+                       and both.miss_rate(kind, answer) <= MOST_MISSES
+                       and relations.owed(kind, answer).watched],
                       key=lambda kind: both.miss_rate(kind, answer))[:DEADLINES]
 
-    tracks: List[Track] = []
-    for kind in types:
-        if len(both.gaps[kind]) >= FEWEST_GAPS:
-            often = sum(both.rates[kind]) >= LEAST_RATE * len(both.rates[kind])
-            tracks += [(channel, kind, kind) for channel in
-                       (('overdue', 'fewer', 'more') if often else ('overdue',))]
-    for kind in types:
-        tracks += [(channel, kind, other) for other in predecessors(kind) for channel in DELAYS]
-    for kind in types:
-        tracks += [('answer', kind, other) for other in asking(kind)]
-    for kind in types:
-        tracks += [('deadline', kind, other) for other in requesting(kind)]
-    return tracks
+    judged = [kind for kind in types if len(both.gaps[kind]) >= FEWEST_GAPS]
+    often = [kind for kind in judged
+             if sum(both.rates[kind]) >= LEAST_RATE * len(both.rates[kind])]
+    return ([('overdue', kind, kind) for kind in judged]
+            + [('fewer', kind, kind) for kind in often]
+            + [('more', kind, kind) for kind in often]
+            + [('own gaps', kind, kind) for kind in types if says_enough(kind, kind)]
+            + [('pairs', kind, other) for kind in types for other in predecessors(kind)]
+            + [('deadlines', kind, other) for kind in types for other in requesting(kind)])

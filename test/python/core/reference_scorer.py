@@ -1,15 +1,16 @@
-"""The evidence of a recording, literally and slowly: docs/method.md, sections 3.2 to 3.7."""
+"""The evidence of a recording, literally and slowly: docs/method.md, section 3."""
 from __future__ import annotations
 
 from collections import defaultdict
 from typing import Dict, List, Optional, Sequence, Tuple
 
-from reference_evidence import DELAYS, MS, SECOND, Event, ReferenceModel, Track
+from reference_evidence import LABELS, MS, SECOND, Event, ReferenceModel, Track
 
+DRIFT = 1.0
+"""What every delay takes from its sum."""
 ARMING_EVENTS = 30
 MOST_FAILURES = 10
 USUAL_SURPRISE = 0.3
-USUAL_MISSES = 0.15
 GONE_GAPS = 5
 MOST_BEHIND = 3.0
 """Mean gaps."""
@@ -18,7 +19,6 @@ MOST_OF_LIMIT = 1.5
 ACCEPT_AFTER = 60 * SECOND
 START_TIME = 60 * SECOND
 REGIME = 120 * SECOND
-SHORTEST_STALL = 50 * MS
 LONGEST_STALL = 700 * MS
 BETWEEN_STALLS = 30 * SECOND
 
@@ -29,58 +29,55 @@ class Arming:
     def __init__(self) -> None:
         self.failures = 0
         self.armed = False
-        self._excesses: List[float] = []
+        self._surprises: List[float] = []
 
-    def add(self, excess: float, usual: float) -> None:
-        """Add an event whose excess over training is usual up to a mean."""
+    def add(self, surprise: float) -> None:
+        """Add an event."""
         if self.armed:
             return
-        self._excesses.append(excess)
+        self._surprises.append(surprise)
         needed = ARMING_EVENTS * 2 ** min(self.failures, MOST_FAILURES)
-        if len(self._excesses) == needed:
-            self.armed = sum(self._excesses) <= usual * needed
+        if len(self._surprises) == needed:
+            self.armed = sum(self._surprises) <= USUAL_SURPRISE * needed
             self.failures += not self.armed
-            self._excesses = []
+            self._surprises = []
 
     def disarm(self) -> None:
         """Begin again."""
         self.armed = False
-        self._excesses = []
+        self._surprises = []
 
 
 class Watch:
-    """The sums of a pair or of an answer."""
+    """The sum of the surprises of a track."""
 
-    def __init__(self, caps: Sequence[float]) -> None:
-        self.caps = list(caps)
-        self.sums = [0.0] * len(caps)
+    def __init__(self, cap: float) -> None:
+        self._cap = cap
+        self.sum = 0.0
         self.arming = Arming()
         self.regime = 0.0
-        self.owed = 0.0
-        self.asked_at: Optional[int] = None  # since it was disarmed
-        self.seen = 0
         self.abnormal_since: Optional[int] = None
 
-    def add(self, steps: Sequence[float]) -> None:
-        """Add to the sums, which stay between 0 and their caps."""
-        self.sums = [min(max(value + step, 0.0), cap)
-                     for value, step, cap in zip(self.sums, steps, self.caps)]
+    def add(self, step: float) -> None:
+        """Add to the sum, which stays between 0 and its cap."""
+        self.sum = min(max(self.sum + step, 0.0), self._cap)
 
     def disarm(self) -> None:
-        """Forget the sums, but not how often arming failed."""
-        self.sums = [0.0] * len(self.caps)
+        """Forget the sum, but not how often arming failed."""
+        self.sum = 0.0
         self.arming.disarm()
-        self.regime = self.owed = 0.0
-        self.asked_at = self.abnormal_since = None
+        self.regime = 0.0
+        self.abnormal_since = None
 
     def is_abnormal(self) -> bool:
-        """Whether one of the sums is above its limit."""
-        return self.arming.armed and any(value * MOST_OF_LIMIT > cap
-                                         for value, cap in zip(self.sums, self.caps))
+        """Whether the sum is above its limit."""
+        return self.arming.armed and self.sum * MOST_OF_LIMIT > self._cap
 
 
 class ReferenceScorer:
     """Evidence of one recording: `rows` holds that of all tracks for every window.
+
+    It also counts the stalls of the whole robot, and how often a change was accepted.
 
     Args:
         model: that judges.
@@ -98,18 +95,17 @@ class ReferenceScorer:
                       for track, limit in zip(model.tracks, limits) if limit > 0.0}
         self._last: Dict[str, Tuple[int, int]] = {}  # stamp and number of the event
         self._first_stamps: Dict[str, int] = {}
-        self._number: Dict[str, int] = defaultdict(int)  # of events, by type
         self._behind: Dict[str, float] = defaultdict(float)  # [ns]
         self._in_window: Dict[str, List[int]] = defaultdict(list)
         self._requests: Dict[Track, List[int]] = defaultdict(list)  # without an answer
-        self._pairs = {track[1:]: Watch([self._cap((channel, *track[1:])) for channel in DELAYS])
-                       for track in model.tracks if track[0] == 'delay'}
-        self._answers = {track[1:]: Watch([self._cap(track)])
-                         for track in model.tracks if track[0] == 'answer'}
-        self._usual_silence = max(model.longest_silence * 5 // 4, SHORTEST_STALL)
+        self._watches = {track: Watch(self._caps.get(track, MOST_EVIDENCE))
+                         for track in model.tracks if LABELS[track[0]] == 'pairs'}
+        self._usual_silence = model.longest_silence * 5 // 4
         self._start: Optional[int] = None  # the first event
         self._newest: Optional[int] = None
         self._stall: Optional[Tuple[int, int]] = None  # the last one that is over
+        self.stalls = 0
+        self.accepted = 0
         self.rows: List[List[float]] = []
         self._first = index = events[0][0] // window
         for number, (t, kind) in enumerate(events):
@@ -122,12 +118,8 @@ class ReferenceScorer:
                 self._add(t, kind)
                 self._last[kind] = (t, number)
                 self._first_stamps.setdefault(kind, t)
-                self._number[kind] += 1
                 self._in_window[kind].append(index)
         self.rows.append(self._row(index))
-
-    def _cap(self, track: Track) -> float:
-        return self._caps.get(track, MOST_EVIDENCE)
 
     def _note_stall(self, t: int) -> None:
         if self._newest is not None:
@@ -135,6 +127,7 @@ class ReferenceScorer:
             if (self._usual_silence < silence <= LONGEST_STALL
                     and (self._stall is None or t - self._stall[1] > BETWEEN_STALLS)):
                 self._stall = (self._newest, t)
+                self.stalls += 1
         self._newest = max(t, self._newest or t)
 
     def _has_waited(self, t: int) -> bool:
@@ -144,23 +137,19 @@ class ReferenceScorer:
     def _add(self, t: int, kind: str) -> None:
         own = self._last.get(kind)
         catches_up = own is not None and self._catches_up(t - own[0], kind)
-        for (to, other), pair in self._pairs.items():
-            if to == kind:
-                self._add_delay(pair, t, to, other, catches_up)
-        for (to, other), answer in self._answers.items():
-            if other == kind:
-                self._ask(answer, t, ('answer', to, other))
+        for track, watch in self._watches.items():
+            if track[1] == kind:
+                self._add_delay(watch, t, track, catches_up)
         for track in self._model.tracks:
-            if track[0] == 'deadline':
+            if track[0] == 'deadlines':
                 if track[1] == kind:
                     self._requests[track] = []
                 if track[2] == kind:
                     self._requests[track].append(t)
         if own is not None and t - own[0] > GONE_GAPS * self._model.longest[kind]:
-            for watched in (self._pairs, self._answers):
-                for types, watch in watched.items():
-                    if kind in types:
-                        watch.disarm()
+            for track, watch in self._watches.items():
+                if kind in track[1:]:
+                    watch.disarm()
 
     def _catches_up(self, gap: int, kind: str) -> bool:
         """Return whether a gap is short because the type was behind its mean gaps."""
@@ -169,50 +158,34 @@ class ReferenceScorer:
         self._behind[kind] = min(max(self._behind[kind] + gap - mean, 0.0), MOST_BEHIND * mean)
         return catches_up
 
-    def _add_delay(self, pair: Watch, t: int, to: str, other: str, catches_up: bool) -> None:
+    def _add_delay(self, watch: Watch, t: int, track: Track, catches_up: bool) -> None:
+        channel, to, other = track
         own, before = self._last.get(to), self._last.get(other)
         if before is None or (own is not None and before[1] < own[1]):
             return
-        surprise = self._model.surprise(('delay', to, other), t - before[0])
+        surprise = self._model.surprise(track, t - before[0])
         if not self._has_waited(t):
-            sign = -1.0 if to == other and catches_up and surprise > 0.0 else 1.0
-            pair.add([sign * (surprise - max(pair.regime, 0.0) - drift)
-                      for drift in DELAYS.values()])
+            makes_up = channel == 'own gaps' and catches_up and surprise > 0.0
+            step = surprise - max(watch.regime, 0.0) - DRIFT
+            watch.add(-step if makes_up else step)
             elapsed = min(max(t - own[0], 0), REGIME) if own is not None else 0
-            pair.regime += (surprise - pair.regime) * elapsed / REGIME
-        if to == other and pair.arming.failures == 0:
-            pair.arming.armed = True
+            watch.regime += (surprise - watch.regime) * elapsed / REGIME
+        if channel == 'own gaps' and watch.arming.failures == 0:
+            watch.arming.armed = True
         else:
-            pair.arming.add(surprise, USUAL_SURPRISE)
-
-    def _ask(self, answer: Watch, t: int, track: Track) -> None:
-        asked_at, number = answer.asked_at, self._number[track[1]]
-        if asked_at is not None and t - asked_at < self._model.usual_answer(track):
-            return
-        came = number - answer.seen
-        answer.asked_at, answer.seen = t, number
-        if asked_at is None or number == 0:
-            return
-        late = min(came - 1.0, answer.owed) if came else 0.0
-        answer.owed += -late if came else 1.0
-        answer.add([self._model.answer_step(track, False)
-                    - late * self._model.answer_step(track, True) if came
-                    else self._model.answer_step(track, True)])
-        answer.arming.add((-late if came else 1.0) - self._model.usual_misses(track),
-                          USUAL_MISSES)
+            watch.arming.add(surprise)
 
     def _accept(self, end: int) -> None:
-        for watched, must_come in ((self._pairs, False), (self._answers, True)):
-            for (to, _), watch in watched.items():
-                since = watch.abnormal_since
-                if not watch.is_abnormal():
-                    watch.abnormal_since = None
-                elif since is None:
-                    watch.abnormal_since = end
-                elif end - since >= ACCEPT_AFTER and (not must_come
-                                                      or self._last[to][0] > since):
-                    watch.arming.failures += 1
-                    watch.disarm()
+        for watch in self._watches.values():
+            since = watch.abnormal_since
+            if not watch.is_abnormal():
+                watch.abnormal_since = None
+            elif since is None:
+                watch.abnormal_since = end
+            elif end - since >= ACCEPT_AFTER:
+                watch.arming.failures += 1
+                watch.disarm()
+                self.accepted += 1
 
     def _row(self, index: int) -> List[float]:
         end = (index + 1) * self._window
@@ -225,19 +198,19 @@ class ReferenceScorer:
                 for track in self._model.tracks]
 
     def _evidence(self, track: Track, index: int, end: int, stall: int, stalled: bool) -> float:
-        channel, kind, other = track
+        channel, kind, _ = track
         last = self._last.get(kind)
-        if last is None and (channel != 'deadline' or self._start is None
-                             or end - self._start < START_TIME):
-            return 0.0
-        if channel == 'deadline':
+        if channel == 'deadlines':
+            started = self._start is not None and end - self._start >= START_TIME
             requests = self._requests[track]
-            if self._model.counts_requests(track):
-                return float(len(requests))
-            return (end - requests[0]) / SECOND if requests else 0.0
-        assert last is not None
+            if not requests or (last is None and not started):
+                return 0.0
+            return (float(len(requests)) if self._model.counts_requests(track)
+                    else (end - requests[0]) / SECOND)
+        if last is None:
+            return 0.0
         if channel == 'overdue':
-            if not stall and self._stall is not None and last[0] <= self._stall[0]:
+            if stalled and not stall and self._stall is not None and last[0] <= self._stall[0]:
                 stall = self._stall[1] - self._stall[0]
             return self._model.overdue(kind, max(end - last[0] - stall, 0))
         if channel in ('fewer', 'more'):
@@ -247,6 +220,5 @@ class ReferenceScorer:
                 return 0.0
             more = self._model.rate(kind, sum(n > index - span for n in self._in_window[kind]))
             return max(more if channel == 'more' else -more, 0.0)
-        watch = self._pairs[kind, other] if channel in DELAYS else self._answers[kind, other]
-        value = watch.sums[list(DELAYS).index(channel) if channel in DELAYS else 0]
-        return value if watch.arming.armed else 0.0
+        watch = self._watches[track]
+        return watch.sum if watch.arming.armed else 0.0

@@ -168,33 +168,24 @@ def test_evidence_is_a_number_that_does_not_depend_on_what_was_before_the_clock_
     assert found[len(found) - len(alone):].tobytes() == alone.tobytes()
 
 
-def find(finder: LimitFinder, trained: TrainedModel, normal: Sequence[Sequence[Event]]) -> None:
-    """Go through normal operation twice."""
-    ids = ids_of(trained)
-    for only_first_pass in (True, False):
-        for events in normal:
-            finder.add_events(arrays(events)[0],
-                              np.array([ids.get(kind, len(ids)) for _, kind in events]), None)
-        if only_first_pass:
-            finder.start_second_pass()
-
-
 @examples
 @given(MUCH, MUCH)
 def test_limits_are_numbers(all_events: List[List[Event]], normal: List[List[Event]]) -> None:
     trained = trained_on(all_events)
     assume(len(EvidenceModel(trained).tracks))
     finder = LimitFinder(trained, SETTLE, 0.5)
+    ids = ids_of(trained)
+    for events in normal:
+        finder.add_events(arrays(events)[0],
+                          np.array([ids.get(kind, len(ids)) for _, kind in events]), None)
     try:
-        find(finder, trained, normal)
+        found = finder.find()
     except ValueError as refused:
         assert 'too little normal operation' in str(refused)
         reject()
-    limits = finder.limits()
     # Not a number: the track is not judged.
-    assert all(math.isnan(limit) or limit > 0.0 for limit in limits.tracks)
-    assert limits.linker > 0.0 and not math.isnan(limits.linker)
-    assert 0.0 <= finder.expected_rate() < math.inf
+    assert all(math.isnan(limit) or limit > 0.0 for limit in found.limits)
+    assert 0.0 <= found.expected_rate < math.inf
     assert 0 <= finder.windows <= sum(
         (piece[-1][0] - piece[0][0]) // WINDOW + 2 for events in normal
         for piece in pieces(events))

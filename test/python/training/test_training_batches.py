@@ -85,9 +85,8 @@ def described(trained: Trained) -> Dict[str, Any]:
                                                 calibration.relations)}
     delays = {(names[i], names[j]): sorted(model.histogram(i, j).items())
               for i in range(len(kinds)) for j in range(len(kinds))}
-    return {'tracks': tracks, 'delays': delays, 'linker': calibration.linker_limit,
-            'expected': calibration.false_alarms_per_hour, 'windows': calibration.windows,
-            'bags': sorted(each.bag for each in model.recordings)}
+    return {'tracks': tracks, 'delays': delays, 'expected': calibration.false_alarms_per_hour,
+            'windows': calibration.windows, 'bags': sorted(each.bag for each in model.recordings)}
 
 
 def at_once(bags: List[str]) -> TrainedModel:

@@ -44,7 +44,7 @@ def test_counts_and_limits_are_those_of_one_process(bags: List[str], tmp_path: P
     one, other = alone.evidence_calibration, together.evidence_calibration
     assert np.array_equal(one.limits, other.limits, equal_nan=True)
     assert np.isfinite(one.limits).any()
-    assert (one.linker_limit, one.windows) == (other.linker_limit, other.windows)
+    assert (one.false_alarms_per_hour, one.windows) == (other.false_alarms_per_hour, other.windows)
 
 
 def test_bags_counted_apart_are_what_one_training_counts(bags: List[str], tmp_path: Path) -> None:

@@ -13,8 +13,8 @@ GapTail::GapTail(const std::vector<std::int64_t>& longest_gaps, double hours, do
   });
   const auto number = static_cast<std::size_t>(end - longest_gaps.begin());
   // If all that are kept are pauses, there are more of them.
-  const bool all_are = number > 0 && number == longest_gaps.size();
-  shortest_ = all_are ? static_cast<double>(*std::prev(end)) : usual;
+  const bool more = number > 0 && number == longest_gaps.size();
+  shortest_ = more ? static_cast<double>(*std::prev(end)) : usual;
   all_ = static_cast<double>(number) / hours;
   if (number > 0) {
     mean_excess_ =

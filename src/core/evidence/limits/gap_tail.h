@@ -10,7 +10,7 @@ namespace self_awareness::core::evidence {
 /// Gaps in which nothing was left out say nothing about that.
 class GapTail {
  public:
-  /// @param longest_gaps [ns], the longest first, at least one
+  /// @param longest_gaps [ns], the longest first
   /// @param hours in which they were the longest, more than 0
   /// @param usual gaps are no longer than this [ns]
   GapTail(const std::vector<std::int64_t>& longest_gaps, double hours, double usual);

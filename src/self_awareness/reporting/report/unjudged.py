@@ -8,7 +8,6 @@ from typing import List, Sequence
 
 import numpy as np
 
-from self_awareness import FEWEST_GAPS
 from self_awareness.reporting.report.judged import Judged
 from self_awareness.stamps import SECOND_NS
 
@@ -83,10 +82,11 @@ def _silent(judged: Judged, counts: np.ndarray) -> List[Unjudged]:
 
 
 def _too_rare(judged: Judged) -> List[Unjudged]:
-    kinds = judged.by.trained.event_types
-    return _listed('too rare in training', f'fewer than {FEWEST_GAPS} gaps between two of a kind',
-                   [str(kind) for index, kind in enumerate(kinds)
-                    if judged.by.trained.gaps(index) < FEWEST_GAPS])
+    trained = judged.by.trained
+    return _listed('too rare in training',
+                   f'fewer than {trained.fewest_gaps} gaps between two of a kind',
+                   [str(kind) for index, kind in enumerate(trained.event_types)
+                    if trained.gaps(index) < trained.fewest_gaps])
 
 
 def _without_limit(judged: Judged) -> List[Unjudged]:

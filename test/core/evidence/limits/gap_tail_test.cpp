@@ -3,34 +3,28 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdint>
-#include <vector>
 
 namespace self_awareness::core::evidence {
 namespace {
 
-TEST(GapTail, ExtrapolatesThePausesAsAnExponentialOne) {
-  // In two hours: of what is longer than 100, a mean excess of 100.
-  const GapTail tail({300, 200, 100, 50}, 2, 100);
-  EXPECT_NEAR(tail.rate(100), 1, 1e-12);
-  EXPECT_NEAR(tail.rate(400), std::exp(-300 / 150.0), 1e-12);
-  EXPECT_NEAR(tail.age(tail.rate(777)), 777, 1e-9);
-  EXPECT_EQ(tail.age(10), 100) << "more often than all of them";
+TEST(GapTail, IsExponentialBeyondWhatIsUsual) {
+  const GapTail tail({30, 20, 10, 5}, 2, 10);  // two pauses in two hours, 15 longer on average
+  EXPECT_DOUBLE_EQ(tail.rate(10), 1);
+  EXPECT_DOUBLE_EQ(tail.rate(25), std::exp(-1));
+  EXPECT_DOUBLE_EQ(tail.age(std::exp(-1)), 25);
+  EXPECT_DOUBLE_EQ(tail.age(5), 10);
 }
 
-TEST(GapTail, IfAllThatAreKeptArePausesItBeginsWithTheShortest) {
-  const GapTail tail({400, 300, 200}, 1, 100);
-  EXPECT_EQ(tail.rate(200), 3);
-  EXPECT_NEAR(tail.rate(300), 3 * std::exp(-1), 1e-12);
+TEST(GapTail, BeginsWithTheShortestOfThoseThatAreKeptIfAllArePauses) {
+  const GapTail tail({30, 20, 16}, 1, 10);
+  EXPECT_DOUBLE_EQ(tail.rate(16), 3);
+  EXPECT_DOUBLE_EQ(tail.age(3 * std::exp(-1)), 22);
 }
 
-TEST(GapTail, WithoutAPauseNoneIsExpected) {
-  for (const std::vector<std::int64_t>& gaps :
-       std::vector<std::vector<std::int64_t>>{{}, {90, 80}}) {
-    const GapTail tail(gaps, 1, 100);
-    EXPECT_EQ(tail.rate(200), 0);
-    EXPECT_EQ(tail.age(0.001), 100);
-  }
+TEST(GapTail, OfATypeWithoutGapsIsNone) {  // a model may watch it, if somebody made it so
+  const GapTail tail({}, 1, 10);
+  EXPECT_DOUBLE_EQ(tail.rate(11), 0);
+  EXPECT_DOUBLE_EQ(tail.age(0.1), 10);
 }
 
 }  // namespace
