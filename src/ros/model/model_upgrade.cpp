@@ -16,13 +16,13 @@ namespace {
 /// Removes from a table with a column for each track those of the tracks that do not stay.
 template <typename Value>
 void removeColumns(const std::vector<bool>& stays, std::vector<Value>& table) {
-  std::size_t kept = 0;
+  std::vector<Value> kept;
   for (std::size_t k = 0; k < table.size(); ++k) {
     if (stays[k % stays.size()]) {
-      table[kept++] = std::move(table[k]);
+      kept.push_back(std::move(table[k]));
     }
   }
-  table.resize(kept);
+  table = std::move(kept);
 }
 
 /// Name of the channel of a track; empty: it went with its rule.
