@@ -20,7 +20,10 @@ void removeColumns(const std::vector<bool>& stays, std::vector<Value>& table) {
   std::size_t kept = 0;
   for (std::size_t k = 0; k < table.size(); ++k) {
     if (stays[k % stays.size()]) {
-      table[kept++] = std::move(table[k]);
+      if (kept != k) {  // a string that is moved to itself is empty
+        table[kept] = std::move(table[k]);
+      }
+      ++kept;
     }
   }
   table.resize(kept);
