@@ -49,21 +49,16 @@ int main() {
   graph->connect("/laser", "/scan", "/slam");
   const evidence::CrossFit models(evidence::watch(counts.halves[0], counts.halves[1], *graph));
 
-  // 3. Limits say what is too unusual. The recordings come twice; who judges one has not learned
-  // from it.
+  // 3. Limits say what is too unusual. Who judges a recording has not learned from it.
   evidence::LimitFinder finder(models.model(), {}, *graph);
-  for (const bool second_pass : {false, true}) {
-    if (second_pass) {
-      finder.startSecondPass();
+  for (std::size_t fingerprint = 0; fingerprint < recordings.size(); ++fingerprint) {
+    finder.startRecording(models.judging(evidence::halfOf(fingerprint)));
+    for (const core::Event& event : recordings[fingerprint]) {
+      finder.add(event);
     }
-    for (std::size_t fingerprint = 0; fingerprint < recordings.size(); ++fingerprint) {
-      finder.startRecording(models.judging(evidence::halfOf(fingerprint)));
-      for (const core::Event& event : recordings[fingerprint]) {
-        finder.add(event);
-      }
-      finder.finish();
-    }
+    finder.finish();
   }
+  const evidence::LimitFinder::Found found = finder.find();
 
   // 4. The detector judges another recording, in which the laser dies after 60 s.
   const auto print = [&models](const core::Verdict& verdict) {
@@ -76,7 +71,7 @@ int main() {
     }
   };
   core::Detector detector(
-      evidence::makeJudge(models.model(), finder.limits(), core::kDefaultWindow, graph),
+      evidence::makeJudge(models.model(), found.limits, core::kDefaultWindow, graph),
       core::kDefaultWindow, {}, print);
   for (const core::Event& event : simulatedRecording(5, 100, 60)) {
     detector.add(event);

@@ -80,7 +80,6 @@ void writeModel(const std::string& path) {
   model.calibration->threshold = 1.25;
   model.evidence_calibration = self_awareness::EvidenceCalibration();
   model.evidence_calibration->limits.assign(model.watched.tracks.size(), 2.5);
-  model.evidence_calibration->linker_limit = 1.5;
   ros1::saveModel(model, path);
 }
 

@@ -16,6 +16,17 @@ CORE: Dict[str, Set[str]] = {
     'paper': {'stream', 'verdict'},
     'evidence': {'stream', 'verdict'},
 }
+# By room of core/evidence, what it may include of the others. What lies beside the rooms (judge,
+# lanes) may include all of them; of it, the rooms may include the tuning.
+EVIDENCE: Dict[str, Set[str]] = {
+    'count': set(),
+    'watch': {'count', 'tuning'},
+    'channel': {'count', 'watch', 'tuning'},
+    'limits': {'count', 'watch', 'channel', 'tuning'},
+    'blame': {'count', 'watch', 'channel', 'tuning'},
+}
+CHANNEL = 'src/core/evidence/channel'
+LIST_OF_CHANNELS = 'channels_of_the_method.cpp'
 INCLUDE = re.compile(r'^#include ["<]([^">]+)[">]', re.MULTILINE)
 
 
@@ -29,9 +40,21 @@ def _included(path: Path) -> List[str]:
 
 
 def _core_rooms(path: Path) -> Set[str]:
-    found = (re.fullmatch(r'(?:self_awareness/)?core/(?:(\w+)/)?\w+\.h', name)
+    found = (re.fullmatch(r'(?:self_awareness/)?core/(?:(\w+)/)?(?:\w+/)?\w+\.h', name)
              for name in _included(path))
     return {match.group(1) or 'training' for match in found if match}
+
+
+def _evidence_rooms(path: Path) -> Set[str]:
+    found = (re.fullmatch(r'(?:self_awareness/)?core/evidence/(\w+)(?:/\w+)?\.h', name)
+             for name in _included(path))
+    return {match.group(1) for match in found if match}
+
+
+def _channels() -> List[Path]:
+    """Return the headers of the channels."""
+    return [path for path in _sources(CHANNEL)
+            if re.search(r': public Channel {', path.read_text(encoding='utf-8'))]
 
 
 @pytest.mark.parametrize('room', sorted(CORE))
@@ -40,6 +63,47 @@ def test_rooms_of_the_core_include_what_lies_below(room: str) -> None:
     assert sources
     for path in sources:
         assert _core_rooms(path) <= CORE[room] | {room}, path
+
+
+@pytest.mark.parametrize('room', sorted(EVIDENCE))
+def test_rooms_of_the_evidence_include_what_lies_below(room: str) -> None:
+    sources = _sources(f'include/self_awareness/core/evidence/{room}', f'src/core/evidence/{room}')
+    assert sources
+    for path in sources:
+        assert _evidence_rooms(path) <= EVIDENCE[room] | {room}, path
+
+
+def test_the_evidence_has_no_other_rooms() -> None:
+    for folder in ('include/self_awareness/core/evidence', 'src/core/evidence'):
+        assert {path.name for path in (ROOT / folder).iterdir() if path.is_dir()} <= set(EVIDENCE)
+
+
+def test_no_channel_knows_another_one() -> None:
+    headers = _channels()
+    assert len(headers) >= 5
+    for header in headers:
+        own = f'{CHANNEL[4:]}/{header.name}'
+        known_to = {path.relative_to(ROOT / CHANNEL).as_posix() for path in _sources(CHANNEL)
+                    if own in _included(path)}
+        assert known_to == {f'{header.stem}.cpp', LIST_OF_CHANNELS}, header
+        assert not [path for path in _sources('include', 'src')
+                    if own in _included(path) and path.parent != ROOT / CHANNEL], header
+
+
+def test_a_channel_is_named_in_its_own_file() -> None:
+    """Others go by what a channel finds, not by which one it is."""
+    named = r'\bname\(\) const override {([^}]*)}'
+    names = {name for header in _channels()
+             for text in re.findall(named, header.read_text(encoding='utf-8'))
+             for name in re.findall(r'"[^"]+"', text)}
+    assert len(names) > len(_channels()), names
+    # Files of format 1 have numbers of channels, and a number of the method has such a name.
+    allowed = {ROOT / 'src/ros/model/model_upgrade.cpp', ROOT / 'src/core/evidence/tuning.cpp',
+               *_channels()}
+    for path in _sources('include', 'src/core', 'src/ros', 'src/monitor'):
+        if path not in allowed:
+            text = path.read_text(encoding='utf-8')
+            assert not [name for name in names if name in text], path
 
 
 def test_the_core_knows_no_ros() -> None:

@@ -3,12 +3,13 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
-from typing import Iterator, List, Set
+from typing import Dict, Iterator, List, Set
 from urllib.parse import unquote
 
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
+METHOD = ROOT / 'docs' / 'method.md'
 PAGES = [ROOT / 'README.md', *sorted((ROOT / 'docs').rglob('*.md'))]
 
 # [text](target), also of an image, with an optional "title".
@@ -91,6 +92,32 @@ def test_every_page_is_linked_to() -> None:
     linked = {(page.parent / target.partition('#')[0]).resolve()
               for page in PAGES for target in _links(page)}
     assert [str(page) for page in PAGES[1:] if page not in linked] == []
+
+
+def _numbers_of_the_method() -> Dict[str, float]:
+    """Return the numbers of the evidence detector with their values, by name."""
+    header = (ROOT / 'include/self_awareness/core/evidence/tuning.h').read_text(encoding='utf-8')
+    return {name: float(value)
+            for name, value in re.findall(r'^  double (\w+) = ([\d.]+);$', header, re.MULTILINE)}
+
+
+def test_the_method_names_every_number_once() -> None:
+    numbers = _numbers_of_the_method()
+    text = METHOD.read_text(encoding='utf-8')
+    found = {name: [float(value) for value in
+                    re.findall(rf'(?<!\w){name}`? = (\d+(?:\.\d+)?)', text)] for name in numbers}
+    assert found == {name: [value] for name, value in numbers.items()}
+
+
+def test_the_method_names_no_number_that_is_gone() -> None:
+    named = re.findall(r'`([a-z]+(?:_[a-z]+)*)` = [\d.]', METHOD.read_text(encoding='utf-8'))
+    assert {name for name in named if len(name) > 1} - {'s_b'} <= set(_numbers_of_the_method())
+
+
+def test_the_method_is_short() -> None:
+    lines = METHOD.read_text(encoding='utf-8').splitlines()
+    assert len(lines) <= 450
+    assert [line for line in lines if len(line) > 120] == []
 
 
 def test_the_search_finds_broken_links(tmp_path: Path) -> None:

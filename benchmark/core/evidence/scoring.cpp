@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "allocated_bytes.h"
@@ -65,21 +66,15 @@ const Trained& trained(std::size_t types) {
   return entry;
 }
 
-// Pairs of event types that the scorer looks at, by the type of the event. The two delay tracks of
-// a pair count as one.
-struct Terms {
-  std::vector<std::vector<core::EventId>> delays;   // since these
-  std::vector<std::vector<core::EventId>> answers;  // of these
-};
+// Event types since whose last event the scorer looks at the delay, by the type of the event.
+using Terms = std::vector<std::vector<core::EventId>>;
 
 Terms termsOf(const evidence::Model& model) {
-  Terms terms{std::vector<std::vector<core::EventId>>(model.size()),
-              std::vector<std::vector<core::EventId>>(model.size())};
+  Terms terms(model.size());
   for (const evidence::Track& track : model.tracks()) {
-    if (track.channel == evidence::Channel::kDelay) {
-      terms.delays[track.to].push_back(track.from);
-    } else if (track.channel == evidence::Channel::kAnswer) {
-      terms.answers[track.from].push_back(track.to);
+    const std::string channel = evidence::channelName(track);
+    if (channel == "own gaps" || channel == "pairs") {
+      terms[track.to].push_back(track.from);
     }
   }
   return terms;
@@ -89,8 +84,7 @@ Terms termsOf(const evidence::Model& model) {
 double termsPerEvent(const Terms& terms, EventLoop& events) {
   std::size_t number = 0;
   for (std::size_t i = 0; i < events.size(); ++i) {
-    const core::EventId id = events.next().id;
-    number += terms.delays[id].size() + terms.answers[id].size();
+    number += terms[events.next().id].size();
   }
   return static_cast<double>(number) / static_cast<double>(events.size());
 }
@@ -118,10 +112,7 @@ void lookUpEvidence(benchmark::State& state) {
     double number = 1;
   };
   struct Pair {
-    std::array<double, 8> cells{1};
-  };
-  struct Answer {
-    std::array<double, 5> cells{1};
+    std::array<double, 6> cells{1};
   };
   struct Term {
     core::EventId other;
@@ -134,22 +125,16 @@ void lookUpEvidence(benchmark::State& state) {
   state.counters["terms"] = termsPerEvent(terms, events);
   std::mt19937 random(1);
   std::vector<std::vector<Term>> delays(types);
-  std::vector<std::vector<Term>> answers(types);
   std::size_t pairs = 0;
-  std::size_t asked = 0;
   for (core::EventId id = 0; id < types; ++id) {
-    for (const core::EventId from : terms.delays[id]) {
+    for (const core::EventId from : terms[id]) {
       // Most delays of a pair are in a few bins.
       delays[id].push_back({from, static_cast<std::uint32_t>(pairs++),
                             static_cast<std::uint32_t>(random() % evidence::log_bins::kBins)});
     }
-    for (const core::EventId to : terms.answers[id]) {
-      answers[id].push_back({to, static_cast<std::uint32_t>(asked++), 0});
-    }
   }
   const std::vector<Seen> seen(types);
   const std::vector<Pair> of_pairs(pairs);
-  const std::vector<Answer> of_answers(asked);
   const std::vector<std::array<double, evidence::log_bins::kBins>> surprises(pairs);
   double sum = 0;
   for (auto _ : state) {
@@ -157,9 +142,6 @@ void lookUpEvidence(benchmark::State& state) {
     for (const Term& term : delays[id]) {
       sum += seen[term.other].stamp + of_pairs[term.number].cells[0] +
              surprises[term.number][term.bin];
-    }
-    for (const Term& term : answers[id]) {
-      sum += seen[term.other].number + of_answers[term.number].cells[0];
     }
   }
   benchmark::DoNotOptimize(sum);

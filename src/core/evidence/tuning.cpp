@@ -81,6 +81,8 @@ const std::vector<TuningNumber>& tuningNumbers() {
        "Times the longest start in training after which a type is due.", std::nullopt},
       {"alarm_times", &Tuning::alarm_times, 1, 1e3, "",
        "Times that time after which it is an alarm.", std::nullopt},
+      {"shortest_stall", &Tuning::shortest_stall, 0, 1e3, "s", "A stall lasts at least so long.",
+       std::nullopt},
       {"longest_stall", &Tuning::longest_stall, 0, 1e3, "s", "And at most so long.", 0},
       {"between_stalls", &Tuning::between_stalls, 0, 1e9, "s",
        "Time in which one stall is forgiven.", std::nullopt},

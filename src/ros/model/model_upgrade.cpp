@@ -9,7 +9,6 @@
 #include "check.h"
 #include "self_awareness/Track.h"
 #include "self_awareness/core/evidence/channel/track.h"
-#include "self_awareness/ros/file_version.h"
 
 namespace self_awareness::ros1 {
 namespace {
@@ -49,10 +48,10 @@ void upgrade(self_awareness::Model& message, std::uint32_t format) {
       track.name = nameInFormat1(track);
     }
   }
-  if (format != kModelFile.format) {
-    const std::vector<std::string> channels = core::evidence::channelNames();
-    removeOtherTracks(message, {channels.begin(), channels.end()});
-  }
+  // The format says nothing of the channels that the writer's method had: what one of them watches
+  // stands beside the others, and says nothing of them.
+  const std::vector<std::string> channels = core::evidence::channelNames();
+  removeOtherTracks(message, {channels.begin(), channels.end()});
 }
 
 void removeOtherTracks(self_awareness::Model& message, const std::set<std::string>& channels) {

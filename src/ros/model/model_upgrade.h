@@ -8,9 +8,9 @@
 
 namespace self_awareness::ros1 {
 
-/// Gives the message of a model file of another format the meaning that it has in this one. The
+/// Gives the message of a model file of any format the meaning that it has in this version. The
 /// bytes were laid out anew already (MessageUpgrade): fields that the file lacks are zero or
-/// empty.
+/// empty. What is watched on channels that this version does not have is left out.
 /// @param format of the file; 1: it says nothing
 /// @throw std::invalid_argument as removeOtherTracks()
 void upgrade(self_awareness::Model& message, std::uint32_t format);

@@ -7,7 +7,6 @@
 #include <memory>
 #include <optional>
 #include <stdexcept>
-#include <tuple>
 #include <vector>
 
 #include "recordings.h"
@@ -28,11 +27,8 @@ Statistics followed(unsigned seed) {
 class EvidenceJudgeTest : public testing::Test {
  protected:
   // Only what a test gives a limit is judged.
-  EvidenceJudgeTest() {
-    limits_.tracks.assign(model_->tracks().size(), kNone);
-    limits_.linker = 100;
-  }
-  std::size_t track(Channel channel, EventId to, EventId from) const {
+  EvidenceJudgeTest() { limits_.tracks.assign(model_->tracks().size(), kNone); }
+  std::size_t track(const std::string& channel, EventId to, EventId from) const {
     return indexOf(model_->tracks(), channel, to, from);
   }
   std::unique_ptr<core::Judge> newJudge(const std::optional<Limits>& limits) const {
@@ -59,7 +55,7 @@ TEST_F(EvidenceJudgeTest, TheScoreIsTheLargestShareOfALimit) {
   const std::int64_t age = 700 * kMillisecond;
   const double evidence = model_->overdue(kA, age);
   for (const double share : {0.5, 0.99, 1.01}) {
-    limits_.tracks[track(Channel::kOverdue, kA, kA)] = evidence / share;
+    limits_.tracks[track(kOverdue, kA, kA)] = evidence / share;
     const std::unique_ptr<core::Judge> judge = newJudge(limits_);
     judge->add({0, kA});
     const Judgement judgement = judgeAt(*judge, age);
@@ -73,7 +69,7 @@ TEST_F(EvidenceJudgeTest, TheScoreIsTheLargestShareOfALimit) {
 }
 
 TEST_F(EvidenceJudgeTest, ASilenceThatHasLastedIsCertain) {
-  limits_.tracks[track(Channel::kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
+  limits_.tracks[track(kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   judge->add({0, kA});
   EXPECT_FALSE(judgeAt(*judge, kSecond).abnormal);
@@ -84,7 +80,7 @@ TEST_F(EvidenceJudgeTest, ASilenceThatHasLastedIsCertain) {
 }
 
 TEST_F(EvidenceJudgeTest, LateAnswersAreAbnormalButNotCertain) {
-  const std::size_t delay = track(Channel::kDelay, kB, kA);
+  const std::size_t delay = track(kPairs, kB, kA);
   limits_.tracks[delay] = model_->leastLimit(delay);
   const std::unique_ptr<core::Judge> usual = newJudge(limits_);
   feed(*usual, 0);
@@ -100,7 +96,7 @@ TEST_F(EvidenceJudgeTest, LateAnswersAreAbnormalButNotCertain) {
 }
 
 TEST_F(EvidenceJudgeTest, AWindowThatEndsWithTheRecordingHasNotTooFewEvents) {
-  limits_.tracks[track(Channel::kFewer, kA, kA)] = 1;
+  limits_.tracks[track(kFewer, kA, kA)] = 1;
   std::vector<bool> abnormal;
   Detector detector(newJudge(limits_), kWindow, {},
                     [&](const Verdict& verdict) { abnormal.push_back(verdict.abnormal); });
@@ -116,7 +112,7 @@ TEST_F(EvidenceJudgeTest, AWindowThatEndsWithTheRecordingHasNotTooFewEvents) {
 }
 
 TEST_F(EvidenceJudgeTest, NamesSuspectsOnlyWhereTheyAreAskedFor) {
-  limits_.tracks[track(Channel::kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
+  limits_.tracks[track(kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   judge->add({0, kA});
   const Window unknown{0, {{{0, kC}, true, {}}}};
@@ -125,24 +121,6 @@ TEST_F(EvidenceJudgeTest, NamesSuspectsOnlyWhereTheyAreAskedFor) {
   EXPECT_TRUE(judge->judge({}, 2 * kSecond, NameSuspects::kNever).suspects.empty());
   EXPECT_EQ(judge->judge({}, 2 * kSecond, NameSuspects::kIfUnusual).suspects.size(), 1U);
   EXPECT_TRUE(newJudge(std::nullopt)->judge(unknown, 0, NameSuspects::kAlways).suspects.empty());
-}
-
-TEST_F(EvidenceJudgeTest, TheLinkerIsSuspiciousNearItsLimitAndCertainBeyondIt) {
-  const std::size_t slow = track(Channel::kSlowDelay, kB, kA);
-  limits_.tracks[slow] = 1;  // five late answers are far beyond: a share of 1
-  for (const auto& [limit, suspicious, certain] :
-       {std::tuple(2.0, false, false), std::tuple(1.2, true, false),
-        std::tuple(0.9, true, true)}) {
-    limits_.linker = limit;
-    const std::unique_ptr<core::Judge> judge = newJudge(limits_);
-    feed(*judge, 5);
-    const Judgement judgement = judgeAt(*judge, 45 * kPeriod);
-    EXPECT_NEAR(judgement.score.value(), -1 / limit, 1e-12);
-    EXPECT_EQ(judgement.suspicious, suspicious) << limit;
-    EXPECT_EQ(judgement.certain, certain) << limit;
-    EXPECT_EQ(judgement.abnormal, certain) << limit;
-    EXPECT_EQ(judgement.evidence, suspicious ? "linker" : "") << limit;
-  }
 }
 
 TEST_F(EvidenceJudgeTest, WithoutLimitsItSaysNothing) {
@@ -161,8 +139,8 @@ TEST_F(EvidenceJudgeTest, KnowsUnknownEvents) {
 }
 
 TEST_F(EvidenceJudgeTest, WhatSettlesIsNotJudgedAndAllElseIs) {
-  limits_.tracks[track(Channel::kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
-  limits_.tracks[track(Channel::kDelay, kB, kA)] = 1;
+  limits_.tracks[track(kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
+  limits_.tracks[track(kPairs, kB, kA)] = 1;
   const std::int64_t now = 45 * kPeriod;
   const auto evidenceAt = [&](std::int64_t start, EventId is_new, std::int64_t until) {
     const std::unique_ptr<core::Judge> judge = newJudge(limits_);
@@ -179,8 +157,8 @@ TEST_F(EvidenceJudgeTest, WhatSettlesIsNotJudgedAndAllElseIs) {
 }
 
 TEST_F(EvidenceJudgeTest, WhatWasMissedIsNotJudgedAndAllElseIs) {
-  limits_.tracks[track(Channel::kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
-  limits_.tracks[track(Channel::kDelay, kB, kA)] = 1;
+  limits_.tracks[track(kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
+  limits_.tracks[track(kPairs, kB, kA)] = 1;
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   feed(*judge, 5);
   const std::int64_t now = 45 * kPeriod;
@@ -197,7 +175,7 @@ TEST_F(EvidenceJudgeTest, WhatWasMissedIsNotJudgedAndAllElseIs) {
 }
 
 TEST_F(EvidenceJudgeTest, AfterARestartNothingSettlesThatDidBefore) {
-  limits_.tracks[track(Channel::kOverdue, kA, kA)] = 1;
+  limits_.tracks[track(kOverdue, kA, kA)] = 1;
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   judge->settle({0, kA}, 1000 * kSecond);
   judge->add({0, kA});
@@ -208,7 +186,7 @@ TEST_F(EvidenceJudgeTest, AfterARestartNothingSettlesThatDidBefore) {
 }
 
 TEST_F(EvidenceJudgeTest, AnAlarmStandsAsLongAsItsCauseWhoeverStartsMeanwhile) {
-  const std::size_t overdue = track(Channel::kOverdue, kA, kA);
+  const std::size_t overdue = track(kOverdue, kA, kA);
   limits_.tracks[overdue] = model_->overdue(kA, kSecond);
   std::vector<bool> alarm;
   Detector detector(newJudge(limits_), kWindow, {},
@@ -231,7 +209,7 @@ TEST_F(EvidenceJudgeTest, AnAlarmStandsAsLongAsItsCauseWhoeverStartsMeanwhile) {
 }
 
 TEST_F(EvidenceJudgeTest, ADeathIsFoundWhileAnotherComponentStarts) {
-  const std::size_t overdue = track(Channel::kOverdue, kA, kA);
+  const std::size_t overdue = track(kOverdue, kA, kA);
   limits_.tracks[overdue] = model_->overdue(kA, kSecond);
   std::optional<std::int64_t> alarm;
   Detector detector(newJudge(limits_), kWindow, {}, [&](const Verdict& verdict) {
@@ -251,7 +229,7 @@ TEST_F(EvidenceJudgeTest, ADeathIsFoundWhileAnotherComponentStarts) {
 }
 
 TEST_F(EvidenceJudgeTest, ARestartForgetsWhatWasSeen) {
-  limits_.tracks[track(Channel::kOverdue, kA, kA)] = 1;
+  limits_.tracks[track(kOverdue, kA, kA)] = 1;
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   judge->add({0, kA});
   EXPECT_TRUE(judgeAt(*judge, 100 * kSecond).abnormal);
@@ -263,11 +241,6 @@ TEST_F(EvidenceJudgeTest, RefusesLimitsOfAnotherModel) {
   Limits few = limits_;
   few.tracks.pop_back();
   EXPECT_THROW(newJudge(few), std::invalid_argument);
-  for (const double linker : {kNone, 0.0, -1.0, std::numeric_limits<double>::infinity()}) {
-    Limits unusable = limits_;
-    unusable.linker = linker;
-    EXPECT_THROW(newJudge(unusable), std::invalid_argument) << linker;
-  }
 }
 
 class EvidenceJudgeOfStrangersTest : public EvidenceJudgeTest {
@@ -277,7 +250,7 @@ class EvidenceJudgeOfStrangersTest : public EvidenceJudgeTest {
                                      bool usual_sender = true) {
     heard_ = std::make_shared<Vocabulary>(model_->vocabulary());
     const EventId id = heard_->intern(unknown);
-    limits_.tracks[track(Channel::kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
+    limits_.tracks[track(kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
     const std::unique_ptr<core::Judge> judge =
         makeJudge(model_, limits_, kWindow, std::make_shared<SourceGraph>(), heard_);
     const std::int64_t end = 5 * kSecond;

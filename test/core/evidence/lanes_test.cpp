@@ -27,9 +27,9 @@ class LanesTest : public testing::Test {
   Shares sharesOf(std::size_t track, double share) {
     tracks_.assign(model_->tracks().size(), 0);
     tracks_.at(track) = share;
-    return {tracks_, 0, {}};
+    return {tracks_, {}};
   }
-  std::size_t track(Channel channel, EventId to, EventId from) const {
+  std::size_t track(const std::string& channel, EventId to, EventId from) const {
     return indexOf(model_->tracks(), channel, to, from);
   }
   std::size_t component(EventId id) const { return model_->componentIndex(id); }
@@ -45,30 +45,21 @@ class LanesTest : public testing::Test {
 
 TEST_F(LanesTest, AColumnKeepsTheLargestOfItsWindows) {
   Lanes lanes(model_, {0, 2 * kWindow});
-  const std::size_t overdue = track(Channel::kOverdue, kA, kA);
-  const std::size_t delay = track(Channel::kDelay, kB, kA);
+  const std::size_t overdue = track(kOverdue, kA, kA);
+  const std::size_t delay = track(kPairs, kB, kA);
   lanes.add(windowAt(-kWindow), sharesOf(overdue, 9));  // before all columns
   lanes.add(windowAt(0), sharesOf(overdue, 0.5));
   lanes.add(windowAt(kWindow), sharesOf(delay, 1.5));
   lanes.add(windowAt(2 * kWindow), sharesOf(overdue, 0.25));
-  lanes.add(windowAt(9 * kWindow), {tracks_, 0.75, {{kB, 0.125}}});
+  lanes.add(windowAt(9 * kWindow), {tracks_, {{kB, 0.125}}});
   const std::vector<Lanes::Column>& columns = lanes.columns();
   ASSERT_EQ(columns.size(), 2);
   EXPECT_EQ(columns[0].shares[component(kA)], 0.5F);
   EXPECT_EQ(columns[0].shares[component(kB)], 1.5F);
   EXPECT_EQ(columns[0].strongest_share, 1.5F);
   EXPECT_EQ(columns[0].track, delay);
-  EXPECT_EQ(columns[0].linker, 0);
   EXPECT_EQ(columns[1].shares[component(kA)], 0.25F);
   EXPECT_EQ(columns[1].shares[component(kB)], 0.125F);  // never heard
-  EXPECT_EQ(columns[1].linker, 0.75F);
-}
-
-TEST_F(LanesTest, SlowDelayTracksCountInTheLinkerOnly) {
-  Lanes lanes(model_, {0});
-  lanes.add(windowAt(0), sharesOf(track(Channel::kSlowDelay, kB, kA), 2));
-  EXPECT_EQ(lanes.columns()[0].shares[component(kB)], 0);
-  EXPECT_EQ(lanes.columns()[0].track, std::nullopt);
 }
 
 TEST_F(LanesTest, StretchesMustBeInOrder) {
@@ -77,7 +68,6 @@ TEST_F(LanesTest, StretchesMustBeInOrder) {
 
 TEST_F(LanesTest, TheyAgreeWithTheScore) {
   Limits limits;
-  limits.linker = 100;
   for (std::size_t each = 0; each < model_->tracks().size(); ++each) {
     limits.tracks.push_back(model_->leastLimit(each));
   }
@@ -101,7 +91,7 @@ TEST_F(LanesTest, TheyAgreeWithTheScore) {
   for (std::size_t column = 0; column < lowest.size(); ++column) {
     const Lanes::Column& lane = lanes.columns()[column];
     const float largest = *std::max_element(lane.shares.begin(), lane.shares.end());
-    EXPECT_FLOAT_EQ(std::max(largest, lane.linker), static_cast<float>(-lowest[column]));
+    EXPECT_FLOAT_EQ(largest, static_cast<float>(-lowest[column]));
     EXPECT_FLOAT_EQ(lane.strongest_share, largest);
   }
 }

@@ -53,16 +53,11 @@ class Learned {
     for (const std::size_t half : {0U, 1U}) {
       add(training[half], models_.judging(half));
     }
-    for (int pass = 0; pass < 2; ++pass) {
-      for (const Events& events : calibration) {
-        add(events, models_.judging({}));
-      }
-      if (pass == 0) {
-        finder.startSecondPass();
-      }
+    for (const Events& events : calibration) {
+      add(events, models_.judging({}));
     }
     finder.finish();
-    return finder.limits();
+    return finder.find().limits;
   }
 
   CrossFit models_;

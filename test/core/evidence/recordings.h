@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <initializer_list>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "self_awareness/core/evidence/channel/watched.h"
@@ -103,18 +104,31 @@ inline Statistics countsOf(const std::vector<Events>& recordings,
                   {kTypes.begin(), kTypes.begin() + static_cast<std::ptrdiff_t>(types)});
 }
 
+/// Names of the channels.
+constexpr const char* kOverdue = "overdue";
+constexpr const char* kFewer = "fewer";
+constexpr const char* kMore = "more";
+constexpr const char* kOwnGaps = "own gaps";
+constexpr const char* kPairs = "pairs";
+constexpr const char* kDeadlines = "deadlines";
+
+/// What a channel watches of one event type, or of two.
+inline Track trackOf(const std::string& channel, EventId to, EventId from) {
+  return {channelNamed(channel), to, from};
+}
+
 /// Index of a track; the number of tracks if it is not watched.
-inline std::size_t indexOf(const std::vector<Track>& tracks, Channel channel, EventId to,
-                           EventId from) {
+inline std::size_t indexOf(const std::vector<Track>& tracks, const std::string& channel,
+                           EventId to, EventId from) {
   return static_cast<std::size_t>(std::find_if(tracks.begin(), tracks.end(),
                                                [&](const Track& track) {
-                                                 return track.channel == channel &&
+                                                 return channelName(track) == channel &&
                                                         track.to == to && track.from == from;
                                                }) -
                                   tracks.begin());
 }
 
-inline bool isWatched(const std::vector<Track>& tracks, Channel channel, EventId to,
+inline bool isWatched(const std::vector<Track>& tracks, const std::string& channel, EventId to,
                       EventId from) {
   return indexOf(tracks, channel, to, from) < tracks.size();
 }

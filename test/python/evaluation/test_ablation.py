@@ -27,9 +27,12 @@ from evaluation_robot import START, robot
 PLAN = Plan(('events_only',), (1,), (1,), (Learning.of(1, 60.0, 60.0),), 0.05, 1, None)
 AS_IT_IS = Variant(DEFAULT)
 
-
-def number(name: str) -> Any:
-    return next(each for each in Tuning.numbers() if each.name == name)
+# Whatever the method has: a channel, a rule, and numbers that can be halved and doubled.
+SOME = Tuning.channels()[-1]
+OFF = next(number for number in Tuning.numbers() if number.off is not None)
+FIRST, SECOND = [number for number in Tuning.numbers() if number.off is None
+                 and number.least < 0.5 * number.default < 2.0 * number.default < number.most
+                 and number.default % 2.0 == 0.0][:2]
 
 
 def test_the_method_as_it_is_comes_first_then_channels_rules_and_numbers() -> None:
@@ -46,8 +49,8 @@ def test_the_method_as_it_is_comes_first_then_channels_rules_and_numbers() -> No
 def test_every_variant_is_a_method_of_its_own() -> None:
     for variant in variants()[1:]:
         assert variant.tuning() != Tuning(), variant
-    assert Variant(CHANNEL, 'rate').tuning().without == ['rate']
-    assert Variant(NUMBER, 'least_gain', 0.6).tuning().get('least_gain') == 0.6
+    assert Variant(CHANNEL, SOME).tuning().without == [SOME]
+    assert Variant(NUMBER, FIRST.name, FIRST.most).tuning().get(FIRST.name) == FIRST.most
 
 
 def test_numbers_are_halved_and_doubled_within_their_range() -> None:
@@ -58,13 +61,13 @@ def test_numbers_are_halved_and_doubled_within_their_range() -> None:
         assert all(each.least <= value <= each.most for value in values)
         if not each.unit and float(each.default).is_integer():
             assert all(value.is_integer() for value in values)
-    of = {variant.value for variant in variants([], ['fewest_gaps']) if variant.kind == NUMBER}
-    assert of == {number('fewest_gaps').default / 2, number('fewest_gaps').default * 2}
+    assert variants([], [FIRST.name])[1:] == [
+        Variant(NUMBER, FIRST.name, factor * FIRST.default) for factor in (0.5, 2.0)]
 
 
 def test_only_what_is_asked_for_is_changed() -> None:
     assert variants([], []) == [AS_IT_IS]
-    assert variants(['rate'], []) == [AS_IT_IS, Variant(CHANNEL, 'rate')]
+    assert variants([SOME], []) == [AS_IT_IS, Variant(CHANNEL, SOME)]
     assert {variant.kind for variant in variants(kinds=[RULE])} == {DEFAULT, RULE}
     with pytest.raises(ValueError, match='smell'):
         variants(['smell'], [])
@@ -109,20 +112,20 @@ def row(variant: str = 'default', **changed: Any) -> Row:
 
 def test_rows_are_kept_and_a_torn_line_is_not(tmp_path: Path) -> None:
     path = tmp_path / 'rows.csv'
-    rate = Variant(CHANNEL, 'rate')
+    some = Variant(CHANNEL, SOME)
     rows = RowFile(path)
     rows.add(AS_IT_IS, [row(), row(kind=CRASH, latency_s=0.25, first=True)])
-    rows.add(rate, [row('without rate', refused='too short; or so')])
+    rows.add(some, [row(str(some), refused='too short; or so')])
     again = RowFile(path)
-    assert again[AS_IT_IS] == rows[AS_IT_IS] and again[rate] == rows[rate]
+    assert again[AS_IT_IS] == rows[AS_IT_IS] and again[some] == rows[some]
     text = path.read_text(encoding='utf-8')
     path.write_text(text[:-20], encoding='utf-8')
     torn = RowFile(path)
-    assert torn[rate] == [] and torn[AS_IT_IS] == rows[AS_IT_IS]
-    torn.add(rate, rows[rate])
+    assert torn[some] == [] and torn[AS_IT_IS] == rows[AS_IT_IS]
+    torn.add(some, rows[some])
     assert path.read_text(encoding='utf-8') == text
-    torn.add(rate, [row('without rate')])  # those of before are replaced
-    assert RowFile(path)[rate] == [row('without rate')]
+    torn.add(some, [row(str(some))])  # those of before are replaced
+    assert RowFile(path)[some] == [row(str(some))]
 
 
 def test_a_file_of_something_else_is_told(tmp_path: Path) -> None:
@@ -149,13 +152,13 @@ def _judged(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 def test_an_interrupted_run_goes_on(judged: Path, tmp_path: Path) -> None:
     path = tmp_path / 'ablation.csv'
-    three = [AS_IT_IS, Variant(CHANNEL, 'rate'), Variant(NUMBER, 'least_gain', 0.6)]
+    three = [AS_IT_IS, Variant(CHANNEL, SOME), Variant(NUMBER, FIRST.name, FIRST.most)]
     experiment.run(PLAN, three[:2], path, 2)
     for file in judged.iterdir():
         file.unlink()
     results = experiment.run(PLAN, three, path, 2)
     # The method as it is was judged again, to see that it is the same.
-    assert {file.name for file in judged.iterdir()} == {'default', 'least_gain=0.6'}
+    assert {file.name for file in judged.iterdir()} == {'default', str(three[2])}
     assert list(results) == three and all(len(rows) == 2 for rows in results.values())
 
 
@@ -179,23 +182,25 @@ def test_the_same_says_the_same_whatever_time_it_took() -> None:
 def test_the_page_marks_what_differs() -> None:
     default = [row(), row(kind=CRASH, hours=0.0, cpu_s=0.0, latency_s=0.25, first=True)]
     late = [row(), replace(default[1], latency_s=7.0, first=False)]
-    results = {AS_IT_IS: default, Variant(CHANNEL, 'rate'): default,
-               Variant(RULE, 'gone_gaps', 1e9): late, Variant(NUMBER, 'least_gain', 0.15): late,
-               Variant(NUMBER, 'least_gain', 0.6): default,
-               Variant(NUMBER, 'least_rate', 3.0): [row(cpu_s=0.52), default[1]]}
+    half, double = (factor * FIRST.default for factor in (0.5, 2.0))
+    results = {AS_IT_IS: default, Variant(CHANNEL, SOME): default,
+               Variant(RULE, OFF.name, OFF.off): late, Variant(NUMBER, FIRST.name, half): late,
+               Variant(NUMBER, FIRST.name, double): default,
+               Variant(NUMBER, SECOND.name, SECOND.most): [row(cpu_s=0.52), default[1]]}
     page = report.page(PLAN, results, 'rosrun self_awareness evaluate ablation')
     lines = page.splitlines()
     crash = '1 / 1 of 1, 0.25 s'
     nothing = ' | '.join('–' * 7)
-    assert (f'| as it is | 0 in 1.0 h | 0 in 1.0 h | {crash} | {nothing} | 1 of 1 | 100 % |'
-            in lines)
-    assert (f'| without rate | 0 in 1.0 h | 0 in 1.0 h | {crash} | {nothing} | 1 of 1 | 100 % |'
-            in lines)
-    assert ('| gone_gaps off | 0 in 1.0 h | 0 in 1.0 h | **0 / 1 of 1, 7.00 s** '
+    for told in ('as it is', f'without {SOME}'):
+        assert (f'| {told} | 0 in 1.0 h | 0 in 1.0 h | {crash} | {nothing} | 1 of 1 | 100 % |'
+                in lines)
+    assert (f'| {OFF.name} off | 0 in 1.0 h | 0 in 1.0 h | **0 / 1 of 1, 7.00 s** '
             f'| {nothing} | **0 of 1** | 100 % |' in lines)
-    assert ('| `least_gain` | 0.3 nat | 0.15: crashes, within 5 s / at all 0 / 1 of 1, 7.00 s, '
-            'guilty first 0 of 1 | 0.6: – |' in lines)
-    assert 'Changed nothing: `least_rate` (3).' in lines
+    changed = next(line for line in lines if line.startswith(f'| `{FIRST.name}`'))
+    assert changed.endswith(
+        f' | {half:g}: crashes, within 5 s / at all 0 / 1 of 1, 7.00 s, guilty first 0 of 1 '
+        f'| {double:g}: – |')
+    assert f'Changed nothing: `{SECOND.name}` ({SECOND.most:g}).' in lines
 
 
 def test_figures_tell_small_differences_as_the_same() -> None:
@@ -236,18 +241,18 @@ def test_the_command_writes_a_page_and_its_figures(tmp_path: Path,
     output = tmp_path / 'new'
     arguments = ['ablation', '--families', 'events_only', '--seed', '3', '--own-seeds', '1',
                  '--starts', '1', '--training', '60', '--calibration', '60', '--hours', '0.1',
-                 '--faults', '1', '--channels', 'overdue', '--numbers', 'least_gain',
+                 '--faults', '1', '--channels', 'overdue', '--numbers', FIRST.name,
                  '--jobs', '2', '-o', str(output)]
     assert evaluate.main(arguments) == 0
     page = (output / 'ablation.md').read_text(encoding='utf-8')
     assert 'evaluate ablation --families events_only --seed 3' in page
-    assert '| without overdue |' in page and '`least_gain`' in page
+    assert '| without overdue |' in page and f'`{FIRST.name}`' in page
     assert 'nan' not in page and 'inf' not in page.replace('info', '')
     with open(output / 'ablation.csv', encoding='utf-8', newline='') as file:
         rows = list(csv.DictReader(file))
     assert [(each['variant'], each['part']) for each in rows] == [
-        (variant, part) for variant in ('default', 'without overdue', 'least_gain=0.15',
-                                        'least_gain=0.6') for part in (FAMILIES, OWN)]
+        (str(variant), part) for variant in variants(['overdue'], [FIRST.name])
+        for part in (FAMILIES, OWN)]
     assert rows[1]['crash_found'] == rows[1]['crash_records'] == '1'
     before = row_files.load(output / 'full' / 'ablation.csv', Row)
     assert evaluate.main(arguments) == 0  # all is done already

@@ -17,6 +17,11 @@ from evaluation_robot import robot
 
 WITHOUT: List[List[str]] = [[], ['overdue']]
 
+# Whatever the method has: one that no value switches off, one that is, and two channels.
+PLAIN = next(number for number in Tuning.numbers() if number.off is None)
+RULE = next(number for number in Tuning.numbers() if number.off is not None)
+CHANNELS = Tuning.channels()[:2]
+
 
 def asked(*arguments: str) -> Tuning:
     parser = argparse.ArgumentParser()
@@ -29,24 +34,22 @@ def test_nothing_is_changed_by_default() -> None:
 
 
 def test_numbers_are_set_and_channels_left_out() -> None:
-    tuning = asked('--set', 'least_gain=0.5', 'fewest_gaps=7', '--without', 'rate',
-                   '--set', 'predecessors=off', '--without', 'own gaps')
+    tuning = asked('--set', f'{PLAIN.name}={PLAIN.most}', '--without', CHANNELS[0],
+                   '--set', f'{RULE.name}=off', '--without', CHANNELS[1])
     assert tuning != Tuning()
-    assert [tuning.get(name) for name in ('least_gain', 'fewest_gaps')] == [0.5, 7.0]
-    off = next(number.off for number in Tuning.numbers() if number.name == 'predecessors')
-    assert off is not None and tuning.get('predecessors') == off
-    assert sorted(tuning.without) == ['own gaps', 'rate']
+    assert (tuning.get(PLAIN.name), tuning.get(RULE.name)) == (PLAIN.most, RULE.off)
+    assert sorted(tuning.without) == sorted(CHANNELS)
 
 
 @pytest.mark.parametrize('wrong, told', [
-    (['--set', 'luck=3'], ['luck']), (['--set', 'least_gain'], ['NAME=VALUE', 'least_gain']),
-    (['--set', 'least_gain=much'], ['least_gain', 'much']),
-    (['--set', 'least_gain=-1'], ['least_gain', '-1']),
-    (['--set', 'least_gain=off'], ['least_gain', 'off']),
-    (['--set', 'least_gain=nan'], ['least_gain', 'nan']),
-    (['--without', 'smell'], ['smell', 'overdue']),
+    (['--set', 'luck=3'], ['luck']), (['--set', PLAIN.name], ['NAME=VALUE', PLAIN.name]),
+    (['--set', f'{PLAIN.name}=much'], [PLAIN.name, 'much']),
+    (['--set', f'{PLAIN.name}={PLAIN.least - 1.0:g}'], [PLAIN.name, f'{PLAIN.least:g}']),
+    (['--set', f'{PLAIN.name}=off'], [PLAIN.name, 'off']),
+    (['--set', f'{PLAIN.name}=nan'], [PLAIN.name, 'nan']),
+    (['--without', 'smell'], ['smell', CHANNELS[0]]),
     # As it was until now: systems are left out by another option.
-    (['--without', 'paper'], ['paper', 'overdue'])])
+    (['--without', 'paper'], ['paper', CHANNELS[0]])])
 def test_wrong_changes_are_refused(wrong: List[str], told: List[str], tmp_path: Path,
                                    capsys: Any) -> None:
     for part in (['simulated'], ['families'], ['recordings', '--data', str(tmp_path)]):
@@ -58,7 +61,7 @@ def test_wrong_changes_are_refused(wrong: List[str], told: List[str], tmp_path: 
 
 @pytest.mark.parametrize('part', ['simulated', 'families'])
 def test_a_change_that_no_system_has_is_refused(part: str, tmp_path: Path, capsys: Any) -> None:
-    assert evaluate.main([part, '--systems', 'frequency', '--without', 'rate',
+    assert evaluate.main([part, '--systems', 'frequency', '--without', CHANNELS[0],
                           '-o', str(tmp_path / 'out')]) == 1
     assert '--systems' in capsys.readouterr().err
     assert not (tmp_path / 'out').exists()

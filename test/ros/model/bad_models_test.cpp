@@ -79,9 +79,7 @@ TEST_F(BadModelsTest, NumbersThatCannotBeAreRefused) {
   EXPECT_EQ(limits([](auto& /*c*/) {}), "");
   for (const double limit : {-1.0, 0.0, kInf, -kInf}) {
     EXPECT_NE(limits([&](auto& c) { c.limits.at(1) = limit; }), "") << limit;
-    EXPECT_NE(limits([&](auto& c) { c.linker_limit = limit; }), "") << limit;
   }
-  EXPECT_NE(limits([&](auto& c) { c.linker_limit = kNan; }), "");
   EXPECT_NE(limits([&](auto& c) { c.limits.assign(c.limits.size(), kNan); }), "")
       << "nothing would ever be abnormal";
   EXPECT_NE(limits([](auto& c) { c.firsts = {1}; }), "");

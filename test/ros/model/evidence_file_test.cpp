@@ -25,7 +25,7 @@ TEST_F(ModelFileTest, TheEvidenceItsLimitsAndTheGraphComeBackAsTheyWereSaved) {
   model.tuning.least_effect = 0.003;
   model.tuning.share_of_other = 0.8;  // the first and the last one are no exceptions
   model.tuning.fewest_gaps = 31;
-  model.tuning.without = {"linker", "rate"};
+  model.tuning.without = {"fewer", "own gaps"};
   ASSERT_GE(model.evidence_calibration->limits.size(), 6U);
   saveModel(model, path("m"));
   const TrainedModel loaded = loadModel(path("m"));
@@ -47,7 +47,6 @@ TEST_F(ModelFileTest, TheEvidenceItsLimitsAndTheGraphComeBackAsTheyWereSaved) {
   ASSERT_EQ(limits.tracks.size(), model.evidence_calibration->limits.size());
   EXPECT_TRUE(std::isnan(limits.tracks[0]));
   EXPECT_EQ(limits.tracks[1], 2.5);
-  EXPECT_EQ(limits.linker, 1.5);
   EXPECT_EQ(loaded.evidence_calibration->method, "held-out");
   EXPECT_EQ(loaded.evidence_calibration->budget, 0.25);
   EXPECT_EQ(loaded.evidence_calibration->windows, 1234U);
@@ -189,10 +188,10 @@ TEST(TuningMessage, WhatIsMissingHasItsDefaultAndWhatIsUnknownIsLeftOut) {
   self_awareness::Model message;
   message.tuning.names = {"of_tomorrow", "least_effect"};
   message.tuning.values = {-7, 0.003};
-  message.tuning.without = {"of tomorrow", "rate"};
+  message.tuning.without = {"of tomorrow", "fewer"};
   core::evidence::Tuning expected;
   expected.least_effect = 0.003;
-  expected.without = {"rate"};
+  expected.without = {"fewer"};
   EXPECT_TRUE(tuningOf(message) == expected);
 }
 
@@ -212,15 +211,31 @@ TEST(TuningMessage, AFileOfFormat1HasThreeNumbers) {
 
 TEST_F(ModelFileTest, ImpossibleTracksAreRefused) {
   using Message = self_awareness::Model;
-  const std::string file = path("damaged") + ": a damaged model file: it watches ";
-  EXPECT_EQ(damagedModel(
-                [](Message& m) { m.tracks.at(0).channel = self_awareness::Track::DEADLINE + 1; }),
-            file + "what this version does not know");
-  EXPECT_EQ(damagedModel([](Message& m) { m.tracks.at(0).to_id = 2; }),
-            file + "an event type that it does not have");
   EXPECT_EQ(
-      damagedModel([](Message& m) { m.tracks.at(0).channel = self_awareness::Track::DELAY; }),
-      file + "delays, but not both at present and for longer");
+      damagedModel([](Message& m) { m.tracks.at(0).to_id = 2; }),
+      path("damaged") + ": a damaged model file: it watches an event type that it does not have");
+}
+
+TEST_F(ModelFileTest, WhatThisVersionDoesNotKnowIsNotWatchedAndAllElseIs) {
+  const TrainedModel whole = calibratedModel();
+  ASSERT_EQ(damagedModel([](self_awareness::Model& m) { m.tracks.at(1).name = "smell"; }), "");
+  const TrainedModel model = loadModel(path("damaged"));
+  ASSERT_EQ(model.watched.tracks.size() + 1, whole.watched.tracks.size());
+  EXPECT_EQ(model.limits()->tracks.size(), model.watched.tracks.size());
+  EXPECT_TRUE(std::isnan(model.limits()->tracks[0]));
+  EXPECT_EQ(model.limits()->tracks[1], 2.5);
+  EXPECT_EQ(model.evidence_calibration->relations.size(), model.watched.tracks.size());
+  for (std::size_t k = 0; k < model.findings.size(); ++k) {
+    const core::evidence::LimitFinder::Recording& all = whole.findings[k];
+    const core::evidence::LimitFinder::Recording& left = model.findings[k];
+    EXPECT_EQ(left.said[0], all.said[0]);
+    EXPECT_EQ(left.said[1], all.said[2]);
+    for (std::size_t part = 0; part < all.parts.size(); ++part) {
+      EXPECT_EQ(left.parts[part].evidence[1], all.parts[part].evidence[2]);
+    }
+  }
+  saveModel(model, path("again"));
+  EXPECT_EQ(loadModel(path("again")).watched.tracks.size(), model.watched.tracks.size());
 }
 
 TEST_F(ModelFileTest, LimitsOfAnotherModelAreRefused) {
@@ -230,9 +245,7 @@ TEST_F(ModelFileTest, LimitsOfAnotherModelAreRefused) {
   for (const auto change : std::vector<void (*)(self_awareness::EvidenceCalibration&)>{
            [](self_awareness::EvidenceCalibration& c) { c.limits.pop_back(); },
            [](self_awareness::EvidenceCalibration& c) { c.limits.push_back(1); },
-           [](self_awareness::EvidenceCalibration& c) { c.limits.clear(); },
-           [](self_awareness::EvidenceCalibration& c) { c.linker_limit = std::nan(""); },
-           [](self_awareness::EvidenceCalibration& c) { c.linker_limit = 0; }}) {
+           [](self_awareness::EvidenceCalibration& c) { c.limits.clear(); }}) {
     const std::string error =
         damagedModel([change](Message& model) { change(model.evidence_calibration.at(0)); });
     EXPECT_EQ(error.rfind(told, 0), 0U) << error;

@@ -74,7 +74,6 @@ class ModelFileTest : public testing::Test {
     model.evidence_calibration->method = self_awareness::EvidenceCalibration::HELD_OUT;
     model.evidence_calibration->limits.assign(model.watched.tracks.size(), 2.5);
     model.evidence_calibration->limits.at(0) = std::numeric_limits<double>::quiet_NaN();
-    model.evidence_calibration->linker_limit = 1.5;
     model.evidence_calibration->budget = 0.25;
     model.evidence_calibration->windows = 1234;
     model.evidence_calibration->recordings = model.recordings;
@@ -94,6 +93,7 @@ class ModelFileTest : public testing::Test {
   // What two recordings of the training showed, one of them in two parts.
   static core::evidence::LimitFinder::Findings someFindings(const TrainedModel& model) {
     using core::evidence::LimitFinder;
+    using core::evidence::Said;
     LimitFinder::Findings findings(2);
     for (std::size_t k = 0; k < findings.size(); ++k) {
       LimitFinder::Recording& recording = findings[k];
@@ -112,7 +112,7 @@ class ModelFileTest : public testing::Test {
         }
       }
       for (std::size_t track = 0; track < model.watched.tracks.size(); ++track) {
-        recording.said.push_back(static_cast<LimitFinder::Said>((track + k) % 3));
+        recording.said.push_back(static_cast<Said>((track + k) % 3));
       }
     }
     return findings;

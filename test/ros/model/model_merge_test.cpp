@@ -98,7 +98,7 @@ TEST_F(ModelMergeTest, EdgesAreThoseOfBothAndTheStampTheLater) {
 TEST_F(ModelMergeTest, TheTuningIsKept) {
   core::evidence::Tuning tuning;
   tuning.least_effect = 0.003;
-  tuning.without = {"rate"};
+  tuning.without = {"fewer"};
   for (TrainedModel* model : {&first_, &second_}) {
     model->tuning = tuning;
   }
@@ -132,7 +132,7 @@ TEST_F(ModelMergeTest, SaysWhatDoesNotFitAndLeavesTheModelAsItWas) {
             "another tuning: predecessors is 5, not 3");
   EXPECT_EQ(errorOf([](TrainedModel& model) { model.tuning.least_effect = 0.0025; }),
             "another tuning: least_effect is 0.0025, not 0.005");
-  EXPECT_EQ(errorOf([](TrainedModel& model) { model.tuning.without = {"rate"}; }),
+  EXPECT_EQ(errorOf([](TrainedModel& model) { model.tuning.without = {"fewer"}; }),
             "another tuning: other channels are switched off");
   const std::string encoding = "another encoding: ";
   EXPECT_EQ(

@@ -6,10 +6,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <set>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "model_file_case.h"
+#include "self_awareness/core/evidence/channel/track.h"
 #include "self_awareness/ros/file_version.h"
 
 namespace self_awareness::ros1 {
@@ -17,13 +20,26 @@ namespace {
 
 using self_awareness::Track;
 
-constexpr std::uint8_t kUnknown = 200;
+/// Channels as this version knows them.
+std::set<std::string> knownChannels() {
+  const std::vector<std::string> names = core::evidence::channelNames();
+  return {names.begin(), names.end()};
+}
+
+/// As a file of format 1 has it.
+Track numbered(std::uint8_t channel, std::uint32_t to, std::uint32_t from) {
+  Track track;
+  track.channel = channel;
+  track.to_id = to;
+  track.from_id = from;
+  return track;
+}
 
 /// The model of the case, with a track of an unknown channel before each other one.
 self_awareness::Model withUnknownTracks(const TrainedModel& model) {
   self_awareness::Model message = toMessage(model);
   Track unknown;
-  unknown.channel = kUnknown;
+  unknown.name = "smell";
   for (std::size_t k = message.tracks.size(); k-- > 0;) {
     message.tracks.insert(message.tracks.begin() + static_cast<std::ptrdiff_t>(k), unknown);
     auto& calibration = message.evidence_calibration.at(0);
@@ -62,7 +78,7 @@ TEST_F(ModelUpgradeTest, TracksOfOtherChannelsGoWithAllThatIsSaidOfThem) {
   const TrainedModel model = calibratedModel();
   self_awareness::Model message = withUnknownTracks(model);
   ASSERT_EQ(message.tracks.size(), 2 * model.watched.tracks.size());
-  upgrade(message, 1);
+  upgrade(message, kModelFile.format);
   const self_awareness::Model expected = toMessage(model);
   EXPECT_EQ(message.tracks, expected.tracks);
   EXPECT_EQ(message.findings, expected.findings);
@@ -77,11 +93,11 @@ TEST_F(ModelUpgradeTest, TracksOfOtherChannelsGoWithAllThatIsSaidOfThem) {
 }
 
 TEST_F(ModelUpgradeTest, AnyChannelMayGo) {
-  for (std::uint8_t gone = Track::OVERDUE; gone <= Track::DEADLINE; ++gone) {
-    std::set<std::uint8_t> channels = knownChannels();
+  for (const std::string& gone : knownChannels()) {
+    std::set<std::string> channels = knownChannels();
     channels.erase(gone);
     self_awareness::Model message = toMessage(calibratedModel());
-    const auto is_gone = [&](const Track& track) { return track.channel == gone; };
+    const auto is_gone = [&](const Track& track) { return track.name == gone; };
     const auto going = static_cast<std::size_t>(
         std::count_if(message.tracks.begin(), message.tracks.end(), is_gone));
     const std::size_t before = message.tracks.size();
@@ -102,10 +118,29 @@ TEST_F(ModelUpgradeTest, AllMayGo) {
   EXPECT_TRUE(message.findings.at(1).evidence.empty());
 }
 
-TEST_F(ModelUpgradeTest, AFileOfThisFormatHoldsNoUnknownChannel) {
-  self_awareness::Model message = withUnknownTracks(calibratedModel());
-  upgrade(message, kModelFile.format);
-  EXPECT_THROW(fromMessage(message), std::invalid_argument) << "it is damaged";
+TEST_F(ModelUpgradeTest, ChannelsHadNumbersInFormat1) {
+  self_awareness::Model message;
+  message.tracks = {numbered(0, 0, 0), numbered(1, 0, 0), numbered(2, 0, 0),
+                    numbered(3, 0, 0), numbered(3, 1, 0), numbered(6, 1, 0)};
+  upgrade(message, 1);
+  std::vector<std::string> names;
+  for (const Track& track : message.tracks) {
+    names.push_back(track.name);
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"overdue", "fewer", "more", "own gaps", "pairs",
+                                             "deadlines"}));
+}
+
+TEST_F(ModelUpgradeTest, SlowDelaysAndAnswersOfFormat1AreLeftOut) {
+  self_awareness::Model message;
+  message.tracks = {numbered(4, 1, 0), numbered(0, 1, 1), numbered(5, 1, 0), numbered(200, 1, 0)};
+  upgrade(message, 1);
+  ASSERT_EQ(message.tracks.size(), 1U);
+  EXPECT_EQ(message.tracks[0].name, "overdue");
+}
+
+TEST_F(ModelUpgradeTest, BetweenProcessesNothingIsUnknown) {
+  EXPECT_THROW(fromMessage(withUnknownTracks(calibratedModel())), std::invalid_argument);
 }
 
 TEST_F(ModelUpgradeTest, ColumnsThatDoNotFitTheTracksAreRefused) {

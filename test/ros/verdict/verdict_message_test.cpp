@@ -45,12 +45,21 @@ TEST_F(VerdictMessageTest, TellsTheSilence) {
 }
 
 TEST_F(VerdictMessageTest, ASuspectThatIsNotSilentHasNoSilence) {
-  for (const Reason reason : {Reason::kUnknown, Reason::kRate, Reason::kAnswer}) {
+  for (const Reason reason : {Reason::kUnknown, Reason::kRate, Reason::kUnanswered}) {
     const self_awareness::Suspect suspect = message(0, reason);
     EXPECT_TRUE(std::isnan(suspect.silence));
     EXPECT_TRUE(std::isnan(suspect.usual_shortest));
     EXPECT_TRUE(std::isnan(suspect.usual_longest));
   }
+}
+
+TEST_F(VerdictMessageTest, AChannelHasWordsOfItsOwn) {
+  core::Suspect suspect;
+  suspect.reason = Reason::kOther;
+  suspect.words = "in bursts";
+  const self_awareness::Suspect message = toMessages({suspect}, vocabulary_).at(0);
+  EXPECT_EQ(message.reason, "in bursts");
+  EXPECT_EQ(describe(message), "/player on /scan: in bursts");
 }
 
 TEST_F(VerdictMessageTest, SaysWhichValueOfATypeFieldItIsAbout) {

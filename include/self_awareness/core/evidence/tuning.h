@@ -56,6 +56,7 @@ struct Tuning {
   double alarm_times = 4;
 
   // A machine that stands still, or is busy.
+  double shortest_stall = 0.05;
   double longest_stall = 0.7;
   double between_stalls = 30;
   double still_busy_share = 0.5;
@@ -97,7 +98,7 @@ struct Tuning {
 
   /// @throw std::invalid_argument names what is out of its range
   void validate() const;
-  /// Least effect on the delay from one event type to another [ns] (docs/method.md, section 3.4).
+  /// Least effect on the delay from one event type to another [ns] (docs/method.md, section 3.5).
   /// @param period mean gap of the one that the delay counts from [ns]
   double leastEffectOnDelay(double period) const;
   /// Least effect on the gaps of one event type [ns].

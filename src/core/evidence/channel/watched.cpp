@@ -1,6 +1,8 @@
 #include "self_awareness/core/evidence/channel/watched.h"
 
+#include <set>
 #include <stdexcept>
+#include <string>
 
 #include "core/evidence/channel/channels.h"
 
@@ -17,6 +19,19 @@ Statistics withTypes(const Statistics& first, const Statistics& second, const St
   }
   all.merge(counts);
   return all;
+}
+
+/// @throw std::invalid_argument if one that is switched off does not exist
+void checkChannels(const std::set<std::string>& without) {
+  std::string names;
+  for (const std::string& name : channelNames()) {
+    names += (names.empty() ? "" : ", ") + name;
+  }
+  for (const std::string& name : without) {
+    if (channelNamed(name) == nullptr) {
+      throw std::invalid_argument("the method has no channel '" + name + "', only " + names);
+    }
+  }
 }
 
 std::vector<Statistics::Pair> pairsOf(const std::vector<Track>& tracks, std::size_t types) {
@@ -37,6 +52,7 @@ Watched watch(const Statistics& first, const Statistics& second, const SourceGra
   if (first.vocabulary().types() != second.vocabulary().types()) {
     return watch(withTypes(first, second, first), withTypes(first, second, second), graph, tuning);
   }
+  checkChannels(tuning.without);
   Statistics both = first;
   both.merge(second);
   const Gains gains({&first, &second}, tuning.fewest_gaps);

@@ -15,7 +15,7 @@ struct Span {
 
 /// Numbers the starts of the robot that recordings come from, from 0. Where it is known when the
 /// robot was started, this tells starts apart; other recordings are of one start if they overlap,
-/// or follow each other within a minute (docs/method.md, section 3.6).
+/// or follow each other within a minute (docs/method.md, section 3.1).
 std::vector<std::size_t> startsOf(const std::vector<Span>& recordings, std::int64_t same_start);
 
 /// Number of these starts.

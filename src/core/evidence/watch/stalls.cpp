@@ -8,7 +8,8 @@
 namespace self_awareness::core::evidence {
 
 Stalls::Stalls(std::int64_t longest_silence, const Tuning& tuning)
-    : usual_(toNanoseconds(tuning.least_margin * toSeconds(longest_silence))),
+    : usual_(std::max(toNanoseconds(tuning.least_margin * toSeconds(longest_silence)),
+                      toNanoseconds(tuning.shortest_stall))),
       longest_(toNanoseconds(tuning.longest_stall)),
       between_(toNanoseconds(tuning.between_stalls)) {}
 

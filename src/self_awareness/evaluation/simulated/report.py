@@ -42,8 +42,8 @@ calibration record: a share of {rate:g} of its windows falls below. Three system
 of both training and calibration, wider by a quarter; and `evidence` has the limits that
 `calibrate` finds on the same record for a budget of {budget:g} false alarms an hour. Three
 abnormal windows of five raise the alarm, 2 s without one clear it, and none is raised in the first
-5 s, by the same code for all; `evidence` raises it at once for a silence that has lasted 0.1 s
-beyond its limit. `evidence` knows who subscribes to what, as after `train --graph`;
+5 s, by the same code for all; `evidence` raises it at once for a silence that has lasted a
+window beyond its limit. `evidence` knows who subscribes to what, as after `train --graph`;
 `evidence_no_graph` was trained on bags alone. Events never seen in training are a suspicion, not
 an alarm (`~unknown: warn`).
 

@@ -44,7 +44,7 @@ class BusyMachineTest : public testing::Test {
   }
   // The components from `first` on have these shares of their limits.
   std::optional<Busy> at(double share, EventId first, EventId number, bool abnormal = true,
-                         Channel channel = Channel::kFewer) {
+                         const std::string& channel = kFewer) {
     std::vector<double> shares(model_->tracks().size(), 0);
     for (EventId id = first; id < first + number; ++id) {
       shares.at(indexOf(model_->tracks(), channel, id, id)) = share;
@@ -84,17 +84,17 @@ TEST_F(BusyMachineTest, ItIsNotWhileAllAreWithinTheirLimits) {
 }
 
 TEST_F(BusyMachineTest, WhoIsSilentIsNotLate) {
-  EXPECT_FALSE(at(1.2, 0, kComponents, true, Channel::kOverdue));
+  EXPECT_FALSE(at(1.2, 0, kComponents, true, kOverdue));
 }
 
 TEST_F(BusyMachineTest, WhoFollowsAnotherAsUsualIsNoFurtherOne) {
-  ASSERT_TRUE(isWatched(model_->tracks(), Channel::kDelay, kComponents - 1, 0));
+  ASSERT_TRUE(isWatched(model_->tracks(), kPairs, kComponents - 1, 0));
   std::vector<double> shares(model_->tracks().size(), 0);
   for (const EventId id : {0U, 1U, 2U, kComponents - 1}) {
-    shares.at(indexOf(model_->tracks(), Channel::kFewer, id, id)) = 1.2;
+    shares.at(indexOf(model_->tracks(), kFewer, id, id)) = 1.2;
   }
   EXPECT_FALSE(machine_.closeWindow(shares, scorer_, true));
-  shares.at(indexOf(model_->tracks(), Channel::kFewer, 3, 3)) = 1.2;
+  shares.at(indexOf(model_->tracks(), kFewer, 3, 3)) = 1.2;
   ASSERT_TRUE(machine_.closeWindow(shares, scorer_, true));
 }
 

@@ -165,7 +165,6 @@ TEST_F(NeverHeardTest, TheJudgeSuspectsAndThenAlarms) {
   train({start(0, 1)}, {start(0, 7)});
   Limits limits;
   limits.tracks.assign(model_->tracks().size(), std::numeric_limits<double>::quiet_NaN());
-  limits.linker = 100;
   std::optional<double> suspected;
   std::optional<double> raised;
   std::vector<Suspect> suspects;
@@ -198,8 +197,7 @@ TEST_F(NeverHeardTest, WhatFellSilentIsNamedBeforeWhatNeverCame) {
   train({start(0, 1)}, {start(0, 7)});
   Limits limits;
   limits.tracks.assign(model_->tracks().size(), std::numeric_limits<double>::quiet_NaN());
-  limits.tracks[indexOf(model_->tracks(), Channel::kOverdue, kB, kB)] = 5;
-  limits.linker = 100;
+  limits.tracks[indexOf(model_->tracks(), kOverdue, kB, kB)] = 5;
   const std::unique_ptr<core::Judge> judge = makeJudge(model_, limits, kWindow, graph_);
   for (const Event& event : start(std::nullopt, 3, 10 * kSecond)) {
     judge->add(event);

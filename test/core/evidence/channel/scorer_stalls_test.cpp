@@ -62,7 +62,7 @@ class ScorerStallsTest : public testing::Test {
                      events.begin(), events.end(),
                      [&](const Event& event) { return event.stamp >= kFault && dead(event.id); }),
                  events.end());
-    const std::size_t overdue = indexOf(model_->tracks(), Channel::kOverdue, id, id);
+    const std::size_t overdue = indexOf(model_->tracks(), kOverdue, id, id);
     for (std::int64_t until = kFault + kWindow; until < 2 * kFault; until += kWindow) {
       if (largestEvidence(events, until)[overdue] > 1.25 * largest_[overdue]) {
         return until - kFault;
@@ -104,7 +104,7 @@ TEST_F(ScorerStallsTest, WhatIsSilentAloneIsMissing) {
                  events.end());
     const std::vector<std::size_t> tracks = unusual(largestEvidence(events));
     EXPECT_TRUE(std::any_of(tracks.begin(), tracks.end(), [&](std::size_t track) {
-      return model_->tracks()[track].channel == Channel::kOverdue &&
+      return channelName(model_->tracks()[track]) == kOverdue &&
              model_->tracks()[track].to == gone;
     })) << gone;
   }
@@ -134,7 +134,7 @@ TEST_F(ScorerStallsTest, WhoDoesNotComeBackAfterAStallIsMissing) {
 }
 
 TEST_F(ScorerStallsTest, ATopicThatBeginsLateIsJudgedAfterItsOwnSpan) {
-  const std::size_t fewer = indexOf(model_->tracks(), Channel::kFewer, kC, kC);
+  const std::size_t fewer = indexOf(model_->tracks(), kFewer, kC, kC);
   const std::int64_t start = 10 * kSecond;
   for (const std::int64_t period : {kPeriod, 4 * kPeriod}) {
     const Events events = together({timer(kA, 0, 2 * start, kPeriod / 5),

@@ -46,11 +46,9 @@ class LimitFinderTest : public testing::Test {
                          double budget = 0.5) {
     LimitFinder finder(model, {kWindow, 5 * kSecond, budget});
     feed(finder, model, events);
-    finder.startSecondPass();
-    feed(finder, model, events);
-    return finder.limits();
+    return finder.find().limits;
   }
-  double limit(const Limits& limits, Channel channel, EventId to, EventId from) const {
+  double limit(const Limits& limits, const std::string& channel, EventId to, EventId from) const {
     const std::size_t track = indexOf(model_->tracks(), channel, to, from);
     EXPECT_LT(track, model_->tracks().size());
     return limits.tracks.at(track);
@@ -64,15 +62,13 @@ TEST_F(LimitFinderTest, AreFiniteAndAboveAllThatWasSeen) {
   const Events normal = robot(200 * kSecond, 3);
   const Limits limits = limitsOf(model_, normal);
   ASSERT_EQ(limits.tracks.size(), model_->tracks().size());
-  EXPECT_GE(limits.linker, 1);
   Scorer scorer(model_, kWindow);
   std::int64_t end = kWindow;
   for (const Event& event : normal) {
     for (; event.stamp >= end; end += kWindow) {
-      const Sum sum = sumUp(scorer.closeWindow(end), *model_, limits);
-      if (end > 5 * kSecond) {
-        EXPECT_LE(sum.largest, 1) << end;
-        EXPECT_LT(sum.linker, limits.linker) << end;
+      const std::vector<double>& evidence = scorer.closeWindow(end);
+      for (std::size_t track = 0; track < evidence.size() && end > 5 * kSecond; ++track) {
+        EXPECT_FALSE(evidence[track] > limits.tracks[track]) << end;
       }
     }
     scorer.add(event);
@@ -92,27 +88,21 @@ TEST_F(LimitFinderTest, ASmallerBudgetHasHigherLimits) {
   for (std::size_t track = 0; track < lax.tracks.size(); ++track) {
     EXPECT_FALSE(strict.tracks[track] < lax.tracks[track]) << track;
   }
-  EXPECT_GT(limit(strict, Channel::kOverdue, kA, kA), limit(lax, Channel::kOverdue, kA, kA));
+  EXPECT_GT(limit(strict, kOverdue, kA, kA), limit(lax, kOverdue, kA, kA));
 }
 
 TEST_F(LimitFinderTest, APairThatMisleadsIsNotJudged) {
   const Limits holds = limitsOf(model_, robot(200 * kSecond, 3));
-  EXPECT_TRUE(std::isfinite(limit(holds, Channel::kDelay, kB, kA)));
-  EXPECT_TRUE(std::isfinite(limit(holds, Channel::kSlowDelay, kB, kA)));
+  EXPECT_TRUE(std::isfinite(limit(holds, kPairs, kB, kA)));
   // The phase held in both halves of the training by chance. It never does in another recording,
   // so there is no evidence, only less information.
   LimitFinder finder(model_, {kWindow, 5 * kSecond, 0.5});
-  for (const bool first : {true, false}) {
-    feed(finder, model_, robot(200 * kSecond, 3));
-    feed(finder, model_, robot(100 * kSecond, 4, 60 * kMillisecond));
-    if (first) {
-      finder.startSecondPass();
-    }
-  }
-  const Limits lost = finder.limits();
-  EXPECT_TRUE(std::isnan(limit(lost, Channel::kDelay, kB, kA)));
-  EXPECT_TRUE(std::isnan(limit(lost, Channel::kSlowDelay, kB, kA)));
-  EXPECT_TRUE(std::isfinite(limit(lost, Channel::kOverdue, kB, kB)));
+  feed(finder, model_, robot(200 * kSecond, 3));
+  feed(finder, model_, robot(100 * kSecond, 4, 60 * kMillisecond));
+  const Limits lost = finder.find().limits;
+  EXPECT_TRUE(std::isnan(limit(lost, kPairs, kB, kA)));
+  EXPECT_TRUE(std::isfinite(limit(lost, kOwnGaps, kA, kA))) << "what looks at one event type";
+  EXPECT_TRUE(std::isfinite(limit(lost, kOverdue, kB, kB)));
 }
 
 TEST_F(LimitFinderTest, APairWhoseEvidenceRunsAwayIsNotJudged) {
@@ -123,19 +113,7 @@ TEST_F(LimitFinderTest, APairWhoseEvidenceRunsAwayIsNotJudged) {
     }
   }
   const Limits lost = limitsOf(model_, together({drifted}));
-  EXPECT_TRUE(std::isnan(limit(lost, Channel::kDelay, kB, kA)));
-}
-
-TEST_F(LimitFinderTest, AnAnswerThatIsAskedForTooSeldomIsNotJudged) {
-  for (const auto& [period, judged] : {std::pair(kSecond, true), std::pair(4 * kSecond, false)}) {
-    const auto slow = [&, p = period](unsigned seed) {
-      const Events asked = irregular(kA, 0, 110 * p, p, seed);
-      return together({asked, answers(kB, asked, 20 * kMillisecond)});
-    };
-    model_ = modelOf(slow(1), later(slow(2)));
-    const double found = limit(limitsOf(model_, slow(3)), Channel::kAnswer, kB, kA);
-    EXPECT_EQ(std::isfinite(found), judged) << period;
-  }
+  EXPECT_TRUE(std::isnan(limit(lost, kPairs, kB, kA)));
 }
 
 TEST_F(LimitFinderTest, LessThanTheLeastTimeIsTooLittle) {
@@ -143,9 +121,9 @@ TEST_F(LimitFinderTest, LessThanTheLeastTimeIsTooLittle) {
   // Two recordings, each with 5 s to settle: together they are a little too short.
   feed(finder, model_, robot(kLeastTime / 2 + 4 * kSecond, 3));
   feed(finder, model_, later(robot(kLeastTime / 2 + 4 * kSecond, 4)));
-  EXPECT_THROW(finder.startSecondPass(), std::invalid_argument);
+  EXPECT_THROW(finder.find(), std::invalid_argument);
   feed(finder, model_, later(robot(9 * kSecond, 5), 2 * kStart));
-  EXPECT_NO_THROW(finder.startSecondPass());
+  EXPECT_NO_THROW(finder.find());
 }
 
 TEST_F(LimitFinderTest, WhatTheTrainingShowedDoesNotReplaceOtherRecordings) {
@@ -154,9 +132,9 @@ TEST_F(LimitFinderTest, WhatTheTrainingShowedDoesNotReplaceOtherRecordings) {
   LimitFinder finder(models.model(), {kWindow, 5 * kSecond, 0.5});
   feed(finder, models.judging(0), robot(100 * kSecond, 1));
   feed(finder, models.judging({}), later(robot(20 * kSecond, 3), 2 * kStart));
-  EXPECT_THROW(finder.startSecondPass(), std::invalid_argument);
+  EXPECT_THROW(finder.find(), std::invalid_argument);
   feed(finder, models.judging({}), later(robot(60 * kSecond, 4), 3 * kStart));
-  EXPECT_NO_THROW(finder.startSecondPass());
+  EXPECT_NO_THROW(finder.find());
 }
 
 TEST_F(LimitFinderTest, AModelThatWatchesNothingIsSaidToBeTheReason) {
@@ -165,31 +143,20 @@ TEST_F(LimitFinderTest, AModelThatWatchesNothingIsSaidToBeTheReason) {
   LimitFinder finder(model_, {kWindow, 5 * kSecond, 0.5});
   feed(finder, model_, robot(100 * kSecond, 3));
   try {
-    finder.startSecondPass();
+    finder.find();
     FAIL() << "no exception";
   } catch (const std::invalid_argument& error) {
     EXPECT_NE(std::string(error.what()).find("train it on more"), std::string::npos);
   }
 }
 
-TEST_F(LimitFinderTest, CountsTheWindowsOfTheFirstPassAfterSettling) {
+TEST_F(LimitFinderTest, CountsTheWindowsAfterSettling) {
   LimitFinder finder(model_, {kWindow, 5 * kSecond, 0.5});
   const Events normal = timer(kA, 0, 60 * kSecond, kPeriod);
   feed(finder, model_, normal);
   EXPECT_EQ(finder.windows(), 548U);  // the recording ends before the last window does
-  finder.startSecondPass();
   feed(finder, model_, normal);
-  EXPECT_EQ(finder.windows(), 548U);
-}
-
-TEST_F(LimitFinderTest, WithoutASecondPassThereAreNoLimits) {
-  LimitFinder finder(model_, {kWindow, 5 * kSecond, 0.5});
-  feed(finder, model_, robot(100 * kSecond, 3));
-  EXPECT_THROW(finder.limits(), std::logic_error);
-  finder.startSecondPass();
-  EXPECT_THROW(finder.limits(), std::logic_error);
-  feed(finder, model_, robot(100 * kSecond, 3));
-  EXPECT_NO_THROW(finder.limits());
+  EXPECT_EQ(finder.windows(), 2 * 548U);
 }
 
 TEST_F(LimitFinderTest, WhatRecordingsSayElsewhereAddsUp) {
@@ -200,30 +167,21 @@ TEST_F(LimitFinderTest, WhatRecordingsSayElsewhereAddsUp) {
   const LimitFinder::Parameters parameters{kWindow, 5 * kSecond, 0.5};
   LimitFinder alone(model_, parameters);
   LimitFinder sum(model_, parameters);
-  for (const bool first : {true, false}) {
-    std::vector<LimitFinder::Findings> elsewhere;
-    for (const Events& recording : recordings) {
-      feed(alone, model_, recording);
-      LimitFinder part(model_, parameters);
-      if (!first) {
-        part.startSecondPass(sum.trackLimits());
-      }
-      feed(part, model_, recording);
-      elsewhere.push_back(part.findings());
-    }
-    std::reverse(elsewhere.begin(), elsewhere.end());
-    for (const LimitFinder::Findings& findings : elsewhere) {
-      sum.merge(findings);
-    }
-    if (first) {
-      alone.startSecondPass();
-      sum.startSecondPass();
-    }
+  std::vector<LimitFinder::Findings> elsewhere;
+  for (const Events& recording : recordings) {
+    feed(alone, model_, recording);
+    LimitFinder part(model_, parameters);
+    feed(part, model_, recording);
+    elsewhere.push_back(part.findings());
+  }
+  std::reverse(elsewhere.begin(), elsewhere.end());
+  for (const LimitFinder::Findings& findings : elsewhere) {
+    sum.merge(findings);
   }
   EXPECT_EQ(sum.windows(), alone.windows());
-  const Limits a = alone.limits();
-  const Limits b = sum.limits();
-  EXPECT_EQ(a.linker, b.linker);
+  EXPECT_EQ(sum.find().expected_rate, alone.find().expected_rate);
+  const Limits a = alone.find().limits;
+  const Limits b = sum.find().limits;
   ASSERT_EQ(a.tracks.size(), b.tracks.size());
   EXPECT_TRUE(std::any_of(a.tracks.begin(), a.tracks.end(), [](double x) { return x != x; }));
   EXPECT_TRUE(std::any_of(a.tracks.begin(), a.tracks.end(), [](double x) { return x == x; }));
@@ -284,19 +242,12 @@ TEST_F(LimitFinderTest, AStepOfTheClockIsTheStartOfAnotherRecording) {
   LimitFinder stepped(model_, {kWindow, 5 * kSecond, 0.5});
   Events joined = first;
   joined.insert(joined.end(), second.begin(), second.end());
-  for (int pass = 0; pass < 2; ++pass) {
-    feed(apart, model_, first);
-    feed(apart, model_, second);
-    feed(stepped, model_, joined);
-    if (pass == 0) {
-      apart.startSecondPass();
-      stepped.startSecondPass();
-    }
-  }
+  feed(apart, model_, first);
+  feed(apart, model_, second);
+  feed(stepped, model_, joined);
   EXPECT_EQ(apart.windows(), stepped.windows());
-  const Limits a = apart.limits();
-  const Limits b = stepped.limits();
-  EXPECT_EQ(a.linker, b.linker);
+  const Limits a = apart.find().limits;
+  const Limits b = stepped.find().limits;
   for (std::size_t track = 0; track < a.tracks.size(); ++track) {
     EXPECT_TRUE(a.tracks[track] == b.tracks[track] ||
                 (std::isnan(a.tracks[track]) && std::isnan(b.tracks[track])))
@@ -311,22 +262,17 @@ TEST_F(LimitFinderTest, WithoutAReasonNoRelationIsJudged) {
     const auto model = std::make_shared<Model>(
         watch(countsOf({robot(100 * kSecond, 1)}), countsOf({robot(100 * kSecond, 2)})));
     LimitFinder finder(model, {kWindow, 5 * kSecond, 0.5}, graph);
-    for (const bool first : {true, false}) {
-      feed(finder, model, normal);
-      if (first) {
-        finder.startSecondPass();
-      }
-    }
-    const std::size_t track = indexOf(model->tracks(), Channel::kDelay, kB, kA);
+    feed(finder, model, normal);
+    const std::size_t track = indexOf(model->tracks(), kPairs, kB, kA);
     EXPECT_LT(track, model->tracks().size());
-    EXPECT_EQ(finder.relations().at(track).watched,
-              std::isfinite(finder.limits().tracks.at(track)));
+    const LimitFinder::Found found = finder.find();
+    EXPECT_EQ(found.relations.at(track).watched, std::isfinite(found.limits.tracks.at(track)));
     for (std::size_t k = 0; k < model->tracks().size(); ++k) {
       if (model->tracks()[k].to == model->tracks()[k].from) {
-        EXPECT_TRUE(finder.relations()[k].watched) << "the own history needs no reason";
+        EXPECT_TRUE(found.relations[k].watched) << "the own history needs no reason";
       }
     }
-    return finder.relations().at(track);
+    return found.relations.at(track);
   };
   const Relation alone = delay({});
   EXPECT_FALSE(alone.watched);
@@ -345,24 +291,19 @@ TEST_F(LimitFinderTest, RecordingsThatWereNotTrainedOnCountAsStarts) {
       watch(countsOf({robot(100 * kSecond, 1)}), countsOf({robot(100 * kSecond, 2)})));
   LimitFinder finder(model, {kWindow, 5 * kSecond, 0.5});
   feed(finder, model, later(robot(100 * kSecond, 3)));
-  finder.startSecondPass();
-  const std::size_t track = indexOf(model->tracks(), Channel::kDelay, kB, kA);
-  EXPECT_EQ(finder.relations().at(track).starts, 2U);
-  EXPECT_TRUE(finder.relations().at(track).watched);
+  const std::size_t track = indexOf(model->tracks(), kPairs, kB, kA);
+  const Relation relation = finder.find().relations.at(track);
+  EXPECT_EQ(relation.starts, 2U);
+  EXPECT_TRUE(relation.watched);
 }
 
 TEST_F(LimitFinderTest, MoreFalseAlarmsAreExpectedOfALargerBudget) {
   const auto expected = [&](double budget) {
     LimitFinder finder(model_, {kWindow, 5 * kSecond, budget});
-    for (const bool first : {true, false}) {
-      for (unsigned seed = 3; seed < 9; ++seed) {
-        feed(finder, model_, later(robot(200 * kSecond, seed), seed * kStart));
-      }
-      if (first) {
-        finder.startSecondPass();
-      }
+    for (unsigned seed = 3; seed < 9; ++seed) {
+      feed(finder, model_, later(robot(200 * kSecond, seed), seed * kStart));
     }
-    return finder.expectedRate();
+    return finder.find().expected_rate;
   };
   const double little = expected(0.05);
   const double much = expected(50);

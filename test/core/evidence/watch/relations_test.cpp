@@ -52,6 +52,13 @@ SourceGraph connected(const std::string& topic, int listeners = 1) {
   return graph;
 }
 
+TEST(MissRate, IsNeverQuiteZeroOrOne) {
+  EXPECT_DOUBLE_EQ(missRate(99, 80), 0.195);
+  EXPECT_DOUBLE_EQ(missRate(99, 99), 0.005);
+  EXPECT_DOUBLE_EQ(missRate(0, 0), 0.5);
+  EXPECT_DOUBLE_EQ(missRate(99, 0), 0.995);
+}
+
 TEST(NumberOfStarts, RecordingsWithinAMinuteAreOneStart) {
   const auto seconds = [](std::vector<Span> spans) {
     for (Span& span : spans) {
@@ -299,27 +306,6 @@ TEST(Relations, MissesByChanceKnowTheGapsBeyondTheLastBin) {
               static_cast<double>(missed) / static_cast<double>(counts.type(kA).gaps), 0.15);
 }
 
-TEST(Relations, AnswersToAnIrregularTriggerAreWatched) {
-  const Statistics counts = followed(1);
-  const Relation relation = Relations(counts, kNoGraph, kTuning).answers(kA, kB);
-  EXPECT_TRUE(relation.irregular);
-  EXPECT_TRUE(relation.watched);
-}
-
-TEST(Relations, ATimersOwnPeriodSaysAsMuchAsWhatItAnswersTo) {
-  const Statistics counts = timers({20 * kMillisecond, 20 * kMillisecond, 20 * kMillisecond});
-  EXPECT_FALSE(Relations(counts, kNoGraph, kTuning).answers(kA, kB).watched);
-  const SourceGraph graph = connected("/x");
-  EXPECT_FALSE(Relations(counts, graph, kTuning).answers(kA, kB).watched);
-}
-
-TEST(Relations, WhatComesAsOftenAsByChanceIsNoAnswer) {
-  const Statistics counts = countsOf(
-      {together({irregular(kA, 0, kLength, kPeriod, 1), irregular(kB, 0, kLength, kPeriod, 2)})},
-      2);
-  EXPECT_FALSE(Relations(counts, kNoGraph, kTuning).answers(kA, kB).watched);
-}
-
 // Requests at random, about every 4 s, each with its answer.
 Events requests(unsigned seed) {
   return irregular(kA, 0, 400 * kSecond, 4 * kSecond, seed);
@@ -329,7 +315,7 @@ TEST(Relations, ADeadlineNeedsAnAnswerThatTakesItsTime) {
   const Events asked = requests(1);
   const Statistics counts =
       countsOf({together({asked, answers(kB, asked, 100 * kMillisecond)})}, 2);
-  EXPECT_TRUE(Relations(counts, kNoGraph, kTuning).deadline(kA, kB).watched);
+  EXPECT_TRUE(Relations(counts, kNoGraph, kTuning).owed(kA, kB).watched);
   // Two that answer to the same come now in this order, now in that.
   Events first;
   Events second;
@@ -339,7 +325,21 @@ TEST(Relations, ADeadlineNeedsAnAnswerThatTakesItsTime) {
     second.push_back({event.stamp + (a_is_first ? 3 : 450) * kMillisecond, kB});
   }
   const Statistics both = countsOf({together({first, second})}, 2);
-  EXPECT_FALSE(Relations(both, kNoGraph, kTuning).deadline(kA, kB).watched);
+  EXPECT_FALSE(Relations(both, kNoGraph, kTuning).owed(kA, kB).watched);
+}
+
+TEST(Relations, WhatComesAsOftenAsByChanceIsNotOwed) {
+  const Statistics counts = countsOf({together({irregular(kA, 0, 400 * kSecond, 4 * kSecond, 1),
+                                                irregular(kB, 0, 400 * kSecond, 4 * kSecond, 2)})},
+                                     2);
+  EXPECT_FALSE(Relations(counts, kNoGraph, kTuning).owed(kA, kB).watched);
+}
+
+TEST(Relations, ATimersOwnPeriodSaysAsMuchAsWhatItAnswersTo) {
+  const Statistics counts = timers({20 * kMillisecond, 20 * kMillisecond, 20 * kMillisecond});
+  EXPECT_FALSE(Relations(counts, kNoGraph, kTuning).owed(kA, kB).watched);
+  const SourceGraph graph = connected("/x");
+  EXPECT_FALSE(Relations(counts, graph, kTuning).owed(kA, kB).watched);
 }
 
 TEST(Relations, WithAGraphADeadlineNeedsAMessageThatGetsThere) {
@@ -348,8 +348,8 @@ TEST(Relations, WithAGraphADeadlineNeedsAMessageThatGetsThere) {
       countsOf({together({asked, answers(kB, asked, 100 * kMillisecond)})}, 2);
   const SourceGraph reached = connected("/x");
   const SourceGraph other = connected("/other");
-  EXPECT_TRUE(Relations(counts, reached, kTuning).deadline(kA, kB).watched);
-  EXPECT_FALSE(Relations(counts, other, kTuning).deadline(kA, kB).watched);
+  EXPECT_TRUE(Relations(counts, reached, kTuning).owed(kA, kB).watched);
+  EXPECT_FALSE(Relations(counts, other, kTuning).owed(kA, kB).watched);
 }
 
 }  // namespace

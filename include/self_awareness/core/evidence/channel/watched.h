@@ -22,6 +22,7 @@ struct Watched {
 /// Lets every channel choose what it watches, by the counts of the two halves of the training
 /// (docs/method.md, section 3). Each half gets the event types that it lacks from the other.
 /// @param graph who hears whom; empty: not known
+/// @throw std::invalid_argument if a channel that is switched off does not exist
 Watched watch(const Statistics& first, const Statistics& second, const SourceGraph& graph = {},
               const Tuning& tuning = {});
 

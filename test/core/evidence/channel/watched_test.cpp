@@ -1,15 +1,16 @@
-#include "self_awareness/core/evidence/watch/tracks.h"
+#include "self_awareness/core/evidence/channel/watched.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "../recordings.h"
+#include "core/evidence/watch/gain.h"
+#include "core/evidence/watch/relations.h"
 
 namespace self_awareness::core::evidence {
 namespace {
@@ -42,19 +43,18 @@ Statistics gapsOf(EventId id, std::int64_t gaps) {
 
 TEST(EvidenceTracks, APairWithAStableDelayIsChosen) {
   const std::vector<Track> tracks = chosen(followed(1), followed(2));
-  EXPECT_TRUE(isWatched(tracks, Channel::kDelay, kB, kA));
-  EXPECT_TRUE(isWatched(tracks, Channel::kSlowDelay, kB, kA));
+  EXPECT_TRUE(isWatched(tracks, kPairs, kB, kA));
 }
 
 TEST(EvidenceTracks, APhaseThatOneHalfDoesNotConfirmIsNot) {
   const std::vector<Track> held =
       chosen(twoTimers(20 * kMillisecond), twoTimers(20 * kMillisecond));
-  EXPECT_TRUE(isWatched(held, Channel::kDelay, kB, kA));
+  EXPECT_TRUE(isWatched(held, kPairs, kB, kA));
   const std::vector<Track> lost =
       chosen(twoTimers(20 * kMillisecond), twoTimers(70 * kMillisecond));
-  EXPECT_FALSE(isWatched(lost, Channel::kDelay, kB, kA));
-  EXPECT_FALSE(isWatched(lost, Channel::kDelay, kA, kB));
-  EXPECT_TRUE(isWatched(lost, Channel::kDelay, kB, kB));  // its period is the same in both halves
+  EXPECT_FALSE(isWatched(lost, kPairs, kB, kA));
+  EXPECT_FALSE(isWatched(lost, kPairs, kA, kB));
+  EXPECT_TRUE(isWatched(lost, kOwnGaps, kB, kB));  // its period is the same in both halves
 }
 
 TEST(EvidenceTracks, FewGapsAreNotJudged) {
@@ -62,7 +62,7 @@ TEST(EvidenceTracks, FewGapsAreNotJudged) {
   const std::vector<Track> few = chosen(gapsOf(kA, needed - 1), countsOf({}));
   EXPECT_TRUE(few.empty());
   const std::vector<Track> enough = chosen(gapsOf(kA, needed - 10), gapsOf(kA, 10));
-  for (const Channel channel : {Channel::kOverdue, Channel::kFewer, Channel::kMore}) {
+  for (const char* channel : {kOverdue, kFewer, kMore}) {
     EXPECT_TRUE(isWatched(enough, channel, kA, kA));
   }
   EXPECT_EQ(enough.size(), 3U);
@@ -74,10 +74,8 @@ TEST(EvidenceTracks, FewDelaysAreNoPair) {
     events.resize(number);
     return countsOf({together({events, answers(kB, events, 20 * kMillisecond)})}, 2);
   };
-  EXPECT_TRUE(isWatched(chosen(asked(100), asked(100)), Channel::kDelay, kB, kA));
-  EXPECT_FALSE(isWatched(chosen(asked(100), asked(99)), Channel::kDelay, kB, kA));
-  EXPECT_TRUE(isWatched(chosen(asked(51), asked(51)), Channel::kAnswer, kB, kA));  // 100 gaps
-  EXPECT_FALSE(isWatched(chosen(asked(51), asked(50)), Channel::kAnswer, kB, kA));
+  EXPECT_TRUE(isWatched(chosen(asked(100), asked(100)), kPairs, kB, kA));
+  EXPECT_FALSE(isWatched(chosen(asked(100), asked(99)), kPairs, kB, kA));
 }
 
 TEST(EvidenceTracks, TheThreeBestPredecessorsAreWatched) {
@@ -103,44 +101,16 @@ TEST(EvidenceTracks, TheThreeBestPredecessorsAreWatched) {
     std::vector<double> watched;
     std::vector<double> others;
     for (EventId from = 0; from < kNumber; ++from) {
-      const bool is_watched = isWatched(tracks, Channel::kDelay, to, from);
-      (is_watched ? watched : others).push_back(gain(from, to));
+      if (from != to) {
+        const bool is_watched = isWatched(tracks, kPairs, to, from);
+        (is_watched ? watched : others).push_back(gain(from, to));
+      }
     }
     ASSERT_EQ(watched.size(), 3U) << to;
     EXPECT_GE(*std::min_element(watched.begin(), watched.end()),
               *std::max_element(others.begin(), others.end()))
         << to;
   }
-}
-
-TEST(EvidenceTracks, AFollowerDoesNotAskForWhatItFollows) {
-  const std::vector<Track> tracks = chosen(followed(1), followed(2));
-  EXPECT_TRUE(isWatched(tracks, Channel::kAnswer, kB, kA));
-  EXPECT_FALSE(isWatched(tracks, Channel::kAnswer, kA, kB));
-  EXPECT_FALSE(isWatched(tracks, Channel::kAnswer, kA, kA));
-}
-
-TEST(EvidenceTracks, ATypeThatMostlyGetsNoAnswerDoesNotAsk) {
-  const Events asked = irregular(kA, 0, kLength, 50 * kMillisecond, 2);
-  for (const std::size_t every : {1U, 4U}) {
-    Events answered;
-    for (std::size_t k = 0; k < asked.size(); k += every) {
-      answered.push_back({asked[k].stamp + 3 * kMillisecond, kB});
-    }
-    const Statistics counts = countsOf({together({asked, answered})}, 2);
-    EXPECT_EQ(missRate(counts.type(kA).gaps, counts.answers(kA, kB)) > 0.6, every == 4);
-    EXPECT_EQ(isWatched(chosen(counts, counts), Channel::kAnswer, kB, kA), every == 1);
-  }
-}
-
-TEST(EvidenceTracks, WhatComesByChanceIsNoAnswer) {
-  const Statistics counts =
-      countsOf({together({irregular(kA, 0, kLength, 50 * kMillisecond, 2),
-                          irregular(kB, 0, kLength, 200 * kMillisecond, 1)})},
-               2);
-  const std::vector<Track> tracks = chosen(counts, counts);
-  ASSERT_LT(missRate(counts.type(kB).gaps, counts.answers(kB, kA)), 0.2);
-  EXPECT_FALSE(isWatched(tracks, Channel::kAnswer, kA, kB)) << "A comes often, whatever B does";
 }
 
 TEST(EvidenceTracks, AsManyPredecessorsAreWatchedAsAreAskedFor) {
@@ -152,7 +122,7 @@ TEST(EvidenceTracks, AsManyPredecessorsAreWatchedAsAreAskedFor) {
     EXPECT_TRUE(watched.tuning == tuning);
     const auto of_b = std::count_if(
         watched.tracks.begin(), watched.tracks.end(),
-        [](const Track& track) { return track.channel == Channel::kDelay && track.to == kB; });
+        [](const Track& track) { return channelName(track) == kPairs && track.to == kB; });
     EXPECT_EQ(static_cast<std::size_t>(of_b), predecessors);
   }
 }
@@ -161,7 +131,7 @@ TEST(EvidenceTracks, CountsOfWatchedPairsAreKeptAndOthersLeftOut) {
   const Statistics first = twoTimers(20 * kMillisecond);
   const Statistics second = twoTimers(70 * kMillisecond);
   const Watched watched = watch(first, second);
-  ASSERT_FALSE(isWatched(watched.tracks, Channel::kDelay, kA, kB));
+  ASSERT_FALSE(isWatched(watched.tracks, kPairs, kA, kB));
   for (std::size_t half = 0; half < 2; ++half) {
     const Statistics& all = half == 0 ? first : second;
     const Statistics& kept = watched.halves.at(half);
@@ -179,52 +149,88 @@ TEST(EvidenceTracks, CountsOfWatchedPairsAreKeptAndOthersLeftOut) {
   EXPECT_EQ(first.only({}).delaysToAny(), first.delaysToAny());
 }
 
-TEST(EvidenceTracks, DelayTracksComeInPairs) {
-  const Track overdue{Channel::kOverdue, kA, kA};
-  const Track now{Channel::kDelay, kB, kA};
-  const Track slow{Channel::kSlowDelay, kB, kA};
-  EXPECT_NO_THROW(checkTracks({overdue, now, slow}, 2));
+// Requests of A at random, about every 4 s; B answers every so many.
+Statistics requests(std::size_t every, std::int64_t delay = 400 * kMillisecond) {
+  const Events asked = irregular(kA, 0, 800 * kSecond, 4 * kSecond, 1);
+  Events answered;
+  for (std::size_t k = 0; k < asked.size(); ++k) {
+    if (k % every + 1 < every || every == 1) {
+      answered.push_back({asked[k].stamp + delay, kB});
+    }
+  }
+  return countsOf({together({asked, answered})}, 2);
+}
+
+std::vector<Track> chosen(const Statistics& counts) {
+  return chosen(counts, counts);
+}
+
+TEST(EvidenceTracks, AnAnswerThatIsAskedForIsOwed) {
+  const std::vector<Track> tracks = chosen(requests(1));
+  EXPECT_TRUE(isWatched(tracks, kDeadlines, kB, kA));
+  EXPECT_FALSE(isWatched(tracks, kDeadlines, kA, kB)) << "a follower does not ask";
+  EXPECT_FALSE(isWatched(tracks, kDeadlines, kA, kA));
+}
+
+TEST(EvidenceTracks, WhatIsLeftOutTooOftenIsNotOwed) {
+  EXPECT_TRUE(isWatched(chosen(requests(20)), kDeadlines, kB, kA)) << "1 in 20";
+  EXPECT_FALSE(isWatched(chosen(requests(5)), kDeadlines, kB, kA)) << "1 in 5";
+}
+
+TEST(EvidenceTracks, WhatComesByChanceIsNotOwed) {
+  const Statistics counts =
+      countsOf({together({irregular(kA, 0, 10 * kLength, 50 * kMillisecond, 2),
+                          irregular(kB, 0, 10 * kLength, 2 * kSecond, 1)})},
+               2);
+  ASSERT_LT(missRate(counts.type(kB).gaps, counts.answers(kB, kA)), Tuning{}.most_misses);
+  EXPECT_FALSE(isWatched(chosen(counts), kDeadlines, kA, kB)) << "A comes often, whatever B does";
+}
+
+TEST(EvidenceTracks, TheChannelsComeInTheirOrder) {
+  const std::vector<std::string> names = channelNames();
+  const auto place = [&](const Track& track) {
+    return std::find(names.begin(), names.end(), channelName(track)) - names.begin();
+  };
+  const std::vector<Track> tracks = chosen(followed(1), followed(2));
+  EXPECT_TRUE(std::is_sorted(tracks.begin(), tracks.end(),
+                             [&](const Track& a, const Track& b) { return place(a) < place(b); }));
+  EXPECT_EQ(channelName(tracks.front()), names.front());
+}
+
+TEST(EvidenceTracks, AChannelThatIsSwitchedOffMustExist) {
+  const Statistics counts = followed(1);
+  Tuning tuning;
+  tuning.without = {kMore, "smell"};
+  try {
+    watch(counts, counts, {}, tuning);
+    FAIL() << "no exception";
+  } catch (const std::invalid_argument& error) {
+    EXPECT_EQ(std::string(error.what()),
+              "the method has no channel 'smell', only overdue, fewer, more, own gaps, pairs, "
+              "deadlines");
+  }
+}
+
+TEST(EvidenceTracks, ThoseFromOutsideAreChecked) {
+  const Track overdue = trackOf(kOverdue, kA, kA);
+  const Track pair = trackOf(kPairs, kB, kA);
+  EXPECT_NO_THROW(checkTracks({overdue, pair, overdue}, 2));
   EXPECT_THROW(checkTracks({overdue}, 0), std::invalid_argument);
-  EXPECT_THROW(checkTracks({now, slow}, 1), std::invalid_argument);
-  EXPECT_THROW(checkTracks({now}, 2), std::invalid_argument);
-  EXPECT_THROW(checkTracks({slow}, 2), std::invalid_argument);
-  EXPECT_THROW(checkTracks({slow, now}, 2), std::invalid_argument);
-  EXPECT_THROW(checkTracks({now, overdue, slow}, 2), std::invalid_argument);
-  EXPECT_THROW(checkTracks({now, {Channel::kSlowDelay, kA, kB}}, 2), std::invalid_argument);
+  EXPECT_THROW(checkTracks({pair}, 1), std::invalid_argument);
+  EXPECT_THROW(checkTracks({trackOf(kPairs, kA, kB)}, 1), std::invalid_argument);
+  EXPECT_THROW(checkTracks({trackOf("smell", kA, kA)}, 2), std::invalid_argument);
 }
 
-TEST(InformationGain, IsTheMeanLogRatioOnTheOtherHalf) {
-  Statistics learned = countsOf({}, 2);
-  learned.allPartners(kB)[kA].delays[10] = 50;
-  learned.allPartners(kA)[kA].delays[20] = 100;
-  Statistics measured = countsOf({}, 2);
-  Statistics::Delays& delays = measured.allPartners(kB)[kA].delays;
-  delays[10] = 30;
-  delays[20] = 20;
-  const InformationGain gain(learned, measured, kFewestDelays);
-  // P: 51 and 1 of 100; Q: 51 and 101 of 200.
-  EXPECT_NEAR(gain(kA, kB), (30 * std::log(2.0) + 20 * std::log(2.0 / 101)) / 50, 1e-12);
-  EXPECT_EQ(gain(kA, kA), 0);  // not measured
-  EXPECT_EQ(gain(kB, kA), 0);  // not learned
-  delays[20] = 19;
-  EXPECT_EQ(gain(kA, kB), 0);  // too little to measure on
-}
-
-TEST(InformationGain, IsZeroForATypeThatTheOtherHalfLacks) {
-  const Statistics learned = followed(1);
-  const Statistics measured = countsOf({irregular(kA, 0, kLength, 200 * kMillisecond, 2)}, 1);
-  EXPECT_GT(InformationGain(learned, learned, kFewestDelays)(kA, kB), 0.3);
-  EXPECT_EQ(InformationGain(learned, measured, kFewestDelays)(kA, kB), 0);
-}
-
-TEST(LogProbabilities, HaveOneMoreCountInEveryBin) {
-  Statistics::Delays counts{};
-  counts[1] = 10;
-  counts[2] = 40;
-  const LogProbabilities logs = logProbabilities(counts);
-  EXPECT_DOUBLE_EQ(logs[0], std::log(0.01));
-  EXPECT_DOUBLE_EQ(logs[1], std::log(0.11));
-  EXPECT_DOUBLE_EQ(logs[2], std::log(0.41));
+TEST(EvidenceTracks, EveryChannelHasANameOfItsOwnAndALabel) {
+  EXPECT_EQ(channelNames(),
+            (std::vector<std::string>{kOverdue, kFewer, kMore, kOwnGaps, kPairs, kDeadlines}));
+  const std::vector<std::string> labels{"overdue", "rate", "rate", "pairs", "pairs", "deadlines"};
+  for (std::size_t k = 0; k < labels.size(); ++k) {
+    const Track track = trackOf(channelNames()[k], kA, kA);
+    EXPECT_EQ(channelName(track), channelNames()[k]);
+    EXPECT_EQ(channelLabel(track), labels[k]);
+  }
+  EXPECT_EQ(channelNamed("smell"), nullptr);
 }
 
 }  // namespace

@@ -1,0 +1,238 @@
+#include "core/evidence/channel/delays.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "../recordings.h"
+#include "self_awareness/core/evidence/channel/model.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+// More than chance [standard deviations].
+constexpr double kLeastSurprise = 3;
+
+DelaySurprise surpriseOf(const Watched& watched, EventId from, EventId to) {
+  return DelaySurprise(Model(watched), watched.halves, from, to);
+}
+
+// B comes 20 or 40 ms after A, which comes at random.
+Statistics pairCounts(unsigned seed) {
+  const Events asked = irregular(kA, 0, 100 * kSecond, 200 * kMillisecond, seed);
+  Events answered = answers(kB, asked, 20 * kMillisecond);
+  for (std::size_t k = 0; k < answered.size(); k += 3) {
+    answered[k].stamp += 20 * kMillisecond;
+  }
+  return countsOf({later(together({asked, answered}), seed * kStart)}, 2);
+}
+
+// B comes some time after A, which comes at random, about every 200 ms.
+Watched followed(std::int64_t delay) {
+  const auto start = [&](unsigned seed) {
+    const Events asked = irregular(kA, 0, 100 * kSecond, 200 * kMillisecond, seed);
+    return countsOf({later(together({asked, answers(kB, asked, delay)}), seed * kStart)}, 2);
+  };
+  return watch(start(1), start(2));
+}
+
+TEST(DelaySurprise, IsStandardisedByWhatTheOtherHalfFinds) {
+  // B comes 20 or 40 ms after A, and one in fifty 110 ms.
+  const Events asked = irregular(kA, 0, 200 * kSecond, 200 * kMillisecond, 1);
+  Events answered = answers(kB, asked, 20 * kMillisecond);
+  for (std::size_t k = 0; k < answered.size(); ++k) {
+    answered[k].stamp += k % 50 == 7 ? 90 * kMillisecond : k % 3 == 0 ? 20 * kMillisecond : 0;
+  }
+  const Statistics half = countsOf({together({asked, answered})}, 2);
+  const Watched watched = watch(half, half);
+  const DelaySurprise surprise(Model(watched, Model::Learned::kFirst), watched.halves, kA, kB);
+  const DelayHistogram& delays = half.delays(kA, kB);
+  const LogProbabilities logs = delays.logProbabilities();
+  double mean = 0;
+  double squares = 0;
+  for (std::size_t bin = 0; bin < log_bins::kBins; ++bin) {
+    const double share = delays[bin] / static_cast<double>(delays.total());
+    mean -= share * logs[bin];
+    squares += share * logs[bin] * logs[bin];
+  }
+  const double deviation = std::sqrt(squares - mean * mean);
+  ASSERT_GT(deviation, 0.5) << "it is taken as it is";
+  const std::size_t rare = log_bins::bin(110 * kMillisecond);
+  ASSERT_LT((-logs[rare] - mean) / deviation, 6);
+  EXPECT_NEAR(surprise(110 * kMillisecond), (-logs[rare] - mean) / deviation, 1e-9);
+  // What is usual, or differs from it by little, does not surprise.
+  const std::size_t often = log_bins::bin(20 * kMillisecond);
+  EXPECT_NEAR(surprise(20 * kMillisecond), (-logs[often] - mean) / deviation, 1e-9);
+  EXPECT_LE(surprise(40 * kMillisecond), 0);
+}
+
+TEST(DelaySurprise, IsBounded) {
+  const Watched watched = watch(pairCounts(1), pairCounts(2));
+  const DelaySurprise surprise = surpriseOf(watched, kA, kB);
+  double largest = 0;
+  for (std::int64_t delay = 0; delay < 20 * kSecond; delay += kMillisecond) {
+    largest = std::max(largest, surprise(delay));
+  }
+  EXPECT_DOUBLE_EQ(largest, 6);
+  EXPECT_LT(surprise(20 * kMillisecond), 0);
+  const Model model(watched);
+  const std::size_t track = indexOf(model.tracks(), kPairs, kB, kA);
+  EXPECT_GT(model.leastLimit(track), 2 * largest) << "one late event makes two unusual delays";
+}
+
+TEST(DelaySurprise, SmallEffectsAreNoFault) {
+  const DelaySurprise surprise = surpriseOf(followed(kMillisecond), kA, kB);
+  for (const std::int64_t milliseconds : {0, 1, 3, 5}) {
+    EXPECT_LE(surprise(milliseconds * kMillisecond), 0) << milliseconds;
+  }
+  for (const std::int64_t milliseconds : {30, 60, 100}) {
+    EXPECT_GT(surprise(milliseconds * kMillisecond), kLeastSurprise) << milliseconds;
+  }
+}
+
+TEST(DelaySurprise, WhatASmallEffectIsCanBeSaid) {
+  // Usual is the bin from 20 to 23.8 ms.
+  const auto surprise = [](double time, double of_period, std::int64_t milliseconds) {
+    Watched watched = followed(20 * kMillisecond);
+    watched.tuning.least_effect = time;
+    watched.tuning.least_effect_of_period = of_period;
+    return surpriseOf(watched, kA, kB)(milliseconds * kMillisecond);
+  };
+  EXPECT_LE(surprise(0.01, 0, 26), 0);
+  EXPECT_GT(surprise(0.002, 0, 26), kLeastSurprise);
+  EXPECT_LE(surprise(0.01, 0, 33), 0) << "a part of its bin is near enough";
+  EXPECT_GT(surprise(0.01, 0, 60), kLeastSurprise);
+  EXPECT_LE(surprise(0.06, 0, 60), 0);
+  // The larger of the two counts; A comes about every 200 ms.
+  EXPECT_LE(surprise(0.002, 0.3, 60), 0);
+  EXPECT_GT(surprise(0.002, 0.03, 60), kLeastSurprise);
+}
+
+TEST(DelaySurprise, ADelayNearZeroIsANeighbourOfAPeriod) {
+  const auto start = [](unsigned seed) {
+    return countsOf({later(together({timer(kA, 0, 100 * kSecond, 100 * kMillisecond),
+                                     timer(kB, kMillisecond, 100 * kSecond, 100 * kMillisecond)}),
+                           seed * kStart)},
+                    2);
+  };
+  const DelaySurprise surprise = surpriseOf(watch(start(1), start(2)), kA, kB);
+  EXPECT_LE(surprise(99 * kMillisecond), 0);
+  EXPECT_GT(surprise(50 * kMillisecond), kLeastSurprise);
+}
+
+TEST(DelaySurprise, AGapMayDifferByMoreThanAnAnswer) {
+  const auto start = [](unsigned seed) {
+    return countsOf({later(together({timer(kA, 0, 300 * kSecond, kSecond),
+                                     irregular(kB, 0, 300 * kSecond, 50 * kMillisecond, seed)}),
+                           seed * kStart)},
+                    2);
+  };
+  const DelaySurprise surprise = surpriseOf(watch(start(1), start(2)), kA, kA);
+  EXPECT_LE(surprise(1050 * kMillisecond), 0);
+  EXPECT_LE(surprise(850 * kMillisecond), 0);
+  EXPECT_GT(surprise(2 * kSecond), kLeastSurprise);
+  EXPECT_GT(surprise(400 * kMillisecond), kLeastSurprise);
+}
+
+TEST(DelaySum, NeverFallsBelowZeroNorGrowsBeyondItsCap) {
+  const DelayNumbers numbers{Tuning{}};
+  DelaySum sum;
+  EXPECT_DOUBLE_EQ(sum.add(0.5, 1, 1, 0, numbers), -0.5) << "the drift is 1";
+  EXPECT_EQ(sum.value, 0);
+  EXPECT_DOUBLE_EQ(sum.add(4, 1, 1, 0, numbers), 3);
+  EXPECT_DOUBLE_EQ(sum.value, 3);
+  EXPECT_DOUBLE_EQ(sum.add(4, 0, 1, 0, numbers), 0) << "it does not count";
+  EXPECT_DOUBLE_EQ(sum.add(3, 1, -1, 0, numbers), -2) << "it makes up for the one before";
+  EXPECT_DOUBLE_EQ(sum.value, 1);
+  sum.capAt(10, numbers);
+  EXPECT_FALSE(sum.isAbnormal(numbers));
+  for (int k = 0; k < 10; ++k) {
+    sum.add(6, 1, 1, 0, numbers);
+  }
+  EXPECT_DOUBLE_EQ(sum.value, 15);
+  EXPECT_TRUE(sum.isAbnormal(numbers));
+}
+
+TEST(DelaySum, WithoutALimitItIsNeverAbnormal) {
+  const DelayNumbers numbers{Tuning{}};
+  DelaySum sum;
+  sum.capAt(std::nan(""), numbers);
+  for (int k = 0; k < 1000; ++k) {
+    sum.add(6, 1, 1, 0, numbers);
+  }
+  EXPECT_EQ(sum.value, DelaySum::kMost);
+}
+
+TEST(DelaySum, IsRelativeToTheRegimeOfTheLastMinutes) {
+  const DelayNumbers numbers{Tuning{}};
+  EXPECT_DOUBLE_EQ(numbers.shareOfRegime(12 * kSecond), 0.1);
+  EXPECT_EQ(numbers.shareOfRegime(-kSecond), 0);
+  EXPECT_EQ(numbers.shareOfRegime(1000 * kSecond), 1);
+  DelaySum sum;
+  sum.add(4, 1, 1, 0.1, numbers);
+  EXPECT_DOUBLE_EQ(sum.regime, 0.4);
+  EXPECT_DOUBLE_EQ(sum.add(4, 1, 1, 0, numbers), 2.6);
+  sum.regime = -2;
+  EXPECT_DOUBLE_EQ(sum.add(4, 1, 1, 0, numbers), 3) << "what is more usual than usual is no debt";
+}
+
+TEST(CatchingUp, IsAGapThatIsShorterWhileItsTypeIsBehind) {
+  const DelayNumbers numbers{Tuning{}};
+  CatchingUp catching_up{100, 0};
+  EXPECT_FALSE(catching_up.add(50, numbers)) << "it is not behind";
+  EXPECT_FALSE(catching_up.add(250, numbers));
+  EXPECT_TRUE(catching_up.add(10, numbers));
+  EXPECT_TRUE(catching_up.add(40, numbers));
+  EXPECT_FALSE(catching_up.add(40, numbers)) << "it has caught up";
+  catching_up.add(1e9, numbers);
+  EXPECT_EQ(catching_up.behind, 300) << "no more than three mean gaps";
+}
+
+/// Delays in words: of so many [s], half of them unusual; the usual one came often before.
+std::string wordsOf(std::vector<double> unusual, const std::string& other) {
+  std::vector<SeenDelay> seen;
+  std::int64_t now = 0;
+  for (int k = 0; k < 20; ++k) {
+    seen.push_back({now += 100 * kMillisecond, 45e6, -1});
+  }
+  const std::int64_t since = now + 100 * kMillisecond;
+  for (const double delay : unusual) {
+    seen.push_back({now += 100 * kMillisecond, delay * 1e9, 3});
+    seen.push_back({now += 100 * kMillisecond, 45e6, -1});
+  }
+  Suspect suspect;
+  suspect.other = other;
+  describeDelays(seen, 100, 30e6, since + 12040 * kMillisecond, suspect);
+  EXPECT_EQ(suspect.reason, Suspect::Reason::kDelay);
+  return describe(suspect);
+}
+
+TEST(DescribeDelays, SaysHowMuchLaterHowOftenAndSinceWhen) {
+  EXPECT_EQ(wordsOf({0.0471, 0.0471, 0.0471}, "/a /x T"),
+            "2.1 ms later than usual 3 times of 6 after /a /x T in the last 12.0 s, usually "
+            "0.045 s");
+  EXPECT_EQ(wordsOf({0.0429, 0.0429}, ""),
+            "2.1 ms earlier than usual 2 times of 4 in the last 12.0 s, usually every 0.045 s");
+  EXPECT_EQ(wordsOf({0.245}, "").rfind("200 ms later than usual 1 time of 2 in", 0), 0U);
+  EXPECT_EQ(wordsOf({3.045}, "").rfind("3.00 s later than usual 1 time of 2 in", 0), 0U);
+}
+
+TEST(DescribeDelays, SomeEarlierAndSomeLaterAreScattered) {
+  EXPECT_EQ(wordsOf({0.033, 0.057, 0.033, 0.057}, ""),
+            "12.0 ms earlier or later than usual 4 times of 8 in the last 12.0 s, usually every "
+            "0.045 s");
+}
+
+TEST(DescribeDelays, WithoutAnyItSaysNoNumber) {
+  Suspect suspect;
+  describeDelays({}, 100, 30e6, kSecond, suspect);
+  EXPECT_EQ(describe(suspect), "at unusual delays");
+  suspect.other = "/a /x T";
+  describeDelays({}, 100, 30e6, kSecond, suspect);
+  EXPECT_EQ(describe(suspect), "at unusual delays after /a /x T");
+}
+
+}  // namespace
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,117 @@
+#include "core/evidence/channel/owed.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "../recordings.h"
+#include "core/evidence/channel/scorer.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+class OwedTest : public testing::Test {
+ protected:
+  // Requests of A at random with a mean gap; each is answered by B after a tenth of it.
+  void learn(std::int64_t gap) {
+    const auto start = [&](unsigned seed) {
+      const Events asked = irregular(kA, 0, 200 * gap, gap, seed);
+      return countsOf({later(together({asked, answers(kB, asked, gap / 10)}), seed * 10 * kStart)},
+                      2);
+    };
+    model_ = std::make_shared<Model>(watch(start(1), start(2)));
+    owed_ = indexOf(model_->tracks(), kDeadlines, kB, kA);
+    ASSERT_LT(owed_, model_->tracks().size());
+    scorer_ = std::make_unique<Scorer>(model_, kWindow);
+  }
+  double evidenceAt(std::int64_t stamp) { return scorer_->closeWindow(stamp)[owed_]; }
+  Suspect suspect() const {
+    Suspect suspect;
+    suspect.id = kB;
+    scorer_->explain(owed_, RecentEvents(2), suspect);
+    return suspect;
+  }
+  bool isUsable(double limit) const { return model_->expectation(owed_).isUsable(owed_, limit); }
+
+  std::shared_ptr<const Model> model_;
+  std::size_t owed_ = 0;
+  std::unique_ptr<Scorer> scorer_;
+};
+
+TEST_F(OwedTest, RareRequestsAreCountedInSecondsSinceTheFirst) {
+  learn(8 * kSecond);
+  scorer_->add({0, kA});
+  EXPECT_EQ(evidenceAt(20 * kSecond), 0) << "no B has been seen since the start";
+  scorer_->add({20 * kSecond, kB});
+  EXPECT_EQ(evidenceAt(21 * kSecond), 0);
+  scorer_->add({30 * kSecond, kA});
+  EXPECT_DOUBLE_EQ(evidenceAt(31 * kSecond), 1);
+  scorer_->add({35 * kSecond, kA});
+  EXPECT_DOUBLE_EQ(evidenceAt(36 * kSecond), 6) << "since the first one without an answer";
+  EXPECT_DOUBLE_EQ(suspect().silence, 6);
+  EXPECT_EQ(describe(suspect()), "has not come for 6.00 s after /a /x T");
+  EXPECT_DOUBLE_EQ(evidenceAt(50 * kSecond), 20) << "judged on a timer, not at the next request";
+  scorer_->add({50 * kSecond, kB});
+  EXPECT_EQ(evidenceAt(60 * kSecond), 0);
+  EXPECT_EQ(suspect().silence, 0);
+}
+
+TEST_F(OwedTest, ABurstOfRareRequestsIsOneQuestion) {
+  learn(8 * kSecond);
+  scorer_->add({0, kB});
+  for (int i = 0; i < 20; ++i) {
+    scorer_->add({kSecond + i * 2000, kA});
+  }
+  EXPECT_DOUBLE_EQ(evidenceAt(3 * kSecond), 2);
+  scorer_->add({4 * kSecond, kB});
+  EXPECT_EQ(evidenceAt(5 * kSecond), 0) << "one answer is enough";
+}
+
+TEST_F(OwedTest, WhoWasNeverHeardMayBeStartingForAMinute) {
+  learn(8 * kSecond);
+  scorer_->add({5 * kSecond, kA});
+  EXPECT_EQ(evidenceAt(60 * kSecond), 0);
+  EXPECT_DOUBLE_EQ(evidenceAt(65 * kSecond), 60);
+  scorer_->restart();
+  scorer_->add({100 * kSecond, kA});
+  EXPECT_EQ(evidenceAt(150 * kSecond), 0);
+}
+
+TEST_F(OwedTest, SeriesOfRequestsAreCounted) {
+  learn(500 * kMillisecond);
+  scorer_->add({0, kA});
+  scorer_->add({50 * kMillisecond, kB});
+  for (int k = 1; k <= 10; ++k) {
+    EXPECT_EQ(evidenceAt(k * kSecond), k - 1);
+    scorer_->add({k * kSecond, kA});
+  }
+  EXPECT_EQ(evidenceAt(100 * kSecond), 10) << "time alone is no request";
+  EXPECT_EQ(suspect().of, 10U);
+  EXPECT_EQ(describe(suspect()), "has not come after the last 10 /a /x T");
+  scorer_->add({100 * kSecond, kB});
+  EXPECT_EQ(evidenceAt(101 * kSecond), 0);
+}
+
+TEST_F(OwedTest, ARestartForgetsRequests) {
+  learn(8 * kSecond);
+  scorer_->add({0, kB});
+  scorer_->add({kSecond, kA});
+  EXPECT_GT(evidenceAt(10 * kSecond), 0);
+  scorer_->restart();
+  scorer_->add({20 * kSecond, kB});
+  EXPECT_EQ(evidenceAt(30 * kSecond), 0);
+}
+
+TEST_F(OwedTest, ALimitThatIsReachedTooLateIsOfNoUse) {
+  learn(8 * kSecond);
+  EXPECT_EQ(model_->leastLimit(owed_), model_->tuning().least_deadline);
+  EXPECT_TRUE(isUsable(20));
+  EXPECT_FALSE(isUsable(20.1));
+  learn(500 * kMillisecond);  // then a limit is a number of requests
+  EXPECT_EQ(model_->leastLimit(owed_), model_->tuning().least_requests);
+  EXPECT_TRUE(isUsable(30));
+  EXPECT_FALSE(isUsable(100));
+}
+
+}  // namespace
+}  // namespace self_awareness::core::evidence

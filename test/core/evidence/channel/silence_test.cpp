@@ -1,0 +1,53 @@
+#include "core/evidence/channel/silence.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+
+#include "channel_case.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+class SilenceTest : public FollowedTest {
+ protected:
+  // At the end of a window so long after the last A; the robot is not silent.
+  double overdueAt(std::int64_t age) {
+    add({now_ + age, kB});
+    return scorer_.closeWindow(now_ + age)[overdue_];
+  }
+  std::size_t overdue_ = track(kOverdue, kA, kA);
+};
+
+TEST_F(SilenceTest, GoesByTheTimeSinceTheLastOne) {
+  EXPECT_EQ(evidence(overdue_), 0) << "never seen since the start";
+  add({now_, kA});
+  for (const std::int64_t age : {kMillisecond, kSecond, 100 * kSecond}) {
+    EXPECT_EQ(overdueAt(age), model_->overdue(kA, age));
+  }
+}
+
+TEST_F(SilenceTest, IsCertainOnceItHasLastedALittleLonger) {
+  const auto confirmation = toNanoseconds(model_->tuning().confirmation);
+  const double limit = model_->overdue(kA, kSecond);
+  add({now_, kA});
+  EXPECT_GT(overdueAt(kSecond + confirmation - kMillisecond), limit);
+  EXPECT_FALSE(scorer_.isCertain(overdue_, limit));
+  EXPECT_GT(overdueAt(kSecond + confirmation + kMillisecond), limit);
+  EXPECT_TRUE(scorer_.isCertain(overdue_, limit));
+}
+
+TEST_F(SilenceTest, ASuspectIsToldOfByWhatTrainingMeasured) {
+  add({now_, kA});
+  now_ += 5 * kSecond;
+  const Suspect silent = suspect(overdue_);
+  EXPECT_EQ(silent.reason, Suspect::Reason::kSilent);
+  EXPECT_DOUBLE_EQ(silent.silence, 5);
+  EXPECT_DOUBLE_EQ(silent.usual_gap * 1e9, model_->meanGap(kA));
+  EXPECT_DOUBLE_EQ(silent.longest_gap * 1e9, static_cast<double>(model_->longestGap(kA)));
+  EXPECT_LT(silent.usual_shortest, silent.usual_gap);
+  EXPECT_GT(silent.usual_longest, silent.usual_gap);
+}
+
+}  // namespace
+}  // namespace self_awareness::core::evidence

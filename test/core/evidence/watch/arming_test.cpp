@@ -1,0 +1,93 @@
+#include "core/evidence/watch/arming.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+
+namespace self_awareness::core::evidence {
+namespace {
+
+constexpr std::int64_t kSecond = 1000000000;
+constexpr double kUsual = -0.5;
+constexpr double kUnusual = 5;
+
+const Tuning kTuning;
+const Arming::Numbers kNumbers(kTuning);
+
+// Takes in so many events, or fewer until it is armed; returns their number.
+std::uint32_t addUntilArmed(Arming& arming, double surprise, std::uint32_t most) {
+  std::uint32_t added = 0;
+  for (; added < most && !arming.armed(); ++added) {
+    arming.add(surprise, kNumbers);
+  }
+  return added;
+}
+
+TEST(Arming, TakesABlockOfUsualEvents) {
+  Arming arming;
+  EXPECT_FALSE(arming.armed());
+  EXPECT_EQ(addUntilArmed(arming, kUsual, 1000), kNumbers.events);
+  EXPECT_FALSE(arming.failed());
+}
+
+TEST(Arming, ABlockAsAWholeMustBeUsual) {
+  Arming arming;
+  arming.add(kUnusual, kNumbers);
+  EXPECT_EQ(addUntilArmed(arming, kUsual, 1000), kNumbers.events - 1) << "one of thirty is";
+}
+
+TEST(Arming, EveryBlockThatIsNotUsualDoublesTheNextOne) {
+  Arming arming;
+  std::uint32_t block = kNumbers.events;
+  for (int failures = 1; failures < 5; ++failures) {
+    addUntilArmed(arming, kUnusual, block);
+    EXPECT_TRUE(arming.failed());
+    Arming again = arming;
+    EXPECT_EQ(addUntilArmed(again, kUsual, 100000), 2 * block);
+    block *= 2;
+  }
+}
+
+TEST(Arming, DoublingEnds) {
+  Arming arming;
+  addUntilArmed(arming, kUnusual, 100 * kNumbers.events << kNumbers.most_failures);
+  addUntilArmed(arming, kUsual, kNumbers.events << kNumbers.most_failures);
+  EXPECT_LE(addUntilArmed(arming, kUsual, 1U << 30U), kNumbers.events << kNumbers.most_failures);
+}
+
+TEST(Arming, WhatWasGoneIsArmedAsBefore) {
+  Arming arming;
+  addUntilArmed(arming, kUnusual, kNumbers.events);
+  addUntilArmed(arming, kUsual, 1000);
+  arming.disarm();
+  EXPECT_FALSE(arming.armed());
+  EXPECT_TRUE(arming.failed());
+  EXPECT_EQ(addUntilArmed(arming, kUsual, 1000), 2 * kNumbers.events);
+}
+
+TEST(Arming, WhatIsAbnormalForLongIsAcceptedOnce) {
+  Arming arming;
+  arming.arm();
+  std::int64_t end = 7 * kSecond;
+  const std::int64_t since = end;
+  for (; end < since + kNumbers.accept_after; end += kSecond) {
+    EXPECT_FALSE(arming.accepts(true, end, kNumbers));
+  }
+  EXPECT_TRUE(arming.accepts(true, end, kNumbers));
+  EXPECT_FALSE(arming.armed());
+  EXPECT_TRUE(arming.failed());
+  EXPECT_FALSE(arming.accepts(true, end + 1000 * kSecond, kNumbers)) << "it does not count";
+  EXPECT_EQ(addUntilArmed(arming, kUsual, 1000), 2 * kNumbers.events);
+}
+
+TEST(Arming, WhatIsNormalInBetweenIsNotAccepted) {
+  Arming arming;
+  arming.arm();
+  for (std::int64_t end = kSecond; end < 10 * kNumbers.accept_after; end += kSecond) {
+    EXPECT_FALSE(arming.accepts(end % (50 * kSecond) != 0, end, kNumbers));
+  }
+  EXPECT_TRUE(arming.armed());
+}
+
+}  // namespace
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,74 @@
+#include "core/evidence/watch/recent_events.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <utility>
+#include <vector>
+
+namespace self_awareness::core::evidence {
+namespace {
+
+constexpr std::size_t kTypes = 3;
+
+std::vector<std::pair<std::int64_t, EventId>> of(const RecentEvents& events, EventId a,
+                                                 EventId b) {
+  std::vector<std::pair<std::int64_t, EventId>> found;
+  for (const RecentEvents::Remembered& event : events.of(a, b)) {
+    found.emplace_back(event.stamp, event.id);
+  }
+  return found;
+}
+
+using Expected = std::vector<std::pair<std::int64_t, EventId>>;
+
+TEST(RecentEvents, AreThoseOfTwoTypesInTheirOrder) {
+  RecentEvents events(kTypes);
+  EXPECT_TRUE(events.of(0, 1).empty());
+  for (const Event& event :
+       std::vector<Event>{{10, 0}, {11, 2}, {12, 1}, {13, 1}, {14, 0}, {15, 2}, {16, 1}}) {
+    events.add(event, false);
+  }
+  EXPECT_EQ(of(events, 0, 1), (Expected{{10, 0}, {12, 1}, {13, 1}, {14, 0}, {16, 1}}));
+  EXPECT_EQ(of(events, 1, 0), of(events, 0, 1));
+  EXPECT_EQ(of(events, 2, 2), (Expected{{11, 2}, {15, 2}})) << "each once";
+}
+
+TEST(RecentEvents, KnowWhoMayHaveWaited) {
+  RecentEvents events(kTypes);
+  events.add({10, 0}, true);
+  events.add({11, 0}, false);
+  events.add({12, 0}, true);
+  std::vector<bool> stalled;
+  for (const RecentEvents::Remembered& event : events.of(0, 0)) {
+    stalled.push_back(event.stalled);
+  }
+  EXPECT_EQ(stalled, (std::vector<bool>{true, false, true}));
+}
+
+TEST(RecentEvents, AreTheLastOnesOnly) {
+  RecentEvents events(kTypes);
+  events.add({1, 1}, false);
+  for (std::size_t k = 1; k < RecentEvents::kMost; ++k) {
+    events.add({static_cast<std::int64_t>(10 + k), 0}, false);
+  }
+  ASSERT_EQ(events.of(1, 1).size(), 1U);
+  EXPECT_EQ(events.of(0, 1).size(), RecentEvents::kMost);
+  events.add({1000000, 0}, false);
+  EXPECT_TRUE(events.of(1, 1).empty());
+  EXPECT_EQ(events.of(0, 0).size(), RecentEvents::kMost);
+  events.add({1000001, 1}, false);
+  EXPECT_EQ(of(events, 1, 1), (Expected{{1000001, 1}})) << "the other one is too long ago";
+}
+
+TEST(RecentEvents, ARestartForgetsThem) {
+  RecentEvents events(kTypes);
+  events.add({10, 0}, false);
+  events.restart();
+  EXPECT_TRUE(events.of(0, 0).empty());
+  events.add({5, 0}, false);
+  EXPECT_EQ(of(events, 0, 0), (Expected{{5, 0}}));
+}
+
+}  // namespace
+}  // namespace self_awareness::core::evidence

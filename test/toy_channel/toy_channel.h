@@ -1,0 +1,23 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/evidence/channel/channel.h"
+
+namespace self_awareness::core::evidence {
+
+/// A channel that is no part of the method: it shows what one needs (docs/architecture.md). An
+/// event type that comes in bursts. Evidence is the number of its events in one window.
+class Bursts : public Channel {
+ public:
+  std::string name() const override { return "bursts"; }
+  Finding finding() const override { return Finding::kUnusual; }
+  std::vector<Track> watch(const Choice& choice) const override;
+  std::unique_ptr<const Expectation> expect(const Model& model, const Halves& halves,
+                                            std::vector<std::size_t> tracks) const override;
+  Margins margins(const Tuning& tuning) const override { return {tuning.least_margin, 2}; }
+};
+
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,255 @@
+// A channel is a pair of files and a line in a list: all else learns of it from there. This
+// program has one channel more than the method.
+
+#include "toy_channel.h"
+
+#include <diagnostic_msgs/DiagnosticArray.h>
+#include <gtest/gtest.h>
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
+
+#include <algorithm>
+#include <boost/filesystem.hpp>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../core/evidence/recordings.h"
+#include "core/evidence/channel/scorer.h"
+#include "core/evidence/lanes.h"
+#include "ros/verdict/replayed_monitor.h"
+#include "ros/verdict/verdict_message.h"
+#include "self_awareness/core/evidence/judge.h"
+#include "self_awareness/core/evidence/limits/cross_fit.h"
+#include "self_awareness/core/evidence/limits/limits.h"
+#include "self_awareness/core/training.h"
+#include "self_awareness/core/verdict/detector.h"
+#include "self_awareness/ros/model/evidence_message.h"
+#include "self_awareness/ros/model/model_bytes.h"
+#include "self_awareness/ros/model/model_file.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+constexpr char kBursts[] = "bursts";
+constexpr std::int64_t kLength = 100 * kSecond;
+constexpr std::int64_t kFault = 50 * kSecond;  // after the start of a recording
+constexpr int kAtOnce = 15;
+const std::vector<EventType> kRobot{{"/a", "/x", "T"}, {"/b", "/y", "T"}};
+constexpr int kRecordings = 4;
+
+// Two components that have nothing to do with each other; one of them may hold back what it has to
+// say for a moment, and then say it at once.
+Events robot(unsigned seed, bool burst) {
+  Events events = together({irregular(kA, 0, kLength, 200 * kMillisecond, seed),
+                            irregular(kB, 0, kLength, 50 * kMillisecond, seed + 100)});
+  if (burst) {
+    events.erase(std::remove_if(events.begin(), events.end(),
+                                [](const Event& event) {
+                                  return event.id == kA &&
+                                         std::abs(event.stamp - kFault) < 600 * kMillisecond;
+                                }),
+                 events.end());
+    events = together({events, timer(kA, kFault, kFault + kAtOnce * kMillisecond, kMillisecond)});
+  }
+  return later(events, seed * kStart);
+}
+
+/// What training and calibration make of recordings of normal operation.
+ros1::TrainedModel trained(const Tuning& tuning) {
+  Training::Parameters parameters;
+  parameters.window = kWindow;
+  Training training(parameters);
+  for (const EventType& type : kRobot) {
+    training.intern(type);
+  }
+  for (unsigned fingerprint = 0; fingerprint < kRecordings; ++fingerprint) {
+    Training::Recording recording;
+    recording.fingerprint = fingerprint;
+    training.startRecording(recording);
+    for (const Event& event : robot(fingerprint, false)) {
+      training.add(event);
+    }
+  }
+  TrainingCounts counts = training.finish();
+  ros1::TrainedModel model;
+  model.encoding = ros1::EncodingRules::defaults();
+  model.window = kWindow;
+  model.statistics = std::move(counts.delays);
+  model.evidence = std::move(counts.halves);
+  model.tuning = tuning;
+  model.stamp = ros::Time(1700000000, 0);
+  model.watch();
+  return model;
+}
+
+void calibrate(ros1::TrainedModel& model) {
+  const CrossFit models(model.watched);
+  LimitFinder finder(models.model(), {kWindow, 5 * kSecond, 0.5});
+  for (unsigned fingerprint = 0; fingerprint < kRecordings; ++fingerprint) {
+    finder.startRecording(models.judging(halfOf(fingerprint)));
+    for (const Event& event : robot(fingerprint, false)) {
+      finder.add(event);
+    }
+  }
+  finder.finish();
+  model.findings = finder.findings();
+  const LimitFinder::Found found = finder.find();
+  model.evidence_calibration = self_awareness::EvidenceCalibration();
+  model.evidence_calibration->method = self_awareness::EvidenceCalibration::CROSS_FIT;
+  model.evidence_calibration->limits = found.limits.tracks;
+  for (const Relation& relation : found.relations) {
+    model.evidence_calibration->relations.push_back(ros1::toMessage(relation));
+  }
+}
+
+class ToyChannelTest : public testing::Test {
+ protected:
+  ToyChannelTest() {
+    // The gaps would find a burst, too.
+    Tuning tuning;
+    tuning.without = {kOwnGaps};
+    ros1::TrainedModel learned = trained(tuning);
+    calibrate(learned);
+    ros1::saveModel(learned, file("robot.model"));
+    model_ = ros1::loadModel(file("robot.model"));
+    bursts_ = indexOf(model_.watched.tracks, kBursts, kA, kA);
+  }
+  ~ToyChannelTest() override { boost::filesystem::remove_all(folder_); }
+
+  std::string file(const std::string& name) const { return (folder_ / name).string(); }
+
+  /// Judges a recording; returns the verdicts with which an alarm began.
+  std::vector<Verdict> alarmsIn(const Events& events, const SharesHandler& shares = nullptr,
+                                ros1::ReplayedMonitor* monitor = nullptr) const {
+    std::vector<Verdict> alarms;
+    Detector detector(makeJudge(std::make_shared<Model>(model_.watched), model_.limits(),
+                                model_.window, std::make_shared<SourceGraph>(), nullptr, shares),
+                      model_.window, {}, [&](const Verdict& verdict) {
+                        if (monitor != nullptr) {
+                          monitor->onVerdict(verdict);
+                        }
+                        if (verdict.changed && verdict.alarm) {
+                          alarms.push_back(verdict);
+                        }
+                      });
+    for (const Event& event : events) {
+      const bool same_clock = detector.add(event);
+      if (monitor != nullptr) {
+        monitor->onEvent(event, same_clock);
+      }
+    }
+    detector.finish();
+    return alarms;
+  }
+  template <typename Message>
+  std::vector<Message> written(const std::string& topic) const {
+    const rosbag::Bag bag(file("results.bag"), rosbag::bagmode::Read);
+    rosbag::View view(bag, rosbag::TopicQuery(topic));
+    std::vector<Message> messages;
+    for (const rosbag::MessageInstance& instance : view) {
+      messages.push_back(*instance.instantiate<Message>());
+    }
+    return messages;
+  }
+
+  const boost::filesystem::path folder_ =
+      boost::filesystem::temp_directory_path() / boost::filesystem::unique_path();
+  const bool created_ = boost::filesystem::create_directory(folder_);
+  ros1::TrainedModel model_;
+  std::size_t bursts_ = 0;
+  const Events normal_ = robot(10, false);
+  const Events faulty_ = robot(11, true);
+  const std::string words_ = std::to_string(kAtOnce) + " at once, usually one every 0.2";
+};
+
+TEST_F(ToyChannelTest, IsWatchedAndHasALimit) {
+  ASSERT_LT(bursts_, model_.watched.tracks.size());
+  EXPECT_EQ(channelLabel(model_.watched.tracks[bursts_]), kBursts);
+  EXPECT_TRUE(isWatched(model_.watched.tracks, kBursts, kB, kB));
+  const double limit = model_.limits()->tracks.at(bursts_);
+  EXPECT_GE(limit, 4);
+  EXPECT_LT(limit, kAtOnce);
+  EXPECT_TRUE(ros1::fromMessage(model_.evidence_calibration->relations.at(bursts_)).watched);
+  EXPECT_GT(model_.findings.at(0).parts.at(0).evidence.at(bursts_), 0);
+}
+
+TEST_F(ToyChannelTest, CanBeSwitchedOffByItsName) {
+  Tuning tuning;
+  tuning.without = {kBursts};
+  EXPECT_NO_THROW(tuning.validate());
+  EXPECT_FALSE(isWatched(trained(tuning).watched.tracks, kBursts, kA, kA));
+}
+
+TEST_F(ToyChannelTest, ItsTracksAreInTheModelFile) {
+  const ros1::TrainedModel again = ros1::fromBytes(ros1::toBytes(model_));
+  for (const ros1::TrainedModel& model :
+       {ros1::loadModel(file("robot.model"), ros1::ModelCounts::kWatched), again}) {
+    EXPECT_EQ(indexOf(model.watched.tracks, kBursts, kA, kA), bursts_);
+    EXPECT_EQ(model.limits()->tracks.at(bursts_), model_.limits()->tracks[bursts_]);
+  }
+}
+
+TEST_F(ToyChannelTest, NormalOperationRaisesNoAlarm) {
+  EXPECT_TRUE(alarmsIn(normal_).empty());
+}
+
+TEST_F(ToyChannelTest, ABurstIsAnAlarmThatNamesItInItsOwnWords) {
+  const std::vector<Verdict> alarms = alarmsIn(faulty_);
+  ASSERT_EQ(alarms.size(), 1U);
+  EXPECT_EQ(alarms[0].evidence, kBursts);
+  ASSERT_EQ(alarms[0].suspects.size(), 1U);
+  const Suspect& suspect = alarms[0].suspects[0];
+  EXPECT_EQ(suspect.component, "/a");
+  EXPECT_TRUE(suspect.abnormal);
+  EXPECT_EQ(describe(suspect).rfind(words_, 0), 0U) << describe(suspect);
+}
+
+TEST_F(ToyChannelTest, TheReportDrawsItsShare) {
+  const auto model = std::make_shared<Model>(model_.watched);
+  const std::int64_t start = faulty_.front().stamp;
+  Lanes lanes(model, {start, start + kFault - kSecond, start + kFault + kSecond});
+  alarmsIn(faulty_,
+           [&](const Window& window, const Shares& shares) { lanes.add(window, shares); });
+  const std::vector<Lanes::Column>& columns = lanes.columns();
+  EXPECT_LT(columns[0].strongest_share, 1);
+  EXPECT_EQ(columns[1].track, bursts_);
+  EXPECT_FLOAT_EQ(columns[1].strongest_share,
+                  static_cast<float>(kAtOnce / model_.limits()->tracks[bursts_]));
+  EXPECT_EQ(columns[1].shares[model->componentIndex(kA)], columns[1].strongest_share);
+  EXPECT_LT(columns[2].strongest_share, 1);
+}
+
+TEST_F(ToyChannelTest, TheMonitorPublishesIt) {
+  {
+    ros1::ResultBag bag(file("results.bag"));
+    ros1::ReplayedMonitor monitor(bag, {"robot.model", true, model_.window, kRobot.size()}, kRobot,
+                                  faulty_.front().stamp);
+    alarmsIn(faulty_, nullptr, &monitor);
+    bag.close();
+  }
+  const auto alarms = written<self_awareness::SelfAwareness>("/self_awareness/alarm");
+  const auto alarm = std::find_if(alarms.begin(), alarms.end(), [](const auto& message) {
+    return message.level == self_awareness::SelfAwareness::ERROR;
+  });
+  ASSERT_NE(alarm, alarms.end());
+  EXPECT_EQ(alarm->evidence, kBursts);
+  ASSERT_EQ(alarm->suspects.size(), 1U);
+  EXPECT_EQ(alarm->suspects[0].source, "/a");
+  EXPECT_EQ(alarm->suspects[0].reason.rfind(words_, 0), 0U);
+  EXPECT_EQ(alarm->message.find("abnormal communication (bursts), /a on /x: " + words_), 0U)
+      << alarm->message;
+  bool said = false;
+  for (const auto& array : written<diagnostic_msgs::DiagnosticArray>("/diagnostics")) {
+    for (const diagnostic_msgs::DiagnosticStatus& status : array.status) {
+      said = said || (status.name == "self_awareness: /a" &&
+                      status.message.find(words_) != std::string::npos);
+    }
+  }
+  EXPECT_TRUE(said);
+}
+
+}  // namespace
+}  // namespace self_awareness::core::evidence
