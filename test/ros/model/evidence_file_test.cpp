@@ -197,11 +197,11 @@ TEST(TuningMessage, WhatIsMissingHasItsDefaultAndWhatIsUnknownIsLeftOut) {
 
 TEST(TuningMessage, AFileOfFormat1HasThreeNumbers) {
   self_awareness::Model message;
-  message.predecessors = 2;
+  message.predecessors = 5;
   message.least_effect = 7e6;  // [ns]
   message.least_effect_of_period = 0.01;
   core::evidence::Tuning expected;
-  expected.predecessors = 2;
+  expected.predecessors = 5;
   expected.least_effect = 0.007;
   expected.least_effect_of_period = 0.01;
   EXPECT_TRUE(tuningOf(message) == expected);

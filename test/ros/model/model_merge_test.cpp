@@ -129,7 +129,7 @@ TEST_F(ModelMergeTest, SaysWhatDoesNotFitAndLeavesTheModelAsItWas) {
   EXPECT_EQ(errorOf([](TrainedModel& model) { model.window = 200000000; }),
             "another length of the windows: 0.2 s, not 0.1 s");
   EXPECT_EQ(errorOf([](TrainedModel& model) { model.tuning.predecessors = 5; }),
-            "another tuning: predecessors is 5, not 3");
+            "another tuning: predecessors is 5, not 2");
   EXPECT_EQ(errorOf([](TrainedModel& model) { model.tuning.least_effect = 0.0025; }),
             "another tuning: least_effect is 0.0025, not 0.005");
   EXPECT_EQ(errorOf([](TrainedModel& model) { model.tuning.without = {"fewer"}; }),

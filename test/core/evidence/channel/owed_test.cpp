@@ -31,7 +31,6 @@ class OwedTest : public testing::Test {
     scorer_->explain(owed_, RecentEvents(2), suspect);
     return suspect;
   }
-  bool isUsable(double limit) const { return model_->expectation(owed_).isUsable(owed_, limit); }
 
   std::shared_ptr<const Model> model_;
   std::size_t owed_ = 0;
@@ -92,6 +91,13 @@ TEST_F(OwedTest, SeriesOfRequestsAreCounted) {
   EXPECT_EQ(evidenceAt(101 * kSecond), 0);
 }
 
+TEST_F(OwedTest, TheLeastLimitIsInSecondsOrInRequests) {
+  learn(8 * kSecond);
+  EXPECT_EQ(model_->leastLimit(owed_), model_->tuning().least_deadline);
+  learn(500 * kMillisecond);
+  EXPECT_EQ(model_->leastLimit(owed_), model_->tuning().least_requests);
+}
+
 TEST_F(OwedTest, ARestartForgetsRequests) {
   learn(8 * kSecond);
   scorer_->add({0, kB});
@@ -100,17 +106,6 @@ TEST_F(OwedTest, ARestartForgetsRequests) {
   scorer_->restart();
   scorer_->add({20 * kSecond, kB});
   EXPECT_EQ(evidenceAt(30 * kSecond), 0);
-}
-
-TEST_F(OwedTest, ALimitThatIsReachedTooLateIsOfNoUse) {
-  learn(8 * kSecond);
-  EXPECT_EQ(model_->leastLimit(owed_), model_->tuning().least_deadline);
-  EXPECT_TRUE(isUsable(20));
-  EXPECT_FALSE(isUsable(20.1));
-  learn(500 * kMillisecond);  // then a limit is a number of requests
-  EXPECT_EQ(model_->leastLimit(owed_), model_->tuning().least_requests);
-  EXPECT_TRUE(isUsable(30));
-  EXPECT_FALSE(isUsable(100));
 }
 
 }  // namespace

@@ -27,13 +27,12 @@ TEST_F(SilenceTest, GoesByTheTimeSinceTheLastOne) {
   }
 }
 
-TEST_F(SilenceTest, IsCertainOnceItHasLastedALittleLonger) {
-  const auto confirmation = toNanoseconds(model_->tuning().confirmation);
+TEST_F(SilenceTest, IsCertainOnceItHasLastedAWindowLonger) {
   const double limit = model_->overdue(kA, kSecond);
   add({now_, kA});
-  EXPECT_GT(overdueAt(kSecond + confirmation - kMillisecond), limit);
+  EXPECT_GT(overdueAt(kSecond + kWindow - kMillisecond), limit);
   EXPECT_FALSE(scorer_.isCertain(overdue_, limit));
-  EXPECT_GT(overdueAt(kSecond + confirmation + kMillisecond), limit);
+  EXPECT_GT(overdueAt(kSecond + kWindow + kMillisecond), limit);
   EXPECT_TRUE(scorer_.isCertain(overdue_, limit));
 }
 

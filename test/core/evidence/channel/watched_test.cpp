@@ -16,7 +16,7 @@ namespace self_awareness::core::evidence {
 namespace {
 
 constexpr std::int64_t kLength = 60 * kSecond;
-const double kFewestDelays = Tuning{}.fewest_delays;
+const double kFewestDelays = Tuning{}.fewest_gaps;
 
 std::vector<Track> chosen(const Statistics& first, const Statistics& second) {
   return watch(first, second).tracks;
@@ -78,7 +78,7 @@ TEST(EvidenceTracks, FewDelaysAreNoPair) {
   EXPECT_FALSE(isWatched(chosen(asked(100), asked(99)), kPairs, kB, kA));
 }
 
-TEST(EvidenceTracks, TheThreeBestPredecessorsAreWatched) {
+TEST(EvidenceTracks, TheBestPredecessorsAreWatched) {
   constexpr EventId kNumber = 6;
   const Events asked = irregular(0, 0, kLength, 200 * kMillisecond, 1);
   Statistics counts;
@@ -106,7 +106,7 @@ TEST(EvidenceTracks, TheThreeBestPredecessorsAreWatched) {
         (is_watched ? watched : others).push_back(gain(from, to));
       }
     }
-    ASSERT_EQ(watched.size(), 3U) << to;
+    ASSERT_EQ(watched.size(), Tuning{}.predecessors) << to;
     EXPECT_GE(*std::min_element(watched.begin(), watched.end()),
               *std::max_element(others.begin(), others.end()))
         << to;

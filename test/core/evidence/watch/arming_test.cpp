@@ -49,10 +49,11 @@ TEST(Arming, EveryBlockThatIsNotUsualDoublesTheNextOne) {
 }
 
 TEST(Arming, DoublingEnds) {
+  const std::uint32_t kMost = kNumbers.events << Arming::kMostDoublings;
   Arming arming;
-  addUntilArmed(arming, kUnusual, 100 * kNumbers.events << kNumbers.most_failures);
-  addUntilArmed(arming, kUsual, kNumbers.events << kNumbers.most_failures);
-  EXPECT_LE(addUntilArmed(arming, kUsual, 1U << 30U), kNumbers.events << kNumbers.most_failures);
+  addUntilArmed(arming, kUnusual, 100 * kMost);
+  addUntilArmed(arming, kUsual, kMost);
+  EXPECT_LE(addUntilArmed(arming, kUsual, 1U << 30U), kMost);
 }
 
 TEST(Arming, WhatWasGoneIsArmedAsBefore) {

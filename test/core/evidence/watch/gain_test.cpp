@@ -10,7 +10,7 @@ namespace self_awareness::core::evidence {
 namespace {
 
 constexpr std::int64_t kLength = 60 * kSecond;
-const double kFewestDelays = Tuning{}.fewest_delays;
+const double kFewestDelays = Tuning{}.fewest_gaps;
 
 // A comes at random, and B follows it.
 Statistics followed(unsigned seed) {
