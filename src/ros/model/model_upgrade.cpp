@@ -16,13 +16,16 @@ namespace {
 /// Removes from a table with a column for each track those of the tracks that do not stay.
 template <typename Value>
 void removeColumns(const std::vector<bool>& stays, std::vector<Value>& table) {
-  std::vector<Value> kept;
+  std::size_t kept = 0;
   for (std::size_t k = 0; k < table.size(); ++k) {
     if (stays[k % stays.size()]) {
-      kept.push_back(std::move(table[k]));
+      if (kept != k) {  // a string that is moved to itself is empty
+        table[kept] = std::move(table[k]);
+      }
+      ++kept;
     }
   }
-  table = std::move(kept);
+  table.resize(kept);
 }
 
 /// Name of the channel of a track; empty: it went with its rule.

@@ -94,7 +94,7 @@ def test_json_holds_preliminary_limits_and_the_graph(long_bags, tmp_path, capsys
 
 
 def test_the_tuning_of_the_training_stays_and_is_shown(long_bags, tmp_path, capsys) -> None:
-    output = train_tuned(long_bags[:1], tmp_path / 'm', least_effect=0.0025, predecessors=2)
+    output = train_tuned(long_bags[:1], tmp_path / 'm', least_effect=0.0025, predecessors=1)
     assert calibrate.main(['--model', output, '--normal', long_bags[1], '-o', output]) == 0
     capsys.readouterr()
     evidence = as_json(capsys, output)['evidence']
@@ -104,7 +104,7 @@ def test_the_tuning_of_the_training_stays_and_is_shown(long_bags, tmp_path, caps
     lines = capsys.readouterr().out.splitlines()
     assert [line.split()[0] for line in lines] == [each.name for each in Tuning.numbers()]
     assert [line.split()[:2] for line in lines if '(default: ' in line] == [
-        ['predecessors', '2'], ['least_effect', '0.0025']]
+        ['predecessors', '1'], ['least_effect', '0.0025']]
 
 
 def test_an_event_log_has_no_tuning(robot_bags, tmp_path, capsys) -> None:

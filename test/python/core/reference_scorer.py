@@ -19,6 +19,7 @@ MOST_OF_LIMIT = 1.5
 ACCEPT_AFTER = 60 * SECOND
 START_TIME = 60 * SECOND
 REGIME = 120 * SECOND
+SHORTEST_STALL = 50 * MS
 LONGEST_STALL = 700 * MS
 BETWEEN_STALLS = 30 * SECOND
 
@@ -100,7 +101,7 @@ class ReferenceScorer:
         self._requests: Dict[Track, List[int]] = defaultdict(list)  # without an answer
         self._watches = {track: Watch(self._caps.get(track, MOST_EVIDENCE))
                          for track in model.tracks if LABELS[track[0]] == 'pairs'}
-        self._usual_silence = model.longest_silence * 5 // 4
+        self._usual_silence = max(model.longest_silence * 5 // 4, SHORTEST_STALL)
         self._start: Optional[int] = None  # the first event
         self._newest: Optional[int] = None
         self._stall: Optional[Tuple[int, int]] = None  # the last one that is over

@@ -185,9 +185,8 @@ def test_what_is_in_the_model_already_is_not_added(bags: List[str], tmp_path: Pa
 
 def test_the_tuning_of_a_model_stays_when_more_is_added(bags: List[str], tmp_path: Path) -> None:
     def most_watched(model: TrainedModel) -> int:
-        # Every pair has two tracks.
         return max(Counter(track.to_id for track in EvidenceModel(model).tracks
-                           if track.channel == 'pairs').values()) // 2
+                           if track.name == 'pairs').values())
 
     base = train_tuned(bags[:2], tmp_path / 'base', predecessors=1)
     model = trained(bags[2:4], tmp_path / 'm', '--add-to', base, '--jobs', '2')
