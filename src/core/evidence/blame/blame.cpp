@@ -128,11 +128,11 @@ std::vector<Blame::Candidate> Blame::rootFirst(std::vector<Candidate> candidates
     components.push_back(model_->component(toOf(candidate)));
   }
   std::vector<Candidate> ordered;
-  for (const std::size_t next :
-       evidence::rootFirst(components, [&](const std::string&source, const std::string&other) {
-         return graph_->isUpstream(source, other) ||
-                (leads.count({source, other}) > 0 && !graph_->isUpstream(other, source));
-       })) {
+  const auto is_root = [&](const std::string& source, const std::string& other) {
+    return graph_->isUpstream(source, other) ||
+           (leads.count({source, other}) > 0 && !graph_->isUpstream(other, source));
+  };
+  for (const std::size_t next : evidence::rootFirst(components, is_root)) {
     ordered.push_back(candidates[next]);
   }
   return ordered;

@@ -85,10 +85,10 @@ std::vector<NeverHeard::Expected> NeverHeard::rootFirst(std::vector<Expected> mi
     components.push_back(component(expected.id));
   }
   std::vector<Expected> ordered;
-  for (const std::size_t next :
-       evidence::rootFirst(components, [&](const std::string&source, const std::string&other) {
-         return graph_->isUpstream(source, other);
-       })) {
+  const auto is_root = [&](const std::string& source, const std::string& other) {
+    return graph_->isUpstream(source, other);
+  };
+  for (const std::size_t next : evidence::rootFirst(components, is_root)) {
     ordered.push_back(missing[next]);
   }
   return ordered;

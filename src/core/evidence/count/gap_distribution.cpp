@@ -23,6 +23,10 @@ GapDistribution::GapDistribution(const Statistics::Type& type, const DelayHistog
     bins_[bin - 1].count += bins_[bin].count;
     bins_[bin - 1].sum += bins_[bin].sum;
   }
+  if (!bins_.empty()) {
+    log_all_ = std::log(bins_.front().sum + longest_);
+    log_longest_ = std::log(longest_);
+  }
 }
 
 double GapDistribution::overdue(std::int64_t age) const {
@@ -30,14 +34,13 @@ double GapDistribution::overdue(std::int64_t age) const {
     return 0;
   }
   const auto a = static_cast<double>(std::max<std::int64_t>(age, 0));
-  const double all = std::log(bins_.front().sum + longest_);
   const auto longer =
       std::upper_bound(bins_.begin(), bins_.end(), a,
                        [](double length, const Bin& bin) { return length < bin.middle; });
   // If no gap was longer: exp(-a / b) would underflow long before its logarithm.
-  return longer != bins_.end()
-             ? all - std::log(longer->sum - a * longer->count + longest_ * std::exp(-a / longest_))
-             : all - std::log(longest_) + a / longest_;
+  return longer != bins_.end() ? log_all_ - std::log(longer->sum - a * longer->count +
+                                                     longest_ * std::exp(-a / longest_))
+                               : log_all_ - log_longest_ + a / longest_;
 }
 
 double GapDistribution::logSurvival(std::int64_t age) const {

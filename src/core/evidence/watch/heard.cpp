@@ -18,20 +18,14 @@ void Heard::restart() {
   first_stamps_.assign(stamps_.size(), 0);
   numbers_.assign(stamps_.size(), 0);
   number_ = 0;
+  rates_valid_ = false;
 }
 
 void Heard::closeWindow(std::int64_t end) {
   window_end_ = end;
   counts_.close();
   stalls_.closeWindow(end, number_ > 0);
-}
-
-std::optional<std::uint32_t> Heard::rate(EventId id) const {
-  // A topic that began within the span has too few for that reason alone.
-  const bool valid = counts_.full() && hasSeen(id) &&
-                     window_end_ - first_stamps_[id] >= kRateSpan &&
-                     !stalls_.disturbsRates(window_end_);
-  return valid ? std::optional<std::uint32_t>(recentCount(id)) : std::nullopt;
+  rates_valid_ = counts_.full() && !stalls_.disturbsRates(end);
 }
 
 }  // namespace self_awareness::core::evidence

@@ -55,7 +55,8 @@ class Heard {
   const std::int64_t* stamps() const { return stamps_.data(); }
   /// Numbers of the last events in the recording, from 1, by id; 0: there was none.
   const std::uint64_t* numbers() const { return numbers_.data(); }
-  bool hasSeen(EventId id) const { return numbers_.at(id) > 0; }
+  /// @param id of the model
+  bool hasSeen(EventId id) const { return numbers_[id] > 0; }
   /// Stamp of the last event of a type [ns]; none before the first.
   std::optional<std::int64_t> lastSeen(EventId id) const {
     return hasSeen(id) ? std::optional<std::int64_t>(stamps_[id]) : std::nullopt;
@@ -74,7 +75,11 @@ class Heard {
   std::int64_t window() const { return window_; }
   /// Events of a type in the last kRateSpan; none where that says nothing: since the start, or the
   /// first event of the type, less time has passed, or the robot stood still.
-  std::optional<std::uint32_t> rate(EventId id) const;
+  std::optional<std::uint32_t> rate(EventId id) const {
+    // A topic that began within the span has too few for that reason alone.
+    const bool valid = rates_valid_ && hasSeen(id) && window_end_ - first_stamps_[id] >= kRateSpan;
+    return valid ? std::optional<std::uint32_t>(counts_.counts()[id]) : std::nullopt;
+  }
   /// Events of a type in the last kRateSpan.
   std::uint32_t recentCount(EventId id) const { return counts_.counts().at(id); }
 
@@ -88,6 +93,7 @@ class Heard {
   std::vector<std::uint64_t> numbers_;      // of the last event in the recording, by id; 0: none
   std::uint64_t number_ = 0;
   std::int64_t window_end_ = 0;  // [ns]
+  bool rates_valid_ = false;     // at the end of the last window
 };
 
 }  // namespace self_awareness::core::evidence

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "self_awareness/core/evidence/count/statistics.h"
 #include "self_awareness/core/stream/event.h"
 
 namespace self_awareness::core::evidence {
@@ -21,11 +20,6 @@ void Stalls::closeWindow(std::int64_t end, bool heard) {
   // While all are silent, none is more so than the others.
   const std::int64_t silence = heard ? end - last_stamp_ : 0;
   now_ = silence > usual_ && silence <= longest_ ? silence : 0;
-}
-
-std::int64_t Stalls::standstillSince(std::int64_t stamp, std::int64_t end) const {
-  const bool over = now_ > 0 || end >= until_ + kRateSpan || stamp > from_;
-  return over ? now_ : at_ - from_;
 }
 
 bool Stalls::disturbsRates(std::int64_t end) const {

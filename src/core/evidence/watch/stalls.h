@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "self_awareness/core/evidence/count/statistics.h"
 #include "self_awareness/core/evidence/tuning.h"
 
 namespace self_awareness::core::evidence {
@@ -31,7 +32,10 @@ class Stalls {
   /// @param heard whether there was an event
   void closeWindow(std::int64_t end, bool heard);
   /// How long the robot stood still since a stamp [ns], at the end of a window.
-  std::int64_t standstillSince(std::int64_t stamp, std::int64_t end) const;
+  std::int64_t standstillSince(std::int64_t stamp, std::int64_t end) const {
+    const bool over = now_ > 0 || end >= until_ + kRateSpan || stamp > from_;
+    return over ? now_ : at_ - from_;
+  }
   /// Whether counts of the last kRateSpan before the end of a window [ns] have a part of a stall.
   bool disturbsRates(std::int64_t end) const;
   void restart();

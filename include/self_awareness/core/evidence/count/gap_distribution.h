@@ -31,11 +31,14 @@ class GapDistribution {
     double sum = 0;  // [ns]
   };
 
+  // What every window needs comes first: of many event types, fetching it takes most of the time.
+  std::vector<Bin> bins_;                   // the shortest gaps first
+  double longest_ = 0;                      // [ns]
+  double log_all_ = 0;                      // log of the sum of all gaps and the longest one
+  double log_longest_ = 0;                  // log of the longest gap
   double number_;                           // of gaps
   std::vector<std::int64_t> longest_gaps_;  // [ns], the longest first
   DelayHistogram gaps_;
-  std::vector<Bin> bins_;  // the shortest gaps first
-  double longest_ = 0;     // [ns]
 };
 
 }  // namespace self_awareness::core::evidence
