@@ -16,7 +16,7 @@ NeverHeard::NeverHeard(const Model& model, const Limits& limits,
       graph_(std::move(graph)) {
   const Statistics& statistics = model.statistics();
   for (EventId id = 0; id < model.size(); ++id) {
-    Expected expected{id, std::numeric_limits<std::int64_t>::max(), 0, 0, 0};
+    Expected expected{id, std::numeric_limits<std::int64_t>::max(), 0, 0, 0, 0};
     bool always = !statistics.recordings().empty() &&
                   static_cast<double>(statistics.type(id).gaps) >= model.tuning().fewest_gaps;
     for (const Statistics::Recording& recording : statistics.recordings()) {
@@ -32,8 +32,8 @@ NeverHeard::NeverHeard(const Model& model, const Limits& limits,
     }
     if (always) {
       const double times = model.tuning().due_times;
-      expected.due = std::llround(
-          times * static_cast<double>(std::max(expected.longest, model.longestGap(id))));
+      expected.after_settling = std::llround(times * static_cast<double>(expected.longest));
+      expected.least = std::llround(times * static_cast<double>(model.longestGap(id)));
       all_.push_back(expected);
     }
   }
@@ -63,7 +63,7 @@ void NeverHeard::closeWindow(std::int64_t end, std::int64_t settle_time) {
   const std::int64_t passed = end - start_.value_or(end);
   const auto first_due = std::stable_partition(
       waiting_.begin(), waiting_.end(),
-      [&](const Expected& expected) { return passed <= expected.due + settle_time; });
+      [&](const Expected& expected) { return passed <= expected.due(settle_time); });
   if (first_due != waiting_.end()) {
     missing_.insert(missing_.end(), first_due, waiting_.end());
     waiting_.erase(first_due, waiting_.end());
@@ -71,7 +71,7 @@ void NeverHeard::closeWindow(std::int64_t end, std::int64_t settle_time) {
   }
   share_ = 0;
   for (Expected& expected : missing_) {
-    const std::int64_t due = expected.due + settle_time;
+    const std::int64_t due = expected.due(settle_time);
     expected.share =
         static_cast<double>(passed) /
         std::max(alarm_times_ * static_cast<double>(due), static_cast<double>(due + alarm_later_));

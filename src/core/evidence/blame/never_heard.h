@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -40,10 +41,16 @@ class NeverHeard {
   /// An event type that comes after every start.
   struct Expected {
     EventId id = 0;
-    std::int64_t shortest = 0;  // usual time from the start to its first event [ns]
-    std::int64_t longest = 0;   // [ns]
-    std::int64_t due = 0;       // after the start and the settling [ns]
-    double share = 0;           // of its limit that its absence has reached, once it is due
+    std::int64_t shortest = 0;        // usual time from the start to its first event [ns]
+    std::int64_t longest = 0;         // [ns]
+    std::int64_t after_settling = 0;  // it may come so long after that [ns]
+    std::int64_t least = 0;           // and at least so long after the start [ns]
+    double share = 0;                 // of its limit that its absence has reached, once it is due
+
+    /// When it is due after the start [ns].
+    std::int64_t due(std::int64_t settle_time) const {
+      return std::max(after_settling + settle_time, least);
+    }
   };
 
   const std::string& component(EventId id) const;
