@@ -9,10 +9,13 @@
 #include <topic_tools/shape_shifter.h>
 
 #include <functional>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "model/model_file_case.h"
+#include "ros/bag/bag_index.h"
 #include "self_awareness/FileVersion.h"
 #include "self_awareness/ros/bag/bag_reader.h"
 #include "self_awareness/ros/bag/event_log_packer.h"
@@ -138,14 +141,16 @@ void dropFirstField(const std::string& line, std::size_t bytes, Stored& stored) 
 
 TEST_F(FileVersionTest, EachFileBeginsWithItsVersion) {
   for (const auto& [file, kind] : {std::pair{model(), kModelFile}, {log(), kEventLogFile}}) {
+    EXPECT_EQ(readBagConnections(file).front().topic, kVersionTopic);
     const rosbag::Bag bag(file, rosbag::bagmode::Read);
-    rosbag::View view(bag);
+    rosbag::View view(bag, rosbag::TopicQuery(kVersionTopic));
+    ASSERT_EQ(view.size(), 1U) << file;
     const auto version = view.begin()->instantiate<FileVersion>();
     ASSERT_TRUE(version) << file;
     EXPECT_EQ(*version, versionOf(kind));
-    EXPECT_EQ(readFileVersion(file, kind), versionOf(kind));
     EXPECT_GE(version->format, 2U);
     EXPECT_FALSE(version->package.empty());
+    EXPECT_EQ(readFileVersion(file, kind), versionOf(kind));
   }
   EXPECT_EQ(loadModel(model()).version, versionOf(kModelFile));
 }

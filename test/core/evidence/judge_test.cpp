@@ -299,8 +299,10 @@ TEST_F(EvidenceJudgeOfStrangersTest, OtherUnknownEventsAreNamedLast) {
 TEST_F(EvidenceJudgeOfStrangersTest, WhoTakesThePlaceOfAnotherIsNoStranger) {
   // A node with another name in every start.
   const std::vector<Suspect> named = suspectsAfter({"/b_17", "/y", "T"}, 50 * kMillisecond, false);
-  ASSERT_EQ(named.size(), 2U);
+  ASSERT_EQ(named.size(), 3U);
   EXPECT_EQ(named[0].id, kA);
+  EXPECT_EQ(heard_->at(named[1].id).source, "/b_17");
+  EXPECT_EQ(named[2].reason, Suspect::Reason::kNeverHeard) << "whose place it is";
 }
 
 }  // namespace

@@ -69,6 +69,26 @@ TEST_F(BadModelsTest, AFlippedBitOrALyingLengthAsksForNoMemory) {
   }
 }
 
+TEST_F(BadModelsTest, AModelOfAnotherLayoutIsNoMoreBelieved) {
+  std::string whole = plainModel();
+  const std::string md5 = ros::message_traits::md5sum<Message>();
+  for (std::size_t at = whole.find(md5); at != std::string::npos; at = whole.find(md5, at + 1)) {
+    whole.replace(at, md5.size(), std::string(md5.size(), '0'));
+  }
+  ASSERT_EQ(errorOf(whole), "");
+  std::mt19937 random(2);
+  for (int round = 0; round < 1000; ++round) {
+    const std::size_t at = random() % (whole.size() - sizeof(std::uint32_t));
+    std::string bytes = whole;
+    if (round % 2 == 0) {
+      bytes[at] = static_cast<char>(bytes[at] ^ 1 << random() % 8);
+    } else {
+      bytes.replace(at, sizeof(std::uint32_t), bag_bytes::bytesOf(0x3FFFFFFFU));
+    }
+    errorOf(bytes);
+  }
+}
+
 TEST_F(BadModelsTest, NumbersThatCannotBeAreRefused) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInf = std::numeric_limits<double>::infinity();

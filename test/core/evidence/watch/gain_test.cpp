@@ -10,7 +10,7 @@ namespace self_awareness::core::evidence {
 namespace {
 
 constexpr std::int64_t kLength = 60 * kSecond;
-const double kFewestDelays = Tuning{}.fewest_gaps;
+constexpr double kFewestDelays = 50;
 
 // A comes at random, and B follows it.
 Statistics followed(unsigned seed) {
