@@ -26,8 +26,8 @@ evidence::Tuning tuningOf(const self_awareness::Model& message) {
   evidence::Tuning tuning;
   const self_awareness::Tuning& given = message.tuning;
   check(given.names.size() == given.values.size(), "its tuning has names without numbers");
-  if (given.names.empty()) {  // format 1
-    evidence::set(tuning, "predecessors", message.predecessors);
+  if (given.names.empty()) {  // format 1, where an event type was one of its own predecessors
+    evidence::set(tuning, "predecessors", std::max(message.predecessors, 1U) - 1);
     evidence::set(tuning, "least_effect", message.least_effect / 1e9);
     evidence::set(tuning, "least_effect_of_period", message.least_effect_of_period);
   }
