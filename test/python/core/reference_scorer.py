@@ -179,10 +179,10 @@ class ReferenceScorer:
     def _accept(self, end: int) -> None:
         for watch in self._watches.values():
             since = watch.abnormal_since
-            if not watch.is_abnormal():
+            if not watch.arming.armed or watch.sum <= 0.0:
                 watch.abnormal_since = None
             elif since is None:
-                watch.abnormal_since = end
+                watch.abnormal_since = end if watch.is_abnormal() else None
             elif end - since >= ACCEPT_AFTER:
                 watch.arming.failures += 1
                 watch.disarm()

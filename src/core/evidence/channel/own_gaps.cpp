@@ -113,8 +113,8 @@ void OwnGapsState::capAt(const std::vector<double>& limits) {
 void OwnGapsState::closeWindow(const Heard& heard, std::vector<double>& evidence) {
   for (std::size_t number = 0; number < gaps_.size(); ++number) {
     OfType& own = gaps_[number];
-    if (has_limits_ &&
-        own.arming.accepts(own.sum.isAbnormal(numbers_), heard.windowEnd(), arming_)) {
+    if (has_limits_ && own.arming.accepts(own.sum.isAbnormal(numbers_), own.sum.value <= 0,
+                                          heard.windowEnd(), arming_)) {
       own.sum.clear();
     }
     evidence[expected_.tracks()[number]] = own.arming.armed() ? own.sum.value : 0;

@@ -141,8 +141,8 @@ void PairsState::capAt(const std::vector<double>& limits) {
 void PairsState::closeWindow(const Heard& heard, std::vector<double>& evidence) {
   for (std::uint32_t number = 0; number < pairs_.size(); ++number) {
     Pair& pair = pairs_[number];
-    if (has_limits_ && arming_[number].accepts(pair.sum.isAbnormal(numbers_), heard.windowEnd(),
-                                               arming_numbers_)) {
+    if (has_limits_ && arming_[number].accepts(pair.sum.isAbnormal(numbers_), pair.sum.value <= 0,
+                                               heard.windowEnd(), arming_numbers_)) {
       clear(number);
     }
     evidence[track_of_[number]] = pair.armed ? pair.sum.value : 0;

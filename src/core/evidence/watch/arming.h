@@ -52,13 +52,14 @@ class Arming {
   void disarm() { *this = Arming(failures_); }
   /// Takes in a window.
   /// @param abnormal whether it is beyond its limit
+  /// @param calm whether nothing unusual is left of it: in between, it is as it was
   /// @param end of the window [ns]
   /// @return whether it has changed for good: it is disarmed
-  bool accepts(bool abnormal, std::int64_t end, const Numbers& numbers) {
-    if (!armed_ || !abnormal) {
+  bool accepts(bool abnormal, bool calm, std::int64_t end, const Numbers& numbers) {
+    if (!armed_ || calm) {
       abnormal_since_ = 0;
     } else if (abnormal_since_ == 0) {
-      abnormal_since_ = end;
+      abnormal_since_ = abnormal ? end : 0;
     } else if (end - abnormal_since_ >= numbers.accept_after) {
       *this = Arming(failures_ + 1);
       return true;

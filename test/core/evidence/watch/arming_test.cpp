@@ -72,12 +72,12 @@ TEST(Arming, WhatIsAbnormalForLongIsAcceptedOnce) {
   std::int64_t end = 7 * kSecond;
   const std::int64_t since = end;
   for (; end < since + kNumbers.accept_after; end += kSecond) {
-    EXPECT_FALSE(arming.accepts(true, end, kNumbers));
+    EXPECT_FALSE(arming.accepts(true, false, end, kNumbers));
   }
-  EXPECT_TRUE(arming.accepts(true, end, kNumbers));
+  EXPECT_TRUE(arming.accepts(true, false, end, kNumbers));
   EXPECT_FALSE(arming.armed());
   EXPECT_TRUE(arming.failed());
-  EXPECT_FALSE(arming.accepts(true, end + 1000 * kSecond, kNumbers)) << "it does not count";
+  EXPECT_FALSE(arming.accepts(true, false, end + 1000 * kSecond, kNumbers)) << "it does not count";
   EXPECT_EQ(addUntilArmed(arming, kUsual, 1000), 2 * kNumbers.events);
 }
 
@@ -85,7 +85,25 @@ TEST(Arming, WhatIsNormalInBetweenIsNotAccepted) {
   Arming arming;
   arming.arm();
   for (std::int64_t end = kSecond; end < 10 * kNumbers.accept_after; end += kSecond) {
-    EXPECT_FALSE(arming.accepts(end % (50 * kSecond) != 0, end, kNumbers));
+    const bool calm = end % (50 * kSecond) == 0;
+    EXPECT_FALSE(arming.accepts(!calm, calm, end, kNumbers));
+  }
+  EXPECT_TRUE(arming.armed());
+}
+
+TEST(Arming, WhatGoesOnBelowItsLimitIsNotOver) {
+  Arming arming;
+  arming.arm();
+  EXPECT_FALSE(arming.accepts(true, false, kSecond, kNumbers));
+  EXPECT_FALSE(arming.accepts(false, false, kNumbers.accept_after, kNumbers));
+  EXPECT_TRUE(arming.accepts(false, false, kNumbers.accept_after + kSecond, kNumbers));
+}
+
+TEST(Arming, WhatNeverWasAbnormalIsNotAccepted) {
+  Arming arming;
+  arming.arm();
+  for (std::int64_t end = kSecond; end < 10 * kNumbers.accept_after; end += kSecond) {
+    EXPECT_FALSE(arming.accepts(false, false, end, kNumbers));
   }
   EXPECT_TRUE(arming.armed());
 }
