@@ -21,6 +21,7 @@ class Talker:
 
     def __init__(self, topic: str, message_class=String, **options) -> None:
         self.publisher = rospy.Publisher(topic, message_class, queue_size=10, **options)
+        self.published = 0  # messages so far
         self._message = message_class()
         self._stop = threading.Event()
         self._thread = threading.Thread(target=self._run, daemon=True)
@@ -28,6 +29,7 @@ class Talker:
     def _run(self) -> None:
         while not self._stop.wait(0.05):
             self.publisher.publish(self._message)
+            self.published += 1
 
     def __enter__(self) -> 'Talker':
         self._thread.start()

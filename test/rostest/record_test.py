@@ -37,12 +37,16 @@ class RecordTest(unittest.TestCase):
         name = rospy.get_name()
         with Talker('/a') as heard, Talker('/b'), self.launch('what:=bags', *arguments):
             await_condition('a bag', self.active, 30)
-            await_condition('the recorder listens', heard.publisher.get_num_connections, 30)
+            await_condition('the recorder listens', lambda: set(subscribers('/a')) - {name}
+                            and heard.publisher.get_num_connections(), 30)
+            # A connection is there before its first message has arrived.
+            before = heard.published
             await_condition('a graph', self.edges, 30)
             # Somebody who comes during the recording belongs to it, too.
             late = rospy.Subscriber('/a', String, lambda _: None)
             await_condition('it grows', lambda: (name, '/a', name) in self.edges(), 30)
             late.unregister()
+            await_condition('messages', lambda: heard.published >= before + 20, 30)
         bag, = glob.glob(self.folder + '/run*.bag')
         return bag
 
