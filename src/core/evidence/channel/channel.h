@@ -32,6 +32,11 @@ struct Choice {
   bool isJudged(EventId id) const {
     return static_cast<double>(both.type(id).gaps) >= tuning.fewest_gaps;
   }
+  /// Whether the delays from `from` to `to` say enough of `to`, and are enough.
+  bool saysEnough(EventId from, EventId to) const {
+    return gains(from, to) >= tuning.least_gain &&
+           static_cast<double>(both.total(from, to)) >= tuning.fewest_delays_of_pair;
+  }
 };
 
 /// Evidence of one channel in a recording: what it must remember of the events.

@@ -149,8 +149,7 @@ void OwnGapsState::explain(std::size_t track, const Heard& heard, const RecentEv
 std::vector<Track> OwnGaps::watch(const Choice& choice) const {
   std::vector<Track> tracks;
   for (EventId id = 0; id < choice.both.size(); ++id) {
-    if (choice.gains(id, id) >= choice.tuning.least_gain &&
-        static_cast<double>(choice.both.total(id, id)) >= choice.tuning.fewest_delays_of_pair) {
+    if (choice.saysEnough(id, id)) {
       tracks.push_back({this, id, id});
     }
   }

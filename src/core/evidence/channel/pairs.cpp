@@ -191,11 +191,9 @@ std::vector<Track> Pairs::watch(const Choice& choice) const {
   for (EventId to = 0; to < choice.both.size(); ++to) {
     std::vector<std::tuple<bool, double, EventId>> best;
     for (EventId from = 0; from < choice.both.size(); ++from) {
-      const double gain = choice.gains(from, to);
-      if (from != to && gain >= choice.tuning.least_gain &&
-          static_cast<double>(choice.both.total(from, to)) >=
-              choice.tuning.fewest_delays_of_pair) {
-        best.emplace_back(!choice.relations.delays(from, to).watched, -gain, from);
+      if (from != to && choice.saysEnough(from, to)) {
+        best.emplace_back(!choice.relations.delays(from, to).watched, -choice.gains(from, to),
+                          from);
       }
     }
     std::sort(best.begin(), best.end());
