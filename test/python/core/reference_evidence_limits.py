@@ -18,20 +18,21 @@ MOST_MARGIN = 4.0
 MOST_GAP_MARGIN = 1.6
 MOST_OWN_MARGIN = 2.0
 MOST_TAIL_MARGIN = 2.0
-SCALE = {'timers': 0.05}
+SCALE = {'timers': 0.05, 'fast timers': 0.05}
 """By pool; 0.2 elsewhere."""
 REGULAR = 1.5
+FAST = 2
 LONGEST_WAIT = 10 * SECOND
 MOST_MEAN_GAPS = 3.0
-TAIL_GAPS = 32
-POOLS = ('timers', 'others', 'rate', 'pairs', 'deadlines')
+PAUSES = 20
+POOLS = ('fast timers', 'timers', 'others', 'rate', 'pairs', 'deadlines')
 CHUNK = 120 * SECOND
 LEAST_GAIN_LEFT = 0.7
 
 LEAST_SHARE = 0.5
 PRIOR_EXCEEDANCES = 5
-NOT_SEEN = 0.5
-"""Exceedances that may come."""
+FEWEST = 0.5
+"""Exceedances, where there was none."""
 LEAST_EXCESS = math.log(1.1)
 MANY_TRACKS = 20
 BEYOND = math.log(1.25)
@@ -97,7 +98,7 @@ class HeldOut:
         """Return the margin that is exceeded so often an hour."""
         margin = least
         for hours, logs, scale in self._levels:
-            expected = (len(logs) + NOT_SEEN) / (hours * rate)
+            expected = max(len(logs), FEWEST) / (hours * rate)
             log = LEAST_EXCESS + scale * max(math.log(expected), 0.0)
             if self._many:
                 log = min(log, max(logs, default=0.0) + BEYOND)
@@ -258,7 +259,9 @@ class ReferenceLimits:
         longest = sorted(gap for gap in self._longest_gaps(kind) if gap > 0)
         second = longest[-2:][0] - self._window
         mean = self._model.both.mean_gap(kind)
-        return 'others' if second >= REGULAR * mean else 'timers'
+        if second >= REGULAR * mean:
+            return 'others'
+        return 'fast timers' if mean < FAST * self._window else 'timers'
 
     def _find(self) -> List[float]:
         with_gaps = [Part(start, (seen.end - seen.start) / HOUR)
@@ -274,7 +277,7 @@ class ReferenceLimits:
                 pools.setdefault(self._pool(index), []).append(index)
         limits = [math.nan] * len(self._model.tracks)
         for pool, tracks in pools.items():
-            of_gaps = pool in ('timers', 'others')
+            of_gaps = pool in ('fast timers', 'timers', 'others')
             seen = [(self._longest_gaps(self._model.tracks[index][1]) if of_gaps
                      else self._largest(index), self._model.least_limit(self._model.tracks[index]))
                     for index in tracks]
@@ -308,8 +311,8 @@ class ReferenceLimits:
             if not recording.trained_on:
                 gaps += [int(gap) for gap in self._longest_gaps_of_parts(number, kind)]
         usual = REGULAR * self._model.both.mean_gap(kind)
-        longest = [gap for gap in sorted(gaps)[-TAIL_GAPS:] if gap > usual]
-        shortest = float(longest[0]) if len(longest) == TAIL_GAPS else usual
+        longest = [gap for gap in sorted(gaps)[-PAUSES:] if gap > usual]
+        shortest = float(longest[0]) if len(longest) == PAUSES else usual
         excess = sum(gap - shortest for gap in longest) / max(len(longest), 1)
         return Tail(shortest, excess, len(longest) / hours)
 

@@ -79,6 +79,8 @@ struct Tuning {
   double most_own_margin = 2;
   double most_tail_margin = 2;
   double regular = 1.5;
+  double fast = 2;
+  double pauses = 20;
   double most_of_training = 10;
   double least_rate_limit = 3;
   double least_deadline = 0.5;

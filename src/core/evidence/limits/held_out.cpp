@@ -78,8 +78,8 @@ double HeldOut::margin(double rate, double least) const {
   double margin = least;
   for (const Level& level : levels_) {
     if (level.eligible_hours > 0) {
-      // What was not seen yet may come: half an exceedance more, as by Jeffreys' prior of a rate.
-      const double expected = (level.exceedances + 0.5) / (level.eligible_hours * rate);
+      // What was not seen yet may come: half an exceedance stands for it.
+      const double expected = std::max(level.exceedances, 0.5) / (level.eligible_hours * rate);
       const double logarithm =
           std::log(tuning_.least_excess) + scale(level) * std::max(std::log(expected), 0.0);
       const double most = static_cast<double>(tracks_) >= tuning_.many_tracks

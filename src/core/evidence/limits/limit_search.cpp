@@ -44,13 +44,13 @@ double budgetOf(const LimitFinder::Findings& findings, const LimitFinder::Parame
                   1 / (most_of_training * hoursOf(windows, parameters.window)));
 }
 
-/// Number of pools that share the budget: silences have two.
+/// Number of pools that share the budget: silences have three.
 double numberOfPools() {
   std::set<std::string> labels;
   for (const Channel* channel : channels()) {
     labels.insert(channel->finding() == Finding::kSilent ? "" : channel->label());
   }
-  return static_cast<double>(labels.size() + 1);
+  return static_cast<double>(labels.size() + 2);
 }
 
 }  // namespace
@@ -136,11 +136,14 @@ LimitSearch::Kind LimitSearch::kindOfGaps(const Seen& seen) const {
   std::vector<double> sorted = seen.largest;
   std::sort(sorted.rbegin(), sorted.rend());
   const double second = sorted.size() > 1 && sorted[1] > 0 ? sorted[1] : sorted[0];
-  return second - window() >= tuning_.regular * mean_gap ? Kind::kOthers : Kind::kTimers;
+  if (second - window() >= tuning_.regular * mean_gap) {
+    return Kind::kOthers;
+  }
+  return mean_gap < tuning_.fast * window() ? Kind::kFastTimers : Kind::kTimers;
 }
 
 void LimitSearch::search(Kind kind, const std::vector<Seen>& tracks, double share) {
-  const bool timers = kind == Kind::kTimers;
+  const bool timers = kind == Kind::kTimers || kind == Kind::kFastTimers;
   const bool gaps = kind != Kind::kEvidence;
   HeldOut held_out(gaps ? with_gaps_ : judged_, timers ? tuning_.scale_of_timers : tuning_.scale,
                    tuning_);
@@ -183,6 +186,8 @@ GapTail LimitSearch::tailOf(const Seen& seen) const {
   for (const LimitFinder::Recording::Part* part : gap_parts_) {
     gaps.addGap(part->longest_gaps[id]);
   }
+  gaps.longest_gaps.resize(
+      std::min(gaps.longest_gaps.size(), static_cast<std::size_t>(tuning_.pauses)));
   return {gaps.longest_gaps, sumOf(with_gaps_), tuning_.regular * model_.meanGap(id)};
 }
 

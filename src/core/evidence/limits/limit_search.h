@@ -28,9 +28,9 @@ class LimitSearch {
 
  private:
   /// Tracks whose values exceed those of other recordings in the same way share what they show:
-  /// silences of timers, and of what comes irregularly; else those of
+  /// silences of fast timers, of other timers, and of what comes irregularly; else those of
   /// channels with one label.
-  enum class Kind { kTimers, kOthers, kEvidence };
+  enum class Kind { kFastTimers, kTimers, kOthers, kEvidence };
   using Pool = std::pair<Kind, std::string>;
   /// A track and its largest values.
   struct Seen {
