@@ -166,6 +166,8 @@ void bindModel(py::module& m) {
           "stamp", [](const TrainedModel& self) { return self.stamp.toNSec(); }, "[ns]")
       .def_readonly("version", &TrainedModel::version,
                     "FileVersion of its file; of this version if it has none")
+      .def_readonly("left_out", &TrainedModel::left_out,
+                    "channels that its file watches and this version does not have")
       .def_readwrite("calibration", &TrainedModel::calibration,
                      "of the paper's detector; None: not calibrated")
       .def_readwrite("findings", &TrainedModel::findings,

@@ -103,7 +103,7 @@ def test_a_model_says_for_ever_what_it_said(folder: Path) -> None:
             assert alarm['suspects'][0] == before['suspects'][0]
 
 
-def test_a_model_of_format_1_loses_the_tracks_that_nobody_judges_any_more() -> None:
+def test_a_model_of_format_1_loses_the_tracks_that_nobody_judges_any_more(capsys) -> None:
     path = FORMATS[0] / 'robot.model'
     with rosbag.Bag(str(path)) as bag:
         message = next(message for _, message, _ in bag.read_messages()
@@ -121,6 +121,7 @@ def test_a_model_of_format_1_loses_the_tracks_that_nobody_judges_any_more() -> N
                                      model.evidence_calibration.limits)]
     assert repr(found) == repr(stay)  # NaN is equal to nothing
     assert len(model.evidence_calibration.relations) == len(found)
+    assert 'left out: answers, slow delays: this version' in printed(capsys, path)
 
 
 @every_format

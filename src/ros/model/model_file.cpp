@@ -110,9 +110,10 @@ TrainedModel read(ModelMessages& messages, ModelCounts counts) {
   const std::size_t models =
       messages.forEach<self_awareness::Model>(kTopic, [&](self_awareness::Model message) {
         checkEffort(message);
-        upgrade(message, version.format);
+        std::set<std::string> left_out = upgrade(message, version.format);
         model = fromMessage(message);
         model->version = version;
+        model->left_out = std::move(left_out);
       });
   check(models <= 1, "it holds more than one model");
   if (!model) {

@@ -29,20 +29,6 @@ void requireSame(const std::string& what, std::int64_t one, std::int64_t other,
   }
 }
 
-void requireSameTuning(const core::evidence::Tuning& one, const core::evidence::Tuning& other) {
-  for (const core::evidence::TuningNumber& number : core::evidence::tuningNumbers()) {
-    if (one.*number.value != other.*number.value) {
-      std::ostringstream problem;
-      problem << std::setprecision(12) << "another tuning: " << number.name << " is "
-              << other.*number.value << ", not " << one.*number.value;
-      throw std::invalid_argument(problem.str());
-    }
-  }
-  if (one.without != other.without) {
-    throw std::invalid_argument("another tuning: other channels are switched off");
-  }
-}
-
 void requireSameEncoding(const EncodingRules& one, const EncodingRules& other) {
   const auto require = [](const std::string& what, bool same) {
     if (!same) {
@@ -71,7 +57,6 @@ void merge(TrainedModel& model, const TrainedModel& other) {
   requireSame("length of the windows", model.window, other.window, "0 s");
   requireSame("bin size", binning.bin_size, others.bin_size, "0 s");
   requireSame("horizon", horizon(binning), horizon(others), "none");
-  requireSameTuning(model.tuning, other.tuning);
   if (model.hasEvidence() != other.hasEvidence() || model.hasDelays() != other.hasDelays()) {
     throw std::invalid_argument("trained for another detector: " + other.detectors() + ", not " +
                                 model.detectors() + "; train both with the same --detector");
@@ -89,7 +74,11 @@ void merge(TrainedModel& model, const TrainedModel& other) {
   }
   model.recordings.insert(model.recordings.end(), other.recordings.begin(),
                           other.recordings.end());
+  if (model.tuning != other.tuning) {
+    model.tuning = {};
+  }
   model.watched = {};
+  model.left_out.clear();
   model.findings.clear();
   model.calibration.reset();
   model.evidence_calibration.reset();

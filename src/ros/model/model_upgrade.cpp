@@ -1,6 +1,5 @@
 #include "model_upgrade.h"
 
-#include <algorithm>
 #include <map>
 #include <string>
 #include <utility>
@@ -28,21 +27,22 @@ void removeColumns(const std::vector<bool>& stays, std::vector<Value>& table) {
   table.resize(kept);
 }
 
-/// Name of the channel of a track; empty: it went with its rule.
+/// Name of the channel of a track, also of one that went with its rule.
 std::string nameInFormat1(const self_awareness::Track& track) {
-  static const std::map<std::uint8_t, std::string> kNames{
-      {0, "overdue"}, {1, "fewer"}, {2, "more"}, {6, "deadlines"}};
+  static const std::map<std::uint8_t, std::string> kNames{{0, "overdue"}, {1, "fewer"},
+                                                          {2, "more"},    {4, "slow delays"},
+                                                          {5, "answers"}, {6, "deadlines"}};
   constexpr std::uint8_t kDelays = 3;
   if (track.channel == kDelays) {
     return track.to_id == track.from_id ? "own gaps" : "pairs";
   }
   const auto name = kNames.find(track.channel);
-  return name == kNames.end() ? "" : name->second;
+  return name == kNames.end() ? "channel " + std::to_string(track.channel) : name->second;
 }
 
 }  // namespace
 
-void upgrade(self_awareness::Model& message, std::uint32_t format) {
+std::set<std::string> upgrade(self_awareness::Model& message, std::uint32_t format) {
   if (format == 1) {
     for (self_awareness::Track& track : message.tracks) {
       track.name = nameInFormat1(track);
@@ -51,16 +51,21 @@ void upgrade(self_awareness::Model& message, std::uint32_t format) {
   // The format says nothing of the channels that the writer's method had: what one of them watches
   // stands beside the others, and says nothing of them.
   const std::vector<std::string> channels = core::evidence::channelNames();
-  removeOtherTracks(message, {channels.begin(), channels.end()});
+  return removeOtherTracks(message, {channels.begin(), channels.end()});
 }
 
-void removeOtherTracks(self_awareness::Model& message, const std::set<std::string>& channels) {
+std::set<std::string> removeOtherTracks(self_awareness::Model& message,
+                                        const std::set<std::string>& channels) {
+  std::set<std::string> removed;
   std::vector<bool> stays;
   for (const self_awareness::Track& track : message.tracks) {
     stays.push_back(channels.count(track.name) > 0);
+    if (!stays.back()) {
+      removed.insert(track.name);
+    }
   }
-  if (std::all_of(stays.begin(), stays.end(), [](bool stay) { return stay; })) {
-    return;
+  if (removed.empty()) {
+    return removed;
   }
   const std::size_t tracks = stays.size();
   removeColumns(stays, message.tracks);
@@ -78,6 +83,7 @@ void removeOtherTracks(self_awareness::Model& message, const std::set<std::strin
     removeColumns(stays, calibration.limits);
     removeColumns(stays, calibration.relations);
   }
+  return removed;
 }
 
 }  // namespace self_awareness::ros1

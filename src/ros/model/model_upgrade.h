@@ -12,12 +12,15 @@ namespace self_awareness::ros1 {
 /// bytes were laid out anew already (MessageUpgrade): fields that the file lacks are zero or
 /// empty. What is watched on channels that this version does not have is left out.
 /// @param format of the file; 1: it says nothing
+/// @return the names of these channels
 /// @throw std::invalid_argument as removeOtherTracks()
-void upgrade(self_awareness::Model& message, std::uint32_t format);
+std::set<std::string> upgrade(self_awareness::Model& message, std::uint32_t format);
 
 /// Removes what is watched on channels of other names, and all that is said by track: in findings,
 /// limits and relations.
+/// @return the names of the channels of what was removed
 /// @throw std::invalid_argument if what is said by track does not fit the tracks
-void removeOtherTracks(self_awareness::Model& message, const std::set<std::string>& channels);
+std::set<std::string> removeOtherTracks(self_awareness::Model& message,
+                                        const std::set<std::string>& channels);
 
 }  // namespace self_awareness::ros1

@@ -160,6 +160,8 @@ def _print_evidence(evidence: Dict[str, Any]) -> None:
     print(f'evidence     tracks: {counts(evidence["tracks"])}')
     if evidence['not_judged']:
         print(f'  not judged: {"; ".join(evidence["not_judged"])}')
+    if evidence['left_out']:
+        print(f'  left out: {", ".join(evidence["left_out"])}: this version does not judge them')
     calibration = evidence['calibration']
     if calibration is None:
         print('limits       not calibrated (rosrun self_awareness calibrate)')

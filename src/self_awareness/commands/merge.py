@@ -12,9 +12,8 @@ from self_awareness.reporting.training_report import print_summary
 from self_awareness.training.many_bags import DistinctRecordings
 
 _EPILOG = """\
-The models must agree in encoding, windows, bins, horizon and tuning. What they learned adds up, as
-if one training had seen all of their recordings; limits and thresholds do not: calibrate the
-result.
+The models must agree in encoding, windows, bins and horizon. What they learned adds up, as if one
+training had seen all of their recordings; limits and thresholds do not: calibrate the result.
 example:
   merge robot1.model robot2.model robot3.model -o fleet.model
 """
@@ -32,8 +31,11 @@ def _merge(arguments: argparse.Namespace) -> None:
     known = DistinctRecordings()
     first, *others = arguments.models
     merged = _load(first, known)
+    tuning = merged.tuning
+    same_tuning = True
     for path in others:
         model = _load(path, known)
+        same_tuning = same_tuning and model.tuning == tuning
         try:
             merged.merge(model)
         except ValueError as error:
@@ -42,6 +44,9 @@ def _merge(arguments: argparse.Namespace) -> None:
         merged.watch()
     merged.save(arguments.output)
     print_summary(merged)
+    if not same_tuning:
+        print("the models' numbers of the method differ, as those of different versions do: the "
+              'result has those of this version (rosrun self_awareness info --tuning)')
     print(f'written: {arguments.output}, without limits and threshold; calibrate it again (rosrun '
           'self_awareness calibrate)')
 

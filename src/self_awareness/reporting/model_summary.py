@@ -68,6 +68,7 @@ def _evidence(model: TrainedModel, evidence: EvidenceModel) -> Dict[str, Any]:
                        if model.gaps(index) < model.fewest_gaps],
         'tuning': {number.name: model.tuning.get(number.name) for number in Tuning.numbers()},
         'without': model.tuning.without,
+        'left_out': sorted(model.left_out),
         'calibration': None,
     }
     if model.evidence_calibration is not None:

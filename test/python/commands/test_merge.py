@@ -8,7 +8,7 @@ from typing import Callable, List
 import pytest
 from conftest import learned, robot, train_tuned
 
-from self_awareness import TrainedModel
+from self_awareness import TrainedModel, Tuning
 from self_awareness.commands import merge, train
 
 
@@ -89,13 +89,14 @@ def test_what_does_not_fit_is_told(options: List[str], told: str, model_file: st
     assert not (tmp_path / 'm').exists()
 
 
-def test_another_tuning_is_told_by_name(model_file: str, robot_bags, tmp_path: Path,
-                                        capsys) -> None:
-    other = train_tuned(robot_bags[1:], tmp_path / 'other', 'both', least_effect=0.003)
-    error = error_of([model_file, other, '-o', str(tmp_path / 'm')], capsys)
-    assert (f'{other}: does not fit {model_file}: another tuning: least_effect is 0.003, '
-            'not 0.005') in error
-    assert not (tmp_path / 'm').exists()
+def test_models_of_different_tuning_get_that_of_this_version(robot_bags, tmp_path: Path,
+                                                             capsys) -> None:
+    paths = [train_tuned([bag], tmp_path / str(number), least_effect=0.003 + number / 1000)
+             for number, bag in enumerate(robot_bags)]
+    output = str(tmp_path / 'm')
+    assert merge.main([*paths, '-o', output]) == 0
+    assert 'the result has those of this version' in capsys.readouterr().out
+    assert TrainedModel.load(output).tuning == Tuning()
 
 
 def test_models_of_the_same_tuning_add_up(robot_bags, tmp_path: Path) -> None:

@@ -78,7 +78,8 @@ TEST_F(ModelUpgradeTest, TracksOfOtherChannelsGoWithAllThatIsSaidOfThem) {
   const TrainedModel model = calibratedModel();
   self_awareness::Model message = withUnknownTracks(model);
   ASSERT_EQ(message.tracks.size(), 2 * model.watched.tracks.size());
-  upgrade(message, kModelFile.format);
+  const std::set<std::string> left_out = upgrade(message, kModelFile.format);
+  EXPECT_EQ(left_out.size(), 1U);
   const self_awareness::Model expected = toMessage(model);
   EXPECT_EQ(message.tracks, expected.tracks);
   EXPECT_EQ(message.findings, expected.findings);
@@ -134,7 +135,7 @@ TEST_F(ModelUpgradeTest, ChannelsHadNumbersInFormat1) {
 TEST_F(ModelUpgradeTest, SlowDelaysAndAnswersOfFormat1AreLeftOut) {
   self_awareness::Model message;
   message.tracks = {numbered(4, 1, 0), numbered(0, 1, 1), numbered(5, 1, 0), numbered(200, 1, 0)};
-  upgrade(message, 1);
+  EXPECT_EQ(upgrade(message, 1), (std::set<std::string>{"answers", "channel 200", "slow delays"}));
   ASSERT_EQ(message.tracks.size(), 1U);
   EXPECT_EQ(message.tracks[0].name, "overdue");
 }

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -51,6 +52,8 @@ struct TrainedModel {
   /// Of the file that it was read from; of this version if there is none. When it is saved, only
   /// its method stays: that of the oldest counts and limits in it.
   self_awareness::FileVersion version = versionOf(kModelFile);
+  /// Channels that its file watches and this version does not have: they are not judged.
+  std::set<std::string> left_out;
 
   const core::Vocabulary& vocabulary() const { return statistics.vocabulary(); }
   /// Whether the model holds the counts of the paper's detector.

@@ -44,13 +44,21 @@ double budgetOf(const LimitFinder::Findings& findings, const LimitFinder::Parame
                   1 / (most_of_training * hoursOf(windows, parameters.window)));
 }
 
-/// Number of pools that share the budget: silences have three.
-double numberOfPools() {
+/// Number of pools that share the budget: silences have three, others one for each label.
+double numberOfPools(const Tuning& tuning) {
   std::set<std::string> labels;
+  double of_silences = 0;
   for (const Channel* channel : channels()) {
-    labels.insert(channel->finding() == Finding::kSilent ? "" : channel->label());
+    if (!tuning.isOn(channel->name())) {
+      continue;
+    }
+    if (channel->finding() == Finding::kSilent) {
+      of_silences = 3;
+    } else {
+      labels.insert(channel->label());
+    }
   }
-  return static_cast<double>(labels.size() + 2);
+  return static_cast<double>(labels.size()) + of_silences;
 }
 
 }  // namespace
@@ -70,7 +78,8 @@ LimitSearch::LimitSearch(const Model& model, const LimitFinder::Findings& findin
       pools[pool].push_back(std::move(seen));
     }
   }
-  const double share = budgetOf(findings, parameters, tuning_.most_of_training) / numberOfPools();
+  const double share =
+      budgetOf(findings, parameters, tuning_.most_of_training) / numberOfPools(tuning_);
   for (const auto& [pool, tracks] : pools) {
     search(pool.first, tracks, share);
   }
