@@ -164,7 +164,6 @@ def train(processes: Processes, robot: Robot, seconds: float, model: Path) -> No
     if trained.evidence_calibration is None:
         calibration = EvidenceCalibration()
         calibration.limits = [_NEVER_REACHED] * len(EvidenceModel(trained).tracks)
-        calibration.linker_limit = _NEVER_REACHED
         trained.evidence_calibration = calibration
         trained.save(str(model))
 
