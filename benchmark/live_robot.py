@@ -162,10 +162,15 @@ def train(processes: Processes, robot: Robot, seconds: float, model: Path) -> No
     bag.unlink()
     trained = TrainedModel.load(str(model))
     if trained.evidence_calibration is None:
-        calibration = EvidenceCalibration()
-        calibration.limits = [_NEVER_REACHED] * len(EvidenceModel(trained).tracks)
-        trained.evidence_calibration = calibration
+        judge_without_alarms(trained)
         trained.save(str(model))
+
+
+def judge_without_alarms(model: TrainedModel) -> None:
+    """Give a model limits that are never reached."""
+    calibration = EvidenceCalibration()
+    calibration.limits = [_NEVER_REACHED] * len(EvidenceModel(model).tracks)
+    model.evidence_calibration = calibration
 
 
 def write_synthetic_model(model: Path, types: int) -> None:

@@ -7,6 +7,7 @@ events are those of numpy_scoring.py: timers of 50 ms to 2 s with chains of two 
 from __future__ import annotations
 
 import argparse
+import itertools
 import json
 import os
 import resource
@@ -19,7 +20,7 @@ from typing import Any, Dict, List
 
 import page
 from numpy_scoring import SIZES, events_of
-from self_awareness import EncodingRules, EventType, TrainedModel, Training
+from self_awareness import EncodingRules, EventType, Recording, TrainedModel, Training, half_of
 
 _DOCS = Path(__file__).resolve().parents[1] / 'docs'
 _SECONDS = 60.0
@@ -32,14 +33,23 @@ def _train(types: int, path: str) -> Dict[str, Any]:
     kinds = [EventType(f'/node_{kind // 3}', f'/topic_{kind}', 'T') for kind in range(types)]
     training = Training(EncodingRules())
     before = time.process_time()
-    middle = int(stamps[0] + stamps[-1]) // 2
-    training.add_events(kinds, stamps, ids, middle)
+    middle = len(stamps) // 2
+    for half, part in enumerate((slice(middle), slice(middle, None))):
+        training.add_events(kinds, stamps[part], ids[part], _recording_of(half))
     model = training.model()
     trained = time.process_time()
     model.save(path)
     return {'events': len(stamps), 'train_s': trained - before,
             'save_s': time.process_time() - trained,
             'train_peak_bytes': 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss}
+
+
+def _recording_of(half: int) -> Recording:
+    """Return a recording that belongs to a half of the training."""
+    recording = Recording()
+    recording.fingerprint = next(number for number in itertools.count()
+                                 if half_of(number) == half)
+    return recording
 
 
 def _load(path: str, watched_only: bool) -> Dict[str, Any]:

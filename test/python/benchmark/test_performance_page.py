@@ -11,10 +11,12 @@ from typing import Iterator
 
 import pytest
 
+from self_awareness import EvidenceModel, TrainedModel
+
 ROOT = Path(__file__).resolve().parents[3]
 DOCS = ROOT / 'docs'
 REPORTS = {'core': 'core_report', 'models': 'models', 'bags': 'bags_report',
-           'live': 'live_report', 'predecessors': 'predecessors', 'report': 'report',
+           'live': 'live_report', 'report': 'report',
            'event_logs': 'event_logs'}
 
 
@@ -39,6 +41,25 @@ def test_tables_are_those_of_the_committed_numbers(section: str) -> None:
     page = (DOCS / 'performance.md').read_text()
     written = re.search(f'<!-- {section} -->\n(.*)\n<!-- /{section} -->', page, re.DOTALL)
     assert written and written[1] == module(REPORTS[section]).markdown(result)
+
+
+def test_model_files_of_the_benchmark_watch_something(tmp_path: Path) -> None:
+    path = str(tmp_path / 'model')
+    row = module('models')._train(15, path)
+    assert row['events'] > 1000 and row['train_s'] > 0
+    assert module('models')._load(path, watched_only=True)['types'] == 15
+    assert {track.channel for track in EvidenceModel(TrainedModel.load(path)).tracks} >= {
+        'overdue', 'pairs'}
+
+
+def test_a_live_model_without_limits_gets_some_that_are_never_reached(tmp_path: Path) -> None:
+    live_robot = module('live_robot')
+    live_robot.write_synthetic_model(tmp_path / 'model', 12)
+    model = TrainedModel.load(str(tmp_path / 'model'))
+    live_robot.judge_without_alarms(model)
+    model.save(str(tmp_path / 'model'))
+    limits = TrainedModel.load(str(tmp_path / 'model')).evidence_calibration.limits
+    assert limits and set(limits) == {1e6}
 
 
 def test_jobs_are_compared_with_one_process_where_they_were_measured() -> None:
