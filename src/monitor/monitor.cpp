@@ -245,7 +245,10 @@ void Monitor::publishDiagnostics() {
   MonitorState state;
   state.communication.model = parameters_.model;
   state.communication.model_error = model_error_;
-  state.communication.calibrated = session_ && session_->calibrated();
+  if (session_) {
+    state.communication.calibrated = session_->calibrated();
+    state.communication.coverage = session_->coverage();
+  }
   state.communication.take(announcer_.alarm(), heard_.report(moment, live_events_->dropped()),
                            moment.ros);
   state.subscriptions = discovered.subscriptions;

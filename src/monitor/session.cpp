@@ -19,6 +19,9 @@ Session::Session(ros1::TrainedModel trained, const MonitorParameters& parameters
       encoder_(std::make_shared<ros1::Encoder>(
           trained_.encoding, [this](const core::EventType& type) { return intern(type); })),
       detector_(makeJudge(parameters), trained_.window, parameters.detector, std::move(handler)) {
+  if (parameters.method == MonitorParameters::Method::kEvidence) {
+    coverage_ = trained_.coverage();
+  }
   // The judge has made of them what it needs.
   trained_.dropCounts();
   trained_.watched = {};

@@ -37,6 +37,8 @@ class Session {
   std::int64_t window() const { return trained_.window; }
   /// Whether there are limits, or a threshold, for the detector that was chosen.
   bool calibrated() const { return calibrated_; }
+  /// How soon faults of the model's components are found; empty: not known of this detector.
+  const std::vector<core::evidence::Coverage>& coverage() const { return coverage_; }
   /// Event types of the model, by their ids.
   const std::vector<core::EventType>& types() const { return trained_.vocabulary().types(); }
   /// Event types of the model, and after them the unknown ones as they appeared.
@@ -66,6 +68,7 @@ class Session {
 
   ros1::TrainedModel trained_;
   bool calibrated_;
+  std::vector<core::evidence::Coverage> coverage_;
   std::shared_ptr<core::SourceGraph> graph_;  // of training, and what addEdges() added
   std::shared_ptr<core::Vocabulary> vocabulary_;
   std::shared_ptr<const ros1::Encoder> encoder_;

@@ -124,6 +124,22 @@ void bindModel(py::module& m) {
           [](EvidenceCalibration& self, std::int64_t ns) { self.stamp = ros1::toRosTime(ns); },
           "[ns]");
 
+  using core::evidence::Coverage;
+  py::class_<Coverage>(m, "Coverage", "How soon faults of a component are found.")
+      .def_readonly("component", &Coverage::component)
+      .def_readonly("period", &Coverage::period,
+                    "mean gap of what comes most often [s]; 0: nothing came twice")
+      .def_readonly("gaps", &Coverage::gaps, "in training, of what has most of them")
+      .def_readonly("death_found_after", &Coverage::death_found_after,
+                    "longest time from its last event to the alarm [s]; None: its silence is not\n"
+                    "judged")
+      .def_readonly("owes_answers", &Coverage::owes_answers,
+                    "whether an answer that it owes is missed")
+      .def_readonly("late_answers", &Coverage::late_answers, "whether they are found")
+      .def_readonly("more_starts", &Coverage::more_starts,
+                    "of the robot, after which they would be; 0: no number helps")
+      .def_property_readonly("is_watched", &Coverage::isWatched, "whether its death is found");
+
   using ros1::TrainedModel;
   py::class_<TrainedModel>(m, "TrainedModel", "All that a model file holds: counts.")
       .def_static(
@@ -148,6 +164,8 @@ void bindModel(py::module& m) {
             return self;
           },
           "A small copy, with only the counts that the evidence detector judges by.")
+      .def("coverage", &TrainedModel::coverage,
+           "Coverage of each component by the evidence detector; none: not calibrated.")
       .def_property_readonly(
           "tuning", [](const TrainedModel& self) { return self.tuning; },
           "a copy of the numbers of the method")

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bindings.h"
@@ -29,16 +30,18 @@ void bindResults(py::module& m) {
                               "recording was made; given to what judges the recording.")
       .def(py::init([](ResultBag& bag, const std::string& model_path,
                        const ros1::TrainedModel& trained, bool calibrated,
-                       const std::vector<core::EventType>& event_types, std::int64_t start) {
+                       const std::vector<core::EventType>& event_types, std::int64_t start,
+                       std::vector<core::evidence::Coverage> coverage) {
              const ReplayedMonitor::Model model{model_path, calibrated, trained.window,
-                                                trained.vocabulary().size()};
+                                                trained.vocabulary().size(), std::move(coverage)};
              return std::make_unique<ReplayedMonitor>(bag, model, event_types, start);
            }),
            py::arg("bag"), py::arg("model_path"), py::arg("trained"), py::arg("calibrated"),
-           py::arg("event_types"), py::arg("start"), py::keep_alive<1, 2>(),
+           py::arg("event_types"), py::arg("start"),
+           py::arg("coverage") = std::vector<core::evidence::Coverage>(), py::keep_alive<1, 2>(),
            "model_path: what the diagnostics call the model. calibrated: there are limits, or a\n"
            "threshold, for the detector. event_types: by id, those of the model first.\n"
-           "start: of the recording [ns].");
+           "start: of the recording [ns]. coverage: of the components; none: not known.");
 }
 
 }  // namespace self_awareness::python

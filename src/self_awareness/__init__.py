@@ -18,6 +18,7 @@ from self_awareness._core import (  # noqa: F401
     BagError,
     BagSummary,
     Calibration,
+    Coverage,
     DetectorParameters,
     EncodingRules,
     EventLogWriter,

@@ -4,7 +4,7 @@ from __future__ import annotations
 from contextlib import contextmanager
 from typing import Callable, Iterator, Optional, Sequence
 
-from self_awareness import ReplayedMonitor, ResultBag, TrainedModel, summarise_bag
+from self_awareness import Coverage, ReplayedMonitor, ResultBag, TrainedModel, summarise_bag
 from self_awareness.output_files import replacing
 from self_awareness.recordings import BagPart, RecordingEvents
 
@@ -38,13 +38,14 @@ def check_apart(path: Optional[str], parts: Sequence[BagPart]) -> None:
 
 @contextmanager
 def result_bag(path: Optional[str], model_path: str, trained: TrainedModel,
-               calibrated: bool) -> Iterator[Replay]:
+               calibrated: bool, coverage: Sequence[Coverage] = ()) -> Iterator[Replay]:
     """Write a result bag, which replaces `path` at the end of the block, or nothing.
 
     Args:
         path: of the result bag; None: write none.
         model_path: what the diagnostics call the model.
         calibrated: there are limits, or a threshold, for the detector that judges.
+        coverage: how soon it finds faults of the components; none: not known.
 
     Raises:
         BagError: it cannot be written.
@@ -58,7 +59,7 @@ def result_bag(path: Optional[str], model_path: str, trained: TrainedModel,
         def replay(recording: RecordingEvents) -> ReplayedMonitor:
             start, _ = recording.part.span(recording.origin, recording.end)
             return ReplayedMonitor(bag, model_path, trained, calibrated, recording.event_types,
-                                   start)
+                                   start, list(coverage))
 
         yield replay
         bag.close()

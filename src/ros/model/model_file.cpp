@@ -261,6 +261,19 @@ std::optional<core::evidence::Limits> TrainedModel::limits() const {
   return evidence_calibration ? std::optional(limitsOf(*evidence_calibration)) : std::nullopt;
 }
 
+std::vector<core::evidence::Coverage> TrainedModel::coverage() const {
+  if (!evidence_calibration) {
+    return {};
+  }
+  requireWatched();
+  std::vector<core::evidence::Relation> relations;
+  for (const self_awareness::Relation& relation : evidence_calibration->relations) {
+    relations.push_back(fromMessage(relation));
+  }
+  return core::evidence::coverageOf(core::evidence::Model(watched),
+                                    limitsOf(*evidence_calibration), relations, window);
+}
+
 self_awareness::Model toMessage(const TrainedModel& model) {
   self_awareness::Model message;
   message.stamp = model.stamp;

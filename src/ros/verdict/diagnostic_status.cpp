@@ -46,6 +46,38 @@ std::string number(double value) {
   return text;
 }
 
+namespace {
+
+// Where nobody looks, it is not quiet.
+void tellNotWatched(const std::vector<core::evidence::Coverage>& coverage,
+                    DiagnosticStatusWrapper& status) {
+  std::size_t number = 0;
+  std::string names;
+  for (const core::evidence::Coverage& each : coverage) {
+    if (!each.isWatched()) {
+      names += (number++ > 0 ? ", " : "") + each.component;
+    }
+  }
+  if (number > 0) {
+    if (status.level == DiagnosticStatus::OK) {
+      status.summary(DiagnosticStatus::OK, status.message + "; " + std::to_string(number) +
+                                               " of " + std::to_string(coverage.size()) +
+                                               " components are not watched");
+    }
+    status.add("not watched", names);
+  }
+}
+
+// How soon its death is found.
+std::string foundAfter(const core::evidence::Coverage& component) {
+  if (component.death_found_after) {
+    return number(*component.death_found_after);
+  }
+  return component.owes_answers ? "when it is asked" : "not watched";
+}
+
+}  // namespace
+
 void tellCommunication(const CommunicationState& state, DiagnosticStatusWrapper& status) {
   const self_awareness::SelfAwareness& last = state.last;
   if (!state.model_error.empty()) {
@@ -64,6 +96,7 @@ void tellCommunication(const CommunicationState& state, DiagnosticStatusWrapper&
                               " of the " + std::to_string(heard) +
                               " event types that were heard: is it of this robot?");
     }
+    tellNotWatched(state.coverage, status);
     status.add("score", number(last.score));
     status.add("threshold", number(last.threshold));
     status.add("events in the window", last.events);
@@ -98,6 +131,11 @@ void tellComponent(const CommunicationState& state, const std::string& name,
     status.add("last heard [s ago]", number(*component.last_heard));
   }
   status.add("events a second", number(component.rate));
+  for (const core::evidence::Coverage& each : state.coverage) {
+    if (each.component == name) {
+      status.add("death found after [s]", foundAfter(each));
+    }
+  }
 }
 
 void addComponents(const CommunicationState& state, DiagnosticStatuses& statuses) {

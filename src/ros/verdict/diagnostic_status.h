@@ -5,9 +5,11 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "heard_tally.h"
 #include "self_awareness/SelfAwareness.h"
+#include "self_awareness/core/evidence/limits/coverage.h"
 
 namespace self_awareness::ros1 {
 
@@ -18,10 +20,11 @@ struct CommunicationState {
   std::string model;        ///< path
   std::string model_error;  ///< why there is none; empty: it is loaded
   bool calibrated = false;
-  bool started = false;                ///< something was said of a window
-  self_awareness::SelfAwareness last;  ///< the verdict on the last window, if started
-  bool busy = false;                   ///< the machine is to blame, no component
-  double level_for = 0;                ///< how long it has had its level [s]
+  std::vector<core::evidence::Coverage> coverage;  ///< of the components; empty: not known
+  bool started = false;                            ///< something was said of a window
+  self_awareness::SelfAwareness last;              ///< the verdict on the last window, if started
+  bool busy = false;                               ///< the machine is to blame, no component
+  double level_for = 0;                            ///< how long it has had its level [s]
   HeardReport heard;
 
   /// Takes over what the alarm says, and what was heard.

@@ -43,6 +43,7 @@ void ReplayedMonitor::writeDiagnostics() {
   CommunicationState state;
   state.model = model_.path;
   state.calibrated = model_.calibrated;
+  state.coverage = model_.coverage;
   state.take(announcer_.alarm(), heard_.report(moment(), 0), now_);
   bag_.writeDiagnostics(now_, toDiagnostics(state, ResultBag::kNode, now_));
 }

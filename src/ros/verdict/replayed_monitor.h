@@ -23,8 +23,9 @@ class ReplayedMonitor {
   struct Model {
     std::string path;
     bool calibrated = false;
-    std::int64_t window = 0;  ///< length of a window [ns]
-    std::size_t types = 0;    ///< number of event types of the model
+    std::int64_t window = 0;                           ///< length of a window [ns]
+    std::size_t types = 0;                             ///< number of event types of the model
+    std::vector<core::evidence::Coverage> coverage{};  ///< empty: not known
   };
 
   /// @param bag must outlive it

@@ -10,7 +10,7 @@ from self_awareness import EventType, Model, ResultBag, TrainedModel, recordings
 from self_awareness.commands import cli
 from self_awareness.judging import EVIDENCE
 from self_awareness.reporting import histogram_text
-from self_awareness.reporting import relations_text, tuning_text
+from self_awareness.reporting import coverage_text, relations_text, tuning_text
 from self_awareness.reporting.event_log_summary import summarise_event_log
 from self_awareness.reporting.evidence_report import counts
 from self_awareness.reporting.model_summary import summarise
@@ -121,7 +121,7 @@ def _print(summary: Dict[str, Any]) -> None:
     print(f'pairs        {summary["pairs"]} of {len(summary["event_types"]) ** 2} with delays')
     print(f'graph        {_graph(summary["graph"])}')
     if summary['evidence'] is not None:
-        _print_evidence(summary['evidence'])
+        _print_evidence(summary['evidence'], summary['fewest_gaps'])
     if summary['detectors'] != EVIDENCE:
         _print_calibration(summary['calibration'])
 
@@ -156,7 +156,7 @@ def _graph(graph: List[Dict[str, str]]) -> str:
     return f'sources that somebody listens to: {len(publishers)}, connections: {len(graph)}'
 
 
-def _print_evidence(evidence: Dict[str, Any]) -> None:
+def _print_evidence(evidence: Dict[str, Any], fewest_gaps: int) -> None:
     print(f'evidence     tracks: {counts(evidence["tracks"])}')
     if evidence['not_judged']:
         print(f'  not judged: {"; ".join(evidence["not_judged"])}')
@@ -175,6 +175,8 @@ def _print_evidence(evidence: Dict[str, Any]) -> None:
         print(f'  {line}')
     print('  normal recordings')
     _print_recordings(calibration['normal'])
+    for line in coverage_text.lines(calibration['coverage'], fewest_gaps):
+        print(f'  {line}')
 
 
 def _print_calibration(calibration: Optional[Dict[str, Any]]) -> None:

@@ -14,6 +14,7 @@ from self_awareness.commands import cli
 from self_awareness.judging import evidence_judge, paper_judge
 from self_awareness.output_files import PAGE, PICTURE, RESULT_BAG, TABLE, check_outputs, replacing
 from self_awareness.recordings import BagPart, RecordingEvents, expand
+from self_awareness.reporting import coverage_text
 from self_awareness.reporting.plots import NamedAlarm, ScorePlot, save_scores
 from self_awareness.reporting.report.judged import Judged, JudgedBy
 from self_awareness.reporting.report.page import (check_installed, check_name,
@@ -64,9 +65,13 @@ def _score(arguments: argparse.Namespace) -> None:
     if threshold is None:
         print(f'{arguments.model}: not calibrated: windows are scored, none is called abnormal '
               '(rosrun self_awareness calibrate)')
+    coverage = [] if paper else trained.coverage()
+    missing = coverage_text.not_watched(coverage_text.summarise(coverage))
+    if missing:
+        print(f'{arguments.model}: {missing}')
     judged: List[Tuple[RecordingEvents, Verdicts]] = []
     with result_bag(arguments.result_bag, arguments.model, trained,
-                    threshold is not None) as replay:
+                    threshold is not None, coverage) as replay:
         for part in parts:
             recording = cli.read_recording('score', trained, part)
             verdicts = judge(recording.stamps, recording.ids, recording.end,

@@ -8,7 +8,7 @@ from self_awareness import TrainedModel
 from self_awareness.calibration import confidence
 from self_awareness.calibration.results import FalseAlarms
 from self_awareness.calibration.runs import RECORDED, JudgedRun
-from self_awareness.reporting import relations_text
+from self_awareness.reporting import coverage_text, relations_text
 from self_awareness.reporting.model_summary import summarise_evidence
 from self_awareness.stamps import SECOND_NS
 
@@ -30,6 +30,8 @@ def print_limits(trained: TrainedModel, path: str) -> None:
     if any(dropped.values()):
         print(f'  left out, since they say nothing or too little: {counts(dropped)}')
     for line in relations_text.lines(evidence['calibration']['relations']):
+        print(f'  {line}')
+    for line in coverage_text.lines(evidence['calibration']['coverage'], trained.fewest_gaps):
         print(f'  {line}')
     if evidence['not_judged']:
         print(f'  not judged, fewer than {trained.fewest_gaps} gaps in training: '

@@ -7,7 +7,7 @@ from typing import Any, Dict, List, Optional, Tuple
 
 from self_awareness import (USUAL_SHARES, Calibration, EvidenceCalibration, EvidenceModel,
                             Recording, TrainedModel, Tuning, encoding_file)
-from self_awareness.reporting import relations_text
+from self_awareness.reporting import coverage_text, relations_text
 from self_awareness.reporting.version_summary import summarise_version
 from self_awareness.judging import EVIDENCE, PAPER
 from self_awareness.stamps import SECOND_NS
@@ -77,6 +77,7 @@ def _evidence(model: TrainedModel, evidence: EvidenceModel) -> Dict[str, Any]:
         summary['calibration'] = _evidence_calibration(model.evidence_calibration)
         summary['calibration']['judged_tracks'] = dict(Counter(each.channel for each in judged))
         summary['calibration']['relations'] = relations_text.relations(model, evidence)
+        summary['calibration']['coverage'] = coverage_text.summarise(model.coverage())
     return summary
 
 

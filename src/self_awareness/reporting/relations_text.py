@@ -10,7 +10,8 @@ RELATIONS = ('pairs', 'deadlines')
 """The channels that look at two event types."""
 
 _MOST_LINES = 10
-_MOST_STARTS = 50
+MOST_STARTS = 50
+"""More are not worth a word."""
 
 
 def relations(model: TrainedModel, evidence: EvidenceModel) -> List[Dict[str, Any]]:
@@ -58,7 +59,7 @@ def lines(found: List[Dict[str, Any]]) -> List[str]:
     text = []
     watched = [relation for relation in found if relation['judged']]
     waiting = [relation for relation in found if not relation['watched']
-               and relation['starts'] < relation['starts_needed'] <= _MOST_STARTS]
+               and relation['starts'] < relation['starts_needed'] <= MOST_STARTS]
     for relation in watched[:_MOST_LINES]:
         text.append(f'{relation["channel"]}: {relation["from"]} -> {relation["to"]}: '
                     f'{reasons(relation)}')

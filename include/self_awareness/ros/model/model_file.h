@@ -14,6 +14,7 @@
 #include "self_awareness/Recording.h"
 #include "self_awareness/core/evidence/channel/model.h"
 #include "self_awareness/core/evidence/count/halves.h"
+#include "self_awareness/core/evidence/limits/coverage.h"
 #include "self_awareness/core/evidence/limits/limits.h"
 #include "self_awareness/core/paper/delay_statistics.h"
 #include "self_awareness/core/stream/windows.h"
@@ -84,6 +85,9 @@ struct TrainedModel {
   std::optional<double> threshold() const;
   /// Limits of the evidence; none: not calibrated.
   std::optional<core::evidence::Limits> limits() const;
+  /// How soon the evidence detector finds faults of each component; none: not calibrated.
+  /// @throw std::invalid_argument as requireWatched(), or if the limits are of another model
+  std::vector<core::evidence::Coverage> coverage() const;
 };
 
 /// Which counts of a model file are read: with many event types, they take time and memory.

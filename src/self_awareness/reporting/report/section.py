@@ -6,6 +6,7 @@ from typing import List, Optional, Tuple
 
 import numpy as np
 
+from self_awareness.reporting import coverage_text
 from self_awareness.reporting.report import intervals
 from self_awareness.reporting.report.intervals import ALARM, Interval
 from self_awareness.reporting.report.judged import Judged
@@ -94,8 +95,12 @@ def _summary(judged: Judged, listed: List[Interval]) -> Summary:
                        [('Way out', 'calibrate the model on recordings of normal operation: '
                          'rosrun self_awareness calibrate')], None)
     alarms = [each for each in listed if each.level == ALARM]
+    missing = ('' if judged.by.evidence is None
+               else coverage_text.not_watched(
+                   coverage_text.summarise(judged.by.trained.coverage())))
     if not listed:
-        return Summary(QUIET, 'Nothing abnormal.', [], None)
+        return Summary(QUIET, f'Nothing abnormal, but {missing}.' if missing
+                       else 'Nothing abnormal.', [], None)
     first = (alarms or listed)[0]
     answers = [('When', _when(first))]
     if first.suspects:
@@ -115,6 +120,8 @@ def _summary(judged: Judged, listed: List[Interval]) -> Summary:
     others = _others(first, listed, len(judged.verdicts.alarms), len(judged.verdicts.suspicions))
     if others:
         answers.append(('What else', others))
+    if missing:
+        answers.append(('Blind', missing))
     return Summary(ALARMED if alarms else SUSPICIOUS, _headline(first), answers, first.key)
 
 

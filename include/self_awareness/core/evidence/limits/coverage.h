@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "self_awareness/core/evidence/channel/model.h"
+#include "self_awareness/core/evidence/watch/relation.h"
+
+namespace self_awareness::core::evidence {
+
+/// How soon faults of a component are found by a model's limits (docs/calibration.md).
+struct Coverage {
+  std::string component;
+  /// Mean gap of the event type that comes most often [s]; 0: nothing came twice.
+  double period = 0;
+  /// Gaps of the event type that has most of them: with too few, nothing is judged.
+  std::uint64_t gaps = 0;
+  /// Longest time from its last event to the alarm, if it dies [s]; none: silence is not judged.
+  std::optional<double> death_found_after;
+  /// Whether an answer that it owes is missed.
+  bool owes_answers = false;
+  /// Whether it is found that it answers late, or in another order.
+  bool late_answers = false;
+  /// Starts of the robot after which that would be found, if it is not; 0: no number helps, or it
+  /// is not known.
+  std::size_t more_starts = 0;
+
+  /// Whether its death is found at all.
+  bool isWatched() const { return death_found_after.has_value() || owes_answers; }
+};
+
+/// Of all components of a model, in the order of Model::components().
+/// @param limits of its tracks
+/// @param relations by track; empty: not known
+/// @param window length of a window [ns]
+/// @throw std::invalid_argument unless there is a limit for each track
+std::vector<Coverage> coverageOf(const Model& model, const Limits& limits,
+                                 const std::vector<Relation>& relations, std::int64_t window);
+
+}  // namespace self_awareness::core::evidence

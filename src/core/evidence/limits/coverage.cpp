@@ -1,0 +1,78 @@
+#include "self_awareness/core/evidence/limits/coverage.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "self_awareness/core/stream/clock.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+/// Age [ns] at which the silence of an event type is beyond its limit [nat].
+std::int64_t ageAt(const Model& model, EventId id, double limit) {
+  constexpr std::int64_t kLongest = std::int64_t{1} << 60;  // 36 years
+  std::int64_t above = 1;
+  while (above < kLongest && model.overdue(id, above) <= limit) {
+    above *= 2;
+  }
+  std::int64_t below = 0;
+  while (above - below > 1) {
+    const std::int64_t middle = below + (above - below) / 2;
+    (model.overdue(id, middle) <= limit ? below : above) = middle;
+  }
+  return above;
+}
+
+/// The fewest starts that a relation lacks so far, and those that one more of them lacks.
+std::size_t fewer(std::size_t so_far, const Relation& relation) {
+  if (relation.starts_needed <= relation.starts) {
+    return so_far;
+  }
+  const std::size_t lacks = relation.starts_needed - relation.starts;
+  return so_far == 0 ? lacks : std::min(so_far, lacks);
+}
+
+}  // namespace
+
+std::vector<Coverage> coverageOf(const Model& model, const Limits& limits,
+                                 const std::vector<Relation>& relations, std::int64_t window) {
+  if (limits.tracks.size() != model.tracks().size()) {
+    throw std::invalid_argument("limits: one of each track is needed");
+  }
+  std::vector<Coverage> coverages(model.components().size());
+  for (std::size_t k = 0; k < coverages.size(); ++k) {
+    coverages[k].component = model.components()[k];
+  }
+  for (EventId id = 0; id < model.size(); ++id) {
+    Coverage& of = coverages[model.componentIndex(id)];
+    const double period = model.meanGap(id) * 1e-9;
+    of.period =
+        of.period > 0 && period > 0 ? std::min(of.period, period) : std::max(of.period, period);
+    of.gaps = std::max(of.gaps, model.statistics().type(id).gaps);
+  }
+  for (std::size_t number = 0; number < model.tracks().size(); ++number) {
+    const Track& track = model.tracks()[number];
+    const double limit = limits.tracks[number];
+    Coverage& of = coverages[model.componentIndex(track.to)];
+    const bool judged = !std::isnan(limit);
+    if (model.finding(number) == Finding::kSilent && judged) {
+      // It is looked at when a window ends, and certain when the next one does.
+      const double found = toSeconds(ageAt(model, track.to, limit) + 2 * window);
+      of.death_found_after = std::min(of.death_found_after.value_or(found), found);
+    } else if (model.finding(number) == Finding::kUnanswered) {
+      of.owes_answers = of.owes_answers || judged;
+    } else if (model.finding(number) == Finding::kBetween) {
+      of.late_answers = of.late_answers || judged;
+      if (!judged && number < relations.size()) {
+        of.more_starts = fewer(of.more_starts, relations[number]);
+      }
+    }
+  }
+  for (Coverage& of : coverages) {
+    of.more_starts = of.late_answers ? 0 : of.more_starts;
+  }
+  return coverages;
+}
+
+}  // namespace self_awareness::core::evidence

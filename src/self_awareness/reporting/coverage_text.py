@@ -1,0 +1,67 @@
+"""Says by name how soon faults of each component are found, and who is not watched."""
+from __future__ import annotations
+
+from typing import Any, Dict, List, Sequence
+
+from self_awareness import Coverage
+from self_awareness.reporting.relations_text import MOST_STARTS
+
+_COLUMNS = ('component', 'speaks every', 'death found after', 'late answers')
+_MOST_NAMED = 8
+
+
+def summarise(coverage: Sequence[Coverage]) -> List[Dict[str, Any]]:
+    """Return a mapping for each component, with times in seconds; what is missing is None.
+
+    Args:
+        coverage: as TrainedModel.coverage() returns it.
+    """
+    return [{'component': each.component, 'period': each.period or None, 'gaps': each.gaps,
+             'watched': each.is_watched, 'death_found_after': each.death_found_after,
+             'owes_answers': each.owes_answers, 'late_answers': each.late_answers,
+             'more_starts': each.more_starts or None} for each in coverage]
+
+
+def not_watched(found: Sequence[Dict[str, Any]]) -> str:
+    """Return who is not watched, by name; empty: everybody is, or it is not known."""
+    names = [each['component'] for each in found if not each['watched']]
+    if not names:
+        return ''
+    more = f' and {len(names) - _MOST_NAMED} more' if len(names) > _MOST_NAMED else ''
+    return (f'{len(names)} of {len(found)} components are not watched: '
+            f'{", ".join(names[:_MOST_NAMED])}{more}')
+
+
+def lines(found: Sequence[Dict[str, Any]], fewest_gaps: int) -> List[str]:
+    """Return the lines of a table, a component in each, and who is not watched.
+
+    Args:
+        found: what summarise() returned.
+        fewest_gaps: that an event type needs to be judged.
+    """
+    if not found:
+        return []
+    rows = [_COLUMNS, *((each['component'], f'{each["period"]:.3g} s' if each['period'] else '-',
+                         _death(each, fewest_gaps), _late(each)) for each in found)]
+    widths = [max(len(row[column]) for row in rows) for column in range(len(_COLUMNS))]
+    missing = not_watched(found)
+    return ['  '.join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip()
+            for row in rows] + ([missing] if missing else [])
+
+
+def _death(each: Dict[str, Any], fewest_gaps: int) -> str:
+    if each['death_found_after'] is not None:
+        return f'{each["death_found_after"]:.2g} s'
+    if each['owes_answers']:
+        return 'when it is asked'
+    if each['gaps'] < fewest_gaps:
+        return f'not watched: {each["gaps"]} gaps in training, {fewest_gaps} are needed'
+    return 'not watched: it pauses for too long'
+
+
+def _late(each: Dict[str, Any]) -> str:
+    if each['late_answers']:
+        return 'found'
+    if each['more_starts'] is None or each['more_starts'] > MOST_STARTS:
+        return '-'
+    return f'after {each["more_starts"]} more start{"s" if each["more_starts"] > 1 else ""}'

@@ -1,0 +1,84 @@
+#include "self_awareness/core/evidence/limits/coverage.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <vector>
+
+#include "../recordings.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+constexpr std::int64_t kLength = 100 * kSecond;
+
+// A comes irregularly, B follows it, and C comes too seldom to be judged.
+Events robot(unsigned seed) {
+  const Events asked = irregular(kA, 0, kLength, 200 * kMillisecond, seed);
+  return together(
+      {asked, answers(kB, asked, 20 * kMillisecond), timer(kC, 0, kLength, 20 * kSecond)});
+}
+
+class CoverageTest : public testing::Test {
+ protected:
+  const Coverage& of(EventId id) {
+    coverages_ = coverageOf(model_, {limits_, {}}, relations_, kWindow);
+    return coverages_.at(model_.componentIndex(id));
+  }
+  double& limit(const char* channel, EventId to, EventId from) {
+    return limits_.at(indexOf(model_.tracks(), channel, to, from));
+  }
+
+  const Model model_{watch(countsOf({robot(1)}), countsOf({later(robot(2))}))};
+  std::vector<double> limits_ = std::vector<double>(model_.tracks().size(), kNone);
+  std::vector<Relation> relations_;
+  std::vector<Coverage> coverages_;
+};
+
+TEST_F(CoverageTest, NobodyIsWatchedWithoutLimits) {
+  for (const EventId id : {kA, kB, kC}) {
+    EXPECT_EQ(of(id).component, kTypes[id].source);
+    EXPECT_FALSE(of(id).isWatched());
+    EXPECT_FALSE(of(id).late_answers);
+    EXPECT_EQ(of(id).more_starts, 0U);
+  }
+  EXPECT_NEAR(of(kA).period, 0.2, 0.02);
+  EXPECT_NEAR(of(kC).period, 20, 1e-9);
+  EXPECT_EQ(of(kC).gaps, 8U);
+}
+
+TEST_F(CoverageTest, ADeathIsFoundTwoWindowsAfterTheSilenceIsBeyondItsLimit) {
+  limit(kOverdue, kA, kA) = model_.overdue(kA, 3 * kSecond);
+  EXPECT_NEAR(of(kA).death_found_after.value_or(0), 3.2, 1e-6);
+  EXPECT_TRUE(of(kA).isWatched());
+  EXPECT_FALSE(of(kB).isWatched());
+}
+
+TEST_F(CoverageTest, ASilenceBeyondAllGapsHasItsTimeToo) {
+  limit(kOverdue, kA, kA) = model_.overdue(kA, 3600 * kSecond);
+  EXPECT_NEAR(of(kA).death_found_after.value_or(0), 3600.2, 1e-3);
+}
+
+TEST_F(CoverageTest, ARelationThatIsJudgedFindsLateAnswersAndOneThatLacksStartsSaysHowMany) {
+  relations_.resize(limits_.size());
+  Relation& relation = relations_.at(indexOf(model_.tracks(), kPairs, kB, kA));
+  relation.starts = 2;
+  relation.starts_needed = 5;
+  EXPECT_EQ(of(kB).more_starts, 3U);
+  EXPECT_EQ(of(kA).more_starts, 0U);
+  limit(kPairs, kB, kA) = 20;
+  EXPECT_TRUE(of(kB).late_answers);
+  EXPECT_EQ(of(kB).more_starts, 0U);
+  EXPECT_FALSE(of(kB).isWatched()) << "it may be silent for ever";
+}
+
+TEST_F(CoverageTest, LimitsOfAnotherModelAreRefused) {
+  limits_.push_back(1);
+  EXPECT_THROW(of(kA), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,118 @@
+"""How soon the death of each component is found, and who is not watched: said by all programs."""
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Callable, List, Tuple
+
+import pytest
+import rosbag
+from conftest import Message, jittery_robot
+
+from self_awareness import TrainedModel
+from self_awareness.commands import calibrate, info, score, train
+
+MISSING = '1 of 4 components are not watched: /rare'
+
+
+def with_rare(start: float, length: float, seed: int) -> List[Message]:
+    """A robot with a component that speaks every 20 s."""
+    return sorted([*jittery_robot(start, length, seed),
+                   *((start + 5.0 + 20.0 * i, '/rare', '/seldom')
+                     for i in range(int(length / 20.0)))])
+
+
+@pytest.fixture(name='half_blind', scope='module')
+def _half_blind(tmp_path_factory: pytest.TempPathFactory) -> Tuple[str, str]:
+    """A model that cannot watch one of four components, and a normal recording."""
+    from conftest import write_bag
+    folder = tmp_path_factory.mktemp('half_blind')
+    bags = [write_bag(folder / f'{number}.bag', with_rare(10000.0 * number, 120.0, number))
+            for number in (1, 2)]
+    path = str(folder / 'robot.model')
+    assert train.main([bags[0], '-o', path]) == 0
+    assert calibrate.main(['--model', path, '--normal', bags[1], '-o', path]) == 0
+    return path, bags[1]
+
+
+def test_a_death_is_found_as_soon_as_was_said(evidence_model: str, make_bag: Callable[..., str],
+                                              tmp_path: Path) -> None:
+    said = {each.component: each.death_found_after
+            for each in TrainedModel.load(evidence_model).coverage()}
+    assert set(said) == {'/laser', '/slam', '/battery'}
+    for component, within in said.items():
+        assert within is not None
+        for stop in (3012.0, 3013.3, 3014.7):
+            messages = [m for m in jittery_robot(3000.0, 40.0, 3)
+                        if m[1] != component or m[0] < stop]
+            last = max(stamp for stamp, source, _ in messages if source == component)
+            report = tmp_path / 'windows.csv'
+            assert score.main([make_bag(f'{component[1:]}{stop}.bag', messages), '--model',
+                               evidence_model, '--csv', str(report)]) == 0
+            rows = [line.split(',') for line in report.read_text().splitlines()[1:]]
+            abnormal = [int(row[1]) * 1e-9 for row in rows
+                        if row[6] == '1' and int(row[1]) * 1e-9 > last]
+            # The table has the starts of windows of 0.1 s.
+            assert min(abnormal) + 0.1 - last <= within
+            assert within < 0.5 + 3 * (1.0 if component == '/battery' else 0.2)
+
+
+def test_who_is_not_watched_is_named_with_what_is_missing(half_blind: Tuple[str, str],
+                                                          capsys) -> None:
+    model, normal = half_blind
+    fewer = f'not watched: {TrainedModel.load(model).coverage()[-1].gaps} gaps in training, 30'
+    for program, arguments in ((info, [model]),
+                               (calibrate, ['--model', model, '--normal', normal, '-o', model])):
+        capsys.readouterr()
+        assert program.main(arguments) == 0
+        lines = [line.strip() for line in capsys.readouterr().out.splitlines()]
+        row, = (line for line in lines if line.startswith('/rare  '))
+        assert fewer in row
+        assert MISSING in lines
+        watched, = (line for line in lines if line.startswith('/laser  '))
+        assert 'not watched' not in watched
+
+
+def test_json_has_the_table(half_blind: Tuple[str, str], capsys) -> None:
+    assert info.main([half_blind[0], '--json']) == 0
+    found = {each['component']: each for each in json.loads(
+        capsys.readouterr().out)['evidence']['calibration']['coverage']}
+    assert not found['/rare']['watched'] and found['/rare']['death_found_after'] is None
+    assert found['/laser']['watched'] and 0 < found['/laser']['death_found_after'] < 2
+
+
+def test_no_result_is_green_where_nobody_looks(half_blind: Tuple[str, str], tmp_path: Path,
+                                               capsys) -> None:
+    model, normal = half_blind
+    page, results = tmp_path / 'report.html', tmp_path / 'results.bag'
+    assert score.main([normal, '--model', model, '--report', str(page), '--result-bag',
+                       str(results)]) == 0
+    out = capsys.readouterr().out
+    assert ', alarms: 0' in out and f'{model}: {MISSING}\n' in out
+    assert f'Nothing abnormal, but {MISSING}.' in page.read_text()
+    with rosbag.Bag(str(results)) as bag:
+        *_, (_, message, _) = bag.read_messages('/diagnostics')
+    last, = (status for status in message.status if status.name.endswith('communication'))
+    assert last.level == 0 and last.message.endswith('1 of 4 components are not watched')
+    assert {each.key: each.value for each in last.values}['not watched'] == '/rare'
+    after = {status.name.split(': ')[1]: each.value for status in message.status
+             for each in status.values if each.key == 'death found after [s]'}
+    assert after['/rare'] == 'not watched' and 0 < float(after['/laser']) < 2
+
+
+def test_a_model_that_watches_all_says_nothing_of_that(
+        evidence_model: str, make_bag: Callable[..., str], capsys) -> None:
+    assert score.main([make_bag('n.bag', jittery_robot(3000.0, 30.0, 5)), '--model',
+                       evidence_model]) == 0
+    assert 'not watched' not in capsys.readouterr().out
+
+
+def test_a_model_without_limits_has_no_table(half_blind: Tuple[str, str], tmp_path: Path,
+                                             capsys) -> None:
+    path = str(tmp_path / 'm')
+    model = TrainedModel.load(half_blind[0])
+    model.evidence_calibration = None
+    model.save(path)
+    assert TrainedModel.load(path).coverage() == []
+    assert info.main([path]) == 0
+    assert 'death found after' not in capsys.readouterr().out
