@@ -50,6 +50,7 @@ EventRecorder::Parameters EventRecorder::Parameters::load(
   parameters.encoding = loadEncoding(private_node_handle);
   parameters.diagnostic_period =
       reader.seconds("diagnostic_period", parameters.diagnostic_period, {0.1, 3600});
+  parameters.diagnostics = reader.text("diagnostics", parameters.diagnostics);
   reader.warnOfUnknown();
   return parameters;
 }
@@ -68,7 +69,8 @@ EventRecorder::EventRecorder(const ros::NodeHandle& node_handle,
       spinner_(1, &queue_) {
   node_handle_.setCallbackQueue(&queue_);
   private_node_handle_.setCallbackQueue(&queue_);
-  diagnostics_ = node_handle_.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 1);
+  diagnostics_ =
+      node_handle_.advertise<diagnostic_msgs::DiagnosticArray>(parameters_.diagnostics, 1);
   start_publisher_ =
       private_node_handle_.advertise<self_awareness::EventLogStart>("start", 1, true);
   finish_ = private_node_handle_.advertiseService("finish", &EventRecorder::onFinish, this);

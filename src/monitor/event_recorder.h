@@ -40,15 +40,15 @@ namespace self_awareness {
 /// - `~min_space` (double, MB; default: 1000; 0 to 1e15): with less free space on the disk
 ///   nothing is recorded.
 /// - `~robot_start` (double, seconds since 1970; default: now; 0 to 4294967295): when the robot
-/// was
-///   started, for who starts the recorder more than once in a start of the robot.
+///   was started, for who starts the recorder more than once in a start of the robot.
+/// - `~diagnostics` (string; default: /diagnostics): topic of its status. If /diagnostics were
+///   remapped, the recorder would not hear what the robot says there.
 /// - `~poll_interval`, `~queue_size`, `~diagnostic_period`: as those of the monitor.
 ///
 /// **Published topics**
-/// - `/diagnostics`: one status, an error while nothing can be recorded.
+/// - `/diagnostics`, or `~diagnostics`: one status, an error while nothing can be recorded.
 /// - `~start` (self_awareness/EventLogStart): latched; how the recording that is written begins.
-/// By
-///   this type, monitors know the recorder for one of this package, whatever its name is.
+///   By this type, monitors know the recorder for one of this package, whatever its name is.
 ///
 /// **Services**: `~finish` (std_srvs/Trigger): ends the file and the node.
 ///
@@ -78,6 +78,7 @@ class EventRecorder : public NodeProgram {
     double poll_interval = 1;
     std::uint32_t queue_size = 1000;
     double diagnostic_period = 1;  // [s]
+    std::string diagnostics = "/diagnostics";
 
     static Parameters load(const ros::NodeHandle& private_node_handle);
   };

@@ -52,7 +52,7 @@ class Recorder:
             ['setpriv', '--pdeathsig', 'INT', executable('record_events'),
              f'__name:={os.path.basename(name)}', f'_output:={self._prefix}',
              f'_subscribe:={self._subscribe}', f'_robot_start:={self._robot_start:.6f}',
-             f'/diagnostics:={diagnostics}'],
+             f'_diagnostics:={diagnostics}'],
             pass_fds=(self._lock,))
         return self
 
