@@ -46,11 +46,14 @@ def print_expected(trained: TrainedModel) -> None:
     low, high = confidence.poisson_rate(expected * hours, hours)
     print(f'false alarms to be expected: {expected:.2g} an hour (95 %: {low:.2g} to {high:.2g}), '
           'by leaving recordings out in turn')
-    if high > budget:
-        # Where less than the budget is expected, more hours are to confirm it.
-        needed = hours * (expected if expected > budget else high) / budget - hours
+    if expected > budget:
         print(f'  the recordings cannot support a budget of {budget:g} an hour: that takes about '
-              f'{_hours(needed)} more of normal operation, in several starts of the robot')
+              f'{_hours(hours * (expected / budget - 1.0))} more of normal operation, in several '
+              'starts of the robot')
+    elif high > budget:
+        print(f'  that is within the budget of {budget:g} an hour; to be sure of it (95 %) takes '
+              f'about {_hours(hours * (high / budget - 1.0))} more of normal operation, in '
+              'several starts of the robot')
 
 
 def print_measured(normal: Sequence[JudgedRun], alarms: FalseAlarms) -> None:

@@ -6,13 +6,14 @@ import math
 import os
 import re
 from pathlib import Path
-from typing import Callable, List, Tuple
+from typing import Callable, List, Optional, Tuple
 
 import pytest
 from conftest import jittery_robot
 
 from self_awareness import EvidenceModel, TrainedModel
 from self_awareness.commands import calibrate, train
+from self_awareness.reporting.evidence_report import print_expected
 
 Bags = Tuple[str, str]
 
@@ -66,12 +67,25 @@ def test_the_budget_is_used(run, tmp_path) -> None:
     assert any(strict > lax for strict, lax in pairs)
 
 
-def test_a_budget_that_so_few_recordings_cannot_support_is_told(run) -> None:
-    code, out, _ = run('--budget', '0.001')
-    assert code == 0
-    line = next(line for line in out.splitlines() if 'cannot support' in line)
-    assert 'a budget of 0.001 an hour' in line and 'more of normal operation' in line
-    assert 'cannot support' not in run('--budget', '1000')[1]
+@pytest.mark.parametrize('expected, budget, told', [
+    (2.0, 0.5, 'cannot support a budget of 0.5 an hour: that takes about '),
+    (0.1, 0.5, 'that is within the budget of 0.5 an hour; to be sure of it (95 %) takes about '),
+    (0.1, 1000.0, None)])
+def test_what_the_recordings_say_of_the_budget(
+        expected: float, budget: float, told: Optional[str], run, tmp_path, capsys) -> None:
+    run()
+    model = TrainedModel.load(str(tmp_path / 'm'))
+    limits = model.evidence_calibration
+    limits.false_alarms_per_hour, limits.budget = expected, budget
+    model.evidence_calibration = limits
+    capsys.readouterr()
+    print_expected(model)
+    first, *more = capsys.readouterr().out.splitlines()
+    assert f'{expected:.2g} an hour' in first
+    if told is None:
+        assert not more
+    else:
+        assert told in more[0] and 'more of normal operation' in more[0]
 
 
 def test_relations_are_told_with_their_reasons_or_what_is_missing(run, tmp_path) -> None:
