@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
+#include <map>
 #include <vector>
 
 #include "alarm_state.h"
@@ -113,7 +114,7 @@ void tellCommunication(const CommunicationState& state, DiagnosticStatusWrapper&
 }
 
 void tellComponent(const CommunicationState& state, const std::string& name,
-                   DiagnosticStatusWrapper& status) {
+                   const core::evidence::Coverage* coverage, DiagnosticStatusWrapper& status) {
   const HeardReport::Component& component = state.heard.components.at(name);
   status.summary(DiagnosticStatus::OK, component.last_heard ? "heard" : "not heard yet");
   const std::vector<self_awareness::Suspect>& suspects = state.last.suspects;
@@ -131,17 +132,20 @@ void tellComponent(const CommunicationState& state, const std::string& name,
     status.add("last heard [s ago]", number(*component.last_heard));
   }
   status.add("events a second", number(component.rate));
-  for (const core::evidence::Coverage& each : state.coverage) {
-    if (each.component == name) {
-      status.add("death found after [s]", foundAfter(each));
-    }
+  if (coverage != nullptr) {
+    status.add("death found after [s]", foundAfter(*coverage));
   }
 }
 
 void addComponents(const CommunicationState& state, DiagnosticStatuses& statuses) {
+  std::map<std::string, const core::evidence::Coverage*> coverage;
+  for (const core::evidence::Coverage& each : state.coverage) {
+    coverage[each.component] = &each;
+  }
   for (const auto& [name, component] : state.heard.components) {
+    const auto known = coverage.find(name);
     DiagnosticStatusWrapper status;
-    tellComponent(state, name, status);
+    tellComponent(state, name, known == coverage.end() ? nullptr : known->second, status);
     statuses.add(name, status);
   }
 }

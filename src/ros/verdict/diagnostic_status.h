@@ -62,7 +62,9 @@ void tellCommunication(const CommunicationState& state,
                        diagnostic_updater::DiagnosticStatusWrapper& status);
 /// Fills in the level, message and values of the status of one component.
 /// @param name one of state.heard.components
+/// @param coverage how soon its faults are found; null: not known
 void tellComponent(const CommunicationState& state, const std::string& name,
+                   const core::evidence::Coverage* coverage,
                    diagnostic_updater::DiagnosticStatusWrapper& status);
 /// Adds the status of every component.
 void addComponents(const CommunicationState& state, DiagnosticStatuses& statuses);

@@ -85,7 +85,7 @@ def _score(arguments: argparse.Namespace) -> None:
         save_scores(arguments.plot, [_plot(recording, verdicts, trained.window, threshold)
                                      for recording, verdicts in judged])
     if arguments.report is not None:
-        by = JudgedBy(trained, arguments.model, parameters, threshold, evidence)
+        by = JudgedBy(trained, arguments.model, parameters, threshold, evidence, missing)
         save_report(arguments.report,
                     [section(Judged(by, recording, verdicts), f'recording-{number}')
                      for number, (recording, verdicts) in enumerate(judged, 1)])

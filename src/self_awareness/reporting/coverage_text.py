@@ -5,6 +5,7 @@ from typing import Any, Dict, List, Sequence
 
 from self_awareness import Coverage
 from self_awareness.reporting.relations_text import MOST_STARTS
+from self_awareness.reporting.text_table import aligned
 
 _COLUMNS = ('component', 'speaks every', 'death found after', 'late answers')
 _MOST_NAMED = 8
@@ -43,10 +44,8 @@ def lines(found: Sequence[Dict[str, Any]], fewest_gaps: int) -> List[str]:
         return []
     rows = [_COLUMNS, *((each['component'], f'{each["period"]:.3g} s' if each['period'] else '-',
                          _death(each, fewest_gaps), _late(each)) for each in found)]
-    widths = [max(len(row[column]) for row in rows) for column in range(len(_COLUMNS))]
     missing = not_watched(found)
-    return ['  '.join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip()
-            for row in rows] + ([missing] if missing else [])
+    return aligned(rows) + ([missing] if missing else [])
 
 
 def _death(each: Dict[str, Any], fewest_gaps: int) -> str:

@@ -10,6 +10,7 @@ from self_awareness.calibration.results import FalseAlarms
 from self_awareness.calibration.runs import RECORDED, JudgedRun
 from self_awareness.reporting import coverage_text, relations_text
 from self_awareness.reporting.model_summary import summarise_evidence
+from self_awareness.reporting.text_table import aligned
 from self_awareness.stamps import SECOND_NS
 
 _COLUMNS = ('fault', 'source', 'found', 'median [s]', 'guilty first', 'among three')
@@ -82,9 +83,8 @@ def print_faults(faulty: Sequence[JudgedRun]) -> None:
         rows.append((fault, source, f'{len(latencies)} of {len(runs)}',
                      f'{median(latencies):.2f}' if latencies else '-',
                      _share(ranks, 1) if source else '-', _share(ranks, 3) if source else '-'))
-    widths = [max(len(row[column]) for row in rows) for column in range(len(_COLUMNS))]
-    for row in rows:
-        print('  '.join(cell.ljust(width) for cell, width in zip(row, widths)).rstrip())
+    for line in aligned(rows):
+        print(line)
     found = sum(run.latency is not None for run in faulty)
     low, high = confidence.wilson(found, len(faulty))
     print(f'found {found} of {len(faulty)} (95 %: {low:.1%} to {high:.1%})')

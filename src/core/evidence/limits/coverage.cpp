@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "self_awareness/core/stream/clock.h"
+#include "self_awareness/core/stream/event.h"
 
 namespace self_awareness::core::evidence {
 namespace {
@@ -24,7 +24,7 @@ std::int64_t ageAt(const Model& model, EventId id, double limit) {
   return above;
 }
 
-/// The fewest starts that a relation lacks so far, and those that one more of them lacks.
+/// The fewest starts that a relation lacks, of those so far (0: of none) and one more.
 std::size_t fewer(std::size_t so_far, const Relation& relation) {
   if (relation.starts_needed <= relation.starts) {
     return so_far;

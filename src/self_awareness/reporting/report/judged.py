@@ -22,6 +22,7 @@ class JudgedBy:
         parameters: of the detector.
         threshold: of the score; None: not calibrated.
         evidence: of the evidence detector; None: the paper's judged.
+        not_watched: who is not watched, in words; empty: everybody is, or it is not known.
     """
 
     trained: TrainedModel
@@ -29,6 +30,7 @@ class JudgedBy:
     parameters: DetectorParameters
     threshold: Optional[float]
     evidence: Optional[EvidenceModel]
+    not_watched: str = ''
 
 
 @dataclass(frozen=True)

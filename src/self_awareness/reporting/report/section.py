@@ -6,7 +6,6 @@ from typing import List, Optional, Tuple
 
 import numpy as np
 
-from self_awareness.reporting import coverage_text
 from self_awareness.reporting.report import intervals
 from self_awareness.reporting.report.intervals import ALARM, Interval
 from self_awareness.reporting.report.judged import Judged
@@ -95,9 +94,7 @@ def _summary(judged: Judged, listed: List[Interval]) -> Summary:
                        [('Way out', 'calibrate the model on recordings of normal operation: '
                          'rosrun self_awareness calibrate')], None)
     alarms = [each for each in listed if each.level == ALARM]
-    missing = ('' if judged.by.evidence is None
-               else coverage_text.not_watched(
-                   coverage_text.summarise(judged.by.trained.coverage())))
+    missing = judged.by.not_watched
     if not listed:
         return Summary(QUIET, f'Nothing abnormal, but {missing}.' if missing
                        else 'Nothing abnormal.', [], None)
