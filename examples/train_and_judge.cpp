@@ -66,7 +66,7 @@ int main() {
       std::cout << "alarm at " << core::toSeconds(verdict.window->start) << " s\n";
       for (const core::Suspect& suspect : verdict.suspects) {
         std::cout << core::toString(models.model()->vocabulary().at(suspect.id)) << ": "
-                  << core::describe(suspect) << '\n';
+                  << suspect.reason.words << '\n';
       }
     }
   };

@@ -134,6 +134,8 @@ void bindTraining(py::module& module);
 void bindTuning(py::module& module);
 /// Binds what a training counted (counts_bindings.cpp).
 void bindCounts(py::module& module);
+/// Binds alarms and their suspects (alarm_bindings.cpp).
+void bindAlarms(py::module& module);
 /// Binds evidence and its limits (evidence_bindings.cpp).
 void bindEvidence(py::module& module);
 /// Binds the evidence of components over time (lanes_bindings.cpp).

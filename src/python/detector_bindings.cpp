@@ -16,6 +16,7 @@
 #include "self_awareness/core/evidence/judge.h"
 #include "self_awareness/core/paper/judge.h"
 #include "self_awareness/core/paper/model.h"
+#include "self_awareness/core/verdict/alarm.h"
 #include "self_awareness/core/verdict/detector.h"
 #include "self_awareness/core/verdict/persistence.h"
 #include "self_awareness/core/verdict/roc.h"
@@ -23,18 +24,6 @@
 
 namespace self_awareness::python {
 namespace {
-
-/// A stretch of time in which the alarm stood, or a suspicion.
-struct Alarm {
-  std::int64_t start = 0;  // end of the window that raised it [ns]
-  std::int64_t end = 0;    // end of the window that cleared it, or of the recording [ns]
-  bool cleared = false;
-  std::string evidence;  // of the window that raised it, or the first after it that has any
-  double lowest_score = std::numeric_limits<double>::quiet_NaN();
-  std::optional<core::Busy> busy;           // of the first window that says so
-  std::vector<core::Suspect> suspects;      // of the same window
-  std::vector<core::Suspect> new_suspects;  // of the windows after it
-};
 
 /// The verdicts on all windows of a recording, one entry a window.
 struct Verdicts {
@@ -45,38 +34,16 @@ struct Verdicts {
   std::vector<bool> abnormal;
   std::vector<bool> settling;
   std::vector<bool> suspicion;
-  std::vector<Alarm> alarms;
-  std::vector<Alarm> suspicions;
+  std::vector<core::Alarm> alarms;
+  std::vector<core::Alarm> suspicions;
 };
 
-/// Goes on with the stretches of one level.
-/// @param stands whether it stands with this window
-/// @param end of the window [ns]
-void record(const core::Verdict& verdict, bool stands, std::int64_t end,
-            std::vector<Alarm>& stretches) {
-  const bool stood = !stretches.empty() && !stretches.back().cleared;
-  if (stands && !stood) {
-    stretches.emplace_back().start = end;
-  }
-  if (stands || stood) {
-    Alarm& alarm = stretches.back();
-    if (stands && alarm.evidence.empty()) {  // a suspicion may be what is left of an alarm
-      alarm.evidence = verdict.evidence;
-      alarm.suspects = verdict.suspects;
-    }
-    if (verdict.busy && !alarm.busy) {
-      alarm.busy = verdict.busy;
-    }
-    alarm.end = end;
-    alarm.cleared = !stands;
-    alarm.lowest_score = std::fmin(alarm.lowest_score, verdict.score.value_or(0));
-    alarm.new_suspects.insert(alarm.new_suspects.end(), verdict.new_suspects.begin(),
-                              verdict.new_suspects.end());
-  }
+void record(const core::Alarm& alarm, Verdicts& verdicts) {
+  (alarm.level == core::Alarm::Level::kAlarm ? verdicts.alarms : verdicts.suspicions)
+      .push_back(alarm);
 }
 
-void record(const core::Verdict& verdict, std::int64_t window, Verdicts& verdicts) {
-  const std::int64_t end = verdict.window->start + window;
+void record(const core::Verdict& verdict, Verdicts& verdicts) {
   verdicts.start.push_back(verdict.window->start);
   verdicts.events.push_back(static_cast<std::uint32_t>(verdict.window->events.size()));
   verdicts.unknown.push_back(static_cast<std::uint32_t>(verdict.window->unknown()));
@@ -84,17 +51,19 @@ void record(const core::Verdict& verdict, std::int64_t window, Verdicts& verdict
   verdicts.abnormal.push_back(verdict.abnormal);
   verdicts.settling.push_back(verdict.settling);
   verdicts.suspicion.push_back(verdict.suspicion);
-  record(verdict, verdict.alarm, end, verdicts.alarms);
-  record(verdict, verdict.suspicion, end, verdicts.suspicions);
 }
 
 Verdicts judge(std::unique_ptr<core::Judge> judge, std::int64_t window,
                const core::Detector::Parameters& parameters, const Stamps& stamps, const Ids& ids,
-               std::optional<std::int64_t> end, ros1::ReplayedMonitor* monitor,
-               std::vector<std::int64_t> clock_steps) {
+               std::optional<std::int64_t> end, const core::Vocabulary& vocabulary,
+               ros1::ReplayedMonitor* monitor, std::vector<std::int64_t> clock_steps) {
   Verdicts verdicts;
+  core::Alarms alarms;
   core::Detector detector(std::move(judge), window, parameters, [&](const core::Verdict& verdict) {
-    record(verdict, window, verdicts);
+    record(verdict, verdicts);
+    if (const std::optional<core::Alarm> ended = alarms.add(verdict, window, vocabulary)) {
+      record(*ended, verdicts);
+    }
     if (monitor != nullptr) {
       monitor->onVerdict(verdict);
     }
@@ -105,6 +74,9 @@ Verdicts judge(std::unique_ptr<core::Judge> judge, std::int64_t window,
                      monitor->onEvent(event, same_clock);
                    }
                  });
+  if (alarms.standing()) {
+    record(*alarms.standing(), verdicts);
+  }
   return verdicts;
 }
 
@@ -112,9 +84,11 @@ Verdicts judgeByPaper(const std::shared_ptr<core::paper::Model>& model, std::int
                       std::optional<double> threshold,
                       const core::Detector::Parameters& parameters, const Stamps& stamps,
                       const Ids& ids, std::optional<std::int64_t> end,
+                      const std::vector<core::EventType>& event_types,
                       ros1::ReplayedMonitor* monitor, std::vector<std::int64_t> clock_steps) {
   return judge(core::paper::makeJudge(model, threshold, parameters.silence_is_abnormal), window,
-               parameters, stamps, ids, end, monitor, std::move(clock_steps));
+               parameters, stamps, ids, end, core::Vocabulary(event_types), monitor,
+               std::move(clock_steps));
 }
 
 Verdicts judgeByEvidence(const ros1::TrainedModel& trained,
@@ -123,10 +97,11 @@ Verdicts judgeByEvidence(const ros1::TrainedModel& trained,
                          const Ids& ids, std::optional<std::int64_t> end,
                          const std::vector<core::EventType>& event_types,
                          ros1::ReplayedMonitor* monitor, std::vector<std::int64_t> clock_steps) {
-  return judge(core::evidence::makeJudge(model, trained.limits(), trained.window,
-                                         std::make_shared<core::SourceGraph>(trained.graph),
-                                         std::make_shared<core::Vocabulary>(event_types)),
-               trained.window, parameters, stamps, ids, end, monitor, std::move(clock_steps));
+  const auto vocabulary = std::make_shared<core::Vocabulary>(event_types);
+  return judge(
+      core::evidence::makeJudge(model, trained.limits(), trained.window,
+                                std::make_shared<core::SourceGraph>(trained.graph), vocabulary),
+      trained.window, parameters, stamps, ids, end, *vocabulary, monitor, std::move(clock_steps));
 }
 
 std::vector<double> scoreEvents(const std::shared_ptr<core::paper::Model>& model,
@@ -138,60 +113,7 @@ std::vector<double> scoreEvents(const std::shared_ptr<core::paper::Model>& model
   return scores;
 }
 
-std::string reasonName(core::Suspect::Reason reason) {
-  using Reason = core::Suspect::Reason;
-  switch (reason) {
-    case Reason::kSilent:
-      return "silent";
-    case Reason::kLate:
-      return "late";
-    case Reason::kUnknown:
-      return "unknown";
-    case Reason::kUnusual:
-      return "unusual";
-    case Reason::kRate:
-      return "rate";
-    case Reason::kDelay:
-      return "delay";
-    case Reason::kUnanswered:
-      return "unanswered";
-    case Reason::kNeverHeard:
-      return "never heard";
-    case Reason::kOther:
-      return "other";
-  }
-  throw std::invalid_argument("a reason without a name");
-}
-
 void bindVerdicts(py::module& m) {
-  py::class_<core::Suspect>(m, "Suspect", "An event type that may have made a window abnormal.")
-      .def_readonly("id", &core::Suspect::id)
-      .def_readonly("component", &core::Suspect::component,
-                    "whose event type it is; empty: not known")
-      .def_readonly("abnormal", &core::Suspect::abnormal, "it alone would be abnormal")
-      .def_property_readonly(
-          "reason", [](const core::Suspect& self) { return reasonName(self.reason); },
-          "silent, late, unknown, unusual, rate, delay, unanswered, never heard\n"
-          "or other")
-      .def_readonly("since", &core::Suspect::since,
-                    "when the alarm or the suspicion first named its component [ns]")
-      .def_readonly("silence", &core::Suspect::silence, "[s]; NaN: that is not the reason")
-      .def_readonly("usual_shortest", &core::Suspect::usual_shortest, "[s], NaN like silence")
-      .def_readonly("usual_longest", &core::Suspect::usual_longest, "[s], NaN like silence")
-      .def_readonly("usual_gap", &core::Suspect::usual_gap, "mean [s]; NaN: not known")
-      .def_readonly("events", &core::Suspect::events, "in the window; rate: in the last 2 s")
-      .def_readonly("usual_fewest", &core::Suspect::usual_fewest, "rate: in 2 s")
-      .def_readonly("usual_most", &core::Suspect::usual_most, "rate: in 2 s")
-      .def_readonly("other", &core::Suspect::other,
-                    "delay, unanswered: the other event type; empty: its own")
-      .def_readonly("delay", &core::Suspect::delay, "delay: seen, median [s]; 0: not known")
-      .def_readonly("usual_delay", &core::Suspect::usual_delay, "delay: median [s]")
-      .def_readonly("lasted", &core::Suspect::lasted, "delay: seen in the last so many s")
-      .def_readonly("of", &core::Suspect::of, "delay: delays; unanswered: requests")
-      .def_readonly("times", &core::Suspect::times, "of them, unusual")
-      .def("describe", py::overload_cast<const core::Suspect&>(&core::describe),
-           "the reason in words and numbers");
-
   py::enum_<core::UnknownEvents>(m, "UnknownEvents",
                                  "What an unknown event means: nothing, a suspicion, or an alarm.")
       .value("IGNORE", core::UnknownEvents::kIgnore)
@@ -227,24 +149,6 @@ void bindVerdicts(py::module& m) {
            py::arg("certain") = false,
            "Takes in the next window; end: of the window [ns]. Returns whether the alarm stands.")
       .def("clear", &core::Persistence::clear, "Forgets all windows and the alarm.");
-
-  py::class_<Alarm>(m, "Alarm", "A stretch of time in which the alarm stood, or a suspicion.")
-      .def_readonly("start", &Alarm::start, "[ns]")
-      .def_readonly("end", &Alarm::end, "[ns]")
-      .def_readonly("cleared", &Alarm::cleared, "False: it stood until the end of the recording")
-      .def_readonly("lowest_score", &Alarm::lowest_score)
-      .def_readonly("evidence", &Alarm::evidence,
-                    "what raised it, in words; empty: a suspicion that an alarm left")
-      .def_property_readonly(
-          "busy",
-          [](const Alarm& self) {
-            return self.busy ? std::optional<std::string>(core::describe(*self.busy))
-                             : std::nullopt;
-          },
-          "in words, if the machine was too busy; None: it was not")
-      .def_readonly("suspects", &Alarm::suspects, "of the window that raised it, best first")
-      .def_readonly("new_suspects", &Alarm::new_suspects,
-                    "of components that an alarm named later, each with its time (since)");
 
   py::class_<Verdicts>(m, "Verdicts", "One entry a window of a recording, and the alarms.")
       .def_property_readonly(
@@ -298,19 +202,21 @@ void bindVerdicts(py::module& m) {
           py::arg("stamps"), py::arg("ids"), "s_j of every event, float64")
       .def("judge", &judgeByPaper, py::arg("window"), py::arg("threshold"), py::arg("parameters"),
            py::arg("stamps"), py::arg("ids"), py::arg("end") = py::none(),
-           py::arg("monitor") = nullptr, py::arg("clock_steps") = std::vector<std::int64_t>(),
+           py::arg("event_types") = std::vector<core::EventType>(), py::arg("monitor") = nullptr,
+           py::arg("clock_steps") = std::vector<std::int64_t>(),
            "Verdicts on a recording. window: [ns]; threshold None: not calibrated.\n"
            "stamps: int64 [ns], in order. ids: those from len(event_types) of the model on are\n"
            "unknown events. end [ns]: the recording goes on in silence until then; None: it ends\n"
-           "with the last event. monitor: a ReplayedMonitor that is told of all of it.\n"
-           "clock_steps: with which the clock was set forward (find_clock_steps).");
+           "with the last event. event_types: by id, those of the model first; empty: alarms\n"
+           "cannot name components that training never saw. monitor: a ReplayedMonitor that is\n"
+           "told of all of it. clock_steps: with which the clock was set forward\n"
+           "(find_clock_steps).");
   m.def("judge_by_evidence", &judgeByEvidence, py::arg("trained"), py::arg("model"),
         py::arg("parameters"), py::arg("stamps"), py::arg("ids"), py::arg("end") = py::none(),
         py::arg("event_types") = std::vector<core::EventType>(), py::arg("monitor") = nullptr,
         py::arg("clock_steps") = std::vector<std::int64_t>(),
         "Verdicts on a recording by the EvidenceModel of a TrainedModel, like Model.judge.\n"
-        "event_types: by id, those of the model first; empty: those of unknown events are not\n"
-        "known.");
+        "event_types: by id, those of the model first.");
   m.attr("EVIDENCE_THRESHOLD") = core::evidence::kThreshold;
   m.attr("DEFAULT_WINDOW") = core::kDefaultWindow;    // [ns]
   m.attr("SHORTEST_WINDOW") = core::kShortestWindow;  // [ns]

@@ -107,7 +107,7 @@ void bindEncoding(py::module& m) {
       .def_readonly("source", &core::EventType::source)
       .def_readonly("scope", &core::EventType::scope)
       .def_readonly("type", &core::EventType::type)
-      .def("__str__", &core::toString)
+      .def("__str__", py::overload_cast<const core::EventType&>(&core::toString))
       .def("__repr__",
            [](const core::EventType& self) { return "<EventType " + core::toString(self) + ">"; })
       .def("__eq__", [](const core::EventType& a, const core::EventType& b) { return a == b; })

@@ -36,6 +36,7 @@ from self_awareness._core import (  # noqa: F401
     ModelFileError,
     OutputFile,
     Persistence,
+    Reason,
     RecordedEvents,
     Recording,
     ReplayedMonitor,

@@ -21,7 +21,8 @@ def paper_judge(trained: TrainedModel, model: Model, threshold: Optional[float],
                 parameters: DetectorParameters) -> Judge:
     """Return what judges by the paper's score; threshold None: scores only, no alarms."""
     return lambda stamps, ids, end, event_types=(), monitor=None, clock_steps=(): model.judge(
-        trained.window, threshold, parameters, stamps, ids, end, monitor, clock_steps)
+        trained.window, threshold, parameters, stamps, ids, end, list(event_types), monitor,
+        clock_steps)
 
 
 def evidence_judge(trained: TrainedModel, parameters: DetectorParameters,

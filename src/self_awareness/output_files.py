@@ -47,6 +47,7 @@ def _begins(*patterns: bytes) -> Callable[[str], bool]:
 MODEL = Kind('model', _is_model)
 EVENT_LOG = Kind('event log', lambda path: recordings_in_event_log(path) is not None)
 RESULT_BAG = Kind('result bag', ResultBag.is_one)
+VALUES = Kind('JSON file', _begins(rb'\s*\{'))
 TABLE = Kind('table', _begins(rb'\w+(,\w+)+\r?\n'))
 PICTURE = Kind('picture', _begins(*_PICTURES))
 PAGE = Kind('page for a browser', _begins(rb'\s*(?i:<!doctype html)'))

@@ -34,12 +34,14 @@ class BurstsState : public ChannelState {
   }
   void explain(std::size_t /*track*/, const Heard& /*heard*/, const RecentEvents& /*events*/,
                Suspect& suspect) const override {
-    suspect.reason = Suspect::Reason::kOther;
-    suspect.events = static_cast<std::size_t>(closed_[suspect.id]);
+    const int at_once = closed_[suspect.id];
+    suspect.reason.kind = Kind::kFast;
+    suspect.reason.unit = "at once";
+    suspect.reason.value = at_once;
     char text[80];
-    std::snprintf(text, sizeof text, "%zu at once, usually one every %.3f s", suspect.events,
+    std::snprintf(text, sizeof text, "%d at once, usually one every %.3f s", at_once,
                   model_.meanGap(suspect.id) * 1e-9);
-    suspect.words = text;
+    suspect.reason.words = text;
   }
 
  private:

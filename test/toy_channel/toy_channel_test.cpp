@@ -204,7 +204,7 @@ TEST_F(ToyChannelTest, ABurstIsAnAlarmThatNamesItInItsOwnWords) {
   const Suspect& suspect = alarms[0].suspects[0];
   EXPECT_EQ(suspect.component, "/a");
   EXPECT_TRUE(suspect.abnormal);
-  EXPECT_EQ(describe(suspect).rfind(words_, 0), 0U) << describe(suspect);
+  EXPECT_EQ(suspect.reason.words.rfind(words_, 0), 0U) << suspect.reason.words;
 }
 
 TEST_F(ToyChannelTest, TheReportDrawsItsShare) {

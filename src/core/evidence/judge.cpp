@@ -28,6 +28,7 @@ class Judge : public core::Judge {
         SharesHandler shares);
 
   ObservedEvent add(const Event& event) override {
+    last_heard_ = event.stamp;
     never_heard_.add(event);
     strangers_.add(event);
     const bool known = model_->knows(event.id);
@@ -62,8 +63,9 @@ class Judge : public core::Judge {
   NeverHeard never_heard_;
   Strangers strangers_;
   BusyMachine busy_machine_;
-  std::int64_t settle_time_ = 0;  // [ns]
-  std::vector<double> shares_;    // of its limit that each track has reached
+  std::optional<std::int64_t> last_heard_;  // [ns]
+  std::int64_t settle_time_ = 0;            // [ns]
+  std::vector<double> shares_;              // of its limit that each track has reached
   SharesHandler tell_shares_;
   std::vector<std::int64_t> settled_at_;                                    // [ns], by id
   std::int64_t all_settled_at_ = std::numeric_limits<std::int64_t>::min();  // the latest of them
@@ -112,6 +114,7 @@ void Judge::restart() {
   never_heard_.restart();
   strangers_.restart();
   busy_machine_.restart();
+  last_heard_.reset();
   std::fill(settled_at_.begin(), settled_at_.end(), std::numeric_limits<std::int64_t>::min());
   all_settled_at_ = std::numeric_limits<std::int64_t>::min();
 }
@@ -169,6 +172,8 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
     channels.insert("busy");
   }
   judgement.abnormal = *judgement.score < kThreshold;
+  judgement.all_silent = judgement.abnormal && model_->components().size() > 1 && last_heard_ &&
+                         end - *last_heard_ > model_->longestSilence();
   judgement.certain = never_heard_.share() > 1 || isCertain();
   judgement.suspicious = never_heard_.share() > 0;
   if (never_heard_.share() > 0) {

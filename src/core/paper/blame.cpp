@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <utility>
 
@@ -32,6 +33,20 @@ std::map<EventId, SeenInWindow> eventsByType(const Window& window,
   return seen;
 }
 
+Reason lowScore(double score, double usual) {
+  Reason reason;
+  reason.kind = Kind::kOutOfOrder;
+  reason.unit = unit::kScore;
+  reason.value = score;
+  reason.usual = usual;
+  char text[100];
+  std::snprintf(text, sizeof text,
+                "at unusual delays after the others: score %.3g, usually about %.3g", score,
+                usual);
+  reason.words = text;
+  return reason;
+}
+
 }  // namespace
 
 Blame::Blame(std::shared_ptr<const Model> model) : model_(std::move(model)) {
@@ -59,6 +74,22 @@ Suspect Blame::suspectOf(EventId id) const {
   return suspect;
 }
 
+Reason Blame::silence(EventId id, double seconds, bool lasts) const {
+  const Usual& usual = usual_[id];
+  Reason reason;
+  reason.kind = lasts ? Kind::kDied : Kind::kLate;
+  reason.unit = unit::kSeconds;
+  reason.value = seconds;
+  reason.lasted = seconds;
+  reason.usual_shortest = usual.shortest;
+  reason.usual_longest = usual.longest;
+  char text[100];
+  std::snprintf(text, sizeof text, "%s %.2f s, usually every %.3f to %.3f s",
+                lasts ? "silent for" : "came after", seconds, usual.shortest, usual.longest);
+  reason.words = text;
+  return reason;
+}
+
 std::vector<Suspect> Blame::suspects(const Window& window, const std::vector<double>& scores,
                                      const std::vector<std::optional<std::int64_t>>& last_seen,
                                      std::int64_t end) const {
@@ -79,27 +110,22 @@ std::vector<Suspect> Blame::suspects(const Window& window, const std::vector<dou
       continue;
     }
     Suspect suspect = suspectOf(id);
-    suspect.reason = age >= gap ? Suspect::Reason::kSilent : Suspect::Reason::kLate;
-    suspect.silence = toSeconds(std::max(age, gap));
-    suspect.usual_shortest = usual_[id].shortest;
-    suspect.usual_longest = usual_[id].longest;
+    suspect.reason = silence(id, toSeconds(std::max(age, gap)), age >= gap);
     overdue.emplace_back(log_survival, suspect);
     seen.erase(id);
   }
   for (const auto& [id, type] : seen) {
     Suspect suspect = suspectOf(id);
-    suspect.events = type.events;
     if (type.unknown) {
-      suspect.reason = Suspect::Reason::kUnknown;
+      suspect.reason = strangerIn(type.events);
       suspect.abnormal = true;
       unknown.emplace_back(-static_cast<double>(type.events), suspect);
       continue;
     }
-    suspect.reason = Suspect::Reason::kUnusual;
-    suspect.score = type.score_sum / static_cast<double>(type.events);
-    suspect.usual_score = usual_[id].score;
-    if (suspect.score < kLowScore * suspect.usual_score) {
-      unusual.emplace_back(suspect.score / suspect.usual_score, suspect);
+    const double score = type.score_sum / static_cast<double>(type.events);
+    if (score < kLowScore * usual_[id].score) {
+      suspect.reason = lowScore(score, usual_[id].score);
+      unusual.emplace_back(score / usual_[id].score, suspect);
     }
   }
 

@@ -35,6 +35,8 @@ class Blame {
   };
 
   Suspect suspectOf(EventId id) const;
+  /// @param lasts whether it has not ended
+  Reason silence(EventId id, double seconds, bool lasts) const;
 
   std::shared_ptr<const Model> model_;
   std::vector<Usual> usual_;  // by id

@@ -116,6 +116,7 @@ void Detector::close(const Window& window, std::int64_t end) {
   } else {
     verdict.evidence = judgement.evidence;
     verdict.busy = judgement.busy;
+    verdict.all_silent = judgement.all_silent;
     verdict.suspects = std::move(judgement.suspects);
     count(judgement, window_end);
     verdict.alarm = persistence_.raised();

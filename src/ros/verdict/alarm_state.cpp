@@ -15,6 +15,8 @@ void AlarmState::add(const core::Verdict& verdict, const core::Vocabulary& vocab
   if (levelOf(verdict) != message_.level) {
     level_since_ = end;
   }
+  const std::optional<core::Alarm> ended = alarms_.add(verdict, window, vocabulary);
+  tell(alarms_.standing() ? alarms_.standing() : ended);
   message_.level = levelOf(verdict);
   if (!verdict.suspects.empty() || !stands()) {
     message_.suspects = toMessages(verdict.suspects, vocabulary);
@@ -41,6 +43,7 @@ void AlarmState::add(const core::Verdict& verdict, const core::Vocabulary& vocab
 
 bool AlarmState::standDown(const std::string& message, std::int64_t now) {
   const bool stood = stands();
+  tell(alarms_.end(now));
   message_.level = self_awareness::SelfAwareness::OK;
   message_.message = message;
   message_.abnormal = false;
@@ -51,10 +54,26 @@ bool AlarmState::standDown(const std::string& message, std::int64_t now) {
   return stood;
 }
 
+void AlarmState::tell(const std::optional<core::Alarm>& alarm) {
+  message_.alarm = 0;
+  message_.kind.clear();
+  message_.component.clear();
+  message_.reason.clear();
+  if (alarm) {
+    message_.alarm = alarm->id;
+    message_.kind = core::toString(alarm->kind);
+    message_.component = alarm->culprit;
+    if (!alarm->culprit.empty() && !alarm->suspects.empty()) {
+      message_.reason = alarm->suspects.front().reason.words;
+    }
+  }
+}
+
 void AlarmState::forgetWindow() {
   const auto level = message_.level;
   message_ = {};
   message_.level = level;
+  tell(alarms_.standing());
 }
 
 double AlarmState::standsFor(std::int64_t now) const {

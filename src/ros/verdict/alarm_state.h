@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "self_awareness/SelfAwareness.h"
 #include "self_awareness/core/stream/vocabulary.h"
+#include "self_awareness/core/verdict/alarm.h"
 #include "self_awareness/core/verdict/detector.h"
 
 namespace self_awareness::ros1 {
@@ -37,6 +39,8 @@ class AlarmState {
   /// stands until standDown().
   void forgetWindow();
 
+  /// The alarm or the suspicion that stands, as a value; none: nothing does.
+  const std::optional<core::Alarm>& standing() const { return alarms_.standing(); }
   /// Whether there is an alarm or a suspicion.
   bool stands() const { return message_.level != self_awareness::SelfAwareness::OK; }
   /// What the machine is, in words, if it is too busy; else empty.
@@ -49,6 +53,10 @@ class AlarmState {
   const self_awareness::SelfAwareness& message() const { return message_; }
 
  private:
+  /// Says which alarm the message is about.
+  void tell(const std::optional<core::Alarm>& alarm);
+
+  core::Alarms alarms_;
   self_awareness::SelfAwareness message_;
   std::string busy_;              // of the last window that had evidence
   std::int64_t level_since_ = 0;  // end of the window with which the level changed last [ns]

@@ -103,6 +103,9 @@ void tellCommunication(const CommunicationState& state, DiagnosticStatusWrapper&
     status.add("events in the window", last.events);
     status.add("unknown events in the window", last.unknown_events);
     if (last.level != DiagnosticStatus::OK) {
+      status.add("alarm", last.alarm);
+      status.add("kind", last.kind);
+      status.add("component", last.component);
       status.add("evidence", last.evidence);
       status.add("for [s]", number(state.level_for));
     }

@@ -13,6 +13,18 @@ std::uint8_t levelOf(const core::Verdict& verdict) {
                            : self_awareness::SelfAwareness::OK;
 }
 
+namespace {
+
+/// Whether the value is the time without an event.
+bool isSilence(const core::Reason& reason) {
+  using core::Kind;
+  return reason.unit == core::unit::kSeconds &&
+         (reason.kind == Kind::kDied || reason.kind == Kind::kNeverCame ||
+          reason.kind == Kind::kStranger || (reason.kind == Kind::kLate && reason.after.empty()));
+}
+
+}  // namespace
+
 std::vector<self_awareness::Suspect> toMessages(const std::vector<core::Suspect>& suspects,
                                                 const core::Vocabulary& vocabulary) {
   std::vector<self_awareness::Suspect> messages;
@@ -22,11 +34,19 @@ std::vector<self_awareness::Suspect> toMessages(const std::vector<core::Suspect>
     message.source = type.source;
     message.scope = type.scope;
     message.type = type.type;
-    message.reason = core::describe(suspect);
+    message.component = core::componentOf(type.source, type.scope);
+    const core::Reason& reason = suspect.reason;
+    message.reason = reason.words;
+    message.kind = core::toString(reason.kind);
+    message.after = reason.after;
+    message.unit = reason.unit;
+    message.value = reason.value;
+    message.usual = reason.usual;
     message.since = toRosTime(suspect.since);
-    message.silence = suspect.silence;
-    message.usual_shortest = suspect.usual_shortest;
-    message.usual_longest = suspect.usual_longest;
+    message.silence = isSilence(reason) ? reason.value : core::Reason::kNone;
+    const bool in_seconds = reason.unit == core::unit::kSeconds;
+    message.usual_shortest = in_seconds ? reason.usual_shortest : core::Reason::kNone;
+    message.usual_longest = in_seconds ? reason.usual_longest : core::Reason::kNone;
     messages.push_back(message);
   }
   return messages;

@@ -69,14 +69,14 @@ class JudgedRun:
     def latency(self) -> Optional[float]:
         """Seconds from a fault's onset to the alarm; None if none was raised while it lasted."""
         for alarm in self.verdicts.alarms:
-            if self.run.onset < alarm.start <= self.run.relief:
-                return (alarm.start - self.run.onset) / SECOND_NS
+            if self.run.onset < alarm.begin <= self.run.relief:
+                return (alarm.begin - self.run.onset) / SECOND_NS
         return None
 
     @property
     def stood_before(self) -> bool:
         """Whether a false alarm stood when the fault began, and hides that of the fault."""
-        return any(alarm.start <= self.run.onset < alarm.end for alarm in self.verdicts.alarms)
+        return any(alarm.begin <= self.run.onset < alarm.end for alarm in self.verdicts.alarms)
 
 
 def normal_run(recording: RecordingEvents) -> Run:

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import argparse
 import csv
+import json
 import math
 from typing import Iterator, List, Optional, Sequence, Tuple
 
@@ -10,9 +11,11 @@ import numpy as np
 
 from self_awareness import (EVIDENCE_THRESHOLD, Alarm, EvidenceModel, Model, Suspect,
                             Verdicts)
+from self_awareness import alarms
 from self_awareness.commands import cli
 from self_awareness.judging import evidence_judge, paper_judge
-from self_awareness.output_files import PAGE, PICTURE, RESULT_BAG, TABLE, check_outputs, replacing
+from self_awareness.output_files import (PAGE, PICTURE, RESULT_BAG, TABLE, VALUES, check_outputs,
+                                         replacing)
 from self_awareness.recordings import BagPart, RecordingEvents, expand
 from self_awareness.reporting import coverage_text
 from self_awareness.reporting.plots import NamedAlarm, ScorePlot, save_scores
@@ -45,8 +48,8 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 
 def _score(arguments: argparse.Namespace) -> None:
-    check_outputs([(arguments.csv, TABLE), (arguments.plot, PICTURE), (arguments.report, PAGE),
-                   (arguments.result_bag, RESULT_BAG)],
+    check_outputs([(arguments.csv, TABLE), (arguments.json, VALUES), (arguments.plot, PICTURE),
+                   (arguments.report, PAGE), (arguments.result_bag, RESULT_BAG)],
                   [part.path for part in arguments.bags] + [arguments.model])
     if arguments.report is not None:
         check_installed()
@@ -81,6 +84,8 @@ def _score(arguments: argparse.Namespace) -> None:
             _print(recording, verdicts, len(trained.event_types), threshold)
     if arguments.csv is not None:
         _save_csv(arguments.csv, judged, threshold)
+    if arguments.json is not None:
+        _save_json(arguments.json, judged, missing)
     if arguments.plot is not None:
         save_scores(arguments.plot, [_plot(recording, verdicts, trained.window, threshold)
                                      for recording, verdicts in judged])
@@ -102,22 +107,21 @@ def _print(recording: RecordingEvents, verdicts: Verdicts, known: int,
         line += (f', {abnormal} abnormal ({abnormal / windows:.1%}; settling left out), '
                  f'alarms: {len(verdicts.alarms)}, suspicions: {len(verdicts.suspicions)}')
     print(line)
-    levels = ([('', alarm) for alarm in verdicts.alarms]
-              + [('suspicion: ', suspicion) for suspicion in verdicts.suspicions])
-    for level, alarm in sorted(levels, key=lambda each: each[1].start):
-        for text in _lines(recording, level, alarm, threshold):
+    for alarm in alarms.in_order(verdicts):
+        for text in _lines(recording, alarm, threshold):
             print(text)
     _print_unknown(recording, known)
 
 
-def _lines(recording: RecordingEvents, level: str, alarm: Alarm,
+def _lines(recording: RecordingEvents, alarm: Alarm,
            threshold: Optional[float]) -> Iterator[str]:
     def seconds(stamp: int) -> str:
         return f'{(stamp - recording.origin) / SECOND_NS:.1f}'
 
-    end = '' if alarm.cleared else ' (to the end of the recording)'
-    yield (f'  {level}{seconds(alarm.start)} - {seconds(alarm.end)} s{end}, '
-           f'{utc(alarm.start)} - {utc(alarm.end)} UTC: '
+    level = 'suspicion: ' if alarm.level == 'WARN' else ''
+    end = '' if alarm.over else ' (to the end of the recording)'
+    yield (f'  {level}{seconds(alarm.begin)} - {seconds(alarm.end)} s{end}, '
+           f'{utc(alarm.begin)} - {utc(alarm.end)} UTC: '
            f'lowest score {alarm.lowest_score:.4g}, threshold {threshold:.4g}, '
            f'{alarm.evidence or "what is left of the alarm"}')
     if alarm.busy is not None:
@@ -126,12 +130,12 @@ def _lines(recording: RecordingEvents, level: str, alarm: Alarm,
         yield '    no suspect stands out'
     for rank, suspect in enumerate(alarm.suspects, 1):
         yield f'    {rank}. {_words(recording, suspect)}'
-    for suspect in alarm.new_suspects:
+    for suspect in alarm.later:
         yield f'    since {seconds(suspect.since)} s {_words(recording, suspect)}'
 
 
 def _words(recording: RecordingEvents, suspect: Suspect) -> str:
-    return f'{recording.event_types[suspect.id]}: {suspect.describe()}'
+    return f'{recording.event_types[suspect.id]}: {suspect.reason.words}'
 
 
 def _print_unknown(recording: RecordingEvents, known: int) -> None:
@@ -141,6 +145,21 @@ def _print_unknown(recording: RecordingEvents, known: int) -> None:
         print('  event types never seen in training:')
     for count, name in sorted(unknown, key=lambda entry: (-entry[0], entry[1])):
         print(f'    {name}: {count}')
+
+
+def _save_json(path: str, judged: Sequence[Tuple[RecordingEvents, Verdicts]],
+               missing: str) -> None:
+    values = {
+        'not_watched': missing or None,
+        'recordings': [{
+            'bag': str(recording.part),
+            'alarms': [alarms.as_values(alarm, recording.event_types, recording.origin)
+                       for alarm in alarms.in_order(verdicts)],
+        } for recording, verdicts in judged],
+    }
+    with replacing(path) as temporary, open(temporary, 'w', encoding='utf-8') as file:
+        json.dump(values, file, indent=2, allow_nan=False)
+        file.write('\n')
 
 
 def _save_csv(path: str, judged: Sequence[Tuple[RecordingEvents, Verdicts]],
@@ -175,15 +194,9 @@ def _plot(recording: RecordingEvents, verdicts: Verdicts, window: int,
         abnormal=verdicts.abnormal & ~verdicts.settling,
         threshold=threshold,
         settling=[(float(starts[a]), float(starts[b])) for a, b in edges.reshape(-1, 2)],
-        alarms=[NamedAlarm(float(seconds(alarm.start)), float(seconds(alarm.end)),
-                           _component(recording, alarm)) for alarm in verdicts.alarms])
-
-
-def _component(recording: RecordingEvents, alarm: Alarm) -> str:
-    if not alarm.suspects:
-        return ''
-    kind = recording.event_types[alarm.suspects[0].id]
-    return kind.source or kind.scope
+        alarms=[NamedAlarm(float(seconds(alarm.begin)), float(seconds(alarm.end)),
+                           alarm.suspects[0].component if alarm.suspects else '')
+                for alarm in verdicts.alarms])
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -194,6 +207,8 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('--model', required=True, help='file written by train or calibrate')
     cli.add_detector_argument(parser)
     parser.add_argument('--csv', metavar='FILE', help='write the score of every window')
+    parser.add_argument('--json', metavar='FILE',
+                        help='write alarms and suspicions, for programs')
     parser.add_argument('--plot', type=cli.plot_file, metavar='FILE',
                         help='draw the scores over time; the name ends in .png, .pdf or .svg')
     parser.add_argument('--report', type=cli.checked(check_name), metavar='FILE.html',

@@ -125,7 +125,7 @@ def _counted(recordings: Sequence[WindowedEvents], tuning: Optional[Tuning] = No
 
 
 def _judged(encoded: WindowedEvents, verdicts: Verdicts, threshold: float) -> Judged:
-    alarms = [SystemAlarm(alarm.start, alarm.end, alarm.cleared,
+    alarms = [SystemAlarm(alarm.begin, alarm.end, alarm.over,
                           distinct([encoded.event_types[suspect.id].source
                                     for suspect in alarm.suspects]), alarm.evidence)
               for alarm in verdicts.alarms]

@@ -65,7 +65,7 @@ def print_measured(normal: Sequence[JudgedRun], alarms: FalseAlarms) -> None:
         for alarm in run.verdicts.alarms:
             kinds = run.run.source.event_types
             suspects = ', '.join(str(kinds[suspect.id]) for suspect in alarm.suspects)
-            print(f'  {run.run.source.part}: {_seconds(run, alarm.start)} s: {alarm.evidence}: '
+            print(f'  {run.run.source.part}: {_seconds(run, alarm.begin)} s: {alarm.evidence}: '
                   f'{suspects or "no suspect stands out"}')
 
 
@@ -110,7 +110,7 @@ def _names(run: JudgedRun) -> Tuple[str, str]:
 def _rank(run: JudgedRun, source: str) -> Optional[int]:
     """Return the place of a source among those blamed by the first alarm after the onset."""
     for alarm in run.verdicts.alarms:
-        if alarm.start > run.run.onset:
+        if alarm.begin > run.run.onset:
             kinds = run.run.source.event_types
             blamed = list(dict.fromkeys(kinds[suspect.id].source for suspect in alarm.suspects))
             return blamed.index(source) + 1 if source in blamed else None

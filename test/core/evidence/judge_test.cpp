@@ -274,14 +274,14 @@ TEST_F(EvidenceJudgeOfStrangersTest, AnUnknownSenderOnAKnownTopicIsTheFirstSuspe
   const std::vector<Suspect> named = suspectsAfter({"/rostopic", "/y", "T"}, 50 * kMillisecond);
   ASSERT_EQ(named.size(), 2U);
   EXPECT_EQ(heard_->at(named[0].id).source, "/rostopic");
-  EXPECT_EQ(describe(named[0]), "never seen in training, 1 in this window");
+  EXPECT_EQ(named[0].reason.words, "never seen in training, 1 in this window");
   EXPECT_EQ(named[1].id, kA);
 }
 
 TEST_F(EvidenceJudgeOfStrangersTest, ItIsSoForAsLongAsRatesCount) {
   const std::vector<Suspect> named = suspectsAfter({"/rostopic", "/y", "T"}, kSecond);
   ASSERT_EQ(named.size(), 2U);
-  EXPECT_EQ(describe(named[0]), "never seen in training, the last one 1.0 s ago");
+  EXPECT_EQ(named[0].reason.words, "never seen in training, the last one 1.0 s ago");
   EXPECT_EQ(suspectsAfter({"/rostopic", "/y", "T"}, 3 * kSecond).size(), 1U);
 }
 
@@ -302,7 +302,7 @@ TEST_F(EvidenceJudgeOfStrangersTest, WhoTakesThePlaceOfAnotherIsNoStranger) {
   ASSERT_EQ(named.size(), 3U);
   EXPECT_EQ(named[0].id, kA);
   EXPECT_EQ(heard_->at(named[1].id).source, "/b_17");
-  EXPECT_EQ(named[2].reason, Suspect::Reason::kNeverHeard) << "whose place it is";
+  EXPECT_EQ(named[2].reason.kind, Kind::kNeverCame) << "whose place it is";
 }
 
 }  // namespace

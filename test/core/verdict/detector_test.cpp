@@ -112,11 +112,11 @@ TEST_F(DetectorTest, NamesTheComponentThatFellSilent) {
   ASSERT_FALSE(seen_.back().suspects.empty());
   const Suspect& first = seen_.back().suspects.front();
   EXPECT_EQ(model_->vocabulary().at(first.id), kLaser);
-  EXPECT_EQ(first.reason, Suspect::Reason::kSilent);
-  EXPECT_NEAR(first.silence, 5.0, 0.3);
-  EXPECT_NE(describe(first).find("silent for 4."), std::string::npos) << describe(first);
-  EXPECT_NE(describe(first).find("usually every 0.080 to 0.090 s"), std::string::npos)
-      << describe(first);
+  EXPECT_EQ(first.reason.kind, Kind::kDied);
+  EXPECT_NEAR(first.reason.value, 5.0, 0.3);
+  EXPECT_NE(first.reason.words.find("silent for 4."), std::string::npos) << first.reason.words;
+  EXPECT_NE(first.reason.words.find("usually every 0.080 to 0.090 s"), std::string::npos)
+      << first.reason.words;
 }
 
 TEST_F(DetectorTest, TotalSilenceIsAbnormalByTimeAlone) {
@@ -162,7 +162,7 @@ TEST_F(DetectorTest, UnknownEventsScoreZeroAndAreNamed) {
   ASSERT_TRUE(firstAlarm().has_value());
   ASSERT_FALSE(seen_.back().suspects.empty());
   EXPECT_EQ(seen_.back().suspects.front().id, 3U);
-  EXPECT_EQ(seen_.back().suspects.front().reason, Suspect::Reason::kUnknown);
+  EXPECT_EQ(seen_.back().suspects.front().reason.kind, Kind::kStranger);
 }
 
 TEST_F(DetectorTest, AStepOfTheClockStartsANewRecordingWithoutAnAlarm) {

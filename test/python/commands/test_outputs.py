@@ -28,6 +28,7 @@ WRITERS = {
     'merge': ('merge', ['{model}', '{second}', '-o', '{output}']),
     'convert': ('convert', ['{recording}', '-o', '{output}']),
     'score --csv': ('score', ['{other}', '--model', '{model}', '--csv', '{output}']),
+    'score --json': ('score', ['{other}', '--model', '{model}', '--json', '{output}']),
     'score --plot': ('score', ['{other}', '--model', '{model}', '--plot', '{output}.png']),
     'score --report': ('score', ['{other}', '--model', '{model}', '--report', '{output}.html']),
     'score --result-bag': ('score', ['{other}', '--model', '{model}', '--result-bag',
@@ -224,7 +225,7 @@ def test_a_full_disk_is_told_with_its_room(
         small_disk: Callable[[int], Path], tmp_path: Path, capsys) -> None:
     program, arguments, path = line_of(way, tmp_path / 'disk' / 'out', files)
     path.write_bytes(written[way])
-    disk = small_disk(4096)
+    disk = small_disk(0)
     error = error_of(program, arguments, capsys)
     assert error == (f'{program}: error: {path}: cannot be written (No space left on device, '
                      'there is room for 0.0 MB)')

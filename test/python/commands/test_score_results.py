@@ -1,6 +1,8 @@
 """`score --result-bag`: what the monitor would have published, with the times of the recording."""
 from __future__ import annotations
 
+import itertools
+import json
 import os
 import re
 import subprocess
@@ -67,6 +69,62 @@ def test_the_alarms_are_those_that_are_printed(results: Tuple[str, str],
     raised = next(message for message, _ in read(path, ALARM) if message.level == ERROR)
     assert (raised.suspects[0].source, raised.suspects[0].scope) == ('/laser', '/scan')
     assert raised.message.startswith('abnormal communication (')
+
+
+def test_programs_need_not_parse_words(evidence_model: str, results: Tuple[str, str],
+                                       dead_laser: str, tmp_path: Path) -> None:
+    """The monitor's messages and score --json tell the same, in fields."""
+    path, values = results[0], str(tmp_path / 'alarms.json')
+    assert score.main([dead_laser, '--model', evidence_model, '--json', values]) == 0
+    with open(values, encoding='utf-8') as file:
+        recording, = json.load(file)['recordings']
+    assert recording['bag'] == dead_laser
+    begun = {}
+    for message, _ in read(path, ALARM):
+        if message.level != OK:
+            begun.setdefault(message.alarm, message)
+    assert [alarm['id'] for alarm in recording['alarms']] == list(begun)
+    assert {alarm['level'] for alarm in recording['alarms']} == {'WARN', 'ERROR'}
+    for alarm, message in zip(recording['alarms'], begun.values()):
+        assert (alarm['kind'], alarm['culprit']) == (message.kind, message.component)
+        assert alarm['begin_ns'] == message.header.stamp.to_nsec() <= alarm['end_ns']
+        for said, suspect in zip(alarm['suspects'], message.suspects):
+            assert said['reason'] == suspect.reason
+            assert (said['component'], said['kind']) == (suspect.component, suspect.kind)
+            assert (said['value'], said['unit']) == (suspect.value, suspect.unit)
+    died = next(alarm for alarm in recording['alarms'] if alarm['level'] == 'ERROR')
+    assert (died['kind'], died['culprit']) == ('died', '/laser')
+    assert 12.0 < died['begin_s'] < 13.0 and died['end_s'] > 20.0 and died['over']
+    first = died['suspects'][0]
+    assert first['unit'] == 's' and first['value'] == pytest.approx(died['begin_s'] - 12, abs=0.2)
+    assert first['usual'] < first['value'] and first['after'] is None
+
+
+def test_where_all_are_silent_nobody_is_to_blame(evidence_model: str, tmp_path: Path,
+                                                 make_bag: Callable[..., str]) -> None:
+    bag, values = make_bag('silent.bag', [
+        m for m in jittery_robot(3000.0, 30.0, 3) if not 3012.0 <= m[0] < 3020.0]), tmp_path / 'j'
+    assert score.main([bag, '--model', evidence_model, '--json', str(values)]) == 0
+    found, = [alarm for alarm in json.loads(values.read_text())['recordings'][0]['alarms']
+              if alarm['level'] == 'ERROR']
+    assert (found['kind'], found['culprit']) == ('all silent', None)
+    assert len({suspect['component'] for suspect in found['suspects'] + found['later']}) > 1
+
+
+def test_an_alarm_keeps_its_id_until_it_is_over(results: Tuple[str, str]) -> None:
+    path, _ = results
+    said = [(message.level, message.alarm) for message, _ in read(path, STATUS)]
+    stretches = [alarms for level, alarms in
+                 ((level, {alarm for _, alarm in same})
+                  for level, same in itertools.groupby(said, lambda each: each[0]))
+                 if level != OK]
+    assert all(len(alarms) == 1 for alarms in stretches)
+    ids = [alarm for alarms in stretches for alarm in alarms]
+    assert ids == sorted(set(ids)) and 0 not in ids
+    ended = [(alarm, now) for (level, alarm), (after, now) in zip(said, said[1:])
+             if level != OK and after == OK]
+    assert ended and all(alarm == now for alarm, now in ended), 'which one is over'
+    assert {alarm for level, alarm in said if level == OK} - set(ids) == {0}
 
 
 def test_times_are_those_of_the_recording(results: Tuple[str, str], dead_laser: str) -> None:

@@ -102,7 +102,7 @@ def test_what_was_never_seen_is_at_least_a_suspicion(systems: Systems, record_of
     verdicts = evidence.verdicts(record.recording, DetectorParameters())
     after = (verdicts.start + DEFAULT_WINDOW - record.onset) / SECOND_NS
     assert not verdicts.suspicion[after <= 0.0].any()
-    assert all(alarm.start > record.onset for alarm in verdicts.alarms)
+    assert all(alarm.begin > record.onset for alarm in verdicts.alarms)
     assert verdicts.suspicion[(after > 0.0) & (after <= within_s)].any()
     assert verdicts.suspicion[np.flatnonzero(verdicts.unknown)[0]]
     if paper == BLIND:
@@ -117,7 +117,7 @@ def test_what_was_never_seen_is_an_alarm_at_once_where_it_is_an_error(systems: S
     parameters.unknown = UnknownEvents.ERROR
     verdicts = systems[0].verdicts(record_of(kind).recording, parameters)
     first = int(verdicts.start[np.flatnonzero(verdicts.unknown)[0]])
-    assert verdicts.alarms[0].start == first + DEFAULT_WINDOW
+    assert verdicts.alarms[0].begin == first + DEFAULT_WINDOW
     assert 'unknown events' in verdicts.alarms[0].evidence
 
 

@@ -74,8 +74,8 @@ def test_long_recordings_are_drawn_in_stretches_that_lose_no_extreme(
     drawn = overview(of, []).timeline
     assert len(drawn.lowest) == len(begins) < len(of.verdicts.start) / 3
     alarm, = of.verdicts.alarms
-    near = (of.verdicts.start[begins] >= alarm.start - 3 * 10**9) & (
-        of.verdicts.start[begins] < alarm.start)
+    near = (of.verdicts.start[begins] >= alarm.begin - 3 * 10**9) & (
+        of.verdicts.start[begins] < alarm.begin)
     assert near.sum() == 30  # each window of 0.1 s
     assert drawn.lowest.min() == of.verdicts.score.min()
     assert drawn.highest.max() == of.verdicts.score.max()

@@ -32,6 +32,7 @@ class AlarmStateTest : public testing::Test {
       verdict.abnormal = true;
       core::Suspect suspect;
       suspect.id = 0;
+      suspect.reason.words = "silent for 1 s";
       verdict.suspects = {suspect};
     }
     return verdict;
@@ -105,6 +106,27 @@ TEST_F(AlarmStateTest, AnAlarmKeepsItsLastSuspectsAndEvidence) {
   EXPECT_TRUE(alarm_.message().suspects.empty());
 }
 
+TEST_F(AlarmStateTest, AProgramNeedNotParseWords) {
+  const SelfAwareness& said = alarm_.message();
+  add(verdict(Level::kOk, false));
+  EXPECT_EQ(said.alarm, 0U);
+  EXPECT_EQ(said.kind + said.component + said.reason, "");
+  add(verdict(Level::kAlarm, true, "overdue"));
+  const std::uint64_t id = said.alarm;
+  EXPECT_EQ(id, alarm_.standing()->id);
+  EXPECT_EQ(said.kind, SelfAwareness::DIED);
+  EXPECT_EQ(said.component, "/player");
+  EXPECT_EQ(said.reason, "silent for 1 s");
+  add(verdict(Level::kAlarm, false));
+  EXPECT_EQ(said.alarm, id);
+  EXPECT_EQ(said.component, "/player");
+  add(verdict(Level::kOk, true));
+  EXPECT_EQ(said.alarm, id) << "that is over";
+  add(verdict(Level::kOk, false));
+  EXPECT_EQ(said.alarm, 0U);
+  EXPECT_EQ(said.kind + said.component + said.reason, "");
+}
+
 TEST_F(AlarmStateTest, CountsHowLongTheLevelHasStood) {
   add(verdict(Level::kOk, false));
   add(verdict(Level::kSuspicion, true, "rate"));
@@ -124,8 +146,7 @@ TEST_F(AlarmStateTest, NewSuspectsAreNamedInWordsWithTheWindowThatNamesThem) {
   core::Verdict second = verdict(Level::kAlarm, true, "overdue, rate");
   core::Suspect arm;
   arm.id = 1;
-  arm.reason = core::Suspect::Reason::kUnknown;
-  arm.events = 2;
+  arm.reason = core::strangerIn(2);
   arm.since = window_.start + kWindow;
   second.new_suspects = {arm};
   second.suspects.push_back(arm);

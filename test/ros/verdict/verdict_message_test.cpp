@@ -6,10 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "self_awareness/SelfAwareness.h"
+
 namespace self_awareness::ros1 {
 namespace {
 
-using Reason = core::Suspect::Reason;
+using core::Kind;
 
 class VerdictMessageTest : public testing::Test {
  protected:
@@ -18,35 +20,52 @@ class VerdictMessageTest : public testing::Test {
     vocabulary_.intern({"/player", "/rosout", "rosgraph_msgs/Log[level=8]"});
     vocabulary_.intern({"", "/markers", "visualization_msgs/Marker[action=2]"});
   }
-  self_awareness::Suspect message(core::EventId id, Reason reason) const {
+  self_awareness::Suspect message(core::EventId id, const core::Reason& reason) const {
     core::Suspect suspect;
     suspect.id = id;
     suspect.reason = reason;
-    suspect.events = 3;
     return toMessages({suspect}, vocabulary_).at(0);
+  }
+  self_awareness::Suspect stranger(core::EventId id) const {
+    return message(id, core::strangerIn(3));
   }
 
   core::Vocabulary vocabulary_;
 };
 
 TEST_F(VerdictMessageTest, TellsTheSilence) {
-  core::Suspect suspect;
-  suspect.silence = 2.5;
-  suspect.usual_shortest = 0.07;
-  suspect.usual_longest = 0.09;
-  const self_awareness::Suspect message = toMessages({suspect}, vocabulary_).at(0);
+  core::Reason reason;
+  reason.unit = core::unit::kSeconds;
+  reason.value = 2.5;
+  reason.usual = 0.08;
+  reason.usual_shortest = 0.07;
+  reason.usual_longest = 0.09;
+  reason.words = "silent for 2.5 s";
+  const self_awareness::Suspect message = this->message(0, reason);
   EXPECT_EQ(message.source, "/player");
   EXPECT_EQ(message.scope, "/scan");
   EXPECT_EQ(message.type, "sensor_msgs/LaserScan");
-  EXPECT_EQ(message.reason, core::describe(suspect));
+  EXPECT_EQ(message.component, "/player");
+  EXPECT_EQ(message.kind, self_awareness::SelfAwareness::DIED);
+  EXPECT_EQ(message.reason, reason.words);
+  EXPECT_EQ(message.unit, "s");
+  EXPECT_EQ(message.value, 2.5);
+  EXPECT_EQ(message.usual, 0.08);
   EXPECT_EQ(message.silence, 2.5);
   EXPECT_EQ(message.usual_shortest, 0.07);
   EXPECT_EQ(message.usual_longest, 0.09);
 }
 
 TEST_F(VerdictMessageTest, ASuspectThatIsNotSilentHasNoSilence) {
-  for (const Reason reason : {Reason::kUnknown, Reason::kRate, Reason::kUnanswered}) {
+  for (const Kind kind : {Kind::kSlow, Kind::kFast}) {
+    core::Reason reason;
+    reason.kind = kind;
+    reason.unit = core::unit::kHertz;
+    reason.value = 3;
+    reason.usual_shortest = 5;
+    reason.usual_longest = 6;
     const self_awareness::Suspect suspect = message(0, reason);
+    EXPECT_EQ(suspect.value, 3);
     EXPECT_TRUE(std::isnan(suspect.silence));
     EXPECT_TRUE(std::isnan(suspect.usual_shortest));
     EXPECT_TRUE(std::isnan(suspect.usual_longest));
@@ -54,22 +73,20 @@ TEST_F(VerdictMessageTest, ASuspectThatIsNotSilentHasNoSilence) {
 }
 
 TEST_F(VerdictMessageTest, AChannelHasWordsOfItsOwn) {
-  core::Suspect suspect;
-  suspect.reason = Reason::kOther;
-  suspect.words = "in bursts";
-  const self_awareness::Suspect message = toMessages({suspect}, vocabulary_).at(0);
+  core::Reason reason;
+  reason.words = "in bursts";
+  const self_awareness::Suspect message = this->message(0, reason);
   EXPECT_EQ(message.reason, "in bursts");
   EXPECT_EQ(describe(message), "/player on /scan: in bursts");
 }
 
 TEST_F(VerdictMessageTest, SaysWhichValueOfATypeFieldItIsAbout) {
-  EXPECT_EQ(describe(message(1, Reason::kUnknown)),
+  EXPECT_EQ(describe(stranger(1)),
             "/player on /rosout [level=8]: never seen in training, 3 in this window");
-  EXPECT_EQ(describe(message(2, Reason::kUnknown)),
+  EXPECT_EQ(describe(stranger(2)),
             "/markers [action=2]: never seen in training, 3 in this window");
-  EXPECT_EQ(describe(message(0, Reason::kUnknown)),
-            "/player on /scan: never seen in training, 3 in this window");
-  EXPECT_EQ(describeOnScope(message(1, Reason::kUnknown)),
+  EXPECT_EQ(describe(stranger(0)), "/player on /scan: never seen in training, 3 in this window");
+  EXPECT_EQ(describeOnScope(stranger(1)),
             "/rosout [level=8]: never seen in training, 3 in this window");
 }
 
@@ -78,11 +95,26 @@ TEST_F(VerdictMessageTest, ABusyMachineIsNamedBeforeTheSuspects) {
   verdict.threshold = -1;
   verdict.alarm = true;
   EXPECT_EQ(
-      wording(verdict, "busy, pairs", {message(1, Reason::kUnknown)}, {},
+      wording(verdict, "busy, pairs", {stranger(1)}, {},
               core::describe(core::Busy{12, 26}, "load 7.9 on 2 cores")),
       "abnormal communication (busy, pairs), the machine may be busy (load 7.9 on 2 cores): "
       "12 of 26 components are late, /player on /rosout [level=8]: never seen in training, 3 "
       "in this window");
+}
+
+// Programs compare with the strings of the message.
+TEST(Kinds, AreThoseOfTheMessage) {
+  using Message = self_awareness::SelfAwareness;
+  EXPECT_EQ(core::toString(Kind::kDied), Message::DIED);
+  EXPECT_EQ(core::toString(Kind::kSlow), Message::SLOW);
+  EXPECT_EQ(core::toString(Kind::kFast), Message::FAST);
+  EXPECT_EQ(core::toString(Kind::kLate), Message::LATE);
+  EXPECT_EQ(core::toString(Kind::kEarly), Message::EARLY);
+  EXPECT_EQ(core::toString(Kind::kOutOfOrder), Message::OUT_OF_ORDER);
+  EXPECT_EQ(core::toString(Kind::kNeverCame), Message::NEVER_CAME);
+  EXPECT_EQ(core::toString(Kind::kStranger), Message::STRANGER);
+  EXPECT_EQ(core::toString(Kind::kBusyMachine), Message::BUSY_MACHINE);
+  EXPECT_EQ(core::toString(Kind::kAllSilent), Message::ALL_SILENT);
 }
 
 }  // namespace

@@ -23,22 +23,59 @@ inline const double kRareSilence = std::log(0.01);
 /// At most so many suspects are named.
 constexpr std::size_t kMostSuspects = 5;
 
-/// Who may have made a window abnormal, and why (docs/method.md, sections 2.5 and 6).
-struct Suspect {
-  enum class Reason {
-    kSilent,      ///< has not come, although it should have by now
-    kLate,        ///< came after an unusually long silence
-    kUnknown,     ///< was never seen in training
-    kUnusual,     ///< came at delays after the others that were rare or absent in training
-    kRate,        ///< comes more or less often than it should
-    kDelay,       ///< comes sooner or later after another event type than it should
-    kUnanswered,  ///< has not come since another event type asked for it
-    kNeverHeard,  ///< has not come since the start, although it always does
-    kOther        ///< as `words` say
-  };
+/// What is wrong with a component, or with all of them (docs/alarm.md).
+enum class Kind {
+  kDied,         ///< has not come, although it should have by now, of itself or as an answer
+  kSlow,         ///< comes less often than it should
+  kFast,         ///< comes more often than it should
+  kLate,         ///< comes later than it should: after what it answers to, or after its own last
+  kEarly,        ///< comes sooner after another event type than it should
+  kOutOfOrder,   ///< comes sometimes too early, sometimes too late
+  kNeverCame,    ///< has not come since the start, although it always does
+  kStranger,     ///< was never seen in training
+  kBusyMachine,  ///< of an alarm: many are late at once, and none of them is to blame
+  kAllSilent,    ///< of an alarm: nobody is heard any more
+};
 
+/// "died", "slow", "fast", "late", "early", "out of order", "never came", "stranger", "busy
+/// machine" or "all silent".
+std::string toString(Kind kind);
+
+/// Units of a reason's values; a channel may have others.
+namespace unit {
+constexpr char kSeconds[] = "s";
+constexpr char kHertz[] = "Hz";
+constexpr char kEvents[] = "events";      ///< in the window
+constexpr char kRequests[] = "requests";  ///< in a row
+constexpr char kScore[] = "score";        ///< of the paper's detector
+}  // namespace unit
+
+/// Why an event type is a suspect.
+struct Reason {
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
+  Kind kind = Kind::kDied;
+  std::string after;     ///< the event type that it should come after; empty: its own last
+  std::string unit;      ///< of the four values below
+  double value = kNone;  ///< what was seen: a silence, a median delay, a rate, a number
+  double usual = kNone;  ///< what is to be expected of it; NaN: not known
+  double usual_shortest = kNone;  ///< the lower end of what is usual; NaN: not known
+  double usual_longest = kNone;   ///< its upper end; NaN: not known
+  double lasted = kNone;          ///< the value is of the last so many seconds; NaN: of one moment
+  std::size_t of = 0;             ///< delays that the value is of; 0: it is not of delays
+  std::size_t times = 0;          ///< of them, unusual
+  std::string words;              ///< "silent for 2.31 s, usually every 0.083 s, at most 0.104 s"
+};
+
+/// Why a stranger is one that came in the window.
+/// @param events of it in the window
+Reason strangerIn(std::size_t events);
+/// The same of one that came before the window.
+/// @param age of its last event [s]
+Reason strangerBefore(double age);
+
+/// Who may have made a window abnormal, and why (docs/method.md, sections 2.5 and 6).
+struct Suspect {
   EventId id = 0;
   std::string component;  ///< whose event type it is; empty: not known, as of unknown events
   /// It alone would be abnormal: its evidence is beyond its limit, or it was never seen in
@@ -48,41 +85,7 @@ struct Suspect {
   /// When the alarm or the suspicion that stands first named its component: end of the window
   /// [ns].
   std::int64_t since = 0;
-  Reason reason = Reason::kSilent;
-  /// The reason in words and numbers, from the channel that found it; empty: describe() knows
-  /// them.
-  std::string words;
-  double silence = kNone;         ///< kSilent, kLate: time without such an event [s]; kUnanswered:
-                                  ///< time since it was asked for; kNeverHeard: since the
-                                  ///< start; kUnknown: since the last one, if there is none in
-                                  ///< the window; else NaN
-  double usual_shortest = kNone;  ///< kSilent, kLate: 1 % of the gaps in training are shorter [s];
-                                  ///< kDelay: 5 % of the delays; kNeverHeard: shortest time
-                                  ///< from the start to the first one; else NaN
-  double usual_longest = kNone;   ///< kSilent, kLate: 1 % of the gaps in training are longer [s];
-                                  ///< kDelay: 5 % of the delays; kNeverHeard: longest time
-                                  ///< from the start to the first one; else NaN
-  double usual_gap = kNone;       ///< kSilent: mean gap in training [s]; NaN: not known
-  double longest_gap = kNone;     ///< kSilent: longest gap in training [s]; NaN: not known
-  std::size_t events = 0;         ///< kUnknown, kUnusual: such events in the window; kRate: in the
-                                  ///< last kRateSpan
-  double usual_fewest = 0;        ///< kRate: the mean of training minus two spreads
-  double usual_most = 0;          ///< kRate: the mean of training plus two spreads
-  double score = 0;               ///< kUnusual: their mean score
-  double usual_score = 0;         ///< kUnusual: the score to expect by training
-  std::string other;              ///< kDelay, kUnanswered: the other event type;
-                                  ///< empty: its own
-  double lasted = 0;              ///< kDelay: the numbers below are of the last so many s
-  std::size_t of = 0;             ///< kDelay: delays;
-                                  ///< kUnanswered: those without an answer, if they are counted
-  std::size_t times = 0;          ///< kDelay: delays of them that were unusual
-  double delay = 0;               ///< kDelay: median of the unusual ones, or of all if none is [s]
-  double usual_delay = 0;         ///< kDelay: median before, or in training [s]
-  double scatter = kNone;         ///< kDelay: some were earlier than usual, some later, by so much
-                                  ///< (median) [s]; NaN: nearly all of them on the same side
+  Reason reason;
 };
-
-/// The reason in words and numbers: "silent for 2.31 s, usually every 0.083 s, at most 0.104 s".
-std::string describe(const Suspect& suspect);
 
 }  // namespace self_awareness::core

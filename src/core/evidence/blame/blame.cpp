@@ -162,7 +162,8 @@ std::vector<Blame::Candidate> Blame::unusual(const std::vector<double>& shares,
     const double share = std::min(shares[track], tuning_.most_share);
     const bool other =
         finding == Finding::kBetween && model_->component(from) != model_->component(to);
-    const bool earlier = other && isEarlier(suspectOf(track, scorer, events));
+    // That what comes before it is late makes its delays shorter.
+    const bool earlier = other && suspectOf(track, scorer, events).reason.kind == Kind::kEarly;
     Involved& later = components[model_->component(to)];
     later.sum += earlier ? tuning_.share_of_other * share : share;
     if (other && !earlier) {

@@ -12,10 +12,6 @@ Suspect suspectOf(std::size_t track, const Scorer& scorer, const RecentEvents& e
   return suspect;
 }
 
-bool isEarlier(const Suspect& suspect) {
-  return suspect.times > 0 && std::isnan(suspect.scatter) && suspect.delay < suspect.usual_delay;
-}
-
 Followers::Followers(std::shared_ptr<const Model> model) : model_(std::move(model)) {
   for (const Track& track : model_->tracks()) {
     follows_.push_back(follows(track));
@@ -60,7 +56,7 @@ std::vector<std::size_t> Followers::lateBefore(const std::vector<std::size_t>& l
       if (model_->finding(track) == Finding::kBetween && tracks[track].to == third &&
           tracks[track].from == from && follows_[track]) {
         const Suspect suspect = suspectOf(track, scorer, events);
-        if (suspect.times > 0 && !isEarlier(suspect)) {
+        if (suspect.reason.times > 0 && suspect.reason.kind != Kind::kEarly) {
           found.push_back(track);
         }
       }

@@ -45,8 +45,4 @@ class Followers {
 /// The event type that a track watches as a suspect, with the reason.
 Suspect suspectOf(std::size_t track, const Scorer& scorer, const RecentEvents& events);
 
-/// Whether the delays of a suspect became shorter: that what comes before it is late makes them
-/// so.
-bool isEarlier(const Suspect& suspect);
-
 }  // namespace self_awareness::core::evidence

@@ -2,12 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <utility>
 
 #include "core/evidence/blame/root_first.h"
 
 namespace self_awareness::core::evidence {
+namespace {
+
+/// Seconds, rounded: microseconds after a start mean nothing.
+double toMilliseconds(double seconds) {
+  return std::round(seconds * 1e3) / 1e3;
+}
+
+}  // namespace
+
 NeverHeard::NeverHeard(const Model& model, const Limits& limits,
                        std::shared_ptr<const SourceGraph> graph)
     : vocabulary_(model.vocabulary()),
@@ -102,6 +112,21 @@ std::vector<std::pair<EventId, double>> NeverHeard::shares() const {
   return shares;
 }
 
+Reason NeverHeard::reasonOf(const Expected& expected) const {
+  Reason reason;
+  reason.kind = Kind::kNeverCame;
+  reason.unit = unit::kSeconds;
+  reason.value = toSeconds(end_ - *start_);
+  reason.lasted = reason.value;
+  reason.usual_shortest = toSeconds(expected.shortest);
+  reason.usual_longest = toSeconds(expected.longest);
+  char text[100];
+  std::snprintf(text, sizeof text, "not heard since the start, usually within %.3g to %.3g s",
+                toMilliseconds(reason.usual_shortest), toMilliseconds(reason.usual_longest));
+  reason.words = text;
+  return reason;
+}
+
 std::vector<Suspect> NeverHeard::suspects() const {
   std::vector<Suspect> suspects;
   for (const Expected& expected : missing_) {
@@ -109,10 +134,7 @@ std::vector<Suspect> NeverHeard::suspects() const {
     suspect.id = expected.id;
     suspect.component = component(expected.id);
     suspect.abnormal = expected.share > 1;
-    suspect.reason = Suspect::Reason::kNeverHeard;
-    suspect.silence = toSeconds(end_ - *start_);
-    suspect.usual_shortest = toSeconds(expected.shortest);
-    suspect.usual_longest = toSeconds(expected.longest);
+    suspect.reason = reasonOf(expected);
     suspects.push_back(suspect);
   }
   return suspects;

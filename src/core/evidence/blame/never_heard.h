@@ -54,6 +54,7 @@ class NeverHeard {
   };
 
   const std::string& component(EventId id) const;
+  Reason reasonOf(const Expected& expected) const;
   std::vector<Expected> rootFirst(std::vector<Expected> missing) const;
 
   Vocabulary vocabulary_;

@@ -18,10 +18,9 @@ Suspect unknownSuspect(EventId id, const Window& window) {
   Suspect suspect;
   suspect.id = id;
   suspect.abnormal = true;
-  suspect.reason = Suspect::Reason::kUnknown;
-  suspect.events = static_cast<std::size_t>(
+  suspect.reason = strangerIn(static_cast<std::size_t>(
       std::count_if(window.events.begin(), window.events.end(),
-                    [id](const ObservedEvent& other) { return other.event.id == id; }));
+                    [id](const ObservedEvent& other) { return other.event.id == id; })));
   return suspect;
 }
 
@@ -49,8 +48,8 @@ std::vector<Suspect> Strangers::suspects(const Window& window, const Scorer& sco
       continue;
     }
     Suspect suspect = unknownSuspect(id, window);
-    if (suspect.events == 0) {
-      suspect.silence = toSeconds(age);
+    if (suspect.reason.value == 0) {
+      suspect.reason = strangerBefore(toSeconds(age));
     }
     suspects.push_back(std::move(suspect));
   }

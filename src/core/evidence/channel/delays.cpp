@@ -116,24 +116,35 @@ std::string inWords(double seconds) {
   return text;
 }
 
-std::string inWords(const Suspect& suspect) {
-  const std::string after = suspect.other.empty() ? "" : " after " + suspect.other;
-  if (suspect.times == 0) {
+/// @param scatter of the unusual ones; none: nearly all of them are on one side of the usual one
+std::string inWords(const Reason& reason, std::optional<double> scatter) {
+  const std::string after = reason.after.empty() ? "" : " after " + reason.after;
+  if (reason.times == 0) {
     return "at unusual delays" + after;
   }
-  const double later = suspect.delay - suspect.usual_delay;
-  const bool scattered = !std::isnan(suspect.scatter);
+  const double later = reason.value - reason.usual;
   char times[60];
-  std::snprintf(times, sizeof times, " than usual %zu time%s of %zu", suspect.times,
-                suspect.times == 1 ? "" : "s", suspect.of);
+  std::snprintf(times, sizeof times, " than usual %zu time%s of %zu", reason.times,
+                reason.times == 1 ? "" : "s", reason.of);
   char usual[80];
-  std::snprintf(usual, sizeof usual, " in the last %.1f s, usually %s%.3f s", suspect.lasted,
-                suspect.other.empty() ? "every " : "", suspect.usual_delay);
-  return inWords(scattered ? suspect.scatter : std::abs(later)) +
-         (scattered   ? " earlier or later"
+  std::snprintf(usual, sizeof usual, " in the last %.1f s, usually %s%.3f s", reason.lasted,
+                reason.after.empty() ? "every " : "", reason.usual);
+  return inWords(scatter ? *scatter : std::abs(later)) +
+         (scatter     ? " earlier or later"
           : later > 0 ? " later"
                       : " earlier") +
          times + after + usual;
+}
+
+Kind kindOf(const Reason& reason, bool scattered) {
+  if (reason.times == 0 || scattered) {
+    return Kind::kOutOfOrder;
+  }
+  const bool later = reason.value > reason.usual;
+  if (reason.after.empty()) {
+    return later ? Kind::kSlow : Kind::kFast;
+  }
+  return later ? Kind::kLate : Kind::kEarly;
 }
 
 }  // namespace
@@ -200,22 +211,23 @@ std::size_t ExpectedDelays::numberOf(std::size_t track) const {
 }
 
 void describeDelays(const std::vector<SeenDelay>& seen, double cap, double usual, std::int64_t now,
-                    Suspect& suspect) {
-  suspect.reason = Suspect::Reason::kDelay;
+                    Reason& reason) {
+  reason.unit = unit::kSeconds;
+  std::optional<double> scatter;
   if (!seen.empty()) {
     const auto first = sinceZero(seen, cap);
     const std::vector<double> before = lengths(seen.begin(), first, false);
     const std::vector<double> unusual = lengths(first, seen.end(), true);
     usual = before.size() < kFewestBefore ? usual : median(before);
-    const std::optional<double> scatter = scatterOf(unusual, usual);
-    suspect.delay = 1e-9 * median(unusual.empty() ? lengths(first, seen.end(), false) : unusual);
-    suspect.usual_delay = 1e-9 * usual;
-    suspect.scatter = scatter ? 1e-9 * *scatter : Suspect::kNone;
-    suspect.times = unusual.size();
-    suspect.of = static_cast<std::size_t>(seen.end() - first);
-    suspect.lasted = toSeconds(now - first->stamp);
+    scatter = scatterOf(unusual, usual);
+    reason.value = 1e-9 * median(unusual.empty() ? lengths(first, seen.end(), false) : unusual);
+    reason.usual = 1e-9 * usual;
+    reason.times = unusual.size();
+    reason.of = static_cast<std::size_t>(seen.end() - first);
+    reason.lasted = toSeconds(now - first->stamp);
   }
-  suspect.words = inWords(suspect);
+  reason.kind = kindOf(reason, scatter.has_value());
+  reason.words = inWords(reason, scatter ? std::optional(1e-9 * *scatter) : std::nullopt);
 }
 
 }  // namespace self_awareness::core::evidence

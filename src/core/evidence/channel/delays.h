@@ -150,7 +150,8 @@ struct SeenDelay {
 /// @param cap of its sum
 /// @param usual delay in training, if too few were seen before [ns]
 /// @param now [ns]
+/// @param reason what they are after is known, and what is usual of them
 void describeDelays(const std::vector<SeenDelay>& seen, double cap, double usual, std::int64_t now,
-                    Suspect& suspect);
+                    Reason& reason);
 
 }  // namespace self_awareness::core::evidence

@@ -107,19 +107,23 @@ void OwedState::closeWindow(const Heard& heard, std::vector<double>& evidence) {
 
 void OwedState::explain(std::size_t track, const Heard& heard, const RecentEvents& /*events*/,
                         Suspect& suspect) const {
-  suspect.reason = Suspect::Reason::kUnanswered;
-  suspect.other = toString(model_.vocabulary().at(model_.tracks()[track].from));
+  Reason& reason = suspect.reason;
+  reason.kind = Kind::kDied;
+  reason.after = toString(model_.vocabulary().at(model_.tracks()[track].from));
   const auto answer = std::find_if(owed_.begin(), owed_.end(),
                                    [track](const Answer& each) { return each.track == track; });
   char text[60];
   if (answer->in_requests) {
-    suspect.of = answer->requests;
-    std::snprintf(text, sizeof text, "has not come after the last %zu ", suspect.of);
+    reason.unit = unit::kRequests;
+    reason.value = static_cast<double>(answer->requests);
+    std::snprintf(text, sizeof text, "has not come after the last %u ", answer->requests);
   } else {
-    suspect.silence = answer->requests > 0 ? waiting(*answer, heard) : 0;
-    std::snprintf(text, sizeof text, "has not come for %.2f s after ", suspect.silence);
+    reason.unit = unit::kSeconds;
+    reason.value = answer->requests > 0 ? waiting(*answer, heard) : 0;
+    reason.lasted = reason.value;
+    std::snprintf(text, sizeof text, "has not come for %.2f s after ", reason.value);
   }
-  suspect.words = text + suspect.other;
+  reason.words = text + reason.after;
 }
 
 }  // namespace

@@ -139,9 +139,9 @@ void OwnGapsState::explain(std::size_t track, const Heard& heard, const RecentEv
     }
     last = event.stamp;
   }
-  suspect.usual_shortest = 1e-9 * model.usualDelay(id, id, 0.05);
-  suspect.usual_longest = 1e-9 * model.usualDelay(id, id, 0.95);
-  describeDelays(seen, sum.cap, model.usualDelay(id, id, 0.5), heard.windowEnd(), suspect);
+  suspect.reason.usual_shortest = 1e-9 * model.usualDelay(id, id, 0.05);
+  suspect.reason.usual_longest = 1e-9 * model.usualDelay(id, id, 0.95);
+  describeDelays(seen, sum.cap, model.usualDelay(id, id, 0.5), heard.windowEnd(), suspect.reason);
 }
 
 }  // namespace

@@ -176,10 +176,11 @@ void PairsState::explain(std::size_t track, const Heard& heard, const RecentEven
     }
     last = event.stamp;
   }
-  suspect.other = toString(model.vocabulary().at(from));
-  suspect.usual_shortest = 1e-9 * model.usualDelay(from, to, 0.05);
-  suspect.usual_longest = 1e-9 * model.usualDelay(from, to, 0.95);
-  describeDelays(seen, sum.cap, model.usualDelay(from, to, 0.5), heard.windowEnd(), suspect);
+  suspect.reason.after = toString(model.vocabulary().at(from));
+  suspect.reason.usual_shortest = 1e-9 * model.usualDelay(from, to, 0.05);
+  suspect.reason.usual_longest = 1e-9 * model.usualDelay(from, to, 0.95);
+  describeDelays(seen, sum.cap, model.usualDelay(from, to, 0.5), heard.windowEnd(),
+                 suspect.reason);
 }
 
 }  // namespace

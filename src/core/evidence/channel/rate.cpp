@@ -25,6 +25,8 @@ class ExpectedRates : public Expectation {
   double usualCount(EventId id, double spreads) const {
     return rates_[id].mean + spreads * rates_[id].spread;
   }
+  /// What is wrong with who is beyond the limit.
+  Kind kind() const { return sign_ > 0 ? Kind::kFast : Kind::kSlow; }
   EventId typeOf(std::size_t track) const { return model_.tracks()[track].to; }
 
  private:
@@ -52,14 +54,21 @@ class RateState : public ChannelState {
   }
   void explain(std::size_t /*track*/, const Heard& heard, const RecentEvents& /*events*/,
                Suspect& suspect) const override {
-    suspect.reason = Suspect::Reason::kRate;
-    suspect.events = heard.recentCount(suspect.id);
-    suspect.usual_fewest = std::max(expected_.usualCount(suspect.id, -2), 0.0);
-    suspect.usual_most = expected_.usualCount(suspect.id, 2);
+    const std::uint32_t count = heard.recentCount(suspect.id);
+    const double fewest = std::max(expected_.usualCount(suspect.id, -2), 0.0);
+    const double most = expected_.usualCount(suspect.id, 2);
+    Reason& reason = suspect.reason;
+    reason.kind = expected_.kind();
+    reason.unit = unit::kHertz;
+    reason.lasted = toSeconds(kRateSpan);
+    reason.value = count / reason.lasted;
+    reason.usual = expected_.usualCount(suspect.id, 0) / reason.lasted;
+    reason.usual_shortest = fewest / reason.lasted;
+    reason.usual_longest = most / reason.lasted;
     char text[80];
-    std::snprintf(text, sizeof text, "%zu in the last 2 s, usually %.0f to %.0f", suspect.events,
-                  suspect.usual_fewest, suspect.usual_most);
-    suspect.words = text;
+    std::snprintf(text, sizeof text, "%u in the last 2 s, usually %.0f to %.0f", count, fewest,
+                  most);
+    reason.words = text;
   }
 
  private:

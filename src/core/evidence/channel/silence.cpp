@@ -1,6 +1,7 @@
 #include "core/evidence/channel/silence.h"
 
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "self_awareness/core/evidence/channel/model.h"
@@ -26,12 +27,18 @@ class SilenceState : public ChannelState {
   void explain(std::size_t /*track*/, const Heard& heard, const RecentEvents& /*events*/,
                Suspect& suspect) const override {
     const EventId id = suspect.id;
-    suspect.reason = Suspect::Reason::kSilent;
-    suspect.silence = toSeconds(heard.silence(id));
-    suspect.usual_shortest = model_.usualDelay(id, id, kUsualFrom) * 1e-9;
-    suspect.usual_longest = model_.usualDelay(id, id, kUsualTo) * 1e-9;
-    suspect.usual_gap = model_.meanGap(id) * 1e-9;
-    suspect.longest_gap = toSeconds(model_.longestGap(id));
+    Reason& reason = suspect.reason;
+    reason.kind = Kind::kDied;
+    reason.unit = unit::kSeconds;
+    reason.value = toSeconds(heard.silence(id));
+    reason.lasted = reason.value;
+    reason.usual = model_.meanGap(id) * 1e-9;
+    reason.usual_shortest = model_.usualDelay(id, id, kUsualFrom) * 1e-9;
+    reason.usual_longest = model_.usualDelay(id, id, kUsualTo) * 1e-9;
+    char text[120];
+    std::snprintf(text, sizeof text, "silent for %.2f s, usually every %.3f s, at most %.3f s",
+                  reason.value, reason.usual, toSeconds(model_.longestGap(id)));
+    reason.words = text;
   }
 
  private:

@@ -227,7 +227,7 @@ def _paper_threshold(scores: np.ndarray) -> float:
 def _judge(trained: TrainedModel, judge: Judge, path: Path, watched: int) -> JudgedCase:
     recording = recordings.read(trained, BagPart(str(path)))
     verdicts = judge(recording.stamps, recording.ids, recording.end)
-    return JudgedCase([_span(recording, alarm.start, alarm.end) for alarm in verdicts.alarms],
+    return JudgedCase([_span(recording, alarm.begin, alarm.end) for alarm in verdicts.alarms],
                       _span(recording, recording.origin, recording.end)[1], watched)
 
 

@@ -45,7 +45,7 @@ def cut(verdicts: Verdicts, components: int) -> np.ndarray:
 
 
 def _near(verdicts: Verdicts, stretches: Sequence[Alarm]) -> List[Sequence[int]]:
-    starts = np.array([stretch.start for stretch in stretches], dtype=np.int64)
+    starts = np.array([stretch.begin for stretch in stretches], dtype=np.int64)
     begins = np.searchsorted(verdicts.start, starts - _BEFORE)
     ends = np.searchsorted(verdicts.start, starts + _AFTER)
     return list(zip(begins.tolist(), ends.tolist()))

@@ -5,13 +5,12 @@ import math
 from dataclasses import dataclass
 from typing import List, Optional, Sequence, Tuple
 
-from self_awareness import Suspect, TrainedModel
+from self_awareness import Reason, Suspect, TrainedModel
 from self_awareness.reporting.report.judged import Judged
 from self_awareness.stamps import SECOND_NS
 
 _LAST_OF_OPEN_BIN = 2.0
 _MOST_BINS = 120
-_RATE_SPAN_S = 2.0
 
 
 @dataclass(frozen=True)
@@ -42,12 +41,12 @@ def histogram_of(judged: Judged, suspect: Suspect) -> Optional[Histogram]:
     if suspect.id >= len(judged.by.trained.event_types):
         return None
     other = suspect.id
-    if suspect.other:
+    if suspect.reason.after:
         others = [str(kind) for kind in judged.by.trained.event_types]
-        if suspect.other not in others:
+        if suspect.reason.after not in others:
             return None
-        other = others.index(suspect.other)
-    seen = _seen(suspect)
+        other = others.index(suspect.reason.after)
+    seen = _seen(suspect.reason)
     if seen is None:
         return None
     bins = _bins(judged, other, suspect.id)
@@ -58,25 +57,21 @@ def histogram_of(judged: Judged, suspect: Suspect) -> Optional[Histogram]:
     own = other == suspect.id
     title = (f'gaps between two {kinds[suspect.id]}' if own
              else f'delays from {kinds[other]} to {kinds[suspect.id]}')
-    usual = (suspect.usual_shortest, suspect.usual_longest)
-    return Histogram(title, edges, counts, value, text,
-                     None if math.isnan(usual[0] + usual[1]) else usual)
+    usual = (suspect.reason.usual_shortest, suspect.reason.usual_longest)
+    known = suspect.reason.unit == 's' and not math.isnan(usual[0] + usual[1])
+    return Histogram(title, edges, counts, value, text, usual if known else None)
 
 
-def _seen(suspect: Suspect) -> Optional[Tuple[Optional[float], str]]:
+def _seen(reason: Reason) -> Optional[Tuple[Optional[float], str]]:
     """Return the delay that was seen [s], if it is one, and its words."""
-    if suspect.reason in ('silent', 'late') or (suspect.reason == 'unanswered'
-                                                and not math.isnan(suspect.silence)):
-        return suspect.silence, f'now: {seconds(suspect.silence)}'
-    if suspect.reason == 'delay' and suspect.delay > 0:
-        return suspect.delay, f'now: {seconds(suspect.delay)}'
-    if suspect.reason == 'rate':
-        if suspect.events == 0:
-            return _RATE_SPAN_S, 'now: none in 2 s'
-        gap = _RATE_SPAN_S / suspect.events
-        return gap, f'now: {seconds(gap)} on the average'
-    if suspect.reason == 'unanswered':
-        return None, f'now: none after the last {suspect.of}'
+    if reason.unit == 's' and reason.value > 0 and reason.kind not in ('never came', 'stranger'):
+        return reason.value, f'now: {seconds(reason.value)}'
+    if reason.unit == 'Hz':
+        if reason.value == 0:
+            return reason.lasted, f'now: none in {reason.lasted:g} s'
+        return 1 / reason.value, f'now: {seconds(1 / reason.value)} on the average'
+    if reason.unit == 'requests':
+        return None, f'now: none after the last {reason.value:.0f}'
     return None
 
 

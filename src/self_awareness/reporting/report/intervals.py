@@ -21,10 +21,11 @@ MOST_DETAILS = 40
 MOST_LISTED = 400
 """Alarms and suspicions that are listed, at most so many; alarms come first."""
 
-_RATE_SPAN_S = 2.0
-_SHORT = {'silent': 'stopped sending', 'late': 'paused for too long', 'unknown': 'is new',
-          'unusual': 'came at unusual times',
-          'unanswered': 'does not answer', 'never heard': 'was not heard'}
+_SHORT = {'died': 'stopped sending', 'slow': 'sends too seldom', 'fast': 'sends too often',
+          'late': 'paused for too long', 'out of order': 'sends at an irregular pace',
+          'never came': 'was not heard', 'stranger': 'is new'}
+_SHORT_OF_ANSWERS = {'died': 'does not answer', 'late': 'answers late', 'early': 'answers early',
+                     'out of order': 'comes at unusual delays'}
 
 
 @dataclass(frozen=True)
@@ -90,8 +91,8 @@ def components(judged: Judged) -> List[str]:
     """Return the components that alarms and suspicions name, the most important ones first."""
     named: Dict[str, None] = {}
     for alarm in [*judged.verdicts.alarms, *judged.verdicts.suspicions]:
-        for suspect in [*alarm.suspects, *alarm.new_suspects]:
-            named[_component(judged, suspect)] = None
+        for suspect in [*alarm.suspects, *alarm.later]:
+            named[suspect.component] = None
     return list(named)
 
 
@@ -112,11 +113,11 @@ def intervals(judged: Judged, found: Overview, prefix: str) -> List[Interval]:
 def _interval(judged: Judged, found: Overview, key: str, level: str, alarm: Alarm,
               detailed: bool) -> Interval:
     suspects = [_named(judged, suspect, detailed) for suspect in alarm.suspects]
-    later = [_named(judged, suspect, detailed) for suspect in alarm.new_suspects]
-    start = judged.seconds(alarm.start)
+    later = [_named(judged, suspect, detailed) for suspect in alarm.later]
+    start = judged.seconds(alarm.begin)
     first = alarm.suspects[0] if alarm.suspects else None
     return Interval(
-        key, level, start, judged.seconds(alarm.end), utc(alarm.start), alarm.cleared,
+        key, level, start, judged.seconds(alarm.end), utc(alarm.begin), alarm.over,
         None if first is None else _began(first, start), alarm.lowest_score,
         alarm.evidence or 'what is left of the alarm',
         _decided(judged, found, start - judged.by.trained.window / 2e9), alarm.busy, suspects,
@@ -126,36 +127,25 @@ def _interval(judged: Judged, found: Overview, key: str, level: str, alarm: Alar
 
 def _named(judged: Judged, suspect: Suspect, detailed: bool) -> NamedSuspect:
     return NamedSuspect(
-        _component(judged, suspect), str(judged.recording.event_types[suspect.id]),
-        _short(suspect), suspect.describe(), judged.seconds(suspect.since),
+        suspect.component, str(judged.recording.event_types[suspect.id]),
+        _short(suspect), suspect.reason.words, judged.seconds(suspect.since),
         delays.histogram_of(judged, suspect) if detailed else None)
 
 
-def _component(judged: Judged, suspect: Suspect) -> str:
-    kind = judged.recording.event_types[suspect.id]
-    return suspect.component or kind.source or kind.scope
-
-
 def _short(suspect: Suspect) -> str:
-    if suspect.reason == 'rate':
-        few = suspect.events < (suspect.usual_fewest + suspect.usual_most) / 2
-        return 'sends too seldom' if few else 'sends too often'
-    if suspect.reason == 'delay':
-        if suspect.times > 0 and not suspect.other:
-            return 'sends at an irregular pace'
-        if suspect.times > 0:
-            return 'answers late' if suspect.delay > suspect.usual_delay else 'answers early'
-        return 'comes at unusual delays'
-    return _SHORT[suspect.reason]
+    reason = suspect.reason
+    if reason.unit == 'score':
+        return 'came at unusual times'
+    if reason.after or (reason.of > 0 and reason.times == 0):
+        return _SHORT_OF_ANSWERS.get(reason.kind, reason.kind)
+    if reason.of > 0:  # gaps of its own
+        return 'sends at an irregular pace'
+    return _SHORT.get(reason.kind, reason.kind)
 
 
 def _began(suspect: Suspect, start: float) -> Optional[float]:
     """Return when the trouble began [s]: what the suspect's numbers look back to."""
-    if suspect.reason in ('silent', 'late', 'unanswered', 'never heard'):
-        return None if math.isnan(suspect.silence) else start - suspect.silence
-    if suspect.reason == 'delay' and suspect.lasted > 0:
-        return start - suspect.lasted
-    return start - _RATE_SPAN_S if suspect.reason == 'rate' else None
+    return None if math.isnan(suspect.reason.lasted) else start - suspect.reason.lasted
 
 
 def _decided(judged: Judged, found: Overview, time: float) -> str:

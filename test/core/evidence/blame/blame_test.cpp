@@ -14,8 +14,6 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-using Reason = Suspect::Reason;
-
 // A comes at random, about every 200 ms, B 20 ms after it, and C often.
 Events robot(std::int64_t length, unsigned seed) {
   const Events asked = irregular(kA, 0, length, 200 * kMillisecond, seed);
@@ -74,20 +72,19 @@ TEST_F(EvidenceBlameTest, WithoutAGraphTheLeastProbableSilenceComesFirst) {
   const std::vector<Suspect> named = suspects({{overdue(kA), 1.5}, {overdue(kC), 1.2}}, end);
   EXPECT_EQ(ids(named), (std::vector<EventId>{kC, kA}));
   for (const Suspect& suspect : named) {
-    EXPECT_EQ(suspect.reason, Reason::kSilent);
-    EXPECT_NEAR(suspect.silence, 5, 0.5);
-    EXPECT_LT(suspect.usual_shortest, suspect.usual_longest);
+    EXPECT_EQ(suspect.reason.kind, Kind::kDied);
+    EXPECT_NEAR(suspect.reason.value, 5, 0.5);
+    EXPECT_LT(suspect.reason.usual_shortest, suspect.reason.usual_longest);
   }
 }
 
 TEST_F(EvidenceBlameTest, SaysOfASilentOneWhatWasMeasuredInTraining) {
   const Suspect silent = suspects({{overdue(kA), 1.5}}, last_ + 5 * kSecond).at(0);
-  EXPECT_DOUBLE_EQ(silent.usual_gap * 1e9, model_->meanGap(kA));
-  EXPECT_DOUBLE_EQ(silent.longest_gap * 1e9, static_cast<double>(model_->longestGap(kA)));
+  EXPECT_DOUBLE_EQ(silent.reason.usual * 1e9, model_->meanGap(kA));
   char text[100];
   std::snprintf(text, sizeof text, "silent for %.2f s, usually every %.3f s, at most %.3f s",
-                silent.silence, silent.usual_gap, silent.longest_gap);
-  EXPECT_EQ(describe(silent), text);
+                silent.reason.value, silent.reason.usual, toSeconds(model_->longestGap(kA)));
+  EXPECT_EQ(silent.reason.words, text);
 }
 
 TEST_F(EvidenceBlameTest, TheRootOfTheSilentComesBeforeItsVictims) {
@@ -124,9 +121,9 @@ TEST_F(EvidenceBlameTest, ASilentOneIsWordedByTheTrackThatSpeaksAgainstIt) {
             std::log(model_->tuning().rare_silence));
   const Track fewer = trackOf(kFewer, kA, kA);
   // At half its rate its age is rare, too, but no more than that.
-  EXPECT_EQ(suspects({{overdue(kA), 0.9}, {fewer, 1.4}}, end).at(0).reason, Reason::kRate);
-  EXPECT_EQ(suspects({{overdue(kA), 0.9}, {fewer, 0.8}}, end).at(0).reason, Reason::kSilent);
-  EXPECT_EQ(suspects({{overdue(kA), 1.1}, {fewer, 1.4}}, end).at(0).reason, Reason::kSilent);
+  EXPECT_EQ(suspects({{overdue(kA), 0.9}, {fewer, 1.4}}, end).at(0).reason.kind, Kind::kSlow);
+  EXPECT_EQ(suspects({{overdue(kA), 0.9}, {fewer, 0.8}}, end).at(0).reason.kind, Kind::kDied);
+  EXPECT_EQ(suspects({{overdue(kA), 1.1}, {fewer, 1.4}}, end).at(0).reason.kind, Kind::kDied);
 }
 
 TEST_F(EvidenceBlameTest, LateAnswersAreWordedByWhatTheirSumSaw) {
@@ -136,7 +133,7 @@ TEST_F(EvidenceBlameTest, LateAnswersAreWordedByWhatTheirSumSaw) {
     add({stamp + 70 * kMillisecond, kB});
   }
   const Suspect late = suspects({{trackOf(kPairs, kB, kA), 1.5}}, last_ + kMillisecond).at(0);
-  EXPECT_EQ(describe(late),
+  EXPECT_EQ(late.reason.words,
             "50.0 ms later than usual 12 times of 12 after /a /x T in the last 1.9 s, usually "
             "0.020 s");
 }
@@ -144,10 +141,10 @@ TEST_F(EvidenceBlameTest, LateAnswersAreWordedByWhatTheirSumSaw) {
 TEST_F(EvidenceBlameTest, ALateAnswererIsNamedBeforeTheOneThatAsks) {
   const std::vector<Suspect> named = suspects({{trackOf(kPairs, kB, kA), 1.5}}, last_ + kWindow);
   ASSERT_EQ(ids(named), std::vector<EventId>{kB});
-  EXPECT_EQ(named.front().reason, Reason::kDelay);
-  EXPECT_EQ(named.front().other, toString(kTypes[kA]));
-  EXPECT_NEAR(named.front().delay, 0.020, 1e-9);
-  EXPECT_NEAR(named.front().usual_shortest, 0.020, 0.004);
+  EXPECT_EQ(named.front().reason.kind, Kind::kOutOfOrder) << "none of its delays was unusual";
+  EXPECT_EQ(named.front().reason.after, toString(kTypes[kA]));
+  EXPECT_NEAR(named.front().reason.value, 0.020, 1e-9);
+  EXPECT_NEAR(named.front().reason.usual_shortest, 0.020, 0.004);
 }
 
 // A asks, B answers after 20 ms, and C answers B after 30 ms.
@@ -197,8 +194,8 @@ TEST_F(EvidenceBlameOfAChainTest, TheOneBetweenIsNamedEvenIfItsOwnDelaysAreNotJu
   const std::vector<Suspect> named = suspects({{delay(kC, kA), 1.5}}, last_ + kMillisecond);
   ASSERT_EQ(ids(named), (std::vector<EventId>{kB, kC}));
   EXPECT_FALSE(named[0].abnormal);
-  EXPECT_EQ(named[0].other, toString(kTypes[kA]));
-  EXPECT_NEAR(named[0].delay, 0.080, 1e-9);
+  EXPECT_EQ(named[0].reason.after, toString(kTypes[kA]));
+  EXPECT_NEAR(named[0].reason.value, 0.080, 1e-9);
 }
 
 TEST_F(EvidenceBlameOfAChainTest, WhoIsInTimeIsNotNamedBetween) {
@@ -240,16 +237,16 @@ TEST_F(EvidenceBlameTest, WhoOwesAnAnswerIsNamedAsASilentOne) {
   const std::vector<Suspect> named = suspects(
       {{trackOf(kMore, kC, kC), 1.9}, {trackOf(kDeadlines, kB, kA), 1.1}}, last_ + 2 * kSecond);
   EXPECT_EQ(ids(named), (std::vector<EventId>{kB, kC}));
-  EXPECT_EQ(named.front().reason, Reason::kUnanswered);
-  EXPECT_EQ(describe(named.front()), "has not come for 2.00 s after /a /x T");
+  EXPECT_EQ(named.front().reason.kind, Kind::kDied);
+  EXPECT_EQ(named.front().reason.words, "has not come for 2.00 s after /a /x T");
 }
 
 TEST_F(EvidenceBlameTest, ATypeThatComesTooOftenIsNamedWithNumbers) {
   const std::vector<Suspect> named = suspects({{trackOf(kMore, kC, kC), 1.5}}, last_ + kWindow);
   ASSERT_EQ(ids(named), std::vector<EventId>{kC});
-  EXPECT_EQ(named.front().reason, Reason::kRate);
-  EXPECT_EQ(named.front().events, scorer_.heard().recentCount(kC));
-  EXPECT_GT(named.front().usual_most, named.front().usual_fewest);
+  EXPECT_EQ(named.front().reason.unit, unit::kHertz);
+  EXPECT_EQ(named.front().reason.value, scorer_.heard().recentCount(kC) / 2.0);
+  EXPECT_GT(named.front().reason.usual_longest, named.front().reason.usual_shortest);
 }
 
 TEST_F(EvidenceBlameTest, SilentOnesComeBeforeUnusualOnes) {
@@ -273,9 +270,9 @@ TEST_F(EvidenceBlameTest, UnknownEventsAreNamedLast) {
   window.events.push_back({{last_, kA}, false, std::nullopt});
   const std::vector<Suspect> named = suspects({{overdue(kA), 1.5}}, last_ + 5 * kSecond, window);
   ASSERT_EQ(ids(named), (std::vector<EventId>{kA, 5, 4}));
-  EXPECT_EQ(named[1].reason, Reason::kUnknown);
-  EXPECT_EQ(named[1].events, 2U);
-  EXPECT_EQ(named[2].events, 1U);
+  EXPECT_EQ(named[1].reason.kind, Kind::kStranger);
+  EXPECT_EQ(named[1].reason.value, 2);
+  EXPECT_EQ(named[2].reason.value, 1);
 }
 
 TEST_F(EvidenceBlameTest, NoMoreThanFiveAreNamed) {

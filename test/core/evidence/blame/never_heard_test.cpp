@@ -63,8 +63,8 @@ TEST_F(NeverHeardTest, WhatComesLateAsAlwaysIsNormalAndWhatDoesNotComeIsNot) {
   ASSERT_EQ(never_heard.suspects().size(), 1U);
   const Suspect suspect = never_heard.suspects().front();
   EXPECT_EQ(suspect.id, kC);
-  EXPECT_EQ(describe(suspect), "not heard since the start, usually within 14.4 to 14.6 s");
-  EXPECT_NEAR(suspect.silence, 34.3, 1e-9);
+  EXPECT_EQ(suspect.reason.words, "not heard since the start, usually within 14.4 to 14.6 s");
+  EXPECT_NEAR(suspect.reason.value, 34.3, 1e-9);
   EXPECT_EQ(suspect.component, "/c");
   EXPECT_FALSE(suspect.abnormal);
   EXPECT_LT(shareAt(never_heard, 136 * kSecond), 1);  // four times as late
@@ -133,7 +133,7 @@ TEST_F(NeverHeardTest, RecordingsOfTheCalibrationCountToo) {
   EXPECT_EQ(shareAt(never_heard, 45 * kSecond), 0);
   EXPECT_GT(shareAt(never_heard, 46 * kSecond), 0);
   EXPECT_EQ(named(never_heard), std::vector<EventId>{kC});
-  EXPECT_EQ(describe(never_heard.suspects().front()),
+  EXPECT_EQ(never_heard.suspects().front().reason.words,
             "not heard since the start, usually within 0 to 20 s");
 }
 
@@ -190,7 +190,7 @@ TEST_F(NeverHeardTest, TheJudgeSuspectsAndThenAlarms) {
   EXPECT_EQ(evidence, "never heard");
   ASSERT_EQ(suspects.size(), 1U);
   EXPECT_EQ(suspects.front().id, kC);
-  EXPECT_EQ(suspects.front().reason, Suspect::Reason::kNeverHeard);
+  EXPECT_EQ(suspects.front().reason.kind, Kind::kNeverCame);
 }
 
 TEST_F(NeverHeardTest, WhatFellSilentIsNamedBeforeWhatNeverCame) {

@@ -191,7 +191,7 @@ TEST(CatchingUp, IsAGapThatIsShorterWhileItsTypeIsBehind) {
 }
 
 /// Delays in words: of so many [s], half of them unusual; the usual one came often before.
-std::string wordsOf(std::vector<double> unusual, const std::string& other) {
+std::string wordsOf(const std::vector<double>& unusual, const std::string& other, Kind kind) {
   std::vector<SeenDelay> seen;
   std::int64_t now = 0;
   for (int k = 0; k < 20; ++k) {
@@ -202,36 +202,41 @@ std::string wordsOf(std::vector<double> unusual, const std::string& other) {
     seen.push_back({now += 100 * kMillisecond, delay * 1e9, 3});
     seen.push_back({now += 100 * kMillisecond, 45e6, -1});
   }
-  Suspect suspect;
-  suspect.other = other;
-  describeDelays(seen, 100, 30e6, since + 12040 * kMillisecond, suspect);
-  EXPECT_EQ(suspect.reason, Suspect::Reason::kDelay);
-  return describe(suspect);
+  Reason reason;
+  reason.after = other;
+  describeDelays(seen, 100, 30e6, since + 12040 * kMillisecond, reason);
+  EXPECT_EQ(reason.unit, unit::kSeconds);
+  EXPECT_EQ(reason.kind, kind) << reason.words;
+  return reason.words;
 }
 
 TEST(DescribeDelays, SaysHowMuchLaterHowOftenAndSinceWhen) {
-  EXPECT_EQ(wordsOf({0.0471, 0.0471, 0.0471}, "/a /x T"),
+  EXPECT_EQ(wordsOf({0.0471, 0.0471, 0.0471}, "/a /x T", Kind::kLate),
             "2.1 ms later than usual 3 times of 6 after /a /x T in the last 12.0 s, usually "
             "0.045 s");
-  EXPECT_EQ(wordsOf({0.0429, 0.0429}, ""),
+  EXPECT_EQ(wordsOf({0.0429, 0.0429}, "", Kind::kFast),
             "2.1 ms earlier than usual 2 times of 4 in the last 12.0 s, usually every 0.045 s");
-  EXPECT_EQ(wordsOf({0.245}, "").rfind("200 ms later than usual 1 time of 2 in", 0), 0U);
-  EXPECT_EQ(wordsOf({3.045}, "").rfind("3.00 s later than usual 1 time of 2 in", 0), 0U);
+  EXPECT_EQ(wordsOf({0.245}, "", Kind::kSlow).rfind("200 ms later than usual 1 time of 2 in", 0),
+            0U);
+  EXPECT_EQ(wordsOf({3.045}, "", Kind::kSlow).rfind("3.00 s later than usual 1 time of 2 in", 0),
+            0U);
 }
 
 TEST(DescribeDelays, SomeEarlierAndSomeLaterAreScattered) {
-  EXPECT_EQ(wordsOf({0.033, 0.057, 0.033, 0.057}, ""),
+  EXPECT_EQ(wordsOf({0.033, 0.057, 0.033, 0.057}, "", Kind::kOutOfOrder),
             "12.0 ms earlier or later than usual 4 times of 8 in the last 12.0 s, usually every "
             "0.045 s");
 }
 
 TEST(DescribeDelays, WithoutAnyItSaysNoNumber) {
-  Suspect suspect;
-  describeDelays({}, 100, 30e6, kSecond, suspect);
-  EXPECT_EQ(describe(suspect), "at unusual delays");
-  suspect.other = "/a /x T";
-  describeDelays({}, 100, 30e6, kSecond, suspect);
-  EXPECT_EQ(describe(suspect), "at unusual delays after /a /x T");
+  Reason reason;
+  describeDelays({}, 100, 30e6, kSecond, reason);
+  EXPECT_EQ(reason.words, "at unusual delays");
+  EXPECT_EQ(reason.kind, Kind::kOutOfOrder);
+  EXPECT_TRUE(std::isnan(reason.value));
+  reason.after = "/a /x T";
+  describeDelays({}, 100, 30e6, kSecond, reason);
+  EXPECT_EQ(reason.words, "at unusual delays after /a /x T");
 }
 
 }  // namespace

@@ -47,12 +47,13 @@ TEST_F(OwedTest, RareRequestsAreCountedInSecondsSinceTheFirst) {
   EXPECT_DOUBLE_EQ(evidenceAt(31 * kSecond), 1);
   scorer_->add({35 * kSecond, kA});
   EXPECT_DOUBLE_EQ(evidenceAt(36 * kSecond), 6) << "since the first one without an answer";
-  EXPECT_DOUBLE_EQ(suspect().silence, 6);
-  EXPECT_EQ(describe(suspect()), "has not come for 6.00 s after /a /x T");
+  EXPECT_EQ(suspect().reason.kind, Kind::kDied);
+  EXPECT_DOUBLE_EQ(suspect().reason.value, 6);
+  EXPECT_EQ(suspect().reason.words, "has not come for 6.00 s after /a /x T");
   EXPECT_DOUBLE_EQ(evidenceAt(50 * kSecond), 20) << "judged on a timer, not at the next request";
   scorer_->add({50 * kSecond, kB});
   EXPECT_EQ(evidenceAt(60 * kSecond), 0);
-  EXPECT_EQ(suspect().silence, 0);
+  EXPECT_EQ(suspect().reason.value, 0);
 }
 
 TEST_F(OwedTest, ABurstOfRareRequestsIsOneQuestion) {
@@ -85,8 +86,9 @@ TEST_F(OwedTest, SeriesOfRequestsAreCounted) {
     scorer_->add({k * kSecond, kA});
   }
   EXPECT_EQ(evidenceAt(100 * kSecond), 10) << "time alone is no request";
-  EXPECT_EQ(suspect().of, 10U);
-  EXPECT_EQ(describe(suspect()), "has not come after the last 10 /a /x T");
+  EXPECT_EQ(suspect().reason.value, 10);
+  EXPECT_EQ(suspect().reason.unit, unit::kRequests);
+  EXPECT_EQ(suspect().reason.words, "has not come after the last 10 /a /x T");
   scorer_->add({100 * kSecond, kB});
   EXPECT_EQ(evidenceAt(101 * kSecond), 0);
 }

@@ -142,17 +142,17 @@ TEST_F(OwnGapsTest, NoSumGrowsFarBeyondItsLimit) {
 }
 
 TEST_F(OwnGapsTest, ASuspectIsToldOfByTheGapsThatTheSumSaw) {
-  EXPECT_EQ(describe(suspect()), "at unusual delays");
+  EXPECT_EQ(suspect().reason.words, "at unusual delays");
   add({now_, kA});
   waitUsually(20);
   for (int i = 0; i < 4; ++i) {
     wait(kLong);
   }
-  EXPECT_EQ(describe(suspect()),
+  EXPECT_EQ(suspect().reason.words,
             "400 ms later than usual 4 times of 4 in the last 1.8 s, usually every 0.200 s");
-  EXPECT_EQ(suspect().other, "");
-  EXPECT_NEAR(suspect().usual_shortest, 0.2, 0.03);
-  EXPECT_NEAR(suspect().usual_longest, 0.2, 0.03);
+  EXPECT_EQ(suspect().reason.after, "");
+  EXPECT_NEAR(suspect().reason.usual_shortest, 0.2, 0.03);
+  EXPECT_NEAR(suspect().reason.usual_longest, 0.2, 0.03);
 }
 
 }  // namespace

@@ -106,16 +106,19 @@ TEST_F(RateTest, ASuspectIsToldOfByItsNumber) {
   }
   now_ += kWindow;
   const Suspect often = suspect(more_);
-  EXPECT_EQ(often.reason, Suspect::Reason::kRate);
-  EXPECT_EQ(often.events, scorer_.heard().recentCount(kA));
+  EXPECT_EQ(often.reason.kind, Kind::kFast);
+  EXPECT_EQ(often.reason.unit, unit::kHertz);
+  const std::uint32_t count = scorer_.heard().recentCount(kA);
+  EXPECT_DOUBLE_EQ(often.reason.value, count / 2.0);
+  EXPECT_DOUBLE_EQ(often.reason.lasted, 2);
   char text[80];
-  std::snprintf(text, sizeof text, "%zu in the last 2 s, usually %.0f to %.0f", often.events,
-                often.usual_fewest, often.usual_most);
-  EXPECT_EQ(describe(often), text);
-  EXPECT_GT(often.usual_fewest, 0);
-  EXPECT_LT(often.usual_fewest, 10);
-  EXPECT_GT(often.usual_most, 10);
-  EXPECT_LT(often.usual_most, 30);
+  std::snprintf(text, sizeof text, "%u in the last 2 s, usually %.0f to %.0f", count,
+                2 * often.reason.usual_shortest, 2 * often.reason.usual_longest);
+  EXPECT_EQ(often.reason.words, text);
+  EXPECT_GT(often.reason.usual_shortest, 0);
+  EXPECT_LT(often.reason.usual_shortest, 5);
+  EXPECT_GT(often.reason.usual_longest, 5);
+  EXPECT_LT(often.reason.usual_longest, 15);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <cstdio>
 
 #include "channel_case.h"
 
@@ -40,12 +41,17 @@ TEST_F(SilenceTest, ASuspectIsToldOfByWhatTrainingMeasured) {
   add({now_, kA});
   now_ += 5 * kSecond;
   const Suspect silent = suspect(overdue_);
-  EXPECT_EQ(silent.reason, Suspect::Reason::kSilent);
-  EXPECT_DOUBLE_EQ(silent.silence, 5);
-  EXPECT_DOUBLE_EQ(silent.usual_gap * 1e9, model_->meanGap(kA));
-  EXPECT_DOUBLE_EQ(silent.longest_gap * 1e9, static_cast<double>(model_->longestGap(kA)));
-  EXPECT_LT(silent.usual_shortest, silent.usual_gap);
-  EXPECT_GT(silent.usual_longest, silent.usual_gap);
+  EXPECT_EQ(silent.reason.kind, Kind::kDied);
+  EXPECT_EQ(silent.reason.unit, unit::kSeconds);
+  EXPECT_DOUBLE_EQ(silent.reason.value, 5);
+  EXPECT_DOUBLE_EQ(silent.reason.lasted, 5);
+  EXPECT_DOUBLE_EQ(silent.reason.usual * 1e9, model_->meanGap(kA));
+  EXPECT_LT(silent.reason.usual_shortest, silent.reason.usual);
+  EXPECT_GT(silent.reason.usual_longest, silent.reason.usual);
+  char text[100];
+  std::snprintf(text, sizeof text, "silent for 5.00 s, usually every %.3f s, at most %.3f s",
+                silent.reason.usual, toSeconds(model_->longestGap(kA)));
+  EXPECT_EQ(silent.reason.words, text);
 }
 
 }  // namespace

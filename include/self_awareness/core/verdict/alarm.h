@@ -1,0 +1,65 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "self_awareness/core/stream/vocabulary.h"
+#include "self_awareness/core/verdict/busy.h"
+#include "self_awareness/core/verdict/detector.h"
+#include "self_awareness/core/verdict/suspect.h"
+
+namespace self_awareness::core {
+
+/// A stretch of time in which the alarm stood, or a suspicion: when, who, and why. It keeps its id
+/// and its culprit, whoever is named later; only if the machine turns out to be busy, or everybody
+/// silent, there is no culprit any more.
+struct Alarm {
+  enum class Level { kSuspicion, kAlarm };
+
+  /// Its begin, or one more than the id of the one before if that is larger: unique in a stream,
+  /// and the same live and in a recording of it.
+  std::uint64_t id = 0;
+  Level level = Level::kSuspicion;
+  std::int64_t begin = 0;  ///< end of the window that raised it [ns]
+  std::int64_t end = 0;    ///< end of the window that ended it, or of the last one so far [ns]
+  bool over = false;       ///< false: it stands
+  Kind kind = Kind::kDied;
+  std::string culprit;   ///< component; empty: there is none, or nobody stands out
+  std::string evidence;  ///< what raised it, in words; empty: the suspicion that an alarm left
+  double lowest_score = std::numeric_limits<double>::quiet_NaN();
+  std::optional<Busy> busy;  ///< as the first window said that does
+  /// Of the window that raised it, the most likely first. Their components are known, also those
+  /// of strangers.
+  std::vector<Suspect> suspects;
+  std::vector<Suspect> later;  ///< of further components, each with its time (since)
+};
+
+/// Makes alarms and suspicions of the verdicts on one window after the other, in the same way live
+/// and from a bag.
+class Alarms {
+ public:
+  /// Takes in the verdict on the next window.
+  /// @param window its length [ns]
+  /// @param vocabulary that the suspects' ids are of; the components of unknown events are in it
+  /// @return the alarm or suspicion that ended with this window; none: nothing ended
+  std::optional<Alarm> add(const Verdict& verdict, std::int64_t window,
+                           const Vocabulary& vocabulary);
+  /// Ends what stands for another reason than a window.
+  /// @param now [ns]
+  /// @return what stood; none: nothing did
+  std::optional<Alarm> end(std::int64_t now);
+  /// The alarm or suspicion that stands; none: all is normal.
+  const std::optional<Alarm>& standing() const { return standing_; }
+
+ private:
+  void begin(const Verdict& verdict, std::int64_t end, const std::optional<Alarm>& before);
+  void goOn(const Verdict& verdict, std::int64_t end, const Vocabulary& vocabulary);
+
+  std::optional<Alarm> standing_;
+  std::uint64_t last_id_ = 0;
+};
+
+}  // namespace self_awareness::core

@@ -1,0 +1,98 @@
+#include "self_awareness/core/verdict/alarm.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace self_awareness::core {
+namespace {
+
+std::optional<Alarm::Level> levelOf(const Verdict& verdict) {
+  if (verdict.alarm) {
+    return Alarm::Level::kAlarm;
+  }
+  return verdict.suspicion ? std::optional(Alarm::Level::kSuspicion) : std::nullopt;
+}
+
+/// Whether it is what a machine without time does to everybody.
+bool isOfTime(Kind kind) {
+  return kind == Kind::kSlow || kind == Kind::kFast || kind == Kind::kLate ||
+         kind == Kind::kEarly || kind == Kind::kOutOfOrder;
+}
+
+std::vector<Suspect> withComponents(std::vector<Suspect> suspects, const Vocabulary& vocabulary) {
+  for (Suspect& suspect : suspects) {
+    if (suspect.component.empty() && suspect.id < vocabulary.size()) {
+      const EventType& type = vocabulary.at(suspect.id);
+      suspect.component = componentOf(type.source, type.scope);
+    }
+  }
+  return suspects;
+}
+
+}  // namespace
+
+std::optional<Alarm> Alarms::add(const Verdict& verdict, std::int64_t window,
+                                 const Vocabulary& vocabulary) {
+  const std::int64_t window_end = verdict.window->start + window;
+  const std::optional<Alarm::Level> level = levelOf(verdict);
+  std::optional<Alarm> ended;
+  if (standing_ && standing_->level != level) {
+    goOn(verdict, window_end, vocabulary);
+    ended = end(window_end);
+  }
+  if (level) {
+    if (!standing_) {
+      begin(verdict, window_end, ended);
+    }
+    goOn(verdict, window_end, vocabulary);
+  }
+  return ended;
+}
+
+std::optional<Alarm> Alarms::end(std::int64_t now) {
+  std::optional<Alarm> ended = std::exchange(standing_, std::nullopt);
+  if (ended) {
+    ended->end = now;
+    ended->over = true;
+  }
+  return ended;
+}
+
+void Alarms::begin(const Verdict& verdict, std::int64_t end, const std::optional<Alarm>& before) {
+  last_id_ = std::max(static_cast<std::uint64_t>(std::max<std::int64_t>(end, 1)), last_id_ + 1);
+  Alarm& alarm = standing_.emplace();
+  alarm.id = last_id_;
+  alarm.level = *levelOf(verdict);
+  alarm.begin = end;
+  if (before) {  // a suspicion may be what is left of an alarm
+    alarm.kind = before->kind;
+    alarm.culprit = before->culprit;
+  }
+}
+
+void Alarms::goOn(const Verdict& verdict, std::int64_t end, const Vocabulary& vocabulary) {
+  Alarm& alarm = *standing_;
+  const bool stands = alarm.level == levelOf(verdict);
+  if (stands && alarm.evidence.empty() && alarm.suspects.empty() &&
+      !(verdict.evidence.empty() && verdict.suspects.empty())) {
+    alarm.evidence = verdict.evidence;
+    alarm.suspects = withComponents(verdict.suspects, vocabulary);
+    alarm.culprit = alarm.suspects.empty() ? "" : alarm.suspects.front().component;
+    alarm.kind = alarm.suspects.empty() ? Kind::kOutOfOrder : alarm.suspects.front().reason.kind;
+  }
+  if (verdict.busy && !alarm.busy) {
+    alarm.busy = verdict.busy;
+  }
+  if (stands && ((alarm.busy && isOfTime(alarm.kind)) ||
+                 (verdict.all_silent && alarm.kind == Kind::kDied))) {
+    alarm.kind = alarm.kind == Kind::kDied ? Kind::kAllSilent : Kind::kBusyMachine;
+    alarm.culprit.clear();
+  }
+  alarm.end = end;
+  alarm.lowest_score = std::fmin(alarm.lowest_score, verdict.score.value_or(0));
+  const std::vector<Suspect> later = withComponents(verdict.new_suspects, vocabulary);
+  alarm.later.insert(alarm.later.end(), later.begin(), later.end());
+}
+
+}  // namespace self_awareness::core

@@ -1,0 +1,73 @@
+#include <pybind11/stl.h>
+
+#include <optional>
+#include <string>
+
+#include "bindings.h"
+#include "self_awareness/core/verdict/alarm.h"
+
+namespace self_awareness::python {
+
+void bindAlarms(py::module& m) {
+  using core::Reason;
+  py::class_<Reason>(m, "Reason", "Why an event type is a suspect.")
+      .def_property_readonly(
+          "kind", [](const Reason& self) { return core::toString(self.kind); },
+          "died, slow, fast, late, early, out of order, never came or stranger")
+      .def_readonly("after", &Reason::after,
+                    "the event type that it should come after; empty: its own last")
+      .def_readonly("unit", &Reason::unit,
+                    "of the four values: s, Hz, events, requests or score; a channel may have\n"
+                    "others")
+      .def_readonly("value", &Reason::value,
+                    "what was seen: a silence, a median delay, a rate, a number")
+      .def_readonly("usual", &Reason::usual, "what is to be expected of it; NaN: not known")
+      .def_readonly("usual_shortest", &Reason::usual_shortest,
+                    "lower end of what is usual; NaN: not known")
+      .def_readonly("usual_longest", &Reason::usual_longest, "its upper end; NaN: not known")
+      .def_readonly("lasted", &Reason::lasted,
+                    "the value is of the last so many seconds; NaN: of one moment")
+      .def_readonly("of", &Reason::of, "delays that the value is of; 0: it is not of delays")
+      .def_readonly("times", &Reason::times, "of them, unusual")
+      .def_readonly("words", &Reason::words, "all of it in words and numbers");
+
+  py::class_<core::Suspect>(m, "Suspect", "An event type that may have made a window abnormal.")
+      .def_readonly("id", &core::Suspect::id, "of the event type")
+      .def_readonly("component", &core::Suspect::component,
+                    "whose event type it is; empty: not known")
+      .def_readonly("abnormal", &core::Suspect::abnormal, "it alone would be abnormal")
+      .def_readonly("since", &core::Suspect::since,
+                    "when the alarm or the suspicion first named its component [ns]")
+      .def_readonly("reason", &core::Suspect::reason);
+
+  using core::Alarm;
+  py::class_<Alarm>(m, "Alarm", "A stretch of time in which the alarm stood, or a suspicion.")
+      .def_readonly("id", &Alarm::id, "unique in a recording; the monitor says the same")
+      .def_property_readonly(
+          "level",
+          [](const Alarm& self) { return self.level == Alarm::Level::kAlarm ? "ERROR" : "WARN"; },
+          "ERROR: an alarm; WARN: a suspicion")
+      .def_readonly("begin", &Alarm::begin, "[ns]")
+      .def_readonly("end", &Alarm::end, "[ns]")
+      .def_readonly("over", &Alarm::over, "False: it stood until the end of the recording")
+      .def_property_readonly(
+          "kind", [](const Alarm& self) { return core::toString(self.kind); },
+          "of the culprit's reason, or: busy machine, all silent")
+      .def_readonly("culprit", &Alarm::culprit,
+                    "component; empty: there is none, or nobody stands out")
+      .def_readonly("evidence", &Alarm::evidence,
+                    "what raised it, in words; empty: a suspicion that an alarm left")
+      .def_readonly("lowest_score", &Alarm::lowest_score)
+      .def_property_readonly(
+          "busy",
+          [](const Alarm& self) {
+            return self.busy ? std::optional<std::string>(core::describe(*self.busy))
+                             : std::nullopt;
+          },
+          "in words, if the machine was too busy; None: it was not")
+      .def_readonly("suspects", &Alarm::suspects, "of the window that raised it, best first")
+      .def_readonly("later", &Alarm::later,
+                    "of components that it named later, each with its time (since)");
+}
+
+}  // namespace self_awareness::python

@@ -1,0 +1,171 @@
+#include "self_awareness/core/verdict/alarm.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace self_awareness::core {
+namespace {
+
+constexpr std::int64_t kWindow = 100000000;  // [ns]
+constexpr std::int64_t kStart = 50 * kWindow;
+
+enum Level { kOk, kSuspicion, kAlarm };
+
+class AlarmsTest : public testing::Test {
+ protected:
+  AlarmsTest() : vocabulary_({{"/a", "/x", "T"}, {"/b", "/y", "T"}, {"", "/z", "T"}}) {}
+
+  static Suspect suspect(EventId id, Kind kind) {
+    Suspect suspect;
+    suspect.id = id;
+    suspect.reason.kind = kind;
+    return suspect;
+  }
+  /// The verdict on the next window; an abnormal one blames suspects.
+  Verdict verdict(Level level, const std::vector<Suspect>& suspects = {}) {
+    Verdict verdict;
+    verdict.window = &window_;
+    verdict.alarm = level == kAlarm;
+    verdict.suspicion = level == kSuspicion;
+    verdict.score = suspects.empty() ? 0 : -2;
+    verdict.evidence = suspects.empty() ? "" : "overdue";
+    verdict.suspects = suspects;
+    return verdict;
+  }
+  std::optional<Alarm> add(const Verdict& verdict) {
+    const std::optional<Alarm> ended = alarms_.add(verdict, kWindow, vocabulary_);
+    window_.start += kWindow;
+    return ended;
+  }
+
+  Vocabulary vocabulary_;
+  Window window_{kStart, {}};
+  Alarms alarms_;
+};
+
+TEST_F(AlarmsTest, AnAlarmLastsFromTheWindowThatRaisedItToTheOneThatEndedIt) {
+  EXPECT_FALSE(add(verdict(kOk)));
+  EXPECT_FALSE(alarms_.standing());
+  EXPECT_FALSE(add(verdict(kAlarm, {suspect(1, Kind::kDied), suspect(0, Kind::kSlow)})));
+  ASSERT_TRUE(alarms_.standing());
+  EXPECT_FALSE(alarms_.standing()->over);
+  add(verdict(kAlarm));
+  const std::optional<Alarm> ended = add(verdict(kOk));
+  ASSERT_TRUE(ended);
+  EXPECT_FALSE(alarms_.standing());
+  EXPECT_EQ(ended->level, Alarm::Level::kAlarm);
+  EXPECT_EQ(ended->begin, kStart + 2 * kWindow);
+  EXPECT_EQ(ended->end, kStart + 4 * kWindow);
+  EXPECT_TRUE(ended->over);
+  EXPECT_EQ(ended->kind, Kind::kDied);
+  EXPECT_EQ(ended->culprit, "/b");
+  EXPECT_EQ(ended->evidence, "overdue");
+  EXPECT_EQ(ended->lowest_score, -2);
+  EXPECT_EQ(ended->suspects.size(), 2U);
+}
+
+TEST_F(AlarmsTest, WhoIsNamedLaterChangesNeitherIdNorCulprit) {
+  add(verdict(kAlarm, {suspect(0, Kind::kLate)}));
+  const Alarm before = *alarms_.standing();
+  Verdict second = verdict(kAlarm, {suspect(1, Kind::kDied), suspect(0, Kind::kLate)});
+  second.new_suspects = {suspect(1, Kind::kDied)};
+  add(second);
+  const Alarm& after = *alarms_.standing();
+  EXPECT_EQ(after.id, before.id);
+  EXPECT_EQ(after.culprit, "/a");
+  EXPECT_EQ(after.kind, Kind::kLate);
+  EXPECT_EQ(after.suspects.size(), 1U);
+  ASSERT_EQ(after.later.size(), 1U);
+  EXPECT_EQ(after.later[0].component, "/b");
+}
+
+TEST_F(AlarmsTest, EveryAlarmAndSuspicionHasAnIdOfItsOwn) {
+  add(verdict(kSuspicion, {suspect(0, Kind::kSlow)}));
+  const std::uint64_t first = alarms_.standing()->id;
+  EXPECT_EQ(first, static_cast<std::uint64_t>(kStart + kWindow)) << "the same live and from a bag";
+  const std::optional<Alarm> suspicion = add(verdict(kAlarm, {suspect(0, Kind::kSlow)}));
+  ASSERT_TRUE(suspicion);
+  EXPECT_EQ(suspicion->id, first);
+  EXPECT_EQ(suspicion->level, Alarm::Level::kSuspicion);
+  const std::uint64_t second = alarms_.standing()->id;
+  EXPECT_GT(second, first);
+  add(verdict(kOk));
+  window_.start = kStart;  // a recording is played again
+  add(verdict(kAlarm, {suspect(0, Kind::kSlow)}));
+  EXPECT_GT(alarms_.standing()->id, second);
+}
+
+TEST_F(AlarmsTest, ASuspicionThatAnAlarmLeavesIsAboutTheSame) {
+  add(verdict(kAlarm, {suspect(1, Kind::kSlow)}));
+  add(verdict(kSuspicion));
+  EXPECT_EQ(alarms_.standing()->level, Alarm::Level::kSuspicion);
+  EXPECT_EQ(alarms_.standing()->culprit, "/b");
+  EXPECT_EQ(alarms_.standing()->kind, Kind::kSlow);
+  EXPECT_EQ(alarms_.standing()->evidence, "");
+  EXPECT_TRUE(alarms_.standing()->suspects.empty());
+  add(verdict(kSuspicion, {suspect(0, Kind::kFast)}));
+  EXPECT_EQ(alarms_.standing()->culprit, "/a");
+  EXPECT_EQ(alarms_.standing()->kind, Kind::kFast);
+}
+
+TEST_F(AlarmsTest, WhereTheMachineIsBusyNobodyIsToBlame) {
+  Verdict busy = verdict(kAlarm, {suspect(1, Kind::kLate)});
+  busy.busy = Busy{12, 26};
+  add(busy);
+  EXPECT_EQ(alarms_.standing()->kind, Kind::kBusyMachine);
+  EXPECT_EQ(alarms_.standing()->culprit, "");
+  EXPECT_EQ(alarms_.standing()->busy->late, 12U);
+}
+
+TEST_F(AlarmsTest, ABusyMachineDoesNotExcuseWhoDied) {
+  Verdict busy = verdict(kAlarm, {suspect(1, Kind::kDied)});
+  busy.busy = Busy{12, 26};
+  add(busy);
+  EXPECT_EQ(alarms_.standing()->kind, Kind::kDied);
+  EXPECT_EQ(alarms_.standing()->culprit, "/b");
+  EXPECT_TRUE(alarms_.standing()->busy);
+}
+
+TEST_F(AlarmsTest, WhoWasSilentFirstIsNotToBlameWhereAllAre) {
+  add(verdict(kAlarm, {suspect(1, Kind::kDied)}));
+  EXPECT_EQ(alarms_.standing()->culprit, "/b");
+  Verdict all = verdict(kAlarm, {suspect(1, Kind::kDied)});
+  all.all_silent = true;
+  add(all);
+  EXPECT_EQ(alarms_.standing()->kind, Kind::kAllSilent);
+  EXPECT_EQ(alarms_.standing()->culprit, "");
+}
+
+TEST_F(AlarmsTest, NamesStrangersAndTopicsWhereSourcesAreNotKnown) {
+  add(verdict(kSuspicion, {suspect(2, Kind::kStranger)}));
+  EXPECT_EQ(alarms_.standing()->culprit, "/z");
+  EXPECT_EQ(alarms_.standing()->suspects[0].component, "/z");
+  alarms_.end(kStart);
+  add(verdict(kSuspicion, {suspect(7, Kind::kStranger)}));
+  EXPECT_EQ(alarms_.standing()->culprit, "") << "of that id nothing is known";
+}
+
+TEST_F(AlarmsTest, WhereNobodyStandsOutThereIsNoCulprit) {
+  Verdict nobody = verdict(kAlarm);
+  nobody.evidence = "score";
+  add(nobody);
+  EXPECT_EQ(alarms_.standing()->culprit, "");
+  EXPECT_EQ(alarms_.standing()->evidence, "score");
+}
+
+TEST_F(AlarmsTest, MayBeEndedByHand) {
+  EXPECT_FALSE(alarms_.end(kStart));
+  add(verdict(kAlarm, {suspect(0, Kind::kDied)}));
+  const std::optional<Alarm> ended = alarms_.end(kStart + 7);
+  ASSERT_TRUE(ended);
+  EXPECT_TRUE(ended->over);
+  EXPECT_EQ(ended->end, kStart + 7);
+  EXPECT_FALSE(alarms_.standing());
+}
+
+}  // namespace
+}  // namespace self_awareness::core
