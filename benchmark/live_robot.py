@@ -13,7 +13,7 @@ import numpy as np
 
 from self_awareness import (EncodingRules, EventType, EvidenceCalibration, EvidenceModel,
                             TrainedModel, Training)
-from self_awareness.evaluation.live.processes import Processes, await_condition, free_port
+from self_awareness_evaluation.live.processes import Processes, await_condition, free_port
 from self_awareness.stamps import SECOND_NS
 
 NODES = 10

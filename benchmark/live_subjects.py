@@ -14,7 +14,7 @@ import rospy
 from diagnostic_msgs.msg import DiagnosticArray
 
 from live_robot import SUBJECT_CORE, pin, record_command
-from self_awareness.evaluation.live.processes import Processes, await_condition
+from self_awareness_evaluation.live.processes import Processes, await_condition
 from self_awareness.msg import SelfAwareness
 
 _LIBRARIES = Path('lib/self_awareness')

@@ -5,7 +5,7 @@ import json
 from pathlib import Path
 from typing import Any, Dict, List, Sequence
 
-from self_awareness.evaluation.page_section import machine, write_section
+from self_awareness_evaluation.page_section import machine, write_section
 
 __all__ = ['machine', 'publish', 'table']
 

@@ -62,7 +62,7 @@ def test_flake8() -> None:
 
 
 @pytest.mark.parametrize('options', [
-    ('src/self_awareness', *_python_programs()),
+    ('src', *_python_programs()),
     (*LENIENT, 'benchmark', 'test/count_results.py', 'test/python', 'test/rostest',
      'test/sanitizers', 'test/data'),
 ], ids=['package', 'tests'])

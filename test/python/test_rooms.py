@@ -1,4 +1,4 @@
-"""The rooms of the Python package: what is installed, and what may import what."""
+"""The rooms of the Python packages: what is installed, and what may import what."""
 from __future__ import annotations
 
 import ast
@@ -8,26 +8,40 @@ from typing import Dict, List, Set
 
 ROOT = Path(__file__).resolve().parents[2]
 SRC = ROOT / 'src'
-EVALUATION = 'self_awareness.evaluation'
+LIBRARY, ROBOT, EVALUATION = (
+    'self_awareness', 'self_awareness_follow_me', 'self_awareness_evaluation')
+PROGRAMS = f'{LIBRARY}.commands.'
 
 
 def _modules() -> Dict[str, Path]:
-    """Return all modules of the package by their dotted names."""
+    """Return all modules of the packages by their dotted names."""
     modules = {}
-    for path in (SRC / 'self_awareness').rglob('*.py'):
+    for path in SRC.rglob('*.py'):
         parts = path.relative_to(SRC).with_suffix('').parts
         modules['.'.join(parts[:-1] if parts[-1] == '__init__' else parts)] = path
     return modules
 
 
+def _package(module: str) -> str:
+    return module.partition('.')[0]
+
+
 def _imports(path: Path, modules: Dict[str, Path]) -> Set[str]:
-    """Return the modules of the package that a module imports, wherever in it."""
+    """Return the modules of the packages that a module imports, wherever in it."""
     found = set()
     for node in ast.walk(ast.parse(path.read_text(encoding='utf-8'))):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names} & set(modules)
         if isinstance(node, ast.ImportFrom):
             names = {f'{node.module}.{alias.name}' for alias in node.names}
             found |= (names & set(modules)) or ({str(node.module)} & set(modules))
     return found
+
+
+def _graph() -> Dict[str, Set[str]]:
+    """Return by module which ones it imports."""
+    modules = _modules()
+    return {name: _imports(path, modules) for name, path in modules.items()}
 
 
 def _circle(graph: Dict[str, Set[str]]) -> List[str]:
@@ -43,21 +57,32 @@ def _circle(graph: Dict[str, Set[str]]) -> List[str]:
 
 def test_all_but_the_evaluation_is_installed() -> None:
     packages = {name for name, path in _modules().items() if path.name == '__init__.py'}
+    assert {_package(name) for name in packages} == {LIBRARY, ROBOT, EVALUATION}
     listed = set(re.findall(r"'(self_awareness[\w.]*)'", (ROOT / 'setup.py').read_text()))
-    assert listed == {name for name in packages if not name.startswith(EVALUATION)}
+    assert listed == {name for name in packages if _package(name) != EVALUATION}
 
 
 def test_what_is_installed_needs_no_evaluation() -> None:
-    modules = _modules()
-    for name, path in modules.items():
-        if not name.startswith(EVALUATION):
-            assert not [needed for needed in _imports(path, modules)
-                        if needed.startswith(EVALUATION)], name
+    for name, needed in _graph().items():
+        if _package(name) != EVALUATION:
+            assert EVALUATION not in map(_package, needed), name
+
+
+def test_only_programs_need_the_simulated_robot() -> None:
+    graph = {name: needed for name, needed in _graph().items() if _package(name) == LIBRARY}
+    users = {name for name, needed in graph.items() if ROBOT in map(_package, needed)}
+    assert {name for name in users if not name.startswith(PROGRAMS)} == set()
+    assert {name for name, needed in graph.items() if needed & users} == set()
+
+
+def test_the_simulated_robot_needs_no_program() -> None:
+    for name, needed in _graph().items():
+        if _package(name) == ROBOT:
+            assert not [module for module in needed if module.startswith(PROGRAMS)], name
 
 
 def test_no_module_needs_one_that_needs_it() -> None:
-    modules = _modules()
-    assert _circle({name: _imports(path, modules) for name, path in modules.items()}) == []
+    assert _circle(_graph()) == []
 
 
 def test_the_search_for_circles_finds_one() -> None:

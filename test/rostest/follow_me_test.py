@@ -22,9 +22,9 @@ from std_msgs.msg import Header
 
 from live_system import pid_of
 from self_awareness.commands import induce
-from self_awareness.follow_me import induction
-from self_awareness.follow_me.effects import Starvation
-from self_awareness.follow_me.scenario import Scenario, load_scenario
+from self_awareness_follow_me import induction
+from self_awareness_follow_me.effects import Starvation
+from self_awareness_follow_me.scenario import Scenario, load_scenario
 
 _RATE_HZ = 163.0
 _WINDOW_S = 5.0

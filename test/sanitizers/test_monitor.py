@@ -21,7 +21,7 @@ from monitor_case import publishers, subscribers
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
-from self_awareness.evaluation.live.processes import free_port
+from self_awareness_evaluation.live.processes import free_port
 
 TOOL = os.environ['SELF_AWARENESS_TOOL']
 BUILT_IN = Path(os.environ['SELF_AWARENESS_BUILT_IN'])

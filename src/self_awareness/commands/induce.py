@@ -11,10 +11,10 @@ from typing import Optional, Sequence
 
 from self_awareness import progress
 from self_awareness.commands import cli
-from self_awareness.follow_me import induction
-from self_awareness.follow_me.effects import Crash, Silence
-from self_awareness.follow_me.faults import described, effect_of
-from self_awareness.follow_me.scenario import load_scenario
+from self_awareness_follow_me import induction
+from self_awareness_follow_me.effects import Crash, Silence
+from self_awareness_follow_me.faults import described, effect_of
+from self_awareness_follow_me.scenario import load_scenario
 
 
 def main(argv: Optional[Sequence[str]] = None) -> int:

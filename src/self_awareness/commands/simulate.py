@@ -7,9 +7,9 @@ from typing import List, Optional, Sequence, Tuple
 
 from self_awareness import progress
 from self_awareness.commands import cli
-from self_awareness.follow_me.faults import described
-from self_awareness.follow_me.scenario import load_scenario
-from self_awareness.follow_me.simulation import InducedFault, simulate
+from self_awareness_follow_me.faults import described
+from self_awareness_follow_me.scenario import load_scenario
+from self_awareness_follow_me.simulation import InducedFault, simulate
 
 _EPILOG = f"""\
 faults:

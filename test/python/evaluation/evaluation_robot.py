@@ -7,7 +7,7 @@ from typing import List, Tuple
 import numpy as np
 
 from self_awareness import EventType
-from self_awareness.evaluation.windowed_events import WindowedEvents
+from self_awareness_evaluation.windowed_events import WindowedEvents
 from self_awareness.stamps import SECOND_NS
 
 LASER = EventType('/player', '/scan', 'sensor_msgs/LaserScan')

@@ -9,16 +9,16 @@ from typing import Any, List
 import pytest
 
 from self_awareness import Tuning
-from self_awareness.evaluation import evaluate, row_files
-from self_awareness.evaluation.ablation import bench as benches, experiment, figures, report
-from self_awareness.evaluation.ablation.bench import (FAMILIES, OTHER, OWN, Bench, Fault, Plan,
+from self_awareness_evaluation import evaluate, row_files
+from self_awareness_evaluation.ablation import bench as benches, experiment, figures, report
+from self_awareness_evaluation.ablation.bench import (FAMILIES, OTHER, OWN, Bench, Fault, Plan,
                                                       Robot)
-from self_awareness.evaluation.ablation.rows import Row, RowFile, judge, same
-from self_awareness.evaluation.ablation.variants import (CHANNEL, DEFAULT, NUMBER, RULE, Variant,
+from self_awareness_evaluation.ablation.rows import Row, RowFile, judge, same
+from self_awareness_evaluation.ablation.variants import (CHANNEL, DEFAULT, NUMBER, RULE, Variant,
                                                          variants)
-from self_awareness.evaluation.families.protocol import Learning, Records
-from self_awareness.evaluation.families.robot import CRASH
-from self_awareness.evaluation.simulated.measures import NORMAL
+from self_awareness_evaluation.families.protocol import Learning, Records
+from self_awareness_evaluation.families.robot import CRASH
+from self_awareness_evaluation.simulated.measures import NORMAL
 from self_awareness.stamps import SECOND_NS
 from self_awareness.workers import InProcess
 

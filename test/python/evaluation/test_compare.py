@@ -7,11 +7,11 @@ from typing import Any, List, Optional
 
 import pytest
 
-from self_awareness.evaluation import evaluate, row_files
-from self_awareness.evaluation.families.measures import FaultRow, NormalRow, Subject
-from self_awareness.evaluation.families.robot import CRASH, LATE
-from self_awareness.evaluation.recordings.outages import OutageRow
-from self_awareness.evaluation.simulated.measures import NORMAL, Row
+from self_awareness_evaluation import evaluate, row_files
+from self_awareness_evaluation.families.measures import FaultRow, NormalRow, Subject
+from self_awareness_evaluation.families.robot import CRASH, LATE
+from self_awareness_evaluation.recordings.outages import OutageRow
+from self_awareness_evaluation.simulated.measures import NORMAL, Row
 
 LEARNING = '2 x 150 s + 1 x 150 s'
 

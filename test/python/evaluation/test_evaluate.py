@@ -9,10 +9,10 @@ from typing import Any, Optional
 
 import pytest
 
-from self_awareness.evaluation import catalogue, evaluate
-from self_awareness.evaluation.simulated import report, tables
-from self_awareness.evaluation.simulated.experiment import Results
-from self_awareness.evaluation.simulated.measures import Row
+from self_awareness_evaluation import catalogue, evaluate
+from self_awareness_evaluation.simulated import report, tables
+from self_awareness_evaluation.simulated.experiment import Results
+from self_awareness_evaluation.simulated.measures import Row
 
 ROOT = Path(__file__).resolve().parents[3]
 

@@ -7,9 +7,9 @@ from typing import Any, List
 
 import pytest
 
-from self_awareness.evaluation import evaluate
-from self_awareness.evaluation.recordings import outages
-from self_awareness.evaluation.recordings.outages import Case, JudgedCase, OutageRow, Span
+from self_awareness_evaluation import evaluate
+from self_awareness_evaluation.recordings import outages
+from self_awareness_evaluation.recordings.outages import Case, JudgedCase, OutageRow, Span
 from self_awareness.recordings import BagPart
 
 

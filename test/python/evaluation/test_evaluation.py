@@ -10,15 +10,15 @@ from evaluation_robot import BATTERY, LASER, START, robot
 
 from self_awareness import (DEFAULT_WINDOW, DetectorParameters, EncodingRules, EventType, Model,
                             Persistence, Training, read_events)
-from self_awareness.evaluation.detectors import Paper
-from self_awareness.evaluation.simulated import measures, summary, tradeoff
-from self_awareness.evaluation.simulated.records import (default_faults, encode, fault_record,
+from self_awareness_evaluation.detectors import Paper
+from self_awareness_evaluation.simulated import measures, summary, tradeoff
+from self_awareness_evaluation.simulated.records import (default_faults, encode, fault_record,
                                                          normal_record)
-from self_awareness.evaluation.systems import Judged, SystemAlarm, persistent, settling
-from self_awareness.evaluation.windowed_events import WindowedEvents, counts, known_ids, stamps_by
-from self_awareness.follow_me.faults import effect_of
-from self_awareness.follow_me.scenario import load_scenario
-from self_awareness.follow_me.simulation import START_S, events, simulate
+from self_awareness_evaluation.systems import Judged, SystemAlarm, persistent, settling
+from self_awareness_evaluation.windowed_events import WindowedEvents, counts, known_ids, stamps_by
+from self_awareness_follow_me.faults import effect_of
+from self_awareness_follow_me.scenario import load_scenario
+from self_awareness_follow_me.simulation import START_S, events, simulate
 from self_awareness.stamps import SECOND_NS
 
 

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from self_awareness import DEFAULT_WINDOW, DetectorParameters, UnknownEvents
-from self_awareness.evaluation.detectors import Evidence, Paper, scenario_graph
-from self_awareness.evaluation.simulated.measures import first_alarm
-from self_awareness.evaluation.simulated.records import (CALIBRATION_NAME, RECORD_S,
+from self_awareness_evaluation.detectors import Evidence, Paper, scenario_graph
+from self_awareness_evaluation.simulated.measures import first_alarm
+from self_awareness_evaluation.simulated.records import (CALIBRATION_NAME, RECORD_S,
                                                          TRAINING_NAMES, FaultRecord, fault_record,
                                                          normal_record)
-from self_awareness.evaluation.systems import Judged
-from self_awareness.follow_me.scenario import load_scenario
+from self_awareness_evaluation.systems import Judged
+from self_awareness_follow_me.scenario import load_scenario
 from self_awareness.stamps import SECOND_NS
 
 SEED = 1

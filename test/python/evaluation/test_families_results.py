@@ -12,17 +12,17 @@ import pytest
 
 from self_awareness import DEFAULT_WINDOW, Tuning
 from self_awareness.calibration import confidence
-from self_awareness.evaluation import evaluate
-from self_awareness.evaluation.detectors import Evidence
-from self_awareness.evaluation.families import experiment, summary, tables
-from self_awareness.evaluation.families.experiment import Plan, Results
-from self_awareness.evaluation.families.measures import (FaultRow, NormalRow, Subject, fault_row,
+from self_awareness_evaluation import evaluate
+from self_awareness_evaluation.detectors import Evidence
+from self_awareness_evaluation.families import experiment, summary, tables
+from self_awareness_evaluation.families.experiment import Plan, Results
+from self_awareness_evaluation.families.measures import (FaultRow, NormalRow, Subject, fault_row,
                                                          normal_row)
-from self_awareness.evaluation.families.protocol import DEATH, FaultRecord, Learning, Records
-from self_awareness.evaluation.families.robot import CRASH, HALF_RATE, LATE
-from self_awareness.evaluation.families.summary import ALL, Group, rate_interval
-from self_awareness.evaluation.systems import Judged, SystemAlarm
-from self_awareness.evaluation.windowed_events import WindowedEvents
+from self_awareness_evaluation.families.protocol import DEATH, FaultRecord, Learning, Records
+from self_awareness_evaluation.families.robot import CRASH, HALF_RATE, LATE
+from self_awareness_evaluation.families.summary import ALL, Group, rate_interval
+from self_awareness_evaluation.systems import Judged, SystemAlarm
+from self_awareness_evaluation.windowed_events import WindowedEvents
 from self_awareness.stamps import SECOND_NS
 
 TWO = Learning.of(2, 60.0, 60.0)

@@ -8,14 +8,14 @@ from typing import List
 
 import pytest
 
-from self_awareness.evaluation import evaluate
-from self_awareness.evaluation.live import report
-from self_awareness.evaluation.live.processes import LiveError, Processes, await_condition
-from self_awareness.evaluation.live.samples import (ERROR, WARN, Sample, Status, Stretch, measure,
+from self_awareness_evaluation import evaluate
+from self_awareness_evaluation.live import report
+from self_awareness_evaluation.live.processes import LiveError, Processes, await_condition
+from self_awareness_evaluation.live.samples import (ERROR, WARN, Sample, Status, Stretch, measure,
                                                     measure_alarms)
-from self_awareness.evaluation.live.session import SessionPlan
-from self_awareness.evaluation.simulated.measures import NORMAL
-from self_awareness.evaluation.systems import SystemAlarm
+from self_awareness_evaluation.live.session import SessionPlan
+from self_awareness_evaluation.simulated.measures import NORMAL
+from self_awareness_evaluation.systems import SystemAlarm
 from self_awareness.stamps import SECOND_NS
 
 ONSET = 1000.0

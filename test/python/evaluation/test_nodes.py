@@ -10,12 +10,12 @@ from typing import List, Tuple
 import pytest
 import rosbag
 
-from self_awareness.evaluation import evaluate
-from self_awareness.evaluation.live.samples import ERROR, WARN, Status, Stretch
-from self_awareness.evaluation.nodes import drivers, report
-from self_awareness.evaluation.nodes.measures import UNDISTURBED, Row, of_fault, of_quiet
-from self_awareness.evaluation.nodes.session import SessionPlan
-from self_awareness.evaluation.nodes.system import (CAMERAS_HZ, FAULTS, HALF_RATE, KILL, LATE,
+from self_awareness_evaluation import evaluate
+from self_awareness_evaluation.live.samples import ERROR, WARN, Status, Stretch
+from self_awareness_evaluation.nodes import drivers, report
+from self_awareness_evaluation.nodes.measures import UNDISTURBED, Row, of_fault, of_quiet
+from self_awareness_evaluation.nodes.session import SessionPlan
+from self_awareness_evaluation.nodes.system import (CAMERAS_HZ, FAULTS, HALF_RATE, KILL, LATE,
                                                     NODES, Fault)
 
 PAGES = Path(__file__).resolve().parents[3] / 'docs' / 'evaluation'

@@ -11,13 +11,13 @@ from typing import List, Sequence, Tuple
 
 import pytest
 
-from self_awareness.evaluation.live.processes import becomes_true
-from self_awareness.evaluation.live.samples import ERROR, WARN, Status
-from self_awareness.evaluation.soak import report, schedule
-from self_awareness.evaluation.soak.measures import Happened, judge
-from self_awareness.evaluation.soak.memory import MemoryWatch, Usage, slope_mb_per_hour
-from self_awareness.evaluation.soak.session import Soak, SoakPlan
-from self_awareness.follow_me.scenario import load_scenario
+from self_awareness_evaluation.live.processes import becomes_true
+from self_awareness_evaluation.live.samples import ERROR, WARN, Status
+from self_awareness_evaluation.soak import report, schedule
+from self_awareness_evaluation.soak.measures import Happened, judge
+from self_awareness_evaluation.soak.memory import MemoryWatch, Usage, slope_mb_per_hour
+from self_awareness_evaluation.soak.session import Soak, SoakPlan
+from self_awareness_follow_me.scenario import load_scenario
 
 BEGIN = 1000.0
 PLAN = SoakPlan(60.0, 7, 10.0, 4, 90.0, 3, 120.0, 0.1)

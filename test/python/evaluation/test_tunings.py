@@ -8,9 +8,9 @@ from typing import Any, List
 import pytest
 
 from self_awareness import Tuning
-from self_awareness.evaluation import catalogue, evaluate, tunings
-from self_awareness.evaluation.families import experiment as families
-from self_awareness.evaluation.families.protocol import Learning
+from self_awareness_evaluation import catalogue, evaluate, tunings
+from self_awareness_evaluation.families import experiment as families
+from self_awareness_evaluation.families.protocol import Learning
 
 from evaluation_robot import robot
 

@@ -11,8 +11,8 @@ import pytest
 import rosbag
 
 from self_awareness.commands.simulate import main
-from self_awareness.follow_me.scenario import Scenario, load_scenario
-from self_awareness.follow_me.simulation import START_S, Event, InducedFault, events, simulate
+from self_awareness_follow_me.scenario import Scenario, load_scenario
+from self_awareness_follow_me.simulation import START_S, Event, InducedFault, events, simulate
 
 SCENARIO = Path(__file__).resolve().parents[3] / 'config' / 'follow_me.yaml'
 KINDS = ('cc1', 'cc2', 'rs', 'ac', 'lat', 'lat:motors', 'crash:camera', 'silence', 'half:player',

@@ -5,9 +5,9 @@ from collections import Counter
 
 import pytest
 
-from self_awareness.follow_me import simulation
-from self_awareness.follow_me.scenario import Scenario, load_scenario
-from self_awareness.follow_me.speed import sped_up
+from self_awareness_follow_me import simulation
+from self_awareness_follow_me.scenario import Scenario, load_scenario
+from self_awareness_follow_me.speed import sped_up
 
 
 @pytest.fixture(name='robot', scope='module')

@@ -1,0 +1,141 @@
+"""The package's own detectors as systems to evaluate: a class for each."""
+from __future__ import annotations
+
+import math
+from typing import List, Optional, Sequence, Set, Tuple
+
+import numpy as np
+
+from self_awareness import (DEFAULT_WINDOW, EVIDENCE_THRESHOLD, DetectorParameters,
+                            EncodingRules, EventType, EvidenceModel, Model, Recording,
+                            TrainedModel, Training, Tuning, Verdicts, judge_by_evidence)
+from self_awareness.calibration import limits
+from self_awareness.calibration.limits import HeldOut, InMemory
+from self_awareness_evaluation.systems import (Judged, SystemAlarm, common_threshold, distinct,
+                                               required)
+from self_awareness_evaluation.windowed_events import WindowedEvents
+from self_awareness_follow_me.scenario import load_scenario
+
+
+class Paper:
+    """The paper's detector (`detector: paper`); silence scores 0."""
+
+    name = 'paper'
+
+    def __init__(self) -> None:
+        self._types: List[EventType] = []
+        self._model: Optional[Model] = None
+        self._threshold: Optional[float] = None
+
+    def train(self, recordings: Sequence[WindowedEvents]) -> None:
+        """Count the delays."""
+        trained = _counted(recordings, paper=True)
+        self._types = trained.event_types
+        self._model = Model(trained)
+
+    def calibrate(self, recordings: Sequence[WindowedEvents]) -> None:
+        """Choose s* by the common rule."""
+        verdicts = [self._verdicts(recording.encoded(self._types)) for recording in recordings]
+        self._threshold = common_threshold(
+            [np.nan_to_num(verdict.score[~verdict.settling]) for verdict in verdicts])
+
+    def judge(self, recording: WindowedEvents) -> Judged:
+        """Judge a recording."""
+        encoded = recording.encoded(self._types)
+        verdicts = self._verdicts(encoded)
+        return _judged(encoded, verdicts, required(self._threshold, self.name, 'calibrate'))
+
+    def _verdicts(self, encoded: WindowedEvents) -> Verdicts:
+        # - 1, because the window in which the recording ends is the last one.
+        model: Model = required(self._model, self.name, 'train')
+        return model.judge(DEFAULT_WINDOW, self._threshold, DetectorParameters(),
+                           encoded.stamps, encoded.ids, encoded.end - 1)
+
+
+class Evidence:
+    """The evidence detector (`detector: evidence`).
+
+    Args:
+        graph: publisher, topic and subscriber, as the model holds it after a training while the
+            robot runs; empty: it was trained on bags alone.
+        tuning: the numbers of the method; None: the defaults.
+        budget: false alarms an hour that the limits allow.
+    """
+
+    def __init__(self, graph: Set[Tuple[str, str, str]], tuning: Optional[Tuning] = None,
+                 budget: float = limits.BUDGET) -> None:
+        self.name = 'evidence' if graph else 'evidence_no_graph'
+        self._graph = graph
+        self._tuning = tuning or Tuning()
+        self._budget = budget
+        self._trained: Optional[TrainedModel] = None
+        self._model: Optional[EvidenceModel] = None
+
+    def train(self, recordings: Sequence[WindowedEvents]) -> None:
+        """Count the delays and gaps."""
+        trained = _counted(recordings, self._tuning)
+        trained.graph = self._graph
+        trained.watch()
+        if len(recordings) > 1:
+            encoded = [recording.encoded(trained.event_types) for recording in recordings]
+            limits.compare_halves(trained, DetectorParameters().settle_time,
+                                  [InMemory(recording.stamps, recording.ids,
+                                            recording.fingerprint) for recording in encoded])
+        self._trained = trained
+        self._model = EvidenceModel(trained)
+
+    def calibrate(self, recordings: Sequence[WindowedEvents]) -> None:
+        """Find the limits."""
+        trained: TrainedModel = required(self._trained, self.name, 'train')
+        encoded = [recording.encoded(trained.event_types) for recording in recordings]
+        trained.evidence_calibration = limits.find(
+            trained, DetectorParameters().settle_time, self._budget,
+            [HeldOut(recording.stamps, recording.ids) for recording in encoded])
+
+    def judge(self, recording: WindowedEvents) -> Judged:
+        """Judge a recording."""
+        trained: TrainedModel = required(self._trained, self.name, 'train')
+        return _judged(recording.encoded(trained.event_types),
+                       self.verdicts(recording, DetectorParameters()), EVIDENCE_THRESHOLD)
+
+    @property
+    def expected_per_hour(self) -> float:
+        """The false alarms an hour that the calibration expects; NaN: it does not say."""
+        calibration = None if self._trained is None else self._trained.evidence_calibration
+        return math.nan if calibration is None else calibration.false_alarms_per_hour
+
+    def verdicts(self, recording: WindowedEvents, parameters: DetectorParameters) -> Verdicts:
+        """Return what the detector says of a recording, suspicions included."""
+        trained: TrainedModel = required(self._trained, self.name, 'train')
+        encoded = recording.encoded(trained.event_types)
+        # - 1, because the window in which the recording ends is the last one.
+        return judge_by_evidence(trained, self._model, parameters, encoded.stamps,
+                                 encoded.ids, encoded.end - 1, encoded.event_types)
+
+
+def _counted(recordings: Sequence[WindowedEvents], tuning: Optional[Tuning] = None,
+             paper: bool = False) -> TrainedModel:
+    training = Training(EncodingRules(), window=DEFAULT_WINDOW, evidence=not paper, paper=paper,
+                        tuning=tuning or Tuning())
+    for recording in recordings:
+        said = Recording()
+        said.fingerprint = recording.fingerprint
+        training.add_events(recording.event_types, recording.stamps, recording.ids, said)
+    return training.model(watch=False)
+
+
+def _judged(encoded: WindowedEvents, verdicts: Verdicts, threshold: float) -> Judged:
+    alarms = [SystemAlarm(alarm.begin, alarm.end, alarm.over,
+                          distinct([encoded.event_types[suspect.id].source
+                                    for suspect in alarm.suspects]), alarm.evidence)
+              for alarm in verdicts.alarms]
+    return Judged(verdicts.start, verdicts.abnormal, np.nan_to_num(verdicts.score),
+                  verdicts.settling, alarms, threshold, verdicts.suspicion)
+
+
+def scenario_graph() -> Set[Tuple[str, str, str]]:
+    """Return who listens to whom in the robot that comes with the package."""
+    components = load_scenario().components
+    return {(f'/{publisher.name}', f'/{topic}', f'/{listener.name}')
+            for publisher in components for listener in components
+            for topic in set(publisher.outputs()) & set(listener.inputs())}

@@ -1,0 +1,332 @@
+"""`rosrun self_awareness evaluate`: measures detectors on faults that are known, side by side."""
+from __future__ import annotations
+
+import argparse
+import contextlib
+import os
+import shlex
+import signal
+import sys
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING, Iterator, Optional, Sequence
+
+from self_awareness.calibration.limits import BUDGET
+from self_awareness.commands import cli
+from self_awareness_evaluation import catalogue, options, tunings
+from self_awareness_evaluation.ablation import command as ablation
+from self_awareness_evaluation.compare import report as compare
+from self_awareness_evaluation.families import experiment as families, report as families_report
+from self_awareness_evaluation.families.kinds import FAMILIES
+from self_awareness_evaluation.families.protocol import KINDS, Learning
+from self_awareness_evaluation.recordings import outages, report as recordings_report
+from self_awareness_evaluation.simulated import experiment, report
+from self_awareness_evaluation.simulated.experiment import Plan
+from self_awareness_evaluation.simulated.records import default_faults
+from self_awareness_follow_me.faults import effect_of
+from self_awareness_follow_me.scenario import load_scenario
+
+if TYPE_CHECKING:
+    from self_awareness_evaluation.nodes import session as nodes_session
+
+_SHORT = Learning(2, 30.0, 1, 60.0)
+_FAULTS = tuple(kind.split()[0] for kind in KINDS)
+
+_EPILOG = """\
+scikit-learn and hmmlearn, which three of the peers need, are no part of the package:
+  scripts/evaluation_env.sh rosrun self_awareness evaluate simulated
+installs them where they are missing, and runs this.
+"""
+
+
+def main(argv: Optional[Sequence[str]] = None) -> int:
+    """Run the program; return its exit code (see cli.run)."""
+    given = sys.argv[1:] if argv is None else argv
+    command = f'rosrun self_awareness evaluate {shlex.join(given)}'
+    return cli.run(parser(), lambda arguments: arguments.work(arguments, command), argv)
+
+
+def _simulated(arguments: argparse.Namespace, command: str) -> None:
+    systems = tuple(name for name in arguments.systems if name not in arguments.without_systems)
+    if not systems:
+        raise ValueError('--without-systems: no system is left to evaluate')
+    catalogue.check_libraries(systems)
+    tuning = tunings.of(arguments)
+    tunings.check_used(tuning, systems)
+    scenario = load_scenario()
+    faults = tuple(arguments.faults or default_faults(scenario))
+    for kind in faults:
+        effect_of(scenario, kind)
+    plan = Plan(systems, faults,
+                tuple(range(arguments.seed, arguments.seed + arguments.seeds)),
+                arguments.calibration, arguments.training_share, tuning)
+    arguments.output.mkdir(parents=True, exist_ok=True)
+    results = experiment.run(plan, scenario, arguments.jobs)
+    for path in report.write(arguments.output, plan, results, command):
+        print(f'written: {path}')
+
+
+def _recordings(arguments: argparse.Namespace, command: str) -> None:
+    rows = outages.evaluate(arguments.data, tunings.of(arguments))
+    arguments.output.mkdir(parents=True, exist_ok=True)
+    for path in recordings_report.write(arguments.output, rows, command):
+        print(f'written: {path}')
+
+
+def _families(arguments: argparse.Namespace, command: str) -> None:
+    learnings = [Learning.of(starts, arguments.training, arguments.calibration)
+                 for starts in arguments.starts]
+    if arguments.short:
+        learnings.append(_SHORT)
+    plan = families.Plan(
+        tuple(arguments.families), tuple(range(arguments.seed, arguments.seed + arguments.robots)),
+        tuple(learnings), tuple(arguments.systems), tuple(arguments.budgets), arguments.hours,
+        tuple(kind for kind in KINDS if kind.split()[0] in arguments.faults),
+        tunings.of(arguments))
+    catalogue.check_libraries(plan.systems)
+    tunings.check_used(plan.tuning, plan.systems)
+    arguments.output.mkdir(parents=True, exist_ok=True)
+    results = families.run(plan, arguments.jobs)
+    for path in families_report.write(arguments.output, plan, results, command):
+        print(f'written: {path}')
+
+
+def _live(arguments: argparse.Namespace, command: str) -> None:
+    # ROS is imported only here and in _nodes: the other parts do not need it.
+    from self_awareness_evaluation.live import evaluation, session
+    _clean_up_when_terminated()
+    plan = session.SessionPlan(arguments.rounds, arguments.training, arguments.calibration,
+                               arguments.normal)
+    arguments.output.mkdir(parents=True, exist_ok=True)
+    with _folder(arguments.recordings) as folder:
+        paths = evaluation.evaluate(plan, folder, arguments.output, command)
+    for path in paths:
+        print(f'written: {path}')
+
+
+def _nodes(arguments: argparse.Namespace, command: str) -> None:
+    from self_awareness_evaluation.nodes import evaluation
+    _clean_up_when_terminated()
+    arguments.output.mkdir(parents=True, exist_ok=True)
+    with _folder(arguments.recordings) as folder:
+        paths = evaluation.evaluate(nodes_plan(arguments), folder, arguments.output, command)
+    for path in paths:
+        print(f'written: {path}')
+
+
+def _soak(arguments: argparse.Namespace, command: str) -> None:
+    from self_awareness_evaluation.soak import evaluation
+    from self_awareness_evaluation.soak.session import SoakPlan
+    _clean_up_when_terminated()
+    plan = SoakPlan(arguments.minutes, arguments.seed, arguments.speed, arguments.starts,
+                    arguments.training, arguments.calibrations, arguments.calibration,
+                    arguments.budget)
+    with _folder(arguments.recordings) as folder:
+        paths = evaluation.evaluate(plan, folder, arguments.output, command)
+    for path in paths:
+        print(f'written: {path}')
+
+
+def nodes_plan(arguments: argparse.Namespace) -> nodes_session.SessionPlan:
+    """Return the plan that the arguments of `nodes` ask for."""
+    from self_awareness_evaluation.nodes.session import SessionPlan
+    return SessionPlan(arguments.starts, arguments.training, arguments.calibrations,
+                       arguments.calibration, arguments.minutes)
+
+
+def _clean_up_when_terminated() -> None:
+    """Let a termination clean up like Ctrl-C, which shells let be ignored in the background."""
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, signal.default_int_handler)
+
+
+@contextlib.contextmanager
+def _folder(given: Optional[Path]) -> Iterator[Path]:
+    """Return the folder for recordings and logs; a temporary one is removed at the end."""
+    if given is None:
+        with tempfile.TemporaryDirectory() as temporary:
+            yield Path(temporary)
+        return
+    given.mkdir(parents=True, exist_ok=True)
+    if any(given.glob('session*')):
+        raise ValueError(f'--recordings {given}: holds a session already; name another folder')
+    yield given.resolve()
+
+
+def parser() -> argparse.ArgumentParser:
+    """Return what parses the arguments."""
+    parser = argparse.ArgumentParser(
+        prog='evaluate', description=__doc__.split(': ', 1)[1], epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parts = parser.add_subparsers(metavar='PART', required=True)
+    _add_simulated(parts.add_parser(
+        'simulated', help='the simulated follow-me robot, in simulated time',
+        description='Every system learns from the same records of the simulated robot, and judges '
+        'the same normal operation and the same faults, once for every seed.'))
+    _add_families(parts.add_parser(
+        'families', help='simulated robots as different as possible, drawn by seed',
+        description='Every system learns from few starts of each robot and from many, watches '
+        'hours of normal operation in others, and judges every component\'s faults.'))
+    _add_recordings(parts.add_parser(
+        'recordings', help='recordings of real robots that others made',
+        description='The outages in recordings of real robots, and false alarms on them.'))
+    ablation.add(parts.add_parser(
+        'ablation', help='what each part of the evidence detector buys',
+        description='Leaves out channel after channel, switches off rule after rule, halves and '
+        'doubles number after number, and judges the same robots and recordings each time. What '
+        'is done is kept: the same command goes on where it was interrupted.'))
+    compare.add(parts.add_parser(
+        'compare', help='two versions side by side, by what the same commands measured',
+        description='Writes a page about two folders that families, simulated or recordings wrote '
+        'to with -o, in two versions of this package.'))
+    _add_live(parts.add_parser(
+        'live', help='the follow-me robot as 15 processes, and the monitor',
+        description='Starts master and robot, records, trains and calibrates, starts the monitor, '
+        'and induces fault after fault in rounds; a round takes about 5 minutes. Other systems '
+        'judge the recording of it afterwards.'))
+    _add_nodes(parts.add_parser(
+        'nodes', help='a system of nodes of Debian packages, and the monitor',
+        description='Starts the nodes several times and records them, trains and calibrates, '
+        'starts them once more, with the monitor, watches them undisturbed, and then breaks one '
+        'after the other; with the default options, this takes an hour and a half. '
+        'scripts/packaged_nodes_env.sh installs the nodes and runs this.'))
+    _add_soak(parts.add_parser(
+        'soak', help='the follow-me robot at 10 times its speed, and the monitor, for an hour',
+        description='Records, trains and calibrates on several starts of the fast robot, starts '
+        'the monitor, and lets faults drawn by the seed hit the robot. It fails if one is missed, '
+        'if an alarm comes without one, or if the memory of the monitor grows. scripts/soak.sh '
+        'runs this.'))
+    return parser
+
+
+def _add_recordings(parser: argparse.ArgumentParser) -> None:
+    parser.set_defaults(work=_recordings)
+    options.add_output(parser, 'the page and the CSV file')
+    parser.add_argument('--data', type=Path, required=True, metavar='DIR',
+                        help='the folder of the recordings')
+    tunings.add(parser)
+
+
+def _add_live(parser: argparse.ArgumentParser) -> None:
+    parser.set_defaults(work=_live)
+    options.add_output(parser, 'the page, the CSV file and the plot')
+    parser.add_argument('--rounds', type=cli.count, default=5, metavar='N',
+                        help='how often each fault is induced (default: 5)')
+    parser.add_argument('--training', type=options.calibration_s, nargs='+',
+                        default=(60.0, 60.0), metavar='S',
+                        help='lengths of the recordings to learn from [s] (default: 60 60)')
+    parser.add_argument('--calibration', type=options.calibration_s, default=240.0,
+                        metavar='S', help='length of the recording that the limits are found by '
+                        '[s] (default: 240)')
+    parser.add_argument('--normal', type=options.calibration_s, default=20.0, metavar='S',
+                        help='normal operation in each round [s] (default: 20)')
+    _add_folder(parser)
+
+
+def _add_folder(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument('--recordings', type=Path, metavar='DIR',
+                        help='folder to keep recordings, model and logs in; recordings of normal '
+                        'operation that it holds already are used again (default: all are removed '
+                        'at the end)')
+
+
+def _add_nodes(parser: argparse.ArgumentParser) -> None:
+    parser.set_defaults(work=_nodes)
+    options.add_output(parser, 'the page and the CSV file')
+    parser.add_argument('--starts', type=cli.count, default=3, metavar='N',
+                        help='starts of the nodes to learn from (default: 3)')
+    parser.add_argument('--training', type=options.calibration_s, default=150.0, metavar='S',
+                        help='length of the recording of each of them [s] (default: 150)')
+    parser.add_argument('--calibrations', type=cli.count, default=1, metavar='N',
+                        help='further starts that the limits are found by (default: 1)')
+    parser.add_argument('--calibration', type=options.calibration_s, default=250.0,
+                        metavar='S', help='length of the recording of each of them [s] '
+                        '(default: 250)')
+    parser.add_argument('--minutes', type=options.minutes, default=60.0, metavar='MIN',
+                        help='normal operation that is watched (default: 60)')
+    _add_folder(parser)
+
+
+def _add_soak(parser: argparse.ArgumentParser) -> None:
+    parser.set_defaults(work=_soak)
+    parser.add_argument('-o', '--output', type=Path, default=Path('docs'), metavar='DIR',
+                        help='folder of reliability.md, whose section is written (default: docs)')
+    parser.add_argument('--minutes', type=options.minutes, default=60.0, metavar='MIN',
+                        help='how long the monitor runs (default: 60)')
+    parser.add_argument('--seed', type=cli.count, default=1, help='of the faults and the robot '
+                        '(default: 1)')
+    parser.add_argument('--speed', type=cli.above_zero('times the speed'), default=10.0,
+                        metavar='N', help='times the usual speed of the robot (default: 10)')
+    parser.add_argument('--starts', type=cli.count, default=4, metavar='N',
+                        help='starts of the robot to learn from (default: 4)')
+    parser.add_argument('--training', type=options.calibration_s, default=90.0, metavar='S',
+                        help='length of the recording of each of them [s] (default: 90)')
+    parser.add_argument('--calibrations', type=cli.count, default=4, metavar='N',
+                        help='further starts that the limits are found by (default: 4)')
+    parser.add_argument('--calibration', type=options.calibration_s, default=120.0,
+                        metavar='S', help='length of the recording of each of them [s] '
+                        '(default: 120)')
+    parser.add_argument('--budget', type=cli.budget, default=0.1, metavar='B',
+                        help='false alarms an hour that the limits allow (default: 0.1)')
+    _add_folder(parser)
+
+
+def _add_simulated(parser: argparse.ArgumentParser) -> None:
+    parser.set_defaults(work=_simulated)
+    options.add_output(
+        parser, f'the page, the plots and, in the folder {report.FULL}, all numbers')
+    parser.add_argument('--seeds', type=cli.count, default=20, metavar='N',
+                        help='number of repetitions, each with the next seed (default: 20)')
+    parser.add_argument('--seed', type=int, default=1, help='the first seed (default: 1)')
+    parser.add_argument('--calibration', type=options.calibration_s, default=600.0,
+                        metavar='S', help='length of the record that the threshold is chosen by '
+                        '[s]; the paper has 100 (default: 600)')
+    parser.add_argument('--training-share', type=options.share, default=0.1, metavar='SHARE',
+                        help='learn once from all of the training records, and once from this '
+                        'first share of them; 0: only from all (default: 0.1)')
+    parser.add_argument('--systems', nargs='+', choices=catalogue.NAMES, default=catalogue.NAMES,
+                        metavar='SYSTEM', help='evaluate these only: '
+                        f'{", ".join(catalogue.NAMES)} (default: all)')
+    parser.add_argument('--without-systems', nargs='+', choices=catalogue.NAMES, default=[],
+                        metavar='SYSTEM', help='leave these out')
+    tunings.add(parser)
+    parser.add_argument('--faults', nargs='+', metavar='FAULT',
+                        help='kinds of faults (default: all, and every regular component crashed '
+                        'in turn)')
+    parser.add_argument('--jobs', type=cli.count, default=os.cpu_count(), metavar='N',
+                        help='seeds at a time (default: as many as there are cores)')
+
+
+def _add_families(parser: argparse.ArgumentParser) -> None:
+    parser.set_defaults(work=_families)
+    options.add_output(
+        parser, f'the page, its figures and, in the folder {report.FULL}, all numbers')
+    parser.add_argument('--families', nargs='+', choices=FAMILIES, default=list(FAMILIES),
+                        metavar='FAMILY', help='evaluate robots of these only: '
+                        f'{", ".join(FAMILIES)} (default: all)')
+    parser.add_argument('--robots', type=cli.count, default=3, metavar='N',
+                        help='robots of each family, each with the next seed (default: 3)')
+    parser.add_argument('--seed', type=cli.count, default=1, help='the first seed (default: 1)')
+    parser.add_argument('--starts', type=options.starts, nargs='+', default=[1, 2, 4, 8],
+                        metavar='N', help='starts to train on, in turn; half as many, but one at '
+                        'least, are calibrated on (default: 1 2 4 8)')
+    parser.add_argument('--training', type=options.calibration_s, default=150.0, metavar='S',
+                        help='length of a recording to train on [s] (default: 150)')
+    parser.add_argument('--calibration', type=options.calibration_s, default=150.0,
+                        metavar='S', help='length of one to calibrate on [s] (default: 150)')
+    parser.add_argument('--short', action='store_true', help=f'learn from {_SHORT} as well')
+    parser.add_argument('--hours', type=options.hours, default=2.0, metavar='H',
+                        help='normal operation that is watched, for each robot (default: 2)')
+    parser.add_argument('--budgets', type=options.budget, nargs='+', default=[BUDGET],
+                        metavar='B', help='false alarms an hour that limits are made for, in '
+                        f'turn; faults are judged with the first (default: {BUDGET:g})')
+    parser.add_argument('--systems', nargs='+', choices=catalogue.NAMES,
+                        default=families.SYSTEMS, metavar='SYSTEM',
+                        help=f'evaluate these: {", ".join(catalogue.NAMES)} '
+                        f'(default: {" ".join(families.SYSTEMS)})')
+    tunings.add(parser)
+    parser.add_argument('--faults', nargs='*', choices=_FAULTS, default=_FAULTS, metavar='FAULT',
+                        help=f'kinds of faults: {", ".join(_FAULTS)}; none at all if no name '
+                        'follows (default: all)')
+    parser.add_argument('--jobs', type=cli.count, default=os.cpu_count(), metavar='N',
+                        help='robots at a time (default: as many as there are cores)')

@@ -1,0 +1,285 @@
+"""The families: how a robot of each kind is drawn."""
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Callable, Dict, List, Set, Tuple
+
+import numpy as np
+
+from self_awareness_evaluation.families.conditions import Activity, Conditions
+from self_awareness_evaluation.families.emissions import (Answer, Emission, Feedback, Sporadic,
+                                                          Timer)
+from self_awareness_evaluation.families.robot import Output, Robot
+
+RATES_HZ = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 25.0, 30.0, 50.0, 100.0)
+"""Usual rates."""
+
+_CHAINS = 7
+_FASTEST_CHAIN_HZ = 30.0
+_SHORTEST_ANSWER_S, _LONGEST_ANSWER_S = 0.003, 0.04
+_MOST_OF_PERIOD = 0.4  # an answer takes no longer, so that its component keeps up
+_COPY_S = 0.0005
+
+
+@dataclass(frozen=True)
+class Timing:
+    """How the timers of a robot keep time; see Timer. Each clock is off by up to `ppm`."""
+
+    variation: float = 0.0
+    ppm: float = 0.0
+    wander: float = 0.0
+    loops: bool = False
+
+
+class Draft:
+    """A robot while it is drawn: outputs are added one by one.
+
+    Args:
+        rng: draws.
+        timing: of all timers.
+        namespace: put before all names, like `/robot1`; or empty.
+    """
+
+    def __init__(self, rng: np.random.Generator, timing: Timing = Timing(),
+                 namespace: str = '') -> None:
+        self.rng = rng
+        self.outputs: List[Output] = []
+        self.activities: Dict[str, Activity] = {}
+        self.subscriptions: Set[Tuple[str, str]] = set()
+        self.namespace = namespace
+        self._timing = timing
+        self._clocks: Dict[str, float] = {}
+
+    def robot(self, seed: int, conditions: Conditions = Conditions(),
+              far: Tuple[str, ...] = ()) -> Robot:
+        """Return the robot."""
+        return Robot(seed, tuple(self.outputs), conditions, self.activities,
+                     frozenset(self.subscriptions), frozenset(far))
+
+    def add(self, name: str, topic: str, datatype: str, emission: Emission) -> int:
+        """Add an output of the component of that name, and return its index."""
+        source = f'{self.namespace}/{name}'
+        self.outputs.append(Output(source, f'{source}/{topic}', datatype, emission))
+        return len(self.outputs) - 1
+
+    def add_timer(self, name: str, rate_hz: float, topic: str = 'data', activity: str = '') -> int:
+        """Add an output with a timer."""
+        timing = self._timing
+        ppm = self._clocks.setdefault(name, self.rng.uniform(-timing.ppm, timing.ppm))
+        return self.add(name, topic, 'sensor_msgs/PointCloud2', Timer(
+            1.0 / rate_hz, variation=timing.variation, ppm=ppm, wander=timing.wander,
+            loop=timing.loops and self.rng.uniform() < 0.5, activity=activity))
+
+    def add_answer(self, name: str, trigger: int, longest_s: float, topic: str = 'result',
+                   activity: str = '', every: int = 1) -> int:
+        """Add an output that answers within some milliseconds."""
+        longest = max(_SHORTEST_ANSWER_S, min(_LONGEST_ANSWER_S, longest_s))
+        delay = float(np.exp(self.rng.uniform(np.log(_SHORTEST_ANSWER_S), np.log(longest))))
+        return self.add(name, topic, 'geometry_msgs/PoseStamped', Answer(
+            trigger, delay, self.rng.uniform(0.05, 0.25), every, activity=activity))
+
+    def add_copies(self, index: int, number: int) -> None:
+        """Let the component of an output publish further topics right after it."""
+        name = self.outputs[index].source[len(self.namespace) + 1:]
+        for copy in range(number):
+            self.add(name, f'{self.outputs[index].topic.rsplit("/", 1)[-1]}_info{copy}',
+                     'sensor_msgs/CameraInfo', Answer(index, _COPY_S * (copy + 1), 0.3))
+
+    def add_chain(self, name: str, begin: int, rate_hz: float, length: int) -> List[int]:
+        """Add components that answer each to the one before, and return their outputs."""
+        chain = []
+        for link in range(length):
+            begin = self.add_answer(f'{name}_{link + 1}', begin, _MOST_OF_PERIOD / rate_hz)
+            chain.append(begin)
+        return chain
+
+    def listen(self, number: int) -> None:
+        """Let every component with a timer subscribe to some others that it does not answer to."""
+        sources = sorted({output.source for output in self.outputs})
+        for output in self.outputs:
+            if isinstance(output.emission, Timer):
+                for publisher in self.rng.choice(sources, int(self.rng.integers(0, number + 1))):
+                    if publisher != output.source:
+                        self.subscriptions.add((str(publisher), output.source))
+
+
+def add_timers_and_chains(draft: Draft, more: int = 4) -> None:
+    """Add a timer of every usual rate, some more, and chains of answers after some of them."""
+    rates = [*RATES_HZ, *draft.rng.choice(RATES_HZ, more).tolist()]
+    timers = [draft.add_timer(f'driver{number}', rate) for number, rate in enumerate(rates)]
+    slow = [number for number, rate in enumerate(rates) if rate <= _FASTEST_CHAIN_HZ]
+    for chain, number in enumerate(draft.rng.choice(slow, _CHAINS, replace=False).tolist()):
+        draft.add_chain(f'filter{chain}', timers[number], rates[number],
+                        int(draft.rng.integers(1, 4)))
+    draft.listen(2)
+
+
+def _timers(timing: Timing = Timing(), conditions: Conditions = Conditions()
+            ) -> Callable[[int], Robot]:
+    def drawn(seed: int) -> Robot:
+        draft = Draft(np.random.default_rng(seed), timing)
+        add_timers_and_chains(draft)
+        return draft.robot(seed, conditions)
+    return drawn
+
+
+def _large(seed: int) -> Robot:
+    draft = Draft(np.random.default_rng(seed))
+    rates = draft.rng.choice((1.0, 2.0, 5.0, 10.0, 10.0, 10.0, 20.0), 25).tolist()
+    ends = [(draft.add_timer(f'driver{number}', rate), rate) for number, rate in enumerate(rates)]
+    heads = list(ends)
+    for number in range(35):
+        begin, rate = ends[int(draft.rng.integers(len(ends)))]
+        ends.append((draft.add_chain(f'filter{number}', begin, rate, 1)[0], rate))
+        heads.append(ends[-1])
+    # The other topics of 250, at 8 messages a second on average: 2000.
+    shares = draft.rng.multinomial(250 - len(heads), [1.0 / len(heads)] * len(heads))
+    for (index, _), number in zip(heads, shares.tolist()):
+        draft.add_copies(index, number)
+    draft.listen(4)
+    return draft.robot(seed, Conditions(lost=1e-3))
+
+
+def _driving_docked(seed: int) -> Robot:
+    draft = Draft(np.random.default_rng(seed))
+    draft.activities['driving'] = Activity(120.0, 120.0)
+    add_timers_and_chains(draft)
+    for number, rate in enumerate((10.0, 20.0, 50.0)):
+        index = draft.add_timer(f'motion{number}', rate, activity='driving')
+        draft.add_chain(f'motion_filter{number}', index, rate, number % 2 + 1)
+    # Who has more to say while the robot drives.
+    for number, rate in enumerate((5.0, 10.0)):
+        draft.add_timer(f'planner{number}', rate)
+        draft.add_timer(f'planner{number}', rate, 'motion', activity='driving')
+    return draft.robot(seed)
+
+
+def _wireless(seed: int) -> Robot:
+    draft = Draft(np.random.default_rng(seed))
+    add_timers_and_chains(draft)
+    sources = sorted({output.source for output in draft.outputs})
+    far = draft.rng.choice(sources, len(sources) // 3, replace=False).tolist()
+    return draft.robot(seed, Conditions(heavy=0.01), tuple(far))
+
+
+def _events_only(seed: int) -> Robot:
+    draft = Draft(np.random.default_rng(seed))
+    rng = draft.rng
+    draft.activities['session'] = Activity(rng.uniform(60.0, 180.0), rng.uniform(120.0, 300.0))
+    for number in range(2):
+        draft.add(f'watchdog{number}', 'heartbeat', 'std_msgs/Empty',
+                  Timer(float(rng.choice((1.0, 2.0, 5.0))), jitter_s=0.01))
+    person = draft.add('speech', 'heard', 'std_msgs/String', Sporadic(rng.uniform(5.0, 15.0),
+                                                                      'session'))
+    button = draft.add('panel', 'pressed', 'std_msgs/Bool', Sporadic(rng.uniform(10.0, 30.0),
+                                                                     'session'))
+    for number in range(9):
+        before = [index for index, output in enumerate(draft.outputs)
+                  if not isinstance(output.emission, (Timer, Feedback))]
+        trigger = int(rng.choice(before[:2] if number < 3 else before))
+        add_task(draft, f'task{number}', trigger)
+    draft.subscriptions.add((draft.outputs[person].source, draft.outputs[button].source))
+    return draft.robot(seed)
+
+
+def add_task(draft: Draft, name: str, trigger: int, activity: str = '') -> None:
+    """Add a component that answers within 0.1 to 4 s; half of them tell how they get on."""
+    delay = float(np.exp(draft.rng.uniform(np.log(0.1), np.log(2.5))))
+    spread = draft.rng.uniform(0.05, 0.15)
+    result = draft.add(name, 'result', 'move_base_msgs/MoveBaseActionResult',
+                       Answer(trigger, delay, spread, activity=activity))
+    if draft.rng.uniform() < 0.5:
+        draft.add(name, 'feedback', 'move_base_msgs/MoveBaseActionFeedback',
+                  Feedback(result, delay / draft.rng.uniform(2.0, 6.0)))
+
+
+def _bursty(seed: int) -> Robot:
+    draft = Draft(np.random.default_rng(seed))
+    rng = draft.rng
+    timers = int(rng.integers(5, 13))
+    rates = rng.choice((2.0, 5.0, 10.0, 20.0, 30.0, 50.0), timers).tolist()
+    for number, rate in enumerate(rates):
+        index = draft.add_timer(f'driver{number}', rate)
+        if rate <= _FASTEST_CHAIN_HZ and rng.uniform() < 0.6:
+            draft.add_chain(f'filter{number}', index, rate, int(rng.integers(1, 4)))
+    triggers = [index for index, output in enumerate(draft.outputs) if output.topic.startswith(
+        ('/driver', '/filter'))]
+    for number in range(int(rng.integers(2, 6))):
+        seen = f'seen{number}'
+        draft.activities[seen] = Activity(rng.uniform(4.0, 15.0), rng.uniform(0.3, 1.0))
+        draft.add_answer(f'tracker{number}', int(rng.choice(triggers)), 0.03, 'track', seen)
+    draft.activities['session'] = Activity(rng.uniform(60.0, 180.0), rng.uniform(30.0, 120.0))
+    speech = draft.add('speech', 'heard', 'std_msgs/String',
+                       Sporadic(rng.uniform(5.0, 15.0), 'session'))
+    for number in range(int(rng.integers(2, 6))):
+        add_task(draft, f'task{number}', speech)
+    draft.listen(2)
+    return draft.robot(seed)
+
+
+def _two_robots(seed: int) -> Robot:
+    rng = np.random.default_rng(seed)
+    first, second = (Draft(rng, namespace=f'/robot{number}') for number in (1, 2))
+    add_timers_and_chains(first, 0)
+    add_timers_and_chains(second, 0)
+    shift = len(first.outputs)
+    for output in second.outputs:
+        emission = output.emission
+        if isinstance(emission, Answer):
+            emission = replace(emission, trigger=emission.trigger + shift)
+        first.outputs.append(replace(output, emission=emission))
+    first.subscriptions |= second.subscriptions
+    leader = first.outputs[0].source
+    first.subscriptions |= {(leader, output.source) for output in second.outputs[:3]}
+    return first.robot(seed, Conditions(lost=1e-4))
+
+
+@dataclass(frozen=True)
+class Family:
+    """Robots of a kind.
+
+    Args:
+        told: what they are, in a few words.
+        draw: returns the robot of a seed.
+        one_start: the recordings to learn from are all of one start.
+        watched_start: and so are those that are watched; else each is of another start.
+    """
+
+    told: str
+    draw: Callable[[int], Robot]
+    one_start: bool = False
+    watched_start: bool = False
+
+
+_STALLS = Conditions(stalls_an_hour=6.0)
+
+FAMILIES: Dict[str, Family] = {
+    'timers': Family('exact timers of 0.5 to 100 Hz, seven chains of answers', _timers()),
+    'timers_drift': Family('the same, clocks that differ by up to 50 ppm',
+                           _timers(Timing(ppm=50.0))),
+    'timers_one_start': Family('timers, recorded in one start, watched in others', _timers(),
+                               one_start=True),
+    'stalls': Family('timers, the same start, six stalls of 0.1 to 0.6 s an hour',
+                     _timers(conditions=_STALLS), one_start=True, watched_start=True),
+    'stalled_loops': Family('the same, half of the timers have a new phase after each stall',
+                            _timers(Timing(loops=True), _STALLS), one_start=True,
+                            watched_start=True),
+    'wander': Family('timers whose rates wander by 5 % within hours',
+                     _timers(Timing(wander=0.05))),
+    'large': Family('60 nodes, 250 topics, 2000 messages a second, 1 of 1000 lost', _large),
+    'driving_docked': Family('2 min driving, 2 min docked, at random', _driving_docked),
+    'day_night': Family('work takes up to 3 times as long, by the time of day',
+                        _timers(conditions=Conditions(load_period_s=6 * 3600.0, most_load=3.0))),
+    'jittery': Family('periods that vary by 2 %', _timers(Timing(variation=0.02))),
+    'wireless': Family('a link on which 1 % of the delays are ten times as long', _wireless),
+    'events_only': Family('actions, requests and speech, minutes of idleness', _events_only),
+    'bursty': Family('15 to 40 components: timers, chains, trackers in bursts, tasks, speech',
+                     _bursty),
+    'two_robots': Family('two robots in namespaces', _two_robots),
+}
+"""All families by name."""
+
+
+def draw(family: str, seed: int) -> Robot:
+    """Return a robot of a family, one of FAMILIES; seed: at least 0."""
+    return FAMILIES[family].draw(seed)

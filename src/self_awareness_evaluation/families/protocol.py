@@ -1,0 +1,206 @@
+"""What of a robot is recorded to learn from, to watch, and with which faults."""
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Iterator, List, Optional, Sequence, Set, Tuple
+
+import numpy as np
+
+from self_awareness_evaluation.families.kinds import FAMILIES
+from self_awareness_evaluation.families.robot import (CRASH, HALF_RATE, LATE, LONGEST_START_S,
+                                                      Fault, Robot)
+from self_awareness_evaluation.windowed_events import WindowedEvents
+from self_awareness.stamps import nanoseconds
+
+DEATH = 'death'
+"""The crash of a component that is silent until something is asked of it."""
+
+KINDS = (CRASH, HALF_RATE, LATE, DEATH)
+"""Kinds of faults as they are told apart in the results."""
+
+WATCHED_S = 1800.0
+"""Length of a recording of normal operation that is watched [s]."""
+
+AFTER_ONSET_S = 60.0
+"""A recording with a fault lasts for so long after the onset [s]."""
+
+AFTER_DEATH_S = 1800.0
+"""And for so long after a death."""
+
+_ONSET_S = 60.0
+_ONSET_SPREAD_S = 2.0  # the onset must have no fixed phase to the windows and the robot's timers
+
+_MISSING_S = 60.0  # a death is counted if the recording goes on for this long afterwards
+
+MOST_STARTS = 16
+"""The most starts that systems learn from."""
+
+
+@dataclass(frozen=True)
+class _Section:
+    """Where recordings of a purpose come from: a start each, or parts of one and the same start.
+
+    Args:
+        first: the seed of the first start.
+        from_s: begin of the first part [s].
+        every_s: from the begin of a part to that of the next one [s].
+    """
+
+    first: int
+    from_s: float
+    every_s: float
+
+
+_ONE_START = 0
+_TRAINING = _Section(0, 0.0, 600.0)
+_CALIBRATION = _Section(100, 10_000.0, 600.0)
+_FAULTS = _Section(10_000, 15_000.0, 200.0)
+_WATCHED = _Section(1000, 36_000.0, WATCHED_S)
+
+
+@dataclass(frozen=True)
+class Learning:
+    """What a system learns from.
+
+    Args:
+        starts: of the robot to train on, a recording of each.
+        training_s: length of each [s].
+        calibrations: further starts to calibrate on, a recording of each.
+        calibration_s: length of each [s].
+    """
+
+    starts: int
+    training_s: float
+    calibrations: int
+    calibration_s: float
+
+    @classmethod
+    def of(cls, starts: int, training_s: float, calibration_s: float) -> Learning:
+        """Return what is recorded by default: half as many starts to calibrate, at least one."""
+        return cls(starts, training_s, max(1, starts // 2), calibration_s)
+
+    def __str__(self) -> str:
+        return (f'{self.starts} x {self.training_s:g} s + '
+                f'{self.calibrations} x {self.calibration_s:g} s')
+
+
+@dataclass(frozen=True)
+class FaultRecord:
+    """A recording with a fault.
+
+    Args:
+        kind: one of KINDS.
+        source: the guilty component.
+        recording: the events.
+        onset: of the fault [ns]; of a DEATH: when the first message would have come that is
+            missing.
+    """
+
+    kind: str
+    source: str
+    recording: WindowedEvents
+    onset: int
+
+
+def check_hours(families: Sequence[str], hours: float) -> None:
+    """Check that so many hours of normal operation can be watched.
+
+    Raises:
+        ValueError: a family is watched in one start, which does not last that long.
+    """
+    longest = (LONGEST_START_S - _WATCHED.from_s) / 3600.0
+    short = [name for name in families if FAMILIES[name].watched_start]
+    if short and hours > longest:
+        raise ValueError(f'{hours:g} hours: {", ".join(short)} can be watched for {longest:g} '
+                         'hours; watch more robots instead')
+
+
+class Records:
+    """The recordings of one robot, simulated when they are needed.
+
+    Args:
+        family: one of FAMILIES.
+        seed: of the robot.
+    """
+
+    def __init__(self, family: str, seed: int) -> None:
+        self._family = FAMILIES[family]
+        self.robot: Robot = self._family.draw(seed)
+
+    def training(self, learning: Learning) -> List[WindowedEvents]:
+        """Return the recordings to train on."""
+        return [self._recorded(_TRAINING, number, learning.training_s, self._family.one_start)
+                for number in range(learning.starts)]
+
+    def calibration(self, learning: Learning) -> List[WindowedEvents]:
+        """Return the recordings to calibrate on, other ones."""
+        return [self._recorded(_CALIBRATION, number, learning.calibration_s,
+                               self._family.one_start)
+                for number in range(learning.calibrations)]
+
+    def watched(self, hours: float) -> Iterator[WindowedEvents]:
+        """Yield recordings of normal operation of WATCHED_S, and a shorter last one.
+
+        Args:
+            hours: see check_hours().
+        """
+        left = hours * 3600.0
+        for number in range(int(np.ceil(left / WATCHED_S))):
+            yield self._recorded(_WATCHED, number, min(WATCHED_S, left),
+                                 self._family.watched_start)
+            left -= WATCHED_S
+
+    def faults(self, kinds: Tuple[str, ...], most: Optional[int] = None,
+               after_death_s: float = AFTER_DEATH_S) -> Iterator[FaultRecord]:
+        """Yield a recording of every fault of some kinds, of each component in turn.
+
+        Args:
+            kinds: of KINDS.
+            most: only of so many components for each kind, spread evenly; None: of all.
+            after_death_s: a recording lasts for so long after a death [s].
+        """
+        regular, answering = self.robot.regular, self.robot.answering
+        who = {CRASH: regular, HALF_RATE: regular,
+               LATE: [source for source in regular if source in answering],
+               DEATH: [source for source in answering if source not in regular]}
+        number = 0
+        for kind in KINDS:
+            chosen = _spread(len(who[kind]), most) if kind in kinds else set()
+            for index, source in enumerate(who[kind]):
+                if index in chosen:
+                    yield from self._fault(
+                        kind, source, number,
+                        after_death_s if kind == DEATH else AFTER_ONSET_S)
+                number += 1
+
+    def _fault(self, kind: str, source: str, number: int,
+               after_s: float) -> Iterator[FaultRecord]:
+        """Yield the recording with a fault; none if nothing is missing after a death."""
+        spread = np.random.default_rng((self.robot.seed, number)).uniform(0.0, _ONSET_SPREAD_S)
+        onset_s = _ONSET_S + float(spread)
+        seconds = onset_s + after_s
+        fault = Fault(CRASH if kind == DEATH else kind, source, onset_s)
+        same_start = self._family.watched_start
+        recording = self._recorded(_FAULTS, number, seconds, same_start, fault)
+        onset = recording.end - nanoseconds(seconds) + nanoseconds(onset_s)
+        if kind == DEATH:
+            healthy = self._recorded(_FAULTS, number, seconds, same_start)
+            guilty = np.array([known.source == source for known in healthy.event_types])
+            missing = healthy.stamps[guilty[healthy.ids] & (healthy.stamps >= onset)]
+            if not len(missing) or missing[0] + nanoseconds(_MISSING_S) > recording.end:
+                return
+            onset = int(missing[0])
+        yield FaultRecord(kind, source, recording, onset)
+
+    def _recorded(self, section: _Section, number: int, seconds: float, one_start: bool,
+                  fault: Optional[Fault] = None) -> WindowedEvents:
+        if one_start:
+            return self.robot.start(_ONE_START, seconds, fault,
+                                    section.from_s + number * section.every_s)
+        return self.robot.start(section.first + number, seconds, fault)
+
+
+def _spread(number: int, most: Optional[int]) -> Set[int]:
+    """Return the indices of all of a number of things, or of the most that are wanted."""
+    wanted = number if most is None else min(most, number)
+    return {index * number // wanted for index in range(wanted)}

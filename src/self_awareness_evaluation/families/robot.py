@@ -1,0 +1,204 @@
+"""A simulated robot: components whose outputs send messages, and a recorder that hears all."""
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Dict, FrozenSet, Iterable, List, Optional, Set, Tuple
+
+import numpy as np
+
+from self_awareness import EventType
+from self_awareness_evaluation.families.conditions import Activity, Conditions, in_order
+from self_awareness_evaluation.families.emissions import Emission, Feedback, Sporadic, stalled
+from self_awareness_evaluation.families.scene import Scene
+from self_awareness_evaluation.windowed_events import WindowedEvents
+from self_awareness.stamps import SECOND_NS, nanoseconds
+
+CRASH, HALF_RATE, LATE = 'crash', 'half rate', 'late 60 ms'
+"""The kinds of faults."""
+
+LATE_S = 0.06
+
+LONGEST_START_S = 90_000.0
+"""A start of the robot lasts no longer than this [s]."""
+
+_FIRST_START_S = 1_600_000_000
+_BETWEEN_STARTS_S = 100_000
+_SHORT_PAUSE_S = 3.0  # who pauses for less on average is still regular
+_RECORDER = ''
+
+
+@dataclass(frozen=True)
+class Fault:
+    """A fault of one component.
+
+    Args:
+        kind: CRASH: it is silent. HALF_RATE: it leaves out every second message. LATE: its answers
+            to others come LATE_S later. What answers to it suffers as it would.
+        source: the component.
+        onset_s: from the beginning of the recording [s].
+        relief_s: from there on all is well again [s].
+    """
+
+    kind: str
+    source: str
+    onset_s: float
+    relief_s: float = LONGEST_START_S
+
+
+@dataclass(frozen=True)
+class Output:
+    """A topic that a component publishes.
+
+    Args:
+        source: name of the component.
+        topic: that it publishes.
+        datatype: of the messages.
+        emission: when it sends; answers are to outputs before it.
+    """
+
+    source: str
+    topic: str
+    datatype: str
+    emission: Emission
+
+
+@dataclass(frozen=True)
+class Robot:
+    """A robot as it was drawn.
+
+    Args:
+        seed: decides, with that of the start, everything that is random; at least 0.
+        outputs: of all components.
+        conditions: of all messages.
+        activities: by name.
+        subscriptions: further pairs of publisher and subscriber, of whom the second does not
+            answer to the first.
+        far: components on the other side of the wireless link; the recorder is on this one.
+    """
+
+    seed: int
+    outputs: Tuple[Output, ...]
+    conditions: Conditions = Conditions()
+    activities: Dict[str, Activity] = field(default_factory=dict)
+    subscriptions: FrozenSet[Tuple[str, str]] = frozenset()
+    far: FrozenSet[str] = frozenset()
+
+    @property
+    def graph(self) -> Set[Tuple[str, str, str]]:
+        """Publisher, topic and subscriber of all that is heard by other components."""
+        heard = {(output.source, output.topic, subscriber) for output in self.outputs
+                 for publisher, subscriber in self.subscriptions if publisher == output.source}
+        for output in self.outputs:
+            if output.emission.trigger is not None:
+                asking = self.outputs[output.emission.trigger]
+                heard.add((asking.source, asking.topic, output.source))
+        return {edge for edge in heard if edge[0] != edge[2]}
+
+    @property
+    def regular(self) -> List[str]:
+        """The components that send all the time, or pause for some seconds at the most."""
+        regular = [False] * len(self.outputs)
+        for index, output in enumerate(self.outputs):
+            emission = output.emission
+            regular[index] = (not isinstance(emission, (Feedback, Sporadic))
+                              and self._goes_on(emission.activity)
+                              and (emission.trigger is None or regular[emission.trigger]))
+        return _distinct(output.source for output, is_so in zip(self.outputs, regular) if is_so)
+
+    @property
+    def answering(self) -> List[str]:
+        """The components that answer to another one."""
+        return _distinct(output.source for output in self.outputs if self._answers_others(output))
+
+    def start(self, start_seed: int, seconds: float, fault: Optional[Fault] = None,
+              begin_s: float = 0.0) -> WindowedEvents:
+        """Return a recording of a start.
+
+        A fault changes nothing before its onset.
+
+        Args:
+            start_seed: decides what is the same in a whole start, such as the phases of timers;
+                from 0 to 20000.
+            seconds: length of the recording, > 0.
+            fault: None: normal operation.
+            begin_s: of the recording in the start [s].
+
+        Raises:
+            ValueError: the recording is beyond LONGEST_START_S, nothing happens in it, or the
+                fault is of a component or kind that there is not.
+        """
+        if not 0.0 <= begin_s < begin_s + seconds <= LONGEST_START_S:
+            raise ValueError(f'a recording from {begin_s} s on, {seconds} s long: not in a start '
+                             f'of {LONGEST_START_S:g} s')
+        if fault is not None:
+            self._check(fault)
+        scene = Scene(self.seed, start_seed, begin_s, begin_s + seconds, self.conditions,
+                      self.activities)
+        for index in range(len(self.outputs)):
+            scene.published.append(self._published(scene, index, fault, begin_s))
+        recorded = [self._heard(scene, index, _RECORDER) for index in range(len(self.outputs))]
+        origin = (_FIRST_START_S + start_seed * _BETWEEN_STARTS_S) * SECOND_NS
+        return self._merged(recorded, begin_s, begin_s + seconds, origin)
+
+    def _check(self, fault: Fault) -> None:
+        if fault.kind not in (CRASH, HALF_RATE, LATE):
+            raise ValueError(f'{fault.kind}: no such kind of fault')
+        if fault.source not in {output.source for output in self.outputs}:
+            raise ValueError(f'{fault.source}: no such component')
+
+    def _goes_on(self, activity: str) -> bool:
+        return not activity or self.activities[activity].off_s <= _SHORT_PAUSE_S
+
+    def _answers_others(self, output: Output) -> bool:
+        trigger = output.emission.trigger
+        return trigger is not None and self.outputs[trigger].source != output.source
+
+    def _published(self, scene: Scene, index: int, fault: Optional[Fault],
+                   begin_s: float) -> np.ndarray:
+        """Return when an output sends, with the fault."""
+        output = self.outputs[index]
+        times = output.emission.times(scene, index,
+                                      lambda heard: self._heard(scene, heard, output.source))
+        times = stalled(self.conditions.hiccup(times, scene.of_recording(f'hiccup {index}')),
+                        scene)
+        if fault is None or fault.source != output.source:
+            return times
+        hit = ((times >= begin_s + fault.onset_s) & (times < begin_s + fault.relief_s))
+        if fault.kind == CRASH:
+            return times[~hit]
+        if fault.kind == LATE:
+            return in_order(times + LATE_S * hit) if self._answers_others(output) else times
+        if output.emission.trigger is None or self._answers_others(output):
+            return times[~hit | (np.arange(len(times)) % 2 == 0)]
+        return times  # it answers to another output of the component, whose rate is halved
+
+    def _heard(self, scene: Scene, index: int, listener: str) -> np.ndarray:
+        """Return when the messages of an output reach a component, or the recorder."""
+        source = self.outputs[index].source
+        way = f'{index} to {listener}'
+        over_link = source != listener and (source in self.far) != (listener in self.far)
+        arrived = self.conditions.transport(scene.published[index], over_link,
+                                            scene.of_recording(f'transport {way}'))
+        return self.conditions.received(arrived, scene.of_recording(f'lost {way}'))
+
+    def _merged(self, recorded: List[np.ndarray], begin: float, end: float,
+                origin: int) -> WindowedEvents:
+        inside = [times[(times >= begin) & (times < end)] for times in recorded]
+        stamps = origin + (np.concatenate(inside) * SECOND_NS).astype(np.int64)
+        if not len(stamps):
+            raise ValueError(f'nothing happens in the {end - begin:g} s of the recording')
+        # As the bag reader does: types in the order in which they come first.
+        present = sorted((index for index, times in enumerate(inside) if len(times)),
+                         key=lambda index: inside[index][0])
+        ids = np.zeros(len(inside), dtype=np.uint32)
+        ids[present] = np.arange(len(present))
+        order = np.argsort(stamps, kind='stable')
+        outputs = [self.outputs[index] for index in present]
+        return WindowedEvents(
+            [EventType(output.source, output.topic, output.datatype) for output in outputs],
+            stamps[order], np.repeat(ids, [len(times) for times in inside])[order],
+            origin + nanoseconds(end))
+
+
+def _distinct(sources: Iterable[str]) -> List[str]:
+    return list(dict.fromkeys(sources))

@@ -1,0 +1,173 @@
+"""One session beside the nodes: recordings of several starts, model, monitor, and faults."""
+from __future__ import annotations
+
+import subprocess
+import time
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Callable, List, Optional
+
+from self_awareness import TrainedModel
+from self_awareness_evaluation.live.learning import learn
+from self_awareness_evaluation.live.listeners import (STARTED_WITHIN_S, MonitorListener,
+                                                      reset_until_quiet)
+from self_awareness_evaluation.live.master import own_master
+from self_awareness_evaluation.live.passing import say, stretch, wait
+from self_awareness_evaluation.live.processes import (LiveError, Processes, await_condition,
+                                                      becomes_true)
+from self_awareness_evaluation.live.samples import Stretch
+from self_awareness_evaluation.nodes import drivers, measures
+from self_awareness_evaluation.nodes.measures import UNDISTURBED, Row
+from self_awareness_evaluation.nodes.running import RunningSystem
+from self_awareness_evaluation.nodes.system import FAULTS, Fault
+from self_awareness.training.robot_graph import graph_file
+
+QUIET_AFTER_S = 10.0
+"""A fault is over when there has been no alarm for so long after it was undone [s]."""
+
+RECOVERED_WITHIN_S = 60.0
+"""An alarm that stands for longer after the fault was undone does not clear [s]."""
+
+APART_S = 70.0
+"""From the end of one recording to the beginning of the next one [s].
+
+Recordings that follow each other within a minute count as one start."""
+
+_WARM_UP_S = 10.0  # after the start, which is no normal operation
+_PIECE_S = 600.0  # of normal operation, so that little is lost if the session fails
+
+
+@dataclass(frozen=True)
+class SessionPlan:
+    """What a session does.
+
+    Args:
+        starts: of the system, each recorded to learn from.
+        training_s: length of each of these recordings [s].
+        calibrations: further starts, each recorded to find the limits by.
+        calibration_s: length of each of these recordings [s].
+        minutes: of normal operation that are watched.
+    """
+
+    starts: int
+    training_s: float
+    calibrations: int
+    calibration_s: float
+    minutes: float
+
+
+def run(plan: SessionPlan, folder: Path, told: Callable[[Row], None]) -> None:
+    """Run a session under a master of its own; nothing of it runs on afterwards.
+
+    Args:
+        plan: what to do.
+        folder: exists; for recordings, the model and logs.
+        told: gets a row after every stretch.
+
+    Raises:
+        LiveError: a program failed, or something does not happen in time.
+    """
+    drivers.write(folder)
+    with own_master(folder) as processes:
+        _Session(plan, folder, processes, told).run()
+
+
+class _Session:
+    def __init__(self, plan: SessionPlan, folder: Path, processes: Processes,
+                 told: Callable[[Row], None]) -> None:
+        self._plan = plan
+        self._folder = folder
+        self._processes = processes
+        self._told = told
+        self._system = RunningSystem(folder, processes)
+        self._monitor = MonitorListener()
+        self._recorded_until = -APART_S  # by time.monotonic()
+
+    def run(self) -> None:
+        training = [self._recorded(f'training_{number}', self._plan.training_s)
+                    for number in range(1, self._plan.starts + 1)]
+        normal = [self._recorded(f'calibration_{number}', self._plan.calibration_s)
+                  for number in range(1, self._plan.calibrations + 1)]
+        model = self._folder / 'nodes.model'
+        learn(self._processes, model, training, normal)
+        self._start_system()
+        recorder = self._start_recorder('session')  # for score, should there be an alarm
+        self._processes.start('monitor', 'roslaunch', '--wait', 'self_awareness', 'monitor.launch',
+                              f'model:={model}')
+        await_condition('the monitor says something', lambda: bool(self._monitor.statuses),
+                        STARTED_WITHIN_S)
+        self._watch(_expected(model))
+        for fault in FAULTS:
+            self._induce(fault)
+        self._processes.end(recorder)
+        self._system.end()
+
+    def _watch(self, expected: float) -> None:
+        def over(quiet: Stretch) -> None:
+            self._told(measures.of_quiet(quiet, expected, self._monitor.statuses))
+
+        left = 60.0 * self._plan.minutes
+        while left > 0.0:
+            piece = min(left, _PIECE_S)
+            with stretch(1, UNDISTURBED, (), '', time.time(), over):
+                wait(piece, 'undisturbed')
+            left -= piece
+
+    def _induce(self, fault: Fault) -> None:
+        note = reset_until_quiet(self._monitor)
+        over: List[Stretch] = []
+        with self._system.broken(fault) as onset:
+            with stretch(1, fault.kind, fault.culprits, note, onset, over.append):
+                wait(fault.lasts_s, f'{fault.node or "the machine"} {fault.kind}')
+        recovered = time.time()
+        # Where it does not clear in time, the row tells it.
+        becomes_true(lambda: self._is_over(recovered), RECOVERED_WITHIN_S)
+        self._told(measures.of_fault(fault, over[0], recovered, self._monitor.statuses))
+
+    def _is_over(self, recovered: float) -> bool:
+        quiet = min(self._monitor.quiet_for(), time.time() - recovered)
+        return quiet >= QUIET_AFTER_S
+
+    def _start_system(self) -> None:
+        say('starting the nodes')
+        self._system.start()
+        wait(_WARM_UP_S, 'warming up')
+
+    def _recorded(self, name: str, length_s: float) -> Path:
+        """Return a recording of a start, by record.launch; one that is there is used again."""
+        found = self._bag(name)
+        if found is not None:
+            return found
+        self._start_system()
+        apart_s = self._recorded_until + APART_S - time.monotonic()
+        if apart_s > 0.0:
+            wait(apart_s, 'so that this start counts as another one')
+        recorder = self._start_recorder(name)
+        wait(length_s, f'recording {name}')
+        self._processes.end(recorder)
+        self._recorded_until = time.monotonic()
+        self._system.end()
+        found = self._bag(name)
+        if found is None or not Path(graph_file(str(found))).exists():
+            raise LiveError(f'{name}: record.launch has written no bag with its graph, see '
+                            f'{self._folder / name}.log')
+        return found
+
+    def _start_recorder(self, name: str) -> subprocess.Popen:
+        recorder = self._processes.start(
+            name, 'roslaunch', '--wait', 'self_awareness', 'record.launch', 'what:=bags',
+            f'output:={self._folder / name}')
+        await_condition(f'rosbag writes {name}',
+                        lambda: any(self._folder.glob(f'{name}_*.bag.active')), STARTED_WITHIN_S)
+        return recorder
+
+    def _bag(self, name: str) -> Optional[Path]:
+        return next(iter(sorted(self._folder.glob(f'{name}_*.bag'))), None)
+
+
+def _expected(model: Path) -> float:
+    """Return the false alarms an hour that calibrate expects."""
+    calibration = TrainedModel.load(str(model)).evidence_calibration
+    if calibration is None:
+        raise LiveError(f'{model}: calibrate has written no limits')
+    return calibration.false_alarms_per_hour

@@ -1,0 +1,67 @@
+"""Options that several parts of `evaluate` have, and what their arguments may be."""
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from self_awareness.commands import cli
+from self_awareness_evaluation.families.protocol import MOST_STARTS
+
+
+def add_output(parser: argparse.ArgumentParser, written: str) -> None:
+    """Add the option that says where results go; written: what they are."""
+    parser.add_argument('-o', '--output', type=Path, default=Path('docs/evaluation'),
+                        metavar='DIR', help=f'where {written} go (default: docs/evaluation)')
+
+
+@cli.checked
+def calibration_s(text: str) -> float:
+    """Argument type: length of a recording [s]."""
+    value = float(text)
+    if not 10.0 <= value <= 86400.0:
+        raise ValueError(f'expected seconds from 10 to 86400, not {text}')
+    return value
+
+
+@cli.checked
+def share(text: str) -> float:
+    """Argument type: a share below 1."""
+    value = float(text)
+    if not 0.0 <= value < 1.0:
+        raise ValueError(f'expected a share from 0 to less than 1, not {text}')
+    return value
+
+
+@cli.checked
+def starts(text: str) -> int:
+    """Argument type: starts to train on."""
+    value = int(text)
+    if not 1 <= value <= MOST_STARTS:
+        raise ValueError(f'expected starts from 1 to {MOST_STARTS}, not {text}')
+    return value
+
+
+def _in_hours(text: str) -> float:
+    value = float(text)
+    if not 0.02 <= value <= 1000.0:
+        raise ValueError(f'expected hours from 0.02 to 1000, not {text}')
+    return value
+
+
+hours = cli.checked(_in_hours)
+"""Argument type: how long something is watched [h]."""
+
+
+@cli.checked
+def minutes(text: str) -> float:
+    """Argument type: how long something is watched [min]."""
+    return 60.0 * _in_hours(str(float(text) / 60.0))
+
+
+@cli.checked
+def budget(text: str) -> float:
+    """Argument type: false alarms an hour that limits are made for."""
+    value = float(text)
+    if not 0.001 <= value <= 1000.0:
+        raise ValueError(f'expected false alarms an hour from 0.001 to 1000, not {text}')
+    return value

@@ -1,0 +1,127 @@
+"""The records of one seed of the evaluation in simulated time.
+
+Every record has a seed of its own, derived from the evaluation's seed and the record's name alone:
+it stays the same whatever else is evaluated. So does the onset of its fault. Every record is a
+start of the robot, hours away from the others: what agrees in all of them could have differed.
+"""
+from __future__ import annotations
+
+import hashlib
+import random
+from dataclasses import dataclass
+from typing import Dict, List, Optional, Set, Tuple
+
+import numpy as np
+
+from self_awareness import EventType
+from self_awareness_evaluation.simulated.measures import NORMAL
+from self_awareness_evaluation.windowed_events import WindowedEvents
+from self_awareness_follow_me.faults import effect_of
+from self_awareness_follow_me.scenario import Scenario
+from self_awareness_follow_me.simulation import START_S, Event, InducedFault, events
+from self_awareness.stamps import nanoseconds
+
+RECORD_S = 100.0
+"""Length of the records of training and of faults [s], as in the paper."""
+
+NORMAL_TEST_S = 600.0
+"""Length of the record of normal operation that false alarms are counted on [s]."""
+
+TRAINING_NAMES = ('training 1', 'training 2')
+CALIBRATION_NAME = 'calibration'
+NORMAL_NAMES = (*TRAINING_NAMES, CALIBRATION_NAME, NORMAL)
+"""What the records of normal operation are called; those of faults are called as the faults."""
+
+_HOUR_S = 3600.0
+_HOURS = 1 << 15  # that a record may begin at
+_ONSET_S = 50.0
+_ONSET_SPREAD_S = 2.0  # the onset must have no fixed phase to the windows and the robot's timers
+
+_IRREGULAR = ('speech_recognition', 'dialog', 'anchoring')  # they send when something happens
+
+
+@dataclass(frozen=True)
+class FaultRecord:
+    """A record with a fault.
+
+    Args:
+        kind: of the fault.
+        recording: the events.
+        onset: of the fault [ns].
+        culprits: the sources to blame; empty if no single source is.
+    """
+
+    kind: str
+    recording: WindowedEvents
+    onset: int
+    culprits: Tuple[str, ...]
+
+
+def default_faults(scenario: Scenario) -> List[str]:
+    """Return the faults that are evaluated: the paper's, further ones, and crashes in turn."""
+    crashes = [f'crash:{spec.name}' for spec in scenario.components
+               if spec.name not in _IRREGULAR]
+    return ['cc1', 'cc2', 'rs', 'ac', 'lat', 'silence', 'extra', 'half:player',
+            'double:gaze_control', 'order', 'unknown', *crashes]
+
+
+def normal_record(scenario: Scenario, seed: int, name: str, duration_s: float) -> WindowedEvents:
+    """Return a record of normal operation; its name decides, with the seed, what is random."""
+    return _recorded(scenario, _derived_seed(seed, name), duration_s, None)
+
+
+def fault_record(scenario: Scenario, seed: int, kind: str) -> FaultRecord:
+    """Return a record with a fault.
+
+    Raises:
+        ValueError: no such fault.
+    """
+    spread = random.Random(f'{seed}/{kind}/onset').uniform(0.0, _ONSET_SPREAD_S)
+    fault = InducedFault(kind, _ONSET_S + spread)
+    derived = _derived_seed(seed, kind)
+    recording = _recorded(scenario, derived, RECORD_S, fault)
+    onset = nanoseconds(_start_s(derived) + fault.onset_s)
+    return FaultRecord(kind, recording, onset, effect_of(scenario, kind).culprits)
+
+
+def encode(recorded: List[Event], scenario: Scenario, end: int) -> WindowedEvents:
+    """Encode messages as the bag reader does; `end`: of the recording [ns], exclusive.
+
+    The first message of a latched topic is left out: it may be a repeated one.
+    """
+    latched: Set[str] = {'/' + topic for spec in scenario.components
+                         for topic, output in spec.outputs().items() if output.latch}
+    ids: Dict[EventType, int] = {}
+    known: Dict[Tuple[str, str, str, object], int] = {}
+    stamps: List[int] = []
+    event_ids: List[int] = []
+    for event in recorded:
+        if event.topic in latched:
+            latched.remove(event.topic)
+            continue
+        field = scenario.type_fields.get(event.datatype)
+        key = (event.source, event.topic, event.datatype, None if field is None else event.value)
+        if key not in known:
+            datatype = (event.datatype if field is None
+                        else f'{event.datatype}[{field}={event.value}]')
+            event_type = EventType(event.source, event.topic, datatype)
+            known[key] = ids.setdefault(event_type, len(ids))
+        stamps.append(event.stamp_ns)
+        event_ids.append(known[key])
+    return WindowedEvents(list(ids), np.array(stamps, dtype=np.int64),
+                          np.array(event_ids, dtype=np.uint32), end)
+
+
+def _recorded(scenario: Scenario, seed: int, duration_s: float,
+              fault: Optional[InducedFault]) -> WindowedEvents:
+    start_s = _start_s(seed)
+    end = nanoseconds(start_s + duration_s)
+    return encode(list(events(duration_s, seed, fault, scenario, start_s)), scenario, end)
+
+
+def _start_s(seed: int) -> float:
+    return START_S + _HOUR_S * (seed % _HOURS)
+
+
+def _derived_seed(seed: int, name: str) -> int:
+    return int.from_bytes(hashlib.sha256(f'{seed}/{name}'.encode()).digest()[:4], 'big')

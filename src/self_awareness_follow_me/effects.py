@@ -1,0 +1,189 @@
+"""What faults do to the simulated robot: a class for each effect, which says who is to blame.
+
+The simulation and the live nodes apply effects; how strong they are is in `config/follow_me.yaml`.
+Times of the file are seconds, others int ns.
+"""
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from typing import Tuple
+
+from self_awareness_follow_me.component_spec import ComponentSpec, Task
+from self_awareness.stamps import SECOND_NS, nanoseconds
+
+
+class Effect:
+    """What a fault does."""
+
+    @property
+    def culprits(self) -> Tuple[str, ...]:
+        """Names of the nodes that are to blame; empty where it is no single component's fault."""
+        return ()
+
+
+@dataclass(frozen=True)
+class Crash(Effect):
+    """A component dies."""
+
+    component: str
+
+    @property
+    def culprits(self) -> Tuple[str, ...]:
+        """The component."""
+        return ('/' + self.component,)
+
+
+class Silence(Effect):
+    """All components die at once."""
+
+
+@dataclass(frozen=True)
+class Starvation(Effect):
+    """Busy workers take the CPU away, more and more over `ramp` seconds."""
+
+    ramp: float
+    slowdown: float
+    workers_per_core: int
+
+    def factor(self, elapsed_ns: int) -> float:
+        """Return by how much processing is stretched `elapsed_ns` after the onset, >= 1."""
+        grown = min(1.0, max(0.0, elapsed_ns / nanoseconds(self.ramp)))
+        return 1.0 + (self.slowdown - 1.0) * grown
+
+
+@dataclass(frozen=True)
+class ClockDrift(Effect):
+    """The clock of one host drifts away and wobbles, so that stamps match only at times."""
+
+    host: str
+    drift: float
+    settle: float
+    wobble: float
+    periods: Tuple[float, ...]
+
+    def offset_ns(self, elapsed_ns: int) -> int:
+        """Return what the clock is ahead (ns, signed) `elapsed_ns` after the onset; 0 before."""
+        elapsed = elapsed_ns / SECOND_NS
+        if elapsed <= 0.0:
+            return 0
+        sines = [math.sin(2.0 * math.pi * elapsed / period) for period in self.periods]
+        drift = self.drift * (1.0 - math.exp(-elapsed / self.settle))
+        return nanoseconds(drift + self.wobble * sum(sines) / len(sines))
+
+
+@dataclass(frozen=True)
+class Intruder(Effect):
+    """A node that is none of the components publishes what one of them publishes."""
+
+    spec: ComponentSpec
+
+    @property
+    def culprits(self) -> Tuple[str, ...]:
+        """The intruder."""
+        return ('/' + self.spec.name,)
+
+
+@dataclass(frozen=True)
+class Change(Effect):
+    """Some components live on, but do something else than they should."""
+
+    components: Tuple[str, ...]
+
+    @property
+    def culprits(self) -> Tuple[str, ...]:
+        """The components that changed."""
+        return tuple('/' + name for name in self.components)
+
+    def changed(self, spec: ComponentSpec) -> ComponentSpec:
+        """Return what a component does under the fault; tasks keep their index, new ones follow.
+
+        Args:
+            spec: what it does normally.
+        """
+        if spec.name not in self.components:
+            return spec
+        return self._changed(spec)
+
+    def _changed(self, spec: ComponentSpec) -> ComponentSpec:
+        raise NotImplementedError
+
+
+@dataclass(frozen=True)
+class Latency(Change):
+    """All messages come `delay` seconds later, at an unchanged rate."""
+
+    delay: float
+
+    def _changed(self, spec: ComponentSpec) -> ComponentSpec:
+        return replace(spec, delay=self.delay)
+
+
+class HalfRate(Change):
+    """Timers run at half their rate; of what triggers a task, every second one is ignored."""
+
+    def _changed(self, spec: ComponentSpec) -> ComponentSpec:
+        return replace(spec, tasks=tuple(_halved(task) for task in spec.tasks))
+
+
+class DoubleRate(Change):
+    """Timers run at twice their rate; what messages start is done twice as often.
+
+    A task that starts on every Nth message starts on every N/2th one. If N is odd, each of its
+    messages is published twice in a row instead.
+    """
+
+    def _changed(self, spec: ComponentSpec) -> ComponentSpec:
+        return replace(spec, tasks=tuple(_doubled(task) for task in spec.tasks))
+
+
+class Disorder(Change):
+    """The messages of one piece of work come in reversed order, at the same times otherwise."""
+
+    def _changed(self, spec: ComponentSpec) -> ComponentSpec:
+        return replace(spec, tasks=tuple(_reversed(task) for task in spec.tasks))
+
+
+@dataclass(frozen=True)
+class Novelty(Change):
+    """A component publishes what it always does, and messages that were never seen before."""
+
+    task: Task
+
+    def _changed(self, spec: ComponentSpec) -> ComponentSpec:
+        return replace(spec, tasks=spec.tasks + (self.task,))
+
+
+@dataclass(frozen=True)
+class Faults:
+    """The section `faults` of a scenario: what cannot be told from the name of a fault alone."""
+
+    cc1: Crash
+    cc2: Crash
+    rs: Starvation
+    ac: ClockDrift
+    lat: Latency
+    extra: Intruder
+    order: Disorder
+    unknown: Novelty
+
+
+def _halved(task: Task) -> Task:
+    if task.upon is None:
+        return replace(task, every=task.period().times(2.0))
+    return replace(task, each=2 * task.each)
+
+
+def _doubled(task: Task) -> Task:
+    if task.upon is None:
+        return replace(task, every=task.period().times(0.5))
+    if task.each % 2 == 0:
+        return replace(task, each=task.each // 2)
+    return replace(task, publish=tuple(replace(output, copies=2) for output in task.publish),
+                   otherwise=tuple(replace(output, copies=2) for output in task.otherwise))
+
+
+def _reversed(task: Task) -> Task:
+    return replace(task, publish=tuple(
+        replace(output, takes=slot.takes, waits=slot.waits)
+        for slot, output in zip(task.publish, reversed(task.publish))))

@@ -1,0 +1,227 @@
+"""Induces faults in the running follow-me robot, for good or for the time of a with statement."""
+from __future__ import annotations
+
+import contextlib
+import multiprocessing
+import os
+import signal
+import socket
+import subprocess
+import time
+from http.client import HTTPException
+from pathlib import Path
+from typing import Any, ContextManager, Dict, Iterator, Optional
+from urllib.parse import urlparse
+from xmlrpc.client import Fault as XmlRpcFault
+from xmlrpc.client import ServerProxy
+
+import rosgraph
+import rosgraph.network
+
+from self_awareness_follow_me.effects import Crash, Effect, Intruder, Starvation
+from self_awareness_follow_me.faults import INDUCED_FAULT
+from self_awareness_follow_me.scenario import Scenario
+
+_CALLER_ID = '/induce'
+
+
+class InduceError(ValueError):
+    """A fault cannot be induced; the message says why and what to do."""
+
+
+class _DeadError(InduceError):
+    """A node is dead already."""
+
+
+def lasting(effect: Effect, kind: str, namespace: str = '', scenario: Optional[Path] = None
+            ) -> ContextManager[None]:
+    """Return what makes a fault last as long as a with statement.
+
+    Args:
+        effect: of the fault; one that kills no node.
+        kind: name of the fault.
+        namespace: of the robot.
+        scenario: its file; None: the one that comes with the package.
+    """
+    if isinstance(effect, Starvation):
+        return starved(effect)
+    if isinstance(effect, Intruder):
+        return intruding(effect, namespace, scenario)
+    return disturbed(kind, namespace)
+
+
+def crash(effect: Crash, namespace: str = '') -> int:
+    """Kill the node of a component with SIGKILL and return its process id.
+
+    Raises:
+        InduceError: the node is unknown to the master, does not answer, or runs elsewhere.
+    """
+    node = _resolved(namespace, effect.component)
+    pid = process_id(node)
+    _kill(node, pid)
+    return pid
+
+
+def silence(scenario: Scenario, namespace: str = '') -> Dict[str, int]:
+    """Kill the nodes of all components and return the process ids of those that were alive.
+
+    Raises:
+        InduceError: a node is unknown to the master or runs elsewhere, or all are dead already.
+    """
+    pids: Dict[str, int] = {}
+    # All at the same time: finding them takes long, so all are found before the first is killed.
+    for spec in scenario.components:
+        with contextlib.suppress(_DeadError):
+            pids[spec.name] = process_id(_resolved(namespace, spec.name))
+    if not pids:
+        raise InduceError('all components are dead already')
+    for name, pid in pids.items():
+        _kill(_resolved(namespace, name), pid)
+    return pids
+
+
+def _kill(node: str, pid: int) -> None:
+    try:
+        os.kill(pid, signal.SIGKILL)
+    except OSError as error:
+        raise InduceError(f'{node}: process {pid} cannot be killed: {error.strerror}') from error
+
+
+def process_id(node: str) -> int:
+    """Return the process id of a node by its full name.
+
+    Raises:
+        InduceError: the node is unknown to the master, does not answer, or runs elsewhere.
+    """
+    try:
+        uri = rosgraph.Master(_CALLER_ID).lookupNode(node)
+    except rosgraph.MasterError as error:
+        raise InduceError(f'{node} is not known to the master: is the robot running, and is '
+                          '--namespace right?') from error
+    except (OSError, rosgraph.MasterException) as error:
+        raise _no_master() from error
+    if not rosgraph.network.is_local_address(urlparse(uri).hostname):
+        raise InduceError(f'{node} runs on another machine ({uri}): induce the fault there')
+    try:
+        with _timeout(5.0):
+            answer: Any = ServerProxy(uri).getPid(_CALLER_ID)
+            code, text, pid = answer
+    except (OSError, HTTPException, XmlRpcFault) as error:
+        raise _DeadError(f'{node} does not answer at {uri}: it is dead already') from error
+    if code != 1 or pid <= 1:
+        raise InduceError(f'{node} does not tell its process id: {text}')
+    return pid
+
+
+@contextlib.contextmanager
+def disturbed(kind: str, namespace: str = '') -> Iterator[None]:
+    """Tell the components to misbehave for the time of a with statement.
+
+    Args:
+        kind: name of a fault that components know of: a clock that drifts, latency, and so on.
+        namespace: of the robot.
+
+    Raises:
+        InduceError: no robot is running there.
+    """
+    parameter = _resolved(namespace, INDUCED_FAULT)
+    master = rosgraph.Master(_CALLER_ID)
+    _check_running(master, parameter)
+    try:
+        _set_parameter(master, parameter, f'{kind}@{time.time():.6f}')
+        yield
+    finally:
+        _set_parameter(master, parameter, '')
+
+
+@contextlib.contextmanager
+def intruding(effect: Intruder, namespace: str = '', scenario: Optional[Path] = None
+              ) -> Iterator[None]:
+    """Let a foreign node publish for the time of a with statement.
+
+    Raises:
+        InduceError: no robot is running there, or the node ended by itself.
+    """
+    _check_running(rosgraph.Master(_CALLER_ID), _resolved(namespace, INDUCED_FAULT))
+    command = ['rosrun', 'self_awareness', 'component', effect.spec.name]
+    command += [] if scenario is None else ['--scenario', str(scenario)]
+    try:
+        process = subprocess.Popen(command + [f'__ns:={_resolved(namespace) or "/"}'])
+    except OSError as error:
+        raise InduceError(f'rosrun cannot be started: {error.strerror}') from error
+    try:
+        yield
+        if process.poll():
+            raise InduceError(f'the node {effect.spec.name} ended by itself, see above')
+    finally:
+        process.terminate()
+        process.wait()
+
+
+@contextlib.contextmanager
+def starved(effect: Starvation) -> Iterator[None]:
+    """Let a growing number of busy workers take the CPU for the time of a with statement."""
+    number = effect.workers_per_core * len(os.sched_getaffinity(0))
+    workers = [multiprocessing.Process(target=_work, args=(effect.ramp * i / number, os.getpid()),
+                                       daemon=True) for i in range(number)]
+    try:
+        for worker in workers:
+            worker.start()
+        yield
+    finally:
+        for worker in workers:
+            if worker.pid is not None:
+                worker.kill()
+                worker.join()
+
+
+def _work(delay_s: float, parent: int) -> None:
+    """Keep a core busy after a delay, until the parent kills the process or dies itself."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    # The kernel may share the CPU among sessions (autogroup): one session would weigh no more than
+    # the whole robot, however many workers it has.
+    os.setsid()
+    busy_from = time.monotonic() + delay_s
+    while os.getppid() == parent:
+        if time.monotonic() < busy_from:
+            time.sleep(0.05)
+        else:
+            for _ in range(100_000):
+                pass
+
+
+def _check_running(master: rosgraph.Master, parameter: str) -> None:
+    """Check that a robot has set its parameter."""
+    try:
+        known = master.hasParam(parameter)
+    except (OSError, rosgraph.MasterException) as error:
+        raise _no_master() from error
+    if not known:
+        raise InduceError(f'parameter {parameter} is not set: is the robot running, and is '
+                          '--namespace right?')
+
+
+def _set_parameter(master: rosgraph.Master, parameter: str, value: str) -> None:
+    try:
+        master.setParam(parameter, value)
+    except (OSError, rosgraph.MasterException) as error:
+        raise _no_master() from error
+
+
+def _resolved(namespace: str, *names: str) -> str:
+    return '/'.join(['', *filter(None, namespace.split('/')), *names])
+
+
+def _no_master() -> InduceError:
+    return InduceError(f'no master at {rosgraph.get_master_uri()}: is the robot running, and is '
+                       'ROS_MASTER_URI right?')
+
+
+@contextlib.contextmanager
+def _timeout(seconds: float) -> Iterator[None]:
+    before = socket.getdefaulttimeout()
+    socket.setdefaulttimeout(seconds)
+    try:
+        yield
+    finally:
+        socket.setdefaulttimeout(before)

@@ -1,0 +1,185 @@
+"""One component of the simulated robot as a ROS node.
+
+Drives a `component.Component` in real time: `takes` of its work is partly spent
+computing, so that a busy CPU slows the node down as it would a real one, `waits` is slept.
+
+Publishes and subscribes to the component's topics (relative names). Reads the parameter
+`induced_fault`, relative to the node's namespace: `KIND@ONSET` of the fault that the robot has (s
+since 1970), empty if it has none. Only faults that a component has to know of work by it.
+"""
+from __future__ import annotations
+
+import heapq
+import queue
+import random
+import time
+from functools import partial
+from typing import Any, Callable, List, NamedTuple, Optional, Tuple
+
+import rospy
+
+from self_awareness_follow_me.component import Component, Message, Publish, Request, Wake, Work
+from self_awareness_follow_me.component_spec import ComponentSpec
+from self_awareness_follow_me.effects import Change, ClockDrift
+from self_awareness_follow_me.faults import INDUCED_FAULT, effect_of
+from self_awareness_follow_me.messages import MessageType
+from self_awareness_follow_me.scenario import Scenario
+from self_awareness.stamps import SECOND_NS, nanoseconds
+
+# How long a shutdown may go unnoticed while nothing else happens.
+_PATIENCE_S = 0.5
+_QUEUE_SIZE = 10
+# A look at a cached parameter costs little, but not nothing.
+_LOOK_EVERY_NS = 50_000_000
+
+
+class ComponentNode:
+    """Runs one component until ROS shuts down; `rospy.init_node` has been called.
+
+    Args:
+        scenario: the robot.
+        spec: the component of it to run.
+        seed: decides what is random in its behaviour.
+    """
+
+    def __init__(self, scenario: Scenario, spec: ComponentSpec, seed: int) -> None:
+        # One clock for everything: its steps must not disturb the timers.
+        self._epoch = time.time_ns() - time.monotonic_ns()
+        self._cpu_share = scenario.cpu_share
+        self._fault = _FaultWatch(scenario, spec)
+        self._component = Component(spec, random.Random(f'{seed}/{spec.name}'), self._fault.clock,
+                                    self._fault.spec_at)
+        self._inbox: queue.Queue[Message] = queue.Queue()
+        self._due: List[Tuple[int, int, Callable[[int], List[Request]]]] = []
+        self._pushed = 0
+        self._types = {topic: MessageType(scenario.datatypes[topic])
+                       for topic in {*spec.inputs(), *spec.outputs()}}
+        self._publishers = {
+            topic: rospy.Publisher(topic, self._types[topic].message_class, latch=output.latch,
+                                   queue_size=_QUEUE_SIZE, tcp_nodelay=True)
+            for topic, output in spec.outputs().items()}
+        self._subscribers = [
+            rospy.Subscriber(topic, self._types[topic].message_class, self._received, topic,
+                             queue_size=_QUEUE_SIZE, tcp_nodelay=True)
+            for topic in spec.inputs()]
+
+    def spin(self) -> None:
+        """Run until ROS shuts down."""
+        self._handle(self._component.start(self._now()))
+        while not rospy.is_shutdown():
+            wait_s = _PATIENCE_S
+            if self._due:
+                wait_s = min(wait_s, (self._due[0][0] - self._now()) / SECOND_NS)
+            if wait_s <= 0.0:
+                _, _, act = heapq.heappop(self._due)
+                self._handle(act(self._now()))
+                continue
+            try:
+                message = self._inbox.get(timeout=wait_s)
+            except queue.Empty:
+                continue
+            self._handle(self._component.receive(self._now(), message))
+
+    def _handle(self, requests: List[Request]) -> None:
+        for request in requests:
+            if isinstance(request, Publish):
+                self._publish(request)
+            elif isinstance(request, Wake):
+                self._push(request.at, partial(self._component.wake, timer=request.timer))
+            else:
+                self._push(self._begin(request), self._component.work_done)
+
+    def _begin(self, work: Work) -> int:
+        """Compute for the share of the work that needs the CPU; return when the work is done."""
+        done = self._now() + work.takes + work.waits
+        enough = time.thread_time_ns() + round(work.takes * self._cpu_share)
+        while time.thread_time_ns() < enough:
+            pass
+        return done
+
+    def _publish(self, request: Publish) -> None:
+        if request.delay > 0:
+            self._push(self._now() + request.delay,
+                       partial(self._send, message=request.message))
+        else:
+            self._send(self._now(), request.message)
+
+    def _send(self, _: int, message: Message) -> List[Request]:
+        try:
+            self._publishers[message.topic].publish(self._types[message.topic].to_ros(message))
+        except rospy.ROSException:
+            # The publishers close first when ROS shuts down.
+            if not rospy.is_shutdown():
+                raise
+        return []
+
+    def _received(self, ros_message: Any, topic: str) -> None:
+        self._inbox.put(self._types[topic].from_ros(topic, ros_message,
+                                                    self._fault.clock(self._now())))
+
+    def _push(self, at: int, act: Callable[[int], List[Request]]) -> None:
+        self._pushed += 1
+        heapq.heappush(self._due, (at, self._pushed, act))
+
+    def _now(self) -> int:
+        return self._epoch + time.monotonic_ns()
+
+
+class _Disturbance(NamedTuple):
+    """What an induced fault means to one component, and the parameter that says so."""
+
+    parameter: str
+    spec: ComponentSpec
+    drift: Optional[ClockDrift] = None
+    onset: int = 0
+
+
+class _FaultWatch:
+    """The fault that the parameter INDUCED_FAULT tells of, as far as it concerns one component."""
+
+    def __init__(self, scenario: Scenario, spec: ComponentSpec) -> None:
+        self._scenario = scenario
+        self._spec = spec
+        # Several threads ask: always replaced as a whole.
+        self._disturbance = _Disturbance('', spec)
+        self._look_at = 0
+        # A parameter that is not set cannot be cached: every look at it would ask the master.
+        if not rospy.has_param(INDUCED_FAULT):
+            rospy.set_param(INDUCED_FAULT, '')
+
+    def clock(self, now: int) -> int:
+        """Return what the clock of the component's host shows (ns) at a given time (ns)."""
+        disturbance = self._newest(now)
+        if disturbance.drift is None:
+            return now
+        return now + disturbance.drift.offset_ns(now - disturbance.onset)
+
+    def spec_at(self, now: int) -> ComponentSpec:
+        """Return what the component does at a given time (ns)."""
+        return self._newest(now).spec
+
+    def _newest(self, now: int) -> _Disturbance:
+        if now >= self._look_at:
+            self._look_at = now + _LOOK_EVERY_NS
+            parameter = rospy.get_param_cached(INDUCED_FAULT, '')
+            if parameter != self._disturbance.parameter:
+                self._disturbance = self._read(parameter)
+        return self._disturbance
+
+    def _read(self, parameter: str) -> _Disturbance:
+        normal = _Disturbance(parameter, self._spec)
+        if not parameter:
+            return normal
+        try:
+            kind, _, onset = parameter.partition('@')
+            effect = effect_of(self._scenario, kind)
+            disturbance = normal._replace(onset=nanoseconds(float(onset)))
+        except ValueError as error:
+            rospy.logerr(f'parameter {rospy.resolve_name(INDUCED_FAULT)}: {parameter!r} is not '
+                         f'KIND@ONSET: {error}; ignored')
+            return normal
+        if isinstance(effect, Change):
+            return disturbance._replace(spec=effect.changed(self._spec))
+        if isinstance(effect, ClockDrift) and effect.host == self._spec.host:
+            return disturbance._replace(drift=effect)
+        return normal
