@@ -27,8 +27,8 @@ import page
 from live_robot import Configuration, Robot, master, train, write_synthetic_model
 from live_subjects import Bare, Monitor, Record, Subject, usage
 from self_awareness import DEFAULT_WINDOW
-from self_awareness_evaluation.live.processes import Processes
 from self_awareness.stamps import SECOND_NS
+from self_awareness_evaluation.live.processes import Processes
 
 TOPICS = {163: 15, 1000: 60, 5000: 300, 20000: 500}
 """By messages a second."""

@@ -13,8 +13,8 @@ import numpy as np
 
 from self_awareness import (EncodingRules, EventType, EvidenceCalibration, EvidenceModel,
                             TrainedModel, Training)
-from self_awareness_evaluation.live.processes import Processes, await_condition, free_port
 from self_awareness.stamps import SECOND_NS
+from self_awareness_evaluation.live.processes import Processes, await_condition, free_port
 
 NODES = 10
 IMAGE_TOPIC = '/camera/image'

@@ -14,8 +14,8 @@ import rospy
 from diagnostic_msgs.msg import DiagnosticArray
 
 from live_robot import SUBJECT_CORE, pin, record_command
-from self_awareness_evaluation.live.processes import Processes, await_condition
 from self_awareness.msg import SelfAwareness
+from self_awareness_evaluation.live.processes import Processes, await_condition
 
 _LIBRARIES = Path('lib/self_awareness')
 

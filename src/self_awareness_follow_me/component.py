@@ -11,9 +11,9 @@ from collections import defaultdict, deque
 from dataclasses import dataclass
 from typing import Callable, Deque, Dict, List, Optional, Union
 
+from self_awareness.stamps import nanoseconds
 from self_awareness_follow_me.component_spec import (ComponentSpec, Hypothesis, InView, Need,
                                                      Output, Value)
-from self_awareness.stamps import nanoseconds
 
 
 @dataclass(frozen=True)

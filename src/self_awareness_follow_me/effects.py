@@ -9,8 +9,8 @@ import math
 from dataclasses import dataclass, replace
 from typing import Tuple
 
-from self_awareness_follow_me.component_spec import ComponentSpec, Task
 from self_awareness.stamps import SECOND_NS, nanoseconds
+from self_awareness_follow_me.component_spec import ComponentSpec, Task
 
 
 class Effect:

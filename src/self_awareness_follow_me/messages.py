@@ -10,10 +10,10 @@ from typing import Any, Callable, Dict, Optional
 import genpy
 import roslib.message
 
-from self_awareness_follow_me.component import Message
-from self_awareness_follow_me.component_spec import Value
 from self_awareness.stamps import SECOND_NS
 from self_awareness.yaml_section import SectionError
+from self_awareness_follow_me.component import Message
+from self_awareness_follow_me.component_spec import Value
 
 _VALUE_FIELDS = {'actionlib_msgs/GoalStatus': 'status',
                  'std_msgs/Bool': 'data',

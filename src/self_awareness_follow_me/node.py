@@ -18,13 +18,13 @@ from typing import Any, Callable, List, NamedTuple, Optional, Tuple
 
 import rospy
 
+from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness_follow_me.component import Component, Message, Publish, Request, Wake, Work
 from self_awareness_follow_me.component_spec import ComponentSpec
 from self_awareness_follow_me.effects import Change, ClockDrift
 from self_awareness_follow_me.faults import INDUCED_FAULT, effect_of
 from self_awareness_follow_me.messages import MessageType
 from self_awareness_follow_me.scenario import Scenario
-from self_awareness.stamps import SECOND_NS, nanoseconds
 
 # How long a shutdown may go unnoticed while nothing else happens.
 _PATIENCE_S = 0.5

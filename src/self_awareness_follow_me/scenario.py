@@ -15,11 +15,11 @@ from typing import Dict, Mapping, Optional, Tuple, Union
 import rospkg
 
 from self_awareness import yaml_file
+from self_awareness.yaml_section import Section, SectionError
 from self_awareness_follow_me.component_spec import (ComponentSpec, Duration, Hypothesis, InView,
                                                      Need, Output, Task)
 from self_awareness_follow_me.effects import (ClockDrift, Crash, Disorder, Faults, Intruder,
                                               Latency, Novelty, Starvation)
-from self_awareness.yaml_section import Section, SectionError
 
 
 @dataclass(frozen=True)

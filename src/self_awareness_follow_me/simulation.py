@@ -19,6 +19,8 @@ from typing import (Any, Callable, Dict, FrozenSet, Iterator, List, NamedTuple, 
 import genpy
 import rosbag
 
+from self_awareness.output_files import replacing
+from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness_follow_me.component import Component, Message, Publish, Request, Wake
 from self_awareness_follow_me.component_spec import ComponentSpec, Value
 from self_awareness_follow_me.effects import (Change, ClockDrift, Crash, Intruder, Silence,
@@ -26,8 +28,6 @@ from self_awareness_follow_me.effects import (Change, ClockDrift, Crash, Intrude
 from self_awareness_follow_me.faults import check_form, effect_of
 from self_awareness_follow_me.messages import MessageType
 from self_awareness_follow_me.scenario import Scenario, load_scenario
-from self_awareness.output_files import replacing
-from self_awareness.stamps import SECOND_NS, nanoseconds
 
 START_S = 1_600_000_000.0
 """Start of a recording if none is given (s since 1970)."""

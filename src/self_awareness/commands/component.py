@@ -7,10 +7,10 @@ from typing import Optional, Sequence
 import rospy
 
 from self_awareness.commands import cli
+from self_awareness.yaml_section import SectionError
 from self_awareness_follow_me.node import ComponentNode
 from self_awareness_follow_me.scenario import load_scenario
 from self_awareness_follow_me.speed import sped_up
-from self_awareness.yaml_section import SectionError
 
 
 def main(argv: Optional[Sequence[str]] = None) -> int:

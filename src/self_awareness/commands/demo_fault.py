@@ -9,9 +9,9 @@ from typing import Dict, Optional
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
+from self_awareness.progress import waiting
 from self_awareness_follow_me import induction
 from self_awareness_follow_me.scenario import load_scenario
-from self_awareness.progress import waiting
 
 _MONITOR = 'self_awareness'
 _STATUS = _MONITOR + ': communication'

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Iterator, List, Optional, Set, Tuple
 
+from self_awareness.workers import Processes
 from self_awareness_evaluation.detectors import scenario_graph
 from self_awareness_evaluation.families.protocol import KINDS, Learning, Records
 from self_awareness_evaluation.families.robot import CRASH, HALF_RATE, LATE
@@ -13,7 +14,6 @@ from self_awareness_evaluation.simulated import records as simulated
 from self_awareness_evaluation.simulated.measures import NORMAL
 from self_awareness_evaluation.windowed_events import WindowedEvents
 from self_awareness_follow_me.scenario import load_scenario
-from self_awareness.workers import Processes
 
 FAMILIES, OWN, RECORDINGS = 'families', 'own robot', 'recordings'
 """The parts of the bench."""

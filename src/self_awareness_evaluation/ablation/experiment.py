@@ -6,12 +6,12 @@ from pathlib import Path
 from typing import Dict, List, Sequence
 
 from self_awareness import METHOD, Tuning
+from self_awareness.output_files import replacing
+from self_awareness.workers import Processes
 from self_awareness_evaluation.ablation import bench as benches
 from self_awareness_evaluation.ablation.bench import Plan
 from self_awareness_evaluation.ablation.rows import Row, RowFile, judge, same
 from self_awareness_evaluation.ablation.variants import DEFAULT, Variant
-from self_awareness.output_files import replacing
-from self_awareness.workers import Processes
 
 Results = Dict[Variant, List[Row]]
 """The rows of every variant."""

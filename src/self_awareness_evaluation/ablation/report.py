@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any, Dict, List, Sequence, Tuple
 
 from self_awareness import METHOD, Tuning
+from self_awareness.output_files import replacing
 from self_awareness_evaluation import row_files
 from self_awareness_evaluation.ablation import figures
 from self_awareness_evaluation.ablation.bench import (AFTER_DEATH_S, FAMILIES, OWN,
@@ -13,7 +14,6 @@ from self_awareness_evaluation.ablation.experiment import Results
 from self_awareness_evaluation.ablation.variants import DEFAULT, NUMBER, Variant
 from self_awareness_evaluation.simulated.tables import table
 from self_awareness_evaluation.tally import NONE
-from self_awareness.output_files import replacing
 
 NAME = 'ablation'
 

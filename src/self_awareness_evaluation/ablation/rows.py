@@ -13,6 +13,7 @@ import numpy as np
 
 from self_awareness import DEFAULT_WINDOW, Tuning
 from self_awareness.calibration.limits import TooLittleError
+from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation import row_files
 from self_awareness_evaluation.ablation.bench import RECORDINGS, Bench, Fault, Robot
 from self_awareness_evaluation.ablation.variants import Variant
@@ -20,7 +21,6 @@ from self_awareness_evaluation.detectors import Evidence
 from self_awareness_evaluation.recordings import outages
 from self_awareness_evaluation.simulated.measures import NORMAL, beginnings, first_alarm
 from self_awareness_evaluation.systems import Judged
-from self_awareness.stamps import SECOND_NS
 
 OUTAGE = 'outage'
 """Kind of fault: what is wrong in a recording of a real robot."""

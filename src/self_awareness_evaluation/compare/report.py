@@ -5,10 +5,10 @@ import argparse
 from pathlib import Path
 from typing import List
 
+from self_awareness.output_files import replacing
 from self_awareness_evaluation import options
 from self_awareness_evaluation.compare import results, tables
 from self_awareness_evaluation.compare.results import Measured
-from self_awareness.output_files import replacing
 
 NAME = 'before_after'
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 from typing import Any, Callable, List, Optional, Sequence, Tuple, TypeVar, Union
 
 from self_awareness import DEFAULT_WINDOW
+from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation.compare.results import Measured
 from self_awareness_evaluation.families.measures import FaultRow, NormalRow
 from self_awareness_evaluation.families.protocol import DEATH, KINDS
@@ -12,7 +13,6 @@ from self_awareness_evaluation.recordings.outages import OutageRow
 from self_awareness_evaluation.simulated import measures, summary
 from self_awareness_evaluation.simulated.tables import table
 from self_awareness_evaluation.tally import NONE, Tally, alarms
-from self_awareness.stamps import SECOND_NS
 
 _Row = TypeVar('_Row')
 _Subject = Tuple[str, str, Optional[float]]  # learning, system, budget

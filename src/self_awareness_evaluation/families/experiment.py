@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Iterator, List, Optional, Tuple
 
 from self_awareness import Tuning
+from self_awareness.workers import Processes
 from self_awareness_evaluation import catalogue
 from self_awareness_evaluation.detectors import Evidence
 from self_awareness_evaluation.families.measures import (FaultRow, NormalRow, Subject, fault_row,
@@ -14,7 +15,6 @@ from self_awareness_evaluation.families.measures import (FaultRow, NormalRow, Su
 from self_awareness_evaluation.families.protocol import Learning, Records, check_hours
 from self_awareness_evaluation.families.robot import Robot
 from self_awareness_evaluation.systems import System
-from self_awareness.workers import Processes
 
 WITH_GRAPH, WITHOUT_GRAPH = 'evidence', 'evidence_no_graph'
 

@@ -7,10 +7,10 @@ from typing import Optional, Tuple
 import numpy as np
 
 from self_awareness import DEFAULT_WINDOW
+from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation.families.protocol import FaultRecord
 from self_awareness_evaluation.simulated.measures import beginnings, first_alarm
 from self_awareness_evaluation.systems import Judged
-from self_awareness.stamps import SECOND_NS
 
 _HOUR_S = 3600.0
 

@@ -6,11 +6,11 @@ from typing import Iterator, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
+from self_awareness.stamps import nanoseconds
 from self_awareness_evaluation.families.kinds import FAMILIES
 from self_awareness_evaluation.families.robot import (CRASH, HALF_RATE, LATE, LONGEST_START_S,
                                                       Fault, Robot)
 from self_awareness_evaluation.windowed_events import WindowedEvents
-from self_awareness.stamps import nanoseconds
 
 DEATH = 'death'
 """The crash of a component that is silent until something is asked of it."""

@@ -6,6 +6,8 @@ from pathlib import Path
 from typing import Any, Dict, List
 
 from self_awareness import DetectorParameters
+from self_awareness.output_files import replacing
+from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation import row_files
 from self_awareness_evaluation.families import summary
 from self_awareness_evaluation.families.experiment import Plan, Results
@@ -16,8 +18,6 @@ from self_awareness_evaluation.families.protocol import (AFTER_DEATH_S, AFTER_ON
 from self_awareness_evaluation.families.summary import Found
 from self_awareness_evaluation.families.tables import (budgets_table, families_table,
                                                        late_learning, main_learning, main_system)
-from self_awareness.output_files import replacing
-from self_awareness.stamps import SECOND_NS
 
 NAME = 'families'
 

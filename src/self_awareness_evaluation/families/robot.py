@@ -7,11 +7,11 @@ from typing import Dict, FrozenSet, Iterable, List, Optional, Set, Tuple
 import numpy as np
 
 from self_awareness import EventType
+from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness_evaluation.families.conditions import Activity, Conditions, in_order
 from self_awareness_evaluation.families.emissions import Emission, Feedback, Sporadic, stalled
 from self_awareness_evaluation.families.scene import Scene
 from self_awareness_evaluation.windowed_events import WindowedEvents
-from self_awareness.stamps import SECOND_NS, nanoseconds
 
 CRASH, HALF_RATE, LATE = 'crash', 'half rate', 'late 60 ms'
 """The kinds of faults."""

@@ -8,10 +8,10 @@ from typing import Dict, List, Sequence, Tuple
 import rospy
 from std_srvs.srv import Trigger
 
+from self_awareness.msg import SelfAwareness
 from self_awareness_evaluation.live.processes import LiveError, await_condition, becomes_true
 from self_awareness_evaluation.live.samples import ERROR, Status
 from self_awareness_evaluation.systems import distinct
-from self_awareness.msg import SelfAwareness
 
 QUIET_S = 3.0
 """The monitor has settled, and there is no alarm, for so long before the next fault [s]."""

@@ -5,11 +5,11 @@ from pathlib import Path
 from typing import List
 
 from self_awareness import TrainedModel, recordings
+from self_awareness.recordings import BagPart
 from self_awareness_evaluation import catalogue
 from self_awareness_evaluation.live.samples import Sample, measure_alarms
 from self_awareness_evaluation.live.session import Session
 from self_awareness_evaluation.windowed_events import WindowedEvents
-from self_awareness.recordings import BagPart
 
 SYSTEMS = ('paper', 'frequency_learned')
 """They learn from the session's training, and their thresholds come from its calibration."""

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import List, Optional, Sequence
 
 from self_awareness.calibration import confidence
+from self_awareness.output_files import replacing
 from self_awareness_evaluation.live import offline
 from self_awareness_evaluation.live.listeners import QUIET_S
 from self_awareness_evaluation.live.samples import Sample, of_system
@@ -17,7 +18,6 @@ from self_awareness_evaluation.simulated import summary
 from self_awareness_evaluation.simulated.measures import NORMAL
 from self_awareness_evaluation.simulated.tables import percent, seconds, table
 from self_awareness_evaluation.systems import distinct
-from self_awareness.output_files import replacing
 
 LIVE = 'evidence'
 """The detector of the monitor that listened."""

@@ -4,9 +4,9 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import List, Optional, Sequence, Tuple
 
+from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness_evaluation.simulated.measures import NORMAL
 from self_awareness_evaluation.systems import SystemAlarm
-from self_awareness.stamps import SECOND_NS, nanoseconds
 
 ERROR, WARN = 2, 1
 """Levels of the monitor's status that are an alarm, and a suspicion."""

@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import Any, Dict, List, Optional, Sequence
 
 from self_awareness.calibration import confidence
+from self_awareness.output_files import replacing
 from self_awareness_evaluation.nodes.measures import SEPARATOR, UNDISTURBED, Row
 from self_awareness_evaluation.nodes.session import (APART_S, QUIET_AFTER_S,
                                                      RECOVERED_WITHIN_S, SessionPlan)
 from self_awareness_evaluation.nodes.system import NODES, RELAY
 from self_awareness_evaluation.simulated.tables import table
-from self_awareness.output_files import replacing
 
 _NAME = 'nodes'
 _NONE = '–'

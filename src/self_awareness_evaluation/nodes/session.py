@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Callable, List, Optional
 
 from self_awareness import TrainedModel
+from self_awareness.training.robot_graph import graph_file
 from self_awareness_evaluation.live.learning import learn
 from self_awareness_evaluation.live.listeners import (STARTED_WITHIN_S, MonitorListener,
                                                       reset_until_quiet)
@@ -20,7 +21,6 @@ from self_awareness_evaluation.nodes import drivers, measures
 from self_awareness_evaluation.nodes.measures import UNDISTURBED, Row
 from self_awareness_evaluation.nodes.running import RunningSystem
 from self_awareness_evaluation.nodes.system import FAULTS, Fault
-from self_awareness.training.robot_graph import graph_file
 
 QUIET_AFTER_S = 10.0
 """A fault is over when there has been no alarm for so long after it was undone [s]."""

@@ -12,9 +12,9 @@ from typing import Dict, List, NamedTuple, Sequence
 import numpy as np
 
 from self_awareness import DEFAULT_WINDOW
+from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation.peers.deviations import DeviationScorer
 from self_awareness_evaluation.windowed_events import WindowedEvents, stamps_by
-from self_awareness.stamps import SECOND_NS
 
 TOLERANCE = 0.1
 """Default of FrequencyStatusParam."""

@@ -14,14 +14,14 @@ import numpy as np
 
 from self_awareness import (DetectorParameters, EncodingRules, EvidenceModel, Model, Roc,
                             TrainedModel, Tuning, recordings)
-from self_awareness_evaluation.peers.frequency import LearnedFrequencyMonitor
-from self_awareness_evaluation.systems import ScoringSystem, settling
-from self_awareness_evaluation.windowed_events import WindowedEvents
 from self_awareness.judging import BOTH, Judge, evidence_judge, paper_judge
 from self_awareness.recordings import BagPart, RecordingEvents
 from self_awareness.stamps import SECOND_NS
 from self_awareness.training import many_bags
 from self_awareness.training.many_bags import Counting, Trained
+from self_awareness_evaluation.peers.frequency import LearnedFrequencyMonitor
+from self_awareness_evaluation.systems import ScoringSystem, settling
+from self_awareness_evaluation.windowed_events import WindowedEvents
 
 RATE = 0.01
 """The share of normal windows that may score below the threshold of systems that have one.

@@ -4,11 +4,11 @@ from __future__ import annotations
 from pathlib import Path
 from typing import List, Sequence
 
+from self_awareness.output_files import replacing
 from self_awareness_evaluation import row_files
 from self_awareness_evaluation.recordings.outages import (CASES, END, MOST_SILENT, RATE, Case,
                                                           OutageRow, Span)
 from self_awareness_evaluation.simulated.tables import seconds, table
-from self_awareness.output_files import replacing
 
 NAME = 'recordings'
 

@@ -9,6 +9,7 @@ from typing import Dict, List, Tuple
 import numpy as np
 
 from self_awareness import Tuning, progress
+from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation import catalogue
 from self_awareness_evaluation.simulated import tradeoff
 from self_awareness_evaluation.simulated.measures import NORMAL, Row, fault_row, normal_row
@@ -19,7 +20,6 @@ from self_awareness_evaluation.simulated.tradeoff import JudgedFault, TradeOff
 from self_awareness_evaluation.systems import System
 from self_awareness_evaluation.windowed_events import WindowedEvents
 from self_awareness_follow_me.scenario import Scenario
-from self_awareness.stamps import SECOND_NS
 
 PAPER_SYSTEM = 'paper'
 PAPER_FAULTS = ('cc1', 'cc2', 'rs', 'ac')

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Dict, List, Sequence
 
 import numpy as np
 
+from self_awareness.output_files import replacing
 from self_awareness_evaluation.simulated import summary
 from self_awareness_evaluation.simulated.experiment import Trace
 from self_awareness_evaluation.simulated.measures import Row
 from self_awareness_evaluation.simulated.tradeoff import TradeOff
-from self_awareness.output_files import replacing
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

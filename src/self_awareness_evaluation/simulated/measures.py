@@ -7,8 +7,8 @@ from typing import List, Optional, Sequence
 import numpy as np
 
 from self_awareness import DEFAULT_WINDOW, Roc
-from self_awareness_evaluation.systems import Judged, SystemAlarm
 from self_awareness.stamps import SECOND_NS
+from self_awareness_evaluation.systems import Judged, SystemAlarm
 
 NORMAL = 'normal'
 """Name of the record without a fault."""

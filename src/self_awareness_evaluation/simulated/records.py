@@ -14,12 +14,12 @@ from typing import Dict, List, Optional, Set, Tuple
 import numpy as np
 
 from self_awareness import EventType
+from self_awareness.stamps import nanoseconds
 from self_awareness_evaluation.simulated.measures import NORMAL
 from self_awareness_evaluation.windowed_events import WindowedEvents
 from self_awareness_follow_me.faults import effect_of
 from self_awareness_follow_me.scenario import Scenario
 from self_awareness_follow_me.simulation import START_S, Event, InducedFault, events
-from self_awareness.stamps import nanoseconds
 
 RECORD_S = 100.0
 """Length of the records of training and of faults [s], as in the paper."""

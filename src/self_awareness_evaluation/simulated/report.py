@@ -6,6 +6,7 @@ from typing import Any, Dict, List, Sequence
 
 from self_awareness import DEFAULT_WINDOW
 from self_awareness.calibration import limits
+from self_awareness.output_files import replacing
 from self_awareness_evaluation import row_files
 from self_awareness_evaluation.simulated import figures, tables
 from self_awareness_evaluation.simulated.experiment import Plan, Results
@@ -13,7 +14,6 @@ from self_awareness_evaluation.simulated.measures import Row
 from self_awareness_evaluation.simulated.records import (NORMAL_NAMES, NORMAL_TEST_S, RECORD_S,
                                                          TRAINING_NAMES)
 from self_awareness_evaluation.systems import FALSE_POSITIVE_RATE
-from self_awareness.output_files import replacing
 
 NAME = 'simulated'
 

@@ -7,9 +7,9 @@ from typing import Callable, Iterable, List, NamedTuple, Optional, Sequence, Tup
 
 from self_awareness import DEFAULT_WINDOW
 from self_awareness.calibration import confidence
+from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation.simulated.measures import NORMAL, Row
 from self_awareness_evaluation.simulated.tradeoff import TradeOff
-from self_awareness.stamps import SECOND_NS
 
 _HOUR_S = 3600.0
 

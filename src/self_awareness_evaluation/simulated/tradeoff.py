@@ -11,9 +11,9 @@ from typing import List, Mapping, Optional
 import numpy as np
 
 from self_awareness import DEFAULT_WINDOW, Roc
+from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation.simulated.measures import first_alarm
 from self_awareness_evaluation.systems import Judged, SystemAlarm, persistent
-from self_awareness.stamps import SECOND_NS
 
 FAULT = 'cc1'
 """The fault whose latency is looked at."""

@@ -10,6 +10,7 @@ from typing import Callable, List, Sequence
 
 import rospy
 
+from self_awareness.msg import SelfAwareness
 from self_awareness_evaluation.live.learning import learn
 from self_awareness_evaluation.live.listeners import STARTED_WITHIN_S, MonitorListener
 from self_awareness_evaluation.live.master import own_master
@@ -22,7 +23,6 @@ from self_awareness_evaluation.soak.robot import Robot
 from self_awareness_evaluation.soak.schedule import Fault, faults
 from self_awareness_follow_me.induction import process_id
 from self_awareness_follow_me.scenario import load_scenario
-from self_awareness.msg import SelfAwareness
 
 NAME = '/self_awareness'
 

@@ -9,6 +9,8 @@ from typing import Any, List
 import pytest
 
 from self_awareness import Tuning
+from self_awareness.stamps import SECOND_NS
+from self_awareness.workers import InProcess
 from self_awareness_evaluation import evaluate, row_files
 from self_awareness_evaluation.ablation import bench as benches, experiment, figures, report
 from self_awareness_evaluation.ablation.bench import (FAMILIES, OTHER, OWN, Bench, Fault, Plan,
@@ -19,8 +21,6 @@ from self_awareness_evaluation.ablation.variants import (CHANNEL, DEFAULT, NUMBE
 from self_awareness_evaluation.families.protocol import Learning, Records
 from self_awareness_evaluation.families.robot import CRASH
 from self_awareness_evaluation.simulated.measures import NORMAL
-from self_awareness.stamps import SECOND_NS
-from self_awareness.workers import InProcess
 
 from evaluation_robot import START, robot
 

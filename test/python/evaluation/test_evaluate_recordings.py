@@ -7,10 +7,10 @@ from typing import Any, List
 
 import pytest
 
+from self_awareness.recordings import BagPart
 from self_awareness_evaluation import evaluate
 from self_awareness_evaluation.recordings import outages
 from self_awareness_evaluation.recordings.outages import Case, JudgedCase, OutageRow, Span
-from self_awareness.recordings import BagPart
 
 
 def rows_of(alarms: List[Span], tmp_path: Path,

@@ -10,6 +10,7 @@ from evaluation_robot import BATTERY, LASER, START, robot
 
 from self_awareness import (DEFAULT_WINDOW, DetectorParameters, EncodingRules, EventType, Model,
                             Persistence, Training, read_events)
+from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation.detectors import Paper
 from self_awareness_evaluation.simulated import measures, summary, tradeoff
 from self_awareness_evaluation.simulated.records import (default_faults, encode, fault_record,
@@ -19,7 +20,6 @@ from self_awareness_evaluation.windowed_events import WindowedEvents, counts, kn
 from self_awareness_follow_me.faults import effect_of
 from self_awareness_follow_me.scenario import load_scenario
 from self_awareness_follow_me.simulation import START_S, events, simulate
-from self_awareness.stamps import SECOND_NS
 
 
 def judged(scores: list, alarms: list, settling: int = 0, threshold: float = 1.0) -> Judged:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from self_awareness import DEFAULT_WINDOW, DetectorParameters, UnknownEvents
+from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation.detectors import Evidence, Paper, scenario_graph
 from self_awareness_evaluation.simulated.measures import first_alarm
 from self_awareness_evaluation.simulated.records import (CALIBRATION_NAME, RECORD_S,
@@ -14,7 +15,6 @@ from self_awareness_evaluation.simulated.records import (CALIBRATION_NAME, RECOR
                                                          normal_record)
 from self_awareness_evaluation.systems import Judged
 from self_awareness_follow_me.scenario import load_scenario
-from self_awareness.stamps import SECOND_NS
 
 SEED = 1
 CALIBRATION_S = 300.0

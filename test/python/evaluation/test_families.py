@@ -6,13 +6,13 @@ from typing import Dict
 import numpy as np
 import pytest
 
+from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation.families.conditions import Conditions
 from self_awareness_evaluation.families.emissions import Answer, Feedback, Sporadic, Timer
 from self_awareness_evaluation.families.kinds import FAMILIES, draw
 from self_awareness_evaluation.families.robot import (CRASH, HALF_RATE, LATE, Fault, Output,
                                                       Robot)
 from self_awareness_evaluation.windowed_events import WindowedEvents
-from self_awareness.stamps import SECOND_NS
 
 POINTS = 'sensor_msgs/PointCloud2'
 

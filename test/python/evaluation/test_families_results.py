@@ -12,6 +12,7 @@ import pytest
 
 from self_awareness import DEFAULT_WINDOW, Tuning
 from self_awareness.calibration import confidence
+from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation import evaluate
 from self_awareness_evaluation.detectors import Evidence
 from self_awareness_evaluation.families import experiment, summary, tables
@@ -23,7 +24,6 @@ from self_awareness_evaluation.families.robot import CRASH, HALF_RATE, LATE
 from self_awareness_evaluation.families.summary import ALL, Group, rate_interval
 from self_awareness_evaluation.systems import Judged, SystemAlarm
 from self_awareness_evaluation.windowed_events import WindowedEvents
-from self_awareness.stamps import SECOND_NS
 
 TWO = Learning.of(2, 60.0, 60.0)
 

@@ -8,6 +8,7 @@ from typing import List
 
 import pytest
 
+from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation import evaluate
 from self_awareness_evaluation.live import report
 from self_awareness_evaluation.live.processes import LiveError, Processes, await_condition
@@ -16,7 +17,6 @@ from self_awareness_evaluation.live.samples import (ERROR, WARN, Sample, Status,
 from self_awareness_evaluation.live.session import SessionPlan
 from self_awareness_evaluation.simulated.measures import NORMAL
 from self_awareness_evaluation.systems import SystemAlarm
-from self_awareness.stamps import SECOND_NS
 
 ONSET = 1000.0
 CRASH = Stretch(2, 'cc1', ONSET, ONSET + 8.0, ('/player',))

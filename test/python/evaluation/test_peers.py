@@ -6,13 +6,13 @@ import pytest
 from evaluation_robot import START, robot
 
 from self_awareness import EventType
+from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation import catalogue
 from self_awareness_evaluation.peers.frequency import (SPAN, FrequencyMonitor,
                                                        LearnedFrequencyMonitor, messages_in_span)
 from self_awareness_evaluation.peers.gaps import GapBounds, GapMonitor
 from self_awareness_evaluation.systems import ScoringSystem, System
 from self_awareness_evaluation.windowed_events import WindowedEvents
-from self_awareness.stamps import SECOND_NS
 
 CRASH_S = 30.0
 

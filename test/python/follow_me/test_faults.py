@@ -12,13 +12,13 @@ import pytest
 import rosbag
 import yaml
 
+from self_awareness.yaml_section import SectionError
 from self_awareness_follow_me.component import Component, Message, Publish, Wake
 from self_awareness_follow_me.component_spec import ComponentSpec, Duration, Output, Task
 from self_awareness_follow_me.effects import Change, DoubleRate, HalfRate, Latency, Novelty
 from self_awareness_follow_me.faults import effect_of
 from self_awareness_follow_me.scenario import Scenario, load_scenario
 from self_awareness_follow_me.simulation import START_S, Event, InducedFault, events, simulate
-from self_awareness.yaml_section import SectionError
 
 SCENARIO = Path(__file__).resolve().parents[3] / 'config' / 'follow_me.yaml'
 DURATION_S = 60.0

@@ -9,12 +9,12 @@ from typing import Any, Callable, List
 import pytest
 import yaml
 
+from self_awareness.yaml_section import SectionError
 from self_awareness_follow_me.component import Component, Message, Publish, Wake, Work
 from self_awareness_follow_me.component_spec import (ComponentSpec, Duration, Hypothesis, Need,
                                                      Output, Task)
 from self_awareness_follow_me.effects import ClockDrift, Starvation
 from self_awareness_follow_me.scenario import Scenario, load_scenario
-from self_awareness.yaml_section import SectionError
 
 SCENARIO = Path(__file__).resolve().parents[3] / 'config' / 'follow_me.yaml'
 MS = 1_000_000
