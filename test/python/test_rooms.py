@@ -6,11 +6,13 @@ import re
 from pathlib import Path
 from typing import Dict, List, Set
 
+import pytest
+
 ROOT = Path(__file__).resolve().parents[2]
 SRC = ROOT / 'src'
 LIBRARY, ROBOT, EVALUATION = (
     'self_awareness', 'self_awareness_follow_me', 'self_awareness_evaluation')
-PROGRAMS = f'{LIBRARY}.commands.'
+PROGRAMS = 'self_awareness.commands'
 
 
 def _modules() -> Dict[str, Path]:
@@ -38,8 +40,9 @@ def _imports(path: Path, modules: Dict[str, Path]) -> Set[str]:
     return found
 
 
-def _graph() -> Dict[str, Set[str]]:
-    """Return by module which ones it imports."""
+@pytest.fixture(scope='module')
+def graph() -> Dict[str, Set[str]]:
+    """By module, which ones it imports."""
     modules = _modules()
     return {name: _imports(path, modules) for name, path in modules.items()}
 
@@ -62,27 +65,26 @@ def test_all_but_the_evaluation_is_installed() -> None:
     assert listed == {name for name in packages if _package(name) != EVALUATION}
 
 
-def test_what_is_installed_needs_no_evaluation() -> None:
-    for name, needed in _graph().items():
+def test_what_is_installed_needs_no_evaluation(graph: Dict[str, Set[str]]) -> None:
+    for name, needed in graph.items():
         if _package(name) != EVALUATION:
             assert EVALUATION not in map(_package, needed), name
 
 
-def test_only_programs_need_the_simulated_robot() -> None:
-    graph = {name: needed for name, needed in _graph().items() if _package(name) == LIBRARY}
-    users = {name for name, needed in graph.items() if ROBOT in map(_package, needed)}
-    assert {name for name in users if not name.startswith(PROGRAMS)} == set()
-    assert {name for name, needed in graph.items() if needed & users} == set()
+def test_only_programs_of_the_package_need_the_simulated_robot(graph: Dict[str, Set[str]]) -> None:
+    for name, needed in graph.items():
+        if _package(name) == LIBRARY and not name.startswith(PROGRAMS):
+            assert ROBOT not in map(_package, needed), name
 
 
-def test_the_simulated_robot_needs_no_program() -> None:
-    for name, needed in _graph().items():
-        if _package(name) == ROBOT:
+def test_only_programs_and_the_evaluation_need_programs(graph: Dict[str, Set[str]]) -> None:
+    for name, needed in graph.items():
+        if _package(name) != EVALUATION and not name.startswith(PROGRAMS):
             assert not [module for module in needed if module.startswith(PROGRAMS)], name
 
 
-def test_no_module_needs_one_that_needs_it() -> None:
-    assert _circle(_graph()) == []
+def test_no_module_needs_one_that_needs_it(graph: Dict[str, Set[str]]) -> None:
+    assert _circle(graph) == []
 
 
 def test_the_search_for_circles_finds_one() -> None:
