@@ -7,6 +7,7 @@ setup(**generate_distutils_setup(
               'self_awareness.comparison', 'self_awareness.learning', 'self_awareness.reporting',
               'self_awareness.reporting.report', 'self_awareness.training',
               'self_awareness_follow_me'],
-    package_data={'self_awareness.reporting.report': ['*.html', '*.css', '*.js']},
+    package_data={'self_awareness': ['py.typed', '*.pyi'],
+                  'self_awareness.reporting.report': ['*.html', '*.css', '*.js']},
     package_dir={'': 'src'},
 ))

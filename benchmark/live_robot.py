@@ -11,7 +11,7 @@ from typing import IO, Iterator, List, NamedTuple, Sequence
 
 import numpy as np
 
-from self_awareness import (EncodingRules, EventType, EvidenceCalibration, EvidenceModel,
+from self_awareness import (EncodingRules, EventType, Calibration, EvidenceModel,
                             TrainedModel, Training)
 from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation.live.processes import Processes, await_condition, free_port
@@ -161,16 +161,16 @@ def train(processes: Processes, robot: Robot, seconds: float, model: Path) -> No
                   '--start', '1', '-o', str(model))
     bag.unlink()
     trained = TrainedModel.load(str(model))
-    if trained.evidence_calibration is None:
+    if trained.calibration is None:
         judge_without_alarms(trained)
         trained.save(str(model))
 
 
 def judge_without_alarms(model: TrainedModel) -> None:
     """Give a model limits that are never reached."""
-    calibration = EvidenceCalibration()
+    calibration = Calibration()
     calibration.limits = [_NEVER_REACHED] * len(EvidenceModel(model).tracks)
-    model.evidence_calibration = calibration
+    model.calibration = calibration
 
 
 def write_synthetic_model(model: Path, types: int) -> None:

@@ -12,7 +12,7 @@ from typing import Tuple, Union
 
 import numpy as np
 
-from self_awareness import DEFAULT_WINDOW, EncodingRules, EventType, Model, Training
+from self_awareness import DEFAULT_WINDOW, EncodingRules, EventType, PaperModel, Training
 
 SIZES = (15, 60, 150, 300, 1000)
 BIN_SIZE = 10_000_000  # [ns]
@@ -137,7 +137,7 @@ def check(detector: NumpyDetector, types: int, stamps: np.ndarray, ids: np.ndarr
     trained = training.model()
     here = {kind.scope: index for index, kind in enumerate(trained.event_types)}
     mapped = np.array([here[kinds[kind].scope] for kind in ids], dtype=np.uint32)
-    expected = Model(trained).score_events(stamps, mapped)
+    expected = PaperModel(trained).score_events(stamps, mapped)
     detector.restart()
     scores = [detector.score(stamp, kind) for stamp, kind in zip(stamps, ids)]
     np.testing.assert_allclose(scores, expected, rtol=1e-9, atol=1e-12)

@@ -12,8 +12,8 @@ Session::Session(ros1::TrainedModel trained, const MonitorParameters& parameters
                  core::Detector::Handler handler)
     : trained_(std::move(trained)),
       calibrated_(parameters.method == MonitorParameters::Method::kPaper
-                      ? trained_.calibration.has_value()
-                      : trained_.evidence_calibration.has_value()),
+                      ? trained_.paper_calibration.has_value()
+                      : trained_.calibration.has_value()),
       graph_(std::make_shared<core::SourceGraph>(trained_.graph)),
       vocabulary_(std::make_shared<core::Vocabulary>(trained_.vocabulary())),
       encoder_(std::make_shared<ros1::Encoder>(

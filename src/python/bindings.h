@@ -5,9 +5,13 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <ctime>
 #include <functional>
 #include <optional>
+#include <set>
 #include <stdexcept>
+#include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -17,6 +21,7 @@
 #include "self_awareness/core/stream/clock_steps.h"
 #include "self_awareness/core/stream/event.h"
 #include "self_awareness/core/verdict/detector.h"
+#include "self_awareness/core/verdict/source_graph.h"
 #include "self_awareness/ros/bag/bag_reader.h"
 
 /// What the parts of the Python module share.
@@ -38,6 +43,22 @@ inline py::array_t<bool> toArray(const std::vector<bool>& values) {
   py::array_t<bool> array(static_cast<py::ssize_t>(values.size()));
   std::copy(values.begin(), values.end(), array.mutable_data());
   return array;
+}
+
+/// An edge of a graph: publisher, topic, subscriber.
+using EdgeState = std::tuple<std::string, std::string, std::string>;
+
+inline core::SourceGraph graphOf(const std::set<EdgeState>& edges) {
+  core::SourceGraph graph;
+  for (const auto& [publisher, topic, subscriber] : edges) {
+    graph.connect(publisher, topic, subscriber);
+  }
+  return graph;
+}
+
+/// The time of the wall clock, in whole seconds [ns]: when something was learned.
+inline std::int64_t now() {
+  return static_cast<std::int64_t>(std::time(nullptr)) * core::kNanosecondsPerSecond;
 }
 
 /// Calls the handler with every event of two arrays: stamps [ns] and ids.
@@ -136,6 +157,8 @@ void bindTuning(py::module& module);
 void bindCounts(py::module& module);
 /// Binds alarms and their suspects (alarm_bindings.cpp).
 void bindAlarms(py::module& module);
+/// Binds the learning of limits, and of whole models (calibration_bindings.cpp).
+void bindCalibration(py::module& module);
 /// Binds evidence and its limits (evidence_bindings.cpp).
 void bindEvidence(py::module& module);
 /// Binds the evidence of components over time (lanes_bindings.cpp).

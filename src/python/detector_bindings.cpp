@@ -171,7 +171,8 @@ void bindVerdicts(py::module& m) {
       .def_readonly("suspicions", &Verdicts::suspicions, "level WARN, each an Alarm");
 
   py::class_<core::paper::Model, std::shared_ptr<core::paper::Model>>(
-      m, "Model", "Probabilities, entropies and weights, computed from a TrainedModel's counts.")
+      m, "PaperModel",
+      "Probabilities, entropies and weights, computed from a TrainedModel's counts.")
       .def(py::init([](const ros1::TrainedModel& trained) {
              trained.requireDelays();
              return std::make_shared<core::paper::Model>(trained.statistics);

@@ -6,88 +6,19 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "bindings.h"
 #include "core/evidence/channel/scorer.h"
 #include "self_awareness/core/evidence/channel/model.h"
-#include "self_awareness/core/evidence/limits/cross_fit.h"
-#include "self_awareness/core/evidence/limits/limits.h"
+#include "self_awareness/core/evidence/watch/relation.h"
 #include "self_awareness/ros/model/model_file.h"
 
 namespace self_awareness::python {
 namespace {
 
 namespace evidence = core::evidence;
-
-/// A search for limits, with the models that judge the recordings.
-struct LimitSearch {
-  LimitSearch(std::shared_ptr<const evidence::CrossFit> models,
-              const evidence::LimitFinder::Parameters& parameters, const core::SourceGraph& graph)
-      : cross_fit(std::move(models)), finder(cross_fit->model(), parameters, graph) {}
-
-  /// A search without findings, for the same model.
-  std::unique_ptr<LimitSearch> part() const {
-    return std::make_unique<LimitSearch>(cross_fit, finder.parameters(), finder.graph());
-  }
-  void addEvents(const Stamps& stamps, const Ids& ids, std::optional<std::size_t> half,
-                 std::int64_t robot_start, std::vector<std::int64_t> clock_steps) {
-    const core::ClockSteps steps(std::move(clock_steps));
-    const py::gil_scoped_release release;
-    finder.startRecording(cross_fit->judging(half), robot_start);
-    forEachEvent(
-        stamps, ids, steps, [&](const core::Event& event) { finder.add(event); },
-        [&] { finder.restart(); });
-    finder.finish();
-  }
-
-  std::shared_ptr<const evidence::CrossFit> cross_fit;
-  evidence::LimitFinder finder;
-};
-
-using Findings = evidence::LimitFinder::Findings;
-using PartState = std::tuple<std::uint64_t, std::vector<float>, std::vector<std::int64_t>>;
-using RecordingState = std::tuple<std::int64_t, std::int64_t, std::int64_t, bool, std::uint64_t,
-                                  std::vector<PartState>, std::vector<std::uint8_t>>;
-using FindingsState = std::vector<RecordingState>;
-
-FindingsState stateOf(const Findings& findings) {
-  FindingsState state;
-  for (const evidence::LimitFinder::Recording& recording : findings) {
-    std::vector<PartState> parts;
-    for (const auto& [windows, evidence, gaps] : recording.parts) {
-      parts.emplace_back(windows, evidence, gaps);
-    }
-    std::vector<std::uint8_t> said;
-    for (const evidence::Said each : recording.said) {
-      said.push_back(static_cast<std::uint8_t>(each));
-    }
-    state.emplace_back(recording.start, recording.end, recording.robot_start, recording.trained_on,
-                       recording.windows, parts, said);
-  }
-  return state;
-}
-
-Findings fromState(const FindingsState& state) {
-  Findings findings;
-  for (const auto& [start, end, robot_start, trained_on, windows, parts, said] : state) {
-    evidence::LimitFinder::Recording& recording = findings.emplace_back();
-    recording.start = start;
-    recording.end = end;
-    recording.robot_start = robot_start;
-    recording.trained_on = trained_on;
-    recording.windows = windows;
-    for (const auto& [part_windows, evidence, gaps] : parts) {
-      recording.parts.push_back({part_windows, evidence, gaps});
-    }
-    for (const std::uint8_t each : said) {
-      recording.said.push_back(static_cast<evidence::Said>(each));
-    }
-  }
-  return findings;
-}
 
 /// The evidence of every track at the end of every window.
 class EvidenceRows : public core::WindowObserver {
@@ -190,54 +121,6 @@ void bindEvidence(py::module& m) {
       .def_readonly("spread", &evidence::Relation::spread)
       .def_readonly("starts", &evidence::Relation::starts)
       .def_readonly("starts_needed", &evidence::Relation::starts_needed);
-
-  py::class_<Findings>(m, "LimitFindings",
-                       "What a LimitFinder learned from recordings; may go to another process.")
-      .def(py::init<>(), "Of no recording.")
-      .def(py::pickle([](const Findings& self) { return stateOf(self); },
-                      [](const FindingsState& state) { return fromState(state); }));
-
-  using Found = evidence::LimitFinder::Found;
-  py::class_<Found>(m, "LimitsFound", "What comes of LimitFindings.")
-      .def_property_readonly(
-          "limits", [](const Found& self) { return self.limits.tracks; },
-          "the largest evidence that is normal, by track; NaN: not judged")
-      .def_readonly("expected_rate", &Found::expected_rate, "false alarms an hour to be expected")
-      .def_readonly("relations", &Found::relations, "by track");
-
-  py::class_<LimitSearch>(
-      m, "LimitFinder",
-      "Finds limits on recordings of normal operation.\n"
-      "Other finders, in other processes, may judge some of them; merge() adds their findings.")
-      .def(
-          py::init([](const ros1::TrainedModel& trained, std::int64_t settle_time, double budget) {
-            trained.requireWatched();
-            return std::make_unique<LimitSearch>(
-                std::make_shared<evidence::CrossFit>(trained.watched),
-                evidence::LimitFinder::Parameters{trained.window, settle_time, budget},
-                trained.graph);
-          }),
-          py::arg("trained"), py::arg("settle_time"), py::arg("budget"),
-          "settle_time: [ns]; budget: false alarms an hour")
-      .def("add_events", &LimitSearch::addEvents, py::arg("stamps"), py::arg("ids"),
-           py::arg("half") = py::none(), py::arg("robot_start") = 0,
-           py::arg("clock_steps") = std::vector<std::int64_t>(),
-           "Takes in a recording; half: 0 or 1 if that half of the training learned from it;\n"
-           "robot_start: of the robot [ns], 0: not known; clock_steps: with which the clock was\n"
-           "set forward (find_clock_steps).")
-      .def("part", &LimitSearch::part, "A finder without findings, for the same model.")
-      .def(
-          "findings", [](const LimitSearch& self) { return self.finder.findings(); },
-          "LimitFindings of what was added.")
-      .def(
-          "merge",
-          [](LimitSearch& self, const Findings& findings) { self.finder.merge(findings); },
-          py::arg("findings"))
-      .def(
-          "find", [](const LimitSearch& self) { return self.finder.find(); },
-          "LimitsFound; ValueError if the recordings were too short.")
-      .def_property_readonly("windows",
-                             [](const LimitSearch& self) { return self.finder.windows(); });
 }
 
 }  // namespace self_awareness::python

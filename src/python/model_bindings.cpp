@@ -45,84 +45,65 @@ std::uint64_t fewestGaps(const ros1::TrainedModel& model) {
 }
 
 // Of an edge of the graph: publisher, topic, subscriber.
-using EdgeState = std::tuple<std::string, std::string, std::string>;
 
 }  // namespace
 
 void bindModel(py::module& m) {
   py::register_exception<ros1::ModelFileError>(m, "ModelFileError", PyExc_RuntimeError);
 
-  py::class_<self_awareness::Recording>(m, "Recording", "msg/Recording.msg")
+  using core::RecordingInfo;
+  py::class_<RecordingInfo>(m, "Recording", "What a model says of a recording.")
       .def(py::init<>())
-      .def_readwrite("bag", &self_awareness::Recording::bag)
-      .def_property(
-          "start", [](const self_awareness::Recording& self) { return self.start.toNSec(); },
-          [](self_awareness::Recording& self, std::int64_t ns) {
-            self.start = ros1::toRosTime(ns);
-          },
-          "[ns]")
-      .def_property(
-          "end", [](const self_awareness::Recording& self) { return self.end.toNSec(); },
-          [](self_awareness::Recording& self, std::int64_t ns) { self.end = ros1::toRosTime(ns); },
-          "[ns]")
-      .def_property(
-          "robot_start",
-          [](const self_awareness::Recording& self) { return self.robot_start.toNSec(); },
-          [](self_awareness::Recording& self, std::int64_t ns) {
-            self.robot_start = ros1::toRosTime(ns);
-          },
-          "[ns]; 0: not known")
-      .def_readwrite("events", &self_awareness::Recording::events)
-      .def_readwrite("fingerprint", &self_awareness::Recording::fingerprint);
+      .def_readwrite("bag", &RecordingInfo::bag, "the file's name, without its folder")
+      .def_readwrite("start", &RecordingInfo::start, "[ns]")
+      .def_readwrite("end", &RecordingInfo::end, "[ns]")
+      .def_readwrite("robot_start", &RecordingInfo::robot_start, "[ns]; 0: not known")
+      .def_readwrite("events", &RecordingInfo::events)
+      .def_readwrite("fingerprint", &RecordingInfo::fingerprint, "of the whole recording");
 
-  using self_awareness::Calibration;
-  py::class_<Calibration>(m, "Calibration", "msg/Calibration.msg")
+  using PaperCalibration = core::paper::Calibration;
+  py::class_<PaperCalibration>(m, "PaperCalibration",
+                               "The threshold of the paper's score, and how it was found.")
       .def(py::init<>())
-      .def_readwrite("threshold", &Calibration::threshold)
-      .def_readwrite("method", &Calibration::method)
-      .def_readwrite("auc", &Calibration::auc)
-      .def_readwrite("true_positive_rate", &Calibration::true_positive_rate)
-      .def_readwrite("false_positive_rate", &Calibration::false_positive_rate)
-      .def_readwrite("normal_windows", &Calibration::normal_windows)
-      .def_readwrite("faulty_windows", &Calibration::faulty_windows)
-      .def_readwrite("false_alarms_per_hour", &Calibration::false_alarms_per_hour)
-      .def_readwrite("normal", &Calibration::normal)
-      .def_readwrite("faulty", &Calibration::faulty)
-      .def_readwrite("injected", &Calibration::injected)
-      .def_property(
-          "stamp", [](const Calibration& self) { return self.stamp.toNSec(); },
-          [](Calibration& self, std::int64_t ns) { self.stamp = ros1::toRosTime(ns); }, "[ns]");
+      .def_readwrite("threshold", &PaperCalibration::threshold)
+      .def_readwrite("method", &PaperCalibration::method, "youden, closest or fpr=RATE")
+      .def_readwrite("auc", &PaperCalibration::auc)
+      .def_readwrite("true_positive_rate", &PaperCalibration::true_positive_rate)
+      .def_readwrite("false_positive_rate", &PaperCalibration::false_positive_rate)
+      .def_readwrite("normal_windows", &PaperCalibration::normal_windows)
+      .def_readwrite("faulty_windows", &PaperCalibration::faulty_windows)
+      .def_readwrite("false_alarms_per_hour", &PaperCalibration::false_alarms_per_hour)
+      .def_readwrite("normal", &PaperCalibration::normal)
+      .def_readwrite("faulty", &PaperCalibration::faulty)
+      .def_readwrite("injected", &PaperCalibration::injected)
+      .def_readwrite("stamp", &PaperCalibration::stamp, "[ns]");
 
-  using self_awareness::EvidenceCalibration;
-  py::class_<EvidenceCalibration>(m, "EvidenceCalibration", "msg/EvidenceCalibration.msg")
+  using core::Calibration;
+  py::class_<Calibration>(m, "Calibration",
+                          "From where on evidence is abnormal, and how that was found.")
       .def(py::init<>())
-      .def_readwrite("method", &EvidenceCalibration::method)
-      .def_readwrite("limits", &EvidenceCalibration::limits)
+      .def_readwrite("method", &Calibration::method, "held-out or cross-fit")
       .def_property(
-          "relations",
-          [](const EvidenceCalibration& self) {
-            std::vector<core::evidence::Relation> relations;
-            for (const self_awareness::Relation& relation : self.relations) {
-              relations.push_back(ros1::fromMessage(relation));
-            }
-            return relations;
+          "limits", [](const Calibration& self) { return self.limits.tracks; },
+          [](Calibration& self, std::vector<double> limits) {
+            self.limits.tracks = std::move(limits);
           },
-          [](EvidenceCalibration& self, const std::vector<core::evidence::Relation>& relations) {
-            self.relations.clear();
-            for (const core::evidence::Relation& relation : relations) {
-              self.relations.push_back(ros1::toMessage(relation));
-            }
-          },
-          "what speaks for watching each track; by track")
-      .def_readwrite("firsts", &EvidenceCalibration::firsts)
-      .def_readwrite("budget", &EvidenceCalibration::budget)
-      .def_readwrite("false_alarms_per_hour", &EvidenceCalibration::false_alarms_per_hour)
-      .def_readwrite("windows", &EvidenceCalibration::windows)
-      .def_readwrite("recordings", &EvidenceCalibration::recordings)
+          "the largest evidence that is normal, by track; NaN: not judged")
+      .def_readwrite("relations", &Calibration::relations,
+                     "what speaks for watching each track; by track")
       .def_property(
-          "stamp", [](const EvidenceCalibration& self) { return self.stamp.toNSec(); },
-          [](EvidenceCalibration& self, std::int64_t ns) { self.stamp = ros1::toRosTime(ns); },
-          "[ns]");
+          "firsts", [](const Calibration& self) { return self.limits.firsts; },
+          [](Calibration& self, std::vector<std::int64_t> firsts) {
+            self.limits.firsts = std::move(firsts);
+          },
+          "from the start to the first event of a type, the latest [ns], by id; -1: it did not\n"
+          "come in one recording; empty: not known")
+      .def_readwrite("budget", &Calibration::budget, "false alarms an hour that the limits allow")
+      .def_readwrite("false_alarms_per_hour", &Calibration::false_alarms_per_hour,
+                     "to be expected")
+      .def_readwrite("windows", &Calibration::windows, "that were looked at")
+      .def_readwrite("recordings", &Calibration::recordings)
+      .def_readwrite("stamp", &Calibration::stamp, "[ns]");
 
   using core::evidence::Coverage;
   py::class_<Coverage>(m, "Coverage", "How soon faults of a component are found.")
@@ -181,17 +162,17 @@ void bindModel(py::module& m) {
           [](const TrainedModel& self) { return self.recordings; },  // a copy: merge() moves them
           "trained on")
       .def_property_readonly(
-          "stamp", [](const TrainedModel& self) { return self.stamp.toNSec(); }, "[ns]")
+          "stamp", [](const TrainedModel& self) { return self.stamp; }, "when it was trained [ns]")
       .def_readonly("version", &TrainedModel::version,
                     "FileVersion of its file; of this version if it has none")
       .def_readonly("left_out", &TrainedModel::left_out,
                     "channels that its file watches and this version does not have")
-      .def_readwrite("calibration", &TrainedModel::calibration,
-                     "of the paper's detector; None: not calibrated")
+      .def_readwrite("paper_calibration", &TrainedModel::paper_calibration,
+                     "PaperCalibration; None: not calibrated")
       .def_readwrite("findings", &TrainedModel::findings,
                      "LimitFindings of the recordings of the training")
-      .def_readwrite("evidence_calibration", &TrainedModel::evidence_calibration,
-                     "of the evidence detector; None: not calibrated")
+      .def_readwrite("calibration", &TrainedModel::calibration,
+                     "Calibration of the evidence detector; None: not calibrated")
       .def_property(
           "graph",
           [](const TrainedModel& self) {
@@ -202,10 +183,7 @@ void bindModel(py::module& m) {
             return edges;
           },
           [](TrainedModel& self, const std::set<EdgeState>& edges) {
-            self.graph = {};
-            for (const auto& [publisher, topic, subscriber] : edges) {
-              self.graph.connect(publisher, topic, subscriber);
-            }
+            self.graph = graphOf(edges);
           },
           "whose messages reach whom: set of (publisher, topic, subscriber), nodes by their\n"
           "stable names; empty: not known")

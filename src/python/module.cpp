@@ -14,6 +14,7 @@ PYBIND11_MODULE(_core, m) {
   self_awareness::python::bindTraining(m);
   self_awareness::python::bindCounts(m);
   self_awareness::python::bindEvidence(m);
+  self_awareness::python::bindCalibration(m);
   self_awareness::python::bindResults(m);
   self_awareness::python::bindAlarms(m);
   self_awareness::python::bindDetector(m);

@@ -37,7 +37,7 @@ class Training {
   }
 
   void addEvents(const std::vector<core::EventType>& types, const Stamps& stamps, const Ids& ids,
-                 const std::optional<self_awareness::Recording>& recording,
+                 const std::optional<core::RecordingInfo>& recording,
                  const std::optional<std::pair<Stamps, Ids>>& before,
                  std::vector<std::int64_t> clock_steps) {
     checkNotEnded();
@@ -48,7 +48,7 @@ class Training {
     }
     if (recording) {
       start.fingerprint = recording->fingerprint;
-      start.robot_start = static_cast<std::int64_t>(recording->robot_start.toNSec());
+      start.robot_start = recording->robot_start;
     }
     training_.startRecording(start);
     if (before) {
@@ -84,7 +84,7 @@ class Training {
       model.watch();
     }
     model.recordings = std::move(recordings_);
-    model.stamp.fromSec(std::floor(ros::WallTime::now().toSec()));
+    model.stamp = now();
     return model;
   }
 
@@ -119,7 +119,7 @@ class Training {
   ros1::EncodingRules rules_;
   std::int64_t window_;
   core::evidence::Tuning tuning_;
-  std::vector<self_awareness::Recording> recordings_;
+  std::vector<core::RecordingInfo> recordings_;
   bool ended_ = false;
 };
 
@@ -128,9 +128,6 @@ class Training {
 void bindTraining(py::module& m) {
   m.def("half_of", &core::evidence::halfOf, py::arg("fingerprint"),
         "The half of a training that a recording belongs to, 0 or 1.");
-  m.def("middle_of", &middleOf, py::arg("stamps"),
-        "Where the second part of a recording begins [ns], from the stamps of its events, in\n"
-        "order; 0: there is none.");
 
   py::class_<Training>(m, "Training", "Trains on one recording after the other.")
       .def(py::init([](ros1::EncodingRules rules, std::int64_t bin_size, std::int64_t window,

@@ -1,9 +1,17 @@
 """self_awareness: learns how a healthy robot talks to itself.
 
-The method is implemented once, in C++; this package makes it available to Python as
-`self_awareness.Training`, `TrainedModel`, `Model`, `Roc` and so on, and holds the logic of the
-programs (`self_awareness.commands`).
+>>> import self_awareness as sa
+>>> model = sa.learn(['monday.bag', 'tuesday.bag'])
+>>> for alarm in model.judge('crash.bag'):
+...     if alarm.level == 'ERROR':
+...         print(alarm.kind, alarm.culprit)
+died /laser
+
+docs/python.md tells more. The method is implemented once, in C++; the other names here are its
+parts, which the programs (`self_awareness.commands`) are made of.
 """
+from typing import TYPE_CHECKING, Any
+
 
 from self_awareness._core import (  # noqa: F401
     DEFAULT_WINDOW,
@@ -18,23 +26,23 @@ from self_awareness._core import (  # noqa: F401
     BagError,
     BagSummary,
     Calibration,
+    Calibrator,
     Coverage,
     DetectorParameters,
     EncodingRules,
     EventLogWriter,
     EventType,
-    EvidenceCalibration,
     EvidenceCounts,
     EvidenceLanes,
     EvidenceModel,
     FileError,
     FileVersion,
-    LimitFinder,
+    Learner,
     LimitFindings,
-    LimitsFound,
-    Model,
     ModelFileError,
     OutputFile,
+    PaperCalibration,
+    PaperModel,
     Persistence,
     Reason,
     RecordedEvents,
@@ -55,10 +63,22 @@ from self_awareness._core import (  # noqa: F401
     find_clock_steps,
     half_of,
     judge_by_evidence,
-    middle_of,
     read_events,
     recordings_in_event_log,
     stable_name,
     summarise_bag,
     write_problem,
 )
+
+if TYPE_CHECKING:
+    from self_awareness.library import Alarms, Model, learn, load  # noqa: F401
+
+_LIBRARY = ('Alarms', 'Model', 'learn', 'load')
+
+
+def __getattr__(name: str) -> Any:
+    """Import the library when it is needed: it brings numpy, which many programs do without."""
+    if name not in _LIBRARY:
+        raise AttributeError(f'module {__name__!r} has no attribute {name!r}')
+    from self_awareness import library
+    return getattr(library, name)

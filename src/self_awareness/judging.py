@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from typing import Callable, Optional
 
-from self_awareness import (DetectorParameters, EvidenceModel, Model, TrainedModel, Verdicts,
+from self_awareness import (DetectorParameters, EvidenceModel, PaperModel, TrainedModel, Verdicts,
                             judge_by_evidence)
 
 EVIDENCE = 'evidence'
@@ -17,7 +17,7 @@ event types by id, those of the model first (without, those of unknown events ar
 ReplayedMonitor that is told of all of it, and where the clock was set (clock_steps)."""
 
 
-def paper_judge(trained: TrainedModel, model: Model, threshold: Optional[float],
+def paper_judge(trained: TrainedModel, model: PaperModel, threshold: Optional[float],
                 parameters: DetectorParameters) -> Judge:
     """Return what judges by the paper's score; threshold None: scores only, no alarms."""
     return lambda stamps, ids, end, event_types=(), monitor=None, clock_steps=(): model.judge(

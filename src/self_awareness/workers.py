@@ -117,6 +117,11 @@ class Processes(Workers):
         return _batches(tasks, self._number)
 
 
+def on_this_machine(jobs: int) -> Workers:
+    """Return workers that do so many tasks at a time: 1 is this process."""
+    return InProcess() if jobs == 1 else Processes(jobs)
+
+
 class Cluster(Workers):
     """The workers of an existing dask.distributed cluster.
 

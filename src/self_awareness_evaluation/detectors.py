@@ -7,10 +7,11 @@ from typing import List, Optional, Sequence, Set, Tuple
 import numpy as np
 
 from self_awareness import (DEFAULT_WINDOW, EVIDENCE_THRESHOLD, DetectorParameters,
-                            EncodingRules, EventType, EvidenceModel, Model, Recording,
-                            TrainedModel, Training, Tuning, Verdicts, judge_by_evidence)
+                            EncodingRules, EventType, EvidenceModel, Learner, PaperModel,
+                            Recording, TrainedModel, Training, Tuning, Verdicts,
+                            judge_by_evidence)
 from self_awareness.calibration import limits
-from self_awareness.calibration.limits import HeldOut, InMemory
+from self_awareness.calibration.limits import HeldOut
 from self_awareness_evaluation.systems import (Judged, SystemAlarm, common_threshold, distinct,
                                                required)
 from self_awareness_evaluation.windowed_events import WindowedEvents
@@ -24,14 +25,14 @@ class Paper:
 
     def __init__(self) -> None:
         self._types: List[EventType] = []
-        self._model: Optional[Model] = None
+        self._model: Optional[PaperModel] = None
         self._threshold: Optional[float] = None
 
     def train(self, recordings: Sequence[WindowedEvents]) -> None:
         """Count the delays."""
-        trained = _counted(recordings, paper=True)
+        trained = _counted(recordings)
         self._types = trained.event_types
-        self._model = Model(trained)
+        self._model = PaperModel(trained)
 
     def calibrate(self, recordings: Sequence[WindowedEvents]) -> None:
         """Choose s* by the common rule."""
@@ -47,7 +48,7 @@ class Paper:
 
     def _verdicts(self, encoded: WindowedEvents) -> Verdicts:
         # - 1, because the window in which the recording ends is the last one.
-        model: Model = required(self._model, self.name, 'train')
+        model: PaperModel = required(self._model, self.name, 'train')
         return model.judge(DEFAULT_WINDOW, self._threshold, DetectorParameters(),
                            encoded.stamps, encoded.ids, encoded.end - 1)
 
@@ -73,22 +74,18 @@ class Evidence:
 
     def train(self, recordings: Sequence[WindowedEvents]) -> None:
         """Count the delays and gaps."""
-        trained = _counted(recordings, self._tuning)
-        trained.graph = self._graph
-        trained.watch()
-        if len(recordings) > 1:
-            encoded = [recording.encoded(trained.event_types) for recording in recordings]
-            limits.compare_halves(trained, DetectorParameters().settle_time,
-                                  [InMemory(recording.stamps, recording.ids,
-                                            recording.fingerprint) for recording in encoded])
-        self._trained = trained
-        self._model = EvidenceModel(trained)
+        learner = Learner(self._tuning, self._graph)
+        for recording in recordings:
+            learner.add(recording.event_types, recording.stamps, recording.ids,
+                        recording.fingerprint)
+        self._trained = learner.learn()
+        self._model = EvidenceModel(self._trained)
 
     def calibrate(self, recordings: Sequence[WindowedEvents]) -> None:
         """Find the limits."""
         trained: TrainedModel = required(self._trained, self.name, 'train')
         encoded = [recording.encoded(trained.event_types) for recording in recordings]
-        trained.evidence_calibration = limits.find(
+        trained.calibration = limits.find(
             trained, DetectorParameters().settle_time, self._budget,
             [HeldOut(recording.stamps, recording.ids) for recording in encoded])
 
@@ -101,7 +98,7 @@ class Evidence:
     @property
     def expected_per_hour(self) -> float:
         """The false alarms an hour that the calibration expects; NaN: it does not say."""
-        calibration = None if self._trained is None else self._trained.evidence_calibration
+        calibration = None if self._trained is None else self._trained.calibration
         return math.nan if calibration is None else calibration.false_alarms_per_hour
 
     def verdicts(self, recording: WindowedEvents, parameters: DetectorParameters) -> Verdicts:
@@ -113,10 +110,8 @@ class Evidence:
                                  encoded.ids, encoded.end - 1, encoded.event_types)
 
 
-def _counted(recordings: Sequence[WindowedEvents], tuning: Optional[Tuning] = None,
-             paper: bool = False) -> TrainedModel:
-    training = Training(EncodingRules(), window=DEFAULT_WINDOW, evidence=not paper, paper=paper,
-                        tuning=tuning or Tuning())
+def _counted(recordings: Sequence[WindowedEvents]) -> TrainedModel:
+    training = Training(EncodingRules(), window=DEFAULT_WINDOW, evidence=False, paper=True)
     for recording in recordings:
         said = Recording()
         said.fingerprint = recording.fingerprint

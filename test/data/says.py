@@ -6,7 +6,7 @@ import math
 import sys
 from typing import Any, Dict, List, Sequence
 
-from self_awareness import DetectorParameters, EvidenceModel, Model, TrainedModel, Verdicts
+from self_awareness import DetectorParameters, EvidenceModel, PaperModel, TrainedModel, Verdicts
 from self_awareness.judging import evidence_judge, paper_judge
 from self_awareness.recordings import BagPart, RecordingEvents, expand, read
 from self_awareness.stamps import SECOND_NS
@@ -17,13 +17,12 @@ def limits(trained: TrainedModel) -> List[Dict[str, Any]]:
     kinds = [str(kind) for kind in trained.event_types]
     return [{'channel': track.channel, 'to': kinds[track.to_id], 'from': kinds[track.from_id],
              'limit': limit}
-            for track, limit in zip(EvidenceModel(trained).tracks,
-                                    trained.evidence_calibration.limits)
+            for track, limit in zip(EvidenceModel(trained).tracks, trained.calibration.limits)
             if not math.isnan(limit)]
 
 
 def _alarms(recording: RecordingEvents, verdicts: Verdicts) -> List[Dict[str, Any]]:
-    return [{'start': round((alarm.start - recording.origin) / SECOND_NS, 3),
+    return [{'start': round((alarm.begin - recording.origin) / SECOND_NS, 3),
              'end': round((alarm.end - recording.origin) / SECOND_NS, 3),
              'suspects': [str(recording.event_types[suspect.id]) for suspect in alarm.suspects]}
             for alarm in verdicts.alarms]
@@ -33,7 +32,7 @@ def says(model: str, recordings: Sequence[str]) -> Dict[str, Any]:
     """Return the limits of a model with both calibrations, and its alarms in recordings."""
     trained = TrainedModel.load(model)
     parameters = DetectorParameters()
-    paper = paper_judge(trained, Model(trained), trained.threshold, parameters)
+    paper = paper_judge(trained, PaperModel(trained), trained.threshold, parameters)
     evidence = evidence_judge(trained, parameters)
     found: Dict[str, Any] = {'threshold': trained.threshold, 'limits': limits(trained),
                              'recordings': {}}

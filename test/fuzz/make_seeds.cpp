@@ -74,12 +74,12 @@ void writeModel(const std::string& path) {
   model.evidence = std::move(counts.halves);
   model.graph.connect("/a", "/x", "/b");
   model.watch();
-  model.stamp = ros::Time(1, 0);
+  model.stamp = core::kNanosecondsPerSecond;
   model.recordings.resize(1);
-  model.calibration = self_awareness::Calibration();
-  model.calibration->threshold = 1.25;
-  model.evidence_calibration = self_awareness::EvidenceCalibration();
-  model.evidence_calibration->limits.assign(model.watched.tracks.size(), 2.5);
+  model.paper_calibration = core::paper::Calibration();
+  model.paper_calibration->threshold = 1.25;
+  model.calibration = core::Calibration();
+  model.calibration->limits.tracks.assign(model.watched.tracks.size(), 2.5);
   ros1::saveModel(model, path);
 }
 

@@ -38,8 +38,8 @@ ros1::TrainedModel trained() {
       model.statistics.pair(from, 1 - from).add(from == 0 ? 2 : 8);
     }
   }
-  model.calibration = self_awareness::Calibration();
-  model.calibration->threshold = 1.2;
+  model.paper_calibration = core::paper::Calibration();
+  model.paper_calibration->threshold = 1.2;
   return model;
 }
 

@@ -53,8 +53,8 @@ TEST(Session, KnowsTheModelsTopicsAndWhatItsOwnProcessPublishes) {
 TEST(Session, IsCalibratedForTheDetectorThatWasChosen) {
   ros1::TrainedModel trained = model();
   EXPECT_FALSE(Session(trained, byPaper(), [](const core::Verdict&) {}).calibrated());
-  trained.calibration = self_awareness::Calibration();
-  trained.calibration->threshold = 0.1;
+  trained.paper_calibration = core::paper::Calibration();
+  trained.paper_calibration->threshold = 0.1;
   EXPECT_TRUE(Session(trained, byPaper(), [](const core::Verdict&) {}).calibrated());
 }
 

@@ -87,12 +87,12 @@ def learned(model: TrainedModel, calibrations: bool = False) -> bytes:
     """Return all that a file says of a model but when it was made; of limits only if asked for."""
     model = copy.copy(model)
     if not calibrations:
-        model.calibration = model.evidence_calibration = None
+        model.paper_calibration = model.calibration = None
         model.findings = LimitFindings()  # what limits are made of
-    limits = model.evidence_calibration
+    limits = model.calibration
     if limits is not None:
         limits.stamp = 0
-        model.evidence_calibration = limits
+        model.calibration = limits
     state = model.__getstate__()
     stamp = 3 * 32 + 4  # after the md5 of three messages and the length of the first
     return state[:stamp] + state[stamp + 8:]

@@ -117,10 +117,9 @@ def test_a_model_of_format_1_loses_the_tracks_that_nobody_judges_any_more(capsys
     assert {track.channel for track in message.tracks} == {*names, 4, 5}, 'it has what went'
     model = TrainedModel.load(str(path))
     found = [(track.name, track.to_id, track.from_id, limit)
-             for track, limit in zip(EvidenceModel(model).tracks,
-                                     model.evidence_calibration.limits)]
+             for track, limit in zip(EvidenceModel(model).tracks, model.calibration.limits)]
     assert repr(found) == repr(stay)  # NaN is equal to nothing
-    assert len(model.evidence_calibration.relations) == len(found)
+    assert len(model.calibration.relations) == len(found)
     assert 'left out: answers, slow delays: this version' in printed(capsys, path)
 
 

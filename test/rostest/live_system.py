@@ -262,7 +262,7 @@ def make_model(path: str, bags: Sequence[str], threshold: Optional[float],
         training.add_events(read.event_types, read.stamps, read.ids)
     model = training.model()
     if threshold is not None:
-        calibration = self_awareness.Calibration()
+        calibration = self_awareness.PaperCalibration()
         calibration.threshold = threshold
-        model.calibration = calibration
+        model.paper_calibration = calibration
     model.save(path)

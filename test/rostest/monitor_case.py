@@ -96,9 +96,9 @@ class MonitorCase(unittest.TestCase):
         training.add_events(types, stamps, ids)
         model = training.model()
         if threshold is not None:
-            calibration = self_awareness.Calibration()
+            calibration = self_awareness.PaperCalibration()
             calibration.threshold = threshold
-            model.calibration = calibration
+            model.paper_calibration = calibration
         model.save(self.path(name))
         return self.path(name)
 

@@ -22,11 +22,8 @@
 #include "ros/verdict/replayed_monitor.h"
 #include "ros/verdict/verdict_message.h"
 #include "self_awareness/core/evidence/judge.h"
-#include "self_awareness/core/evidence/limits/cross_fit.h"
-#include "self_awareness/core/evidence/limits/limits.h"
-#include "self_awareness/core/training.h"
+#include "self_awareness/core/learn.h"
 #include "self_awareness/core/verdict/detector.h"
-#include "self_awareness/ros/model/evidence_message.h"
 #include "self_awareness/ros/model/model_bytes.h"
 #include "self_awareness/ros/model/model_file.h"
 
@@ -57,52 +54,22 @@ Events robot(unsigned seed, bool burst) {
   return later(events, seed * kStart);
 }
 
-/// What training and calibration make of recordings of normal operation.
+/// What is learned from recordings of normal operation.
 ros1::TrainedModel trained(const Tuning& tuning) {
-  Training::Parameters parameters;
-  parameters.window = kWindow;
-  Training training(parameters);
+  Learner::Parameters parameters;
+  parameters.counting.window = kWindow;
+  parameters.tuning = tuning;
+  Learner learner(parameters, {});
   for (const EventType& type : kRobot) {
-    training.intern(type);
+    learner.intern(type);
   }
-  for (unsigned fingerprint = 0; fingerprint < kRecordings; ++fingerprint) {
-    Training::Recording recording;
-    recording.fingerprint = fingerprint;
-    training.startRecording(recording);
-    for (const Event& event : robot(fingerprint, false)) {
-      training.add(event);
-    }
+  for (unsigned number = 0; number < kRecordings; ++number) {
+    learner.add({robot(number, false), ""});
   }
-  TrainingCounts counts = training.finish();
-  ros1::TrainedModel model;
+  ros1::TrainedModel model(learner.learn());
   model.encoding = ros1::EncodingRules::defaults();
-  model.window = kWindow;
-  model.statistics = std::move(counts.delays);
-  model.evidence = std::move(counts.halves);
-  model.tuning = tuning;
-  model.stamp = ros::Time(1700000000, 0);
-  model.watch();
+  model.stamp = 1700000000 * kSecond;
   return model;
-}
-
-void calibrate(ros1::TrainedModel& model) {
-  const CrossFit models(model.watched);
-  LimitFinder finder(models.model(), {kWindow, 5 * kSecond, 0.5});
-  for (unsigned fingerprint = 0; fingerprint < kRecordings; ++fingerprint) {
-    finder.startRecording(models.judging(halfOf(fingerprint)));
-    for (const Event& event : robot(fingerprint, false)) {
-      finder.add(event);
-    }
-  }
-  finder.finish();
-  model.findings = finder.findings();
-  const LimitFinder::Found found = finder.find();
-  model.evidence_calibration = self_awareness::EvidenceCalibration();
-  model.evidence_calibration->method = self_awareness::EvidenceCalibration::CROSS_FIT;
-  model.evidence_calibration->limits = found.limits.tracks;
-  for (const Relation& relation : found.relations) {
-    model.evidence_calibration->relations.push_back(ros1::toMessage(relation));
-  }
 }
 
 class ToyChannelTest : public testing::Test {
@@ -111,9 +78,7 @@ class ToyChannelTest : public testing::Test {
     // The gaps would find a burst, too.
     Tuning tuning;
     tuning.without = {kOwnGaps};
-    ros1::TrainedModel learned = trained(tuning);
-    calibrate(learned);
-    ros1::saveModel(learned, file("robot.model"));
+    ros1::saveModel(trained(tuning), file("robot.model"));
     model_ = ros1::loadModel(file("robot.model"));
     bursts_ = indexOf(model_.watched.tracks, kBursts, kA, kA);
   }
@@ -172,7 +137,7 @@ TEST_F(ToyChannelTest, IsWatchedAndHasALimit) {
   const double limit = model_.limits()->tracks.at(bursts_);
   EXPECT_GE(limit, 4);
   EXPECT_LT(limit, kAtOnce);
-  EXPECT_TRUE(ros1::fromMessage(model_.evidence_calibration->relations.at(bursts_)).watched);
+  EXPECT_TRUE(model_.calibration->relations.at(bursts_).watched);
   EXPECT_GT(model_.findings.at(0).parts.at(0).evidence.at(bursts_), 0);
 }
 

@@ -28,7 +28,6 @@ class Judge : public core::Judge {
         SharesHandler shares);
 
   ObservedEvent add(const Event& event) override {
-    last_heard_ = event.stamp;
     never_heard_.add(event);
     strangers_.add(event);
     const bool known = model_->knows(event.id);
@@ -50,6 +49,9 @@ class Judge : public core::Judge {
   void leaveOutNew(std::int64_t now, std::vector<double>& evidence) const;
   /// Whether a track beyond its limit is so beyond all doubt.
   bool isCertain() const;
+  /// Whether every component that was heard, and whose silence is judged, should have spoken by
+  /// now; at least two.
+  bool areAllSilent() const;
   /// The suspects of a window.
   /// @param silent_first whether those come before what was never heard that tracks speak against
   std::vector<Suspect> namedIn(const Window& window, bool silent_first) const;
@@ -63,9 +65,8 @@ class Judge : public core::Judge {
   NeverHeard never_heard_;
   Strangers strangers_;
   BusyMachine busy_machine_;
-  std::optional<std::int64_t> last_heard_;  // [ns]
-  std::int64_t settle_time_ = 0;            // [ns]
-  std::vector<double> shares_;              // of its limit that each track has reached
+  std::int64_t settle_time_ = 0;  // [ns]
+  std::vector<double> shares_;    // of its limit that each track has reached
   SharesHandler tell_shares_;
   std::vector<std::int64_t> settled_at_;                                    // [ns], by id
   std::int64_t all_settled_at_ = std::numeric_limits<std::int64_t>::min();  // the latest of them
@@ -114,7 +115,6 @@ void Judge::restart() {
   never_heard_.restart();
   strangers_.restart();
   busy_machine_.restart();
-  last_heard_.reset();
   std::fill(settled_at_.begin(), settled_at_.end(), std::numeric_limits<std::int64_t>::min());
   all_settled_at_ = std::numeric_limits<std::int64_t>::min();
 }
@@ -172,8 +172,7 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
     channels.insert("busy");
   }
   judgement.abnormal = *judgement.score < kThreshold;
-  judgement.all_silent = judgement.abnormal && model_->components().size() > 1 && last_heard_ &&
-                         end - *last_heard_ > model_->longestSilence();
+  judgement.all_silent = judgement.abnormal && areAllSilent();
   judgement.certain = never_heard_.share() > 1 || isCertain();
   judgement.suspicious = never_heard_.share() > 0;
   if (never_heard_.share() > 0) {
@@ -205,6 +204,24 @@ std::vector<Suspect> Judge::namedIn(const Window& window, bool silent_first) con
     }
   }
   return named;
+}
+
+bool Judge::areAllSilent() const {
+  std::set<std::size_t> judged;
+  std::set<std::size_t> silent;
+  const double rare = std::log(model_->tuning().rare_silence);
+  for (std::size_t track = 0; track < shares_.size(); ++track) {
+    const EventId id = model_->tracks()[track].to;
+    if (model_->finding(track) != Finding::kSilent || std::isnan(limits_->tracks[track]) ||
+        !scorer_.heard().hasSeen(id)) {
+      continue;
+    }
+    judged.insert(model_->componentIndex(id));
+    if (model_->logSurvival(id, scorer_.heard().silence(id)) < rare) {
+      silent.insert(model_->componentIndex(id));
+    }
+  }
+  return judged.size() > 1 && silent.size() == judged.size();
 }
 
 bool Judge::isCertain() const {

@@ -14,10 +14,6 @@ namespace {
 
 namespace evidence = core::evidence;
 
-std::int64_t nanoseconds(const ros::Time& stamp) {
-  return static_cast<std::int64_t>(stamp.toNSec());
-}
-
 bool areOffsets(const std::vector<std::uint64_t>& offsets, std::size_t groups,
                 std::size_t entries) {
   return offsets.size() == groups + 1 && offsets.front() == 0 && offsets.back() == entries &&
@@ -144,9 +140,9 @@ evidence::Statistics fromMessage(const self_awareness::Evidence& message,
     check(areTimes({counts.longest_silence}, 0) && areTimes(counts.longest_gaps, 0) &&
               areTimes(counts.firsts, -1),
           "its recordings have times that cannot be");
-    statistics.addRecording({nanoseconds(counts.start), nanoseconds(counts.end),
+    statistics.addRecording({fromRosTime(counts.start), fromRosTime(counts.end),
                              counts.longest_silence, counts.events, counts.longest_gaps,
-                             counts.firsts, nanoseconds(counts.robot_start)});
+                             counts.firsts, fromRosTime(counts.robot_start)});
   }
   for (core::EventId id = 0; id < n; ++id) {
     statistics.type(id) = typeOf(message, id);
@@ -226,9 +222,9 @@ evidence::LimitFinder::Recording fromMessage(const self_awareness::RecordingFind
                         [](float evidence) { return std::isfinite(evidence); }),
         "its findings are no numbers");
   LimitFinder::Recording recording;
-  recording.start = nanoseconds(message.start);
-  recording.end = nanoseconds(message.end);
-  recording.robot_start = nanoseconds(message.robot_start);
+  recording.start = fromRosTime(message.start);
+  recording.end = fromRosTime(message.end);
+  recording.robot_start = fromRosTime(message.robot_start);
   recording.trained_on = true;
   recording.windows = message.windows;
   for (std::size_t k = 0; k < parts; ++k) {
@@ -259,10 +255,6 @@ self_awareness::Relation toMessage(const evidence::Relation& relation) {
 evidence::Relation fromMessage(const self_awareness::Relation& message) {
   return {message.watched != 0, message.reaches != 0, message.irregular != 0,
           message.spread,       message.starts,       message.starts_needed};
-}
-
-evidence::Limits limitsOf(const self_awareness::EvidenceCalibration& message) {
-  return {message.limits, message.firsts};
 }
 
 }  // namespace self_awareness::ros1

@@ -21,10 +21,12 @@
 #include "self_awareness/ros/bag/bag_writer.h"
 #include "self_awareness/ros/encoding_message.h"
 #include "self_awareness/ros/graph.h"
+#include "self_awareness/ros/model/calibration_message.h"
 #include "self_awareness/ros/model/delays_message.h"
 #include "self_awareness/ros/model/evidence_message.h"
 #include "self_awareness/ros/model/tuning_message.h"
 #include "self_awareness/ros/output_file.h"
+#include "self_awareness/ros/ros_time.h"
 
 namespace self_awareness::ros1 {
 namespace {
@@ -143,7 +145,7 @@ TrainedModel read(ModelMessages& messages, ModelCounts counts) {
 
 void write(const TrainedModel& model, BagWriter& bag) {
   // A bag cannot hold a message with the time 0.
-  const ros::Time stamp = std::max(model.stamp, ros::TIME_MIN);
+  const ros::Time stamp = std::max(toRosTime(model.stamp), ros::TIME_MIN);
   self_awareness::FileVersion version = versionOf(kModelFile);
   version.method = model.version.method;
   bag.write({kVersionTopic}, stamp, version);
@@ -158,125 +160,11 @@ void write(const TrainedModel& model, BagWriter& bag) {
   }
 }
 
-bool isNoRate(double value) {
-  return !(value >= 0 && std::isfinite(value)) && !std::isnan(value);
-}
-
-/// @throw std::invalid_argument names what cannot be, or does not fit the model
-void checkCalibration(const self_awareness::EvidenceCalibration& calibration,
-                      const TrainedModel& model) {
-  const std::size_t tracks = model.watched.tracks.size();
-  check(calibration.limits.size() == tracks,
-        "its limits are not those of its evidence; calibrate it again");
-  // NaN: the track is not judged.
-  check(std::none_of(calibration.limits.begin(), calibration.limits.end(),
-                     [](double limit) { return limit <= 0 || std::isinf(limit); }),
-        "a limit of its evidence is not above 0");
-  check(tracks == 0 || std::any_of(calibration.limits.begin(), calibration.limits.end(),
-                                   [](double limit) { return limit > 0; }),
-        "its limits judge nothing; calibrate it again");
-  check(calibration.relations.empty() || calibration.relations.size() == tracks,
-        "its relations are not those of its evidence");
-  check((calibration.firsts.empty() || calibration.firsts.size() == model.vocabulary().size()) &&
-            areTimes(calibration.firsts, -1),
-        "its first events are not those of its event types");
-  check(!isNoRate(calibration.budget) && !isNoRate(calibration.false_alarms_per_hour),
-        "a rate of its false alarms cannot be");
-}
-
 }  // namespace
-
-void TrainedModel::requireDelays() const {
-  check(hasDelays(),
-        "it holds no counts for the paper's detector; train it again with --detector "
-        "paper or both");
-}
-
-void TrainedModel::requireWatched() const {
-  check(isWatched(),
-        "it holds no counts for the evidence detector; train it again with --detector "
-        "evidence or both");
-}
-
-std::optional<std::size_t> TrainedModel::onlyHalf() const {
-  std::optional<std::size_t> only;
-  for (const self_awareness::Recording& recording : recordings) {
-    const std::size_t half = core::evidence::halfOf(recording.fingerprint);
-    if (only.value_or(half) != half) {
-      return std::nullopt;
-    }
-    only = half;
-  }
-  return only;
-}
-
-std::string TrainedModel::detectors() const {
-  const bool for_evidence = hasEvidence() || isWatched();
-  return for_evidence ? (hasDelays() ? "both" : "evidence") : "paper";
-}
-
-std::uint64_t TrainedModel::gaps(core::EventId id) const {
-  if (hasDelays()) {
-    return statistics.pair(id, id).total();
-  }
-  std::uint64_t gaps = 0;
-  for (const core::evidence::Statistics& half : watched.halves) {
-    gaps += half.type(id).gaps;
-  }
-  return gaps;
-}
-
-std::size_t TrainedModel::pairs() const {
-  if (hasDelays()) {
-    return statistics.pairs();
-  }
-  std::size_t filled = 0;
-  for (core::EventId to = 0; to < evidence[0].size(); ++to) {
-    for (core::EventId from = 0; from < evidence[0].size(); ++from) {
-      filled += evidence[0].total(from, to) + evidence[1].total(from, to) > 0 ? 1 : 0;
-    }
-  }
-  return filled;
-}
-
-void TrainedModel::watch() {
-  check(hasEvidence(), "loaded without its counts");
-  watched = core::evidence::watch(evidence[0], evidence[1], graph, tuning);
-}
-
-void TrainedModel::dropCounts() {
-  core::paper::DelayStatistics types(statistics.binning());
-  for (core::EventId id = 0; id < vocabulary().size(); ++id) {
-    types.countEvent(types.intern(vocabulary().at(id)), statistics.eventCount(id));
-  }
-  statistics = std::move(types);
-  evidence = {};
-}
-
-std::optional<double> TrainedModel::threshold() const {
-  return calibration ? std::optional<double>(calibration->threshold) : std::nullopt;
-}
-
-std::optional<core::evidence::Limits> TrainedModel::limits() const {
-  return evidence_calibration ? std::optional(limitsOf(*evidence_calibration)) : std::nullopt;
-}
-
-std::vector<core::evidence::Coverage> TrainedModel::coverage() const {
-  if (!evidence_calibration) {
-    return {};
-  }
-  requireWatched();
-  std::vector<core::evidence::Relation> relations;
-  for (const self_awareness::Relation& relation : evidence_calibration->relations) {
-    relations.push_back(fromMessage(relation));
-  }
-  return core::evidence::coverageOf(core::evidence::Model(watched),
-                                    limitsOf(*evidence_calibration), relations, window);
-}
 
 self_awareness::Model toMessage(const TrainedModel& model) {
   self_awareness::Model message;
-  message.stamp = model.stamp;
+  message.stamp = toRosTime(model.stamp);
   message.encoding = toMessage(model.encoding);
   message.window.fromNSec(model.window);
   message.bin_size = model.statistics.binning().bin_size;
@@ -302,15 +190,15 @@ self_awareness::Model toMessage(const TrainedModel& model) {
   for (const core::SourceGraph::Edge& edge : model.graph.edges()) {
     message.graph.push_back(graphMessage(edge));
   }
-  message.recordings = model.recordings;
+  message.recordings = toMessages(model.recordings);
   for (const core::evidence::LimitFinder::Recording& recording : model.findings) {
     message.findings.push_back(toMessage(recording));
   }
-  if (model.calibration) {
-    message.calibration.push_back(*model.calibration);
+  if (model.paper_calibration) {
+    message.calibration.push_back(toMessage(*model.paper_calibration));
   }
-  if (model.evidence_calibration) {
-    message.evidence_calibration.push_back(*model.evidence_calibration);
+  if (model.calibration) {
+    message.evidence_calibration.push_back(toMessage(*model.calibration));
   }
   return message;
 }
@@ -318,7 +206,7 @@ self_awareness::Model toMessage(const TrainedModel& model) {
 TrainedModel fromMessage(const self_awareness::Model& message) {
   checkEffort(message);
   TrainedModel model;
-  model.stamp = message.stamp;
+  model.stamp = fromRosTime(message.stamp);
   model.encoding = fromMessage(message.encoding);
   model.window = message.window.toNSec();
   model.statistics = eventTypesOf(message);
@@ -337,20 +225,19 @@ TrainedModel fromMessage(const self_awareness::Model& message) {
   for (const self_awareness::GraphEdge& edge : message.graph) {
     model.graph.connect(edge.publisher, edge.topic, edge.subscriber);
   }
-  model.recordings = message.recordings;
+  model.recordings = fromMessages(message.recordings);
   for (const self_awareness::RecordingFindings& findings : message.findings) {
     model.findings.push_back(
         fromMessage(findings, model.watched.tracks.size(), model.vocabulary().size()));
   }
   check(message.calibration.size() <= 1, "it has more than one calibration");
   if (!message.calibration.empty()) {
-    model.calibration = message.calibration.front();
-    check(std::isfinite(model.calibration->threshold), "its threshold is not a finite number");
+    model.paper_calibration = fromMessage(message.calibration.front());
   }
   check(message.evidence_calibration.size() <= 1, "it has more than one calibration");
   if (!message.evidence_calibration.empty()) {
-    model.evidence_calibration = message.evidence_calibration.front();
-    checkCalibration(*model.evidence_calibration, model);
+    model.calibration = fromMessage(message.evidence_calibration.front(),
+                                    model.watched.tracks.size(), model.vocabulary().size());
   }
   return model;
 }

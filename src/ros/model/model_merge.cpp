@@ -81,7 +81,7 @@ void merge(TrainedModel& model, const TrainedModel& other) {
   model.left_out.clear();
   model.findings.clear();
   model.calibration.reset();
-  model.evidence_calibration.reset();
+  model.paper_calibration.reset();
   model.stamp = std::max(model.stamp, other.stamp);
   model.version.method = std::min(model.version.method, other.version.method);
 }

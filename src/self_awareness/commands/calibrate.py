@@ -10,8 +10,8 @@ from typing import List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
-from self_awareness import (EVIDENCE_THRESHOLD, Calibration, DetectorParameters, Model, Roc,
-                            RocPoint, TrainedModel)
+from self_awareness import (EVIDENCE_THRESHOLD, DetectorParameters, PaperCalibration, PaperModel,
+                            Roc, RocPoint, TrainedModel)
 from self_awareness.calibration import confidence, limits
 from self_awareness.calibration.fault_injection import (EACH, FORMS, InjectedFault, check_source,
                                                         of_each_source)
@@ -95,7 +95,7 @@ def _calibrate(arguments: argparse.Namespace) -> None:
         evidence_report.print_not_tried(silent)
     else:
         measured = _find_threshold(trained, parameters, arguments.cutoff, normal_runs, faulty_runs)
-        trained.calibration = _calibration(arguments, measured)
+        trained.paper_calibration = _calibration(arguments, measured)
         _print(arguments.cutoff, measured)
     if measured.faulty and measured.roc.auc < 0.5:
         cli.warn('calibrate', f'AUC {measured.roc.auc:.3f}: the faults score higher than normal '
@@ -152,7 +152,7 @@ def _find_limits(arguments: argparse.Namespace, trained: TrainedModel,
                                 parameters.settle_time, arguments.budget)
     except ValueError as error:
         raise ValueError(f'--normal: {error}; name longer recordings, or more of them') from error
-    trained.evidence_calibration = found
+    trained.calibration = found
     judged = judge_runs(evidence_judge(trained, parameters), trained.window,
                         [*normal_runs, *faulty_runs])
     normal, faulty = judged[:len(normal_runs)], judged[len(normal_runs):]
@@ -166,7 +166,7 @@ def _find_limits(arguments: argparse.Namespace, trained: TrainedModel,
 
 def _find_threshold(trained: TrainedModel, parameters: DetectorParameters, cutoff: ThresholdRule,
                     normal_runs: Sequence[Run], faulty_runs: Sequence[Run]) -> _Measured:
-    model = Model(trained)
+    model = PaperModel(trained)
     runs = [*normal_runs, *faulty_runs]
     scored = judge_runs(paper_judge(trained, model, None, parameters),
                         trained.window, runs)
@@ -205,8 +205,8 @@ def _settle(parameters: DetectorParameters) -> str:
     return f'{parameters.settle_time / SECOND_NS:g}'
 
 
-def _calibration(arguments: argparse.Namespace, measured: _Measured) -> Calibration:
-    result = Calibration()
+def _calibration(arguments: argparse.Namespace, measured: _Measured) -> PaperCalibration:
+    result = PaperCalibration()
     result.threshold = measured.point.cutoff
     result.method = str(arguments.cutoff)
     result.auc = measured.roc.auc

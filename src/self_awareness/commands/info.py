@@ -6,7 +6,7 @@ import json
 import shutil
 from typing import Any, Dict, List, Optional, Sequence
 
-from self_awareness import EventType, Model, ResultBag, TrainedModel, recordings_in_event_log
+from self_awareness import EventType, PaperModel, ResultBag, TrainedModel, recordings_in_event_log
 from self_awareness.commands import cli
 from self_awareness.judging import EVIDENCE
 from self_awareness.reporting import histogram_text
@@ -218,7 +218,7 @@ def _print_pair(model: TrainedModel, first: int, second: int) -> None:
         _print_lines(histogram_text.draw_bins(model.delays(first, second), width))
         return
     counts = model.histogram(first, second)
-    computed = Model(model)
+    computed = PaperModel(model)
     print(f'count {sum(counts.values())}, entropy {computed.entropies[first, second]:.4g} bit, '
           f'weight {computed.weight(first, second):.4g}')
     _print_lines(histogram_text.draw(counts, model.bin_size, model.horizon_bins,

@@ -9,7 +9,7 @@ from typing import Iterator, List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from self_awareness import (EVIDENCE_THRESHOLD, Alarm, EvidenceModel, Model, Suspect,
+from self_awareness import (EVIDENCE_THRESHOLD, Alarm, EvidenceModel, PaperModel, Suspect,
                             Verdicts)
 from self_awareness import alarms
 from self_awareness.commands import cli
@@ -60,11 +60,11 @@ def _score(arguments: argparse.Namespace) -> None:
     trained = cli.load_model(arguments.model, arguments.detector, watched_only=not paper)
     evidence = None if paper else EvidenceModel(trained)
     if evidence is None:
-        judge = paper_judge(trained, Model(trained), trained.threshold, parameters)
+        judge = paper_judge(trained, PaperModel(trained), trained.threshold, parameters)
         threshold = trained.threshold
     else:
         judge = evidence_judge(trained, parameters, evidence)
-        threshold = None if trained.evidence_calibration is None else EVIDENCE_THRESHOLD
+        threshold = None if trained.calibration is None else EVIDENCE_THRESHOLD
     if threshold is None:
         print(f'{arguments.model}: not calibrated: windows are scored, none is called abnormal '
               '(rosrun self_awareness calibrate)')

@@ -17,7 +17,7 @@ from self_awareness.reporting.training_report import print_summary
 from self_awareness.stamps import SECOND_NS
 from self_awareness.training import live_graph, many_bags
 from self_awareness.training.many_bags import Counting, Trained
-from self_awareness.workers import Cluster, InProcess, Processes, Workers
+from self_awareness.workers import Cluster, Workers, on_this_machine
 
 _OF_THE_MODEL = ('detector', 'bin', 'window', 'horizon', 'encoding')
 
@@ -90,7 +90,7 @@ def _limits(trained: Trained, workers: Workers) -> str:
     except TooLittleError as error:
         return f'limits       none: {error}'
     return ('limits       preliminary, by what one half of the training says of the other '
-            f'({trained.model.evidence_calibration.windows} windows)')
+            f'({trained.model.calibration.windows} windows)')
 
 
 def _counting(arguments: argparse.Namespace, base: Optional[TrainedModel]) -> Counting:
@@ -122,8 +122,7 @@ def _workers(arguments: argparse.Namespace, bags: Sequence[str]) -> Workers:
         return Cluster(arguments.scheduler)
     if not arguments.skip_bad:
         _check_exist(bags)
-    jobs = min(arguments.jobs or _cores(), len(bags))
-    return InProcess() if jobs == 1 else Processes(jobs)
+    return on_this_machine(min(arguments.jobs or _cores(), len(bags)))
 
 
 def _check_exist(paths: Sequence[str]) -> None:

@@ -58,7 +58,7 @@ class Side:
 
         Which ones follows from the starts that show them, so only calibrated models say it.
         """
-        calibration = self.model.evidence_calibration
+        calibration = self.model.calibration
         if self.is_recording or calibration is None:
             return None
         kinds = [key_of(kind) for kind in self.model.event_types]

@@ -5,7 +5,7 @@ import math
 from collections import Counter
 from typing import Any, Dict, List, Optional, Tuple
 
-from self_awareness import (USUAL_SHARES, Calibration, EvidenceCalibration, EvidenceModel,
+from self_awareness import (USUAL_SHARES, Calibration, EvidenceModel, PaperCalibration,
                             Recording, TrainedModel, Tuning, encoding_file)
 from self_awareness.reporting import coverage_text, relations_text
 from self_awareness.reporting.version_summary import summarise_version
@@ -45,7 +45,8 @@ def summarise(model: TrainedModel) -> Dict[str, Any]:
         'graph': [dict(zip(('publisher', 'topic', 'subscriber'), edge))
                   for edge in sorted(model.graph)],
         'evidence': None if evidence is None else _evidence(model, evidence),
-        'calibration': None if model.calibration is None else _calibration(model.calibration),
+        'calibration': (None if model.paper_calibration is None
+                        else _paper_calibration(model.paper_calibration)),
     }
 
 
@@ -71,10 +72,10 @@ def _evidence(model: TrainedModel, evidence: EvidenceModel) -> Dict[str, Any]:
         'left_out': sorted(model.left_out),
         'calibration': None,
     }
-    if model.evidence_calibration is not None:
-        judged = [track for track, limit in zip(tracks, model.evidence_calibration.limits)
+    if model.calibration is not None:
+        judged = [track for track, limit in zip(tracks, model.calibration.limits)
                   if not math.isnan(limit)]
-        summary['calibration'] = _evidence_calibration(model.evidence_calibration)
+        summary['calibration'] = _calibration(model.calibration)
         summary['calibration']['judged_tracks'] = dict(Counter(each.channel for each in judged))
         summary['calibration']['relations'] = relations_text.relations(model, evidence)
         summary['calibration']['coverage'] = coverage_text.summarise(model.coverage())
@@ -122,7 +123,7 @@ def _recording(recording: Recording) -> Dict[str, Any]:
     }
 
 
-def _calibration(calibration: Calibration) -> Dict[str, Any]:
+def _paper_calibration(calibration: PaperCalibration) -> Dict[str, Any]:
     return {
         'calibrated_ns': calibration.stamp,
         'threshold': calibration.threshold,
@@ -139,7 +140,7 @@ def _calibration(calibration: Calibration) -> Dict[str, Any]:
     }
 
 
-def _evidence_calibration(calibration: EvidenceCalibration) -> Dict[str, Any]:
+def _calibration(calibration: Calibration) -> Dict[str, Any]:
     return {
         'calibrated_ns': calibration.stamp,
         'method': calibration.method,

@@ -19,7 +19,7 @@ def relations(model: TrainedModel, evidence: EvidenceModel) -> List[Dict[str, An
 
     The own history of an event type is no relation.
     """
-    calibration = model.evidence_calibration
+    calibration = model.calibration
     if calibration is None:
         return []
     found: List[Dict[str, Any]] = []

@@ -128,7 +128,7 @@ def preliminary_limits(trained: Trained, workers: Optional[Workers] = None) -> N
         BagError: a recording cannot be read any more.
         TooLittleError: the recordings are too short.
     """
-    trained.model.evidence_calibration = limits.cross_fit(
+    trained.model.calibration = limits.cross_fit(
         trained.model, trained.trained_on, DetectorParameters().settle_time,
         limits.BUDGET, workers)
 

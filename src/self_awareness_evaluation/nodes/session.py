@@ -167,7 +167,7 @@ class _Session:
 
 def _expected(model: Path) -> float:
     """Return the false alarms an hour that calibrate expects."""
-    calibration = TrainedModel.load(str(model)).evidence_calibration
+    calibration = TrainedModel.load(str(model)).calibration
     if calibration is None:
         raise LiveError(f'{model}: calibrate has written no limits')
     return calibration.false_alarms_per_hour

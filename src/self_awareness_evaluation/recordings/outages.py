@@ -12,7 +12,7 @@ from typing import Callable, Dict, List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from self_awareness import (DetectorParameters, EncodingRules, EvidenceModel, Model, Roc,
+from self_awareness import (DetectorParameters, EncodingRules, EvidenceModel, PaperModel, Roc,
                             TrainedModel, Tuning, recordings)
 from self_awareness.judging import BOTH, Judge, evidence_judge, paper_judge
 from self_awareness.recordings import BagPart, RecordingEvents
@@ -166,7 +166,7 @@ def judge_by_evidence(case: Case, data: Path, tuning: Tuning) -> JudgedCase:
     many_bags.preliminary_limits(trained_on)
     trained, parameters = trained_on.model, DetectorParameters()
     watched = {track.to_id for track, limit in zip(EvidenceModel(trained).tracks,
-                                                   trained.evidence_calibration.limits)
+                                                   trained.calibration.limits)
                if not math.isnan(limit)}
     return _judge(trained, evidence_judge(trained, parameters), data / case.judged,
                   len(watched))
@@ -174,7 +174,7 @@ def judge_by_evidence(case: Case, data: Path, tuning: Tuning) -> JudgedCase:
 
 def _paper(case: Case, data: Path, _: Tuning) -> JudgedCase:
     trained = _trained([_below(data, case.training)]).model
-    model, parameters = Model(trained), DetectorParameters()
+    model, parameters = PaperModel(trained), DetectorParameters()
     normal = recordings.read(trained, _below(data, case.calibration))
     scores = paper_judge(trained, model, None, parameters)(normal.stamps, normal.ids,
                                                            normal.end)

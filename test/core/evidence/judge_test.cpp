@@ -79,6 +79,19 @@ TEST_F(EvidenceJudgeTest, ASilenceThatHasLastedIsCertain) {
   EXPECT_TRUE(judgeAt(*judge, kSecond + 101 * kMillisecond).certain);
 }
 
+TEST_F(EvidenceJudgeTest, AllAreSilentIfEverybodyShouldHaveSpoken) {
+  limits_.tracks[track(kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
+  limits_.tracks[track(kOverdue, kB, kB)] = model_->overdue(kB, 100 * kSecond);
+  const std::unique_ptr<core::Judge> judge = newJudge(limits_);
+  judge->add({0, kA});
+  const std::int64_t end = kSecond + 50 * kMillisecond;
+  EXPECT_FALSE(judgeAt(*judge, end).all_silent) << "of the other nothing is known yet";
+  judge->add({end, kB});
+  EXPECT_TRUE(judgeAt(*judge, end + kWindow).abnormal);
+  EXPECT_FALSE(judgeAt(*judge, end + kWindow).all_silent) << "the other one speaks";
+  EXPECT_TRUE(judgeAt(*judge, end + 10 * kSecond).all_silent) << "though not yet at its limit";
+}
+
 TEST_F(EvidenceJudgeTest, LateAnswersAreAbnormalButNotCertain) {
   const std::size_t delay = track(kPairs, kB, kA);
   limits_.tracks[delay] = model_->leastLimit(delay);

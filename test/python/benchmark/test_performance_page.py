@@ -58,7 +58,7 @@ def test_a_live_model_without_limits_gets_some_that_are_never_reached(tmp_path: 
     model = TrainedModel.load(str(tmp_path / 'model'))
     live_robot.judge_without_alarms(model)
     model.save(str(tmp_path / 'model'))
-    limits = TrainedModel.load(str(tmp_path / 'model')).evidence_calibration.limits
+    limits = TrainedModel.load(str(tmp_path / 'model')).calibration.limits
     assert limits and set(limits) == {1e6}
 
 

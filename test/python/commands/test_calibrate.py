@@ -40,7 +40,7 @@ def test_injected_faults_are_told_and_their_alarms_timed(run, tmp_path) -> None:
         assert f'{fault}: ' in out
     latency = float(re.search(r'crash:/laser: .*?median ([\d.]+) s', out, re.DOTALL)[1])
     assert 0.0 < latency < 2.0
-    calibration = TrainedModel.load(str(tmp_path / 'm')).calibration
+    calibration = TrainedModel.load(str(tmp_path / 'm')).paper_calibration
     assert calibration.auc > 0.95 and calibration.true_positive_rate > 0.9
     assert calibration.false_positive_rate < 0.1
     assert calibration.injected == ['crash:/laser', 'starve', 'slow:/laser:2']
@@ -55,7 +55,7 @@ def test_what_is_stored_follows_from_the_windows_in_the_csv(run, tmp_path) -> No
         rows = list(csv.DictReader(file))
     scores = {label: [float(row['score']) for row in rows if row['label'] == label]
               for label in ('normal', 'abnormal', '')}
-    calibration = TrainedModel.load(str(tmp_path / 'm')).calibration
+    calibration = TrainedModel.load(str(tmp_path / 'm')).paper_calibration
     roc = Roc(scores['normal'], scores['abnormal'])
     assert calibration.auc == roc.auc
     assert calibration.threshold == roc.youden().cutoff
@@ -79,14 +79,14 @@ def test_windows_of_a_recorded_fault_are_abnormal_only_in_its_range(
         starts = [int(row['window_start_ns']) / 1e9 for row in csv.DictReader(file)
                   if row['label'] == 'abnormal']
     assert min(starts) >= 3012.0 and max(starts) + 0.1 <= 3020.001
-    calibration = TrainedModel.load(str(tmp_path / 'm')).calibration
+    calibration = TrainedModel.load(str(tmp_path / 'm')).paper_calibration
     assert calibration.auc > 0.95 and calibration.injected == []
     assert (calibration.faulty[0].bag, calibration.faulty[0].start) == ('dead.bag', 3012 * 10 ** 9)
 
 
 def test_a_level_needs_no_faults(run, tmp_path) -> None:
     code, out, _ = run('--cutoff', 'fpr=0.02')
-    calibration = TrainedModel.load(str(tmp_path / 'm')).calibration
+    calibration = TrainedModel.load(str(tmp_path / 'm')).paper_calibration
     assert code == 0 and 'AUC' not in out and calibration.method == 'fpr=0.02'
     assert math.isnan(calibration.auc) and math.isnan(calibration.true_positive_rate)
     assert 0.0 < calibration.false_positive_rate <= 0.02
@@ -100,7 +100,7 @@ def test_little_normal_data_is_called_little(run) -> None:
 def test_alarms_on_normal_recordings_are_false(run, tmp_path) -> None:
     _, out, _ = run('--cutoff', 'fpr=0.9')
     assert re.search(r'false alarms after persistence: [1-9]', out)
-    assert TrainedModel.load(str(tmp_path / 'm')).calibration.false_alarms_per_hour > 100.0
+    assert TrainedModel.load(str(tmp_path / 'm')).paper_calibration.false_alarms_per_hour > 100.0
 
 
 def test_the_input_is_left_alone_unless_it_is_the_output(run, model_file: str, robot_bags: Bags,
@@ -157,7 +157,7 @@ def test_the_part_that_was_not_trained_on_is_welcome(robot_bags: Bags, tmp_path,
                  '--normal']
     assert calibrate.main([*arguments, f'{robot_bags[0]}@14']) == 1
     assert calibrate.main([*arguments, f'{robot_bags[0]}@15.1']) == 0
-    recording = TrainedModel.load(model).calibration.normal[0]
+    recording = TrainedModel.load(model).paper_calibration.normal[0]
     assert recording.start == round(1015.1 * 1e9)
 
 

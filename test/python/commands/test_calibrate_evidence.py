@@ -41,26 +41,26 @@ def test_the_limits_are_stored_with_how_they_were_found(run, trained: str, tmp_p
     assert code == 0 and err == ''
     assert re.search(r'watched: overdue 3, rate \d+', out)
     model = TrainedModel.load(str(tmp_path / 'm'))
-    found = model.evidence_calibration
+    found = model.calibration
     assert len(found.limits) == len(EvidenceModel(model).tracks)
     assert all(math.isnan(limit) or limit > 0.0 for limit in found.limits)
     assert (found.method, found.budget) == ('held-out', 0.25)
     assert [recording.bag for recording in found.recordings] == ['tuesday.bag']
     # 120 s of which 5 s settle, and what the halves of the training said of each other.
-    of_training = TrainedModel.load(trained).evidence_calibration.windows
+    of_training = TrainedModel.load(trained).calibration.windows
     assert found.windows == pytest.approx(1150 + of_training, abs=2) and of_training > 1000
     assert 'alarms: 0;' in out and found.false_alarms_per_hour == 0.0  # none exceeded the others
     assert f'false alarms to be expected: {found.false_alarms_per_hour:.2g} an hour' in out
     assert found.stamp > 1.7e18
-    assert model.calibration is None  # the paper's detector is another matter
-    assert TrainedModel.load(trained).evidence_calibration.method == 'cross-fit'  # left alone
+    assert model.paper_calibration is None  # the paper's detector is another matter
+    assert TrainedModel.load(trained).calibration.method == 'cross-fit'  # left alone
 
 
 def test_the_budget_is_used(run, tmp_path) -> None:
     limits = []
     for budget in ('0.1', '1000'):
         assert run('--budget', budget)[0] == 0
-        limits.append(TrainedModel.load(str(tmp_path / 'm')).evidence_calibration.limits)
+        limits.append(TrainedModel.load(str(tmp_path / 'm')).calibration.limits)
     pairs = [(strict, lax) for strict, lax in zip(*limits)
              if not math.isnan(strict) and not math.isnan(lax)]
     assert all(strict >= lax for strict, lax in pairs)
@@ -75,9 +75,9 @@ def test_what_the_recordings_say_of_the_budget(
         expected: float, budget: float, told: Optional[str], run, tmp_path, capsys) -> None:
     run()
     model = TrainedModel.load(str(tmp_path / 'm'))
-    limits = model.evidence_calibration
+    limits = model.calibration
     limits.false_alarms_per_hour, limits.budget = expected, budget
-    model.evidence_calibration = limits
+    model.calibration = limits
     capsys.readouterr()
     print_expected(model)
     first, *more = capsys.readouterr().out.splitlines()
@@ -91,7 +91,7 @@ def test_what_the_recordings_say_of_the_budget(
 def test_relations_are_told_with_their_reasons_or_what_is_missing(run, tmp_path) -> None:
     _, out, _ = run()
     model = TrainedModel.load(str(tmp_path / 'm'))
-    relations = [relation for relation, track in zip(model.evidence_calibration.relations,
+    relations = [relation for relation, track in zip(model.calibration.relations,
                                                      EvidenceModel(model).tracks)
                  if track.channel == 'pairs' and track.from_id != track.to_id]
     assert relations  # /slam answers to /laser, as a timer may

@@ -111,7 +111,7 @@ def test_a_model_without_limits_has_no_table(half_blind: Tuple[str, str], tmp_pa
                                              capsys) -> None:
     path = str(tmp_path / 'm')
     model = TrainedModel.load(half_blind[0])
-    model.evidence_calibration = None
+    model.calibration = None
     model.save(path)
     assert TrainedModel.load(path).coverage() == []
     assert info.main([path]) == 0

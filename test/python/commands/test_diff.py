@@ -164,7 +164,7 @@ def test_a_page_of_a_comparison_opens_without_errors(before: str, trained, tmp_p
 def test_an_uncalibrated_model_compares_no_delays_and_says_so(before: str, model_file: str,
                                                               tmp_path: Path, capsys) -> None:
     model = TrainedModel.load(model_file)
-    model.evidence_calibration = None
+    model.calibration = None
     model.save(str(tmp_path / 'm'))
     assert diff.main([str(tmp_path / 'm'), str(tmp_path / 'm')]) == 0
     assert 'no model is calibrated' in capsys.readouterr().out

@@ -47,7 +47,7 @@ def test_json_holds_the_calibration(model_file: str, robot_bags, tmp_path, capsy
                            '--cutoff', 'fpr=0.01', '-o', output]) == 0
     capsys.readouterr()
     found = as_json(capsys, output)['calibration']
-    stored = TrainedModel.load(output).calibration
+    stored = TrainedModel.load(output).paper_calibration
     assert found['threshold'] == stored.threshold and found['method'] == 'fpr=0.01'
     assert found['auc'] is None and found['true_positive_rate'] is None  # no faulty windows
     assert found['normal'][0]['fingerprint'] == f'{stored.normal[0].fingerprint:016x}'
@@ -56,7 +56,7 @@ def test_json_holds_the_calibration(model_file: str, robot_bags, tmp_path, capsy
 def test_json_holds_the_evidence(evidence_model: str, capsys) -> None:
     found = as_json(capsys, evidence_model)['evidence']
     model = TrainedModel.load(evidence_model)
-    stored = model.evidence_calibration
+    stored = model.calibration
     assert set(found['tracks']) <= {'overdue', 'rate', 'pairs', 'deadlines'}
     assert found['tracks']['overdue'] == 3 and found['tracks']['rate'] == 6
     assert sum(found['tracks'].values()) == len(EvidenceModel(model).tracks)
@@ -88,7 +88,7 @@ def test_json_holds_preliminary_limits_and_the_graph(long_bags, tmp_path, capsys
     assert calibration['method'] == 'cross-fit'
     # Left out in turn, the halves of the training say how many are to be expected.
     assert calibration['false_alarms_per_hour'] == TrainedModel.load(
-        output).evidence_calibration.false_alarms_per_hour >= 0.0
+        output).calibration.false_alarms_per_hour >= 0.0
     assert info.main([output]) == 0
     assert 'sources that somebody listens to: 1, connections: 2' in capsys.readouterr().out
 

@@ -49,11 +49,11 @@ def test_models_add_up_to_a_training_on_all(trained: Callable[..., str], make_ba
 
 def test_limits_of_one_robot_are_not_those_of_all(evidence_model: str, model_file: str,
                                                   tmp_path: Path) -> None:
-    assert TrainedModel.load(evidence_model).evidence_calibration is not None
+    assert TrainedModel.load(evidence_model).calibration is not None
     output = str(tmp_path / 'm')
     assert merge.main([evidence_model, model_file, '-o', output]) == 0
     merged = TrainedModel.load(output)
-    assert merged.evidence_calibration is None and merged.calibration is None
+    assert merged.calibration is None and merged.paper_calibration is None
 
 
 def test_the_graph_is_that_of_all(model_file: str, evidence_model: str, tmp_path: Path) -> None:

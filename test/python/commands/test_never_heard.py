@@ -47,7 +47,7 @@ def judged(model: str, bag: str) -> Tuple[Any, float]:
 
 
 def test_training_knows_when_each_came_although_it_leaves_the_start_out(model: str) -> None:
-    calibration = TrainedModel.load(model).evidence_calibration
+    calibration = TrainedModel.load(model).calibration
     types = [str(kind).split()[0] for kind in TrainedModel.load(model).event_types]
     firsts = dict(zip(types, calibration.firsts))
     assert firsts[LASER] == pytest.approx(12e9, abs=0.1e9)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from conftest import robot
 
-from self_awareness import DetectorParameters, Model, TrainedModel, read_events
+from self_awareness import DetectorParameters, PaperModel, TrainedModel, read_events
 from self_awareness.commands import calibrate, score
 
 Bags = Tuple[str, str]
@@ -68,8 +68,8 @@ def test_the_table_has_every_window_with_all_digits(calibrated: str, dead_laser:
     expected = []
     for bag in (dead_laser, robot_bags[1]):
         events = read_events(bag, trained.encoding, trained.event_types)
-        verdicts = Model(trained).judge(trained.window, trained.threshold, DetectorParameters(),
-                                        events.stamps, events.ids)
+        verdicts = PaperModel(trained).judge(trained.window, trained.threshold,
+                                             DetectorParameters(), events.stamps, events.ids)
         expected += [(bag, *window) for window in zip(
             verdicts.start.tolist(), verdicts.events.tolist(), verdicts.unknown.tolist(),
             verdicts.score.tolist(), verdicts.abnormal.tolist())]

@@ -13,7 +13,7 @@ from xmlrpc.server import SimpleXMLRPCServer
 import pytest
 from conftest import robot, wait_until
 
-from self_awareness import EvidenceModel, Model, TrainedModel, Tuning, stable_name
+from self_awareness import EvidenceModel, PaperModel, TrainedModel, Tuning, stable_name
 from self_awareness.commands import train
 
 Bags = Tuple[str, str]
@@ -104,7 +104,7 @@ def test_what_is_watched_can_be_loaded_alone(robot_bags: Bags, tmp_path, capsys)
     assert len(EvidenceModel(watched).tracks) == len(EvidenceModel(model).tracks)
     assert watched.pairs == 0
     with pytest.raises(ValueError, match="no counts for the paper's detector"):
-        Model(watched)
+        PaperModel(watched)
 
 
 def test_bags_without_senders_are_trained_without_sources(make_bag: Callable[..., str], tmp_path,
@@ -141,7 +141,7 @@ def test_one_recording_gives_preliminary_limits_by_its_halves(long_bags: Bags, t
                                                               capsys) -> None:
     output = str(tmp_path / 'm')
     lines = said(capsys, [long_bags[0], '-o', output])
-    found = TrainedModel.load(output).evidence_calibration
+    found = TrainedModel.load(output).calibration
     # The detector settles for 5 s of 120 s; the second part settles in the first one.
     assert found.method == 'cross-fit' and found.windows == pytest.approx(1150, abs=4)
     assert ('limits preliminary, by what one half of the training says of the other '
@@ -154,7 +154,7 @@ def test_two_recordings_give_preliminary_limits_by_each_other(long_bags: Bags, t
     output = str(tmp_path / 'm')
     assert train.main([*long_bags, '-o', output]) == 0
     model = TrainedModel.load(output)
-    found = model.evidence_calibration
+    found = model.calibration
     assert found.method == 'cross-fit' and found.windows == pytest.approx(2300, abs=4)
     assert len(found.limits) == len(EvidenceModel(model).tracks)
     assert [recording.bag for recording in found.recordings] == ['monday.bag', 'tuesday.bag']
@@ -167,7 +167,7 @@ def test_too_little_for_limits_is_told_and_the_model_is_written(robot_bags: Bags
     told, = [line for line in lines if line.startswith('limits')]
     assert told.startswith('limits none: too little normal operation') and '50 s' in told
     assert any('rosrun self_awareness calibrate' in line for line in lines)
-    assert TrainedModel.load(output).evidence_calibration is None
+    assert TrainedModel.load(output).calibration is None
 
 
 def test_the_graph_needs_a_master(robot_bags: Bags, tmp_path, monkeypatch, capsys) -> None:

@@ -9,7 +9,7 @@ from typing import Callable, Dict, List
 import numpy as np
 import pytest
 
-from self_awareness import EvidenceModel, Model, TrainedModel
+from self_awareness import EvidenceModel, PaperModel, TrainedModel
 from self_awareness.commands import calibrate, info, merge, score, train
 
 Bags = List[str]
@@ -43,10 +43,10 @@ def test_each_detector_learns_the_same_alone(models: Dict[str, str]) -> None:
     assert {detector: model.detectors for detector, model in loaded.items()} == {
         detector: detector for detector in models}
     both, evidence, paper = (loaded[each] for each in ('both', 'evidence', 'paper'))
-    assert list(evidence.evidence_calibration.limits) == pytest.approx(
-        list(both.evidence_calibration.limits), nan_ok=True, abs=0)
-    assert paper.evidence_calibration is None
-    np.testing.assert_array_equal(Model(paper).entropies, Model(both).entropies)
+    assert list(evidence.calibration.limits) == pytest.approx(
+        list(both.calibration.limits), nan_ok=True, abs=0)
+    assert paper.calibration is None
+    np.testing.assert_array_equal(PaperModel(paper).entropies, PaperModel(both).entropies)
     for model in (evidence, paper):
         assert model.events == both.events and model.pairs == both.pairs
         assert [model.gaps(index) for index in range(3)] == [
@@ -72,7 +72,7 @@ def test_who_lacks_counts_says_the_way_out(long_bags: Bags, models: Dict[str, st
             assert f'{model}: it holds no counts for the {other}' in error
             assert f'--detector {other} or both' in error
     with pytest.raises(ValueError, match='no counts for the paper'):
-        Model(TrainedModel.load(models['evidence']))
+        PaperModel(TrainedModel.load(models['evidence']))
     with pytest.raises(ValueError, match='no counts for the evidence'):
         EvidenceModel(TrainedModel.load(models['paper']))
     assert not (tmp_path / 'm').exists()

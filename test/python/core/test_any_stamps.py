@@ -15,9 +15,9 @@ from hypothesis import strategies as st
 from reference import Reference
 from reference_evidence import BINS, Counts, lower_edge
 
-from self_awareness import (DetectorParameters, EncodingRules, EventType, EvidenceCounts,
-                            EvidenceModel, LimitFinder, Model, Recording, TrainedModel, Training,
-                            Verdicts)
+from self_awareness import (Calibrator, DetectorParameters, EncodingRules, EventType,
+                            EvidenceCounts, EvidenceModel, PaperModel, Recording, TrainedModel,
+                            Training, Verdicts)
 
 WINDOW = 100 * MS
 BIN = 10 * MS
@@ -62,8 +62,8 @@ def ids_of(trained: TrainedModel) -> Dict[str, int]:
 def judged(trained: TrainedModel, events: Sequence[Event]) -> Verdicts:
     """Judge a recording by the paper's detector."""
     ids = ids_of(trained)
-    return Model(trained).judge(WINDOW, THRESHOLD, DetectorParameters(), arrays(events)[0],
-                                np.array([ids.get(kind, len(ids)) for _, kind in events]))
+    return PaperModel(trained).judge(WINDOW, THRESHOLD, DetectorParameters(), arrays(events)[0],
+                                     np.array([ids.get(kind, len(ids)) for _, kind in events]))
 
 
 def evidence_of(trained: TrainedModel, events: Sequence[Event]) -> np.ndarray:
@@ -173,20 +173,20 @@ def test_evidence_is_a_number_that_does_not_depend_on_what_was_before_the_clock_
 def test_limits_are_numbers(all_events: List[List[Event]], normal: List[List[Event]]) -> None:
     trained = trained_on(all_events)
     assume(len(EvidenceModel(trained).tracks))
-    finder = LimitFinder(trained, SETTLE, 0.5)
+    calibrator = Calibrator(trained, SETTLE, 0.5)
     ids = ids_of(trained)
     for events in normal:
-        finder.add_events(arrays(events)[0],
-                          np.array([ids.get(kind, len(ids)) for _, kind in events]), None)
+        calibrator.add_held_out(arrays(events)[0],
+                                np.array([ids.get(kind, len(ids)) for _, kind in events]))
     try:
-        found = finder.find()
+        found = calibrator.find()
     except ValueError as refused:
         assert 'too little normal operation' in str(refused)
         reject()
     # Not a number: the track is not judged.
     assert all(math.isnan(limit) or limit > 0.0 for limit in found.limits)
-    assert 0.0 <= found.expected_rate < math.inf
-    assert 0 <= finder.windows <= sum(
+    assert 0.0 <= found.false_alarms_per_hour < math.inf
+    assert 0 <= found.windows <= sum(
         (piece[-1][0] - piece[0][0]) // WINDOW + 2 for events in normal
         for piece in pieces(events))
 

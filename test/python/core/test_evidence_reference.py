@@ -12,7 +12,7 @@ from reference_evidence_limits import Judged, ReferenceLimits
 from reference_relations import ReferenceRelations, number_of_starts, watched
 from reference_scorer import ReferenceScorer
 
-from self_awareness import (EncodingRules, EventType, EvidenceModel, LimitFinder,
+from self_awareness import (Calibrator, EncodingRules, EventType, EvidenceModel,
                             Recording, TrainedModel, Training, Tuning)
 from self_awareness.stamps import SECOND_NS
 
@@ -224,15 +224,18 @@ def test_the_limits(learned: Robot, held_out: bool) -> None:
                  (robot(random.Random(9), 40.0, 0.0), None)]
     else:
         parts = [(events, half) for half in (0, 1) for events in learned.halves[half]]
-    finder = LimitFinder(learned.trained, SETTLE, BUDGET)
+    calibrator = Calibrator(learned.trained, SETTLE, BUDGET)
     for events, half in parts:
-        finder.add_events(*learned.arrays(events), half)
+        if half is None:
+            calibrator.add_held_out(*learned.arrays(events))
+        else:  # its fingerprint is its half
+            calibrator.add_trained_on(*learned.arrays(events), half)
     expected = ReferenceLimits(
         learned.reference,
         [Judged(events, learned.reference if half is None else learned.reference_of_half[half],
                 half is not None) for events, half in parts], WINDOW, SETTLE, BUDGET)
-    limits_found = finder.find()
-    assert finder.windows == expected.windows
+    limits_found = calibrator.find()
+    assert limits_found.windows == expected.windows
     assert len(limits_found.relations) == len(expected.relations)
     for found, relation in zip(limits_found.relations, expected.relations):
         assert (found.watched, found.reaches, found.irregular, found.starts,
@@ -247,4 +250,4 @@ def test_the_limits(learned: Robot, held_out: bool) -> None:
     relations = ReferenceRelations(learned.reference.both)
     assert any(math.isnan(limit) and relations.delays(other, to).watched
                for limit, other, to in pairs) == held_out
-    assert limits_found.expected_rate == pytest.approx(expected.expected_rate, abs=1e-9)
+    assert limits_found.false_alarms_per_hour == pytest.approx(expected.expected_rate, abs=1e-9)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from reference import Event, Reference, auc
 
-from self_awareness import DetectorParameters, EncodingRules, EventType, Model, Roc, Training
+from self_awareness import DetectorParameters, EncodingRules, EventType, PaperModel, Roc, Training
 
 MS = 1_000_000
 THRESHOLD = 0.4
@@ -42,7 +42,7 @@ def test_the_core_does_what_the_paper_says(seed: int) -> None:
         training.add_events(every_type, np.array([t for t, _ in recording]),
                             np.array(['ABCDEU'.index(kind) for _, kind in recording]))
     trained = training.model()
-    model = Model(trained)
+    model = PaperModel(trained)
     ids = {kind.scope: index for index, kind in enumerate(trained.event_types)}
 
     assert sorted(ids) == reference.types
@@ -91,7 +91,7 @@ def test_silence_to_the_end_of_the_recording_has_windows_only_where_it_is_asked_
     stamps = np.arange(50) * 20 * MS
     training.add_events(types, stamps, np.zeros(50))
     trained = training.model()
-    model = Model(trained)
+    model = PaperModel(trained)
     parameters = DetectorParameters()
     heard = model.judge(trained.window, 0.5, parameters, stamps, np.zeros(50))
     to_end = model.judge(trained.window, 0.5, parameters, stamps, np.zeros(50), 3000 * MS)

@@ -9,7 +9,7 @@ from typing import Any, Dict, List, Tuple, Union
 import numpy as np
 import pytest
 
-from self_awareness import DetectorParameters, EncodingRules, EventType, Model, Roc, Training
+from self_awareness import DetectorParameters, EncodingRules, EventType, PaperModel, Roc, Training
 
 MS = 1_000_000
 
@@ -40,7 +40,7 @@ def test_a_case_is_reproduced(vectors: Dict[str, Any], name: str) -> None:
     for bag in case['train_bags']:
         training.add_events(types_of(case), *arrays(case, bag))
     trained = training.model()
-    model = Model(trained)
+    model = PaperModel(trained)
     ids = {kind.scope: index for index, kind in enumerate(trained.event_types)}
 
     found = {f'{i}>{j}': {str(b): n for b, n in trained.histogram(ids[i], ids[j]).items()}

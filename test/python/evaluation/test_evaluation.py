@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from evaluation_robot import BATTERY, LASER, START, robot
 
-from self_awareness import (DEFAULT_WINDOW, DetectorParameters, EncodingRules, EventType, Model,
-                            Persistence, Training, read_events)
+from self_awareness import (DEFAULT_WINDOW, DetectorParameters, EncodingRules, EventType,
+                            PaperModel, Persistence, Training, read_events)
 from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation.detectors import Paper
 from self_awareness_evaluation.simulated import measures, summary, tradeoff
@@ -39,8 +39,9 @@ def test_windows_and_counts_are_those_of_the_detector() -> None:
     training = Training(EncodingRules(), window=DEFAULT_WINDOW, paper=True)
     training.add_events(recording.event_types, recording.stamps, recording.ids)
     trained = training.model()
-    verdicts = Model(trained).judge(DEFAULT_WINDOW, None, DetectorParameters(), recording.stamps,
-                                    recording.encoded(trained.event_types).ids, recording.end - 1)
+    verdicts = PaperModel(trained).judge(
+        DEFAULT_WINDOW, None, DetectorParameters(), recording.stamps,
+        recording.encoded(trained.event_types).ids, recording.end - 1)
     assert np.array_equal(recording.starts(), verdicts.start)
     assert len(verdicts.start) == 200
     assert np.array_equal(settling(recording), verdicts.settling)

@@ -30,7 +30,7 @@ def test_a_model_is_learned_and_what_it_finds_is_printed(tmp_path: Path, capfd) 
     for source in ('/laser', '/slam', '/battery'):
         assert f'crash  {source}' in out
     trained = TrainedModel.load(str(model))
-    assert trained.evidence_calibration.method == 'held-out'
+    assert trained.calibration.method == 'held-out'
     assert {recording.robot_start for recording in trained.recordings} == {10**9, 2 * 10**9}
     assert not list(tmp_path.glob('.training*'))
 

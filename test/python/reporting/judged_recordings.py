@@ -6,7 +6,7 @@ from typing import List, Optional
 
 from conftest import Message, jittery_robot
 
-from self_awareness import (EVIDENCE_THRESHOLD, DetectorParameters, EvidenceModel, Model,
+from self_awareness import (EVIDENCE_THRESHOLD, DetectorParameters, EvidenceModel, PaperModel,
                             TrainedModel, recordings)
 from self_awareness.judging import evidence_judge, paper_judge
 from self_awareness.recordings import BagPart
@@ -34,10 +34,10 @@ def judged(model: str, bag: str, detector: str = 'evidence',
     parameters = DetectorParameters()
     evidence = EvidenceModel(trained) if detector == 'evidence' else None
     if evidence is None:
-        judge = paper_judge(trained, Model(trained), threshold, parameters)
+        judge = paper_judge(trained, PaperModel(trained), threshold, parameters)
     else:
         judge = evidence_judge(trained, parameters, evidence)
-        threshold = None if trained.evidence_calibration is None else EVIDENCE_THRESHOLD
+        threshold = None if trained.calibration is None else EVIDENCE_THRESHOLD
     recording = recordings.read(trained, BagPart.parse(bag))
     verdicts = judge(recording.stamps, recording.ids, recording.end, recording.event_types)
     return Judged(JudgedBy(trained, model, parameters, threshold, evidence), recording, verdicts)

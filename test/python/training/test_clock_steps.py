@@ -50,7 +50,7 @@ def test_a_step_is_not_learned(folder: Path, capsys: pytest.CaptureFixture) -> N
     assert (f'{folder}/set.bag: warning: the clock was set forward by 20.0 s before 80.0 s: '
             'all went on as if the time between had not been. The recording is cut there'
             ) in capsys.readouterr().out
-    for one, other in zip(even.evidence_calibration.limits, stepped.evidence_calibration.limits):
+    for one, other in zip(even.calibration.limits, stepped.calibration.limits):
         assert np.isnan(one) and np.isnan(other) or other == pytest.approx(one, rel=0.1)
     alarms = []
     for name in ('even', 'set'):
@@ -75,7 +75,7 @@ def test_a_step_is_not_judged(folder: Path, capsys: pytest.CaptureFixture) -> No
         output = folder / f'calibrated-{name}'
         assert calibrate.main(['--model', str(folder / 'three'), '--normal', str(folder / name),
                                '-o', str(output)]) == 0
-        limits.append(TrainedModel.load(str(output)).evidence_calibration.limits)
+        limits.append(TrainedModel.load(str(output)).calibration.limits)
     assert 'the clock was set forward' in capsys.readouterr().err
     np.testing.assert_allclose(limits[1], limits[0], rtol=0.1)
 

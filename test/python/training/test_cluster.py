@@ -107,7 +107,7 @@ def _expected(bags: List[str], tmp_path_factory: pytest.TempPathFactory) -> Trai
 
 def check_same(path: Path, expected: TrainedModel) -> None:
     model = TrainedModel.load(str(path))
-    assert np.isfinite(model.evidence_calibration.limits).any()
+    assert np.isfinite(model.calibration.limits).any()
     assert learned(model, calibrations=True) == learned(expected, calibrations=True)
 
 

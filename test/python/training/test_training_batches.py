@@ -78,7 +78,7 @@ def described(trained: Trained) -> Dict[str, Any]:
     model = trained.model
     kinds = model.event_types
     names = [str(kind) for kind in kinds]
-    calibration = model.evidence_calibration
+    calibration = model.calibration
     tracks = {(track.channel, names[track.from_id], names[track.to_id]):
               (repr(limit), relation.watched, relation.starts)
               for track, limit, relation in zip(EvidenceModel(model).tracks, calibration.limits,
@@ -119,7 +119,7 @@ def test_a_file_is_the_same_however_it_was_counted(bags: List[str], bad: List[in
     for jobs in ('1', '2'):
         assert train.main([*named, '-o', str(tmp_path / jobs), '--jobs', jobs, *options]) == 0
     one, two = (TrainedModel.load(str(tmp_path / jobs)) for jobs in ('1', '2'))
-    assert two.evidence_calibration is not None
+    assert two.calibration is not None
     assert len(two.recordings) == BAGS - len(bad) + base
     assert learned(two, calibrations=True) == learned(one, calibrations=True)
 
@@ -228,7 +228,7 @@ def test_so_many_events_are_kept_for_the_limits(bags: List[str], workers: Worker
         assert kept == [True] * 5 + [False] * 4
     for trained in (everything, some):
         many_bags.preliminary_limits(trained)
-    assert some.model.evidence_calibration is not None
+    assert some.model.calibration is not None
     assert learned(some.model, calibrations=True) == learned(everything.model, calibrations=True)
 
 

@@ -41,7 +41,7 @@ def test_counts_and_limits_are_those_of_one_process(bags: List[str], tmp_path: P
     together = trained(bags, tmp_path / 'together', '--jobs', '3')
     assert learned(together) == learned(alone)
     assert [each.bag for each in together.recordings] == [f'{i}.bag' for i in range(5)]
-    one, other = alone.evidence_calibration, together.evidence_calibration
+    one, other = alone.calibration, together.calibration
     assert np.array_equal(one.limits, other.limits, equal_nan=True)
     assert np.isfinite(one.limits).any()
     assert (one.false_alarms_per_hour, one.windows) == (other.false_alarms_per_hour, other.windows)
@@ -144,9 +144,9 @@ def test_more_is_added_to_a_model(bags: List[str], tmp_path: Path, capsys) -> No
     trained(bags[:3], model, '--bin', '0.02', '--window', '0.2', '--horizon', '5')
     continued = trained(bags[3:], model, '--add-to', str(model))
     assert learned(continued) == learned(whole)  # the halves go on in turn
-    found = continued.evidence_calibration
+    found = continued.calibration
     assert [each.bag for each in found.recordings] == ['3.bag', '4.bag']
-    assert found.windows < whole.evidence_calibration.windows
+    assert found.windows < whole.calibration.windows
     assert [path.name for path in tmp_path.iterdir() if path.name.startswith('m')] == ['m']
 
 
@@ -154,7 +154,7 @@ def test_limits_of_a_model_do_not_outlast_what_is_added(bags: List[str], robot_b
                                                         evidence_model: str,
                                                         tmp_path: Path) -> None:
     model = trained([robot_bags[0]], tmp_path / 'm', '--add-to', evidence_model)
-    assert model.evidence_calibration is None  # 30 s are too little for others
+    assert model.calibration is None  # 30 s are too little for others
     assert len(model.recordings) == 2
 
 
@@ -223,7 +223,7 @@ def test_there_is_a_number_of_jobs(value: str, bags: List[str], tmp_path: Path, 
 def test_a_model_goes_to_another_process_as_it_is(evidence_model: str) -> None:
     model = TrainedModel.load(evidence_model)
     again = pickle.loads(pickle.dumps(model))
-    assert again.evidence_calibration.limits
+    assert again.calibration.limits
     assert learned(again, calibrations=True) == learned(model, calibrations=True)
     with pytest.raises(ValueError, match='another version'):
         TrainedModel.__new__(TrainedModel).__setstate__(b'x' * 100)

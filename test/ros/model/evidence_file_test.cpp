@@ -26,7 +26,7 @@ TEST_F(ModelFileTest, TheEvidenceItsLimitsAndTheGraphComeBackAsTheyWereSaved) {
   model.tuning.share_of_other = 0.8;  // the first and the last one are no exceptions
   model.tuning.fewest_gaps = 31;
   model.tuning.without = {"fewer", "own gaps"};
-  ASSERT_GE(model.evidence_calibration->limits.size(), 6U);
+  ASSERT_GE(model.calibration->limits.tracks.size(), 6U);
   saveModel(model, path("m"));
   const TrainedModel loaded = loadModel(path("m"));
   EXPECT_TRUE(loaded.evidence[0] == model.evidence[0]);
@@ -44,13 +44,13 @@ TEST_F(ModelFileTest, TheEvidenceItsLimitsAndTheGraphComeBackAsTheyWereSaved) {
   EXPECT_EQ(loaded.graph.edges().size(), 2U);
   EXPECT_TRUE(loaded.graph.edges() == model.graph.edges());
   const core::evidence::Limits limits = loaded.limits().value();
-  ASSERT_EQ(limits.tracks.size(), model.evidence_calibration->limits.size());
+  ASSERT_EQ(limits.tracks.size(), model.calibration->limits.tracks.size());
   EXPECT_TRUE(std::isnan(limits.tracks[0]));
   EXPECT_EQ(limits.tracks[1], 2.5);
-  EXPECT_EQ(loaded.evidence_calibration->method, "held-out");
-  EXPECT_EQ(loaded.evidence_calibration->budget, 0.25);
-  EXPECT_EQ(loaded.evidence_calibration->windows, 1234U);
-  EXPECT_EQ(loaded.evidence_calibration->recordings.at(0).bag, "normal.bag");
+  EXPECT_EQ(loaded.calibration->method, "held-out");
+  EXPECT_EQ(loaded.calibration->budget, 0.25);
+  EXPECT_EQ(loaded.calibration->windows, 1234U);
+  EXPECT_EQ(loaded.calibration->recordings.at(0).bag, "normal.bag");
   EXPECT_FALSE(loadModel([this] {
                  saveModel(someModel(), path("bare"));
                  return path("bare");
@@ -97,11 +97,11 @@ TEST_F(ModelFileTest, WhatSpeaksForRelationsComesBackAsItWasSaved) {
   const TrainedModel model = calibratedModel();
   saveModel(model, path("m"));
   const TrainedModel loaded = loadModel(path("m"));
-  EXPECT_EQ(loaded.evidence_calibration->false_alarms_per_hour, 0.125);
-  const std::vector<self_awareness::Relation>& relations = loaded.evidence_calibration->relations;
+  EXPECT_EQ(loaded.calibration->false_alarms_per_hour, 0.125);
+  const std::vector<core::evidence::Relation>& relations = loaded.calibration->relations;
   ASSERT_EQ(relations.size(), model.watched.tracks.size());
   for (std::size_t track = 0; track < relations.size(); ++track) {
-    const core::evidence::Relation relation = fromMessage(relations[track]);
+    const core::evidence::Relation& relation = relations[track];
     EXPECT_EQ(relation.watched, track == 1);
     EXPECT_EQ(relation.reaches, track == 1);
     EXPECT_EQ(relation.irregular, track == 1);
@@ -224,7 +224,7 @@ TEST_F(ModelFileTest, WhatThisVersionDoesNotKnowIsNotWatchedAndAllElseIs) {
   EXPECT_EQ(model.limits()->tracks.size(), model.watched.tracks.size());
   EXPECT_TRUE(std::isnan(model.limits()->tracks[0]));
   EXPECT_EQ(model.limits()->tracks[1], 2.5);
-  EXPECT_EQ(model.evidence_calibration->relations.size(), model.watched.tracks.size());
+  EXPECT_EQ(model.calibration->relations.size(), model.watched.tracks.size());
   for (std::size_t k = 0; k < model.findings.size(); ++k) {
     const core::evidence::LimitFinder::Recording& all = whole.findings[k];
     const core::evidence::LimitFinder::Recording& left = model.findings[k];

@@ -58,8 +58,8 @@ class ModelFileTest : public testing::Test {
       evidence.finish();
     }
     model.watch();
-    model.stamp = ros::Time(1700000000, 0);
-    self_awareness::Recording recording;
+    model.stamp = 1700000000 * core::kNanosecondsPerSecond;
+    core::RecordingInfo recording;
     recording.bag = "normal.bag";
     recording.events = 300;
     recording.fingerprint = 0xfedcba9876543210;
@@ -70,22 +70,22 @@ class ModelFileTest : public testing::Test {
   // Limits for everything that the model watches; the first track is not judged.
   static TrainedModel calibratedModel() {
     TrainedModel model = someModel();
-    model.evidence_calibration = self_awareness::EvidenceCalibration();
-    model.evidence_calibration->method = self_awareness::EvidenceCalibration::HELD_OUT;
-    model.evidence_calibration->limits.assign(model.watched.tracks.size(), 2.5);
-    model.evidence_calibration->limits.at(0) = std::numeric_limits<double>::quiet_NaN();
-    model.evidence_calibration->budget = 0.25;
-    model.evidence_calibration->windows = 1234;
-    model.evidence_calibration->recordings = model.recordings;
-    model.evidence_calibration->false_alarms_per_hour = 0.125;
-    self_awareness::Relation relation;
+    model.calibration = core::Calibration();
+    model.calibration->method = core::Calibration::kHeldOut;
+    model.calibration->limits.tracks.assign(model.watched.tracks.size(), 2.5);
+    model.calibration->limits.tracks.at(0) = std::numeric_limits<double>::quiet_NaN();
+    model.calibration->budget = 0.25;
+    model.calibration->windows = 1234;
+    model.calibration->recordings = model.recordings;
+    model.calibration->false_alarms_per_hour = 0.125;
+    core::evidence::Relation relation;
     relation.spread = 0.25;
     relation.starts = 2;
     relation.starts_needed = 3;
-    model.evidence_calibration->relations.assign(model.watched.tracks.size(), relation);
-    model.evidence_calibration->relations.at(1).watched = 1;
-    model.evidence_calibration->relations.at(1).reaches = 1;
-    model.evidence_calibration->relations.at(1).irregular = 1;
+    model.calibration->relations.assign(model.watched.tracks.size(), relation);
+    model.calibration->relations.at(1).watched = true;
+    model.calibration->relations.at(1).reaches = true;
+    model.calibration->relations.at(1).irregular = true;
     model.findings = someFindings(model);
     return model;
   }

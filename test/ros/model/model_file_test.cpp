@@ -34,9 +34,9 @@ TEST_F(ModelFileTest, AModelComesBackAsItWasSaved) {
   ASSERT_EQ(loaded.recordings.size(), 1U);
   EXPECT_EQ(loaded.recordings[0].fingerprint, model.recordings[0].fingerprint);
 
-  loaded.calibration = self_awareness::Calibration();
-  loaded.calibration->threshold = 1.25;
-  loaded.calibration->method = "youden";
+  loaded.paper_calibration = core::paper::Calibration();
+  loaded.paper_calibration->threshold = 1.25;
+  loaded.paper_calibration->method = "youden";
   saveModel(loaded, path("m"));
   EXPECT_EQ(loadModel(path("m")).threshold(), 1.25);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);

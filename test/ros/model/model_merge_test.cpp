@@ -34,7 +34,7 @@ void trainOn(TrainedModel& model, const Types& types, std::int64_t start, std::s
     evidence.add(event);
   }
   evidence.finish();
-  self_awareness::Recording recording;
+  core::RecordingInfo recording;
   recording.fingerprint = static_cast<std::uint64_t>(start);
   model.recordings.push_back(recording);
 }
@@ -86,13 +86,13 @@ TEST_F(ModelMergeTest, EdgesAreThoseOfBothAndTheStampTheLater) {
   first_.graph.connect("/a", "/x", "/b");
   second_.graph.connect("/a", "/x", "/c");
   second_.graph.connect("/b", "/y", "/c");
-  first_.stamp = ros::Time(3);
-  second_.stamp = ros::Time(2);
+  first_.stamp = 3;
+  second_.stamp = 2;
   merge(first_, second_);
   EXPECT_TRUE(first_.graph.edges() ==
               (std::set<core::SourceGraph::Edge>{
                   {"/a", "/x", "/b"}, {"/a", "/x", "/c"}, {"/b", "/y", "/c"}}));
-  EXPECT_EQ(first_.stamp, ros::Time(3));
+  EXPECT_EQ(first_.stamp, 3);
 }
 
 TEST_F(ModelMergeTest, TheTuningIsKept) {
@@ -119,8 +119,8 @@ TEST_F(ModelMergeTest, NumbersThatDifferAreThoseOfThisVersion) {
 }
 
 TEST_F(ModelMergeTest, CalibrationsAreDropped) {
-  first_.calibration = self_awareness::Calibration();
-  first_.evidence_calibration = self_awareness::EvidenceCalibration();
+  first_.paper_calibration = core::paper::Calibration();
+  first_.calibration = core::Calibration();
   merge(first_, second_);
   EXPECT_FALSE(first_.threshold());
   EXPECT_FALSE(first_.limits());
@@ -180,7 +180,7 @@ TEST_F(ModelMergeTest, AFieldHasOnlySoManyValuesTogether) {
 
 TEST_F(ModelMergeTest, AModelIsTheSameAfterItWasBytes) {
   both_.graph.connect("/a", "/x", "/c");
-  both_.stamp = ros::Time(3, 4);
+  both_.stamp = 3000000004;
   const TrainedModel again = fromBytes(toBytes(both_));
   EXPECT_TRUE(again.statistics == both_.statistics);
   EXPECT_TRUE(again.evidence[0] == both_.evidence[0]);

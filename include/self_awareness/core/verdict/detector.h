@@ -29,7 +29,7 @@ struct Verdict {
   bool changed = false;
   std::string evidence;           ///< what made the window abnormal or suspicious, once settled
   std::optional<Busy> busy;       ///< of such a window: the machine, not the suspects
-  bool all_silent = false;        ///< of such a window: nobody is heard any more
+  bool all_silent = false;        ///< of such a window: everybody should have been heard by now
   std::vector<Suspect> suspects;  ///< of an abnormal window that is not settling, best first
   /// Those of components that an alarm which stood before names for the first time: there may be
   /// another fault. One for each component.

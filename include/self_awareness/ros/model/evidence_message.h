@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "self_awareness/Evidence.h"
-#include "self_awareness/EvidenceCalibration.h"
 #include "self_awareness/EvidencePairs.h"
 #include "self_awareness/RecordingFindings.h"
 #include "self_awareness/Relation.h"
@@ -42,8 +41,5 @@ core::evidence::LimitFinder::Recording fromMessage(
 
 self_awareness::Relation toMessage(const core::evidence::Relation& relation);
 core::evidence::Relation fromMessage(const self_awareness::Relation& message);
-
-/// The limits of a calibration.
-core::evidence::Limits limitsOf(const self_awareness::EvidenceCalibration& message);
 
 }  // namespace self_awareness::ros1

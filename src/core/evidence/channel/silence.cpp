@@ -61,8 +61,9 @@ class ExpectedSilence : public Expectation {
     // What comes when something happens may stay away for as long as nothing does.
     const bool irregular =
         most > tuning.longest_wait * 1e9 && most > tuning.most_mean_gaps * model_.meanGap(id);
-    return irregular ? std::numeric_limits<double>::quiet_NaN()
-                     : model_.overdue(id, std::llround(most));
+    // Nor is anything known of what came at one moment only.
+    const double limit = irregular ? 0 : model_.overdue(id, std::llround(most));
+    return limit > 0 ? limit : std::numeric_limits<double>::quiet_NaN();
   }
 
  private:

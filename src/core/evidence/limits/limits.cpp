@@ -38,6 +38,8 @@ void LimitFinder::startRecording(std::shared_ptr<const Model> model, std::int64_
   finish();
   judging_ = std::move(model);
   robot_start_ = robot_start;
+  start_.reset();
+  firsts_.assign(judging_ == model_ ? model_->size() : 0, -1);
   startScoring();
 }
 
@@ -61,6 +63,10 @@ ObservedEvent LimitFinder::observe(const Event& event) {
     startPart();
   }
   recording_.end = event.stamp;
+  start_ = start_.value_or(event.stamp);
+  if (event.id < firsts_.size() && firsts_[event.id] < 0) {
+    firsts_[event.id] = std::max<std::int64_t>(event.stamp - *start_, 0);
+  }
   const ObservedEvent observed{event, !model_->knows(event.id), scorer_->add(event)};
   if (!observed.unknown) {
     if (observed.gap) {
@@ -84,6 +90,8 @@ void LimitFinder::onClockStep() {
 
 void LimitFinder::finish() {
   windows_.finish();
+  recording_.firsts = std::move(firsts_);
+  firsts_.clear();
   endRecording();
 }
 
@@ -180,12 +188,33 @@ LimitFinder::Found LimitFinder::find() const {
   found.relations = findRelations();
   const LimitSearch search(*model_, findings_, found.relations, parameters_);
   found.limits.tracks = search.limits();
+  found.limits.firsts = latestFirsts();
   found.expected_rate = search.rate();
   return found;
 }
 
+std::vector<std::int64_t> LimitFinder::latestFirsts() const {
+  std::vector<std::int64_t> latest;
+  for (const Recording& recording : findings_) {
+    if (recording.firsts.empty()) {
+      continue;
+    }
+    if (latest.empty()) {
+      latest = recording.firsts;
+    }
+    std::transform(latest.begin(), latest.end(), recording.firsts.begin(), latest.begin(),
+                   [](std::int64_t one, std::int64_t other) {
+                     return one < 0 || other < 0 ? -1 : std::max(one, other);
+                   });
+  }
+  return latest;
+}
+
 void LimitFinder::merge(const Findings& other) {
   for (const Recording& recording : other) {
+    if (!recording.firsts.empty() && recording.firsts.size() != model_->size()) {
+      throw std::invalid_argument("the findings are those of another model");
+    }
     for (const Recording::Part& part : recording.parts) {
       if (part.evidence.size() != model_->tracks().size() ||
           part.longest_gaps.size() != model_->size()) {

@@ -90,7 +90,7 @@ def _too_rare(judged: Judged) -> List[Unjudged]:
 
 
 def _without_limit(judged: Judged) -> List[Unjudged]:
-    calibration = judged.by.trained.evidence_calibration
+    calibration = judged.by.trained.calibration
     if judged.by.evidence is None or calibration is None:
         return []
     left_out = Counter(track.channel

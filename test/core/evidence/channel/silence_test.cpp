@@ -2,10 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 
 #include "channel_case.h"
+#include "core/evidence/channel/channel.h"
 
 namespace self_awareness::core::evidence {
 namespace {
@@ -35,6 +37,12 @@ TEST_F(SilenceTest, IsCertainOnceItHasLastedAWindowLonger) {
   EXPECT_FALSE(scorer_.isCertain(overdue_, limit));
   EXPECT_GT(overdueAt(kSecond + kWindow + kMillisecond), limit);
   EXPECT_TRUE(scorer_.isCertain(overdue_, limit));
+}
+
+TEST_F(SilenceTest, WhatNeverPausedHasNoLimit) {
+  const Expectation& expectation = model_->expectation(overdue_);
+  EXPECT_GT(expectation.limit(overdue_, kSecond), 0);
+  EXPECT_TRUE(std::isnan(expectation.limit(overdue_, 0))) << "all came at one moment";
 }
 
 TEST_F(SilenceTest, ASuspectIsToldOfByWhatTrainingMeasured) {

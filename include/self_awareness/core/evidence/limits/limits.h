@@ -43,6 +43,9 @@ class LimitFinder : private WindowObserver {
     };
     std::vector<Part> parts;
     std::vector<Said> said;  ///< by track
+    /// From the start of a recording that was not trained on to the first event of a type [ns], by
+    /// id; -1: it did not come. Empty where the clock was set afterwards: what follows says it.
+    std::vector<std::int64_t> firsts{};
   };
   /// What recordings say. Findings of some add up to those of all, in any order.
   using Findings = std::vector<Recording>;
@@ -95,6 +98,8 @@ class LimitFinder : private WindowObserver {
   void close(const Window& window, std::int64_t end) override;
   void onClockStep() override;
   void endRecording();
+  /// The latest of the first events, of all recordings that were not trained on; as in Limits.
+  std::vector<std::int64_t> latestFirsts() const;
   void startScoring();
   void startPart();
   /// Joins neighbouring parts: they then last twice as long.
@@ -108,7 +113,9 @@ class LimitFinder : private WindowObserver {
   std::unique_ptr<Scorer> scorer_;
   Windows windows_;
   std::int64_t robot_start_ = 0;             // of the recording [ns]; 0: not known
-  std::optional<std::int64_t> first_stamp_;  // of the recording [ns]
+  std::optional<std::int64_t> first_stamp_;  // of the recording, or since a step of the clock [ns]
+  std::optional<std::int64_t> start_;        // of the recording [ns]
+  std::vector<std::int64_t> firsts_;         // of the recording, as in Recording
   Recording recording_;                      // the open one
   std::uint64_t part_windows_ = 0;           // length of its parts
   std::unique_ptr<MisleadingPairs> misleading_;

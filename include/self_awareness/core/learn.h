@@ -1,0 +1,115 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "self_awareness/core/evidence/limits/cross_fit.h"
+#include "self_awareness/core/evidence/limits/limits.h"
+#include "self_awareness/core/model.h"
+#include "self_awareness/core/stream/clock_steps.h"
+#include "self_awareness/core/stream/event.h"
+#include "self_awareness/core/training.h"
+
+namespace self_awareness::core {
+
+/// A recording of normal operation.
+struct Recording {
+  std::vector<Event> events;  ///< in their order
+  std::string name;           ///< as the model calls it; may be empty
+  /// Any number of its own, such as a hash: it says which half of the training the recording
+  /// belongs to, and whether it is the same as another. None: its place among the others.
+  std::optional<std::uint64_t> fingerprint{};
+  std::int64_t robot_start = 0;  ///< when the robot was started [ns]; 0: not known
+  /// With which the clock was set forward, which the stamps do not say by themselves.
+  ClockSteps clock_steps{};
+};
+
+/// Where the second part of a recording begins [ns]: each part is learned from by itself as long
+/// as all recordings belong to one half (Training); 0 without events.
+std::int64_t middleOf(const std::vector<Event>& events);
+
+/// Finds the limits of a model by recordings of normal operation (docs/method.md, section 5):
+/// those that it was trained on, each judged by what the others say, and those that it was not.
+class Calibrator {
+ public:
+  struct Parameters {
+    std::int64_t settle_time = 5000000000;  ///< left out at a recording's start [ns]
+    double false_alarms_per_hour = 0.5;     ///< allowed, > 0: the budget
+  };
+
+  /// @param model only what it watches is needed, and its recordings
+  /// @throw std::invalid_argument as Model::requireWatched(), or if a parameter is out of range
+  Calibrator(const Model& model, const Parameters& parameters);
+  /// A calibrator without findings, for the same model: another thread may use it.
+  std::unique_ptr<Calibrator> part() const;
+
+  /// Takes in a recording that the model was trained on; ids are the model's.
+  /// @throw std::invalid_argument if it has no fingerprint
+  void addTrainedOn(const Recording& recording);
+  /// Takes in a recording that the model was not trained on. Ids from the model's number of event
+  /// types on are unknown events.
+  void addHeldOut(const Recording& recording);
+
+  /// What the recordings said. Findings of some add up to those of all, in any order.
+  const evidence::LimitFinder::Findings& findings() const { return finder_.findings(); }
+  /// Adds what recordings said elsewhere.
+  /// @throw std::invalid_argument if the findings belong to another model
+  void merge(const evidence::LimitFinder::Findings& findings) { finder_.merge(findings); }
+
+  /// Finds the limits by all findings; the recordings and the stamp are the caller's to add.
+  /// @throw std::invalid_argument if there was too little data, in words
+  Calibration find() const;
+
+ private:
+  Calibrator(std::shared_ptr<const evidence::CrossFit> models,
+             const evidence::LimitFinder::Parameters& parameters, const SourceGraph& graph,
+             std::optional<std::size_t> only_half);
+  void judge(const Recording& recording, std::size_t begin, std::size_t end,
+             std::optional<std::size_t> half);
+
+  std::shared_ptr<const evidence::CrossFit> models_;
+  evidence::LimitFinder finder_;
+  std::optional<std::size_t> only_half_;  // that all recordings of the training belong to
+};
+
+/// Learns a model from recordings of normal operation, one after the other. It keeps their events
+/// until the end: limits are found in a second pass. Programs that learn from more than the memory
+/// holds do the same in three steps: Training, Model::watch(), Calibrator.
+class Learner {
+ public:
+  struct Parameters {
+    Training::Parameters counting;  ///< what for, and the windows' length
+    Calibrator::Parameters limits;  ///< how they are found
+    evidence::Tuning tuning{};      ///< the numbers of the method
+  };
+
+  /// Learns with the default parameters.
+  /// @param graph whose messages reach whom; empty: not known
+  explicit Learner(SourceGraph graph = {});
+  /// @throw std::invalid_argument if a parameter is out of range
+  Learner(const Parameters& parameters, SourceGraph graph);
+
+  /// Id of an event type; a new type is added.
+  EventId intern(const EventType& type) { return training_.intern(type); }
+  /// Learns from a recording.
+  /// @throw std::invalid_argument if it has no events
+  void add(Recording recording);
+  /// Ends the learning. The model has limits if it was learned for the evidence detector, and
+  /// the recordings are long enough: else why() says why not.
+  /// @throw std::logic_error if it has ended already
+  Model learn();
+  /// Why learn() has found no limits; empty: it has.
+  const std::string& why() const { return why_; }
+
+ private:
+  Parameters parameters_;
+  Training training_;
+  SourceGraph graph_;
+  std::vector<Recording> recordings_;
+  std::string why_;
+};
+
+}  // namespace self_awareness::core
