@@ -66,6 +66,7 @@ EventRecorder::EventRecorder(const ros::NodeHandle& node_handle,
       parameters_(Parameters::load(private_node_handle)),
       tells_sources_(parameters_.encoding.source == ros1::EncodingRules::Source::kCallerId),
       robot_start_(std::llround(parameters_.robot_start * 1e9)),
+      diagnosed_(steadyNow()),
       spinner_(1, &queue_) {
   node_handle_.setCallbackQueue(&queue_);
   private_node_handle_.setCallbackQueue(&queue_);
@@ -77,7 +78,10 @@ EventRecorder::EventRecorder(const ros::NodeHandle& node_handle,
   ros1::LiveEvents::Handlers handlers;
   handlers.on_event = [this](const core::Event& event) { onEvent(event); };
   handlers.on_connection = [this] { discovery_->pollNow(); };
-  handlers.on_arrivals = [this] { live_events_->deliver(); };
+  handlers.on_arrivals = [this] {
+    watchClock(rosNow());
+    live_events_->deliver();
+  };
   live_events_ =
       std::make_unique<ros1::LiveEvents>(node_handle_, parameters_.queue_size, handlers);
   const auto encoder = std::make_shared<const ros1::Encoder>(
@@ -120,7 +124,8 @@ void EventRecorder::onEvent(const core::Event& event) {
 void EventRecorder::onTick(const ros::SteadyTimerEvent& /*tick*/) {
   const std::int64_t now = rosNow();
   const Discovery::State discovered = discovery_->state();
-  watch(now, discovered.master_restarts);
+  watchClock(now);
+  watchMaster(now, discovered.master_restarts);
   if (now != 0 && !finished_) {  // else simulated time has not begun
     record(now, discovered.graph);
   }
@@ -159,12 +164,19 @@ void EventRecorder::record(std::int64_t now, const std::shared_ptr<const ros1::G
   }
 }
 
-void EventRecorder::watch(std::int64_t now, std::size_t restarts) {
+void EventRecorder::watchClock(std::int64_t now) {
   const bool set = clock_watch_.look(now, steadyNow(), ros::Time::isSimTime());
-  if (set && file_) {
-    ROS_WARN("ROS time was set: a new recording begins");
-    end(now);
+  if (!set || !file_) {
+    return;
   }
+  ROS_WARN("ROS time was set: a new recording begins");
+  end(now);
+  if (now != 0) {  // else simulated time has not begun again
+    begin(now);
+  }
+}
+
+void EventRecorder::watchMaster(std::int64_t now, std::size_t restarts) {
   if (restarts != master_restarts_) {
     ROS_WARN("the master was restarted: the next recording is of another start of the robot");
     master_restarts_ = restarts;

@@ -100,8 +100,10 @@ class EventRecorder : public NodeProgram {
   void end(std::int64_t now);
   /// Does something that writes; what goes wrong ends the file, and is told.
   void attempt(const std::function<void()>& write);
-  /// Starts over where the robot has: with the master, or with the clock.
-  void watch(std::int64_t now, std::size_t master_restarts);
+  /// Begins a new recording where ROS time was set.
+  void watchClock(std::int64_t now);
+  /// Ends the recording where the master was restarted.
+  void watchMaster(std::int64_t now, std::size_t master_restarts);
   /// Writes what was heard, and goes on in the next file when it is time.
   void record(std::int64_t now, const std::shared_ptr<const ros1::Graph>& graph);
   std::string newPath() const;
@@ -132,7 +134,7 @@ class EventRecorder : public NodeProgram {
   std::uint64_t events_ = 0;                        // since the start of the node
   std::uint64_t bytes_ = 0;                         // of the files that are complete
   std::size_t files_ = 0;                           // that are complete
-  std::int64_t diagnosed_ = 0;                      // steady time [ns]
+  std::int64_t diagnosed_;                          // steady time [ns]
 
   std::unique_ptr<ros1::LiveEvents> live_events_;
   std::unique_ptr<Discovery> discovery_;

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Replays and simulated time: /clock is absent, stands still, jumps, loops; bags lose sources."""
 
+import glob
 import os
 import random
 import re
@@ -20,6 +21,7 @@ from std_msgs.msg import String
 
 from live_system import (START_S, MonitorListener, Process, again_if_clock_was_set,
                          await_condition, make_model, operation, write_bag)
+from self_awareness import EncodingRules, read_events
 from self_awareness.msg import SelfAwareness
 
 COMPONENTS = (('/laser', '/scan', 0.05), ('/battery', '/charge', 0.5))
@@ -39,14 +41,20 @@ def recording(seed: int, length: float) -> List[Tuple[float, str, str]]:
 
 
 class SimulatedRobot:
-    """Publishes /clock and the components' messages; the clock is set and stopped at will."""
+    """Publishes /clock and the components' messages; the clock is set and stopped at will.
 
-    def __init__(self) -> None:
+    Args:
+        pace: of its time, in which its messages come, too.
+    """
+
+    def __init__(self, pace: float = 1) -> None:
+        self.published = 0
+        self._pace = pace
         self._clock = rospy.Publisher('/clock', Clock, queue_size=100)
         self._publishers = {topic: rospy.Publisher(topic, String, queue_size=100)
                             for _, topic, _ in COMPONENTS}
         self._lock = threading.Lock()
-        self._ahead = START_S - time.monotonic()
+        self._ahead = START_S - self._time()
         self._standing = False
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._run)
@@ -70,18 +78,22 @@ class SimulatedRobot:
         with self._lock:
             self._standing = True
 
+    def _time(self) -> float:
+        return self._pace * time.monotonic()
+
     def _run(self) -> None:
         rng = random.Random(0)
-        due = {topic: time.monotonic() for topic in self._publishers}
+        due = {topic: self._time() for topic in self._publishers}
         while not self._ended.wait(0.01):
             with self._lock:
-                now, ahead, standing = time.monotonic(), self._ahead, self._standing
+                now, ahead, standing = self._time(), self._ahead, self._standing
             if standing:
                 continue
             self._clock.publish(Clock(rospy.Time.from_sec(min(now + ahead, END_S))))
             for _, topic, period in COMPONENTS:
                 if due[topic] <= now:
                     self._publishers[topic].publish(String())
+                    self.published += 1
                     due[topic] += period * rng.uniform(0.7, 1.3)
 
 
@@ -246,6 +258,25 @@ class SimTimeTest(unittest.TestCase):
             self.assertIn('not judged any more: ROS time stands still',
                           listener.diagnostics('communication')[-1].message)
             self.check_no_alarm(listener)
+
+    @again_if_clock_was_set
+    def test_recordings_are_complete_and_end_where_the_clock_was_set(self) -> None:
+        with MonitorListener('/recorder') as listener, \
+                Process('rosrun', 'self_awareness', 'record_events', '_subscribe:=all',
+                        '_output:=' + self.path('run')), SimulatedRobot(pace=4) as robot:
+            await_condition('it is recorded', lambda: (
+                listener.value('recording', 'events') or '0') != '0', 20)
+            before = robot.published
+            for jump_s in (300.0, -1000.0, 0.0):
+                seen = robot.published
+                await_condition('more', lambda: robot.published > seen + 50, 20)
+                robot.set_clock_by(jump_s)
+        recorded = [read_events(log, EncodingRules.defaults(), recording=0).stamps
+                    for log in glob.glob(self.path('run*.bag'))]
+        self.assertEqual(len(recorded), 3)
+        for stamps in recorded:
+            self.assertLess(max(stamps) - min(stamps), 100 * 10**9)
+        self.assertGreater(sum(map(len, recorded)), 0.8 * (robot.published - before))
 
     @again_if_clock_was_set
     def test_the_end_of_ros_time(self) -> None:
