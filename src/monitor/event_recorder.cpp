@@ -40,16 +40,16 @@ EventRecorder::Parameters EventRecorder::Parameters::load(
   parameters.min_space = reader.number("min_space", parameters.min_space, {0, 1e15}, "MB");
   parameters.robot_start =
       reader.seconds("robot_start", ros::WallTime::now().toSec(), {0, kLatestTime});
-  parameters.subscribe = reader.choice<SubscribePolicy>(
+  parameters.live.subscribe = reader.choice<SubscribePolicy>(
       "subscribe", "used", {{"used", SubscribePolicy::kUsed}, {"all", SubscribePolicy::kAll}});
-  parameters.poll_interval =
-      reader.seconds("poll_interval", parameters.poll_interval, {0.01, 3600});
-  parameters.queue_size = static_cast<std::uint32_t>(
-      reader.wholeNumber("queue_size", static_cast<int>(parameters.queue_size), {1, 1000000}));
+  parameters.live.poll_interval =
+      reader.seconds("poll_interval", parameters.live.poll_interval, {0.01, 3600});
+  parameters.live.queue_size = static_cast<std::uint32_t>(reader.wholeNumber(
+      "queue_size", static_cast<int>(parameters.live.queue_size), {1, 1000000}));
   reader.expectNamespace("encoding");
   parameters.encoding = loadEncoding(private_node_handle);
-  parameters.diagnostic_period =
-      reader.seconds("diagnostic_period", parameters.diagnostic_period, {0.1, 3600});
+  parameters.live.diagnostic_period =
+      reader.seconds("diagnostic_period", parameters.live.diagnostic_period, {0.1, 3600});
   parameters.diagnostics = reader.text("diagnostics", parameters.diagnostics);
   reader.warnOfUnknown();
   return parameters;
@@ -58,115 +58,52 @@ EventRecorder::Parameters EventRecorder::Parameters::load(
 EventRecorder::File::File(const std::string& final_path)
     : path(final_path), log(final_path + kActive) {}
 
-EventRecorder::EventRecorder(const ros::NodeHandle& node_handle,
+EventRecorder::EventRecorder(ros::NodeHandle node_handle,
                              const ros::NodeHandle& private_node_handle, std::function<void()> end)
-    : node_handle_(node_handle),
-      private_node_handle_(private_node_handle),
+    : private_node_handle_(private_node_handle),
       end_(std::move(end)),
       parameters_(Parameters::load(private_node_handle)),
-      tells_sources_(parameters_.encoding.source == ros1::EncodingRules::Source::kCallerId),
-      robot_start_(std::llround(parameters_.robot_start * 1e9)),
-      diagnosed_(steadyNow()),
-      spinner_(1, &queue_) {
-  node_handle_.setCallbackQueue(&queue_);
+      robot_start_(std::llround(parameters_.robot_start * 1e9)) {
+  node_handle.setCallbackQueue(&queue_);
   private_node_handle_.setCallbackQueue(&queue_);
   diagnostics_ =
-      node_handle_.advertise<diagnostic_msgs::DiagnosticArray>(parameters_.diagnostics, 1);
+      node_handle.advertise<diagnostic_msgs::DiagnosticArray>(parameters_.diagnostics, 1);
   start_publisher_ =
       private_node_handle_.advertise<self_awareness::EventLogStart>("start", 1, true);
   finish_ = private_node_handle_.advertiseService("finish", &EventRecorder::onFinish, this);
-  ros1::LiveEvents::Handlers handlers;
-  handlers.on_event = [this](const core::Event& event) { onEvent(event); };
-  handlers.on_connection = [this] { discovery_->pollNow(); };
-  handlers.on_arrivals = [this] {
-    watchClock(rosNow());
-    live_events_->deliver();
-  };
-  live_events_ =
-      std::make_unique<ros1::LiveEvents>(node_handle_, parameters_.queue_size, handlers);
-  const auto encoder = std::make_shared<const ros1::Encoder>(
+  live_ = std::make_unique<LiveSource>(queue_, node_handle, parameters_.live,
+                                       std::vector<std::string>{finish_.getService()}, *this);
+  LiveSource::Wanted wanted;
+  wanted.encoder = std::make_shared<const ros1::Encoder>(
       parameters_.encoding, [this](const core::EventType& type) {
         return ros1::internUpTo(ros1::kMostEventTypes, type, vocabulary_);
       });
-  live_events_->setEncoder(encoder, ros1::OwnOutput(ros::this_node::getName(), {}),
-                           core::kDefaultWindow);
-  discovery_ = std::make_unique<Discovery>(node_handle_, live_events_->arrivals(),
-                                           parameters_.subscribe, parameters_.poll_interval,
-                                           std::vector<std::string>{finish_.getService()});
-  Discovery::Wanted wanted;
-  wanted.encoder = encoder;
-  discovery_->setWanted(std::move(wanted));
-  timer_ = private_node_handle_.createSteadyTimer(ros::WallDuration(kTick), &EventRecorder::onTick,
-                                                  this);
-  spinner_.start();
+  wanted.own_output = ros1::OwnOutput(ros::this_node::getName(), {});
+  wanted.tick = ros::WallDuration(kTick);
+  live_->setWanted(std::move(wanted));
+  live_->start();
 }
 
 EventRecorder::~EventRecorder() {
   finish();
-  discovery_.reset();
-  live_events_.reset();
 }
 
 void EventRecorder::finish() {
-  spinner_.stop();  // first: what it serves uses the others
-  live_events_->deliver();
+  live_->stop();
+  live_->deliver();
   end(rosNow());
 }
 
 void EventRecorder::onEvent(const core::Event& event) {
-  if (clock_watch_.isStale(event.stamp) || !file_) {
+  if (!file_) {
     return;
   }
   ++events_;
   attempt([&] { packer_->add(event, vocabulary_); });
 }
 
-void EventRecorder::onTick(const ros::SteadyTimerEvent& /*tick*/) {
-  const std::int64_t now = rosNow();
-  const Discovery::State discovered = discovery_->state();
-  watchClock(now);
-  watchMaster(now, discovered.master_restarts);
-  if (now != 0 && !finished_) {  // else simulated time has not begun
-    record(now, discovered.graph);
-  }
-  if (core::toSeconds(steadyNow() - diagnosed_) >= parameters_.diagnostic_period) {
-    diagnosed_ = steadyNow();
-    live_events_->forgetClosedConnections();
-    publishDiagnostics();
-  }
-}
-
-void EventRecorder::record(std::int64_t now, const std::shared_ptr<const ros1::Graph>& graph) {
+void EventRecorder::onClockSet(std::int64_t now) {
   if (!file_) {
-    begin(now);
-  }
-  if (graph && graph != known_graph_) {
-    known_graph_ = graph;
-    if (tells_sources_) {
-      live_events_->setGraph(*graph);
-    }
-  }
-  live_events_->deliver();
-  if (file_) {
-    attempt([&] {
-      packer_->setDropped(live_events_->dropped());
-      packer_->advance(now - kGrace);
-      if (graph && graph != graph_) {
-        file_->log.writeGraph(*graph, now);
-        graph_ = graph;
-      }
-    });
-  }
-  const double minutes = core::toSeconds(steadyNow() - began_) / 60;
-  if (file_ && (minutes >= parameters_.split || !hasSpace())) {
-    end(now);
-    begin(now);
-  }
-}
-
-void EventRecorder::watchClock(std::int64_t now) {
-  const bool set = clock_watch_.look(now, steadyNow(), ros::Time::isSimTime());
-  if (!set || !file_) {
     return;
   }
   ROS_WARN("ROS time was set: a new recording begins");
@@ -176,12 +113,34 @@ void EventRecorder::watchClock(std::int64_t now) {
   }
 }
 
-void EventRecorder::watchMaster(std::int64_t now, std::size_t restarts) {
-  if (restarts != master_restarts_) {
-    ROS_WARN("the master was restarted: the next recording is of another start of the robot");
-    master_restarts_ = restarts;
-    robot_start_ = wallNow();
+void EventRecorder::onMasterRestart(std::int64_t now) {
+  ROS_WARN("the master was restarted: the next recording is of another start of the robot");
+  robot_start_ = wallNow();
+  end(now);
+}
+
+void EventRecorder::onTick(std::int64_t now) {
+  if (now == 0 || finished_) {  // 0: simulated time has not begun
+    return;
+  }
+  if (!file_) {
+    begin(now);
+  }
+  live_->deliver();
+  if (file_) {
+    attempt([&] {
+      packer_->setDropped(live_->events().dropped());
+      packer_->advance(now - kGrace);
+      if (live_->graph() && live_->graph() != graph_) {
+        graph_ = live_->graph();
+        file_->log.writeGraph(*graph_, now);
+      }
+    });
+  }
+  const double minutes = core::toSeconds(steadyNow() - began_) / 60;
+  if (file_ && (minutes >= parameters_.split || !hasSpace())) {
     end(now);
+    begin(now);
   }
 }
 
@@ -257,7 +216,7 @@ bool EventRecorder::hasSpace() const {
 
 bool EventRecorder::onFinish(std_srvs::Trigger::Request& /*request*/,
                              std_srvs::Trigger::Response& response) {
-  live_events_->deliver();
+  live_->deliver();
   end(rosNow());
   finished_ = true;
   response.success = problem_.empty();
@@ -266,7 +225,7 @@ bool EventRecorder::onFinish(std_srvs::Trigger::Request& /*request*/,
   return true;
 }
 
-void EventRecorder::publishDiagnostics() const {
+void EventRecorder::onReport() {
   using diagnostic_msgs::DiagnosticStatus;
   diagnostic_updater::DiagnosticStatusWrapper status;
   if (problem_.empty()) {
@@ -279,13 +238,13 @@ void EventRecorder::publishDiagnostics() const {
                         "more than " + std::to_string(ros1::kMostEventTypes) +
                             " event types: further ones are not told apart");
   }
-  tellClock(clock_watch_.standsStillFor(), rosNow(), status);
+  tellClock(live_->clock().standsStillFor(), rosNow(), status);
   status.add("file", file_ ? file_->log.path() : "none");
   status.add("files before", files_);
   status.add("events", events_);
   status.add("size [MB]",
              static_cast<double>(bytes_ + (file_ ? file_->log.size() : 0)) / kMegabyte);
-  status.add("dropped messages", live_events_->dropped());
+  status.add("dropped messages", live_->events().dropped());
   status.add("event types", vocabulary_.size());
   ros1::DiagnosticStatuses statuses(ros::this_node::getName(), ros1::kNoHardware, rosNow());
   statuses.add("recording", status);

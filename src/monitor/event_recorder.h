@@ -4,8 +4,6 @@
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
 #include <ros/service_server.h>
-#include <ros/spinner.h>
-#include <ros/steady_timer.h>
 #include <std_srvs/Trigger.h>
 
 #include <cstddef>
@@ -15,14 +13,13 @@
 #include <optional>
 #include <string>
 
-#include "discovery.h"
+#include "live_source.h"
 #include "run_node.h"
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/ros/bag/event_log_packer.h"
 #include "self_awareness/ros/bag/event_log_writer.h"
 #include "self_awareness/ros/encoding.h"
-#include "self_awareness/ros/live/clock_watch.h"
-#include "self_awareness/ros/live/live_events.h"
+#include "self_awareness/ros/graph.h"
 
 namespace self_awareness {
 
@@ -54,11 +51,11 @@ namespace self_awareness {
 ///
 /// **Recordings**: a new one begins with each file, and after ROS time was set. The robot is taken
 /// to start with this node (but for `~robot_start`), and with its master.
-class EventRecorder : public NodeProgram {
+class EventRecorder : public NodeProgram, public LiveSource::Listener {
  public:
   /// @param end called by ~finish; must not block
   /// @throw std::invalid_argument if a parameter is out of range
-  EventRecorder(const ros::NodeHandle& node_handle, const ros::NodeHandle& private_node_handle,
+  EventRecorder(ros::NodeHandle node_handle, const ros::NodeHandle& private_node_handle,
                 std::function<void()> end);
   ~EventRecorder() override;
   EventRecorder(const EventRecorder&) = delete;
@@ -72,12 +69,9 @@ class EventRecorder : public NodeProgram {
     std::string output = "normal";
     double split = 30;  // [min]
     ros1::EncodingRules encoding;
-    ros1::SubscribePolicy subscribe = ros1::SubscribePolicy::kUsed;
     double min_space = 1000;  // [MB]
     double robot_start = 0;   // wall time [s]
-    double poll_interval = 1;
-    std::uint32_t queue_size = 1000;
-    double diagnostic_period = 1;  // [s]
+    LiveParameters live;
     std::string diagnostics = "/diagnostics";
 
     static Parameters load(const ros::NodeHandle& private_node_handle);
@@ -89,10 +83,12 @@ class EventRecorder : public NodeProgram {
     ros1::EventLogWriter log;
   };
 
-  void onEvent(const core::Event& event);
-  void onTick(const ros::SteadyTimerEvent& tick);
+  void onEvent(const core::Event& event) override;
+  void onClockSet(std::int64_t now) override;
+  void onMasterRestart(std::int64_t now) override;
+  void onTick(std::int64_t now) override;
+  void onReport() override;
   bool onFinish(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
-  void publishDiagnostics() const;
 
   /// Begins a recording in a file of its own, if there is space.
   void begin(std::int64_t now);
@@ -100,17 +96,10 @@ class EventRecorder : public NodeProgram {
   void end(std::int64_t now);
   /// Does something that writes; what goes wrong ends the file, and is told.
   void attempt(const std::function<void()>& write);
-  /// Begins a new recording where ROS time was set.
-  void watchClock(std::int64_t now);
-  /// Ends the recording where the master was restarted.
-  void watchMaster(std::int64_t now, std::size_t master_restarts);
-  /// Writes what was heard, and goes on in the next file when it is time.
-  void record(std::int64_t now, const std::shared_ptr<const ros1::Graph>& graph);
   std::string newPath() const;
   bool hasSpace() const;
 
   ros::CallbackQueue queue_;
-  ros::NodeHandle node_handle_;
   ros::NodeHandle private_node_handle_;
   const std::function<void()> end_;
   Parameters parameters_;
@@ -118,27 +107,18 @@ class EventRecorder : public NodeProgram {
   ros::Publisher diagnostics_;
   ros::Publisher start_publisher_;
   ros::ServiceServer finish_;
-  ros::SteadyTimer timer_;
 
-  ros1::ClockWatch clock_watch_;
-  const bool tells_sources_;
-  std::int64_t robot_start_ = 0;  // wall time [ns]
-  std::size_t master_restarts_ = 0;
+  std::int64_t robot_start_;    // wall time [ns]
   std::unique_ptr<File> file_;  // none: nothing is recorded
   std::optional<ros1::EventLogPacker> packer_;
-  std::int64_t began_ = 0;                          // the file, steady time [ns]
-  std::shared_ptr<const ros1::Graph> known_graph_;  // the newest
-  std::shared_ptr<const ros1::Graph> graph_;        // that was written to the file last
-  bool finished_ = false;                           // nothing is recorded any more
-  std::string problem_;                             // why nothing is recorded; empty: it is
-  std::uint64_t events_ = 0;                        // since the start of the node
-  std::uint64_t bytes_ = 0;                         // of the files that are complete
-  std::size_t files_ = 0;                           // that are complete
-  std::int64_t diagnosed_;                          // steady time [ns]
-
-  std::unique_ptr<ros1::LiveEvents> live_events_;
-  std::unique_ptr<Discovery> discovery_;
-  ros::AsyncSpinner spinner_;
+  std::int64_t began_ = 0;                    // the file, steady time [ns]
+  std::shared_ptr<const ros1::Graph> graph_;  // that was written to the file last
+  bool finished_ = false;                     // nothing is recorded any more
+  std::string problem_;                       // why nothing is recorded; empty: it is
+  std::uint64_t events_ = 0;                  // since the start of the node
+  std::uint64_t bytes_ = 0;                   // of the files that are complete
+  std::size_t files_ = 0;                     // that are complete
+  std::unique_ptr<LiveSource> live_;          // last: its listener uses all of the above
 };
 
 }  // namespace self_awareness

@@ -17,12 +17,6 @@ namespace self_awareness {
 namespace {
 
 constexpr int kTicksPerWindow = 4;
-// Ticks of a busy machine are late by less.
-constexpr std::int64_t kLongestPause = core::kNanosecondsPerSecond / 2;
-
-ros::WallDuration tickFor(std::int64_t window) {
-  return ros::WallDuration(core::toSeconds(window) / kTicksPerWindow);
-}
 
 ros1::HeardTally::Moment momentNow() {
   timespec cpu{};
@@ -32,24 +26,21 @@ ros1::HeardTally::Moment momentNow() {
 
 }  // namespace
 
-Monitor::Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& private_node_handle,
+Monitor::Monitor(ros::NodeHandle node_handle, const ros::NodeHandle& private_node_handle,
                  const std::string& name)
-    : node_handle_(node_handle),
-      private_node_handle_(private_node_handle),
+    : private_node_handle_(private_node_handle),
       parameters_(MonitorParameters::load(private_node_handle)),
       diagnostics_(node_handle, name, parameters_.hardware_id, parameters_.source_diagnostics),
       announcer_({[this](const self_awareness::SelfAwareness& status) {
                     status_publisher_.publish(status);
                   },
                   [this](const self_awareness::SelfAwareness& alarm) { publishAlarm(alarm); },
-                  [this] { publishDiagnostics(); }}),
+                  [this] { live_->report(); }}),
       heard_(momentNow()),
-      recorder_(parameters_.recorder,
-                [this] {
-                  return FlightRecorder::Source{session_->encoding(), graph_};
-                }),
-      spinner_(1, &queue_) {
-  node_handle_.setCallbackQueue(&queue_);
+      recorder_(parameters_.recorder, [this] {
+        return FlightRecorder::Source{session_->encoding(), live_->graph()};
+      }) {
+  node_handle.setCallbackQueue(&queue_);
   private_node_handle_.setCallbackQueue(&queue_);
   status_publisher_ = private_node_handle_.advertise<self_awareness::SelfAwareness>("status", 100);
   alarm_publisher_ =
@@ -62,19 +53,8 @@ Monitor::Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& priv
   for (const ros::ServiceServer& service : services_) {
     service_names.push_back(service.getService());
   }
-  ros1::LiveEvents::Handlers handlers;
-  handlers.on_event = [this](const core::Event& event) { onEvent(event); };
-  // Whether its messages must be read cannot wait for the next poll.
-  handlers.on_connection = [this] { discovery_->pollNow(); };
-  handlers.on_arrivals = [this] { onArrivals(); };
-  handlers.on_dropped = [this](const ros1::Publication& publication) { onDropped(publication); };
-  live_events_ =
-      std::make_unique<ros1::LiveEvents>(node_handle_, parameters_.queue_size, handlers);
-  timer_ = private_node_handle_.createSteadyTimer(tickFor(core::kDefaultWindow), &Monitor::onTick,
-                                                  this);
-  discovery_ =
-      std::make_unique<Discovery>(node_handle_, live_events_->arrivals(), parameters_.subscribe,
-                                  parameters_.poll_interval, service_names);
+  live_ = std::make_unique<LiveSource>(queue_, node_handle, parameters_.live,
+                                       std::move(service_names), *this);
   try {
     load(parameters_.model);
   } catch (const ros1::ModelFileError& error) {
@@ -82,17 +62,15 @@ Monitor::Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& priv
     model_error_ = error.what();
     ROS_ERROR("%s", error.what());
   }
-  spinner_.start();
+  live_->start();
 }
 
 Monitor::~Monitor() {
   finish();
-  discovery_.reset();
-  live_events_.reset();
 }
 
 void Monitor::finish() {
-  spinner_.stop();  // first: what it serves uses the others
+  live_->stop();  // first: what it serves uses the recorder
   recorder_.finish(announcer_.alarm().message().level == self_awareness::SelfAwareness::ERROR);
 }
 
@@ -120,7 +98,7 @@ std::unique_ptr<Session> Monitor::makeSession(const std::string& path) {
 
 std::string Monitor::modelPath() const {
   // The question would wait for a master that hangs, and all events with it.
-  return discovery_->state().master_answers
+  return live_->discovery().state().master_answers
              ? MonitorParameters::loadModel(private_node_handle_, parameters_.model)
              : parameters_.model;
 }
@@ -131,28 +109,19 @@ void Monitor::startSession(std::unique_ptr<Session> session) {
   model_error_.clear();
   announcer_.forgetWindow();
   heard_.setTypes(session_->types());
-  graph_.reset();
-  timer_.setPeriod(tickFor(session_->window()));
-  Discovery::Wanted wanted;
-  wanted.model_topics = session_->topics();
+  LiveSource::Wanted wanted;
   wanted.encoder = session_->encoder();
-  live_events_->setEncoder(session_->encoder(), session_->ownOutput(ros::this_node::getName()),
-                           session_->window());
-  discovery_->setWanted(std::move(wanted));
+  wanted.model_topics = session_->topics();
+  wanted.own_output = session_->ownOutput(ros::this_node::getName());
+  wanted.window = session_->window();
+  wanted.tick = ros::WallDuration(core::toSeconds(wanted.window) / kTicksPerWindow);
+  live_->setWanted(std::move(wanted));
   ROS_INFO("model %s: %zu event types of %zu components, %s", parameters_.model.c_str(),
            session_->types().size(), heard_.components(),
            session_->calibrated() ? "calibrated" : "not calibrated, it will never alarm");
 }
 
-void Monitor::onArrivals() {
-  watchClock();
-  live_events_->deliver();
-}
-
 void Monitor::onEvent(const core::Event& event) {
-  if (clock_watch_.isStale(event.stamp)) {
-    return;
-  }
   heard_.add(event);
   if (!session_->detector().add(event)) {
     restart();
@@ -161,39 +130,35 @@ void Monitor::onEvent(const core::Event& event) {
   recorder_.add(event, session_->vocabulary());
 }
 
-void Monitor::onTick(const ros::SteadyTimerEvent& /*tick*/) {
-  const std::int64_t now = watchClock();
-  refreshGraph(discovery_->state().graph);
-  live_events_->deliver();
-  if (session_) {
-    session_->detector().advance(now - kGrace);
-  }
-  recorder_.advance(now - kGrace, steadyNow());
-  if (heard_.sinceReport(steadyNow()) >= parameters_.diagnostic_period) {
-    live_events_->forgetClosedConnections();
-    publishDiagnostics();
+void Monitor::onClockSet(std::int64_t /*now*/) {
+  if (session_ && session_->detector().started()) {  // else there is nothing to forget
+    restart();
   }
 }
 
-std::int64_t Monitor::watchClock() {
-  const std::int64_t now = rosNow();
-  const bool set = clock_watch_.look(now, steadyNow(), ros::Time::isSimTime());
-  if (set && session_ && session_->detector().started()) {  // else there is nothing to forget
-    restart();
-  }
-  // What came meanwhile was received late, or never.
-  if (!set && session_ &&
-      clock_watch_.pause() > kLongestPause + tickFor(session_->window()).toNSec()) {
-    longest_pause_ = std::max(longest_pause_, clock_watch_.pause());
+void Monitor::onPause(std::int64_t now, std::int64_t pause) {
+  if (session_) {
+    longest_pause_ = std::max(longest_pause_, pause);
     session_->detector().onPause(now);
   }
-  return now;
 }
 
 void Monitor::onDropped(const ros1::Publication& publication) {
   if (session_) {
     session_->detector().onMissed(session_->typesOf(publication), rosNow());
   }
+}
+
+void Monitor::onGraph(const ros1::Graph& graph) {
+  session_->addEdges(graph, ros::this_node::getName());
+}
+
+void Monitor::onTick(std::int64_t now) {
+  live_->deliver();
+  if (session_) {
+    session_->detector().advance(now - kGrace);
+  }
+  recorder_.advance(now - kGrace, steadyNow());
 }
 
 void Monitor::restart() {
@@ -228,19 +193,8 @@ void Monitor::publishAlarm(const self_awareness::SelfAwareness& alarm) {
   alarm_publisher_.publish(alarm);
 }
 
-void Monitor::refreshGraph(const std::shared_ptr<const ros1::Graph>& graph) {
-  if (!session_ || !graph || graph == graph_) {
-    return;
-  }
-  graph_ = graph;
-  session_->addEdges(*graph, ros::this_node::getName());
-  if (session_->encoder()->tellsSources()) {
-    live_events_->setGraph(*graph);
-  }
-}
-
-void Monitor::publishDiagnostics() {
-  const Discovery::State discovered = discovery_->state();
+void Monitor::onReport() {
+  const Discovery::State discovered = live_->discovery().state();
   const ros1::HeardTally::Moment moment = momentNow();
   MonitorState state;
   state.communication.model = parameters_.model;
@@ -249,14 +203,14 @@ void Monitor::publishDiagnostics() {
     state.communication.calibrated = session_->calibrated();
     state.communication.coverage = session_->coverage();
   }
-  state.communication.take(announcer_.alarm(), heard_.report(moment, live_events_->dropped()),
+  state.communication.take(announcer_.alarm(), heard_.report(moment, live_->events().dropped()),
                            moment.ros);
   state.subscriptions = discovered.subscriptions;
-  state.connections = live_events_->connections();
+  state.connections = live_->events().connections();
   state.left_out_topics = discovered.left_out;
   state.full_of_unknown = session_ && session_->full();
   state.ros_now = moment.ros;
-  state.clock_stands_still_for = clock_watch_.standsStillFor();
+  state.clock_stands_still_for = live_->clock().standsStillFor();
   state.longest_pause = core::toSeconds(std::exchange(longest_pause_, 0));
   state.master_answers = discovered.master_answers;
   if (recorder_.enabled()) {

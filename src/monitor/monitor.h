@@ -4,8 +4,6 @@
 #include <ros/node_handle.h>
 #include <ros/publisher.h>
 #include <ros/service_server.h>
-#include <ros/spinner.h>
-#include <ros/steady_timer.h>
 #include <std_srvs/Trigger.h>
 
 #include <cstdint>
@@ -14,16 +12,14 @@
 #include <vector>
 
 #include "diagnostics.h"
-#include "discovery.h"
 #include "flight_recorder.h"
+#include "live_source.h"
 #include "parameters.h"
 #include "ros/verdict/announcer.h"
 #include "ros/verdict/heard_tally.h"
 #include "run_node.h"
 #include "self_awareness/core/verdict/detector.h"
 #include "self_awareness/ros/graph.h"
-#include "self_awareness/ros/live/clock_watch.h"
-#include "self_awareness/ros/live/live_events.h"
 #include "self_awareness/ros/model/model_file.h"
 #include "session.h"
 
@@ -92,15 +88,15 @@ namespace self_awareness {
 /// - `~reload` (std_srvs/Trigger): reads the parameter `~model` and its file again, and keeps the
 ///   old model where that fails.
 ///
-/// **Threads**: one thread serves messages, windows, services and diagnostics through a queue of
-/// its own. What may block on the network is done by the thread of Discovery, what waits for the
-/// disk by that of FileWriter. They share what has arrived (Arrivals), what the master said
-/// (Discovery) and the files to write (FileWriter), each with a lock (Guarded).
-class Monitor : public NodeProgram {
+/// **Threads**: one thread (LiveSource) serves messages, windows, services and diagnostics through
+/// a queue of its own. What may block on the network is done by the thread of Discovery, what
+/// waits for the disk by that of FileWriter. They share what has arrived (Arrivals), what the
+/// master said (Discovery) and the files to write (FileWriter), each with a lock (Guarded).
+class Monitor : public NodeProgram, public LiveSource::Listener {
  public:
   /// @param name full name of the node or nodelet, for the diagnostics
   /// @throw std::invalid_argument if a parameter is out of range
-  Monitor(const ros::NodeHandle& node_handle, const ros::NodeHandle& private_node_handle,
+  Monitor(ros::NodeHandle node_handle, const ros::NodeHandle& private_node_handle,
           const std::string& name);
   ~Monitor() override;
   Monitor(const Monitor&) = delete;
@@ -120,50 +116,41 @@ class Monitor : public NodeProgram {
   std::string modelPath() const;
   void startSession(std::unique_ptr<Session> session);
 
-  void onArrivals();
-  void onEvent(const core::Event& event);
-  void onTick(const ros::SteadyTimerEvent& tick);
-  void onDropped(const ros1::Publication& publication);
+  void onEvent(const core::Event& event) override;
+  void onClockSet(std::int64_t now) override;
+  void onPause(std::int64_t now, std::int64_t pause) override;
+  void onDropped(const ros1::Publication& publication) override;
+  void onGraph(const ros1::Graph& graph) override;
+  void onTick(std::int64_t now) override;
+  void onReport() override;
+
   void onVerdict(const core::Verdict& verdict);
   bool onReset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool onClear(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool onDump(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool onReload(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
 
-  /// Starts from the beginning where ROS time was set, and leaves out what was missed where this
-  /// program stood still. Returns the ROS time [ns] that it looked at: by another look, the clock
-  /// may have been set again.
-  std::int64_t watchClock();
   void restart();
   /// Says that what stood is over, although no window brought that about.
   void standDown(const std::string& message);
   void publishAlarm(const self_awareness::SelfAwareness& alarm);
-  void publishDiagnostics();
-  void refreshGraph(const std::shared_ptr<const ros1::Graph>& graph);
 
   ros::CallbackQueue queue_;
-  ros::NodeHandle node_handle_;
   ros::NodeHandle private_node_handle_;
   MonitorParameters parameters_;
   ros::Publisher status_publisher_;
   ros::Publisher alarm_publisher_;
   std::vector<ros::ServiceServer> services_;
-  ros::SteadyTimer timer_;
   Diagnostics diagnostics_;
 
   std::string model_error_;
   std::unique_ptr<Session> session_;  // none: no model
-  ros1::ClockWatch clock_watch_;
-  std::int64_t longest_pause_ = 0;  // of this program, since the last report [ns of steady time]
+  std::int64_t longest_pause_ = 0;    // of this program, since the last report [ns of steady time]
   ros1::Announcer announcer_;
   ros1::HeardTally heard_;
   FlightRecorder recorder_;
-  std::string alarm_file_;                    // of the alarm that was raised last
-  std::shared_ptr<const ros1::Graph> graph_;  // the newest that was taken over
-
-  std::unique_ptr<ros1::LiveEvents> live_events_;
-  std::unique_ptr<Discovery> discovery_;
-  ros::AsyncSpinner spinner_;
+  std::string alarm_file_;            // of the alarm that was raised last
+  std::unique_ptr<LiveSource> live_;  // last: its listener uses all of the above
 };
 
 }  // namespace self_awareness

@@ -32,10 +32,10 @@ MonitorParameters MonitorParameters::load(const ros::NodeHandle& private_node_ha
   parameters.model = reader.text("model", defaults.model);
   parameters.method = reader.choice<Method>(
       "detector", "evidence", {{"evidence", Method::kEvidence}, {"paper", Method::kPaper}});
-  parameters.subscribe = reader.choice<SubscribePolicy>("subscribe", "used",
-                                                        {{"used", SubscribePolicy::kUsed},
-                                                         {"all", SubscribePolicy::kAll},
-                                                         {"model", SubscribePolicy::kModel}});
+  parameters.live.subscribe = reader.choice<SubscribePolicy>("subscribe", "used",
+                                                             {{"used", SubscribePolicy::kUsed},
+                                                              {"all", SubscribePolicy::kAll},
+                                                              {"model", SubscribePolicy::kModel}});
   core::Detector::Parameters& detector = parameters.detector;
   core::Persistence::Parameters& persistence = detector.persistence;
   detector.settle_time = nanoseconds(
@@ -53,10 +53,10 @@ MonitorParameters MonitorParameters::load(const ros::NodeHandle& private_node_ha
   persistence.hold_time =
       nanoseconds(reader.seconds("hold_time", inSeconds(persistence.hold_time), {0, kHour}));
   detector.validate();
-  parameters.poll_interval =
-      reader.seconds("poll_interval", defaults.poll_interval, {0.01, kHour});
-  parameters.queue_size = static_cast<std::uint32_t>(
-      reader.wholeNumber("queue_size", static_cast<int>(defaults.queue_size), {1, 1000000}));
+  parameters.live.poll_interval =
+      reader.seconds("poll_interval", defaults.live.poll_interval, {0.01, kHour});
+  parameters.live.queue_size = static_cast<std::uint32_t>(
+      reader.wholeNumber("queue_size", static_cast<int>(defaults.live.queue_size), {1, 1000000}));
   parameters.source_diagnostics = reader.flag("source_diagnostics", defaults.source_diagnostics);
   parameters.hardware_id = reader.text("hardware_id", defaults.hardware_id);
   RecorderParameters& recorder = parameters.recorder;
@@ -66,8 +66,8 @@ MonitorParameters MonitorParameters::load(const ros::NodeHandle& private_node_ha
   recorder.files = reader.wholeNumber("recorder/files", recorder.files, {1, 100000});
   recorder.disk = reader.wholeNumber("recorder/disk", recorder.disk, {1, 1000000});
   recorder.memory = reader.wholeNumber("recorder/memory", recorder.memory, {1, 10000});
-  parameters.diagnostic_period =
-      reader.seconds("diagnostic_period", defaults.diagnostic_period, {0.1, kHour});
+  parameters.live.diagnostic_period =
+      reader.seconds("diagnostic_period", defaults.live.diagnostic_period, {0.1, kHour});
   reader.warnOfUnknown();
   return parameters;
 }

@@ -2,13 +2,12 @@
 
 #include <ros/node_handle.h>
 
-#include <cstdint>
 #include <string>
 
 #include "flight_recorder.h"
+#include "live_source.h"
 #include "ros/verdict/diagnostic_status.h"
 #include "self_awareness/core/verdict/detector.h"
-#include "self_awareness/ros/graph.h"
 
 namespace self_awareness {
 
@@ -20,12 +19,9 @@ struct MonitorParameters {
   Method method = Method::kEvidence;    ///< ~detector
   core::Detector::Parameters detector;  ///< ~settle_time, ~alarm_windows, ~alarm_of,
                                         ///< ~hold_time, ~silence, ~unknown
-  ros1::SubscribePolicy subscribe = ros1::SubscribePolicy::kUsed;  ///< ~subscribe
-  double poll_interval = 1.0;                   ///< ~poll_interval: of the master [s]
-  std::uint32_t queue_size = 1000;              ///< ~queue_size: messages a topic may have waiting
+  LiveParameters live;
   bool source_diagnostics = true;               ///< ~source_diagnostics: one status per source
   std::string hardware_id = ros1::kNoHardware;  ///< ~hardware_id: of the diagnostics
-  double diagnostic_period = 1.0;               ///< ~diagnostic_period: between two reports [s]
   RecorderParameters recorder;                  ///< ~recorder/...
 
   /// Reads the parameters, checks and logs them; warns of those it does not know.

@@ -1,0 +1,90 @@
+#include "live_source.h"
+
+#include <utility>
+
+#include "now.h"
+
+namespace self_awareness {
+namespace {
+
+// Ticks of a busy machine are late by less.
+constexpr std::int64_t kLongestPause = core::kNanosecondsPerSecond / 2;
+
+}  // namespace
+
+LiveSource::LiveSource(ros::CallbackQueue& queue, const ros::NodeHandle& node_handle,
+                       const LiveParameters& parameters, std::vector<std::string> services,
+                       Listener& listener)
+    : listener_(listener),
+      period_(parameters.diagnostic_period),
+      reported_at_(steadyNow()),
+      timer_(node_handle.createSteadyTimer(tick_, &LiveSource::onTick, this)),
+      live_events_(node_handle, parameters.queue_size, handlers()),
+      discovery_(node_handle, live_events_.arrivals(), parameters.subscribe,
+                 parameters.poll_interval, std::move(services)),
+      spinner_(1, &queue) {}
+
+ros1::LiveEvents::Handlers LiveSource::handlers() {
+  ros1::LiveEvents::Handlers handlers;
+  handlers.on_event = [this](const core::Event& event) {
+    if (!clock_watch_.isStale(event.stamp)) {
+      listener_.onEvent(event);
+    }
+  };
+  // Whether its messages must be read cannot wait for the next poll.
+  handlers.on_connection = [this] { discovery_.pollNow(); };
+  handlers.on_arrivals = [this] {
+    watchClock();
+    deliver();
+  };
+  handlers.on_dropped = [this](const ros1::Publication& publication) {
+    listener_.onDropped(publication);
+  };
+  return handlers;
+}
+
+void LiveSource::setWanted(Wanted wanted) {
+  encoder_ = wanted.encoder;
+  graph_.reset();
+  tick_ = wanted.tick;
+  timer_.setPeriod(tick_);
+  live_events_.setEncoder(wanted.encoder, std::move(wanted.own_output), wanted.window);
+  discovery_.setWanted({std::move(wanted.model_topics), std::move(wanted.encoder)});
+}
+
+void LiveSource::report() {
+  reported_at_ = steadyNow();
+  listener_.onReport();
+}
+
+void LiveSource::onTick(const ros::SteadyTimerEvent& /*tick*/) {
+  const std::int64_t now = watchClock();
+  const Discovery::State discovered = discovery_.state();
+  if (std::exchange(master_restarts_, discovered.master_restarts) != discovered.master_restarts) {
+    listener_.onMasterRestart(now);
+  }
+  if (encoder_ && discovered.graph && discovered.graph != graph_) {
+    graph_ = discovered.graph;
+    if (encoder_->tellsSources()) {
+      live_events_.setGraph(*graph_);
+    }
+    listener_.onGraph(*graph_);
+  }
+  listener_.onTick(now);
+  if (core::toSeconds(steadyNow() - reported_at_) >= period_) {
+    live_events_.forgetClosedConnections();
+    report();
+  }
+}
+
+std::int64_t LiveSource::watchClock() {
+  const std::int64_t now = rosNow();
+  if (clock_watch_.look(now, steadyNow(), ros::Time::isSimTime())) {
+    listener_.onClockSet(now);
+  } else if (clock_watch_.pause() > kLongestPause + tick_.toNSec()) {
+    listener_.onPause(now, clock_watch_.pause());
+  }
+  return now;
+}
+
+}  // namespace self_awareness
