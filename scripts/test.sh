@@ -4,7 +4,7 @@
 source "$(dirname "${BASH_SOURCE[0]}")/prepare.sh"
 
 install_packages
-build
+build -DSELF_AWARENESS_WERROR=ON
 build tests
 
 use_loopback

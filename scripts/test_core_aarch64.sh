@@ -27,7 +27,7 @@ make -C "$folder/googletest" -j"$(nproc)" install >> "$folder/googletest.log"
 dpkg --listfiles nlohmann-json3-dev | sed 's,^/,,' |
   tar --create --directory / --no-recursion --files-from - |
   tar --extract --directory "$prefix" --strip-components 1
-cmake -S "$checkout/src/core" -B "$folder/core" "${cross[@]}"
+cmake -S "$checkout/src/core" -B "$folder/core" "${cross[@]}" -DCMAKE_CXX_FLAGS=-Werror
 make -C "$folder/core" -j"$(nproc)"
 
 say "Testing"
