@@ -124,6 +124,7 @@ std::vector<Blame::Candidate> Blame::rootFirst(std::vector<Candidate> candidates
                                                const Followers::Leads& leads) const {
   std::stable_sort(candidates.begin(), candidates.end(), likelier);
   std::vector<std::string> components;
+  components.reserve(candidates.size());
   for (const Candidate& candidate : candidates) {
     components.push_back(model_->component(toOf(candidate)));
   }

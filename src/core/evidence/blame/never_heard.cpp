@@ -91,6 +91,7 @@ void NeverHeard::closeWindow(std::int64_t end, std::int64_t settle_time) {
 
 std::vector<NeverHeard::Expected> NeverHeard::rootFirst(std::vector<Expected> missing) const {
   std::vector<std::string> components;
+  components.reserve(missing.size());
   for (const Expected& expected : missing) {
     components.push_back(component(expected.id));
   }

@@ -88,6 +88,7 @@ LimitSearch::LimitSearch(const Model& model, const LimitFinder::Findings& findin
 void LimitSearch::gatherParts(const LimitFinder::Findings& findings) {
   const std::vector<Statistics::Recording>& training = model_.statistics().recordings();
   std::vector<Span> spans;
+  spans.reserve(training.size() + findings.size());
   for (const Statistics::Recording& recording : training) {
     spans.push_back({recording.start, recording.end, recording.robot_start});
   }
