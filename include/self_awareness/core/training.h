@@ -30,6 +30,7 @@ struct TrainingCounts {
 /// Trains on one recording after the other, event by event.
 class Training {
  public:
+  /// What is counted, and how.
   struct Parameters {
     bool evidence = true;                  ///< count for the evidence detector
     bool paper = false;                    ///< count for the paper's
@@ -43,6 +44,7 @@ class Training {
 
   /// Id of an event type; a new type is added.
   EventId intern(const EventType& type);
+  /// The event types so far, by id.
   const Vocabulary& vocabulary() const { return counts_.delays.vocabulary(); }
 
   /// What a training must know of a recording.

@@ -20,8 +20,11 @@ class Model {
   Model& operator=(const Model&) = delete;
   ~Model();
 
+  /// The event types of the training, by id.
   const Vocabulary& vocabulary() const { return vocabulary_; }
+  /// How the delays of the training were put into bins.
   const Binning& binning() const { return binning_; }
+  /// Number of event types of the training.
   std::size_t size() const { return vocabulary_.size(); }
   /// Whether training saw the event type; the ids after those of training stand for unknown
   /// events.

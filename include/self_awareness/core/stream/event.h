@@ -39,7 +39,7 @@ using EventId = std::uint32_t;
 /// One occurrence of an event type.
 struct Event {
   std::int64_t stamp = 0;  ///< [ns]
-  EventId id = 0;
+  EventId id = 0;          ///< of its type
 };
 
 constexpr std::int64_t kNanosecondsPerSecond = 1000000000;

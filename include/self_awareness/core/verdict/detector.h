@@ -44,8 +44,9 @@ enum class UnknownEvents { kIgnore, kWarn, kError };
 /// (docs/method.md, section 4).
 class Detector : private WindowObserver {
  public:
+  /// How events become alarms.
   struct Parameters {
-    Persistence::Parameters persistence;
+    Persistence::Parameters persistence;    ///< how many abnormal windows make an alarm
     std::int64_t settle_time = 5000000000;  ///< after the first event, of all or of a type [ns]
     bool silence_is_abnormal = true;        ///< paper: a window without events scores 0
     UnknownEvents unknown = UnknownEvents::kWarn;  ///< a suspicion, or an alarm at once
@@ -53,6 +54,7 @@ class Detector : private WindowObserver {
     /// @throw std::invalid_argument if a value is out of range.
     void validate() const;
   };
+  /// Told the verdict on a window.
   using Handler = std::function<void(const Verdict&)>;
 
   /// @param window length [ns]

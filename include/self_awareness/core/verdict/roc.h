@@ -9,8 +9,9 @@ namespace self_awareness::core {
 /// distinct scores, and +-infinity.
 class Roc {
  public:
+  /// What a cut-off does.
   struct Point {
-    double cutoff = 0;
+    double cutoff = 0;               ///< scores below it are abnormal
     double true_positive_rate = 0;   ///< abnormal windows found, 0 to 1
     double false_positive_rate = 0;  ///< normal windows called abnormal, 0 to 1
   };

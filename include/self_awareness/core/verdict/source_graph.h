@@ -13,16 +13,20 @@ namespace self_awareness::core {
 /// from every source that publishes on a topic to every source that subscribes to it.
 class SourceGraph {
  public:
+  /// Messages of one source reach another on a topic.
   struct Edge {
-    std::string publisher;
-    std::string topic;
-    std::string subscriber;
+    std::string publisher;   ///< name of the source
+    std::string topic;       ///< name of the scope
+    std::string subscriber;  ///< name of the source that hears it
   };
 
+  /// Adds an edge; one that is there already changes nothing.
   void connect(const std::string& publisher, const std::string& topic,
                const std::string& subscriber);
 
+  /// Whether it says nothing: who hears whom is not known.
   bool empty() const { return edges_.empty(); }
+  /// All edges, each once.
   const std::set<Edge>& edges() const { return edges_; }
   /// Whether `subscriber` subscribes to a topic on which `publisher` publishes.
   bool hears(const std::string& subscriber, const std::string& publisher,

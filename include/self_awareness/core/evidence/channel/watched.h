@@ -14,9 +14,9 @@ namespace self_awareness::core::evidence {
 /// What the evidence detector keeps of a training: what is watched, and the counts that this
 /// needs.
 struct Watched {
-  std::vector<Track> tracks;
-  Halves halves;  ///< of the training, with the same event types
-  Tuning tuning;  ///< by which they were chosen
+  std::vector<Track> tracks;  ///< what is watched, channel by channel
+  Halves halves;              ///< of the training, with the same event types
+  Tuning tuning;              ///< by which they were chosen
 };
 
 /// Lets every channel choose what it watches, by the counts of the two halves of the training

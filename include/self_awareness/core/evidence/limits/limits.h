@@ -41,8 +41,8 @@ class LimitFinder : private WindowObserver {
       std::vector<float> evidence;             ///< the largest, by track; 0 for silences
       std::vector<std::int64_t> longest_gaps;  ///< [ns], by id; 0: none
     };
-    std::vector<Part> parts;
-    std::vector<Said> said;  ///< by track
+    std::vector<Part> parts;  ///< in order; the last one may be shorter
+    std::vector<Said> said;   ///< by track
     /// From the start of a recording that was not trained on to the first event of a type [ns], by
     /// id; -1: it did not come. Empty where the clock was set afterwards: what follows says it.
     std::vector<std::int64_t> firsts{};
