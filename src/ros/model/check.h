@@ -22,7 +22,7 @@ inline void check(bool holds, const char* otherwise) {
 /// Whether all are times [ns] from `least` up to ten years: the core multiplies them by small
 /// numbers.
 inline bool areTimes(const std::vector<std::int64_t>& times, std::int64_t least) {
-  constexpr std::int64_t kLongest = 10 * 365 * 86400 * core::kNanosecondsPerSecond;
+  constexpr std::int64_t kLongest = std::int64_t{10} * 365 * 86400 * core::kNanosecondsPerSecond;
   return std::all_of(times.begin(), times.end(),
                      [&](std::int64_t time) { return time >= least && time <= kLongest; });
 }
