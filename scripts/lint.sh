@@ -11,7 +11,7 @@
 #   clang-tidy       all C++ that is in the build, by .clang-tidy (15 minutes on two cores)
 #
 # Without a CHECK, it first installs what is missing, and prepares the build. With one, it needs no
-# network; so do the tests (test/python/test_lint.py).
+# network; so do the tests (test/python/test_lint.py) and the hooks of .pre-commit-config.yaml.
 #
 # SELF_AWARENESS_BUILD  the build whose compile_commands.json clang-tidy reads; by default that of
 #                       scripts/test.sh

@@ -7,6 +7,7 @@ import subprocess
 from pathlib import Path
 
 import pytest
+import yaml
 
 ROOT = Path(__file__).resolve().parents[2]
 LINT = 'scripts/lint.sh'
@@ -47,3 +48,11 @@ def test_clang_tidy_finds_what_is_wrong_in_sources_and_headers(tmp_path: Path) -
 
 def test_a_check_that_does_not_exist_is_an_error() -> None:
     assert _lint('clang-tidy-everything').returncode == 2
+
+
+def test_the_hooks_of_git_run_the_same_without_a_network() -> None:
+    config = yaml.safe_load((ROOT / '.pre-commit-config.yaml').read_text(encoding='utf-8'))
+    assert [repository['repo'] for repository in config['repos']] == ['local']
+    hooks = config['repos'][0]['hooks']
+    assert [hook['entry'] for hook in hooks] == [f'{LINT} {check}' for check in QUICK]
+    assert {hook['language'] for hook in hooks} == {'system'}
