@@ -21,7 +21,7 @@ using namespace bag_records;  // NOLINT: the format's words, in this file only
 // again at the end; rosbag does so, too, and does not look how long they are.
 constexpr std::size_t kFileHeaderBytes = 4096;
 // As rosbag's writer has them.
-constexpr std::size_t kChunkBytes = 768 * 1024;
+constexpr std::size_t kChunkBytes = std::size_t{768} * 1024;
 constexpr int kLz4BlockSize = 6;  // 1 MB
 
 template <typename Number>

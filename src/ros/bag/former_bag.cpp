@@ -113,7 +113,7 @@ class FormerBagCheck {
 }  // namespace
 
 BagIndex readFormerBag(const std::string& path) {
-  FormerBagCheck{path};
+  const FormerBagCheck passed(path);
   const rosbag::Bag bag(path, rosbag::bagmode::Read);
   return RosbagIndex(bag).read();
 }
