@@ -8,7 +8,7 @@
 #   flake8           Python, by setup.cfg
 #   mypy             the types in Python, by setup.cfg
 #   clang-tidy-core  the C++ of the core, by .clang-tidy
-#   clang-tidy       all C++ that is in the build, by .clang-tidy (15 minutes on two cores)
+#   clang-tidy       all C++ that is in the build, by .clang-tidy (10 minutes on two cores)
 #
 # Without a CHECK, it first installs what is missing, and prepares the build. With one, it needs no
 # network; so do the tests (test/python/test_lint.py) and the hooks of .pre-commit-config.yaml.
@@ -51,8 +51,7 @@ tidy() {
   sources=$(sed -n 's/^ *"file": "\(.*\)",\{0,1\}$/\1/p' "$build/compile_commands.json" |
     grep "/$1" | sort -u) || cannot "the build has no $1"
   # The number of warnings in headers of others, for each file, tells nothing.
-  xargs --max-procs "$(nproc)" --max-args 1 clang-tidy --quiet -p "$build" \
-    --config-file="$checkout/.clang-tidy" <<< "$sources" 2>&1 |
+  xargs --max-procs "$(nproc)" --max-args 1 clang-tidy --quiet -p "$build" <<< "$sources" 2>&1 |
     { grep -v '^[0-9]* warnings\{0,1\} .*generated\.$' || true; } || status=1
   return "$status"
 }

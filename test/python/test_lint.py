@@ -34,6 +34,7 @@ def test_clang_tidy_finds_what_is_wrong_in_sources_and_headers(tmp_path: Path) -
     header = tmp_path / 'src' / 'core' / 'wrong.h'
     source = header.with_suffix('.cpp')
     header.parent.mkdir(parents=True)
+    (tmp_path / '.clang-tidy').write_bytes((ROOT / '.clang-tidy').read_bytes())
     header.write_text('inline int* nothing() { return 0; }\n', encoding='utf-8')
     source.write_text('#include "wrong.h"\nint answer() { int x; return x = 42; }\n',
                       encoding='utf-8')
