@@ -217,7 +217,7 @@ TEST_F(PairsTest, ASuspectIsToldOfByTheDelaysSinceTheSumWasZero) {
   EXPECT_EQ(found.of, 7U);
   EXPECT_EQ(found.times, 6U);
   EXPECT_DOUBLE_EQ(found.usual, 1e-9 * kUsual);
-  EXPECT_DOUBLE_EQ(found.value, 1e-9 * (kLate + 3 * kMillisecond / 10)) << "the median of six";
+  EXPECT_DOUBLE_EQ(found.value, toSeconds(kLate + 3 * kMillisecond / 10)) << "the median of six";
   EXPECT_EQ(found.words,
             "42.3 ms later than usual 6 times of 7 after /a /x T in the last 1.3 s, usually "
             "0.020 s");
