@@ -27,7 +27,7 @@ packages_debian=(
   pybind11-dev libboost-filesystem-dev libeigen3-dev libre2-dev pkg-config
   python3-numpy python3-matplotlib python3-tqdm python3-yaml python3-jinja2 python3-plotly
   chromium chromium-driver python3-selenium poppler-utils
-  catkin-lint clang-format clang-tidy libfaketime libgtest-dev libgmock-dev nlohmann-json3-dev procps
+  catkin-lint clang-format clang-tidy doxygen libfaketime libgtest-dev libgmock-dev nlohmann-json3-dev procps
   python3-pytest python3-pytest-xdist
   python3-hypothesis python3-flake8 python3-mypy
   # Debian 11's distributed imports tornado, but its package does not depend on it.

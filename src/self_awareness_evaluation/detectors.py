@@ -106,7 +106,8 @@ class Evidence:
         trained: TrainedModel = required(self._trained, self.name, 'train')
         encoded = recording.encoded(trained.event_types)
         # - 1, because the window in which the recording ends is the last one.
-        return judge_by_evidence(trained, self._model, parameters, encoded.stamps,
+        model: EvidenceModel = required(self._model, self.name, 'train')
+        return judge_by_evidence(trained, model, parameters, encoded.stamps,
                                  encoded.ids, encoded.end - 1, encoded.event_types)
 
 

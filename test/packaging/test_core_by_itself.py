@@ -13,23 +13,27 @@ HEADERS = sorted(str(path.relative_to(INCLUDE))
                  for path in (INCLUDE / 'self_awareness' / 'core').rglob('*.h'))
 
 
-QUICK = ('-DCMAKE_BUILD_TYPE=None', '-DCMAKE_CXX_FLAGS=-O1')
-"""Compiles in half the time of the default, for tests that take no longer."""
+QUICK = ('-DCMAKE_BUILD_TYPE=None', '-DCMAKE_CXX_FLAGS=-O0 -Werror')
+"""Compiles in a third of the time of the default."""
 
 
 @pytest.fixture(scope='module')
 def build(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The core, its tests and examples, built as a CMake project."""
+    """The core and its example, built as a CMake project.
+
+    Its tests are the package's core_test; scripts/test_core_aarch64.sh builds them like this, too.
+    """
     folder = tmp_path_factory.mktemp('core')
     run('cmake', '-S', ROOT / 'src' / 'core', '-B', folder / 'build', *QUICK,
-        '-DCMAKE_CXX_FLAGS=-O1 -Werror', f'-DCMAKE_INSTALL_PREFIX={folder / "installed"}')
-    run('cmake', '--build', folder / 'build', '-j2')
+        f'-DCMAKE_INSTALL_PREFIX={folder / "installed"}')
+    run('cmake', '--build', folder / 'build', '-j2', '--target', 'self_awareness_core',
+        'train_and_judge')
     return folder / 'build'
 
 
-def test_its_tests_and_examples_pass(build: Path) -> None:
-    printed = run('ctest', '--output-on-failure', cwd=build)
-    assert '100% tests passed, 0 tests failed out of 2' in printed
+def test_its_example_passes(build: Path) -> None:
+    printed = run('ctest', '--output-on-failure', '-R', 'train_and_judge', cwd=build)
+    assert '100% tests passed, 0 tests failed out of 1' in printed
 
 
 def test_a_project_finds_it_installed(build: Path, tmp_path: Path) -> None:

@@ -86,11 +86,11 @@ def _limits(trained: Trained, workers: Workers) -> str:
     if trained.model.detectors == PAPER:
         return 'limits       none: it was not trained for the evidence detector'
     try:
-        many_bags.preliminary_limits(trained, workers)
+        found = many_bags.preliminary_limits(trained, workers)
     except TooLittleError as error:
         return f'limits       none: {error}'
     return ('limits       preliminary, by what one half of the training says of the other '
-            f'({trained.model.calibration.windows} windows)')
+            f'({found.windows} windows)')
 
 
 def _counting(arguments: argparse.Namespace, base: Optional[TrainedModel]) -> Counting:

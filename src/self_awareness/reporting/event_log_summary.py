@@ -7,7 +7,7 @@ from typing import Any, Dict, List
 
 import numpy as np
 
-from self_awareness import (BagSummary, FileVersion, encoding_file, read_events,
+from self_awareness import (BagSummary, EncodingRules, FileVersion, encoding_file, read_events,
                             summarise_bag)
 from self_awareness.reporting.version_summary import summarise_version
 from self_awareness.stamps import SECOND_NS
@@ -28,12 +28,13 @@ def summarise_event_log(path: str, recordings: int) -> Dict[str, Any]:
     edges = set()
     for number in range(recordings):
         summary = summarise_bag(path, number)
+        assert summary.encoding is not None, 'every recording of an event log has one'
         events = read_events(path, summary.encoding, recording=number)
         for kind, count in zip(events.event_types, np.bincount(
                 events.ids, minlength=len(events.event_types)).tolist()):
             counts[kind] += count
         edges |= RobotGraph(*summary.graph).edges()
-        found.append(_recording(summary))
+        found.append(_recording(summary, summary.encoding))
     duration = sum(recording['duration'] for recording in found)
     return {
         'version': summarise_version(FileVersion.of_event_log(path)),
@@ -50,7 +51,7 @@ def summarise_event_log(path: str, recordings: int) -> Dict[str, Any]:
     }
 
 
-def _recording(summary: BagSummary) -> Dict[str, Any]:
+def _recording(summary: BagSummary, encoding: EncodingRules) -> Dict[str, Any]:
     return {
         'bag': summary.bag,
         'start_ns': summary.start,
@@ -58,5 +59,5 @@ def _recording(summary: BagSummary) -> Dict[str, Any]:
         'events': summary.messages,
         'dropped': summary.dropped,
         'robot_start_ns': summary.robot_start or None,
-        'encoding': encoding_file.values(summary.encoding),
+        'encoding': encoding_file.values(encoding),
     }

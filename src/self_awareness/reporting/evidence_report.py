@@ -42,6 +42,8 @@ def print_limits(trained: TrainedModel, path: str) -> None:
 def print_expected(trained: TrainedModel) -> None:
     """Print how many false alarms are to be expected, and whether the budget can be kept."""
     calibration = trained.calibration
+    if calibration is None:
+        return
     expected, budget = calibration.false_alarms_per_hour, calibration.budget
     hours = calibration.windows * trained.window / SECOND_NS / 3600.0
     low, high = confidence.poisson_rate(expected * hours, hours)

@@ -14,7 +14,7 @@ from typing import Callable, Dict, Iterable, List, Optional, Sequence, Set, Tupl
 
 import numpy as np
 
-from self_awareness import (DEFAULT_WINDOW, BagError, BagSummary,
+from self_awareness import (DEFAULT_WINDOW, BagError, BagSummary, Calibration,
                             DetectorParameters, EncodingRules, Recording,
                             TrainedModel, Training, Tuning, progress, read_events, recordings,
                             summarise_bag)
@@ -121,16 +121,17 @@ def train(parts: Sequence[BagPart], counting: Counting, workers: Optional[Worker
     return Trained(total.model, total.trained_on, total.bad)
 
 
-def preliminary_limits(trained: Trained, workers: Optional[Workers] = None) -> None:
-    """Give a model limits by what one half of the training says of the other.
+def preliminary_limits(trained: Trained, workers: Optional[Workers] = None) -> Calibration:
+    """Give a model limits by what one half of the training says of the other; return them.
 
     Raises:
         BagError: a recording cannot be read any more.
         TooLittleError: the recordings are too short.
     """
-    trained.model.calibration = limits.cross_fit(
-        trained.model, trained.trained_on, DetectorParameters().settle_time,
-        limits.BUDGET, workers)
+    found = limits.cross_fit(trained.model, trained.trained_on, DetectorParameters().settle_time,
+                             limits.BUDGET, workers)
+    trained.model.calibration = found
+    return found
 
 
 class DistinctRecordings:
@@ -329,7 +330,7 @@ def _graph(part: BagPart, summary: BagSummary) -> Set[Tuple[str, str, str]]:
 def _read(counting: Counting, part: BagPart) -> Tuple[RecordingEvents, EncodingRules, BagSummary]:
     encoding = counting.encoding or EncodingRules.defaults()
     if counting.encoding is None and part.recording is not None:
-        encoding = summarise_bag(part.path, part.recording).encoding
+        encoding = summarise_bag(part.path, part.recording).encoding or encoding
     with progress.messages(os.path.basename(part.path)) as update:
         read = read_events(part.path, encoding, [], part.start, part.end, update, part.recording)
     if encoding.source == 'callerid' and not read.summary.has_sources:

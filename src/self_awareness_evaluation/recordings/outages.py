@@ -163,10 +163,9 @@ def judge_by_evidence(case: Case, data: Path, tuning: Tuning) -> JudgedCase:
     """
     parts = [_below(data, case.training), _below(data, case.calibration)]
     trained_on = _trained(parts, tuning)
-    many_bags.preliminary_limits(trained_on)
+    limits = many_bags.preliminary_limits(trained_on).limits
     trained, parameters = trained_on.model, DetectorParameters()
-    watched = {track.to_id for track, limit in zip(EvidenceModel(trained).tracks,
-                                                   trained.calibration.limits)
+    watched = {track.to_id for track, limit in zip(EvidenceModel(trained).tracks, limits)
                if not math.isnan(limit)}
     return _judge(trained, evidence_judge(trained, parameters), data / case.judged,
                   len(watched))

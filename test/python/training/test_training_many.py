@@ -60,7 +60,8 @@ def test_a_training_ends_with_its_model() -> None:
     events = [EventType('', '/a', '')], np.arange(3), np.zeros(3)
     training.add_events(*events)
     training.model()
-    for more in (training.model, lambda: training.add_events(*events)):
+    calls: List[Callable[[], object]] = [training.model, lambda: training.add_events(*events)]
+    for more in calls:
         with pytest.raises(ValueError, match='is over'):
             more()
 
