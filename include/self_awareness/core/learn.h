@@ -35,6 +35,7 @@ std::int64_t middleOf(const std::vector<Event>& events);
 /// those that it was trained on, each judged by what the others say, and those that it was not.
 class Calibrator {
  public:
+  /// How limits are found.
   struct Parameters {
     std::int64_t settle_time = 5000000000;  ///< left out at a recording's start [ns]
     double false_alarms_per_hour = 0.5;     ///< allowed, > 0: the budget
@@ -80,6 +81,7 @@ class Calibrator {
 /// holds do the same in three steps: Training, Model::watch(), Calibrator.
 class Learner {
  public:
+  /// How a model is learned.
   struct Parameters {
     Training::Parameters counting;  ///< what for, and the windows' length
     Calibrator::Parameters limits;  ///< how they are found

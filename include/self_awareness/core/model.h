@@ -30,8 +30,8 @@ struct Calibration {
   /// On each half of the training, learned from the other.
   static constexpr char kCrossFit[] = "cross-fit";
 
-  std::string method;
-  evidence::Limits limits;
+  std::string method;                         ///< kHeldOut or kCrossFit
+  evidence::Limits limits;                    ///< of the model's tracks
   std::vector<evidence::Relation> relations;  ///< by track; empty: not known
   double budget = 0;                          ///< false alarms an hour that the limits allow
   double false_alarms_per_hour = 0;       ///< to be expected, by leaving recordings out in turn
@@ -61,6 +61,7 @@ struct Model {
   std::optional<paper::Calibration> paper_calibration;  ///< of the paper's
   std::int64_t stamp = 0;                               ///< when it was trained [ns]; 0: not known
 
+  /// Event types by id.
   const Vocabulary& vocabulary() const { return statistics.vocabulary(); }
   /// Whether the model holds the counts of the paper's detector.
   bool hasDelays() const { return statistics.hasDelays(); }

@@ -17,18 +17,20 @@ namespace self_awareness::core {
 /// and its culprit, whoever is named later; only if the machine turns out to be busy, or everybody
 /// silent, there is no culprit any more.
 struct Alarm {
+  /// How sure it is: WARN or ERROR in diagnostics.
   enum class Level { kSuspicion, kAlarm };
 
   /// Its begin, or one more than the id of the one before if that is larger: unique in a stream,
   /// and the same live and in a recording of it.
   std::uint64_t id = 0;
-  Level level = Level::kSuspicion;
-  std::int64_t begin = 0;  ///< end of the window that raised it [ns]
-  std::int64_t end = 0;    ///< end of the window that ended it, or of the last one so far [ns]
-  bool over = false;       ///< false: it stands
-  Kind kind = Kind::kDied;
-  std::string culprit;   ///< component; empty: there is none, or nobody stands out
-  std::string evidence;  ///< what raised it, in words; empty: the suspicion that an alarm left
+  Level level = Level::kSuspicion;  ///< the same from its begin to its end
+  std::int64_t begin = 0;           ///< end of the window that raised it [ns]
+  std::int64_t end = 0;     ///< end of the window that ended it, or of the last one so far [ns]
+  bool over = false;        ///< false: it stands
+  Kind kind = Kind::kDied;  ///< what is wrong, of the culprit or of all
+  std::string culprit;      ///< component; empty: there is none, or nobody stands out
+  std::string evidence;     ///< what raised it, in words; empty: the suspicion that an alarm left
+  /// Of its windows; NaN while there is none.
   double lowest_score = std::numeric_limits<double>::quiet_NaN();
   std::optional<Busy> busy;  ///< as the first window said that does
   /// Of the window that raised it, the most likely first. Their components are known, also those

@@ -43,8 +43,8 @@ std::string toString(Kind kind);
 
 /// Units of a reason's values; a channel may have others.
 namespace unit {
-constexpr char kSeconds[] = "s";
-constexpr char kHertz[] = "Hz";
+constexpr char kSeconds[] = "s";          ///< of a silence, a delay, an age
+constexpr char kHertz[] = "Hz";           ///< of a rate
 constexpr char kEvents[] = "events";      ///< in the window
 constexpr char kRequests[] = "requests";  ///< in a row
 constexpr char kScore[] = "score";        ///< of the paper's detector
@@ -52,13 +52,14 @@ constexpr char kScore[] = "score";        ///< of the paper's detector
 
 /// Why an event type is a suspect.
 struct Reason {
+  /// What is not known.
   static constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
-  Kind kind = Kind::kDied;
-  std::string after;     ///< the event type that it should come after; empty: its own last
-  std::string unit;      ///< of the four values below
-  double value = kNone;  ///< what was seen: a silence, a median delay, a rate, a number
-  double usual = kNone;  ///< what is to be expected of it; NaN: not known
+  Kind kind = Kind::kDied;  ///< what is wrong
+  std::string after;        ///< the event type that it should come after; empty: its own last
+  std::string unit;         ///< of the four values below
+  double value = kNone;     ///< what was seen: a silence, a median delay, a rate, a number
+  double usual = kNone;     ///< what is to be expected of it; NaN: not known
   double usual_shortest = kNone;  ///< the lower end of what is usual; NaN: not known
   double usual_longest = kNone;   ///< its upper end; NaN: not known
   double lasted = kNone;          ///< the value is of the last so many seconds; NaN: of one moment
@@ -76,7 +77,7 @@ Reason strangerBefore(double age);
 
 /// Who may have made a window abnormal, and why (docs/method.md, sections 2.5 and 6).
 struct Suspect {
-  EventId id = 0;
+  EventId id = 0;         ///< of the event type
   std::string component;  ///< whose event type it is; empty: not known, as of unknown events
   /// It alone would be abnormal: its evidence is beyond its limit, or it was never seen in
   /// training. With the paper's detector, which knows no limit of a single event type, the latter
@@ -85,7 +86,7 @@ struct Suspect {
   /// When the alarm or the suspicion that stands first named its component: end of the window
   /// [ns].
   std::int64_t since = 0;
-  Reason reason;
+  Reason reason;  ///< why it is one
 };
 
 }  // namespace self_awareness::core

@@ -19,6 +19,7 @@ class Scorer;
 /// section 5). A number of false alarms an hour is allowed to all of them together.
 class LimitFinder : private WindowObserver {
  public:
+  /// How limits are found.
   struct Parameters {
     std::int64_t window = kDefaultWindow;   ///< length of a window [ns]
     std::int64_t settle_time = 5000000000;  ///< left out at a recording's start [ns]
@@ -60,6 +61,7 @@ class LimitFinder : private WindowObserver {
   /// learned from the other half of the training (CrossFit)
   /// @param robot_start when the robot was started [ns]; 0: not known
   void startRecording(std::shared_ptr<const Model> model, std::int64_t robot_start = 0);
+  /// Takes in the next event of the recording.
   void add(const Event& event);
   /// The clock was set, which the stamps do not say by themselves (stream/clock_steps.h).
   void restart();
@@ -73,7 +75,7 @@ class LimitFinder : private WindowObserver {
 
   /// What comes of the findings.
   struct Found {
-    Limits limits;
+    Limits limits;  ///< the largest evidence that is normal
     /// False alarms an hour to be expected with these limits: what recordings show that are left
     /// out in turn.
     double expected_rate = 0;
@@ -86,11 +88,14 @@ class LimitFinder : private WindowObserver {
   /// so little to train on that the model has no tracks
   Found find() const;
 
+  /// As given to the constructor.
   const Parameters& parameters() const { return parameters_; }
+  /// Who hears whom.
   const SourceGraph& graph() const { return graph_; }
   /// Number of windows that were looked at.
   std::uint64_t windows() const;
 
+  /// Of a recording.
   static constexpr std::size_t kMostParts = 16;
 
  private:
