@@ -4,8 +4,9 @@
 source "$(dirname "${BASH_SOURCE[0]}")/prepare.sh"
 
 install_packages
+# The same options both times: CMake does not run again, in the workspace's own environment.
 build -DSELF_AWARENESS_WERROR=ON
-build tests
+build -DSELF_AWARENESS_WERROR=ON tests
 
 use_loopback
 

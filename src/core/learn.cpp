@@ -52,10 +52,7 @@ void forEachEvent(const Recording& recording, std::size_t begin, std::size_t end
 }  // namespace
 
 std::int64_t middleOf(const std::vector<Event>& events) {
-  if (events.empty()) {
-    return 0;
-  }
-  return events.front().stamp + (events.back().stamp - events.front().stamp) / 2;
+  return events.empty() ? 0 : middleOf(events.front().stamp, events.back().stamp);
 }
 
 Calibrator::Calibrator(const Model& model, const Parameters& parameters)
@@ -141,6 +138,9 @@ void Learner::add(Recording recording) {
 }
 
 Model Learner::learn() {
+  if (recordings_.empty()) {
+    throw std::logic_error("there is no recording to learn from, or the learning has ended");
+  }
   Model model;
   TrainingCounts counts = training_.finish();
   model.window = parameters_.counting.window;
@@ -151,16 +151,16 @@ Model Learner::learn() {
   for (const Recording& recording : recordings_) {
     model.recordings.push_back(infoOf(recording));
   }
+  const std::vector<Recording> recordings = std::exchange(recordings_, {});
   if (!parameters_.counting.evidence) {
     why_ = "it was not learned for the evidence detector";
     return model;
   }
   model.watch();
   Calibrator calibrator(model, parameters_.limits);
-  for (const Recording& recording : recordings_) {
+  for (const Recording& recording : recordings) {
     calibrator.addTrainedOn(recording);
   }
-  recordings_.clear();
   model.findings = calibrator.findings();
   try {
     model.calibration = calibrator.find();

@@ -97,10 +97,10 @@ std::vector<evidence::Coverage> Model::coverage() const {
                               calibration->relations, window);
 }
 
-std::unique_ptr<Judge> Model::makeJudge() const {
+std::unique_ptr<Judge> Model::makeJudge(std::shared_ptr<const Vocabulary> heard) const {
   requireWatched();
   return evidence::makeJudge(std::make_shared<const evidence::Model>(watched), limits(), window,
-                             std::make_shared<const SourceGraph>(graph));
+                             std::make_shared<const SourceGraph>(graph), std::move(heard));
 }
 
 }  // namespace self_awareness::core

@@ -27,7 +27,14 @@ Training::Training(const Parameters& parameters)
 
 Training::~Training() = default;
 
+void Training::requireOpen() const {
+  if (!trainers_) {
+    throw std::logic_error("the training is over: its counts were handed out");
+  }
+}
+
 EventId Training::intern(const EventType& type) {
+  requireOpen();
   const EventId id = counts_.delays.intern(type);
   if (parameters_.evidence) {
     for (evidence::Statistics& half : counts_.halves) {
@@ -38,6 +45,7 @@ EventId Training::intern(const EventType& type) {
 }
 
 void Training::startRecording(const Recording& recording) {
+  requireOpen();
   trainers_->paper.startRecording();
   trainers_->evidence.startRecording(recording.since, recording.robot_start);
   const std::size_t half = evidence::halfOf(recording.fingerprint);
@@ -79,9 +87,7 @@ void Training::add(const Event& event) {
 }
 
 TrainingCounts Training::finish() {
-  if (!trainers_) {
-    throw std::logic_error("the training is over: its counts were handed out");
-  }
+  requireOpen();
   trainers_->evidence.finish();
   trainers_.reset();
   return std::move(counts_);

@@ -162,7 +162,9 @@ void bindCalibration(py::module& m) {
             model.stamp = now();
             return model;
           },
-          "Ends the learning: a TrainedModel, with limits if there was enough to find them.");
+          "Ends the learning: a TrainedModel, with limits if there was enough to find them.")
+      .def_property_readonly("why", &Learner::why,
+                             "why it found no limits; empty: it has found some");
 }
 
 }  // namespace self_awareness::python

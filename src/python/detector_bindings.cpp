@@ -1,7 +1,6 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -59,17 +58,22 @@ Verdicts judge(std::unique_ptr<core::Judge> judge, std::int64_t window,
                ros1::ReplayedMonitor* monitor, std::vector<std::int64_t> clock_steps) {
   Verdicts verdicts;
   core::Alarms alarms;
+  std::int64_t last_end = 0;  // of a window [ns]
   core::Detector detector(std::move(judge), window, parameters, [&](const core::Verdict& verdict) {
     record(verdict, verdicts);
     if (const std::optional<core::Alarm> ended = alarms.add(verdict, window, vocabulary)) {
       record(*ended, verdicts);
     }
+    last_end = verdict.window->start + window;
     if (monitor != nullptr) {
       monitor->onVerdict(verdict);
     }
   });
   judgeRecording(detector, stamps, ids, core::ClockSteps(std::move(clock_steps)), end,
                  [&](const core::Event& event, bool same_clock) {
+                   if (const auto ended = same_clock ? std::nullopt : alarms.end(last_end)) {
+                     record(*ended, verdicts);
+                   }
                    if (monitor != nullptr) {
                      monitor->onEvent(event, same_clock);
                    }

@@ -1,5 +1,4 @@
 #include <pybind11/stl.h>
-#include <ros/serialization.h>
 
 #include <cmath>
 #include <cstdint>
@@ -7,18 +6,15 @@
 #include <optional>
 #include <set>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "bindings.h"
 #include "core/evidence/count/log_bins.h"
 #include "self_awareness/core/verdict/suspect.h"
-#include "self_awareness/ros/model/evidence_message.h"
 #include "self_awareness/ros/model/model_bytes.h"
 #include "self_awareness/ros/model/model_file.h"
 #include "self_awareness/ros/model/model_merge.h"
-#include "self_awareness/ros/ros_time.h"
 
 namespace self_awareness::python {
 namespace {
@@ -43,8 +39,6 @@ std::uint64_t fewestGaps(const ros1::TrainedModel& model) {
              ? core::kFewestGaps
              : static_cast<std::uint64_t>(std::ceil(model.tuning.fewest_gaps));
 }
-
-// Of an edge of the graph: publisher, topic, subscriber.
 
 }  // namespace
 

@@ -1,6 +1,5 @@
 #include <pybind11/stl.h>
 
-#include <cmath>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -9,6 +8,7 @@
 #include <vector>
 
 #include "bindings.h"
+#include "self_awareness/core/learn.h"
 #include "self_awareness/core/training.h"
 #include "self_awareness/ros/encoding.h"
 #include "self_awareness/ros/model/model_file.h"
@@ -20,8 +20,7 @@ std::int64_t middleOf(const Stamps& stamps) {
   if (stamps.ndim() != 1 || stamps.size() == 0) {
     return 0;
   }
-  const std::int64_t first = stamps.at(0);
-  return first + (stamps.at(stamps.size() - 1) - first) / 2;
+  return core::middleOf(stamps.at(0), stamps.at(stamps.size() - 1));
 }
 
 /// A training, and what its model holds besides the counts.

@@ -142,8 +142,8 @@ def learn(bags: Iterable[Bag], encoding: Optional[EncodingRules] = None,
           graph: Iterable[Tuple[str, str, str]] = (), jobs: int = 1) -> Model:
     """Learn a model from recordings of normal operation.
 
-    It has limits by what one half of the recordings says of the other; calibrate() finds better
-    ones, on recordings that it was not trained on.
+    It has limits by what one half of the recordings says of the other, if these are long enough;
+    calibrate() finds better ones, on recordings that it was not trained on.
 
     >>> model = learn(['monday.bag', 'tuesday.bag'])
     >>> model.save('robot.model')
@@ -156,7 +156,7 @@ def learn(bags: Iterable[Bag], encoding: Optional[EncodingRules] = None,
 
     Raises:
         BagError: a bag cannot be read.
-        ValueError: a bag cannot be used, is named twice, or all are too short to find limits.
+        ValueError: a bag cannot be used, or is named twice.
     """
     parts = _parts(bags)
     if not parts:
@@ -164,7 +164,10 @@ def learn(bags: Iterable[Bag], encoding: Optional[EncodingRules] = None,
     with closing(on_this_machine(min(jobs, len(parts)))) as workers:
         trained = many_bags.train(parts, Counting(encoding), workers)
         trained.model.graph = trained.model.graph | set(graph)
-        many_bags.preliminary_limits(trained, workers)
+        try:
+            many_bags.preliminary_limits(trained, workers)
+        except limits.TooLittleError:
+            pass  # calibrate() may find them, and judge() says that there are none
     return Model(trained.model)
 
 

@@ -137,6 +137,8 @@ TEST(Learner, TooLittleIsAModelWithoutLimitsThatSaysWhy) {
   EXPECT_NE(learner.why().find("too little normal operation"), std::string::npos) << learner.why();
   EXPECT_TRUE(model.isWatched()) << "the counts are not lost";
   EXPECT_THROW(learner.learn(), std::logic_error);
+  EXPECT_THROW(learner.add(robot(2)), std::logic_error);
+  EXPECT_THROW(learner.intern(kTypes[0]), std::logic_error);
 }
 
 TEST(Learner, ForThePapersDetectorThereAreNoLimits) {
@@ -155,6 +157,7 @@ TEST(Learner, ForThePapersDetectorThereAreNoLimits) {
 TEST(Learner, RefusesWhatIsNoRecording) {
   Learner learner;
   EXPECT_THROW(learner.add({}), std::invalid_argument);
+  EXPECT_THROW(learner.learn(), std::logic_error);
   Learner::Parameters parameters;
   parameters.limits.false_alarms_per_hour = 0;
   EXPECT_THROW(Learner(parameters, {}), std::invalid_argument);
@@ -190,11 +193,15 @@ TEST(Calibrator, RecordingsThatWereNotTrainedOnSayWhenATypeComesFirst) {
   EXPECT_EQ(calibrator.find().limits.firsts[kB], -1) << "it does not always come";
 }
 
-TEST(Calibrator, AStepOfTheClockDoesNotBeginTheRecordingAgain) {
+TEST(Calibrator, AfterAStepOfTheClockFirstEventsCountFromThere) {
   const Model model = learned({1, 2, 3, 4});
   Calibrator calibrator(model, {});
   Recording stepped = robot(5, 200 * kSecond);
   const std::int64_t step = stepped.events.front().stamp + 100 * kSecond;
+  stepped.events.erase(
+      std::remove_if(stepped.events.begin(), stepped.events.end(),
+                     [&](const Event& event) { return event.id == kB && event.stamp < step; }),
+      stepped.events.end());
   for (Event& event : stepped.events) {
     event.stamp += event.stamp >= step ? 3600 * kSecond : 0;
   }
@@ -205,6 +212,32 @@ TEST(Calibrator, AStepOfTheClockDoesNotBeginTheRecordingAgain) {
   ASSERT_EQ(calibrator.findings().size(), 2U);
   EXPECT_TRUE(calibrator.findings()[0].firsts.empty());
   EXPECT_LT(calibrator.findings()[1].firsts.at(kA), kSecond);
+  EXPECT_GE(calibrator.findings()[1].firsts.at(kB), 0);
+  EXPECT_LT(calibrator.findings()[1].firsts.at(kB), kSecond) << "not the hour of the step";
+}
+
+TEST(Model, KnowsStrangersIfItIsToldOfTheirTypes) {
+  const Model model = learned({1, 2, 3, 4});
+  const auto heard = std::make_shared<Vocabulary>(model.vocabulary());
+  const EventId stranger = heard->intern({"/c", "/x", "T"});
+  Recording told = robot(9);
+  const std::int64_t middle = middleOf(told.events);
+  told.events.insert(std::find_if(told.events.begin(), told.events.end(),
+                                  [&](const Event& event) { return event.stamp >= middle; }),
+                     {middle, stranger});
+  Alarms alarms;
+  std::optional<Alarm> found;
+  Detector detector(model.makeJudge(heard), model.window, {}, [&](const Verdict& verdict) {
+    alarms.add(verdict, model.window, *heard);
+    found = found ? found : alarms.standing();
+  });
+  for (const Event& event : told.events) {
+    detector.add(event);
+  }
+  detector.finish();
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->kind, Kind::kStranger);
+  EXPECT_EQ(found->culprit, "/c");
 }
 
 TEST(Model, WhatWasLearnedJudgesAnotherRecording) {

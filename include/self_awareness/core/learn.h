@@ -28,7 +28,12 @@ struct Recording {
 };
 
 /// Where the second part of a recording begins [ns]: each part is learned from by itself as long
-/// as all recordings belong to one half (Training); 0 without events.
+/// as all recordings belong to one half (Training).
+/// @param first, last stamps of its events [ns]
+inline std::int64_t middleOf(std::int64_t first, std::int64_t last) {
+  return first + (last - first) / 2;
+}
+/// The same by its events; 0 without any.
 std::int64_t middleOf(const std::vector<Event>& events);
 
 /// Finds the limits of a model by recordings of normal operation (docs/method.md, section 5):
@@ -95,13 +100,14 @@ class Learner {
   Learner(const Parameters& parameters, SourceGraph graph);
 
   /// Id of an event type; a new type is added.
+  /// @throw std::logic_error after learn()
   EventId intern(const EventType& type) { return training_.intern(type); }
   /// Learns from a recording.
-  /// @throw std::invalid_argument if it has no events
+  /// @throw std::invalid_argument if it has no events; std::logic_error after learn()
   void add(Recording recording);
   /// Ends the learning. The model has limits if it was learned for the evidence detector, and
   /// the recordings are long enough: else why() says why not.
-  /// @throw std::logic_error if it has ended already
+  /// @throw std::logic_error if there is no recording, or it has ended already
   Model learn();
   /// Why learn() has found no limits; empty: it has.
   const std::string& why() const { return why_; }

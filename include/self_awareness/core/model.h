@@ -95,8 +95,10 @@ struct Model {
   /// @throw std::invalid_argument as requireWatched(), or if the limits are of another model
   std::vector<evidence::Coverage> coverage() const;
   /// Makes the judge of the evidence detector (evidence/judge.h tells more of it).
+  /// @param heard event types by id, those of the model first; may grow. None: who sends unknown
+  /// events is not known
   /// @throw std::invalid_argument as requireWatched(), or if the limits are of another model
-  std::unique_ptr<Judge> makeJudge() const;
+  std::unique_ptr<Judge> makeJudge(std::shared_ptr<const Vocabulary> heard = nullptr) const;
 };
 
 }  // namespace self_awareness::core

@@ -43,6 +43,7 @@ class Training {
   ~Training();
 
   /// Id of an event type; a new type is added.
+  /// @throw std::logic_error after finish()
   EventId intern(const EventType& type);
   /// The event types so far, by id.
   const Vocabulary& vocabulary() const { return counts_.delays.vocabulary(); }
@@ -60,6 +61,7 @@ class Training {
   };
 
   /// Starts a recording: the next events belong to it.
+  /// @throw std::logic_error after finish()
   void startRecording(const Recording& recording);
   /// The clock was set, which the stamps do not say by themselves (stream/clock_steps.h): no delay
   /// crosses from before.
@@ -76,6 +78,9 @@ class Training {
 
  private:
   struct Trainers;
+
+  /// @throw std::logic_error after finish()
+  void requireOpen() const;
 
   Parameters parameters_;
   TrainingCounts counts_;

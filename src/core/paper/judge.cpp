@@ -67,7 +67,6 @@ class Judge : public core::Judge {
     }
     if (judgement.abnormal) {
       judgement.evidence = judgement.score ? "score" : "silence";
-      judgement.all_silent = !judgement.score;
     }
     if (threshold_ && (suspects == NameSuspects::kAlways ||
                        (suspects == NameSuspects::kIfUnusual && judgement.abnormal))) {

@@ -68,6 +68,7 @@ void Alarms::begin(const Verdict& verdict, std::int64_t end, const std::optional
   if (before) {  // a suspicion may be what is left of an alarm
     alarm.kind = before->kind;
     alarm.culprit = before->culprit;
+    alarm.reason = before->reason;
   }
 }
 
@@ -79,7 +80,10 @@ void Alarms::goOn(const Verdict& verdict, std::int64_t end, const Vocabulary& vo
     alarm.evidence = verdict.evidence;
     alarm.suspects = withComponents(verdict.suspects, vocabulary);
     alarm.culprit = alarm.suspects.empty() ? "" : alarm.suspects.front().component;
-    alarm.kind = alarm.suspects.empty() ? Kind::kOutOfOrder : alarm.suspects.front().reason.kind;
+    alarm.reason = alarm.suspects.empty() ? "" : alarm.suspects.front().reason.words;
+    alarm.kind = !alarm.suspects.empty() ? alarm.suspects.front().reason.kind
+                 : verdict.all_silent    ? Kind::kAllSilent
+                                         : Kind::kOutOfOrder;
   }
   if (verdict.busy && !alarm.busy) {
     alarm.busy = verdict.busy;
@@ -88,6 +92,7 @@ void Alarms::goOn(const Verdict& verdict, std::int64_t end, const Vocabulary& vo
                  (verdict.all_silent && alarm.kind == Kind::kDied))) {
     alarm.kind = alarm.kind == Kind::kDied ? Kind::kAllSilent : Kind::kBusyMachine;
     alarm.culprit.clear();
+    alarm.reason.clear();
   }
   alarm.end = end;
   alarm.lowest_score = std::fmin(alarm.lowest_score, verdict.score.value_or(0));

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <boost/filesystem/operations.hpp>
-#include <cmath>
 #include <memory>
 #include <new>
 #include <optional>

@@ -63,9 +63,7 @@ void AlarmState::tell(const std::optional<core::Alarm>& alarm) {
     message_.alarm = alarm->id;
     message_.kind = core::toString(alarm->kind);
     message_.component = alarm->culprit;
-    if (!alarm->culprit.empty() && !alarm->suspects.empty()) {
-      message_.reason = alarm->suspects.front().reason.words;
-    }
+    message_.reason = alarm->reason;
   }
 }
 

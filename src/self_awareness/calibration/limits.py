@@ -113,7 +113,7 @@ def cross_fit(trained: TrainedModel, trained_on: Sequence[TrainedOn], settle_tim
 
 def find(trained: TrainedModel, settle_time: int, budget: float, tasks: Sequence[Any],
          workers: Optional[Workers] = None, keep_findings: bool = False) -> Calibration:
-    """Return limits by recordings; without the method and the recordings, which the caller adds.
+    """Return limits by recordings; without their names, which the caller adds.
 
     Args:
         trained: the model.

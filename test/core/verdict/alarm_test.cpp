@@ -154,6 +154,8 @@ TEST_F(AlarmsTest, WhereNobodyStandsOutThereIsNoCulprit) {
   nobody.evidence = "score";
   add(nobody);
   EXPECT_EQ(alarms_.standing()->culprit, "");
+  EXPECT_EQ(alarms_.standing()->reason, "");
+  EXPECT_EQ(alarms_.standing()->kind, Kind::kOutOfOrder);
   EXPECT_EQ(alarms_.standing()->evidence, "score");
 }
 

@@ -29,8 +29,11 @@ struct Alarm {
   bool over = false;        ///< false: it stands
   Kind kind = Kind::kDied;  ///< what is wrong, of the culprit or of all
   std::string culprit;      ///< component; empty: there is none, or nobody stands out
-  std::string evidence;     ///< what raised it, in words; empty: the suspicion that an alarm left
-  /// Of its windows; NaN while there is none.
+  std::string reason;       ///< why the culprit is one, in words; empty: there is no culprit
+  /// What raised it, in words; empty: a suspicion that an alarm left, so far. That is about the
+  /// same component as the alarm, until something else is abnormal.
+  std::string evidence;
+  /// Of its windows and the one that ended it; a window without a score counts as 0.
   double lowest_score = std::numeric_limits<double>::quiet_NaN();
   std::optional<Busy> busy;  ///< as the first window said that does
   /// Of the window that raised it, the most likely first. Their components are known, also those

@@ -22,7 +22,8 @@ struct Judgement {
   std::string evidence;             ///< what made the window abnormal or suspicious, in words
   /// Set if many components are late at once: the suspects are hardly to blame.
   std::optional<Busy> busy;
-  bool all_silent = false;  ///< everybody should have been heard by now, and nobody was
+  bool all_silent = false;  ///< everybody should have been heard by now; not told by
+                            ///< the paper's detector
   /// If they were asked for; the most likely first. After kMostSuspects, further components whose
   /// evidence alone is abnormal may follow.
   std::vector<Suspect> suspects;

@@ -1,7 +1,6 @@
 #include "core/evidence/blame/followers.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace self_awareness::core::evidence {
 

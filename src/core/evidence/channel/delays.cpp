@@ -137,7 +137,7 @@ std::string inWords(const Reason& reason, std::optional<double> scatter) {
 }
 
 Kind kindOf(const Reason& reason, bool scattered) {
-  if (reason.times == 0 || scattered) {
+  if (reason.times == 0 || scattered || reason.value == reason.usual) {
     return Kind::kOutOfOrder;
   }
   const bool later = reason.value > reason.usual;

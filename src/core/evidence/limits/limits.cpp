@@ -1,6 +1,7 @@
 #include "self_awareness/core/evidence/limits/limits.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -86,6 +87,7 @@ void LimitFinder::restart() {
 void LimitFinder::onClockStep() {
   endRecording();
   startScoring();
+  start_.reset();
 }
 
 void LimitFinder::finish() {

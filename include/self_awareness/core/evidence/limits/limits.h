@@ -44,8 +44,9 @@ class LimitFinder : private WindowObserver {
     };
     std::vector<Part> parts;  ///< in order; the last one may be shorter
     std::vector<Said> said;   ///< by track
-    /// From the start of a recording that was not trained on to the first event of a type [ns], by
-    /// id; -1: it did not come. Empty where the clock was set afterwards: what follows says it.
+    /// From the start of a recording that was not trained on, or since the clock was set, to the
+    /// first event of a type [ns], by id; -1: it did not come. Empty where the clock was set
+    /// afterwards: what follows says it.
     std::vector<std::int64_t> firsts{};
   };
   /// What recordings say. Findings of some add up to those of all, in any order.
@@ -119,7 +120,7 @@ class LimitFinder : private WindowObserver {
   Windows windows_;
   std::int64_t robot_start_ = 0;             // of the recording [ns]; 0: not known
   std::optional<std::int64_t> first_stamp_;  // of the recording, or since a step of the clock [ns]
-  std::optional<std::int64_t> start_;        // of the recording [ns]
+  std::optional<std::int64_t> start_;        // of the recording, or since a step of the clock [ns]
   std::vector<std::int64_t> firsts_;         // of the recording, as in Recording
   Recording recording_;                      // the open one
   std::uint64_t part_windows_ = 0;           // length of its parts
