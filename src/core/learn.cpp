@@ -7,8 +7,8 @@
 namespace self_awareness::core {
 namespace {
 
-template <typename Parameters>
-evidence::LimitFinder::Parameters ofFinder(const Parameters& parameters, std::int64_t window) {
+evidence::LimitFinder::Parameters ofFinder(const Calibrator::Parameters& parameters,
+                                           std::int64_t window) {
   return {window, parameters.settle_time, parameters.false_alarms_per_hour};
 }
 

@@ -55,6 +55,8 @@ void bindAlarms(py::module& m) {
           "of the culprit's reason, or: busy machine, all silent")
       .def_readonly("culprit", &Alarm::culprit,
                     "component; empty: there is none, or nobody stands out")
+      .def_readonly("reason", &Alarm::reason,
+                    "why the culprit is one, in words; empty: there is no culprit")
       .def_readonly("evidence", &Alarm::evidence,
                     "what raised it, in words; empty: a suspicion that an alarm left")
       .def_readonly("lowest_score", &Alarm::lowest_score)

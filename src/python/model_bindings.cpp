@@ -144,9 +144,6 @@ void bindModel(py::module& m) {
       .def_property_readonly(
           "tuning", [](const TrainedModel& self) { return self.tuning; },
           "a copy of the numbers of the method")
-      .def_property_readonly(
-          "only_half", &TrainedModel::onlyHalf,
-          "the half of the training that all recordings belong to; None: there are some of both")
       .def(py::pickle([](const TrainedModel& self) { return py::bytes(ros1::toBytes(self)); },
                       [](const py::bytes& state) { return ros1::fromBytes(state); }))
       .def_readonly("encoding", &TrainedModel::encoding)

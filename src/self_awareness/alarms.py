@@ -32,6 +32,7 @@ def as_values(alarm: Alarm, event_types: List[EventType], origin: int) -> Dict[s
         'level': alarm.level,
         'kind': alarm.kind,
         'culprit': alarm.culprit or None,
+        'reason': alarm.reason or None,
         'begin_s': _seconds(alarm.begin, origin),
         'end_s': _seconds(alarm.end, origin),
         'begin_ns': alarm.begin,

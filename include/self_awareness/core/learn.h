@@ -42,8 +42,10 @@ class Calibrator {
  public:
   /// How limits are found.
   struct Parameters {
-    std::int64_t settle_time = 5000000000;  ///< left out at a recording's start [ns]
-    double false_alarms_per_hour = 0.5;     ///< allowed, > 0: the budget
+    /// Left out at a recording's start [ns].
+    std::int64_t settle_time = evidence::LimitFinder::Parameters{}.settle_time;
+    /// Allowed, > 0: the budget.
+    double false_alarms_per_hour = evidence::LimitFinder::Parameters{}.false_alarms_per_hour;
   };
 
   /// @param model only what it watches is needed, and its recordings

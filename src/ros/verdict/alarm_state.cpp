@@ -7,17 +7,30 @@
 #include "verdict_message.h"
 
 namespace self_awareness::ros1 {
+namespace {
+
+std::uint8_t levelOf(const std::optional<core::Alarm>& standing) {
+  using self_awareness::SelfAwareness;
+  if (!standing) {
+    return SelfAwareness::OK;
+  }
+  return standing->level == core::Alarm::Level::kAlarm ? SelfAwareness::ERROR
+                                                       : SelfAwareness::WARN;
+}
+
+}  // namespace
 
 void AlarmState::add(const core::Verdict& verdict, const core::Vocabulary& vocabulary,
                      std::int64_t window, const Circumstances& circumstances) {
   const std::int64_t end = verdict.window->start + window;
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  if (levelOf(verdict) != message_.level) {
-    level_since_ = end;
-  }
   const std::optional<core::Alarm> ended = alarms_.add(verdict, window, vocabulary);
   tell(alarms_.standing() ? alarms_.standing() : ended);
-  message_.level = levelOf(verdict);
+  const std::uint8_t level = levelOf(alarms_.standing());
+  if (level != message_.level) {
+    level_since_ = end;
+  }
+  message_.level = level;
   if (!verdict.suspects.empty() || !stands()) {
     message_.suspects = toMessages(verdict.suspects, vocabulary);
   }

@@ -5,14 +5,6 @@
 
 namespace self_awareness::ros1 {
 
-std::uint8_t levelOf(const core::Verdict& verdict) {
-  if (verdict.alarm) {
-    return self_awareness::SelfAwareness::ERROR;
-  }
-  return verdict.suspicion ? self_awareness::SelfAwareness::WARN
-                           : self_awareness::SelfAwareness::OK;
-}
-
 namespace {
 
 /// Whether the value is the time without an event.

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <ros/time.h>
-
-#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -11,9 +8,6 @@
 #include "self_awareness/core/verdict/detector.h"
 
 namespace self_awareness::ros1 {
-
-/// Level of SelfAwareness.msg: ERROR for an alarm, WARN for a suspicion.
-std::uint8_t levelOf(const core::Verdict& verdict);
 
 /// @param vocabulary that the suspects' ids are of
 std::vector<self_awareness::Suspect> toMessages(const std::vector<core::Suspect>& suspects,

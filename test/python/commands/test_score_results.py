@@ -87,6 +87,7 @@ def test_programs_need_not_parse_words(evidence_model: str, results: Tuple[str, 
     assert {alarm['level'] for alarm in recording['alarms']} == {'WARN', 'ERROR'}
     for alarm, message in zip(recording['alarms'], begun.values()):
         assert (alarm['kind'], alarm['culprit']) == (message.kind, message.component)
+        assert alarm['reason'] == message.reason
         assert alarm['begin_ns'] == message.header.stamp.to_nsec() <= alarm['end_ns']
         for said, suspect in zip(alarm['suspects'], message.suspects):
             assert said['reason'] == suspect.reason

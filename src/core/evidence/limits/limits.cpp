@@ -39,7 +39,6 @@ void LimitFinder::startRecording(std::shared_ptr<const Model> model, std::int64_
   finish();
   judging_ = std::move(model);
   robot_start_ = robot_start;
-  start_.reset();
   firsts_.assign(judging_ == model_ ? model_->size() : 0, -1);
   startScoring();
 }
@@ -64,9 +63,8 @@ ObservedEvent LimitFinder::observe(const Event& event) {
     startPart();
   }
   recording_.end = event.stamp;
-  start_ = start_.value_or(event.stamp);
   if (event.id < firsts_.size() && firsts_[event.id] < 0) {
-    firsts_[event.id] = std::max<std::int64_t>(event.stamp - *start_, 0);
+    firsts_[event.id] = std::max<std::int64_t>(event.stamp - *first_stamp_, 0);
   }
   const ObservedEvent observed{event, !model_->knows(event.id), scorer_->add(event)};
   if (!observed.unknown) {
@@ -87,7 +85,6 @@ void LimitFinder::restart() {
 void LimitFinder::onClockStep() {
   endRecording();
   startScoring();
-  start_.reset();
 }
 
 void LimitFinder::finish() {

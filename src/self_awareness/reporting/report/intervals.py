@@ -103,21 +103,21 @@ def intervals(judged: Judged, found: Overview, prefix: str) -> List[Interval]:
         prefix: of their keys.
     """
     verdicts = judged.verdicts
-    ranked = ([(ALARM, alarm) for alarm in verdicts.alarms]
-              + [(SUSPICION, suspicion) for suspicion in verdicts.suspicions])[:MOST_LISTED]
-    made = [_interval(judged, found, f'{prefix}-{number}', level, alarm, number < MOST_DETAILS)
-            for number, (level, alarm) in enumerate(ranked)]
+    ranked = [*verdicts.alarms, *verdicts.suspicions][:MOST_LISTED]
+    made = [_interval(judged, found, f'{prefix}-{number}', alarm, number < MOST_DETAILS)
+            for number, alarm in enumerate(ranked)]
     return sorted(made, key=lambda each: each.start)
 
 
-def _interval(judged: Judged, found: Overview, key: str, level: str, alarm: Alarm,
+def _interval(judged: Judged, found: Overview, key: str, alarm: Alarm,
               detailed: bool) -> Interval:
     suspects = [_named(judged, suspect, detailed) for suspect in alarm.suspects]
     later = [_named(judged, suspect, detailed) for suspect in alarm.later]
     start = judged.seconds(alarm.begin)
     first = alarm.suspects[0] if alarm.suspects else None
     return Interval(
-        key, level, start, judged.seconds(alarm.end), utc(alarm.begin), alarm.over,
+        key, ALARM if alarm.level == 'ERROR' else SUSPICION, start, judged.seconds(alarm.end),
+        utc(alarm.begin), alarm.over,
         None if first is None else _began(first, start), alarm.lowest_score,
         alarm.evidence or 'what is left of the alarm',
         _decided(judged, found, start - judged.by.trained.window / 2e9), alarm.busy, suspects,

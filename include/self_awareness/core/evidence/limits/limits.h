@@ -120,7 +120,6 @@ class LimitFinder : private WindowObserver {
   Windows windows_;
   std::int64_t robot_start_ = 0;             // of the recording [ns]; 0: not known
   std::optional<std::int64_t> first_stamp_;  // of the recording, or since a step of the clock [ns]
-  std::optional<std::int64_t> start_;        // of the recording, or since a step of the clock [ns]
   std::vector<std::int64_t> firsts_;         // of the recording, as in Recording
   Recording recording_;                      // the open one
   std::uint64_t part_windows_ = 0;           // length of its parts
