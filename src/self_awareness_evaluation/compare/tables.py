@@ -7,8 +7,9 @@ from self_awareness import DEFAULT_WINDOW
 from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation.compare.results import Measured
 from self_awareness_evaluation.families.measures import FaultRow, NormalRow
-from self_awareness_evaluation.families.protocol import DEATH, KINDS
-from self_awareness_evaluation.families.robot import CRASH, HALF_RATE, LATE
+from self_awareness_evaluation.families.protocol import DEATH, KINDS, SELDOM
+from self_awareness_evaluation.families.robot import (CRASH, HALF_RATE, LATE, MISSES, SILENT,
+                                                      STARVED)
 from self_awareness_evaluation.recordings.outages import OutageRow
 from self_awareness_evaluation.simulated import measures, summary
 from self_awareness_evaluation.simulated.tables import table
@@ -148,7 +149,9 @@ _OF_FAMILIES: Sequence[Tuple[str, _FamilyPart]] = (
 _OF_A_FAMILY: Sequence[Tuple[str, _FamilyPart]] = (
     ('false alarms', _quiet), ('WARN', _warned),
     ('crashes within 1 / 5 / 50 s', _kind(CRASH, *_CRASH_S)), ('half rates', _kind(HALF_RATE)),
-    ('late answers', _kind(LATE)), ('deaths when asked', _kind(DEATH)),
+    ('late answers', _kind(LATE)), ('deaths when asked, within 5 s', _kind(DEATH, _SOON_S)),
+    ('deaths of who speaks seldom', _kind(SELDOM)), (MISSES, _kind(MISSES)),
+    (STARVED, _kind(STARVED)), (SILENT, _kind(SILENT)),
     ('guilty first', _first('')))
 
 

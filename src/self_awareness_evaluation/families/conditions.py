@@ -12,7 +12,6 @@ _SHORTEST_LINK, _LONGEST_LINK = 0.7, 1.5
 _LINK_HEAVY = 10.0
 _HICCUP_S = 0.02
 _SOON_S = 0.15
-_SHORTEST_STALL_S, _LONGEST_STALL_S = 0.1, 0.6
 _HOUR_S = 3600.0
 
 
@@ -51,6 +50,7 @@ class Conditions:
         load_period_s: time in which the load rises and falls once [s]; 0: it does not.
         most_load: by how much longer work takes at the most, 1 or more.
         stalls_an_hour: how often the host stalls; everything waits then, and comes at once.
+        stall_s: for how long, at least and at most [s].
     """
 
     hiccups: float = 1e-5
@@ -59,6 +59,7 @@ class Conditions:
     load_period_s: float = 0.0
     most_load: float = 1.0
     stalls_an_hour: float = 0.0
+    stall_s: Tuple[float, float] = (0.1, 0.6)
 
     def load(self, times: np.ndarray, phase: float) -> np.ndarray:
         """Return by how much longer work takes at some times [s]; phase: 0 to 1."""
@@ -96,7 +97,7 @@ class Conditions:
         """Return when the host stalls, and for how long [s]."""
         number = rng.poisson((end - begin) / _HOUR_S * self.stalls_an_hour)
         return (np.sort(rng.uniform(begin, end, number)),
-                rng.uniform(_SHORTEST_STALL_S, _LONGEST_STALL_S, number))
+                rng.uniform(*self.stall_s, number))
 
 
 def in_order(times: np.ndarray) -> np.ndarray:

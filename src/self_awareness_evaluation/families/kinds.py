@@ -71,12 +71,12 @@ class Draft:
             loop=timing.loops and self.rng.uniform() < 0.5, activity=activity))
 
     def add_answer(self, name: str, trigger: int, longest_s: float, topic: str = 'result',
-                   activity: str = '', every: int = 1) -> int:
+                   activity: str = '', every: int = 1, share: float = 1.0) -> int:
         """Add an output that answers within some milliseconds."""
         longest = max(_SHORTEST_ANSWER_S, min(_LONGEST_ANSWER_S, longest_s))
         delay = float(np.exp(self.rng.uniform(np.log(_SHORTEST_ANSWER_S), np.log(longest))))
         return self.add(name, topic, 'geometry_msgs/PoseStamped', Answer(
-            trigger, delay, self.rng.uniform(0.05, 0.25), every, activity=activity))
+            trigger, delay, self.rng.uniform(0.05, 0.25), every, share, activity))
 
     def add_copies(self, index: int, number: int) -> None:
         """Let the component of an output publish further topics right after it."""
@@ -234,6 +234,60 @@ def _two_robots(seed: int) -> Robot:
     return first.robot(seed, Conditions(lost=1e-4))
 
 
+def _pausing_chains(seed: int) -> Robot:
+    draft = Draft(np.random.default_rng(seed))
+    rng = draft.rng
+    for number in range(int(rng.integers(3, 7))):
+        draft.add_timer(f'driver{number}', float(rng.choice((1.0, 5.0, 10.0, 50.0))))
+    for number in range(3):
+        rate = float(rng.choice((5.0, 10.0, 15.0, 20.0)))
+        scan = draft.add_timer(f'laser{number}', rate)
+        seen = f'seen{number}'
+        draft.activities[seen] = Activity(rng.uniform(8.0, 40.0), rng.uniform(0.7, 8.0))
+        longest = _MOST_OF_PERIOD / rate
+        legs = draft.add_answer(f'legs{number}', scan, longest, 'legs', seen)
+        tracker = draft.add_answer(f'tracker{number}', legs, longest, 'track',
+                                   share=rng.uniform(0.985, 0.998))
+        anchor = draft.add_answer(f'anchor{number}', tracker, longest, 'anchor')
+        draft.add_answer(f'attention{number}', anchor, longest, 'gaze', every=4)
+    draft.listen(2)
+    return draft.robot(seed)
+
+
+def _dialogue(seed: int) -> Robot:
+    draft = Draft(np.random.default_rng(seed))
+    rng = draft.rng
+    draft.activities['session'] = Activity(rng.uniform(60.0, 180.0), rng.uniform(60.0, 240.0))
+    for number in range(3):
+        draft.add_timer(f'driver{number}', float(rng.choice((1.0, 2.0, 10.0))))
+    asked = draft.add('microphone', 'speech', 'std_msgs/String',
+                      Sporadic(rng.uniform(5.0, 12.0), 'session'))
+    for name in ('recogniser', 'dialogue', 'voice'):
+        delay = float(np.exp(rng.uniform(np.log(0.2), np.log(2.0))))
+        asked = draft.add(name, 'said', 'std_msgs/String', Answer(
+            asked, delay, rng.uniform(0.1, 0.4), share=rng.uniform(0.63, 0.99)))
+        if rng.uniform() < 0.5:  # it tells its state as well
+            draft.add_timer(name, float(rng.choice((0.5, 1.0, 2.0))), 'state')
+    for number in range(3):
+        add_task(draft, f'task{number}', asked)
+    return draft.robot(seed)
+
+
+def _long_pauses(seed: int) -> Robot:
+    draft = Draft(np.random.default_rng(seed))
+    rng = draft.rng
+    for number in range(4):
+        draft.add_timer(f'driver{number}', float(rng.choice((1.0, 5.0, 10.0, 50.0))))
+    for number in range(4):
+        used = f'used{number}'
+        draft.activities[used] = Activity(rng.uniform(3.0, 20.0), rng.uniform(20.0, 120.0))
+        rate = float(rng.choice((10.0, 20.0, 50.0)))
+        index = draft.add_timer(f'joystick{number}', rate, 'joy', used)
+        draft.add_chain(f'teleop{number}', index, rate, number % 2)
+    draft.listen(2)
+    return draft.robot(seed)
+
+
 @dataclass(frozen=True)
 class Family:
     """Robots of a kind.
@@ -243,12 +297,14 @@ class Family:
         draw: returns the robot of a seed.
         one_start: the recordings to learn from are all of one start.
         watched_start: and so are those that are watched; else each is of another start.
+        hole: in one of the recordings to train on, a component is silent for 6 s.
     """
 
     told: str
     draw: Callable[[int], Robot]
     one_start: bool = False
     watched_start: bool = False
+    hole: bool = False
 
 
 _STALLS = Conditions(stalls_an_hour=6.0)
@@ -276,6 +332,18 @@ FAMILIES: Dict[str, Family] = {
     'bursty': Family('15 to 40 components: timers, chains, trackers in bursts, tasks, speech',
                      _bursty),
     'two_robots': Family('two robots in namespaces', _two_robots),
+    'pausing_chains': Family('chains of legs, tracker, anchor, attention that pause together',
+                             _pausing_chains),
+    'dialogue': Family('speech, answers of which a share never comes, minutes of silence',
+                       _dialogue),
+    'long_pauses': Family('joysticks: seconds of messages, then a minute or two of none',
+                          _long_pauses),
+    'second_stalls': Family('timers, the same start, six stalls of 0.8 to 1.5 s an hour',
+                            _timers(conditions=Conditions(stalls_an_hour=6.0,
+                                                          stall_s=(0.8, 1.5))),
+                            one_start=True, watched_start=True),
+    'hole': Family('timers; in one of the recordings to train on, a driver is silent for 6 s',
+                   _timers(), hole=True),
 }
 """All families by name."""
 

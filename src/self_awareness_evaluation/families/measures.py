@@ -64,12 +64,12 @@ class FaultRow:
     Args:
         subject: who judged it.
         kind: of the fault, one of protocol.KINDS.
-        source: the guilty component.
+        source: the guilty component; empty: the robot.
         stood_before: whether an alarm stood at the onset, a false one; only when it has cleared
             can another one be raised.
         latency_s: from the onset to the first alarm raised after it; None: none was.
-        first: whether that alarm names the guilty component first; None: no such alarm, or the
-            system names nobody.
+        first: whether that alarm names the guilty component first; None: no such alarm, no
+            guilty component, or the system names nobody.
         among_three: the same of the first three.
     """
 
@@ -93,7 +93,7 @@ def normal_row(subject: Subject, judged: Judged, expected: Optional[float]) -> N
 def fault_row(subject: Subject, record: FaultRecord, judged: Judged) -> FaultRow:
     """Measure a recording with a fault."""
     alarm = first_alarm(judged.alarms, record.onset)
-    suspects = None if alarm is None else alarm.suspects
+    suspects = alarm.suspects if alarm is not None and record.source else None
     return FaultRow(
         subject, record.kind, record.source,
         any(alarm.start <= record.onset and not (alarm.cleared and alarm.end <= record.onset)

@@ -6,16 +6,19 @@ from typing import Iterator, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
-from self_awareness.stamps import nanoseconds
+from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness_evaluation.families.kinds import FAMILIES
 from self_awareness_evaluation.families.robot import (CRASH, HALF_RATE, LATE, LONGEST_START_S,
-                                                      Fault, Robot)
+                                                      MISSES, SILENT, STARVED, Fault, Robot)
 from self_awareness_evaluation.windowed_events import WindowedEvents
 
 DEATH = 'death'
 """The crash of a component that is silent until something is asked of it."""
 
-KINDS = (CRASH, HALF_RATE, LATE, DEATH)
+SELDOM = 'seldom'
+"""The crash of a component that speaks when something happens, and answers to nobody."""
+
+KINDS = (CRASH, HALF_RATE, LATE, DEATH, MISSES, STARVED, SILENT, SELDOM)
 """Kinds of faults as they are told apart in the results."""
 
 WATCHED_S = 1800.0
@@ -29,6 +32,10 @@ AFTER_DEATH_S = 1800.0
 
 _ONSET_S = 60.0
 _ONSET_SPREAD_S = 2.0  # the onset must have no fixed phase to the windows and the robot's timers
+
+_PAUSES = 3.0  # a recording goes on for so many of its longest pauses after who speaks seldom died
+_PAUSES_FROM_S = 3600.0  # the longest pause is that of so long a time
+_HOLE_S = 6.0
 
 _MISSING_S = 60.0  # a death is counted if the recording goes on for this long afterwards
 
@@ -90,7 +97,7 @@ class FaultRecord:
 
     Args:
         kind: one of KINDS.
-        source: the guilty component.
+        source: the guilty component; empty: the robot.
         recording: the events.
         onset: of the fault [ns]; of a DEATH: when the first message would have come that is
             missing.
@@ -129,7 +136,8 @@ class Records:
 
     def training(self, learning: Learning) -> List[WindowedEvents]:
         """Return the recordings to train on."""
-        return [self._recorded(_TRAINING, number, learning.training_s, self._family.one_start)
+        return [self._recorded(_TRAINING, number, learning.training_s, self._family.one_start,
+                               self._hole(number, learning.training_s))
                 for number in range(learning.starts)]
 
     def calibration(self, learning: Learning) -> List[WindowedEvents]:
@@ -162,15 +170,16 @@ class Records:
         regular, answering = self.robot.regular, self.robot.answering
         who = {CRASH: regular, HALF_RATE: regular,
                LATE: [source for source in regular if source in answering],
-               DEATH: [source for source in answering if source not in regular]}
+               DEATH: [source for source in answering if source not in regular],
+               MISSES: [source for source in regular if source in answering],
+               STARVED: [''], SILENT: [''], SELDOM: self.robot.seldom}
         number = 0
         for kind in KINDS:
             chosen = _spread(len(who[kind]), most) if kind in kinds else set()
             for index, source in enumerate(who[kind]):
                 if index in chosen:
-                    yield from self._fault(
-                        kind, source, number,
-                        after_death_s if kind == DEATH else AFTER_ONSET_S)
+                    yield from self._fault(kind, source, number,
+                                           self._lasts(kind, source, number, after_death_s))
                 number += 1
 
     def _fault(self, kind: str, source: str, number: int,
@@ -179,18 +188,33 @@ class Records:
         spread = np.random.default_rng((self.robot.seed, number)).uniform(0.0, _ONSET_SPREAD_S)
         onset_s = _ONSET_S + float(spread)
         seconds = onset_s + after_s
-        fault = Fault(CRASH if kind == DEATH else kind, source, onset_s)
+        fault = Fault(CRASH if kind in (DEATH, SELDOM) else kind, source, onset_s)
         same_start = self._family.watched_start
         recording = self._recorded(_FAULTS, number, seconds, same_start, fault)
         onset = recording.end - nanoseconds(seconds) + nanoseconds(onset_s)
         if kind == DEATH:
-            healthy = self._recorded(_FAULTS, number, seconds, same_start)
-            guilty = np.array([known.source == source for known in healthy.event_types])
-            missing = healthy.stamps[guilty[healthy.ids] & (healthy.stamps >= onset)]
+            stamps = _stamps(self._recorded(_FAULTS, number, seconds, same_start), source)
+            missing = stamps[stamps >= onset]
             if not len(missing) or missing[0] + nanoseconds(_MISSING_S) > recording.end:
                 return
             onset = int(missing[0])
         yield FaultRecord(kind, source, recording, onset)
+
+    def _lasts(self, kind: str, source: str, number: int, after_death_s: float) -> float:
+        """Return for how long a recording with a fault goes on after the onset [s]."""
+        if kind == SELDOM:
+            healthy = self._recorded(_FAULTS, number, _PAUSES_FROM_S, self._family.watched_start)
+            stamps = _stamps(healthy, source)
+            return _PAUSES * float(np.max(np.diff(stamps), initial=0)) / SECOND_NS
+        return after_death_s if kind == DEATH else AFTER_ONSET_S
+
+    def _hole(self, number: int, seconds: float) -> Optional[Fault]:
+        """Return what is wrong with a recording to train on: in one of them, the first component
+        is silent for a while."""
+        if not self._family.hole or number > 0:
+            return None
+        begin_s = (seconds - _HOLE_S) / 2.0
+        return Fault(CRASH, self.robot.regular[0], begin_s, begin_s + _HOLE_S)
 
     def _recorded(self, section: _Section, number: int, seconds: float, one_start: bool,
                   fault: Optional[Fault] = None) -> WindowedEvents:
@@ -198,6 +222,12 @@ class Records:
             return self.robot.start(_ONE_START, seconds, fault,
                                     section.from_s + number * section.every_s)
         return self.robot.start(section.first + number, seconds, fault)
+
+
+def _stamps(recording: WindowedEvents, source: str) -> np.ndarray:
+    """Return when a component sends [ns]."""
+    ours = np.array([known.source == source for known in recording.event_types])
+    return recording.stamps[ours[recording.ids]]
 
 
 def _spread(number: int, most: Optional[int]) -> Set[int]:

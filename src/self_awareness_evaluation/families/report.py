@@ -38,9 +38,11 @@ Simulated robots that differ in what decides on false alarms, each drawn by its 
 Each robot is recorded to learn from (starts to train on + further starts to calibrate on):
 {learnings}. In other starts {hours:g} h of normal operation are watched, in recordings of
 {watched_s:g} s, and in recordings of their own every regular component crashes, halves its rate,
-or answers 60 ms later (the recording goes on for {after_s:g} s after the onset), and every
+answers 60 ms later, or misses its inputs for a second now and then; the CPU is starved within
+20 s; everything falls silent (the recording goes on for {after_s:g} s after the onset); every
 component that speaks only when it is asked dies ({death_s:g} s; the latency counts from the first
-message that is missing). With every start all timers have new phases; where a family is recorded
+message that is missing); and so does who speaks when something happens (three times its longest
+pause within an hour). With every start all timers have new phases; where a family is recorded
 or watched in one start, its line says so. All systems judge the same recordings; the first
 {settle_s:g} s of each, while a detector settles, are left out.
 

@@ -13,10 +13,18 @@ from self_awareness_evaluation.families.emissions import Emission, Feedback, Spo
 from self_awareness_evaluation.families.scene import Scene
 from self_awareness_evaluation.windowed_events import WindowedEvents
 
-CRASH, HALF_RATE, LATE = 'crash', 'half rate', 'late 60 ms'
-"""The kinds of faults."""
+CRASH, HALF_RATE, LATE, MISSES = 'crash', 'half rate', 'late 60 ms', 'misses inputs'
+"""The kinds of faults of one component."""
+
+STARVED, SILENT = 'starved CPU', 'everything silent'
+"""The kinds of faults of the whole robot."""
 
 LATE_S = 0.06
+
+_MISSED_S = 1.0  # what asks in this time is not answered
+_BETWEEN_MISSES_S = 5.0  # mean time until it happens again
+_STARVED_S = 0.15  # mean time that a message waits when the CPU is starved fully
+_GROWS_S = 20.0  # until it is
 
 LONGEST_START_S = 90_000.0
 """A start of the robot lasts no longer than this [s]."""
@@ -29,12 +37,14 @@ _RECORDER = ''
 
 @dataclass(frozen=True)
 class Fault:
-    """A fault of one component.
+    """A fault of one component, or of the whole robot.
 
     Args:
         kind: CRASH: it is silent. HALF_RATE: it leaves out every second message. LATE: its answers
-            to others come LATE_S later. What answers to it suffers as it would.
-        source: the component.
+            to others come LATE_S later. MISSES: it answers nothing for a second, now and then.
+            What answers to it suffers as it would. STARVED: all messages wait, longer and longer
+            within 20 s. SILENT: nobody sends.
+        source: the component; empty: the robot.
         onset_s: from the beginning of the recording [s].
         relief_s: from there on all is well again [s].
     """
@@ -106,6 +116,13 @@ class Robot:
         return _distinct(output.source for output, is_so in zip(self.outputs, regular) if is_so)
 
     @property
+    def seldom(self) -> List[str]:
+        """The components that send when something happens, and answer to nobody."""
+        others = {*self.regular, *self.answering}
+        return [source for source in _distinct(output.source for output in self.outputs)
+                if source not in others]
+
+    @property
     def answering(self) -> List[str]:
         """The components that answer to another one."""
         return _distinct(output.source for output in self.outputs if self._answers_others(output))
@@ -141,9 +158,10 @@ class Robot:
         return self._merged(recorded, begin_s, begin_s + seconds, origin)
 
     def _check(self, fault: Fault) -> None:
-        if fault.kind not in (CRASH, HALF_RATE, LATE):
+        of_robot = fault.kind in (STARVED, SILENT)
+        if not of_robot and fault.kind not in (CRASH, HALF_RATE, LATE, MISSES):
             raise ValueError(f'{fault.kind}: no such kind of fault')
-        if fault.source not in {output.source for output in self.outputs}:
+        if fault.source not in ({''} if of_robot else {output.source for output in self.outputs}):
             raise ValueError(f'{fault.source}: no such component')
 
     def _goes_on(self, activity: str) -> bool:
@@ -161,11 +179,19 @@ class Robot:
                                       lambda heard: self._heard(scene, heard, output.source))
         times = stalled(self.conditions.hiccup(times, scene.of_recording(f'hiccup {index}')),
                         scene)
-        if fault is None or fault.source != output.source:
+        if fault is None or fault.source not in ('', output.source):
             return times
         hit = ((times >= begin_s + fault.onset_s) & (times < begin_s + fault.relief_s))
-        if fault.kind == CRASH:
+        if fault.kind in (CRASH, SILENT):
             return times[~hit]
+        if fault.kind == STARVED:
+            grown = np.clip((times - begin_s - fault.onset_s) / _GROWS_S, 0.0, 1.0) * hit
+            waits = scene.of_recording(f'starved {index}').exponential(_STARVED_S, len(times))
+            return in_order(times + waits * grown)
+        if fault.kind == MISSES:
+            if not self._answers_others(output):
+                return times
+            return times[~(hit & _missed(times, scene, fault))]
         if fault.kind == LATE:
             return in_order(times + LATE_S * hit) if self._answers_others(output) else times
         if output.emission.trigger is None or self._answers_others(output):
@@ -198,6 +224,15 @@ class Robot:
             [EventType(output.source, output.topic, output.datatype) for output in outputs],
             stamps[order], np.repeat(ids, [len(times) for times in inside])[order],
             origin + nanoseconds(end))
+
+
+def _missed(times: np.ndarray, scene: Scene, fault: Fault) -> np.ndarray:
+    """Return which times lie in those in which a component misses its inputs."""
+    rng = scene.of_recording(f'missed {fault.source}')
+    number = int((scene.end - scene.begin) / _BETWEEN_MISSES_S * 2.0) + 20
+    edges = scene.begin + np.cumsum(np.column_stack(
+        [rng.exponential(_BETWEEN_MISSES_S, number), np.full(number, _MISSED_S)]).ravel())
+    return np.searchsorted(edges, times, side='right') % 2 == 1
 
 
 def _distinct(sources: Iterable[str]) -> List[str]:

@@ -7,8 +7,9 @@ from typing import Dict, List, Optional, Sequence
 from self_awareness_evaluation.families import summary
 from self_awareness_evaluation.families.experiment import WITH_GRAPH, Plan, Results
 from self_awareness_evaluation.families.measures import NormalRow
-from self_awareness_evaluation.families.protocol import DEATH, Learning
-from self_awareness_evaluation.families.robot import CRASH, HALF_RATE, LATE
+from self_awareness_evaluation.families.protocol import DEATH, SELDOM, Learning
+from self_awareness_evaluation.families.robot import (CRASH, HALF_RATE, LATE, MISSES, SILENT,
+                                                      STARVED)
 from self_awareness_evaluation.families.summary import ALL, Found, Group, Quiet
 from self_awareness_evaluation.simulated.tables import percent, seconds, table
 
@@ -17,6 +18,7 @@ _STARTS_OF_TABLE = 2
 _STARTS_OF_LATE = 4
 _MOST_SOURCES = 2
 _WITHIN_S = (1.0, 5.0, 50.0)
+_MORE = {'deaths of who speaks seldom': SELDOM, MISSES: MISSES, STARVED: STARVED, SILENT: SILENT}
 
 
 def main_learning(plan: Plan) -> Learning:
@@ -43,7 +45,7 @@ def families_table(plan: Plan, results: Results) -> List[str]:
     head = ['family', *(f'false alarms/h, {_started(plan, each)}' for each in plan.learnings),
             *(f'{name}, {_started(plan, learning)}' for name in others), 'alarm stands', 'WARN/h',
             'crash, within 1 / 5 / 50 s', 'half rate', 'late answers', 'deaths when asked',
-            'false alarms from']
+            *_MORE, 'false alarms from']
     body = []
     for family in _with_all(plan.families):
         of_family = _Row(plan, results, normal, family)
@@ -55,6 +57,7 @@ def families_table(plan: Plan, results: Results) -> List[str]:
             percent(quiet.standing), _number(quiet.warnings_per_hour),
             _crashes(of_family.found(learning, system, CRASH)), _found(half),
             _found(of_family.found(late_learning(plan), system, LATE)), _found(death),
+            *(_found(of_family.found(learning, system, kind)) for kind in _MORE.values()),
             _sources(quiet)])
     return table(head, body)
 

@@ -88,7 +88,7 @@ def test_a_cell_has_one_value_or_both(folders: List[str], tmp_path: Path) -> Non
                  '| death, found | – |',
                  f'| timers | evidence, {LEARNING}, budget 0.5 | 0 in 2 h (0/h) | 0 in 2 h (0/h) '
                  '| 1 / 1 / 1 of 1, 0.50 s | – | 0 of 1 → **1 of 1, 0.75 s** | – '
-                 '| 1 of 1 → **2 of 2** |',
+                 '| – | – | – | – | 1 of 1 → **2 of 2** |',
                  '| ac | 1 of 1, 3.50 s → **0 of 1** |',
                  '| every crash within 1 / 5 / 50 s | 1 / 1 / 1 of 1, 0.25 s |',
                  '| wheeled_robot, 1 | evidence | 5 → **6** | 0.90 s → **1.50 s** | 0 | 0.00 s |'):

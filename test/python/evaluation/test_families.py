@@ -10,8 +10,9 @@ from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation.families.conditions import Conditions
 from self_awareness_evaluation.families.emissions import Answer, Feedback, Sporadic, Timer
 from self_awareness_evaluation.families.kinds import FAMILIES, draw
-from self_awareness_evaluation.families.robot import (CRASH, HALF_RATE, LATE, Fault, Output,
-                                                      Robot)
+from self_awareness_evaluation.families.protocol import SELDOM, Learning, Records
+from self_awareness_evaluation.families.robot import (CRASH, HALF_RATE, LATE, MISSES, SILENT,
+                                                      STARVED, Fault, Output, Robot)
 from self_awareness_evaluation.windowed_events import WindowedEvents
 
 POINTS = 'sensor_msgs/PointCloud2'
@@ -142,17 +143,19 @@ def of_fault(kind: str, source: str) -> Dict[str, np.ndarray]:
             for topic, times in recording.items()}
 
 
-@pytest.mark.parametrize('kind', [CRASH, HALF_RATE, LATE])
+@pytest.mark.parametrize('kind', [CRASH, HALF_RATE, LATE, MISSES, STARVED, SILENT])
 @pytest.mark.parametrize('name', FAMILIES)
 def test_nothing_changes_before_the_onset(name: str, kind: str) -> None:
     robot = draw(name, 2)
-    source = robot.answering[0]
+    source = '' if kind in (STARVED, SILENT) else robot.answering[0]
     normal = robot.start(1, 60.0)
     faulty = robot.start(1, 60.0, Fault(kind, source, 30.0))
     before = normal.stamps < normal.end - 30 * SECOND_NS
     number = int(before.sum())
     assert np.array_equal(normal.stamps[before], faulty.stamps[:number])
     assert faulty.end == normal.end
+    # What was sent just before it may come after it.
+    assert (len(faulty.stamps) < number + 5) == (kind == SILENT)
 
 
 def test_a_crash_silences_who_answers() -> None:
@@ -172,6 +175,52 @@ def test_half_the_rate_is_that_of_who_answers_too() -> None:
     counts = of_fault(HALF_RATE, '/filter')
     assert counts['/scan'].tolist() == [200, 200, 200]
     assert counts['/path'].tolist() == [200, 100, 200]
+
+
+def test_who_misses_inputs_answers_nothing_for_a_second_now_and_then() -> None:
+    counts = of_fault(MISSES, '/filter')
+    assert counts['/scan'].tolist() == [200, 200, 200]
+    for topic in ('/map', '/path'):
+        assert counts[topic][[0, 2]].tolist() == [200, 200], topic
+        assert 100 < counts[topic][1] < 200, topic
+    recording = stamps(small().start(1, 120.0, Fault(MISSES, '/filter', 20.0)))
+    pauses = np.diff(recording['/map'])
+    pauses = pauses[pauses > 0.2]
+    assert len(pauses) > 5 and 0.9 < np.median(pauses) < 1.3
+
+
+def test_messages_wait_longer_and_longer_on_a_starved_cpu() -> None:
+    normal, starved = (stamps(small().start(1, 60.0, fault))
+                       for fault in (None, Fault(STARVED, '', 20.0)))
+    number = len(starved['/scan'])
+    late = starved['/scan'] - normal['/scan'][:number]
+    by_10_s = [part.mean() for part in np.array_split(late, 6)]
+    assert by_10_s[0] == by_10_s[1] == 0.0 < by_10_s[2] < by_10_s[3] < by_10_s[4]
+    assert 0.1 < by_10_s[5] < 0.5
+
+
+def test_who_speaks_seldom_is_watched_for_three_of_its_longest_pauses() -> None:
+    records = Records('long_pauses', 1)
+    assert all('joystick' in source or 'teleop' in source for source in records.robot.seldom)
+    for fault in records.faults((SELDOM,), most=1):
+        sent = fault.recording.stamps[np.array([kind.source == fault.source for kind in
+                                                fault.recording.event_types])
+                                      [fault.recording.ids]]
+        assert (sent < fault.onset).all()
+        assert (fault.recording.end - fault.onset) / SECOND_NS > 60.0
+
+
+def test_one_recording_to_train_on_has_a_hole() -> None:
+    first, second = Records('hole', 1).training(Learning(2, 60.0, 1, 60.0))
+    longest = [np.diff(recording.stamps[recording.ids == [
+        kind.source for kind in recording.event_types].index('/driver4')]).max() / SECOND_NS
+        for recording in (first, second)]
+    guilty = Records('hole', 1).robot.regular[0]
+    holes = [np.diff(recording.stamps[recording.ids == [
+        kind.source for kind in recording.event_types].index(guilty)]).max() / SECOND_NS
+        for recording in (first, second)]
+    assert holes[0] > 5.9 > 2.5 > holes[1]
+    assert max(longest) < 1.0
 
 
 def test_late_answers_are_late_and_what_follows_too() -> None:
@@ -280,6 +329,8 @@ def test_wrong_faults_and_times_are_refused() -> None:
         robot.start(1, 60.0, Fault(CRASH, '/nobody', 20.0))
     with pytest.raises(ValueError, match='no such kind'):
         robot.start(1, 60.0, Fault('slow', '/driver', 20.0))
+    with pytest.raises(ValueError, match='no such component'):
+        robot.start(1, 60.0, Fault(STARVED, '/driver', 20.0))
     with pytest.raises(ValueError, match='not in a start'):
         robot.start(1, 60.0, begin_s=90_000.0)
     with pytest.raises(ValueError, match='nothing happens'):
