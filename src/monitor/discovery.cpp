@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "now.h"
+#include "self_awareness/ros/stable_name.h"
 
 namespace self_awareness {
 namespace {
@@ -144,7 +145,9 @@ void Discovery::subscribe(const Wanted& wanted, const ros1::Graph& graph, bool m
     topics = ros1::chooseTopics(
         graph, policy_, wanted.model_topics,
         [&](const std::string& topic) { return encoder.includesTopic(topic); },
-        ros::this_node::getName());
+        [&](const std::string& node) {
+          return node != ros::this_node::getName() && encoder.listens(ros1::stableName(node));
+        });
   }
   state.left_out = leaveOutMost(wanted.model_topics, topics_, topics);
   topics_ = topics;

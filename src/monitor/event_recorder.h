@@ -31,7 +31,7 @@ namespace self_awareness {
 ///   added. A file that is written ends in `.bag.active`.
 /// - `~split` (double, minutes; default: 30; 0.1 to 10000): length of a file; each is a recording.
 /// - `~encoding` (namespace): how messages become events, as in config/encoding.yaml.
-/// - `~subscribe` (string; default: used; used or all): topics to listen to: what another node
+/// - `~subscribe` (string; default: used; used or all): topics to listen to: what a robot's node
 ///   listens to, or all that are published, which may wake publishers that work only while
 ///   somebody listens.
 /// - `~min_space` (double, MB; default: 1000; 0 to 1e15): with less free space on the disk

@@ -47,8 +47,8 @@ namespace self_awareness {
 /// - `~silence` (string; default: abnormal; abnormal or ignored): with `~detector` paper, what a
 ///   window without events is.
 /// - `~subscribe` (string; default: used; used, all or model): topics to listen to besides those
-///   of the model: what another node listens to, what is published, or none. To listen may wake
-///   publishers that work only while somebody listens.
+///   of the model: what a node of the robot listens to, what is published, or none. To listen may
+///   wake publishers that work only while somebody listens.
 /// - `~poll_interval` (double, s; default: 1.0; 0.01 to 3600): time between two questions to the
 ///   master about who publishes and who listens (steady time).
 /// - `~queue_size` (int, messages; default: 1000; 1 to 1000000): how many of a publisher may wait

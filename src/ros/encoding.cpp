@@ -174,6 +174,10 @@ bool Encoder::includesSource(const std::string& source) const {
          !exclude_sources_->match(source);
 }
 
+bool Encoder::listens(const std::string& source) const {
+  return !exclude_sources_->match(source) && !isRostopic(source);
+}
+
 std::optional<ConnectionEncoder> Encoder::connect(const Connection& connection) const {
   const std::string source = stableName(connection.callerid);
   if (!whyLeftOut(connection).empty() || isOwnType(connection.datatype) ||

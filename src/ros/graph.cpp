@@ -85,7 +85,7 @@ void addEdges(const Graph& graph, const std::string& own_name, core::SourceGraph
 std::set<std::string> chooseTopics(const Graph& graph, SubscribePolicy policy,
                                    const std::set<std::string>& model_topics,
                                    const std::function<bool(const std::string&)>& included,
-                                   const std::string& own_name) {
+                                   const std::function<bool(const std::string&)>& listens) {
   std::set<std::string> chosen;
   std::copy_if(model_topics.begin(), model_topics.end(), std::inserter(chosen, chosen.end()),
                [](const std::string& topic) { return whyLeftOut(topic).empty(); });
@@ -93,8 +93,7 @@ std::set<std::string> chooseTopics(const Graph& graph, SubscribePolicy policy,
     return chosen;
   }
   for (const auto& [name, topic] : graph.topics) {
-    const bool used = std::any_of(topic.subscribers.begin(), topic.subscribers.end(),
-                                  [&](const std::string& node) { return node != own_name; });
+    const bool used = std::any_of(topic.subscribers.begin(), topic.subscribers.end(), listens);
     if (!topic.publishers.empty() && (policy == SubscribePolicy::kAll || used) && included(name)) {
       chosen.insert(name);
     }

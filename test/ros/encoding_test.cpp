@@ -200,6 +200,15 @@ TEST_F(EncoderTest, SourcesMayBeLeftOut) {
   EXPECT_FALSE(makeEncoder(EncodingRules::defaults()).includesSource("/play"));
 }
 
+TEST_F(EncoderTest, ToolsOfPeopleWhoWatchUseNoTopic) {
+  const Encoder encoder = makeEncoder(EncodingRules::defaults());
+  EXPECT_TRUE(encoder.listens("/slam"));
+  EXPECT_TRUE(encoder.listens("/player")) << "is not /play";
+  for (const char* tool : {"/record", "/recorder", "/rqt_graph", "/robot/rviz", "/rostopic"}) {
+    EXPECT_FALSE(encoder.listens(tool)) << tool;
+  }
+}
+
 TEST_F(EncoderTest, TheFirstMessageOfALatchingConnectionIsNoEvent) {
   Connection connection = scan();
   connection.latching = true;

@@ -130,6 +130,9 @@ class Encoder {
   /// Whether the rules let any message of the source be an event.
   /// @param source the publisher's stable name
   bool includesSource(const std::string& source) const;
+  /// Whether a node that subscribes to a topic uses it: tools of people who watch do not.
+  /// @param source the subscriber's stable name
+  bool listens(const std::string& source) const;
   /// Encoder of the connection's messages; none if the rules or their names leave them out, or if
   /// they are of a type of this package.
   /// @throw std::invalid_argument if a type field does not fit the message's definition

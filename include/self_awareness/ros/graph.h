@@ -38,17 +38,18 @@ void addEdges(const Graph& graph, const std::string& own_name, core::SourceGraph
 
 /// Topics to subscribe to besides those of the model.
 enum class SubscribePolicy {
-  kUsed,  ///< those that another node listens to: so no lazy publisher wakes up
+  kUsed,  ///< those that a node of the robot listens to: so no lazy publisher wakes up
   kAll,   ///< all that are published
   kModel  ///< none
 };
 
 /// Topics to subscribe to: all of the model, even if they are not published yet, and others by the
 /// policy if the encoding includes them. Those that roscpp cannot subscribe to are left out.
-/// @param own_name the subscriber's node name, which does not count as another node
+/// @param listens whether a node, by its full name, is one of the robot that listens: neither this
+/// one nor a tool is
 std::set<std::string> chooseTopics(const Graph& graph, SubscribePolicy policy,
                                    const std::set<std::string>& model_topics,
                                    const std::function<bool(const std::string&)>& included,
-                                   const std::string& own_name);
+                                   const std::function<bool(const std::string&)>& listens);
 
 }  // namespace self_awareness::ros1

@@ -91,6 +91,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('--encoding', metavar='FILE',
                         help='how messages become events (example: config/encoding.yaml)')
     parser.add_argument('--subscribe', choices=('used', 'all'), default='used',
-                        help='used: topics that another node subscribes to; all: also those that '
-                             'wake publishers which work only for subscribers (default: used)')
+                        help='used: topics that a node of the robot (no tool) subscribes to; all: '
+                             'also those that wake publishers which work only for subscribers '
+                             '(default: used)')
     return parser

@@ -34,7 +34,7 @@ Topics choose(SubscribePolicy policy) {
   graph.topics["/clock"] = {"rosgraph_msgs/Clock", {"/gazebo"}, {"/slam"}};
   return chooseTopics(
       graph, policy, {"/pose"}, [](const std::string& topic) { return topic != "/clock"; },
-      "/self_awareness");
+      [](const std::string& node) { return node != "/self_awareness"; });
 }
 
 TEST(ChooseTopics, UsedLeavesLazyPublishersAsleep) {
@@ -61,7 +61,8 @@ TEST(ChooseTopics, LeavesOutWhatRoscppCannotSubscribeTo) {
   const Encoder encoder(EncodingRules(), [](const core::EventType& /*type*/) { return 0; });
   EXPECT_EQ(chooseTopics(
                 graph, SubscribePolicy::kAll, {"/scan-front", "/scan"},
-                [&](const std::string& topic) { return encoder.includesTopic(topic); }, "/own"),
+                [&](const std::string& topic) { return encoder.includesTopic(topic); },
+                [&](const std::string& node) { return encoder.listens(node); }),
             (Topics{"/a_1/B", longest, "/scan"}));
 }
 
