@@ -225,6 +225,7 @@ void bindVerdicts(py::module& m) {
   m.attr("EVIDENCE_THRESHOLD") = core::evidence::kThreshold;
   m.attr("DEFAULT_WINDOW") = core::kDefaultWindow;    // [ns]
   m.attr("SHORTEST_WINDOW") = core::kShortestWindow;  // [ns]
+  m.attr("ENDING") = core::evidence::kEnding;         // [ns]
   m.attr("LONGEST_SILENCE") = core::kLongestSilence;  // [ns]
   m.attr("LEAST_KNOWN") = core::kLeastKnown;
   m.attr("USUAL_SHARES") = py::make_tuple(core::kUsualFrom, core::kUsualTo);

@@ -1,5 +1,6 @@
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <map>
@@ -207,6 +208,13 @@ void bindModel(py::module& m) {
       .def_property_readonly("pairs", &TrainedModel::pairs,
                              "number of ordered pairs with at least one delay")
       .def("gaps", &TrainedModel::gaps, py::arg("id"), "number of gaps between two of a type")
+      .def(
+          "longest_gap",
+          [](const TrainedModel& self, core::EventId id) {
+            return std::max(self.watched.halves[0].type(id).longestGap(),
+                            self.watched.halves[1].type(id).longestGap());
+          },
+          py::arg("id"), "longest gap between two of a type [ns]; 0: there was none")
       .def_property_readonly("fewest_gaps", &fewestGaps,
                              "gaps that an event type needs to be judged")
       .def("event_count", [](const TrainedModel& self,

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 from self_awareness._core import (  # noqa: F401
     DEFAULT_WINDOW,
+    ENDING,
     EVIDENCE_THRESHOLD,
     LEAST_KNOWN,
     LONGEST_SILENCE,

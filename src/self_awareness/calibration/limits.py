@@ -6,12 +6,13 @@ section 5).
 from __future__ import annotations
 
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any, Iterable, Optional, Sequence, Tuple
 
 import numpy as np
 
 from self_awareness import Calibration, Calibrator, LimitFindings, TrainedModel, recordings
+from self_awareness.calibration.holes import Silences
 from self_awareness.recordings import BagPart, RecordingEvents
 from self_awareness.workers import InProcess, Workers
 
@@ -47,11 +48,13 @@ class TrainedOn:
         fingerprint: of the whole bag.
         events: of the part, by ids of their own; None: read when they are needed, as the memory
             may not hold those of all recordings.
+        silences: the longest one of every event type.
     """
 
     part: BagPart
     fingerprint: int
     events: Optional[RecordingEvents] = None
+    silences: Silences = field(default_factory=dict)
 
     def __str__(self) -> str:
         return str(self.part)

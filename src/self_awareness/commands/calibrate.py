@@ -12,7 +12,7 @@ import numpy as np
 
 from self_awareness import (EVIDENCE_THRESHOLD, DetectorParameters, PaperCalibration, PaperModel,
                             Roc, RocPoint, TrainedModel)
-from self_awareness.calibration import confidence, limits
+from self_awareness.calibration import confidence, holes, limits
 from self_awareness.calibration.fault_injection import (EACH, FORMS, InjectedFault, check_source,
                                                         of_each_source)
 from self_awareness.calibration.results import (FalseAlarms, FaultResult, false_alarms,
@@ -89,6 +89,7 @@ def _calibrate(arguments: argparse.Namespace) -> None:
     if arguments.detector == 'evidence':
         measured = _find_limits(arguments, trained, parameters, normal_runs, faulty_runs)
         evidence_report.print_limits(trained, arguments.model)
+        _say_holes(trained, normal)
         evidence_report.print_measured(measured.normal, measured.false_alarms)
         evidence_report.print_expected(trained)
         evidence_report.print_faults(measured.faulty)
@@ -107,6 +108,18 @@ def _calibrate(arguments: argparse.Namespace) -> None:
                  [(result.fault, result.roc) for result in measured.faults], measured.point)
     trained.save(arguments.output)
     print(f'written: {arguments.output}')
+
+
+def _say_holes(trained: TrainedModel, normal: Sequence[RecordingEvents]) -> None:
+    known_s = {(each.source, each.scope, each.type): trained.longest_gap(index) / SECOND_NS
+               for index, each in enumerate(trained.event_types)
+               if trained.gaps(index) >= trained.fewest_gaps}
+    found = holes.find([(each.part, holes.longest_silences(each)) for each in normal], known_s)
+    for line in holes.lines(found, trained.coverage()):
+        cli.warn('calibrate', line)
+    if found:
+        left = ' '.join(str(part) for part in holes.without([each.part for each in normal], found))
+        cli.warn('calibrate', f'if that was a fault, leave it out: --normal {left}')
 
 
 def _inject(faults: Sequence[InjectedFault], trained: TrainedModel,

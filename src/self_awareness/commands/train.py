@@ -8,11 +8,14 @@ from dataclasses import replace
 from typing import Dict, List, Optional, Sequence, Set, Tuple
 
 from self_awareness import BagError, TrainedModel, encoding_file, progress
+from self_awareness.calibration import holes
+from self_awareness.calibration.holes import Hole
 from self_awareness.calibration.limits import TooLittleError
 from self_awareness.commands import cli
 from self_awareness.judging import BOTH, EVIDENCE, PAPER
 from self_awareness.output_files import MODEL, check_outputs
 from self_awareness.recordings import BagPart, expand
+from self_awareness.reporting import coverage_text
 from self_awareness.reporting.training_report import print_summary
 from self_awareness.stamps import SECOND_NS
 from self_awareness.training import live_graph, many_bags
@@ -51,6 +54,11 @@ def _train(arguments: argparse.Namespace) -> None:
         parts = [replace(part, path=os.path.abspath(part.path)) for part in parts]
     with closing(_workers(arguments, bags)) as workers:
         trained = many_bags.train(parts, counting, workers, base, arguments.skip_bad, progress.say)
+        found = holes.find([(each.part, each.silences) for each in trained.trained_on])
+        if found and arguments.leave_out_holes:
+            parts = holes.without([each.part for each in trained.trained_on], found)
+            base = None if arguments.add_to is None else TrainedModel.load(arguments.add_to)
+            trained = many_bags.train(parts, counting, workers, base, arguments.skip_bad)
         model = trained.model
         if counting.encoding is None and model.encoding.source == 'none':
             print('no bag names the senders of its messages: sources are not told apart '
@@ -64,10 +72,22 @@ def _train(arguments: argparse.Namespace) -> None:
     model.save(arguments.output)
     print_summary(model)
     print(limits)
+    for line in coverage_text.lines(coverage_text.summarise(model.coverage()),
+                                    model.fewest_gaps):
+        print(f'  {line}')
+    _say_holes(found, model, arguments.leave_out_holes)
     for bad in trained.bad:
         cli.warn('train', f'skipped: {bad}')
     print(f'written: {arguments.output}; next, find limits on recordings that it was not trained '
           'on (rosrun self_awareness calibrate)')
+
+
+def _say_holes(found: Sequence[Hole], model: TrainedModel, left_out: bool) -> None:
+    for line in holes.lines(found, [] if left_out else model.coverage()):
+        cli.warn('train', f'left out: {line}' if left_out else line)
+    if found and not left_out:
+        cli.warn('train', 'if that was a fault, --leave-out-holes trains on what came before and '
+                 'after it')
 
 
 def _live_graph(base: Optional[TrainedModel]) -> Set[Tuple[str, str, str]]:
@@ -178,6 +198,10 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('--add-to', metavar='MODEL',
                         help='add to what this model learned, in its encoding, bins and windows; '
                              'it may be the file to write. Its calibrations are dropped')
+    parser.add_argument('--leave-out-holes', action='store_true',
+                        help='leave out the times in which a component is silent for much longer '
+                             'than in all other recordings; without this option they are named, '
+                             'and trained on')
     parser.add_argument('--skip-bad', action='store_true',
                         help='leave out bags that cannot be used, and name them; without this '
                              'option they end the program')

@@ -55,7 +55,7 @@ def _death(each: Dict[str, Any], fewest_gaps: int) -> str:
         return 'when it is asked'
     if each['gaps'] < fewest_gaps:
         return f'not watched: {each["gaps"]} gaps in training, {fewest_gaps} are needed'
-    return 'not watched: it pauses for too long'
+    return 'not watched: all of it came at one moment'
 
 
 def _late(each: Dict[str, Any]) -> str:

@@ -18,7 +18,7 @@ from self_awareness import (DEFAULT_WINDOW, BagError, BagSummary, Calibration,
                             DetectorParameters, EncodingRules, Recording,
                             TrainedModel, Training, Tuning, progress, read_events, recordings,
                             summarise_bag)
-from self_awareness.calibration import limits
+from self_awareness.calibration import holes, limits
 from self_awareness.calibration.limits import TrainedOn
 from self_awareness.judging import BOTH, EVIDENCE, PAPER
 from self_awareness.recordings import BagPart, RecordingEvents, check_windows, overlap
@@ -301,7 +301,7 @@ def _count(how: _How, part: BagPart) -> _Sum:
     lines += [f'{part}: warning: {reason}; it is left out' for reason in summary.left_out]
     if events.copied and encoding.source != 'none':
         lines.append(f'{part}: {_COPIED}')
-    trained_on = TrainedOn(part, events.fingerprint, events)
+    trained_on = TrainedOn(part, events.fingerprint, events, holes.longest_silences(events))
     return _Sum(recording.events, model, [trained_on], lines)
 
 

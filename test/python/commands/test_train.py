@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 import subprocess
 import sys
 import threading
@@ -223,3 +224,25 @@ def test_the_graph_is_who_subscribes_to_whom(robot_bags: Bags, tmp_path, monkeyp
     slam = stable_name('/slam_4242_1600000000000')
     assert TrainedModel.load(output).graph == {
         ('/laser', '/scan', slam), ('/laser', '/scan', '/log'), (slam, '/map', '/log')}
+
+
+def test_a_hole_in_one_recording_is_named_and_left_out_if_asked(
+        make_bag: Callable[..., str], tmp_path, capsys) -> None:
+    whole = [make_bag(f'{day}.bag', robot(1000.0 * number, 60.0))
+             for number, day in enumerate(('monday', 'tuesday'), 1)]
+    hung = make_bag('friday.bag', [each for each in robot(5000.0, 60.0)
+                                   if each[1] != '/slam' or not 5020.0 < each[0] < 5026.0])
+    output = str(tmp_path / 'm')
+    assert train.main([*whole, hung, '-o', output]) == 0
+    told = capsys.readouterr().err
+    assert re.search(r'friday.bag: /slam \(/map\) is silent for 6.\d s from (19.9|20.0) s on', told)
+    assert 'because of that its death is found after' in told and '--leave-out-holes' in told
+    found_s = {each.component: each.death_found_after
+               for each in TrainedModel.load(output).coverage()}
+    assert found_s['/slam'] > 6.0 > 1.0 > found_s['/laser']
+    assert train.main([*whole, hung, '--leave-out-holes', '-o', output]) == 0
+    assert 'left out: ' in capsys.readouterr().err
+    model = TrainedModel.load(output)
+    found_s = {each.component: each.death_found_after for each in model.coverage()}
+    assert found_s['/slam'] < 1.0
+    assert [recording.bag for recording in model.recordings].count('friday.bag') == 2

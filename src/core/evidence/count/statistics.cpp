@@ -296,6 +296,12 @@ Trainer::Trainer(Statistics& statistics, std::int64_t window)
 void Trainer::startRecording(std::optional<std::int64_t> since, std::int64_t robot_start) {
   if (last_stamp_) {
     recording_.end = newest_stamp_;
+    for (EventId id = 0; id < last_seen_.size(); ++id) {
+      std::int64_t& longest = recording_.longest_gaps[id];
+      longest = recording_.events[id] > 1
+                    ? std::max(longest, newest_stamp_ - kEnding - last_seen_[id].stamp)
+                    : longest;
+    }
     statistics_->addRecording(std::move(recording_));
   }
   recording_ = {};

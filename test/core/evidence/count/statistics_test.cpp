@@ -156,6 +156,16 @@ TEST(EvidenceTrainer, SaysWhatEveryRecordingShowed) {
   EXPECT_EQ(second.longest_gaps, (std::vector<std::int64_t>{0, 400 * kMillisecond}));
 }
 
+TEST(EvidenceTrainer, WhoFallsSilentLongBeforeTheEndPaused) {
+  const Statistics counts =
+      countsOf({together({timer(kA, 0, 60 * kSecond, kSecond), timer(kB, 0, 30 * kSecond, kSecond),
+                          timer(kC, 0, 57 * kSecond, kSecond)})});
+  EXPECT_EQ(counts.recordings()[0].longest_gaps,
+            (std::vector<std::int64_t>{kSecond, 59 * kSecond - kEnding - 29 * kSecond, kSecond}))
+      << "C was most likely switched off with the robot";
+  EXPECT_EQ(counts.type(kB).longestGap(), kSecond);
+}
+
 TEST(EvidenceTrainer, TheLastRecordingCountsOnceItHasEnded) {
   Statistics counts = countsOf({}, 1);
   Trainer trainer(counts, kWindow);

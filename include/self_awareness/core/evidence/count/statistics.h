@@ -20,6 +20,10 @@ constexpr std::int64_t kRateSpan = 2 * kNanosecondsPerSecond;
 /// @throw std::invalid_argument if the length is out of range
 std::size_t rateWindows(std::int64_t window);
 
+/// Who falls silent so shortly [ns] before a recording ends was most likely switched off with the
+/// robot, one node after the other.
+constexpr std::int64_t kEnding = 5 * kNanosecondsPerSecond;
+
 /// The counts that the evidence detector learns (docs/method.md, section 3.1). The counts of two
 /// trainings add up to those of a training on both.
 class Statistics {
@@ -63,7 +67,9 @@ class Statistics {
     std::int64_t longest_silence = 0;  ///< between two events in a row, of any types [ns]
     /// By id; 0 for ids beyond. addRecording() leaves out what never came at the end.
     std::vector<std::uint64_t> events;
-    std::vector<std::int64_t> longest_gaps;  ///< [ns] by id, as long as events; 0: no gap
+    /// Longest time without an event [ns] by id, as long as events; 0: there were no two. Also the
+    /// time from the last one to kEnding before the recording's end.
+    std::vector<std::int64_t> longest_gaps;
     /// From the start of the whole recording to the first event [ns] by id, as long as events; -1:
     /// it did not come.
     std::vector<std::int64_t> firsts;

@@ -1,0 +1,169 @@
+"""Holes: silences that one recording shows and no other one, and that alone decide a limit.
+
+A death is found once a silence is longer than all that were seen. So a component that hung for
+some seconds in one of the recordings of normal operation is missed for longer than that ever
+after. Who trains is told by name, and may leave it out.
+"""
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Dict, Iterable, List, Mapping, Optional, Sequence, Tuple
+
+import numpy as np
+
+from self_awareness import ENDING, Coverage, EventType
+from self_awareness.recordings import BagPart, RecordingEvents
+from self_awareness.stamps import SECOND_NS
+
+_TIMES = 3.0
+_LEAST_S = 1.0
+"""A silence is a hole if it is so many times as long as that of any other recording, and so much
+longer."""
+
+_FEWEST_GAPS = 30
+_FEWEST_OTHERS = 2
+_SHORTEST_PART_S = 5.0
+
+Key = Tuple[str, str, str]
+"""Source, scope and type of an event type."""
+
+
+@dataclass(frozen=True)
+class Silence:
+    """The longest time without an event of a type in a recording.
+
+    Args:
+        begin_s: from the recording's first message [s].
+        length_s: of it [s].
+        to_the_end: the type does not come again.
+    """
+
+    begin_s: float
+    length_s: float
+    to_the_end: bool = False
+
+
+Silences = Mapping[Key, Silence]
+"""Those of a recording, of what came often in it."""
+
+
+@dataclass(frozen=True)
+class Hole:
+    """A silence that one recording alone shows.
+
+    Args:
+        part: the recording.
+        key: the event type.
+        silence: see above.
+        others_s: the longest silence of all other recordings [s].
+    """
+
+    part: BagPart
+    key: Key
+    silence: Silence
+    others_s: float
+
+    @property
+    def component(self) -> str:
+        """The component that was silent."""
+        return self.key[0] or self.key[1]
+
+
+def longest_silences(recording: RecordingEvents) -> Silences:
+    """Return the longest silence of every event type with at least 30 gaps.
+
+    What falls silent shortly before the end was most likely switched off with the robot.
+    """
+    order = np.argsort(recording.ids, kind='stable')
+    ids, stamps = recording.ids[order], recording.stamps[order]
+    found: Dict[Key, Silence] = {}
+    firsts = np.flatnonzero(np.diff(ids, prepend=ids[:1] + 1)) if len(ids) else ids
+    for begin, end in zip(firsts, [*firsts[1:], len(ids)]):
+        of_type = stamps[begin:end]
+        if len(of_type) <= _FEWEST_GAPS:
+            continue
+        gaps = np.diff(of_type)
+        longest = int(np.argmax(gaps))
+        silence = _silence(recording, int(of_type[longest]), int(gaps[longest]))
+        tail = int(recording.stamps[-1]) - ENDING - int(of_type[-1])
+        if tail > gaps[longest]:
+            silence = _silence(recording, int(of_type[-1]), tail, to_the_end=True)
+        found[_key(recording.event_types[ids[begin]])] = silence
+    return found
+
+
+def find(recordings: Sequence[Tuple[BagPart, Silences]],
+         known_s: Optional[Mapping[Key, float]] = None) -> List[Hole]:
+    """Return the holes of some recordings.
+
+    Args:
+        recordings: with their silences.
+        known_s: longest silences that other recordings showed [s], by event type; None: these are
+            all.
+    """
+    found = []
+    for number, (part, silences) in enumerate(recordings):
+        for key, silence in silences.items():
+            others = [other[key].length_s for index, (_, other) in enumerate(recordings)
+                      if index != number and key in other]
+            if known_s is not None and key in known_s:
+                others += [known_s[key]] * _FEWEST_OTHERS
+            most_s = max(others, default=0.0)
+            if len(others) >= _FEWEST_OTHERS and silence.length_s > max(_TIMES * most_s,
+                                                                        most_s + _LEAST_S):
+                found.append(Hole(part, key, silence, most_s))
+    return found
+
+
+def without(parts: Iterable[BagPart], holes: Sequence[Hole]) -> List[BagPart]:
+    """Return what is left of recordings without the holes: the parts before and after them."""
+    left = []
+    for part in parts:
+        pieces = [part]
+        for hole in holes:
+            if hole.part == part:
+                pieces = [piece for whole in pieces for piece in _cut(whole, hole.silence)]
+        left += pieces
+    return left
+
+
+def lines(holes: Sequence[Hole], coverage: Sequence[Coverage]) -> List[str]:
+    """Return a line for every hole: who was silent when and where, and what that does.
+
+    Args:
+        holes: what find() returned.
+        coverage: of the model with limits that know the holes.
+    """
+    found_s = {each.component: each.death_found_after for each in coverage}
+    return [_line(hole, found_s.get(hole.component)) for hole in holes]
+
+
+def _line(hole: Hole, found_s: Optional[float]) -> str:
+    silence = hole.silence
+    until = 'to the end' if silence.to_the_end else f'for {silence.length_s:.1f} s'
+    text = (f'{hole.part}: {hole.component} ({hole.key[1]}) is silent {until} from '
+            f'{silence.begin_s:.1f} s on, {hole.others_s:.2g} s at most in the other recordings')
+    if found_s is not None and found_s > silence.length_s:
+        text += (f'; because of that its death is found after {found_s:.2g} s instead of about '
+                 f'{found_s * hole.others_s / silence.length_s:.2g} s')
+    return text
+
+
+def _silence(recording: RecordingEvents, begin: int, length: int,
+             to_the_end: bool = False) -> Silence:
+    return Silence((begin - recording.origin) / SECOND_NS, length / SECOND_NS, to_the_end)
+
+
+def _cut(part: BagPart, silence: Silence) -> List[BagPart]:
+    start_s = part.start or 0.0
+    end_s = silence.begin_s + silence.length_s
+    pieces = []
+    if silence.begin_s - start_s >= _SHORTEST_PART_S:
+        pieces.append(replace(part, end=silence.begin_s))
+    if not silence.to_the_end and (part.end is None or part.end - end_s >= _SHORTEST_PART_S):
+        pieces.append(replace(part, start=end_s))
+    return pieces
+
+
+def _key(event_type: EventType) -> Key:
+    return event_type.source, event_type.scope, event_type.type

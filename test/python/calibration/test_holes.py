@@ -1,0 +1,96 @@
+"""Silences that one recording alone shows: found, named, and left out if that is asked."""
+from __future__ import annotations
+
+from typing import List, Tuple
+
+import numpy as np
+import pytest
+
+from self_awareness import EventType
+from self_awareness.calibration import holes
+from self_awareness.calibration.holes import Silence
+from self_awareness.recordings import BagPart, RecordingEvents
+from self_awareness.stamps import SECOND_NS
+
+GPS, SCAN = ('/gps', '/fix', 'T'), ('/laser', '/scan', 'T')
+ORIGIN = 1_600_000_000 * SECOND_NS
+
+
+def recorded(name: str, *silent: Tuple[float, float], seconds: float = 100.0) -> RecordingEvents:
+    """Return a recording of two timers at 5 Hz, of which /gps is silent now and then."""
+    ticks = np.arange(0.0, seconds, 0.2)
+    gps = ticks[~np.any([(ticks >= begin) & (ticks < end) for begin, end in silent], axis=0)] \
+        if silent else ticks
+    stamps = np.concatenate([gps, ticks + 0.01])
+    order = np.argsort(stamps, kind='stable')
+    ids = np.repeat(np.array([0, 1], dtype=np.uint32), [len(gps), len(ticks)])[order]
+    return RecordingEvents(BagPart(name), [EventType(*GPS), EventType(*SCAN)],
+                           ORIGIN + (stamps[order] * SECOND_NS).astype(np.int64), ids, ORIGIN,
+                           ORIGIN + int(seconds * SECOND_NS), 1)
+
+
+def found(*recordings: RecordingEvents) -> List[holes.Hole]:
+    """Return the holes of some recordings."""
+    return holes.find([(each.part, holes.longest_silences(each)) for each in recordings])
+
+
+def test_the_longest_silence_of_every_type_is_known() -> None:
+    silences = holes.longest_silences(recorded('a.bag', (40.0, 46.0), (60.0, 62.0)))
+    assert silences[GPS].begin_s == pytest.approx(39.8, abs=1e-3)
+    assert silences[GPS].length_s == pytest.approx(6.2, abs=1e-3)
+    assert silences[SCAN].length_s == pytest.approx(0.2, abs=1e-3)
+
+
+def test_who_dies_in_the_middle_is_silent_to_the_end() -> None:
+    silence = holes.longest_silences(recorded('a.bag', (40.0, 200.0)))[GPS]
+    assert silence.to_the_end and silence.begin_s == pytest.approx(39.8, abs=1e-3)
+    assert silence.length_s == pytest.approx(55.0, abs=0.2)
+    # What ends with the robot does not.
+    assert not holes.longest_silences(recorded('a.bag', (97.0, 200.0)))[GPS].to_the_end
+
+
+def test_what_came_seldom_says_nothing() -> None:
+    assert GPS not in holes.longest_silences(recorded('a.bag', (5.0, 200.0)))
+
+
+def test_a_hole_is_what_one_recording_alone_shows() -> None:
+    normal = [recorded(name) for name in ('a.bag', 'b.bag')]
+    hole, = found(*normal, recorded('c.bag', (40.0, 46.0)))
+    assert (hole.part.path, hole.component) == ('c.bag', '/gps')
+    assert hole.others_s == pytest.approx(0.2, abs=1e-3)
+    assert not found(*normal, recorded('c.bag', (40.0, 40.7))), 'a second more is little'
+    assert not found(*normal, *(recorded(name, (40.0, 46.0)) for name in ('c.bag', 'd.bag')))
+    assert not found(normal[0], recorded('c.bag', (40.0, 46.0))), 'one of two: who is right?'
+
+
+def test_what_the_training_showed_is_as_good_as_other_recordings() -> None:
+    part = recorded('c.bag', (40.0, 46.0))
+    silences = [(part.part, holes.longest_silences(part))]
+    assert [hole.component for hole in holes.find(silences, {GPS: 0.3, SCAN: 0.3})] == ['/gps']
+    assert not holes.find(silences, {GPS: 3.0})
+    assert not holes.find(silences, {})
+
+
+def test_what_is_left_are_the_parts_before_and_after() -> None:
+    normal = [recorded(name) for name in ('a.bag', 'b.bag')]
+    bad, dead = recorded('c.bag', (40.0, 46.0)), recorded('d.bag', (50.0, 200.0))
+    recordings = [*normal, bad]
+    left = holes.without([each.part for each in recordings], found(*recordings))
+    assert [str(part) for part in left] == ['a.bag', 'b.bag', 'c.bag@0-39.8', 'c.bag@46']
+    left = holes.without([dead.part], found(*normal, dead))
+    assert [str(part) for part in left] == ['d.bag@0-49.8']
+
+
+def test_a_line_names_who_when_where_and_the_effect() -> None:
+    hole = holes.Hole(BagPart('tuesday.bag'), GPS, Silence(212.0, 6.0), 0.3)
+    assert holes.lines([hole], []) == [
+        'tuesday.bag: /gps (/fix) is silent for 6.0 s from 212.0 s on, 0.3 s at most in the other '
+        'recordings']
+
+    class Known:
+        """Coverage."""
+
+        component = '/gps'
+        death_found_after = 10.0
+    assert holes.lines([hole], [Known()])[0].endswith(  # type: ignore[list-item]
+        '; because of that its death is found after 10 s instead of about 0.5 s')
