@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -52,7 +53,7 @@ class Judge : public core::Judge {
   /// Whether every component that was heard, and whose silence is judged, should have spoken by
   /// now; at least two.
   bool areAllSilent() const;
-  /// The suspects of a window.
+  /// The suspects of a window with evidence of known event types.
   /// @param silent_first whether those come before what was never heard that tracks speak against
   std::vector<Suspect> namedIn(const Window& window, bool silent_first) const;
 
@@ -183,7 +184,10 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
   }
   if (suspects == NameSuspects::kAlways ||
       (suspects == NameSuspects::kIfUnusual && (judgement.abnormal || judgement.suspicious))) {
-    judgement.suspects = namedIn(window, largest > 1);
+    // Who is within his own range is no suspect because somebody else is unknown.
+    judgement.suspects = judgement.abnormal || judgement.suspicious
+                             ? namedIn(window, largest > 1)
+                             : strangers_.unknown(window, scorer_);
   }
   return judgement;
 }
@@ -194,8 +198,11 @@ std::vector<Suspect> Judge::namedIn(const Window& window, bool silent_first) con
   if (!silent_first) {
     std::swap(first, second);
   }
+  // However many strangers there are, they do not hide who is to blame.
   std::vector<Suspect> named = strangers_.suspects(window, scorer_);
-  for (const std::vector<Suspect>& suspects : {first, second}) {
+  const std::vector<Suspect> strangers = named;
+  named.resize(std::min<std::size_t>(named.size(), 1));
+  for (const std::vector<Suspect>& suspects : {first, second, strangers}) {
     for (const Suspect& suspect : suspects) {
       if (std::none_of(named.begin(), named.end(),
                        [&](const Suspect& other) { return other.id == suspect.id; })) {
@@ -207,6 +214,16 @@ std::vector<Suspect> Judge::namedIn(const Window& window, bool silent_first) con
 }
 
 bool Judge::areAllSilent() const {
+  // Who says one thing says nothing else at that moment, and is not silent.
+  std::map<std::size_t, std::int64_t> silences;  // since the last event of any type, by component
+  for (EventId id = 0; id < model_->size(); ++id) {
+    if (scorer_.heard().hasSeen(id)) {
+      const std::int64_t silence = scorer_.heard().silence(id);
+      std::int64_t& of_component =
+          silences.try_emplace(model_->componentIndex(id), silence).first->second;
+      of_component = std::min(of_component, silence);
+    }
+  }
   std::set<std::size_t> judged;
   std::set<std::size_t> silent;
   const double rare = std::log(model_->tuning().rare_silence);
@@ -216,9 +233,10 @@ bool Judge::areAllSilent() const {
         !scorer_.heard().hasSeen(id)) {
       continue;
     }
-    judged.insert(model_->componentIndex(id));
-    if (model_->logSurvival(id, scorer_.heard().silence(id)) < rare) {
-      silent.insert(model_->componentIndex(id));
+    const std::size_t component = model_->componentIndex(id);
+    judged.insert(component);
+    if (model_->logSurvival(id, silences.at(component)) < rare) {
+      silent.insert(component);
     }
   }
   return judged.size() > 1 && silent.size() == judged.size();

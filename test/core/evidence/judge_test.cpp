@@ -92,6 +92,29 @@ TEST_F(EvidenceJudgeTest, AllAreSilentIfEverybodyShouldHaveSpoken) {
   EXPECT_TRUE(judgeAt(*judge, end + 10 * kSecond).all_silent) << "though not yet at its limit";
 }
 
+TEST_F(EvidenceJudgeTest, WhoSaysAnotherThingIsNotSilent) {
+  // /a says two things in turn, and /b one.
+  const auto start = [](std::int64_t from) {
+    return countsOf({together({timer(0, from, from + 100 * kSecond, kSecond),
+                               timer(1, from + kSecond / 2, from + 100 * kSecond, kSecond),
+                               timer(2, from, from + 100 * kSecond, kPeriod)})},
+                    {{"/a", "/x", "T"}, {"/a", "/w", "T"}, {"/b", "/y", "T"}});
+  };
+  model_ = std::make_shared<Model>(watch(start(0), start(kStart)));
+  limits_.tracks.assign(model_->tracks().size(), kNone);
+  for (EventId id = 0; id < 3; ++id) {
+    limits_.tracks[track(kOverdue, id, id)] = model_->overdue(id, 2 * kSecond);
+  }
+  const std::unique_ptr<core::Judge> judge = newJudge(limits_);
+  for (const Event& event : std::vector<Event>{{0, 2}, {kSecond, 0}, {2500 * kMillisecond, 1}}) {
+    judge->add(event);
+  }
+  const std::int64_t now = 2800 * kMillisecond;  // /x should have come 0.8 s ago
+  EXPECT_TRUE(judgeAt(*judge, now).abnormal);
+  EXPECT_FALSE(judgeAt(*judge, now).all_silent);
+  EXPECT_TRUE(judgeAt(*judge, 5 * kSecond).all_silent);
+}
+
 TEST_F(EvidenceJudgeTest, LateAnswersAreAbnormalButNotCertain) {
   const std::size_t delay = track(kPairs, kB, kA);
   limits_.tracks[delay] = model_->leastLimit(delay);
@@ -134,6 +157,19 @@ TEST_F(EvidenceJudgeTest, NamesSuspectsOnlyWhereTheyAreAskedFor) {
   EXPECT_TRUE(judge->judge({}, 2 * kSecond, NameSuspects::kNever).suspects.empty());
   EXPECT_EQ(judge->judge({}, 2 * kSecond, NameSuspects::kIfUnusual).suspects.size(), 1U);
   EXPECT_TRUE(newJudge(std::nullopt)->judge(unknown, 0, NameSuspects::kAlways).suspects.empty());
+}
+
+TEST_F(EvidenceJudgeTest, WhoIsWithinHisOwnRangeIsNoSuspectBesideAnUnknownEvent) {
+  limits_.tracks[track(kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
+  const std::unique_ptr<core::Judge> judge = newJudge(limits_);
+  judge->add({0, kA});
+  const Window unknown{900 * kMillisecond, {{{950 * kMillisecond, kC}, true, {}}}};
+  // A is near its limit.
+  const Judgement judgement = judge->judge(unknown, 960 * kMillisecond, NameSuspects::kAlways);
+  EXPECT_GT(-*judgement.score, model_->tuning().near_limit);
+  EXPECT_FALSE(judgement.abnormal);
+  ASSERT_EQ(judgement.suspects.size(), 1U);
+  EXPECT_EQ(judgement.suspects[0].id, kC);
 }
 
 TEST_F(EvidenceJudgeTest, WithoutLimitsItSaysNothing) {
@@ -289,6 +325,27 @@ TEST_F(EvidenceJudgeOfStrangersTest, AnUnknownSenderOnAKnownTopicIsTheFirstSuspe
   EXPECT_EQ(heard_->at(named[0].id).source, "/rostopic");
   EXPECT_EQ(named[0].reason.words, "never seen in training, 1 in this window");
   EXPECT_EQ(named[1].id, kA);
+}
+
+TEST_F(EvidenceJudgeOfStrangersTest, ManyStrangersDoNotHideWhoIsToBlame) {
+  heard_ = std::make_shared<Vocabulary>(model_->vocabulary());
+  limits_.tracks[track(kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
+  const std::unique_ptr<core::Judge> judge =
+      makeJudge(model_, limits_, kWindow, std::make_shared<SourceGraph>(), heard_);
+  judge->add({kSecond, kA});
+  judge->add({kSecond, kB});
+  Window window;
+  window.start = 5 * kSecond - kWindow;
+  for (int number = 0; number < 6; ++number) {
+    const EventId id = heard_->intern({"/stranger" + std::to_string(number), "/y", "T"});
+    window.events.push_back(judge->add({5 * kSecond - 50 * kMillisecond, id}));
+  }
+  const std::vector<Suspect> named =
+      judge->judge(window, 5 * kSecond, NameSuspects::kIfUnusual).suspects;
+  ASSERT_EQ(named.size(), 7U);
+  EXPECT_EQ(named[0].reason.kind, Kind::kStranger);
+  EXPECT_EQ(named[1].id, kA);
+  EXPECT_EQ(named[6].reason.kind, Kind::kStranger);
 }
 
 TEST_F(EvidenceJudgeOfStrangersTest, ItIsSoForAsLongAsRatesCount) {

@@ -56,6 +56,18 @@ std::vector<Suspect> Strangers::suspects(const Window& window, const Scorer& sco
   return suspects;
 }
 
+std::vector<Suspect> Strangers::unknown(const Window& window, const Scorer& scorer) const {
+  std::vector<Suspect> named = suspects(window, scorer);
+  for (const ObservedEvent& observed : window.events) {
+    const EventId id = observed.event.id;
+    if (observed.unknown && std::none_of(named.begin(), named.end(),
+                                         [id](const Suspect& other) { return other.id == id; })) {
+      named.push_back(unknownSuspect(id, window));
+    }
+  }
+  return named;
+}
+
 // A node that comes under another name with every start takes the place of the one that training
 // knows: that one is not heard.
 bool Strangers::isStranger(EventId id, const Scorer& scorer) const {

@@ -31,6 +31,8 @@ class Strangers {
   /// Those that were heard in the last kRateSpan.
   /// @param scorer of the same recording, at the end of the window
   std::vector<Suspect> suspects(const Window& window, const Scorer& scorer) const;
+  /// The same, and all other unknown event types of the window.
+  std::vector<Suspect> unknown(const Window& window, const Scorer& scorer) const;
 
  private:
   bool isStranger(EventId id, const Scorer& scorer) const;
