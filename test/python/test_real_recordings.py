@@ -5,10 +5,15 @@ import re
 from pathlib import Path
 from typing import List, NamedTuple
 
+import numpy as np
 import pytest
 
-from self_awareness import EncodingRules, TrainedModel, read_events, summarise_bag
+import self_awareness
+from self_awareness import (DetectorParameters, EncodingRules, EvidenceModel, TrainedModel,
+                            judge_by_evidence, read_events, recordings, summarise_bag)
 from self_awareness.commands import calibrate, score, train
+from self_awareness.recordings import BagPart
+from self_awareness.stamps import SECOND_NS
 
 PAPER = ('--detector', 'paper')
 
@@ -104,7 +109,7 @@ def test_evidence_finds_that_the_laser_is_gone(wheeled_robot: Path, tmp_path: Pa
     assert score.main([str(wheeled_robot / 'jan17_outage.bag'), '--model', model]) == 0
     alarms = alarms_of(capsys.readouterr().out)
     assert all(alarm.start > 42.0 for alarm in alarms)
-    assert alarms[-1].start < 70.3 and alarms[-1].end > 120.0
+    assert alarms[-1].start <= 70.3 and alarms[-1].end > 120.0
 
 
 @pytest.mark.parametrize('session', ['101', '102', '103'])
@@ -168,3 +173,49 @@ def test_every_recording_can_be_trained_on_and_scored(shared: Path, tmp_path: Pa
         rules = TrainedModel.load(model).encoding
         assert TrainedModel.load(model).events == len(read_events(str(bag), rules).stamps)
         assert (rules == EncodingRules.defaults()) == summarise_bag(str(bag)).has_sources
+
+
+@pytest.fixture(scope='module')
+def voice_assistant(shared: Path) -> Path:
+    return shared / 'data' / 'voice_assistant'
+
+
+@pytest.fixture(scope='module')
+def of_voice_assistant(voice_assistant: Path) -> self_awareness.Model:
+    """Learned from four normal runs; up to 37 % of the requests stay without an answer."""
+    return self_awareness.learn([voice_assistant / f'mic1_{run}_level.bag' for run in (
+        'spk70_55db', 'spk70_65db', 'spk70_70db', 'spk80_70db')])
+
+
+@pytest.mark.parametrize('run', ['mic1_spk80_75db_level', 'array_spk70_75db_level'])
+def test_answers_that_stay_away_in_noise_are_found(
+        voice_assistant: Path, of_voice_assistant: self_awareness.Model, run: str) -> None:
+    alarm = next(each for each in of_voice_assistant.judge(voice_assistant / f'{run}.bag')
+                 if each.level == 'ERROR')
+    assert alarm.culprit == '/lisa_mqtt_ros_bridge'
+
+
+@pytest.mark.parametrize('run', ['mic1_quiet', 'mic1_quiet_2', 'array_spk70_60db_level',
+                                 'array_spk70_70db_level', 'array_spk70_quiet_room'])
+def test_as_many_missing_answers_as_usual_are_normal(
+        voice_assistant: Path, of_voice_assistant: self_awareness.Model, run: str) -> None:
+    assert not [each for each in of_voice_assistant.judge(voice_assistant / f'{run}.bag')
+                if each.level == 'ERROR']
+
+
+@pytest.mark.parametrize('run', ['mic1_quiet', 'array_spk70_60db_level'])
+@pytest.mark.parametrize('killed_s', [120, 300])
+def test_a_bridge_that_dies_is_found(voice_assistant: Path,
+                                     of_voice_assistant: self_awareness.Model, run: str,
+                                     killed_s: int) -> None:
+    trained = of_voice_assistant.trained
+    recording = recordings.read(trained, BagPart(str(voice_assistant / f'{run}.bag')))
+    onset = recording.origin + killed_s * SECOND_NS
+    of_bridge = [kind.source == '/lisa_mqtt_ros_bridge' for kind in recording.event_types]
+    lives = (recording.stamps < onset) | ~np.array(of_bridge)[recording.ids]
+    verdicts = judge_by_evidence(trained, EvidenceModel(trained), DetectorParameters(),
+                                 recording.stamps[lives], recording.ids[lives], recording.end,
+                                 recording.event_types)
+    alarm = verdicts.alarms[0]
+    assert onset < alarm.begin < onset + 60 * SECOND_NS
+    assert alarm.culprit == '/lisa_mqtt_ros_bridge'

@@ -31,6 +31,8 @@ evidence::Tuning tuningOf(const self_awareness::Model& message) {
     evidence::set(tuning, "least_effect", message.least_effect / 1e9);
     evidence::set(tuning, "least_effect_of_period", message.least_effect_of_period);
   }
+  // The limits of models that do not know it are in seconds wherever requests come in no series.
+  evidence::set(tuning, "rare_misses", 1);
   for (const evidence::TuningNumber& number : evidence::tuningNumbers()) {
     const auto name = std::find(given.names.begin(), given.names.end(), number.name);
     if (name != given.names.end()) {

@@ -191,6 +191,7 @@ TEST(TuningMessage, WhatIsMissingHasItsDefaultAndWhatIsUnknownIsLeftOut) {
   message.tuning.without = {"of tomorrow", "fewer"};
   core::evidence::Tuning expected;
   expected.least_effect = 0.003;
+  expected.rare_misses = 1;  // it had no such rule
   expected.without = {"fewer"};
   EXPECT_TRUE(tuningOf(message) == expected);
 }
@@ -204,6 +205,7 @@ TEST(TuningMessage, AFileOfFormat1HasThreeNumbers) {
   expected.predecessors = 4;  // besides its own gaps
   expected.least_effect = 0.007;
   expected.least_effect_of_period = 0.01;
+  expected.rare_misses = 1;
   EXPECT_TRUE(tuningOf(message) == expected);
   message.least_effect = -1e6;
   EXPECT_THROW(tuningOf(message), std::invalid_argument);

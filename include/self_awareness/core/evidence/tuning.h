@@ -27,8 +27,10 @@ struct Tuning {
   double chance_of_one = 0.05;
   double irregular = 2;
   double least_chance_misses = 0.2;
-  double most_of_chance_misses = 0.5;
-  double most_misses = 0.1;
+  double least_chance_misses_of_pausing = 0.02;
+  double most_of_chance_misses = 0.75;
+  double most_misses = 0.5;
+  double rare_misses = 0.02;
   double least_of_longest = 0.1;
   double fewest_of_broadcast = 4;
 
@@ -80,7 +82,9 @@ struct Tuning {
   double most_tail_margin = 2;
   double regular = 1.5;
   double fast = 2;
-  double pauses = 20;
+  double pauses = 5;
+  double prior_pauses = 2;
+  double fewest_starts = 3;
   double most_of_training = 10;
   double least_rate_limit = 3;
   double least_deadline = 0.5;

@@ -8,6 +8,9 @@
 namespace self_awareness::core::evidence {
 namespace {
 
+// All but as many answers as this leaves out on both sides take no longer than usual.
+constexpr double kUsualAnswers = 0.9;
+
 class ExpectedAnswers : public Expectation {
  public:
   ExpectedAnswers(const Model& model, std::vector<std::size_t> tracks)
@@ -17,17 +20,27 @@ class ExpectedAnswers : public Expectation {
   double leastLimit(std::size_t track) const override {
     return countsRequests(track) ? model_.tuning().least_requests : model_.tuning().least_deadline;
   }
-  /// Whether requests come in series, and are counted.
+  /// Whether requests come in series, or stay without an answer now and then, and are counted.
   bool countsRequests(std::size_t track) const {
-    return usualGap(track) < static_cast<double>(kRateSpan);
+    const Track& owed = model_.tracks()[track];
+    const Statistics& counts = model_.statistics();
+    return model_.meanGap(owed.from) < static_cast<double>(kRateSpan) ||
+           missRate(counts.type(owed.from).gaps, counts.answers(owed.from, owed.to)) >
+               tooSoon(owed) + model_.tuning().rare_misses;
   }
   const Model& model() const { return model_; }
 
  private:
-  /// Median gap of the requests [ns].
-  double usualGap(std::size_t track) const {
-    const EventId from = model_.tracks()[track].from;
-    return model_.usualDelay(from, from, 0.5);
+  /// Share of the requests that the next one follows before an answer may be expected.
+  double tooSoon(const Track& owed) const {
+    const DelayHistogram& gaps = model_.statistics().delays(owed.from, owed.from);
+    const std::size_t latest =
+        model_.statistics().delays(owed.from, owed.to).middle(kUsualAnswers).last;
+    double shorter = 0;
+    for (std::size_t bin = 0; bin <= latest; ++bin) {
+      shorter += gaps[bin];
+    }
+    return shorter / static_cast<double>(std::max<std::uint64_t>(gaps.total(), 1));
   }
 
   const Model& model_;
@@ -41,6 +54,9 @@ class OwedState : public ChannelState {
   void add(const Heard::Arrival& arrival, const Heard& /*heard*/) override {
     for (const std::uint32_t number : asks_[arrival.id].answered) {
       owed_[number].requests = 0;
+    }
+    if (arrival.stalled) {
+      return;  // what waited comes all at once, before any answer to it
     }
     for (const std::uint32_t number : asks_[arrival.id].asked) {
       Answer& answer = owed_[number];
@@ -128,22 +144,22 @@ void OwedState::explain(std::size_t track, const Heard& heard, const RecentEvent
 
 }  // namespace
 
-// Those that ask are ranked by the share of requests without an answer.
+// Those that ask are ranked by how soon the answer comes.
 std::vector<Track> Owed::watch(const Choice& choice) const {
   std::vector<Track> tracks;
   for (EventId to = 0; to < choice.both.size(); ++to) {
-    std::vector<std::pair<double, EventId>> best;
+    std::vector<std::pair<std::size_t, EventId>> best;
     for (EventId from = 0; from < choice.both.size(); ++from) {
       const std::uint64_t answers = choice.both.answers(from, to);
       const double misses = missRate(choice.both.type(from).gaps, answers);
       if (from != to && static_cast<double>(answers) >= choice.tuning.fewest_gaps &&
           misses <= choice.tuning.most_misses && choice.relations.owed(from, to).watched) {
-        best.emplace_back(misses, from);
+        best.emplace_back(choice.both.delays(from, to).middle(0).last, from);
       }
     }
     std::sort(best.begin(), best.end());
     best.resize(std::min(best.size(), static_cast<std::size_t>(choice.tuning.deadlines)));
-    for (const auto& [misses, from] : best) {
+    for (const auto& [soon, from] : best) {
       tracks.push_back({this, to, from});
     }
   }

@@ -9,6 +9,9 @@
 namespace self_awareness::core::evidence {
 namespace {
 
+// Beyond this [ns], 36 years, a silence is none that anybody waits for.
+constexpr double kLongestAge = 1.15e18;
+
 class SilenceState : public ChannelState {
  public:
   SilenceState(const Model& model, const std::vector<std::size_t>& tracks)
@@ -57,12 +60,8 @@ class ExpectedSilence : public Expectation {
   double leastLimit(std::size_t /*track*/) const override { return 0; }
   double limit(std::size_t track, double most) const override {
     const EventId id = model_.tracks()[track].to;
-    const Tuning& tuning = model_.tuning();
-    // What comes when something happens may stay away for as long as nothing does.
-    const bool irregular =
-        most > tuning.longest_wait * 1e9 && most > tuning.most_mean_gaps * model_.meanGap(id);
-    // Nor is anything known of what came at one moment only.
-    const double limit = irregular ? 0 : model_.overdue(id, std::llround(most));
+    // Nothing is known of what came at one moment only.
+    const double limit = model_.overdue(id, std::llround(std::min(most, kLongestAge)));
     return limit > 0 ? limit : std::numeric_limits<double>::quiet_NaN();
   }
 

@@ -7,30 +7,34 @@
 #include <numeric>
 
 namespace self_awareness::core::evidence {
-GapTail::GapTail(const std::vector<std::int64_t>& longest_gaps, double hours, double usual) {
+GapTail::GapTail(const std::vector<std::int64_t>& longest_gaps, double hours, double usual,
+                 double cut_off, double most_samples, double prior) {
   const auto end = std::find_if(longest_gaps.begin(), longest_gaps.end(), [&](std::int64_t gap) {
     return static_cast<double>(gap) <= usual;
   });
-  const auto number = static_cast<std::size_t>(end - longest_gaps.begin());
+  const auto number = static_cast<double>(end - longest_gaps.begin());
   // If all that are kept are pauses, there are more of them.
-  const bool more = number > 0 && number == longest_gaps.size();
+  const bool more = number > 0 && end == longest_gaps.end();
   shortest_ = more ? static_cast<double>(*std::prev(end)) : usual;
-  all_ = static_cast<double>(number) / hours;
+  all_ = number / hours;
   if (number > 0) {
-    mean_excess_ =
-        std::accumulate(longest_gaps.begin(), end, 0.0) / static_cast<double>(number) - shortest_;
+    samples_ = std::min(number, most_samples) + prior;
+    const double seen = std::accumulate(longest_gaps.begin(), end, 0.0) - number * shortest_;
+    excess_ = (seen + std::max(cut_off - (shortest_ - usual), 0.0)) * samples_ / number;
   }
 }
 
 double GapTail::age(double rate) const {
-  return shortest_ + mean_excess_ * std::log(std::max(all_ / rate, 1.0));
+  return samples_ > 0
+             ? shortest_ + excess_ * (std::pow(std::max(all_ / rate, 1.0), 1 / samples_) - 1)
+             : shortest_;
 }
 
 double GapTail::rate(double age) const {
   if (age <= shortest_) {
     return all_;
   }
-  return mean_excess_ > 0 ? all_ * std::exp((shortest_ - age) / mean_excess_) : 0;
+  return excess_ > 0 ? all_ * std::pow(1 + (age - shortest_) / excess_, -samples_) : 0;
 }
 
 }  // namespace self_awareness::core::evidence

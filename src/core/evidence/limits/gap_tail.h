@@ -6,14 +6,19 @@
 namespace self_awareness::core::evidence {
 
 /// How often an event type that comes irregularly stays away for how long: the excess of its
-/// longest gaps over the shortest of them is taken for exponential (docs/method.md, section 5.3).
+/// longest gaps over the shortest of them is taken for exponential. Few gaps tell its mean badly:
+/// so what the next ones are expected to be is a Lomax distribution (docs/method.md, section 5.3).
 /// Gaps in which nothing was left out say nothing about that.
 class GapTail {
  public:
   /// @param longest_gaps [ns], the longest first
   /// @param hours in which they were the longest, more than 0
   /// @param usual gaps are no longer than this [ns]
-  GapTail(const std::vector<std::int64_t>& longest_gaps, double hours, double usual);
+  /// @param cut_off what silences beyond usual gaps took that recordings cut off [ns]
+  /// @param most_samples of what the next gaps will be: the gaps of one start are as one
+  /// @param prior so many samples of the same mean are believed to have been seen besides
+  GapTail(const std::vector<std::int64_t>& longest_gaps, double hours, double usual,
+          double cut_off, double most_samples, double prior);
 
   /// Age [ns] that gaps reach at a rate.
   /// @param rate of such gaps an hour, more than 0
@@ -22,9 +27,10 @@ class GapTail {
   double rate(double age) const;
 
  private:
-  double shortest_ = 0;     // of the longest gaps, but more than the usual ones [ns]
-  double mean_excess_ = 0;  // over it [ns]
-  double all_ = 0;          // gaps an hour from the shortest one on
+  double shortest_ = 0;  // of the longest gaps, but more than the usual ones [ns]
+  double samples_ = 0;   // that say how much longer gaps get
+  double excess_ = 0;    // of them all over it [ns]
+  double all_ = 0;       // gaps an hour from there on
 };
 
 }  // namespace self_awareness::core::evidence

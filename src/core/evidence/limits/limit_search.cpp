@@ -125,11 +125,30 @@ std::pair<LimitSearch::Pool, LimitSearch::Seen> LimitSearch::seenBy(std::size_t 
   return {{Kind::kEvidence, channelLabel(model_.tracks()[track])}, seen};
 }
 
+bool LimitSearch::isMostlySilent(EventId id) const {
+  double heard_in = 0;  // length of the recordings [ns]
+  for (const Statistics::Recording& recording : model_.statistics().recordings()) {
+    const bool heard = id < recording.events.size() && recording.events[id] > 0;
+    heard_in += heard ? static_cast<double>(recording.end - recording.start) : 0;
+  }
+  const Statistics::Type& type = model_.statistics().type(id);
+  auto talks = static_cast<double>(type.gap_sum);
+  for (const std::int64_t gap : type.longest_gaps) {
+    const auto pause = static_cast<double>(gap);
+    talks -= pause > tuning_.regular * type.meanGap() ? pause : 0;
+  }
+  return 2 * talks < heard_in;
+}
+
 std::vector<double> LimitSearch::gapsOf(EventId id) const {
   std::vector<double> longest;
+  const bool mostly_silent = isMostlySilent(id);
   for (const Statistics::Recording& recording : model_.statistics().recordings()) {
-    longest.push_back(
-        id < recording.longest_gaps.size() ? static_cast<double>(recording.longest_gaps[id]) : 0);
+    const bool heard = id < recording.events.size() && recording.events[id] > 0;
+    longest.push_back(heard ? static_cast<double>(recording.longest_gaps[id]) : 0);
+    if (heard && mostly_silent) {
+      longest.back() = std::max(longest.back(), static_cast<double>(recording.firsts[id]));
+    }
   }
   for (const LimitFinder::Recording::Part* part : gap_parts_) {
     longest.push_back(static_cast<double>(part->longest_gaps[id]));
@@ -146,7 +165,8 @@ LimitSearch::Kind LimitSearch::kindOfGaps(const Seen& seen) const {
   std::vector<double> sorted = seen.largest;
   std::sort(sorted.rbegin(), sorted.rend());
   const double second = sorted.size() > 1 && sorted[1] > 0 ? sorted[1] : sorted[0];
-  if (second - window() >= tuning_.regular * mean_gap) {
+  if (second - window() >= tuning_.regular * mean_gap ||
+      isMostlySilent(model_.tracks()[seen.track].to)) {
     return Kind::kOthers;
   }
   return mean_gap < tuning_.fast * window() ? Kind::kFastTimers : Kind::kTimers;
@@ -179,15 +199,34 @@ void LimitSearch::search(Kind kind, const std::vector<Seen>& tracks, double shar
     }
     double age = found - window();
     const GapTail tail = tailOf(seen);
+    const double rare = tail.age(share / static_cast<double>(tracks.size()));
     if (kind == Kind::kOthers) {
-      age = std::max(age, std::min(tail.age(share / static_cast<double>(tracks.size())),
-                                   tuning_.most_tail_margin * (largest - window())));
+      age = std::max(age, std::min(rare, tuning_.most_tail_margin * (largest - window())));
+    }
+    const double mean_gap = model_.meanGap(model_.tracks()[seen.track].to);
+    if (age > std::max(tuning_.longest_wait * 1e9, tuning_.most_mean_gaps * mean_gap)) {
+      // What comes when something happens may stay away for as long as nothing does: few pauses do
+      // not say how long that is, and those of few starts say nothing of the next one.
+      age = std::max(age, rare);
+      if (startsThatHeard(seen) < tuning_.fewest_starts) {
+        age = std::max(age, sumOf(with_gaps_) * kHour);
+      }
     }
     limit = model_.expectation(seen.track).limit(seen.track, age);
     rate_of_tails += std::isnan(limit) ? 0 : tail.rate(age);
   }
   const double rate = held_out.rate(margin);
   rate_ += kind == Kind::kOthers ? std::min(rate, rate_of_tails) : rate;
+}
+
+double LimitSearch::startsThatHeard(const Seen& seen) const {
+  std::set<std::size_t> starts;
+  for (std::size_t part = 0; part < with_gaps_.size(); ++part) {
+    if (seen.largest[part] > 0) {
+      starts.insert(with_gaps_[part].start);
+    }
+  }
+  return static_cast<double>(starts.size());
 }
 
 GapTail LimitSearch::tailOf(const Seen& seen) const {
@@ -198,7 +237,15 @@ GapTail LimitSearch::tailOf(const Seen& seen) const {
   }
   gaps.longest_gaps.resize(
       std::min(gaps.longest_gaps.size(), static_cast<std::size_t>(tuning_.pauses)));
-  return {gaps.longest_gaps, sumOf(with_gaps_), tuning_.regular * model_.meanGap(id)};
+  // What began before the first event of a recording, or ended after its last one.
+  double cut_off = 0;
+  const double usual = tuning_.regular * model_.meanGap(id);
+  for (const Statistics::Recording& recording : model_.statistics().recordings()) {
+    cut_off += static_cast<double>(recording.end - recording.start) - 2 * usual;
+  }
+  cut_off -= static_cast<double>(gaps.gap_sum);
+  return {gaps.longest_gaps,      sumOf(with_gaps_),     usual,
+          std::max(cut_off, 0.0), startsThatHeard(seen), tuning_.prior_pauses};
 }
 
 }  // namespace self_awareness::core::evidence

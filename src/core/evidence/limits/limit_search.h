@@ -42,10 +42,15 @@ class LimitSearch {
   void gatherParts(const LimitFinder::Findings& findings);
   /// What a track showed, and the pool that it belongs to.
   std::pair<Pool, Seen> seenBy(std::size_t track) const;
+  /// Whether it is silent for more than half of the time of the recordings that it is heard in:
+  /// when it does not begin at once, that is a pause, and no start-up.
+  bool isMostlySilent(EventId id) const;
   /// Longest gaps by part [ns], as long as windows can tell them.
   std::vector<double> gapsOf(EventId id) const;
   Kind kindOfGaps(const Seen& seen) const;
   void search(Kind kind, const std::vector<Seen>& tracks, double share);
+  /// Number of starts with a gap of an event type whose silence is judged.
+  double startsThatHeard(const Seen& seen) const;
   /// Of the gaps of training and of the recordings.
   GapTail tailOf(const Seen& seen) const;
   double window() const { return static_cast<double>(parameters_.window); }

@@ -128,6 +128,12 @@ void LimitFinder::endRecording() {
     return;
   }
   first_stamp_.reset();
+  for (EventId id = 0; id < model_->size(); ++id) {
+    if (const std::optional<std::int64_t> last = scorer_->heard().lastSeen(id)) {
+      std::int64_t& longest = recording_.parts.back().longest_gaps[id];
+      longest = std::max(longest, recording_.end - kEnding - *last);
+    }
+  }
   misleading_->finish();
   recording_.said = misleading_->takeFindings();
   findings_.push_back(std::move(recording_));

@@ -212,8 +212,14 @@ Relation Relations::owed(EventId from, EventId to) const {
   const double misses = missRate(counts_.type(from).gaps, counts_.answers(from, to));
   const double by_chance = missRateByChance(from, to);
   relation.reaches = reaches(from, to);
-  relation.irregular = by_chance >= tuning_.least_chance_misses &&
-                       misses <= tuning_.most_of_chance_misses * by_chance;
+  // Timers of one rate keep one phase, and so miss each other less often than by chance; who
+  // pauses, or is asked, does not.
+  const bool pauses =
+      static_cast<double>(counts_.type(to).longestGap()) > tuning_.most_mean_gaps * meanGap(to);
+  relation.irregular =
+      by_chance >= (pauses || relation.reaches ? tuning_.least_chance_misses_of_pausing
+                                               : tuning_.least_chance_misses) &&
+      misses <= tuning_.most_of_chance_misses * by_chance;
   // Two that answer to the same come one after the other, now in this order, now in that.
   const DelayHistogram::Bins usual = counts_.delays(from, to).middle(0.9);
   const bool in_order =

@@ -93,6 +93,76 @@ TEST_F(OwedTest, SeriesOfRequestsAreCounted) {
   EXPECT_EQ(evidenceAt(101 * kSecond), 0);
 }
 
+TEST_F(OwedTest, RequestsThatStayWithoutAnAnswerNowAndThenAreCounted) {
+  constexpr std::int64_t kGap = 8 * kSecond;
+  const auto start = [&](unsigned seed) {
+    const Events asked = irregular(kA, 0, 400 * kGap, kGap, seed);
+    Events answered;
+    for (std::size_t k = 0; k < asked.size(); ++k) {
+      if (k % 5 > 0) {
+        answered.push_back(asked[k]);
+      }
+    }
+    return countsOf(
+        {later(together({asked, answers(kB, answered, kGap / 10)}), seed * 10 * kStart)}, 2);
+  };
+  model_ = std::make_shared<Model>(watch(start(1), start(2)));
+  owed_ = indexOf(model_->tracks(), kDeadlines, kB, kA);
+  ASSERT_LT(owed_, model_->tracks().size());
+  EXPECT_EQ(model_->leastLimit(owed_), model_->tuning().least_requests);
+}
+
+TEST_F(OwedTest, ARequestThatTheNextOneOvertakesIsNoneWithoutAnAnswer) {
+  constexpr std::int64_t kGap = 8 * kSecond;
+  const auto start = [&](unsigned seed) {
+    const Events asked = irregular(kA, 0, 400 * kGap, kGap, seed);
+    return countsOf(
+        {later(together({asked, answers(kB, asked, kGap * 3 / 10)}), seed * 10 * kStart)}, 2);
+  };
+  model_ = std::make_shared<Model>(watch(start(1), start(2)));
+  owed_ = indexOf(model_->tracks(), kDeadlines, kB, kA);
+  ASSERT_LT(owed_, model_->tracks().size());
+  EXPECT_GT(missRate(model_->statistics().type(kA).gaps, model_->statistics().answers(kA, kB)),
+            model_->tuning().rare_misses);
+  EXPECT_EQ(model_->leastLimit(owed_), model_->tuning().least_deadline);
+}
+
+TEST_F(OwedTest, WhatWaitedInAStallIsNoRequest) {
+  const auto start = [](unsigned seed) {
+    const Events asked = irregular(kA, 0, 100 * kSecond, 500 * kMillisecond, seed);
+    return countsOf({later(together({asked, answers(kB, asked, 50 * kMillisecond),
+                                     timer(kC, 0, 100 * kSecond, 20 * kMillisecond)}),
+                           seed * kStart)});
+  };
+  model_ = std::make_shared<Model>(watch(start(1), start(2)));
+  owed_ = indexOf(model_->tracks(), kDeadlines, kB, kA);
+  ASSERT_LT(owed_, model_->tracks().size());
+  for (const std::int64_t silence : {10 * kMillisecond, 300 * kMillisecond}) {
+    scorer_ = std::make_unique<Scorer>(model_, kWindow);
+    scorer_->add({0, kA});
+    scorer_->add({50 * kMillisecond, kB});
+    for (int k = 0; k < 10; ++k) {
+      scorer_->add({50 * kMillisecond + silence + k, kA});
+    }
+    EXPECT_EQ(evidenceAt(kSecond), silence > 20 * kMillisecond ? 0 : 10);
+  }
+}
+
+TEST_F(OwedTest, WhoeverAnswersSoonestIsAskedFirst) {
+  // B answers to A at once, and to C only by chance: with room for one, it owes A.
+  Tuning tuning;
+  tuning.deadlines = 1;
+  const auto start = [&](unsigned seed) {
+    const Events asked = irregular(kC, 0, 1600 * kSecond, 8 * kSecond, seed);
+    const Events middle = answers(kA, asked, 400 * kMillisecond);
+    return countsOf({later(together({asked, middle, answers(kB, middle, 100 * kMillisecond)}),
+                           seed * 10 * kStart)});
+  };
+  const Model model(watch(start(1), start(2), SourceGraph(), tuning));
+  EXPECT_LT(indexOf(model.tracks(), kDeadlines, kB, kA), model.tracks().size());
+  EXPECT_EQ(indexOf(model.tracks(), kDeadlines, kB, kC), model.tracks().size());
+}
+
 TEST_F(OwedTest, TheLeastLimitIsInSecondsOrInRequests) {
   learn(8 * kSecond);
   EXPECT_EQ(model_->leastLimit(owed_), model_->tuning().least_deadline);

@@ -81,6 +81,44 @@ TEST_F(LimitFinderTest, AreFiniteAndAboveAllThatWasSeen) {
   }
 }
 
+// A talks for some seconds now and then, and B all the time.
+Events joystick(const std::vector<std::int64_t>& bursts, std::int64_t length) {
+  Events events = timer(kB, 0, length, kPeriod);
+  for (const std::int64_t burst : bursts) {
+    events = together({events, timer(kA, burst, burst + 5 * kSecond, 50 * kMillisecond)});
+  }
+  return events;
+}
+
+TEST_F(LimitFinderTest, HoweverLongWhoPausesIsJudged) {
+  const Events first = joystick({0, 20 * kSecond, 80 * kSecond, 120 * kSecond}, 200 * kSecond);
+  const Events second = joystick({10 * kSecond, 60 * kSecond, 150 * kSecond}, 200 * kSecond);
+  model_ = modelOf(first, later(second));
+  const Limits limits = limitsOf(model_, later(first, 2 * kStart));
+  const double found = limit(limits, kOverdue, kA, kA);
+  EXPECT_GT(found, model_->overdue(kA, 2 * 85 * kSecond))
+      << "few pauses say little of the longest";
+  EXPECT_LT(found, model_->overdue(kA, 3600 * kSecond));
+  EXPECT_LT(limit(limits, kOverdue, kB, kB), model_->overdue(kB, kSecond));
+}
+
+TEST_F(LimitFinderTest, WhoTalkedOnceOnlyMayBeSilentForAsLong) {
+  // No gap says that A pauses, but it is silent most of the time.
+  model_ = modelOf(joystick({100 * kSecond}, 200 * kSecond),
+                   later(joystick({110 * kSecond}, 200 * kSecond)));
+  const Limits limits = limitsOf(model_, later(joystick({}, 100 * kSecond), 2 * kStart));
+  EXPECT_GT(limit(limits, kOverdue, kA, kA), model_->overdue(kA, 110 * kSecond));
+}
+
+TEST_F(LimitFinderTest, WhoFallsSilentLongBeforeTheEndPaused) {
+  const Events ends =
+      together({timer(kA, 0, 100 * kSecond, kPeriod), timer(kB, 0, 60 * kSecond, kPeriod)});
+  model_ = modelOf(ends, later(ends));
+  const Limits limits = limitsOf(model_, later(ends, 2 * kStart));
+  EXPECT_GT(limit(limits, kOverdue, kB, kB), model_->overdue(kB, 30 * kSecond));
+  EXPECT_LT(limit(limits, kOverdue, kA, kA), model_->overdue(kA, kSecond));
+}
+
 TEST_F(LimitFinderTest, ASmallerBudgetHasHigherLimits) {
   const Events normal = robot(200 * kSecond, 3);
   const Limits lax = limitsOf(model_, normal, 5);

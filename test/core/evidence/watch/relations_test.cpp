@@ -342,6 +342,33 @@ TEST(Relations, ATimersOwnPeriodSaysAsMuchAsWhatItAnswersTo) {
   EXPECT_FALSE(Relations(counts, graph, kTuning).owed(kA, kB).watched);
 }
 
+// A tracker at 10 Hz that pauses with what it answers to, and leaves out one in a hundred.
+Statistics pausing() {
+  Events asked;
+  for (int burst = 0; burst < 10; ++burst) {
+    const Events more =
+        timer(kA, burst * 44 * kSecond, (burst * 44 + 40) * kSecond, 100 * kMillisecond);
+    asked.insert(asked.end(), more.begin(), more.end());
+  }
+  Events answered;
+  for (std::size_t k = 0; k < asked.size(); ++k) {
+    if (k % 100 > 0) {
+      answered.push_back(asked[k]);
+    }
+  }
+  return countsOf({together({asked, answers(kB, answered, 20 * kMillisecond)})}, 2);
+}
+
+TEST(Relations, WhoPausesOwesAnswersThoughItSeldomMissesByChance) {
+  const Statistics counts = pausing();
+  const Relations relations(counts, kNoGraph, kTuning);
+  EXPECT_LT(relations.missRateByChance(kA, kB), kTuning.least_chance_misses);
+  EXPECT_TRUE(relations.owed(kA, kB).watched);
+  Tuning strict;
+  strict.least_chance_misses_of_pausing = strict.least_chance_misses;
+  EXPECT_FALSE(Relations(counts, kNoGraph, strict).owed(kA, kB).watched);
+}
+
 TEST(Relations, WithAGraphADeadlineNeedsAMessageThatGetsThere) {
   const Events asked = requests(1);
   const Statistics counts =
