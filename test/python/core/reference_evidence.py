@@ -27,7 +27,8 @@ FEWEST_DELAYS_OF_PAIR = 200
 PREDECESSORS = 2
 LEAST_RATE = 1.5
 DEADLINES = 3
-MOST_MISSES = 0.1
+MOST_MISSES = 0.5
+RARE_MISSES = 0.02
 
 MOST_SURPRISE = 6.0
 LEAST_DEVIATION = 0.5
@@ -37,7 +38,8 @@ LEAST_EFFECT = (5e6, 0.02)
 GAPS_TO_DELAYS = (2.0, 10.0)
 """Least effects on gaps, in those on delays."""
 LEAST_RATE_EFFECT = 0.04
-LONGEST_GAP_OF_SERIES = 2.0
+LONGEST_GAP_OF_SERIES = 2 * SECOND
+ENDING = 5 * SECOND
 
 
 def log_bin(delay: int) -> int:
@@ -95,6 +97,7 @@ class Seen(NamedTuple):
     longest_silence: int
     events: Dict[str, int]
     longest_gaps: Dict[str, int]
+    firsts: Dict[str, int]
 
 
 class Counts:
@@ -148,7 +151,9 @@ class Counts:
         self.recordings.append(Seen(
             stamps[0], max(stamps), longest_gap(stamps),
             {kind: len(own) for kind, own in of_kind.items()},
-            {kind: longest_gap(own) for kind, own in of_kind.items()}))
+            {kind: max(longest_gap(own), max(stamps) - ENDING - own[-1]) if len(own) > 1 else 0
+             for kind, own in of_kind.items()},
+            {kind: max(own[0] - stamps[0], 0) if own else -1 for kind, own in of_kind.items()}))
 
     def miss_rate(self, asking: str, answer: str) -> float:
         """Return the share of the gaps of `asking` without the other."""
@@ -290,7 +295,12 @@ class ReferenceModel:
 
     def counts_requests(self, track: Track) -> bool:
         """Return whether a deadline counts requests, not seconds."""
-        return self.learned.usual_delay(track[2], track[2], 0.5) < LONGEST_GAP_OF_SERIES
+        _, to, other = track
+        gaps = [log_bin(gap) for gap in self.both.gaps[other]]
+        _, latest = usual_bins(self.both.delays[other, to])
+        too_soon = sum(gap <= latest for gap in gaps) / max(len(gaps), 1)
+        return (self.both.mean_gap(other) < LONGEST_GAP_OF_SERIES
+                or self.both.miss_rate(other, to) > too_soon + RARE_MISSES)
 
     def least_limit(self, track: Track) -> float:
         """Return the least limit that the track may have."""

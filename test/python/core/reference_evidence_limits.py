@@ -5,8 +5,8 @@ import math
 from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
-from reference_evidence import (FEWEST_GAPS, LABELS, SECOND, Counts, Event, ReferenceModel, Seen,
-                                Track, gain)
+from reference_evidence import (ENDING, FEWEST_GAPS, LABELS, SECOND, Counts, Event, ReferenceModel,
+                                Seen, Track, gain)
 from reference_relations import ReferenceRelations, Relation, Span, starts_of
 from reference_scorer import ReferenceScorer
 
@@ -24,7 +24,9 @@ REGULAR = 1.5
 FAST = 2
 LONGEST_WAIT = 10 * SECOND
 MOST_MEAN_GAPS = 3.0
-PAUSES = 20
+PAUSES = 5
+PRIOR_PAUSES = 2
+FEWEST_STARTS = 3
 POOLS = ('fast timers', 'timers', 'others', 'rate', 'pairs', 'deadlines')
 CHUNK = 120 * SECOND
 LEAST_GAIN_LEFT = 0.7
@@ -113,21 +115,26 @@ class HeldOut:
 
 
 class Tail(NamedTuple):
-    """The longest gaps: the shortest of them, the others' mean excess, and how many an hour."""
+    """The longest gaps: the shortest, mean excess, how many an hour, by how many samples."""
 
     shortest: float
     excess: float
     all: float
+    samples: float
 
     def gap(self, rate: float) -> float:
         """Return the gap that is reached so often an hour."""
-        return self.shortest + self.excess * math.log(max(self.all / rate, 1.0))
+        times = max(self.all / rate, 1.0) ** (1 / self.samples) - 1
+        return self.shortest + self.samples * self.excess * times
 
     def rate(self, gap: float) -> float:
         """Return how often an hour a gap is reached."""
         if gap <= self.shortest:
             return self.all
-        return self.all * math.exp((self.shortest - gap) / self.excess) if self.excess else 0.0
+        if not self.excess:
+            return 0.0
+        beyond = (gap - self.shortest) / (self.samples * self.excess)
+        return self.all * (1 + beyond) ** -self.samples
 
 
 class Judged(NamedTuple):
@@ -226,11 +233,20 @@ class ReferenceLimits:
 
     def _longest_gaps(self, kind: str) -> List[float]:
         """Return the longest gaps of the recordings of the training, and of parts of others."""
-        longest = [float(seen.longest_gaps[kind]) for seen in self._training()]
+        begins = self._is_mostly_silent(kind)
+        longest = [float(max(seen.longest_gaps[kind], seen.firsts[kind] if begins else 0))
+                   for seen in self._training()]
         for number, recording in enumerate(self._recordings):
             if not recording.trained_on:
                 longest += self._longest_gaps_of_parts(number, kind)
         return [gap + self._window if gap else 0.0 for gap in longest]
+
+    def _is_mostly_silent(self, kind: str) -> bool:
+        both = self._model.both
+        longest = sorted(both.gaps[kind])[-32:]
+        pauses = sum(gap for gap in longest if gap > REGULAR * both.mean_gap(kind))
+        heard = sum(seen.end - seen.start for seen in self._training() if seen.events[kind])
+        return 2 * (sum(both.gaps[kind]) - pauses) < heard
 
     def _longest_gaps_of_parts(self, number: int, kind: str) -> List[float]:
         # A gap belongs to the part of the window that was closed last.
@@ -246,6 +262,8 @@ class ReferenceLimits:
                 part = max(closed - 1, 0) // (PART // self._window)
                 longest[part] = max(longest[part], t - last if last is not None else 0)
                 last = t
+        if last is not None:
+            longest[-1] = max(longest[-1], recording.events[-1][0] - ENDING - last)
         return longest
 
     def _largest(self, index: int) -> List[float]:
@@ -259,7 +277,7 @@ class ReferenceLimits:
         longest = sorted(gap for gap in self._longest_gaps(kind) if gap > 0)
         second = longest[-2:][0] - self._window
         mean = self._model.both.mean_gap(kind)
-        if second >= REGULAR * mean:
+        if second >= REGULAR * mean or self._is_mostly_silent(kind):
             return 'others'
         return 'fast timers' if mean < FAST * self._window else 'timers'
 
@@ -290,12 +308,18 @@ class ReferenceLimits:
                        max(margin, min(held_out.excess(largest, least), MOST_OWN_MARGIN)))
                 found = max(least, own * max(*largest, LEAST_SHARE * least))
                 track = self._model.tracks[index]
-                if pool == 'others':
+                if of_gaps:
                     hours = sum(part.hours for part in with_gaps)
-                    tail = self._tail(track[1], hours)
-                    longest = max(largest) - self._window
-                    found = max(found, self._window + min(tail.gap(self._rate / len(tracks)),
-                                                          MOST_TAIL_MARGIN * longest))
+                    starts = len({part.start for part, gap in zip(with_gaps, largest) if gap > 0})
+                    tail = self._tail(track[1], hours, starts)
+                    rare = self._window + tail.gap(self._rate / len(tracks))
+                    longest = self._window + MOST_TAIL_MARGIN * (max(largest) - self._window)
+                    if pool == 'others':
+                        found = max(found, min(rare, longest))
+                    mean = self._model.both.mean_gap(track[1])
+                    if found - self._window > max(LONGEST_WAIT, MOST_MEAN_GAPS * mean):
+                        all_time = self._window + hours * HOUR if starts < FEWEST_STARTS else 0.0
+                        found = max(found, rare, all_time)
                 limits[index] = self._limit(track, found)
                 if pool == 'others' and not math.isnan(limits[index]):
                     rate_of_tails += tail.rate(found - self._window)
@@ -305,7 +329,7 @@ class ReferenceLimits:
                 self.expected_rate += held_out.rate(margin)
         return limits
 
-    def _tail(self, kind: str, hours: float) -> Tail:
+    def _tail(self, kind: str, hours: float, starts: int) -> Tail:
         gaps = list(self._model.both.gaps[kind])
         for number, recording in enumerate(self._recordings):
             if not recording.trained_on:
@@ -313,14 +337,15 @@ class ReferenceLimits:
         usual = REGULAR * self._model.both.mean_gap(kind)
         longest = [gap for gap in sorted(gaps)[-PAUSES:] if gap > usual]
         shortest = float(longest[0]) if len(longest) == PAUSES else usual
-        excess = sum(gap - shortest for gap in longest) / max(len(longest), 1)
-        return Tail(shortest, excess, len(longest) / hours)
+        lengths = sum(seen.end - seen.start - 2 * usual for seen in self._training())
+        cut_off = max(lengths - sum(self._model.both.gaps[kind]), 0.0)
+        excess = (sum(gap - shortest for gap in longest)
+                  + max(cut_off - (shortest - usual), 0.0)) / max(len(longest), 1)
+        return Tail(shortest, excess if longest else 0.0, len(longest) / hours,
+                    min(len(longest), starts) + PRIOR_PAUSES)
 
     def _limit(self, track: Track, found: float) -> float:
         channel, kind, _ = track
         if channel == 'overdue':
-            age = found - self._window
-            irregular = (age > LONGEST_WAIT
-                         and age > MOST_MEAN_GAPS * self._model.both.mean_gap(kind))
-            return math.nan if irregular else self._model.overdue(kind, round(age))
+            return self._model.overdue(kind, round(found - self._window))
         return found

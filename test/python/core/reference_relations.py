@@ -9,14 +9,17 @@ from typing import Dict, List, NamedTuple, Sequence, Tuple
 
 from reference_evidence import (BINS, DEADLINES, EDGES, FEWEST_DELAYS_OF_PAIR, FEWEST_GAPS,
                                 LEAST_GAIN, LEAST_RATE, MOST_MISSES, PREDECESSORS, SECOND, USUAL,
-                                Counts, Track, gain, log_bin, lower_edge, middle, usual_bins)
+                                Counts, Track, bin_below, gain, log_bin, lower_edge, middle,
+                                usual_bins)
 
 SAME_START = 60 * SECOND
 CHANCE_OF_ANY = 0.1
 CHANCE_OF_ONE = 0.05
 IRREGULAR = 2.0
 LEAST_CHANCE_MISSES = 0.2
-MOST_OF_CHANCE_MISSES = 0.5
+LEAST_CHANCE_MISSES_OF_PAUSING = 0.02
+MOST_MEAN_GAPS = 3.0
+MOST_OF_CHANCE_MISSES = 0.75
 LEAST_OF_LONGEST = 0.1
 TAIL_POINTS = 8
 
@@ -76,7 +79,10 @@ class ReferenceRelations:
         """Return the reasons to watch whether e_j comes in time after e_i."""
         misses = self._counts.miss_rate(e_i, e_j)
         by_chance = self.misses_by_chance(e_i, e_j)
-        irregular = (by_chance >= LEAST_CHANCE_MISSES
+        gaps = self._counts.gaps[e_j]
+        pauses = max(gaps, default=0) > MOST_MEAN_GAPS * self._counts.mean_gap(e_j)
+        least = LEAST_CHANCE_MISSES_OF_PAUSING if pauses else LEAST_CHANCE_MISSES
+        irregular = (by_chance >= least
                      and misses <= MOST_OF_CHANCE_MISSES * by_chance)
         bins = self._counts.delays[e_i, e_j]
         first, last = usual_bins(bins)
@@ -176,7 +182,8 @@ def watched(first: Counts, second: Counts, both: Counts) -> List[Track]:
                        if kind != answer and both.answers[kind, answer] >= FEWEST_GAPS
                        and both.miss_rate(kind, answer) <= MOST_MISSES
                        and relations.owed(kind, answer).watched],
-                      key=lambda kind: both.miss_rate(kind, answer))[:DEADLINES]
+                      key=lambda kind: bin_below(both.delays[kind, answer],
+                                                 len(both.delays[kind, answer]) / 2))[:DEADLINES]
 
     judged = [kind for kind in types if len(both.gaps[kind]) >= FEWEST_GAPS]
     often = [kind for kind in judged

@@ -145,7 +145,7 @@ class ReferenceScorer:
             if track[0] == 'deadlines':
                 if track[1] == kind:
                     self._requests[track] = []
-                if track[2] == kind:
+                if track[2] == kind and not self._has_waited(t):
                     self._requests[track].append(t)
         if own is not None and t - own[0] > GONE_GAPS * self._model.longest[kind]:
             for track, watch in self._watches.items():
