@@ -96,7 +96,7 @@ TEST_F(LimitFinderTest, HoweverLongWhoPausesIsJudged) {
   model_ = modelOf(first, later(second));
   const Limits limits = limitsOf(model_, later(first, 2 * kStart));
   const double found = limit(limits, kOverdue, kA, kA);
-  EXPECT_GT(found, model_->overdue(kA, 2 * 85 * kSecond))
+  EXPECT_GT(found, model_->overdue(kA, 3 * 85 * kSecond))
       << "few pauses say little of the longest";
   EXPECT_LT(found, model_->overdue(kA, 3600 * kSecond));
   EXPECT_LT(limit(limits, kOverdue, kB, kB), model_->overdue(kB, kSecond));
