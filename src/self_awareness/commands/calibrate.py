@@ -111,10 +111,8 @@ def _calibrate(arguments: argparse.Namespace) -> None:
 
 
 def _say_holes(trained: TrainedModel, normal: Sequence[RecordingEvents]) -> None:
-    known_s = {(each.source, each.scope, each.type): trained.longest_gap(index) / SECOND_NS
-               for index, each in enumerate(trained.event_types)
-               if trained.gaps(index) >= trained.fewest_gaps}
-    found = holes.find([(each.part, holes.longest_silences(each)) for each in normal], known_s)
+    found = holes.find([(each.part, holes.longest_silences(each)) for each in normal],
+                       holes.known_silences(trained))
     for line in holes.lines(found, trained.coverage()):
         cli.warn('calibrate', line)
     if found:

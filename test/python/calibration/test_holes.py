@@ -81,6 +81,17 @@ def test_what_is_left_are_the_parts_before_and_after() -> None:
     assert [str(part) for part in left] == ['d.bag@0-49.8']
 
 
+def test_several_holes_of_one_recording_leave_parts_that_do_not_meet() -> None:
+    part = BagPart('a.bag')
+    holes_of = [holes.Hole(part, key, Silence(begin_s, length_s), 0.2) for key, begin_s, length_s
+                in ((GPS, 60.0, 6.0), (SCAN, 20.0, 8.0), (SCAN, 22.0, 3.0))]
+    assert [str(piece) for piece in holes.without([part], holes_of)] \
+        == ['a.bag@0-20', 'a.bag@28-60', 'a.bag@66']
+    dead = holes.Hole(part, GPS, Silence(90.0, 30.0, to_the_end=True), 0.2)
+    assert [str(piece) for piece in holes.without([part], [dead, *holes_of])] \
+        == ['a.bag@0-20', 'a.bag@28-60', 'a.bag@66-90']
+
+
 def test_a_line_names_who_when_where_and_the_effect() -> None:
     hole = holes.Hole(BagPart('tuesday.bag'), GPS, Silence(212.0, 6.0), 0.3)
     assert holes.lines([hole], []) == [
