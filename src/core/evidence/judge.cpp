@@ -182,12 +182,11 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
   for (const std::string& channel : channels) {
     judgement.evidence += (judgement.evidence.empty() ? "" : ", ") + channel;
   }
-  if (suspects == NameSuspects::kAlways ||
-      (suspects == NameSuspects::kIfUnusual && (judgement.abnormal || judgement.suspicious))) {
+  if (suspects != NameSuspects::kNever && (judgement.abnormal || judgement.suspicious)) {
+    judgement.suspects = namedIn(window, largest > 1);
+  } else if (suspects == NameSuspects::kAlways) {
     // Who is within his own range is no suspect because somebody else is unknown.
-    judgement.suspects = judgement.abnormal || judgement.suspicious
-                             ? namedIn(window, largest > 1)
-                             : strangers_.unknown(window, scorer_);
+    judgement.suspects = strangers_.unknown(window, scorer_);
   }
   return judgement;
 }

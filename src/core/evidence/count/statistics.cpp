@@ -297,10 +297,10 @@ void Trainer::startRecording(std::optional<std::int64_t> since, std::int64_t rob
   if (last_stamp_) {
     recording_.end = newest_stamp_;
     for (EventId id = 0; id < last_seen_.size(); ++id) {
-      std::int64_t& longest = recording_.longest_gaps[id];
-      longest = recording_.events[id] > 1
-                    ? std::max(longest, newest_stamp_ - kEnding - last_seen_[id].stamp)
-                    : longest;
+      if (recording_.events[id] > 1) {
+        std::int64_t& longest = recording_.longest_gaps[id];
+        longest = std::max(longest, newest_stamp_ - kEnding - last_seen_[id].stamp);
+      }
     }
     statistics_->addRecording(std::move(recording_));
   }

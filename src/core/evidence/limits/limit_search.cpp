@@ -116,8 +116,9 @@ void LimitSearch::gatherParts(const LimitFinder::Findings& findings) {
 std::pair<LimitSearch::Pool, LimitSearch::Seen> LimitSearch::seenBy(std::size_t track) const {
   Seen seen{track, model_.leastLimit(track), {}};
   if (model_.finding(track) == Finding::kSilent) {
-    seen.largest = gapsOf(model_.tracks()[track].to);
-    return {{kindOfGaps(seen), ""}, seen};
+    const bool mostly_silent = isMostlySilent(model_.tracks()[track].to);
+    seen.largest = gapsOf(model_.tracks()[track].to, mostly_silent);
+    return {{mostly_silent ? Kind::kOthers : kindOfGaps(seen), ""}, seen};
   }
   for (const LimitFinder::Recording::Part* part : judged_parts_) {
     seen.largest.push_back(part->evidence[track]);
@@ -140,9 +141,8 @@ bool LimitSearch::isMostlySilent(EventId id) const {
   return 2 * talks < heard_in;
 }
 
-std::vector<double> LimitSearch::gapsOf(EventId id) const {
+std::vector<double> LimitSearch::gapsOf(EventId id, bool mostly_silent) const {
   std::vector<double> longest;
-  const bool mostly_silent = isMostlySilent(id);
   for (const Statistics::Recording& recording : model_.statistics().recordings()) {
     const bool heard = id < recording.events.size() && recording.events[id] > 0;
     longest.push_back(heard ? static_cast<double>(recording.longest_gaps[id]) : 0);
@@ -165,8 +165,7 @@ LimitSearch::Kind LimitSearch::kindOfGaps(const Seen& seen) const {
   std::vector<double> sorted = seen.largest;
   std::sort(sorted.rbegin(), sorted.rend());
   const double second = sorted.size() > 1 && sorted[1] > 0 ? sorted[1] : sorted[0];
-  if (second - window() >= tuning_.regular * mean_gap ||
-      isMostlySilent(model_.tracks()[seen.track].to)) {
+  if (second - window() >= tuning_.regular * mean_gap) {
     return Kind::kOthers;
   }
   return mean_gap < tuning_.fast * window() ? Kind::kFastTimers : Kind::kTimers;
@@ -198,7 +197,8 @@ void LimitSearch::search(Kind kind, const std::vector<Seen>& tracks, double shar
       continue;
     }
     double age = found - window();
-    const GapTail tail = tailOf(seen);
+    const double starts = startsThatHeard(seen);
+    const GapTail tail = tailOf(seen, starts);
     const double rare = tail.age(share / static_cast<double>(tracks.size()));
     if (kind == Kind::kOthers) {
       age = std::max(age, std::min(rare, tuning_.most_tail_margin * (largest - window())));
@@ -208,7 +208,7 @@ void LimitSearch::search(Kind kind, const std::vector<Seen>& tracks, double shar
       // What comes when something happens may stay away for as long as nothing does: few pauses do
       // not say how long that is, and those of few starts say nothing of the next one.
       age = std::max(age, rare);
-      if (startsThatHeard(seen) < tuning_.fewest_starts) {
+      if (starts < tuning_.fewest_starts) {
         age = std::max(age, sumOf(with_gaps_) * kHour);
       }
     }
@@ -229,7 +229,7 @@ double LimitSearch::startsThatHeard(const Seen& seen) const {
   return static_cast<double>(starts.size());
 }
 
-GapTail LimitSearch::tailOf(const Seen& seen) const {
+GapTail LimitSearch::tailOf(const Seen& seen, double starts) const {
   const EventId id = model_.tracks()[seen.track].to;
   Statistics::Type gaps = model_.statistics().type(id);
   for (const LimitFinder::Recording::Part* part : gap_parts_) {
@@ -244,8 +244,8 @@ GapTail LimitSearch::tailOf(const Seen& seen) const {
     cut_off += static_cast<double>(recording.end - recording.start) - 2 * usual;
   }
   cut_off -= static_cast<double>(gaps.gap_sum);
-  return {gaps.longest_gaps,      sumOf(with_gaps_),     usual,
-          std::max(cut_off, 0.0), startsThatHeard(seen), tuning_.prior_pauses};
+  return {gaps.longest_gaps,   sumOf(with_gaps_), usual, std::max(cut_off, 0.0), starts,
+          tuning_.prior_pauses};
 }
 
 }  // namespace self_awareness::core::evidence

@@ -45,14 +45,16 @@ class LimitSearch {
   /// Whether it is silent for more than half of the time of the recordings that it is heard in:
   /// when it does not begin at once, that is a pause, and no start-up.
   bool isMostlySilent(EventId id) const;
-  /// Longest gaps by part [ns], as long as windows can tell them.
-  std::vector<double> gapsOf(EventId id) const;
+  /// Longest gaps by part [ns], as long as windows can tell them; of who is mostly silent, also
+  /// the times to its first events.
+  std::vector<double> gapsOf(EventId id, bool mostly_silent) const;
   Kind kindOfGaps(const Seen& seen) const;
   void search(Kind kind, const std::vector<Seen>& tracks, double share);
   /// Number of starts with a gap of an event type whose silence is judged.
   double startsThatHeard(const Seen& seen) const;
   /// Of the gaps of training and of the recordings.
-  GapTail tailOf(const Seen& seen) const;
+  /// @param starts that heard it
+  GapTail tailOf(const Seen& seen, double starts) const;
   double window() const { return static_cast<double>(parameters_.window); }
 
   const Model& model_;
