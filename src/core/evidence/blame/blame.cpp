@@ -42,12 +42,7 @@ std::vector<Suspect> Blame::suspects(const std::vector<double>& shares, const Sc
       add(candidate);
     }
   }
-  for (const ObservedEvent& observed : window.events) {
-    if (observed.unknown && suspects.size() < kMostSuspects &&
-        named.insert(observed.event.id).second) {
-      suspects.push_back(unknownSuspect(observed.event.id, window));
-    }
-  }
+  addUnknown(window, suspects);
   for (const Candidate& candidate : candidates) {
     if (shares[candidate.track] > 1 && components.count(model_->component(toOf(candidate))) == 0) {
       add(candidate);

@@ -12,8 +12,7 @@ namespace {
 // Every new node may send here: that it does explains nothing.
 const std::set<std::string> kForEverybody{"/rosout", "/diagnostics", "/tf", "/tf_static"};
 
-}  // namespace
-
+/// An event type that training never saw, as a suspect of a window.
 Suspect unknownSuspect(EventId id, const Window& window) {
   Suspect suspect;
   suspect.id = id;
@@ -22,6 +21,19 @@ Suspect unknownSuspect(EventId id, const Window& window) {
       std::count_if(window.events.begin(), window.events.end(),
                     [id](const ObservedEvent& other) { return other.event.id == id; })));
   return suspect;
+}
+
+}  // namespace
+
+void addUnknown(const Window& window, std::vector<Suspect>& suspects) {
+  for (const ObservedEvent& observed : window.events) {
+    const EventId id = observed.event.id;
+    if (observed.unknown && suspects.size() < kMostSuspects &&
+        std::none_of(suspects.begin(), suspects.end(),
+                     [id](const Suspect& other) { return other.id == id; })) {
+      suspects.push_back(unknownSuspect(id, window));
+    }
+  }
 }
 
 Strangers::Strangers(const Model& model, std::shared_ptr<const Vocabulary> heard)
@@ -58,13 +70,7 @@ std::vector<Suspect> Strangers::suspects(const Window& window, const Scorer& sco
 
 std::vector<Suspect> Strangers::unknown(const Window& window, const Scorer& scorer) const {
   std::vector<Suspect> named = suspects(window, scorer);
-  for (const ObservedEvent& observed : window.events) {
-    const EventId id = observed.event.id;
-    if (observed.unknown && std::none_of(named.begin(), named.end(),
-                                         [id](const Suspect& other) { return other.id == id; })) {
-      named.push_back(unknownSuspect(id, window));
-    }
-  }
+  addUnknown(window, named);
   return named;
 }
 

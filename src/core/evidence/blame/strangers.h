@@ -13,8 +13,9 @@
 
 namespace self_awareness::core::evidence {
 
-/// An event type that training never saw, as a suspect of a window.
-Suspect unknownSuspect(EventId id, const Window& window);
+/// Adds the unknown event types of a window that are not among its suspects yet, as long as these
+/// are fewer than kMostSuspects.
+void addUnknown(const Window& window, std::vector<Suspect>& suspects);
 
 /// Knows the senders that training never saw, on topics that it knows from others: what is unusual
 /// while they send is most likely their doing (docs/method.md, section 6).
@@ -31,7 +32,7 @@ class Strangers {
   /// Those that were heard in the last kRateSpan.
   /// @param scorer of the same recording, at the end of the window
   std::vector<Suspect> suspects(const Window& window, const Scorer& scorer) const;
-  /// The same, and all other unknown event types of the window.
+  /// The same, and other unknown event types of the window (addUnknown()).
   std::vector<Suspect> unknown(const Window& window, const Scorer& scorer) const;
 
  private:

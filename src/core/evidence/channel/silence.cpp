@@ -9,9 +9,6 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-// Beyond this [ns], 36 years, a silence is none that anybody waits for.
-constexpr double kLongestAge = 1.15e18;
-
 class SilenceState : public ChannelState {
  public:
   SilenceState(const Model& model, const std::vector<std::size_t>& tracks)
@@ -61,7 +58,8 @@ class ExpectedSilence : public Expectation {
   double limit(std::size_t track, double most) const override {
     const EventId id = model_.tracks()[track].to;
     // Nothing is known of what came at one moment only.
-    const double limit = model_.overdue(id, std::llround(std::min(most, kLongestAge)));
+    const double limit =
+        model_.overdue(id, std::llround(std::min(most, static_cast<double>(kLongestAge))));
     return limit > 0 ? limit : std::numeric_limits<double>::quiet_NaN();
   }
 

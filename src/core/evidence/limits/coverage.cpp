@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/evidence/channel/silence.h"
 #include "self_awareness/core/stream/event.h"
 
 namespace self_awareness::core::evidence {
@@ -11,9 +12,8 @@ namespace {
 
 /// Age [ns] at which the silence of an event type is beyond its limit [nat].
 std::int64_t ageAt(const Model& model, EventId id, double limit) {
-  constexpr std::int64_t kLongest = std::int64_t{1} << 60;  // 36 years
   std::int64_t above = 1;
-  while (above < kLongest && model.overdue(id, above) <= limit) {
+  while (above < kLongestAge && model.overdue(id, above) <= limit) {
     above *= 2;
   }
   std::int64_t below = 0;
