@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "self_awareness/core/evidence/channel/model.h"
+#include "self_awareness/core/evidence/count/gap_distribution.h"
 
 namespace self_awareness::core::evidence {
 namespace {

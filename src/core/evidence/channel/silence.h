@@ -6,9 +6,6 @@
 
 namespace self_awareness::core::evidence {
 
-/// Nobody waits for longer [ns]: 36 years.
-constexpr std::int64_t kLongestAge = std::int64_t{1} << 60;
-
 /// Overdue (docs/method.md, section 3.2): an event type that should have come by now. Evidence
 /// [nat] is -log of the probability, at a random moment of normal operation, that the last one is
 /// so long ago.

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "core/evidence/channel/silence.h"
+#include "self_awareness/core/evidence/count/gap_distribution.h"
 #include "self_awareness/core/stream/event.h"
 
 namespace self_awareness::core::evidence {

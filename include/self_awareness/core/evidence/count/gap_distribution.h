@@ -8,6 +8,9 @@
 
 namespace self_awareness::core::evidence {
 
+/// Nobody waits for longer [ns]: 36 years.
+constexpr std::int64_t kLongestAge = std::int64_t{1} << 60;
+
 /// How long an event type stays away, by its gaps in training (docs/method.md, sections 3.2 and
 /// 6).
 class GapDistribution {
