@@ -109,7 +109,7 @@ Calibration Calibrator::find() const {
   calibration.limits = found.limits;
   calibration.relations = found.relations;
   calibration.budget = finder_.parameters().false_alarms_per_hour;
-  calibration.false_alarms_per_hour = found.expected_rate;
+  calibration.false_alarms_per_hour = found.promised_rate;
   calibration.windows = finder_.windows();
   return calibration;
 }

@@ -34,10 +34,10 @@ struct Calibration {
   evidence::Limits limits;                    ///< of the model's tracks
   std::vector<evidence::Relation> relations;  ///< by track; empty: not known
   double budget = 0;                          ///< false alarms an hour that the limits allow
-  double false_alarms_per_hour = 0;       ///< to be expected, by leaving recordings out in turn
-  std::uint64_t windows = 0;              ///< that were looked at
-  std::vector<RecordingInfo> recordings;  ///< of normal operation
-  std::int64_t stamp = 0;                 ///< when it was done [ns]; 0: not known
+  double false_alarms_per_hour = 0;           ///< no more (95 %), by leaving starts out in turn
+  std::uint64_t windows = 0;                  ///< that were looked at
+  std::vector<RecordingInfo> recordings;      ///< of normal operation
+  std::int64_t stamp = 0;                     ///< when it was done [ns]; 0: not known
 };
 
 /// What was learned of a robot: counts for the evidence detector, for the paper's, or for both,

@@ -91,7 +91,7 @@ def _calibrate(arguments: argparse.Namespace) -> None:
         evidence_report.print_limits(trained, arguments.model)
         _say_holes(trained, normal)
         evidence_report.print_measured(measured.normal, measured.false_alarms)
-        evidence_report.print_expected(trained)
+        evidence_report.print_promise(trained)
         evidence_report.print_faults(measured.faulty)
         evidence_report.print_not_tried(silent)
     else:

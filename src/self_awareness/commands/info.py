@@ -169,8 +169,8 @@ def _print_evidence(evidence: Dict[str, Any], fewest_gaps: int) -> None:
     print(f'limits       {calibration["method"]}, for {calibration["budget"]:g} false alarms an '
           f'hour, calibrated {utc(calibration["calibrated_ns"])} UTC')
     print(f'  of {counts(calibration["judged_tracks"])}')
-    print(f'  {calibration["windows"]} windows, false alarms to be expected: '
-          f'{_or_none(calibration["false_alarms_per_hour"])} an hour')
+    print(f'  {calibration["windows"]} windows; at most '
+          f'{_or_none(calibration["false_alarms_per_hour"])} false alarms an hour (95 %)')
     for line in relations_text.lines(calibration['relations']):
         print(f'  {line}')
     print('  normal recordings')

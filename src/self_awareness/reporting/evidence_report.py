@@ -39,24 +39,13 @@ def print_limits(trained: TrainedModel, path: str) -> None:
               f'{"; ".join(evidence["not_judged"])}')
 
 
-def print_expected(trained: TrainedModel) -> None:
-    """Print how many false alarms are to be expected, and whether the budget can be kept."""
-    calibration = trained.calibration
-    if calibration is None:
+def print_promise(trained: TrainedModel) -> None:
+    """Print how many false alarms the limits promise, and what would promise fewer."""
+    if trained.calibration is None:
         return
-    expected, budget = calibration.false_alarms_per_hour, calibration.budget
-    hours = calibration.windows * trained.window / SECOND_NS / 3600.0
-    low, high = confidence.poisson_rate(expected * hours, hours)
-    print(f'false alarms to be expected: {expected:.2g} an hour (95 %: {low:.2g} to {high:.2g}), '
-          'by leaving recordings out in turn')
-    if expected > budget:
-        print(f'  the recordings cannot support a budget of {budget:g} an hour: that takes about '
-              f'{_hours(hours * (expected / budget - 1.0))} more of normal operation, in several '
-              'starts of the robot')
-    elif high > budget:
-        print(f'  that is within the budget of {budget:g} an hour; to be sure of it (95 %) takes '
-              f'about {_hours(hours * (high / budget - 1.0))} more of normal operation, in '
-              'several starts of the robot')
+    print(f'at most {trained.calibration.false_alarms_per_hour:.2g} false alarms an hour are to be '
+          'expected (95 %), by leaving starts out in turn; twice as many hours of normal '
+          'operation, of more starts, may halve that')
 
 
 def print_measured(normal: Sequence[JudgedRun], alarms: FalseAlarms) -> None:

@@ -39,7 +39,7 @@ class Quiet:
         standing: share of the time in which an alarm stood.
         warnings_per_hour: times that a suspicion or an alarm began.
         evidence: the alarms by what raised them, most often first.
-        expected_per_hour: what the calibrations expected on average; NaN: they did not say.
+        expected_per_hour: what the calibrations promised on average; NaN: they did not say.
     """
 
     robots: int
@@ -116,10 +116,11 @@ def quiet(rows: Sequence[NormalRow]) -> Quiet:
         sum(expected) / len(expected) if expected else math.nan)
 
 
-def kept(rows: Sequence[NormalRow], budget: float) -> float:
-    """Return the share of the robots with no more false alarms an hour than the budget."""
+def kept(rows: Sequence[NormalRow]) -> float:
+    """Return the share of the robots with no more false alarms an hour than were promised."""
     robots = _by_robot(rows)
-    return sum(sum(row.alarms for row in of_robot) <= budget * sum(row.hours for row in of_robot)
+    return sum(sum(row.alarms for row in of_robot)
+               <= (of_robot[0].expected or 0.0) * sum(row.hours for row in of_robot)
                for of_robot in robots) / len(robots)
 
 

@@ -63,7 +63,7 @@ def families_table(plan: Plan, results: Results) -> List[str]:
 
 
 def budgets_table(plan: Plan, results: Results) -> List[str]:
-    """Return the lines of the table of budgets: what calibrations expected, and what came."""
+    """Return the lines of the table of budgets: what calibrations promised, and what came."""
     normal = summary.groups(results.normal)
     body = []
     for learning in plan.learnings:
@@ -72,8 +72,8 @@ def budgets_table(plan: Plan, results: Results) -> List[str]:
             quiet = summary.quiet(rows)
             body.append([_started(plan, learning), f'{budget:g}',
                          _number(quiet.expected_per_hour), _rate(quiet),
-                         percent(summary.kept(rows, budget))])
-    return table(['learned from', 'budget', 'expected', 'came', 'robots within the budget'], body)
+                         percent(summary.kept(rows))])
+    return table(['learned from', 'budget', 'promised', 'came', 'robots within the promise'], body)
 
 
 class _Row:

@@ -181,7 +181,7 @@ TEST(EvidenceTuning, EveryEndOfARangeGivesLimitsOrSaysWhyNot) {
         finder.find();
       });
       if (error.empty()) {
-        EXPECT_FALSE(std::isnan(finder.find().expected_rate));
+        EXPECT_FALSE(std::isnan(finder.find().promised_rate));
         const std::vector<double> limits = finder.find().limits.tracks;
         EXPECT_EQ(limits.size(), model->tracks().size());
         EXPECT_FALSE(std::all_of(limits.begin(), limits.end(),

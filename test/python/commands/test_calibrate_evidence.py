@@ -13,7 +13,6 @@ from conftest import jittery_robot
 
 from self_awareness import EvidenceModel, TrainedModel
 from self_awareness.commands import calibrate, train
-from self_awareness.reporting.evidence_report import print_expected
 
 Bags = Tuple[str, str]
 
@@ -49,8 +48,10 @@ def test_the_limits_are_stored_with_how_they_were_found(run, trained: str, tmp_p
     # 120 s of which 5 s settle, and what the halves of the training said of each other.
     of_training = TrainedModel.load(trained).calibration.windows
     assert found.windows == pytest.approx(1150 + of_training, abs=2) and of_training > 1000
-    assert 'alarms: 0;' in out and found.false_alarms_per_hour == 0.0  # none exceeded the others
-    assert f'false alarms to be expected: {found.false_alarms_per_hour:.2g} an hour' in out
+    assert 'alarms: 0;' in out
+    # Nothing exceeded what the others showed: in 95 %, less than three come in as many hours.
+    assert found.false_alarms_per_hour == pytest.approx(3.0 / (240.0 / 3600.0), rel=0.1)
+    assert f'at most {found.false_alarms_per_hour:.2g} false alarms an hour' in out
     assert found.stamp > 1.7e18
     assert model.paper_calibration is None  # the paper's detector is another matter
     assert TrainedModel.load(trained).calibration.method == 'cross-fit'  # left alone
@@ -65,27 +66,6 @@ def test_the_budget_is_used(run, tmp_path) -> None:
              if not math.isnan(strict) and not math.isnan(lax)]
     assert all(strict >= lax for strict, lax in pairs)
     assert any(strict > lax for strict, lax in pairs)
-
-
-@pytest.mark.parametrize('expected, budget, told', [
-    (2.0, 0.5, 'cannot support a budget of 0.5 an hour: that takes about '),
-    (0.1, 0.5, 'that is within the budget of 0.5 an hour; to be sure of it (95 %) takes about '),
-    (0.1, 1000.0, None)])
-def test_what_the_recordings_say_of_the_budget(
-        expected: float, budget: float, told: Optional[str], run, tmp_path, capsys) -> None:
-    run()
-    model = TrainedModel.load(str(tmp_path / 'm'))
-    limits = model.calibration
-    limits.false_alarms_per_hour, limits.budget = expected, budget
-    model.calibration = limits
-    capsys.readouterr()
-    print_expected(model)
-    first, *more = capsys.readouterr().out.splitlines()
-    assert f'{expected:.2g} an hour' in first
-    if told is None:
-        assert not more
-    else:
-        assert told in more[0] and 'more of normal operation' in more[0]
 
 
 def test_relations_are_told_with_their_reasons_or_what_is_missing(run, tmp_path) -> None:

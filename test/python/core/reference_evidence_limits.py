@@ -107,11 +107,37 @@ class HeldOut:
             margin = max(margin, math.exp(log))
         return margin
 
-    def rate(self, margin: float) -> float:
-        """Return how often an hour a margin is exceeded."""
-        beyond = max(math.log(margin) - LEAST_EXCESS, 0.0)
-        return max((len(logs) / hours * math.exp(-beyond / scale)
-                    for hours, logs, scale in self._levels), default=0.0)
+
+def left_out(parts: Sequence[Part],
+             tracks: Sequence[Tuple[Sequence[float], float, float]]) -> Tuple[int, float]:
+    """Return how many parts would have exceeded limits that the others say, and their hours.
+
+    Args:
+        parts: all of them.
+        tracks: the largest values by part, the least limit, and the limit's margin.
+    """
+    all_hours = sum(part.hours for part in parts)
+    exceeded, hours = 0, 0.0
+    for number, part in enumerate(parts):
+        of_start = sum(other.hours for other in parts if other.start == part.start)
+        if of_start <= all_hours / 2:
+            others = [k for k, other in enumerate(parts) if other.start != part.start]
+        elif part.hours <= all_hours / 2:
+            others = [k for k in range(len(parts)) if k != number]
+        else:
+            continue
+        hours += part.hours
+        limits = [max(least, margin * max([LEAST_SHARE * least] + [largest[k] for k in others]))
+                  for largest, least, margin in tracks]
+        exceeded += any(0 < limit < largest[number]
+                        for limit, (largest, _, _) in zip(limits, tracks))
+    return exceeded, hours or all_hours
+
+
+def highest_rate(count: int, hours: float) -> float:
+    """Return the rate that is not below the true one in 95 %."""
+    shape = count + 1.0
+    return shape * (1.0 - 1.0 / (9.0 * shape) + 1.6449 / (3.0 * math.sqrt(shape))) ** 3 / hours
 
 
 class Tail(NamedTuple):
@@ -126,15 +152,6 @@ class Tail(NamedTuple):
         """Return the gap that is reached so often an hour."""
         times = max(self.all / rate, 1.0) ** (1 / self.samples) - 1
         return self.shortest + self.samples * self.excess * times
-
-    def rate(self, gap: float) -> float:
-        """Return how often an hour a gap is reached."""
-        if gap <= self.shortest:
-            return self.all
-        if not self.excess:
-            return 0.0
-        beyond = (gap - self.shortest) / (self.samples * self.excess)
-        return self.all * (1 + beyond) ** -self.samples
 
 
 class Judged(NamedTuple):
@@ -177,8 +194,7 @@ class ReferenceLimits:
             budget = max(budget, HOUR / (10 * self.windows * window))
         self._rate = budget / len(POOLS)
         self.relations = [self._relation(track) for track in model.tracks]
-        self.expected_rate = 0.0
-        self.limits = self._find()
+        self.limits, self.promised_rate = self._find()
 
     def _training(self) -> List[Seen]:
         return sorted(self._model.both.recordings, key=lambda seen: (seen.start, seen.end))
@@ -281,7 +297,7 @@ class ReferenceLimits:
             return 'others'
         return 'fast timers' if mean < FAST * self._window else 'timers'
 
-    def _find(self) -> List[float]:
+    def _find(self) -> Tuple[List[float], float]:
         with_gaps = [Part(start, (seen.end - seen.start) / HOUR)
                      for seen, start in zip(self._training(), self._starts_of_training)]
         judged: List[Part] = []
@@ -294,6 +310,8 @@ class ReferenceLimits:
             if relation.watched:
                 pools.setdefault(self._pool(index), []).append(index)
         limits = [math.nan] * len(self._model.tracks)
+        judged_tracks: Dict[bool, List[Tuple[Sequence[float], float, float]]] = {True: [],
+                                                                                 False: []}
         for pool, tracks in pools.items():
             of_gaps = pool in ('fast timers', 'timers', 'others')
             seen = [(self._longest_gaps(self._model.tracks[index][1]) if of_gaps
@@ -302,7 +320,6 @@ class ReferenceLimits:
             held_out = HeldOut(with_gaps if of_gaps else judged, seen, SCALE.get(pool, 0.2))
             margin = min(held_out.margin(self._rate, LEAST_MARGIN.get(pool, 1.25)),
                          MOST_GAP_MARGIN if of_gaps else MOST_MARGIN)
-            rate_of_tails = 0.0
             for index, (largest, least) in zip(tracks, seen):
                 own = (margin if of_gaps else
                        max(margin, min(held_out.excess(largest, least), MOST_OWN_MARGIN)))
@@ -321,13 +338,12 @@ class ReferenceLimits:
                         all_time = self._window + hours * HOUR if starts < FEWEST_STARTS else 0.0
                         found = max(found, rare, all_time)
                 limits[index] = self._limit(track, found)
-                if pool == 'others' and not math.isnan(limits[index]):
-                    rate_of_tails += tail.rate(found - self._window)
-            if pool == 'others':
-                self.expected_rate += min(held_out.rate(margin), rate_of_tails)
-            else:
-                self.expected_rate += held_out.rate(margin)
-        return limits
+                if not math.isnan(limits[index]):
+                    judged_tracks[of_gaps].append(
+                        (largest, least, found / max(largest) if of_gaps else margin))
+        of_gaps, of_evidence = left_out(with_gaps, judged_tracks[True]), left_out(
+            judged, judged_tracks[False])
+        return limits, highest_rate(of_gaps[0] + of_evidence[0], max(of_gaps[1], of_evidence[1]))
 
     def _tail(self, kind: str, hours: float, starts: int) -> Tail:
         gaps = list(self._model.both.gaps[kind])

@@ -250,4 +250,4 @@ def test_the_limits(learned: Robot, held_out: bool) -> None:
     relations = ReferenceRelations(learned.reference.both)
     assert any(math.isnan(limit) and relations.delays(other, to).watched
                for limit, other, to in pairs) == held_out
-    assert limits_found.false_alarms_per_hour == pytest.approx(expected.expected_rate, abs=1e-9)
+    assert limits_found.false_alarms_per_hour == pytest.approx(expected.promised_rate, abs=1e-9)

@@ -157,8 +157,7 @@ def test_figures_of_normal_operation() -> None:
     assert (quiet.standing, quiet.warnings_per_hour) == (pytest.approx(0.001), 2.0)
     assert quiet.evidence == (('answers', 4),)
     assert quiet.expected_per_hour == pytest.approx((0.25 + 0.5) / 2)  # the mean of the robots
-    assert summary.kept(rows, 0.5) == 0.5
-    assert summary.kept(rows, 2.0) == 1.0
+    assert summary.kept(rows) == 0.5
 
 
 def test_robots_that_differ_widen_the_interval() -> None:

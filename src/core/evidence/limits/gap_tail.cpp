@@ -30,11 +30,4 @@ double GapTail::age(double rate) const {
              : shortest_;
 }
 
-double GapTail::rate(double age) const {
-  if (age <= shortest_) {
-    return all_;
-  }
-  return excess_ > 0 ? all_ * std::pow(1 + (age - shortest_) / excess_, -samples_) : 0;
-}
-
 }  // namespace self_awareness::core::evidence

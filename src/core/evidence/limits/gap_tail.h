@@ -23,8 +23,6 @@ class GapTail {
   /// Age [ns] that gaps reach at a rate.
   /// @param rate of such gaps an hour, more than 0
   double age(double rate) const;
-  /// Gaps an hour that reach an age [ns].
-  double rate(double age) const;
 
  private:
   double shortest_ = 0;  // of the longest gaps, but more than the usual ones [ns]

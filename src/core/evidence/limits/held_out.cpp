@@ -91,18 +91,6 @@ double HeldOut::margin(double rate, double least) const {
   return margin;
 }
 
-double HeldOut::rate(double margin) const {
-  double rate = 0;
-  for (const Level& level : levels_) {
-    if (level.eligible_hours > 0) {
-      const double beyond = std::max(std::log(margin) - std::log(tuning_.least_excess), 0.0);
-      rate = std::max(rate,
-                      level.exceedances / level.eligible_hours * std::exp(-beyond / scale(level)));
-    }
-  }
-  return rate;
-}
-
 double HeldOut::excess(const std::vector<double>& largest, double least) const {
   return std::exp(exceedance(levels_.front(), largest, least));
 }

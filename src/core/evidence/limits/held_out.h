@@ -34,8 +34,6 @@ class HeldOut {
   /// @param rate exceedances an hour that are allowed to all tracks together
   /// @param least margin
   double margin(double rate, double least) const;
-  /// Exceedances an hour, of all tracks together, that are to be expected with a margin.
-  double rate(double margin) const;
   /// By how much the largest value of a track exceeded those of all other starts; 1 if it did not,
   /// or if there is nothing to compare it with.
   double excess(const std::vector<double>& largest, double least) const;

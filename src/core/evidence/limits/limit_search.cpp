@@ -71,6 +71,8 @@ LimitSearch::LimitSearch(const Model& model, const LimitFinder::Findings& findin
       parameters_(parameters),
       limits_(model.tracks().size(), kNone) {
   gatherParts(findings);
+  LeftOut gaps(with_gaps_, tuning_);
+  LeftOut evidence(judged_, tuning_);
   std::map<Pool, std::vector<Seen>> pools;
   for (std::size_t track = 0; track < model_.tracks().size(); ++track) {
     if (relations[track].watched) {
@@ -81,8 +83,10 @@ LimitSearch::LimitSearch(const Model& model, const LimitFinder::Findings& findin
   const double share =
       budgetOf(findings, parameters, tuning_.most_of_training) / numberOfPools(tuning_);
   for (const auto& [pool, tracks] : pools) {
-    search(pool.first, tracks, share);
+    search(pool.first, tracks, share, pool.first == Kind::kEvidence ? evidence : gaps);
   }
+  rate_ =
+      highestRate(gaps.exceeded() + evidence.exceeded(), std::max(gaps.hours(), evidence.hours()));
 }
 
 void LimitSearch::gatherParts(const LimitFinder::Findings& findings) {
@@ -171,7 +175,8 @@ LimitSearch::Kind LimitSearch::kindOfGaps(const Seen& seen) const {
   return mean_gap < tuning_.fast * window() ? Kind::kFastTimers : Kind::kTimers;
 }
 
-void LimitSearch::search(Kind kind, const std::vector<Seen>& tracks, double share) {
+void LimitSearch::search(Kind kind, const std::vector<Seen>& tracks, double share,
+                         LeftOut& left_out) {
   const bool timers = kind == Kind::kTimers || kind == Kind::kFastTimers;
   const bool gaps = kind != Kind::kEvidence;
   HeldOut held_out(gaps ? with_gaps_ : judged_, timers ? tuning_.scale_of_timers : tuning_.scale,
@@ -181,7 +186,6 @@ void LimitSearch::search(Kind kind, const std::vector<Seen>& tracks, double shar
   }
   const Margins margins = model_.tracks()[tracks.front().track].channel->margins(tuning_);
   const double margin = std::min(held_out.margin(share, margins.least), margins.most);
-  double rate_of_tails = 0;
   for (const Seen& seen : tracks) {
     // A track that would have raised an alarm had its worst start been left out gets a wider
     // limit.
@@ -191,32 +195,34 @@ void LimitSearch::search(Kind kind, const std::vector<Seen>& tracks, double shar
     const double largest = *std::max_element(seen.largest.begin(), seen.largest.end());
     const double found =
         std::max(seen.least, own * std::max(largest, tuning_.share_of_least * seen.least));
+    const double most =
+        gaps ? longestAge(kind, seen, found - window(), share / static_cast<double>(tracks.size()))
+             : found;
     double& limit = limits_[seen.track];
-    if (!gaps) {
-      limit = model_.expectation(seen.track).limit(seen.track, found);
-      continue;
+    limit = model_.expectation(seen.track).limit(seen.track, most);
+    if (!std::isnan(limit)) {
+      left_out.add(seen.largest, seen.least, gaps ? (most + window()) / largest : margin);
     }
-    double age = found - window();
-    const double starts = startsThatHeard(seen);
-    const GapTail tail = tailOf(seen, starts);
-    const double rare = tail.age(share / static_cast<double>(tracks.size()));
-    if (kind == Kind::kOthers) {
-      age = std::max(age, std::min(rare, tuning_.most_tail_margin * (largest - window())));
-    }
-    const double mean_gap = model_.meanGap(model_.tracks()[seen.track].to);
-    if (age > std::max(tuning_.longest_wait * 1e9, tuning_.most_mean_gaps * mean_gap)) {
-      // What comes when something happens may stay away for as long as nothing does: few pauses do
-      // not say how long that is, and those of few starts say nothing of the next one.
-      age = std::max(age, rare);
-      if (starts < tuning_.fewest_starts) {
-        age = std::max(age, sumOf(with_gaps_) * kHour);
-      }
-    }
-    limit = model_.expectation(seen.track).limit(seen.track, age);
-    rate_of_tails += std::isnan(limit) ? 0 : tail.rate(age);
   }
-  const double rate = held_out.rate(margin);
-  rate_ += kind == Kind::kOthers ? std::min(rate, rate_of_tails) : rate;
+}
+
+double LimitSearch::longestAge(Kind kind, const Seen& seen, double age, double rate) const {
+  const double starts = startsThatHeard(seen);
+  const double rare = tailOf(seen, starts).age(rate);
+  if (kind == Kind::kOthers) {
+    const double largest = *std::max_element(seen.largest.begin(), seen.largest.end());
+    age = std::max(age, std::min(rare, tuning_.most_tail_margin * (largest - window())));
+  }
+  const double mean_gap = model_.meanGap(model_.tracks()[seen.track].to);
+  if (age > std::max(tuning_.longest_wait * 1e9, tuning_.most_mean_gaps * mean_gap)) {
+    // What comes when something happens may stay away for as long as nothing does: few pauses do
+    // not say how long that is, and those of few starts say nothing of the next one.
+    age = std::max(age, rare);
+    if (starts < tuning_.fewest_starts) {
+      age = std::max(age, sumOf(with_gaps_) * kHour);
+    }
+  }
+  return age;
 }
 
 double LimitSearch::startsThatHeard(const Seen& seen) const {

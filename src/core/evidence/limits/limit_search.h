@@ -7,6 +7,7 @@
 
 #include "core/evidence/limits/gap_tail.h"
 #include "core/evidence/limits/held_out.h"
+#include "core/evidence/limits/left_out.h"
 #include "self_awareness/core/evidence/channel/model.h"
 #include "self_awareness/core/evidence/limits/limits.h"
 
@@ -23,7 +24,7 @@ class LimitSearch {
 
   /// Limits by track; NaN: not judged.
   const std::vector<double>& limits() const { return limits_; }
-  /// False alarms an hour to be expected of all tracks.
+  /// False alarms an hour that no more are to be expected than, with a probability of 95 %.
   double rate() const { return rate_; }
 
  private:
@@ -49,7 +50,14 @@ class LimitSearch {
   /// the times to its first events.
   std::vector<double> gapsOf(EventId id, bool mostly_silent) const;
   Kind kindOfGaps(const Seen& seen) const;
-  void search(Kind kind, const std::vector<Seen>& tracks, double share);
+  /// Finds the limits of a pool.
+  /// @param share of the budget
+  /// @param left_out told of each track that is judged
+  void search(Kind kind, const std::vector<Seen>& tracks, double share, LeftOut& left_out);
+  /// Age [ns] up to which a silence is normal.
+  /// @param age by what was seen, and its margin [ns]
+  /// @param rate of longer ones an hour, where pauses are long or irregular
+  double longestAge(Kind kind, const Seen& seen, double age, double rate) const;
   /// Number of starts with a gap of an event type whose silence is judged.
   double startsThatHeard(const Seen& seen) const;
   /// Of the gaps of training and of the recordings.

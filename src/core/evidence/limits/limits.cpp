@@ -194,7 +194,7 @@ LimitFinder::Found LimitFinder::find() const {
   const LimitSearch search(*model_, findings_, found.relations, parameters_);
   found.limits.tracks = search.limits();
   found.limits.firsts = latestFirsts();
-  found.expected_rate = search.rate();
+  found.promised_rate = search.rate();
   return found;
 }
 

@@ -217,7 +217,7 @@ TEST_F(LimitFinderTest, WhatRecordingsSayElsewhereAddsUp) {
     sum.merge(findings);
   }
   EXPECT_EQ(sum.windows(), alone.windows());
-  EXPECT_NEAR(sum.find().expected_rate, alone.find().expected_rate, 1e-12);
+  EXPECT_NEAR(sum.find().promised_rate, alone.find().promised_rate, 1e-12);
   const Limits a = alone.find().limits;
   const Limits b = sum.find().limits;
   ASSERT_EQ(a.tracks.size(), b.tracks.size());
@@ -335,19 +335,17 @@ TEST_F(LimitFinderTest, RecordingsThatWereNotTrainedOnCountAsStarts) {
   EXPECT_TRUE(relation.watched);
 }
 
-TEST_F(LimitFinderTest, MoreFalseAlarmsAreExpectedOfALargerBudget) {
-  const auto expected = [&](double budget) {
-    LimitFinder finder(model_, {kWindow, 5 * kSecond, budget});
-    for (unsigned seed = 3; seed < 9; ++seed) {
+TEST_F(LimitFinderTest, MoreHoursPromiseFewerFalseAlarms) {
+  const auto promised = [&](unsigned starts) {
+    LimitFinder finder(model_, {kWindow, 5 * kSecond, 0.5});
+    for (unsigned seed = 3; seed < 3 + starts; ++seed) {
       feed(finder, model_, later(robot(200 * kSecond, seed), seed * kStart));
     }
-    return finder.find().expected_rate;
+    return finder.find().promised_rate;
   };
-  const double little = expected(0.05);
-  const double much = expected(50);
-  EXPECT_GT(little, 0);
-  EXPECT_LT(little, much);
-  EXPECT_LE(much, 50);
+  const double hours = 4 * 100.0 / 3600 + 12 * 195.0 / 3600;
+  EXPECT_GE(promised(12), 2.95 / hours) << "nobody can promise less after so many hours";
+  EXPECT_LT(promised(12), promised(4));
 }
 
 TEST_F(LimitFinderTest, RefusesImpossibleValues) {

@@ -77,9 +77,9 @@ class LimitFinder : private WindowObserver {
   /// What comes of the findings.
   struct Found {
     Limits limits;  ///< the largest evidence that is normal
-    /// False alarms an hour to be expected with these limits: what recordings show that are left
-    /// out in turn.
-    double expected_rate = 0;
+    /// False alarms an hour that no more are to be expected than with these limits (95 %): what
+    /// recordings show that are left out in turn.
+    double promised_rate = 0;
     /// What speaks for the relation that a track watches, by track; what looks at one event type
     /// is always watched.
     std::vector<Relation> relations;

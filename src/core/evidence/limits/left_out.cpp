@@ -1,0 +1,74 @@
+#include "core/evidence/limits/left_out.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+namespace self_awareness::core::evidence {
+
+LeftOut::LeftOut(const std::vector<Part>& parts, const Tuning& tuning)
+    : parts_(parts), share_of_least_(tuning.share_of_least), exceeded_(parts.size(), false) {
+  double all = 0;
+  std::map<std::size_t, double> of_start;
+  for (const Part& part : parts_) {
+    all += part.hours;
+    of_start[part.start] += part.hours;
+  }
+  for (const Part& part : parts_) {
+    left_out_by_.push_back(of_start[part.start] <= all / 2 ? By::kStart
+                           : part.hours <= all / 2         ? By::kPart
+                                                           : By::kNothing);
+  }
+}
+
+void LeftOut::Others::add(double value, std::size_t its_group) {
+  if (value > largest) {
+    second = its_group == group ? second : largest;
+    largest = value;
+    group = its_group;
+  } else if (its_group != group) {
+    second = std::max(second, value);
+  }
+}
+
+void LeftOut::add(const std::vector<double>& largest, double least, double margin) {
+  Others by_start;
+  Others by_part;
+  for (std::size_t part = 0; part < parts_.size(); ++part) {
+    by_start.add(largest[part], parts_[part].start);
+    by_part.add(largest[part], part);
+  }
+  for (std::size_t part = 0; part < parts_.size(); ++part) {
+    if (left_out_by_[part] == By::kNothing) {
+      continue;
+    }
+    const double others = left_out_by_[part] == By::kStart ? by_start.without(parts_[part].start)
+                                                           : by_part.without(part);
+    const double limit = std::max(least, margin * std::max(others, share_of_least_ * least));
+    // Where the others know nothing of it, there would be no limit.
+    exceeded_[part] = exceeded_[part] || (limit > 0 && largest[part] > limit);
+  }
+}
+
+std::size_t LeftOut::exceeded() const {
+  return static_cast<std::size_t>(std::count(exceeded_.begin(), exceeded_.end(), true));
+}
+
+double LeftOut::hours() const {
+  double all = 0;
+  double judged = 0;
+  for (std::size_t part = 0; part < parts_.size(); ++part) {
+    all += parts_[part].hours;
+    judged += left_out_by_[part] == By::kNothing ? 0 : parts_[part].hours;
+  }
+  return judged > 0 ? judged : all;
+}
+
+double highestRate(std::size_t count, double time) {
+  // Wilson and Hilferty's quantile of the chi-squared distribution, 1 % too low at most.
+  constexpr double kQuantile = 1.6449;  // of the normal distribution, 95 %
+  const double shape = static_cast<double>(count) + 1;
+  return shape * std::pow(1 - 1 / (9 * shape) + kQuantile / (3 * std::sqrt(shape)), 3) / time;
+}
+
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "core/evidence/limits/held_out.h"
+#include "self_awareness/core/evidence/tuning.h"
+
+namespace self_awareness::core::evidence {
+
+/// How often normal operation would have exceeded limits that it was not known to: every start is
+/// judged by the others (docs/method.md, section 5.5). Where one start is more than half of all,
+/// so is every part of it by the other parts.
+class LeftOut {
+ public:
+  /// @param parts all that was looked at; none may be empty
+  LeftOut(const std::vector<Part>& parts, const Tuning& tuning);
+
+  /// Takes in a track that is judged.
+  /// @param largest value in every part, 0 or more
+  /// @param least limit of the track
+  /// @param margin the limit is so many times the largest value that was seen
+  void add(const std::vector<double>& largest, double least, double margin);
+  /// Parts in which at least one track would have exceeded its limit.
+  std::size_t exceeded() const;
+  /// Length of the parts that others can judge [h]; of all, where none can be.
+  double hours() const;
+
+ private:
+  /// Largest value of all groups but one.
+  struct Others {
+    double largest = 0;
+    double second = 0;
+    std::size_t group = 0;  // that the largest is of
+
+    void add(double value, std::size_t its_group);
+    double without(std::size_t left_out) const { return left_out == group ? second : largest; }
+  };
+  enum class By { kStart, kPart, kNothing };
+
+  std::vector<Part> parts_;
+  double share_of_least_;
+  std::vector<By> left_out_by_;  // by part
+  std::vector<bool> exceeded_;   // by part
+};
+
+/// The rate that is not below the true one with a probability of 95 %: the upper limit of
+/// Poisson's distribution.
+/// @param count of events
+/// @param time that they were counted in, > 0
+double highestRate(std::size_t count, double time);
+
+}  // namespace self_awareness::core::evidence
