@@ -40,7 +40,8 @@ def test_it_opens_without_error_and_without_network(report: Path) -> None:
         browser.wait(DRAWN)
         assert browser.errors() == []
         assert browser.requests() == [report.as_uri()]
-        assert browser.driver.title.startswith('/laser (/scan) stopped sending at 12.0 s.')
+        assert browser.driver.title.startswith(
+            '/laser (/scan) fell silent at 12.0 s, and came back at 20.0 s.')
         text = browser.run(f'return {ALARM}.querySelector("summary").textContent')
         assert 'alarm' in text and '/laser' in text and '12.' in text
         lanes = browser.run('return document.querySelector(".over-time").textContent')
@@ -115,5 +116,5 @@ def test_it_can_be_printed(report: Path, tmp_path: Path) -> None:
     page.write_bytes(base64.b64decode(done['data']))
     text = subprocess.run(['pdftotext', str(page), '-'], stdout=subprocess.PIPE, text=True,
                           check=True).stdout
-    assert '/laser (/scan) stopped sending at 12.0 s.' in text
+    assert '/laser (/scan) fell silent at 12.0 s, and came back at 20.0 s.' in text
     assert 'gaps between two /laser /scan' in text and 'now: 0.' in text

@@ -22,7 +22,8 @@ def test_the_summary_says_who_when_why_and_since_when(evidence_model: str, make_
     bag = make_bag('dead.bag', without_laser(3000.0))
     found = section(judged(with_graph(evidence_model, tmp_path / 'm'), bag), 'x')
     assert found.summary.state == ALARMED
-    assert found.summary.headline == '/laser (/scan) stopped sending at 12.0 s.'
+    assert (found.summary.headline
+            == '/laser (/scan) fell silent at 12.0 s, and came back at 20.0 s.')
     answers = dict(found.summary.answers)
     assert answers['When'].startswith('alarm from 12.')
     assert '1970-01-01 00:50:12.' in answers['When']
@@ -40,7 +41,7 @@ def test_an_alarm_has_its_suspects_delays_and_graph(evidence_model: str, make_ba
     alarm, = [each for each in found.intervals if each.level == ALARM]
     assert 12.0 < alarm.start < 13.0 and alarm.cleared
     first = alarm.suspects[0]
-    assert (first.component, first.short) == ('/laser', 'stopped sending')
+    assert (first.component, first.short) == ('/laser', 'fell silent')
     assert first.histogram.title == 'gaps between two /laser /scan std_msgs/String'
     assert first.histogram.seen == pytest.approx(alarm.start - alarm.began)
     assert first.histogram.seen > first.histogram.edges[-1] > 0.05
@@ -127,7 +128,7 @@ def test_the_papers_detector_has_suspects_and_no_lanes(evidence_model: str,
     assert found.overview.lanes is None
     assert found.overview.timeline.limit == 1.0 and found.overview.timeline.unit == threshold
     suspects = [suspect for each in found.intervals for suspect in each.suspects]
-    silent = next(suspect for suspect in suspects if suspect.short == 'stopped sending')
+    silent = next(suspect for suspect in suspects if suspect.short == 'fell silent')
     assert silent.component == '/laser' and silent.histogram.seen > 0.05
     assert sum(silent.histogram.counts) == 2399
     assert any('one score for all' in each.why for each in found.unjudged)

@@ -45,7 +45,8 @@ def test_score_writes_a_report_of_each_recording(evidence_model: str, make_bag, 
     page = report.read_text()
     assert len(page) < MOST_BYTES
     assert page.count('<section ') == 2
-    assert '/laser (/scan) stopped sending at 12.0 s.' in page and 'Nothing abnormal.' in page
+    assert '/laser (/scan) fell silent at 12.0 s, and came back at 20.0 s.' in page
+    assert 'Nothing abnormal.' in page
     # The report and the text agree.
     start, end = re.findall(r'^  ([\d.]+) - ([\d.]+) s, ', capsys.readouterr().out, re.M)[0]
     assert f'{start} s – {end} s' in page

@@ -116,8 +116,21 @@ std::string inWords(double seconds) {
   return text;
 }
 
+/// Whether most gaps of one event type are longer, or shorter: it has another rate.
+bool isOtherRate(const Reason& reason, bool scattered) {
+  return reason.after.empty() && !scattered && reason.value != reason.usual &&
+         2 * reason.times > reason.of;
+}
+
 /// @param scatter of the unusual ones; none: nearly all of them are on one side of the usual one
 std::string inWords(const Reason& reason, std::optional<double> scatter) {
+  if (isOtherRate(reason, scatter.has_value())) {
+    char text[100];
+    std::snprintf(text, sizeof text,
+                  "every %.2g s instead of %.2g s, %zu times in the last %.1f s", reason.value,
+                  reason.usual, reason.times, reason.lasted);
+    return text;
+  }
   const std::string after = reason.after.empty() ? "" : " after " + reason.after;
   if (reason.times == 0) {
     return "at unusual delays" + after;
@@ -141,8 +154,11 @@ Kind kindOf(const Reason& reason, bool scattered) {
     return Kind::kOutOfOrder;
   }
   const bool later = reason.value > reason.usual;
-  if (reason.after.empty()) {
+  if (isOtherRate(reason, scattered)) {
     return later ? Kind::kSlow : Kind::kFast;
+  }
+  if (reason.after.empty()) {
+    return Kind::kOutOfOrder;
   }
   return later ? Kind::kLate : Kind::kEarly;
 }

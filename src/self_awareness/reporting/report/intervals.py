@@ -5,6 +5,8 @@ import math
 from dataclasses import dataclass
 from typing import Dict, List, Optional, Sequence
 
+import numpy as np
+
 from self_awareness import Alarm, Suspect
 from self_awareness.reporting.report import delays
 from self_awareness.reporting.report.delays import Histogram
@@ -38,6 +40,7 @@ class NamedSuspect:
         short: what it does wrong, in a few words.
         why: the numbers, seen and usual.
         named: when it was named [s] from the recording's first message.
+        back: when it was heard again after that [s]; None: it was not, or was not silent.
         histogram: of the delays that speak against it; None: it is not about a delay.
     """
 
@@ -46,6 +49,7 @@ class NamedSuspect:
     short: str
     why: str
     named: float
+    back: Optional[float]
     histogram: Optional[Histogram]
 
 
@@ -111,8 +115,8 @@ def intervals(judged: Judged, found: Overview, prefix: str) -> List[Interval]:
 
 def _interval(judged: Judged, found: Overview, key: str, alarm: Alarm,
               detailed: bool) -> Interval:
-    suspects = [_named(judged, suspect, detailed) for suspect in alarm.suspects]
-    later = [_named(judged, suspect, detailed) for suspect in alarm.later]
+    suspects = [_named(judged, suspect, alarm.over, detailed) for suspect in alarm.suspects]
+    later = [_named(judged, suspect, alarm.over, detailed) for suspect in alarm.later]
     start = judged.seconds(alarm.begin)
     first = alarm.suspects[0] if alarm.suspects else None
     return Interval(
@@ -125,11 +129,21 @@ def _interval(judged: Judged, found: Overview, key: str, alarm: Alarm,
         detailed)
 
 
-def _named(judged: Judged, suspect: Suspect, detailed: bool) -> NamedSuspect:
+def _named(judged: Judged, suspect: Suspect, over: bool, detailed: bool) -> NamedSuspect:
+    silent = suspect.reason.kind == 'died' and over  # it has come back since
     return NamedSuspect(
         suspect.component, str(judged.recording.event_types[suspect.id]),
-        _short(suspect), suspect.reason.words, judged.seconds(suspect.since),
+        'fell silent' if silent else _short(suspect), suspect.reason.words,
+        judged.seconds(suspect.since), _back(judged, suspect) if silent else None,
         delays.histogram_of(judged, suspect) if detailed else None)
+
+
+def _back(judged: Judged, suspect: Suspect) -> Optional[float]:
+    """Return when a suspect was heard again after it was named [s]; None: it was not."""
+    stamps, ids = judged.recording.stamps, judged.recording.ids
+    first = int(np.searchsorted(stamps, suspect.since))
+    again = np.flatnonzero(ids[first:] == suspect.id)
+    return judged.seconds(int(stamps[first + again[0]])) if len(again) else None
 
 
 def _short(suspect: Suspect) -> str:
@@ -138,8 +152,6 @@ def _short(suspect: Suspect) -> str:
         return 'came at unusual times'
     if reason.after or (reason.of > 0 and reason.times == 0):
         return _SHORT_OF_ANSWERS.get(reason.kind, reason.kind)
-    if reason.of > 0:  # gaps of its own
-        return 'sends at an irregular pace'
     return _SHORT.get(reason.kind, reason.kind)
 
 

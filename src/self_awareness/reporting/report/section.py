@@ -132,7 +132,9 @@ def _headline(first: Interval) -> str:
     subject = (f'{culprit.component} ({topic})' if topic != culprit.component
                else culprit.component)
     began = first.start if first.began is None else max(first.began, 0.0)
-    return f'{subject} {culprit.short} {f"at {clock(began)}" if began else "since the start"}.'
+    since = f'at {clock(began)}' if began else 'since the start'
+    back = '' if culprit.back is None else f', and came back at {clock(culprit.back)}'
+    return f'{subject} {culprit.short} {since}{back}.'
 
 
 def _when(first: Interval) -> str:

@@ -214,12 +214,33 @@ TEST(DescribeDelays, SaysHowMuchLaterHowOftenAndSinceWhen) {
   EXPECT_EQ(wordsOf({0.0471, 0.0471, 0.0471}, "/a /x T", Kind::kLate),
             "2.1 ms later than usual 3 times of 6 after /a /x T in the last 12.0 s, usually "
             "0.045 s");
-  EXPECT_EQ(wordsOf({0.0429, 0.0429}, "", Kind::kFast),
+  EXPECT_EQ(wordsOf({0.0429, 0.0429}, "", Kind::kOutOfOrder),
             "2.1 ms earlier than usual 2 times of 4 in the last 12.0 s, usually every 0.045 s");
-  EXPECT_EQ(wordsOf({0.245}, "", Kind::kSlow).rfind("200 ms later than usual 1 time of 2 in", 0),
-            0U);
-  EXPECT_EQ(wordsOf({3.045}, "", Kind::kSlow).rfind("3.00 s later than usual 1 time of 2 in", 0),
-            0U);
+  EXPECT_EQ(
+      wordsOf({0.245}, "", Kind::kOutOfOrder).rfind("200 ms later than usual 1 time of 2 in", 0),
+      0U);
+  EXPECT_EQ(
+      wordsOf({3.045}, "", Kind::kOutOfOrder).rfind("3.00 s later than usual 1 time of 2 in", 0),
+      0U);
+}
+
+TEST(DescribeDelays, MostGapsOfAnotherLengthAreAnotherRate) {
+  const auto gapsOf = [](double gap) {
+    std::vector<SeenDelay> seen;
+    for (std::int64_t k = 1; k <= 20; ++k) {
+      seen.push_back({k * 200 * kMillisecond, 200e6, -1});
+    }
+    for (std::int64_t k = 1; k <= 5; ++k) {
+      seen.push_back({4 * kSecond + std::llround(k * gap * 1e9), gap * 1e9, 3});
+    }
+    Reason reason;
+    describeDelays(seen, 100, 200e6, 4 * kSecond + std::llround(5 * gap * 1e9), reason);
+    return reason;
+  };
+  EXPECT_EQ(gapsOf(0.39).words, "every 0.39 s instead of 0.2 s, 5 times in the last 1.6 s");
+  EXPECT_EQ(gapsOf(0.39).kind, Kind::kSlow);
+  EXPECT_EQ(gapsOf(0.1).words, "every 0.1 s instead of 0.2 s, 5 times in the last 0.4 s");
+  EXPECT_EQ(gapsOf(0.1).kind, Kind::kFast);
 }
 
 TEST(DescribeDelays, SomeEarlierAndSomeLaterAreScattered) {
