@@ -102,6 +102,12 @@ void EventRecorder::onEvent(const core::Event& event) {
   attempt([&] { packer_->add(event, vocabulary_); });
 }
 
+void EventRecorder::onWaiting(const core::Waiting& waiting) {
+  if (file_) {
+    packer_->add(waiting);
+  }
+}
+
 void EventRecorder::onClockSet(std::int64_t now) {
   if (!file_) {
     return;

@@ -84,6 +84,7 @@ class EventRecorder : public NodeProgram, public LiveSource::Listener {
   };
 
   void onEvent(const core::Event& event) override;
+  void onWaiting(const core::Waiting& waiting) override;
   void onClockSet(std::int64_t now) override;
   void onMasterRestart(std::int64_t now) override;
   void onTick(std::int64_t now) override;

@@ -26,7 +26,8 @@ std::size_t bytesOf(const self_awareness::EventType& type) {
 }
 
 std::size_t bytesOf(const self_awareness::EventLog& part) {
-  std::size_t bytes = sizeof part + part.packed.capacity();
+  std::size_t bytes =
+      sizeof part + part.packed.capacity() + 3 * sizeof(std::int64_t) * part.waited.capacity();
   for (const self_awareness::EventType& type : part.new_types) {
     bytes += bytesOf(type);
   }
@@ -83,6 +84,12 @@ void FlightRecorder::add(const core::Event& event, const core::Vocabulary& vocab
   }
   last_ = std::max(last_, event.stamp);
   packer_.add(event, vocabulary);
+}
+
+void FlightRecorder::add(const core::Waiting& waiting) {
+  if (heardAnything()) {
+    packer_.add(waiting);
+  }
 }
 
 void FlightRecorder::advance(std::int64_t ros_now, std::int64_t now) {

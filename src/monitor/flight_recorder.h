@@ -15,6 +15,7 @@
 #include "self_awareness/EventType.h"
 #include "self_awareness/core/stream/event.h"
 #include "self_awareness/core/stream/vocabulary.h"
+#include "self_awareness/core/stream/waiting.h"
 #include "self_awareness/ros/bag/event_log_packer.h"
 #include "self_awareness/ros/encoding.h"
 #include "self_awareness/ros/graph.h"
@@ -57,6 +58,8 @@ class FlightRecorder {
   /// Takes in the next event.
   /// @param vocabulary that its id is of; it may grow until restart()
   void add(const core::Event& event, const core::Vocabulary& vocabulary);
+  /// Takes in how the machine was.
+  void add(const core::Waiting& waiting);
   /// Nothing else was heard before `ros_now`. Writes the file of an alarm when its time has come.
   void advance(std::int64_t ros_now, std::int64_t now);
   /// The events to come have nothing to do with those before: ROS time was set, or another model

@@ -70,6 +70,10 @@ void LiveSource::onTick(const ros::SteadyTimerEvent& /*tick*/) {
     }
     listener_.onGraph(*graph_);
   }
+  // Before windows are judged that end now.
+  if (const auto waiting = processor_watch_.look(now, steadyNow(), tick_.toNSec())) {
+    listener_.onWaiting(*waiting);
+  }
   listener_.onTick(now);
   if (core::toSeconds(steadyNow() - reported_at_) >= period_) {
     live_events_.forgetClosedConnections();
@@ -80,6 +84,7 @@ void LiveSource::onTick(const ros::SteadyTimerEvent& /*tick*/) {
 std::int64_t LiveSource::watchClock() {
   const std::int64_t now = rosNow();
   if (clock_watch_.look(now, steadyNow(), ros::Time::isSimTime())) {
+    processor_watch_.restart();
     listener_.onClockSet(now);
   } else if (clock_watch_.pause() > kLongestPause + tick_.toNSec()) {
     listener_.onPause(now, clock_watch_.pause());

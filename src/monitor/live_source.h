@@ -12,7 +12,9 @@
 #include <vector>
 
 #include "discovery.h"
+#include "processor_watch.h"
 #include "self_awareness/core/stream/event.h"
+#include "self_awareness/core/stream/waiting.h"
 #include "self_awareness/core/stream/windows.h"
 #include "self_awareness/ros/encoding.h"
 #include "self_awareness/ros/graph.h"
@@ -52,6 +54,8 @@ class LiveSource {
     /// @param now ROS time [ns]
     /// @param pause [ns of steady time]
     virtual void onPause(std::int64_t /*now*/, std::int64_t /*pause*/) {}
+    /// How the machine was in the stretch of time after the one before.
+    virtual void onWaiting(const core::Waiting& /*waiting*/) {}
     /// Messages of this publisher were dropped.
     virtual void onDropped(const ros1::Publication& /*publication*/) {}
     /// Who talks to whom has changed, or is known for the first time with what is wanted.
@@ -109,6 +113,7 @@ class LiveSource {
   ros::WallDuration tick_ = Wanted().tick;
   ros::SteadyTimer timer_;
   ros1::ClockWatch clock_watch_;
+  ProcessorWatch processor_watch_;
   std::shared_ptr<const ros1::Encoder> encoder_;  // none: nothing is wanted yet
   std::shared_ptr<const ros1::Graph> graph_;      // the newest that was taken over
   std::size_t master_restarts_ = 0;               // that were told

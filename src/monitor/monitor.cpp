@@ -143,6 +143,13 @@ void Monitor::onPause(std::int64_t now, std::int64_t pause) {
   }
 }
 
+void Monitor::onWaiting(const core::Waiting& waiting) {
+  if (session_) {
+    session_->detector().hear(waiting);
+    recorder_.add(waiting);
+  }
+}
+
 void Monitor::onDropped(const ros1::Publication& publication) {
   if (session_) {
     session_->detector().onMissed(session_->typesOf(publication), rosNow());

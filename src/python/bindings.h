@@ -104,13 +104,22 @@ inline ros1::BagReader::Progress progressTo(const py::object& callback) {
 /// Lets a detector judge a recording.
 /// @param steps with which the clock was set forward
 /// @param end the recording goes on in silence until then [ns]; none: it ends with the last event
+/// @param waiting how the machine was, in the order of time
 /// @param heard called after each event; whether it belongs to the same clock as those before
 inline void judgeRecording(core::Detector& detector, const Stamps& stamps, const Ids& ids,
                            const core::ClockSteps& steps, std::optional<std::int64_t> end,
+                           const std::vector<core::Waiting>& waiting = {},
                            const std::function<void(const core::Event&, bool)>& heard = nullptr) {
   std::optional<std::int64_t> last;
   bool set_forward = false;
+  auto next = waiting.begin();
+  const auto wait = [&](std::int64_t until) {
+    for (; next != waiting.end() && next->to <= until; ++next) {
+      detector.hear(*next);
+    }
+  };
   const auto add = [&](const core::Event& event) {
+    wait(event.stamp);
     const bool same_clock = detector.add(event) && !set_forward;
     set_forward = false;
     last = event.stamp;
@@ -123,6 +132,7 @@ inline void judgeRecording(core::Detector& detector, const Stamps& stamps, const
     set_forward = true;
   });
   if (end && last && !core::isClockStep(*last, *end)) {
+    wait(*end);
     detector.advance(*end);  // silence until the end is part of the recording
   }
   detector.finish();

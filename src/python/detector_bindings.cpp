@@ -55,7 +55,8 @@ void record(const core::Verdict& verdict, Verdicts& verdicts) {
 Verdicts judge(std::unique_ptr<core::Judge> judge, std::int64_t window,
                const core::Detector::Parameters& parameters, const Stamps& stamps, const Ids& ids,
                std::optional<std::int64_t> end, const core::Vocabulary& vocabulary,
-               ros1::ReplayedMonitor* monitor, std::vector<std::int64_t> clock_steps) {
+               ros1::ReplayedMonitor* monitor, std::vector<std::int64_t> clock_steps,
+               const std::vector<core::Waiting>& waiting) {
   Verdicts verdicts;
   core::Alarms alarms;
   std::int64_t last_end = 0;  // of a window [ns]
@@ -69,7 +70,7 @@ Verdicts judge(std::unique_ptr<core::Judge> judge, std::int64_t window,
       monitor->onVerdict(verdict);
     }
   });
-  judgeRecording(detector, stamps, ids, core::ClockSteps(std::move(clock_steps)), end,
+  judgeRecording(detector, stamps, ids, core::ClockSteps(std::move(clock_steps)), end, waiting,
                  [&](const core::Event& event, bool same_clock) {
                    if (const auto ended = same_clock ? std::nullopt : alarms.end(last_end)) {
                      record(*ended, verdicts);
@@ -92,7 +93,7 @@ Verdicts judgeByPaper(const std::shared_ptr<core::paper::Model>& model, std::int
                       ros1::ReplayedMonitor* monitor, std::vector<std::int64_t> clock_steps) {
   return judge(core::paper::makeJudge(model, threshold, parameters.silence_is_abnormal), window,
                parameters, stamps, ids, end, core::Vocabulary(event_types), monitor,
-               std::move(clock_steps));
+               std::move(clock_steps), {});
 }
 
 Verdicts judgeByEvidence(const ros1::TrainedModel& trained,
@@ -100,12 +101,14 @@ Verdicts judgeByEvidence(const ros1::TrainedModel& trained,
                          const core::Detector::Parameters& parameters, const Stamps& stamps,
                          const Ids& ids, std::optional<std::int64_t> end,
                          const std::vector<core::EventType>& event_types,
-                         ros1::ReplayedMonitor* monitor, std::vector<std::int64_t> clock_steps) {
+                         ros1::ReplayedMonitor* monitor, std::vector<std::int64_t> clock_steps,
+                         const std::vector<core::Waiting>& waiting) {
   const auto vocabulary = std::make_shared<core::Vocabulary>(event_types);
   return judge(
       core::evidence::makeJudge(model, trained.limits(), trained.window,
                                 std::make_shared<core::SourceGraph>(trained.graph), vocabulary),
-      trained.window, parameters, stamps, ids, end, *vocabulary, monitor, std::move(clock_steps));
+      trained.window, parameters, stamps, ids, end, *vocabulary, monitor, std::move(clock_steps),
+      waiting);
 }
 
 std::vector<double> scoreEvents(const std::shared_ptr<core::paper::Model>& model,
@@ -216,12 +219,15 @@ void bindVerdicts(py::module& m) {
            "cannot name components that training never saw. monitor: a ReplayedMonitor that is\n"
            "told of all of it. clock_steps: with which the clock was set forward\n"
            "(find_clock_steps).");
-  m.def("judge_by_evidence", &judgeByEvidence, py::arg("trained"), py::arg("model"),
-        py::arg("parameters"), py::arg("stamps"), py::arg("ids"), py::arg("end") = py::none(),
-        py::arg("event_types") = std::vector<core::EventType>(), py::arg("monitor") = nullptr,
-        py::arg("clock_steps") = std::vector<std::int64_t>(),
-        "Verdicts on a recording by the EvidenceModel of a TrainedModel, like Model.judge.\n"
-        "event_types: by id, those of the model first.");
+  m.def(
+      "judge_by_evidence", &judgeByEvidence, py::arg("trained"), py::arg("model"),
+      py::arg("parameters"), py::arg("stamps"), py::arg("ids"), py::arg("end") = py::none(),
+      py::arg("event_types") = std::vector<core::EventType>(), py::arg("monitor") = nullptr,
+      py::arg("clock_steps") = std::vector<std::int64_t>(),
+      py::arg("waiting") = std::vector<core::Waiting>(),
+      "Verdicts on a recording by the EvidenceModel of a TrainedModel, like Model.judge.\n"
+      "event_types: by id, those of the model first. waiting: how the machine was, in the order\n"
+      "of time (RecordedEvents.waiting).");
   m.attr("EVIDENCE_THRESHOLD") = core::evidence::kThreshold;
   m.attr("DEFAULT_WINDOW") = core::kDefaultWindow;    // [ns]
   m.attr("SHORTEST_WINDOW") = core::kShortestWindow;  // [ns]

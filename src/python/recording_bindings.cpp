@@ -28,6 +28,7 @@ struct RecordedEvents {
   std::vector<core::EventType> event_types;  // the known ones first, then the new ones
   std::vector<std::int64_t> stamps;          // [ns]
   std::vector<std::uint32_t> ids;
+  std::vector<core::Waiting> waiting;
 };
 
 // The array is a view of its owner's data, and keeps the owner alive: events may be many.
@@ -62,7 +63,8 @@ RecordedEvents readEvents(const std::string& path, const InLog& recording,
   if (recording) {
     const ros1::EventLogReader reader(path, *recording);
     events.summary = reader.summary();
-    reader.read(rules, ids, range, handler, progressTo(progress));
+    reader.read(rules, ids, range, handler, progressTo(progress),
+                [&](const core::Waiting& waiting) { events.waiting.push_back(waiting); });
   } else {
     const ros1::BagReader reader(path);
     events.summary = reader.summary();
@@ -204,6 +206,24 @@ void bindBags(py::module& m) {
   m.def("recordings_in_event_log", &ros1::recordingsInEventLog, py::arg("path"),
         "Number of recordings in an event log; None: it is none, or cannot be read.");
 
+  py::class_<core::Waiting>(
+      m, "Waiting",
+      "How long a machine kept its processes waiting for a processor, in a stretch of time.")
+      .def(py::init([](std::int64_t begin, std::int64_t end, std::int64_t waited) {
+             return core::Waiting{begin, end, waited};
+           }),
+           py::arg("begin"), py::arg("end"), py::arg("waited"), "Each in ns.")
+      .def_readonly("begin", &core::Waiting::from, "of the stretch [ns]")
+      .def_readonly("end", &core::Waiting::to, "[ns]")
+      .def_readonly("waited", &core::Waiting::waited, "[ns]")
+      .def(py::pickle(
+          [](const core::Waiting& self) {
+            return std::make_tuple(self.from, self.to, self.waited);
+          },
+          [](const std::tuple<std::int64_t, std::int64_t, std::int64_t>& state) {
+            return core::Waiting{std::get<0>(state), std::get<1>(state), std::get<2>(state)};
+          }));
+
   py::class_<RecordedEvents>(m, "RecordedEvents", "The events of a recording, in memory.")
       .def_readonly("summary", &RecordedEvents::summary)
       .def_readonly("event_types", &RecordedEvents::event_types, "by id")
@@ -218,7 +238,9 @@ void bindBags(py::module& m) {
           [](const py::object& self) {
             return viewOf(self.cast<const RecordedEvents&>().ids, self);
           },
-          "uint32, read-only");
+          "uint32, read-only")
+      .def_readonly("waiting", &RecordedEvents::waiting,
+                    "how the machine was: a Waiting for each stretch of time; empty: not known");
   m.def(
       "read_events",
       [](const std::string& path, const ros1::EncodingRules& encoding,

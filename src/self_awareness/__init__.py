@@ -60,6 +60,7 @@ from self_awareness._core import (  # noqa: F401
     TuningNumber,
     UnknownEvents,
     Verdicts,
+    Waiting,
     evidence_lanes,
     find_clock_steps,
     half_of,

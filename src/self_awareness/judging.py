@@ -14,15 +14,15 @@ BOTH = 'both'
 Judge = Callable[..., Verdicts]
 """Judges stamps and ids of a recording, and the silence up to its end [ns]. Further arguments: the
 event types by id, those of the model first (without, those of unknown events are not known), a
-ReplayedMonitor that is told of all of it, and where the clock was set (clock_steps)."""
+ReplayedMonitor that is told of all of it, where the clock was set (clock_steps), and how the machine was (waiting)."""
 
 
 def paper_judge(trained: TrainedModel, model: PaperModel, threshold: Optional[float],
                 parameters: DetectorParameters) -> Judge:
     """Return what judges by the paper's score; threshold None: scores only, no alarms."""
-    return lambda stamps, ids, end, event_types=(), monitor=None, clock_steps=(): model.judge(
-        trained.window, threshold, parameters, stamps, ids, end, list(event_types), monitor,
-        clock_steps)
+    return lambda stamps, ids, end, event_types=(), monitor=None, clock_steps=(), waiting=(): (
+        model.judge(trained.window, threshold, parameters, stamps, ids, end, list(event_types),
+                    monitor, clock_steps))
 
 
 def evidence_judge(trained: TrainedModel, parameters: DetectorParameters,
@@ -38,6 +38,6 @@ def evidence_judge(trained: TrainedModel, parameters: DetectorParameters,
         ValueError: the limits are not those of the model.
     """
     model = computed or EvidenceModel(trained)
-    return lambda stamps, ids, end, event_types=(), monitor=None, clock_steps=(): (
+    return lambda stamps, ids, end, event_types=(), monitor=None, clock_steps=(), waiting=(): (
         judge_by_evidence(trained, model, parameters, stamps, ids, end, list(event_types),
-                          monitor, clock_steps))
+                          monitor, clock_steps, list(waiting)))

@@ -10,7 +10,7 @@ from typing import Dict, Iterable, Iterator, List, Optional, Sequence, Set, Tupl
 import numpy as np
 
 from self_awareness import (LEAST_KNOWN, LONGEST_SILENCE, EventType, RecordedEvents, Recording,
-                            TrainedModel, find_clock_steps, progress, read_events,
+                            TrainedModel, Waiting, find_clock_steps, progress, read_events,
                             recordings_in_event_log)
 from self_awareness.stamps import SECOND_NS, nanoseconds
 
@@ -130,6 +130,7 @@ class RecordingEvents:
         bag: what the file is called, or the bag that an event log was made of.
         robot_start: when the robot was started [ns]; 0: not known.
         clock_steps: stamps of the first events after the clock was set forward [ns].
+        waiting: how the machine was, one stretch of time after the other; empty: not known.
         left_out: why some connections of a bag are no events, whatever the encoding.
     """
 
@@ -145,6 +146,7 @@ class RecordingEvents:
     bag: str = ''
     robot_start: int = 0
     clock_steps: Sequence[int] = ()
+    waiting: Sequence[Waiting] = ()
     left_out: Tuple[str, ...] = ()
 
     @classmethod
@@ -156,7 +158,7 @@ class RecordingEvents:
                    summary.fingerprint, summary.one_sender_a_topic, summary.copied, summary.bag,
                    summary.robot_start,
                    () if summary.clock_watched else find_clock_steps(events.stamps, events.ids),
-                   tuple(summary.left_out))
+                   events.waiting, tuple(summary.left_out))
 
     @property
     def recording(self) -> Recording:

@@ -21,7 +21,7 @@ struct FileKind {
   std::uint32_t method;         ///< that what is in it was made by; 0: by none
 };
 inline constexpr FileKind kModelFile{"model", 2, 2, kMethod};
-inline constexpr FileKind kEventLogFile{"event log", 2, 2, 0};
+inline constexpr FileKind kEventLogFile{"event log", 3, 2, 0};
 inline constexpr FileKind kResultBag{"result bag", 2, 1, kMethod};
 inline constexpr FileKind kGraphFile{"graph", 2, 2, 0};  ///< beside bags, in YAML
 

@@ -38,6 +38,7 @@ class Judge : public core::Judge {
     }
     return {event, !known, gap};
   }
+  void hear(const Waiting& waiting) override { scorer_.hear(waiting); }
   void settle(const Event& first, std::int64_t settle_time) override;
   void leaveOut(const std::vector<EventId>& ids, std::int64_t until) override;
   Judgement judge(const Window& window, std::int64_t end, NameSuspects suspects) override;
@@ -46,6 +47,9 @@ class Judge : public core::Judge {
  private:
   /// Takes back that there are too few events, in a window that ended with the recording.
   void leaveOutFewer(std::vector<double>& evidence) const;
+  /// Forgets what the sums say of event types that have settled since the window before.
+  /// @param now start of the window [ns]
+  void forgetStarts(std::int64_t now);
   /// Takes back what the tracks say of event types that settle.
   void leaveOutNew(std::int64_t now, std::vector<double>& evidence) const;
   /// Whether a track beyond its limit is so beyond all doubt.
@@ -54,7 +58,8 @@ class Judge : public core::Judge {
   /// now; at least two.
   bool areAllSilent() const;
   /// The suspects of a window with evidence of known event types.
-  /// @param silent_first whether those come before what was never heard that tracks speak against
+  /// @param silent_first whether those come before what was never heard that tracks speak against,
+  /// and that does not wait for its messages
   std::vector<Suspect> namedIn(const Window& window, bool silent_first) const;
 
   std::shared_ptr<const Model> model_;
@@ -69,7 +74,9 @@ class Judge : public core::Judge {
   std::int64_t settle_time_ = 0;  // [ns]
   std::vector<double> shares_;    // of its limit that each track has reached
   SharesHandler tell_shares_;
-  std::vector<std::int64_t> settled_at_;                                    // [ns], by id
+  bool settling_ = false;                 // some event types did at the start of the last window
+  std::int64_t last_window_ = 0;          // its start [ns]
+  std::vector<std::int64_t> settled_at_;  // [ns], by id
   std::int64_t all_settled_at_ = std::numeric_limits<std::int64_t>::min();  // the latest of them
 };
 
@@ -106,6 +113,7 @@ void Judge::leaveOut(const std::vector<EventId>& ids, std::int64_t until) {
     if (model_->knows(id)) {
       settled_at_[id] = std::max(settled_at_[id], until);
       all_settled_at_ = std::max(all_settled_at_, settled_at_[id]);
+      settling_ = true;
     }
   }
 }
@@ -116,6 +124,8 @@ void Judge::restart() {
   never_heard_.restart();
   strangers_.restart();
   busy_machine_.restart();
+  settling_ = false;
+  last_window_ = 0;
   std::fill(settled_at_.begin(), settled_at_.end(), std::numeric_limits<std::int64_t>::min());
   all_settled_at_ = std::numeric_limits<std::int64_t>::min();
 }
@@ -128,13 +138,24 @@ void Judge::leaveOutFewer(std::vector<double>& evidence) const {
   }
 }
 
+void Judge::forgetStarts(std::int64_t now) {
+  for (EventId id = 0; settling_ && id < settled_at_.size(); ++id) {
+    if (last_window_ < settled_at_[id] && settled_at_[id] <= now) {
+      scorer_.forget(id);
+    }
+  }
+  settling_ = now < all_settled_at_;
+  last_window_ = now;
+}
+
 void Judge::leaveOutNew(std::int64_t now, std::vector<double>& evidence) const {
-  if (now >= all_settled_at_) {
+  if (now >= all_settled_at_ + kRateSpan) {
     return;
   }
   for (std::size_t track = 0; track < evidence.size(); ++track) {
     const Track& watched = model_->tracks()[track];
-    if (now < std::max(settled_at_[watched.to], settled_at_[watched.from])) {
+    if (now - watched.channel->looksBack() <
+        std::max(settled_at_[watched.to], settled_at_[watched.from])) {
       evidence[track] = 0;
     }
   }
@@ -142,6 +163,7 @@ void Judge::leaveOutNew(std::int64_t now, std::vector<double>& evidence) const {
 
 Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects suspects) {
   Judgement judgement;
+  forgetStarts(window.start);
   std::vector<double> evidence = scorer_.closeWindow(end);
   if (!limits_) {
     return judgement;
@@ -168,21 +190,26 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
   judgement.threshold = kThreshold;
   judgement.busy = busy_machine_.closeWindow(shares_, scorer_, *judgement.score < kThreshold);
   if (judgement.busy) {
-    // An alarm lasts as long as its cause, though none of the sums may be beyond its limit now.
-    judgement.score = std::min(*judgement.score, kStillBusy);
+    if (judgement.busy->late > 0 ||
+        judgement.busy->starved > model_->tuning().longest_starvation) {
+      // An alarm lasts as long as its cause, though none of the sums may be beyond its limit now.
+      judgement.score = std::min(*judgement.score, kStillBusy);
+    }
     channels.insert("busy");
   }
   judgement.abnormal = *judgement.score < kThreshold;
   judgement.all_silent = judgement.abnormal && areAllSilent();
   judgement.certain = never_heard_.share() > 1 || isCertain();
-  judgement.suspicious = never_heard_.share() > 0;
+  judgement.suspicious = never_heard_.share() > 0 || judgement.busy.has_value();
   if (never_heard_.share() > 0) {
     channels.insert("never heard");
   }
   for (const std::string& channel : channels) {
     judgement.evidence += (judgement.evidence.empty() ? "" : ", ") + channel;
   }
-  if (suspects != NameSuspects::kNever && (judgement.abnormal || judgement.suspicious)) {
+  const bool somebody =
+      largest > 1 || never_heard_.share() > 0 || (judgement.busy && judgement.busy->late > 0);
+  if (suspects != NameSuspects::kNever && somebody) {
     judgement.suspects = namedIn(window, largest > 1);
   } else if (suspects == NameSuspects::kAlways) {
     // Who is within his own range is no suspect because somebody else is unknown.
@@ -194,7 +221,7 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
 std::vector<Suspect> Judge::namedIn(const Window& window, bool silent_first) const {
   std::vector<Suspect> first = blame_.suspects(shares_, scorer_, events_, window);
   std::vector<Suspect> second = never_heard_.suspects();
-  if (!silent_first) {
+  if (!silent_first || (!first.empty() && never_heard_.isMissedBy(first.front().component))) {
     std::swap(first, second);
   }
   // However many strangers there are, they do not hide who is to blame.

@@ -49,6 +49,12 @@ void EventLogPacker::flush(std::int64_t now) {
   part.delay_bits = packed.delay_bits;
   part.id_bits = packed.id_bits;
   part.packed = std::move(packed.bytes);
+  for (const core::Waiting& waiting : waiting_) {
+    part.waiting_from.push_back(waiting.from);
+    part.waiting_to.push_back(waiting.to);
+    part.waited.push_back(waiting.waited);
+  }
+  waiting_.clear();
   events_.clear();
   begin_ = now;
   handler_(std::move(part));

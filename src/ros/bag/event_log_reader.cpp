@@ -72,6 +72,24 @@ void add(const self_awareness::EventLogGraph& message, Graph& graph) {
   }
 }
 
+std::vector<core::Waiting> waitingIn(const self_awareness::EventLog& part,
+                                     const LogMessages& messages) {
+  if (part.waiting_to.size() != part.waiting_from.size() ||
+      part.waited.size() != part.waiting_from.size()) {
+    messages.fail("how long processes waited is cut off");
+  }
+  std::vector<core::Waiting> stretches;
+  for (std::size_t k = 0; k < part.waited.size(); ++k) {
+    const core::Waiting waiting{part.waiting_from[k], part.waiting_to[k], part.waited[k]};
+    if (waiting.from < 0 || waiting.to < waiting.from || waiting.waited < 0 ||
+        waiting.waited > waiting.to - waiting.from) {
+      messages.fail("processes waited for longer than time passed");
+    }
+    stretches.push_back(waiting);
+  }
+  return stretches;
+}
+
 }  // namespace
 
 struct EventLogReader::Parts {
@@ -165,8 +183,8 @@ EventLogReader::EventLogReader(const std::string& path, std::size_t recording) {
 EventLogReader::~EventLogReader() = default;
 
 void EventLogReader::read(const EncodingRules& rules, const EventIds& ids, const TimeRange& range,
-                          const BagReader::Handler& handler,
-                          const BagReader::Progress& progress) const {
+                          const BagReader::Handler& handler, const BagReader::Progress& progress,
+                          const WaitingHandler& waiting) const {
   if (!(rules == *summary_.encoding)) {
     throw BagError(summary_.path +
                    ": the event log was recorded by another encoding than the one "
@@ -197,6 +215,13 @@ void EventLogReader::read(const EncodingRules& rules, const EventIds& ids, const
     packed.bytes = std::move(part.packed);
     if (part.events > EventLogPacker::kMostEvents) {
       messages.fail("a part of too many events");
+    }
+    if (waiting) {
+      for (const core::Waiting& each : waitingIn(part, messages)) {
+        if (each.from >= from && each.to <= to) {
+          waiting(each);
+        }
+      }
     }
     std::vector<core::Event> events;
     try {

@@ -79,7 +79,7 @@ def _score(arguments: argparse.Namespace) -> None:
             recording = cli.read_recording('score', trained, part)
             verdicts = judge(recording.stamps, recording.ids, recording.end,
                              recording.event_types, replay(recording),
-                             recording.clock_steps)
+                             recording.clock_steps, recording.waiting)
             judged.append((recording, verdicts))
             _print(recording, verdicts, len(trained.event_types), threshold)
     if arguments.csv is not None:

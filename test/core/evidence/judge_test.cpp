@@ -79,6 +79,50 @@ TEST_F(EvidenceJudgeTest, ASilenceThatHasLastedIsCertain) {
   EXPECT_TRUE(judgeAt(*judge, kSecond + 101 * kMillisecond).certain);
 }
 
+TEST_F(EvidenceJudgeTest, OfAStarvedMachineNobodyIsNamed) {
+  const std::int64_t limit = 500 * kMillisecond;
+  limits_.tracks[track(kOverdue, kA, kA)] = model_->overdue(kA, limit);
+  const std::unique_ptr<core::Judge> judge = newJudge(limits_);
+  judge->add({-100 * kSecond, kA});
+  judge->add({-100 * kSecond, kB});
+  judge->hear({-100 * kSecond, 0, 0});
+  judge->add({0, kA});
+  Judgement judgement;
+  std::int64_t now = 0;
+  const auto starve = [&](std::int64_t until) {
+    for (; now < until; now += kWindow) {
+      judge->hear({now, now + kWindow, kWindow});
+      judgement = judgeAt(*judge, now + kWindow, NameSuspects::kIfUnusual);
+    }
+  };
+  starve(1100 * kMillisecond);
+  EXPECT_FALSE(judgement.abnormal) << "what it waited is forgiven";
+  ASSERT_TRUE(judgement.busy);
+  EXPECT_TRUE(judgement.suspicious);
+  EXPECT_EQ(judgement.evidence, "busy");
+  EXPECT_TRUE(judgement.suspects.empty());
+  starve(1300 * kMillisecond);
+  EXPECT_TRUE(judgement.abnormal) << "no more than a stall: who is dead is found";
+  ASSERT_FALSE(judgement.suspects.empty());
+  EXPECT_EQ(judgement.suspects.front().id, kA);
+}
+
+TEST_F(EvidenceJudgeTest, AMachineThatStaysStarvedIsAnAlarm) {
+  limits_.tracks[track(kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
+  const std::unique_ptr<core::Judge> judge = newJudge(limits_);
+  judge->add({-100 * kSecond, kB});
+  judge->hear({-100 * kSecond, 0, 0});
+  for (std::int64_t now = 0; now < 12 * kSecond; now += kWindow) {
+    judge->add({now, kA});
+    judge->add({now, kB});
+    judge->hear({now, now + kWindow, kWindow});
+    const Judgement judgement = judgeAt(*judge, now + kWindow, NameSuspects::kIfUnusual);
+    EXPECT_EQ(judgement.suspicious, now >= 900 * kMillisecond) << toSeconds(now);
+    EXPECT_EQ(judgement.abnormal, now >= 10 * kSecond) << toSeconds(now);
+    EXPECT_TRUE(judgement.suspects.empty());
+  }
+}
+
 TEST_F(EvidenceJudgeTest, AllAreSilentIfEverybodyShouldHaveSpoken) {
   limits_.tracks[track(kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
   limits_.tracks[track(kOverdue, kB, kB)] = model_->overdue(kB, 100 * kSecond);
@@ -199,10 +243,41 @@ TEST_F(EvidenceJudgeTest, WhatSettlesIsNotJudgedAndAllElseIs) {
     EXPECT_FALSE(judgement.settling);
     return judgement.evidence;
   };
-  EXPECT_EQ(evidenceAt(now, kB, now), "overdue, pairs");
   EXPECT_EQ(evidenceAt(now, kB, now + 1), "overdue");  // its pair with A is left out
+  EXPECT_EQ(evidenceAt(now, kB, now), "overdue");      // and what it has said so far
   EXPECT_EQ(evidenceAt(now, kA, now + 1), "");
   EXPECT_EQ(evidenceAt(now, kC, now + 1), "overdue, pairs");  // unknown to the model
+}
+
+TEST_F(EvidenceJudgeTest, WhatWasUnusualOfAStartDoesNotCountAfterwards) {
+  limits_.tracks[track(kPairs, kB, kA)] = 13;
+  const std::unique_ptr<core::Judge> judge = newJudge(limits_);
+  feed(*judge, 5);
+  std::int64_t now = 45 * kPeriod;
+  judge->settle({0, kB}, now);
+  EXPECT_FALSE(judge->judge({now - 1, {}}, now, NameSuspects::kNever).abnormal);
+  EXPECT_FALSE(judge->judge({now, {}}, now + kWindow, NameSuspects::kNever).abnormal);
+  for (int i = 45; i < 50; ++i) {
+    judge->add({i * kPeriod, kA});
+    judge->add({i * kPeriod + 70 * kMillisecond, kB});
+  }
+  now = 50 * kPeriod;
+  EXPECT_TRUE(judge->judge({now, {}}, now + kWindow, NameSuspects::kNever).abnormal);
+}
+
+TEST_F(EvidenceJudgeTest, RatesCountOnceNothingOfAStartIsInThem) {
+  const std::size_t fewer = track(kFewer, kA, kA);
+  limits_.tracks[fewer] = 0.1;
+  const std::unique_ptr<core::Judge> judge = newJudge(limits_);
+  judge->settle({0, kA}, 5 * kSecond);
+  for (std::int64_t now = 0; now < 8 * kSecond; now += kWindow) {
+    if (now % kSecond == 0) {
+      judge->add({now, kA});
+    }
+    EXPECT_EQ(judge->judge({now, {}}, now + kWindow, NameSuspects::kNever).abnormal,
+              now >= 7 * kSecond)
+        << toSeconds(now);
+  }
 }
 
 TEST_F(EvidenceJudgeTest, WhatWasMissedIsNotJudgedAndAllElseIs) {

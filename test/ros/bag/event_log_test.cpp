@@ -62,6 +62,7 @@ class EventLogTest : public testing::Test {
     core::Vocabulary vocabulary({{"/other", "/topic", "std_msgs/String"}});  // is never heard
     for (const auto& [stamp, node] : events) {
       packer.add({stamp, vocabulary.intern({node, "/topic", "std_msgs/String"})}, vocabulary);
+      packer.add(core::Waiting{stamp, stamp + kSecond / 7, kSecond / 100});
     }
     packer.flush(events.back().first + 2 * kSecond);
     graph.topics["/topic"].subscribers = {"/node2"};
@@ -85,6 +86,20 @@ class EventLogTest : public testing::Test {
           events.emplace_back(event.stamp, vocabulary.at(event.id).source);
         });
     return events;
+  }
+
+  /// How the machine was, of each stretch: begin, end and what was waited [ns].
+  std::vector<std::vector<std::int64_t>> waiting(const EventLogReader& log,
+                                                 const TimeRange& range = {}) const {
+    std::vector<std::vector<std::int64_t>> stretches;
+    core::Vocabulary vocabulary;
+    log.read(
+        rules_, [&](const core::EventType& type) { return vocabulary.intern(type); }, range,
+        [](const core::Event&) {}, nullptr,
+        [&](const core::Waiting& each) {
+          stretches.push_back({each.from, each.to, each.waited});
+        });
+    return stretches;
   }
 
   /// What is wrong with a log, as its user is told.
@@ -124,6 +139,33 @@ TEST_F(EventLogTest, EventsComeOutAsTheyWentIn) {
   EXPECT_EQ(summary.graph.topics.at("/topic").subscribers,
             (std::set<std::string>{"/node1", "/node2"}))
       << "all who ever listened";
+}
+
+TEST_F(EventLogTest, HowTheMachineWasComesOutAsItWentIn) {
+  const std::string log = writeLog("log.bag");
+  const auto stretches = waiting(EventLogReader(log, 0));
+  ASSERT_EQ(stretches.size(), 500U);
+  const std::int64_t last = kBegin + 499 * kSecond / 7;
+  EXPECT_EQ(stretches.back(),
+            (std::vector<std::int64_t>{last, last + kSecond / 7, kSecond / 100}));
+  EXPECT_EQ(waiting(EventLogReader(log, 0), {10.5, 11.6}).size(), 7U) << "a second of it";
+}
+
+TEST_F(EventLogTest, AMachineThatWaitedForLongerThanTimePassedIsDamage) {
+  for (const core::Waiting& wrong :
+       {core::Waiting{kBegin, kBegin + 5, 6}, core::Waiting{kBegin, kBegin - 1, 0},
+        core::Waiting{-1, kBegin, 1}, core::Waiting{kBegin, kBegin + 5, -1}}) {
+    EventLogWriter log(path("wrong.bag"));
+    self_awareness::EventLogStart start;
+    start.encoding = toMessage(rules_);
+    start.begin.fromNSec(static_cast<std::uint64_t>(kBegin));
+    log.start(start);
+    EventLogPacker packer([&](self_awareness::EventLog part) { log.write(std::move(part)); });
+    packer.add(wrong);
+    packer.flush(kBegin + kSecond);
+    log.close();
+    EXPECT_THROW(waiting(EventLogReader(path("wrong.bag"), 0)), BagError);
+  }
 }
 
 TEST_F(EventLogTest, IsABagThatRosbagReads) {

@@ -62,6 +62,9 @@ struct Tuning {
   double longest_stall = 0.7;
   double between_stalls = 30;
   double still_busy_share = 0.5;
+  double starved = 0.5;
+  double usual_load_time = 600;
+  double longest_starvation = 10;
   double fewest_busy = 4;
   double busy_one_in = 3;
 

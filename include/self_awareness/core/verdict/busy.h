@@ -5,14 +5,16 @@
 
 namespace self_awareness::core {
 
-/// So many components are late at once that none of them is to blame, but the machine that they
-/// share (docs/method.md, section 6).
+/// No component is to blame, but the machine that they share: it keeps processes waiting, or so
+/// many components are late at once (docs/method.md, section 6).
 struct Busy {
-  std::size_t late = 0;
+  std::size_t late = 0;        ///< 0: none, or not enough to tell by them
   std::size_t components = 0;  ///< that are judged
+  double starved = 0;          ///< for how long processes have been waiting [s]; 0: they do not
 };
 
-/// "the machine may be busy (load 7.9 on 2 cores): 12 of 26 components are late".
+/// "the machine may be busy (load 7.9 on 2 cores): 12 of 26 components are late", or "the machine
+/// has been starved for 1.2 s (load 7.9 on 2 cores)".
 /// @param load of the machine, in words; empty: not known, as of a recording
 std::string describe(const Busy& busy, const std::string& load = "");
 

@@ -67,6 +67,9 @@ class Detector : private WindowObserver {
   /// and a new recording starts with this event.
   /// @return false if the clock was set
   bool add(const Event& event);
+  /// Takes note of how the machine was in a stretch of time, one after the other; at the latest
+  /// before a window is judged that ends after it.
+  void hear(const Waiting& waiting) { judge_->hear(waiting); }
   /// Takes note that this program was too slow, and has missed events of these types up to the
   /// time `now` [ns]: they settle as if they were new, for 3 s at least.
   void onMissed(const std::vector<EventId>& ids, std::int64_t now);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "self_awareness/core/stream/waiting.h"
 #include "self_awareness/core/stream/windows.h"
 #include "self_awareness/core/verdict/busy.h"
 #include "self_awareness/core/verdict/suspect.h"
@@ -51,6 +52,9 @@ class Judge {
   /// Takes note that events of these types were missed: what is unusual of them up to `until` [ns]
   /// says nothing of who sends them.
   virtual void leaveOut(const std::vector<EventId>& ids, std::int64_t until) = 0;
+  /// Takes note of how the machine was in a stretch of time, one after the other. Who does not
+  /// judge by time has no use for it.
+  virtual void hear(const Waiting& /*waiting*/) {}
   /// Judges a window that is over. Its events are all those taken in since the window before it.
   /// Without calibration, the judge names no suspects.
   /// @param end up to where the window is known [ns], as for WindowObserver::close()

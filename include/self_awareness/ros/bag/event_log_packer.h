@@ -9,6 +9,7 @@
 #include "self_awareness/EventLog.h"
 #include "self_awareness/core/stream/event.h"
 #include "self_awareness/core/stream/vocabulary.h"
+#include "self_awareness/core/stream/waiting.h"
 
 namespace self_awareness::ros1 {
 
@@ -27,6 +28,8 @@ class EventLogPacker {
   /// Takes in the next event, at 0 ns or later.
   /// @param vocabulary that its id is of; it may grow, but ids keep their meaning
   void add(const core::Event& event, const core::Vocabulary& vocabulary);
+  /// Takes in how the machine was in the stretch of time after the one before.
+  void add(const core::Waiting& waiting) { waiting_.push_back(waiting); }
   /// Says how many messages were dropped since listening began.
   void setDropped(std::uint64_t messages) { dropped_ = messages; }
   /// Says that nothing else was heard before `now` [ns]; hands out the open part if it has lasted
@@ -42,7 +45,8 @@ class EventLogPacker {
   core::EventId known_ = 0;                        // event types in the log
   std::vector<core::Event> events_;                // of the open part, by ids of the log
   std::vector<self_awareness::EventType> new_types_;
-  std::optional<std::int64_t> begin_;  // of the open part [ns]
+  std::optional<std::int64_t> begin_;   // of the open part [ns]
+  std::vector<core::Waiting> waiting_;  // of the open part
   std::uint64_t dropped_ = 0;
 };
 

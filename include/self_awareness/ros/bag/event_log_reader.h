@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 
+#include "self_awareness/core/stream/waiting.h"
 #include "self_awareness/ros/bag/bag_reader.h"
 #include "self_awareness/ros/encoding.h"
 
@@ -22,14 +24,17 @@ class EventLogReader {
   EventLogReader(const std::string& path, std::size_t recording);
   ~EventLogReader();
 
+  using WaitingHandler = std::function<void(const core::Waiting&)>;
+
   const BagSummary& summary() const { return summary_; }
   /// Calls the handler with every event of the range, in the order in which they were heard.
   /// @param rules that the events must have been made by
+  /// @param waiting told how the machine was, one stretch of time after the other
   /// @throw BagError if they were made by other rules, the range holds no time of the recording,
   /// or a part is missing or damaged
   void read(const EncodingRules& rules, const EventIds& ids, const TimeRange& range,
-            const BagReader::Handler& handler,
-            const BagReader::Progress& progress = nullptr) const;
+            const BagReader::Handler& handler, const BagReader::Progress& progress = nullptr,
+            const WaitingHandler& waiting = nullptr) const;
 
  private:
   struct Parts;

@@ -9,6 +9,26 @@ BusyMachine::BusyMachine(std::shared_ptr<const Model> model)
 
 std::optional<Busy> BusyMachine::closeWindow(const std::vector<double>& shares,
                                              const Scorer& scorer, bool abnormal) {
+  std::optional<Busy> busy = late(shares, scorer, abnormal);
+  if (const double seconds = starved(scorer.heard()); seconds > 0) {
+    busy = busy.value_or(Busy{});
+    busy->starved = seconds;
+  }
+  return busy;
+}
+
+double BusyMachine::starved(const Heard& heard) {
+  const std::int64_t waited = heard.starved();
+  if (toSeconds(waited) < model_->tuning().starved * toSeconds(kRateSpan)) {
+    starved_since_.reset();
+    return 0;
+  }
+  starved_since_ = starved_since_.value_or(heard.windowEnd() - waited);
+  return toSeconds(heard.windowEnd() - *starved_since_);
+}
+
+std::optional<Busy> BusyMachine::late(const std::vector<double>& shares, const Scorer& scorer,
+                                      bool abnormal) {
   if (!abnormal && !busy_) {
     return std::nullopt;
   }

@@ -23,10 +23,13 @@ NeverHeard::NeverHeard(const Model& model, const Limits& limits,
     : vocabulary_(model.vocabulary()),
       alarm_times_(model.tuning().alarm_times),
       alarm_later_(toNanoseconds(model.tuning().start_time)),
-      graph_(std::move(graph)) {
+      accept_after_(model.tuning().accept_after * 1e9),
+      graph_(std::move(graph)),
+      heard_(model.components().size(), false) {
   const Statistics& statistics = model.statistics();
   for (EventId id = 0; id < model.size(); ++id) {
-    Expected expected{id, std::numeric_limits<std::int64_t>::max(), 0, 0, 0, 0};
+    component_of_.push_back(model.componentIndex(id));
+    Expected expected{id, std::numeric_limits<std::int64_t>::max(), 0, 0, 0};
     bool always = !statistics.recordings().empty() &&
                   static_cast<double>(statistics.type(id).gaps) >= model.tuning().fewest_gaps;
     for (const Statistics::Recording& recording : statistics.recordings()) {
@@ -41,9 +44,9 @@ NeverHeard::NeverHeard(const Model& model, const Limits& limits,
       expected.longest = std::max(expected.longest, limits.firsts[id]);
     }
     if (always) {
-      const double times = model.tuning().due_times;
-      expected.after_settling = std::llround(times * static_cast<double>(expected.longest));
-      expected.least = std::llround(times * static_cast<double>(model.longestGap(id)));
+      expected.least =
+          std::llround(model.tuning().due_times *
+                       static_cast<double>(std::max(expected.longest, model.longestGap(id))));
       all_.push_back(expected);
     }
   }
@@ -52,6 +55,9 @@ NeverHeard::NeverHeard(const Model& model, const Limits& limits,
 
 void NeverHeard::add(const Event& event) {
   start_ = start_.value_or(event.stamp);
+  if (event.id < component_of_.size()) {
+    heard_[component_of_[event.id]] = true;
+  }
   for (std::vector<Expected>* list : {&waiting_, &missing_}) {
     const auto same = std::find_if(list->begin(), list->end(),
                                    [&](const Expected& each) { return each.id == event.id; });
@@ -64,6 +70,7 @@ void NeverHeard::add(const Event& event) {
 void NeverHeard::restart() {
   waiting_ = all_;
   missing_.clear();
+  heard_.assign(heard_.size(), false);
   start_.reset();
   share_ = 0;
 }
@@ -82,9 +89,14 @@ void NeverHeard::closeWindow(std::int64_t end, std::int64_t settle_time) {
   share_ = 0;
   for (Expected& expected : missing_) {
     const std::int64_t due = expected.due(settle_time);
-    expected.share =
-        static_cast<double>(passed) /
+    const double alarm =
         std::max(alarm_times_ * static_cast<double>(due), static_cast<double>(due + alarm_later_));
+    expected.share = static_cast<double>(passed) / alarm;
+    // A recording may lack a topic. And what never comes must not hide what breaks next.
+    if (heard_[component_of_[expected.id]] ||
+        static_cast<double>(passed) > alarm + accept_after_) {
+      expected.share = std::min(expected.share, 1.0);
+    }
     share_ = std::max(share_, expected.share);
   }
 }
@@ -139,6 +151,12 @@ std::vector<Suspect> NeverHeard::suspects() const {
     suspects.push_back(suspect);
   }
   return suspects;
+}
+
+bool NeverHeard::isMissedBy(const std::string& other) const {
+  return std::any_of(missing_.begin(), missing_.end(), [&](const Expected& expected) {
+    return graph_->isUpstream(component(expected.id), other);
+  });
 }
 
 const std::string& NeverHeard::component(EventId id) const {

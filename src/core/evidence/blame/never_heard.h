@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -30,26 +31,28 @@ class NeverHeard {
   /// @param settle_time least time after the start in which everything may be missing [ns]
   void closeWindow(std::int64_t end, std::int64_t settle_time);
   /// The largest share of its limit that the absence of an event type has reached; 0 if nothing
-  /// should have come by now. Above 1, it is abnormal.
+  /// should have come by now. Above 1, it is abnormal: not if its component says other things, as
+  /// then a topic is missing and no node, and not for ever.
   double share() const { return share_; }
   /// Those of the event types that should have come by now.
   std::vector<std::pair<EventId, double>> shares() const;
   /// The event types that should have come by now, sources upstream of others first.
   std::vector<Suspect> suspects() const;
+  /// Whether the messages of one that should have come by now would reach another component.
+  bool isMissedBy(const std::string& component) const;
 
  private:
   /// An event type that comes after every start.
   struct Expected {
     EventId id = 0;
-    std::int64_t shortest = 0;        // usual time from the start to its first event [ns]
-    std::int64_t longest = 0;         // [ns]
-    std::int64_t after_settling = 0;  // it may come so long after that [ns]
-    std::int64_t least = 0;           // and at least so long after the start [ns]
-    double share = 0;                 // of its limit that its absence has reached, once it is due
+    std::int64_t shortest = 0;  // usual time from the start to its first event [ns]
+    std::int64_t longest = 0;   // [ns]
+    std::int64_t least = 0;     // it is due so long after the start at the earliest [ns]
+    double share = 0;           // of its limit that its absence has reached, once it is due
 
     /// When it is due after the start [ns].
     std::int64_t due(std::int64_t settle_time) const {
-      return std::max(after_settling + settle_time, least);
+      return std::max(longest + settle_time, least);
     }
   };
 
@@ -60,10 +63,13 @@ class NeverHeard {
   Vocabulary vocabulary_;
   double alarm_times_;        // as late as due, it is an alarm
   std::int64_t alarm_later_;  // and at least so much later [ns]
+  double accept_after_;       // so long after that, it is accepted [ns]
   std::shared_ptr<const SourceGraph> graph_;
   std::vector<Expected> all_;
-  std::vector<Expected> waiting_;  // of all, those that have not come and are not due
-  std::vector<Expected> missing_;  // those that are due, sources upstream of others first
+  std::vector<std::size_t> component_of_;  // index, by id
+  std::vector<bool> heard_;                // by component
+  std::vector<Expected> waiting_;          // of all, those that have not come and are not due
+  std::vector<Expected> missing_;          // those that are due, sources upstream of others first
   std::optional<std::int64_t> start_;
   std::int64_t end_ = 0;  // of the last window [ns]
   double share_ = 0;

@@ -50,6 +50,8 @@ class ChannelState {
   virtual void add(const Heard::Arrival& /*arrival*/, const Heard& /*heard*/) {}
   /// Forgets what it knows of an event type: its component was restarted.
   virtual void disarm(EventId /*id*/) {}
+  /// Forgets what its sums say of an event type: what was unusual so far was its start.
+  virtual void forget(EventId /*id*/) {}
   /// Forgets what was heard.
   virtual void restart() {}
   /// Caps what it adds up a little above its limit: an alarm must not last much longer than its
@@ -120,6 +122,8 @@ class Channel {
     own.watched = true;  // what looks at one event type needs no reason
     return own;
   }
+  /// How far back evidence looks that a window has [ns].
+  virtual std::int64_t looksBack() const { return 0; }
   /// Whether a recording can show that its delays mislead.
   virtual bool mayMislead() const { return false; }
   virtual Margins margins(const Tuning& tuning) const {

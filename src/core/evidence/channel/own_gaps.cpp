@@ -45,6 +45,11 @@ class OwnGapsState : public ChannelState {
       gaps_[number].arming.disarm();
     }
   }
+  void forget(EventId id) override {
+    if (number_of_[id] != kNone) {
+      gaps_[number_of_[id]].sum.value = 0;
+    }
+  }
   void restart() override;
   void capAt(const std::vector<double>& limits) override;
   void closeWindow(const Heard& heard, std::vector<double>& evidence) override;

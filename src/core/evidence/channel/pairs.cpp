@@ -46,6 +46,11 @@ class PairsState : public ChannelState {
       arming_[number].disarm();
     }
   }
+  void forget(EventId id) override {
+    for (const std::uint32_t number : with_[id]) {
+      pairs_[number].sum.value = 0;
+    }
+  }
   void restart() override;
   void capAt(const std::vector<double>& limits) override;
   void closeWindow(const Heard& heard, std::vector<double>& evidence) override;

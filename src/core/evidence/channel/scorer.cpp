@@ -50,6 +50,12 @@ void Scorer::disarm(EventId id) {
   }
 }
 
+void Scorer::forget(EventId id) {
+  for (const auto& state : states_) {
+    state->forget(id);
+  }
+}
+
 const std::vector<double>& Scorer::closeWindow(std::int64_t end) {
   heard_.closeWindow(end);
   for (const auto& state : states_) {

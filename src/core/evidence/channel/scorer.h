@@ -42,16 +42,21 @@ class Scorer {
     heard_.end(arrival);
     return gap;
   }
+  /// Takes in how the machine was.
+  void hear(const Waiting& waiting) { heard_.hear(waiting); }
   /// Closes a window.
   /// @param end of the window [ns]
   /// @return evidence by track; 0: none
   const std::vector<double>& closeWindow(std::int64_t end);
+  /// Forgets what the sums say of an event type: what was unusual so far was its start.
+  void forget(EventId id);
   /// Forgets what was seen: a new recording starts, or the clock was set.
   void restart();
 
   const Model& model() const { return *model_; }
   const Heard& heard() const { return heard_; }
-  /// Whether the event that was added last may have waited while the whole robot stood still.
+  /// Whether the event that was added last may have waited while the whole robot stood still, or
+  /// the machine had no time.
   bool stalled() const { return stalled_; }
   /// Whether a track that is beyond its limit is so beyond all doubt.
   bool isCertain(std::size_t track, double limit) const;

@@ -7,6 +7,8 @@ Heard::Heard(std::size_t types, std::int64_t window, std::int64_t longest_silenc
     : window_(window),
       counts_(types, rateWindows(window)),
       stalls_(longest_silence, tuning),
+      starvation_(tuning),
+      longest_stall_(toNanoseconds(tuning.longest_stall)),
       stamps_(types, 0),
       first_stamps_(types, 0),
       numbers_(types, 0) {}
@@ -14,6 +16,7 @@ Heard::Heard(std::size_t types, std::int64_t window, std::int64_t longest_silenc
 void Heard::restart() {
   counts_.restart();
   stalls_.restart();
+  starvation_.restart();
   stamps_.assign(stamps_.size(), 0);
   first_stamps_.assign(stamps_.size(), 0);
   numbers_.assign(stamps_.size(), 0);
@@ -25,7 +28,7 @@ void Heard::closeWindow(std::int64_t end) {
   window_end_ = end;
   counts_.close();
   stalls_.closeWindow(end, number_ > 0);
-  rates_valid_ = counts_.full() && !stalls_.disturbsRates(end);
+  rates_valid_ = counts_.full() && !stalls_.disturbsRates(end) && starved() == 0;
 }
 
 }  // namespace self_awareness::core::evidence

@@ -1,11 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "core/evidence/watch/stalls.h"
+#include "core/evidence/watch/starvation.h"
 #include "self_awareness/core/evidence/count/statistics.h"
 #include "self_awareness/core/evidence/tuning.h"
 #include "self_awareness/core/stream/event.h"
@@ -29,8 +31,15 @@ class Heard {
     EventId id = 0;
     std::uint64_t last = 0;       ///< number of the event of its type before it; 0: there was none
     std::int64_t last_stamp = 0;  ///< of that one [ns]; its own if there was none
-    bool stalled = false;         ///< it may have waited while the whole robot stood still
+    bool stalled = false;         ///< it may have waited while the whole robot stood still, or
+                                  ///< the machine had no time
   };
+  /// Takes in how the machine was in the stretch of time after the one before.
+  void hear(const Waiting& waiting) {
+    if (number_ > 0 && waiting.from >= start_) {  // what was before is in no recording of events
+      starvation_.add(waiting);
+    }
+  }
   /// Begins to take in an event; the channels see it before end() does.
   Arrival begin(const Event& event) {
     counts_.add(event.id);
@@ -38,7 +47,7 @@ class Heard {
     stalls_.add(event.stamp, number_ > 0);
     const std::uint64_t last = numbers_[event.id];
     return {event.stamp, event.id, last, last > 0 ? stamps_[event.id] : event.stamp,
-            stalls_.holdsBack(event.stamp)};
+            stalls_.holdsBack(event.stamp) || starvation_.holdsBack(event.stamp)};
   }
   void end(const Arrival& arrival) {
     if (arrival.last == 0) {
@@ -67,10 +76,21 @@ class Heard {
   std::int64_t windowEnd() const { return window_end_; }
   /// Time since the last event of a type, at the end of the last window [ns]; 0 before the first.
   std::int64_t silence(EventId id) const { return hasSeen(id) ? window_end_ - stamps_[id] : 0; }
-  /// The same without the time in which the whole robot stood still: then nobody's silence grows.
+  /// The same without the time in which the whole robot stood still, or its machine was starved:
+  /// then nobody's silence grows.
   std::int64_t age(EventId id) const {
-    return hasSeen(id) ? silence(id) - stalls_.standstillSince(stamps_[id], window_end_) : 0;
+    return hasSeen(id) ? silence(id) - std::max(stalls_.standstillSince(stamps_[id], window_end_),
+                                                starvedSince(stamps_[id]))
+                       : 0;
   }
+  /// How long processes waited since a stamp [ns], at the end of the last window; at most for as
+  /// long as a stall lasts [ns].
+  std::int64_t starvedSince(std::int64_t stamp) const {
+    return std::min(starvation_.waitedIn(stamp, window_end_), longest_stall_);
+  }
+  /// How long processes waited in the last kRateSpan while the machine was starved, at the end of
+  /// the last window [ns].
+  std::int64_t starved() const { return starvation_.waitedIn(0, window_end_); }
   /// Length of a window [ns].
   std::int64_t window() const { return window_; }
   /// Events of a type in the last kRateSpan; none where that says nothing: since the start, or the
@@ -87,6 +107,8 @@ class Heard {
   std::int64_t window_;  // [ns]
   RecentCounts counts_;
   Stalls stalls_;
+  Starvation starvation_;
+  std::int64_t longest_stall_;              // that is forgiven [ns]
   std::int64_t start_ = 0;                  // [ns], once there was an event
   std::vector<std::int64_t> stamps_;        // of the last event [ns], by id
   std::vector<std::int64_t> first_stamps_;  // of the first event since the start [ns], by id

@@ -56,4 +56,4 @@ class Judged:
         return evidence_lanes(self.by.trained, self.by.evidence, self.by.parameters,
                               recording.stamps, recording.ids, recording.end,
                               list(recording.event_types), starts.tolist(),
-                              recording.clock_steps)
+                              recording.clock_steps, list(recording.waiting))

@@ -83,6 +83,31 @@ TEST_F(BusyMachineTest, ItIsNotWhileAllAreWithinTheirLimits) {
   EXPECT_FALSE(at(0.9, 1, 7, false));
 }
 
+TEST_F(BusyMachineTest, ItIsStarvedWhileProcessesWait) {
+  std::int64_t now = 60 * kSecond;
+  const auto wait = [&](int windows, double share) {
+    std::optional<Busy> busy;
+    for (int k = 0; k < windows; ++k, now += kWindow) {
+      scorer_.hear({now, now + kWindow, static_cast<std::int64_t>(share * kWindow)});
+      scorer_.closeWindow(now + kWindow);
+      busy = at(0, 1, 0, false);
+    }
+    return busy;
+  };
+  EXPECT_FALSE(wait(100, 0.05));
+  EXPECT_FALSE(wait(9, 1)) << "for less than a second of the last two";
+  EXPECT_TRUE(wait(1, 1));
+  const std::optional<Busy> busy = wait(20, 1);
+  ASSERT_TRUE(busy);
+  EXPECT_NEAR(busy->starved, 3, 1e-9);
+  EXPECT_EQ(describe(*busy), "the machine has been starved for 3.0 s");
+  EXPECT_EQ(describe({3, 9, 1.2}, "load 7.9 on 2 cores"),
+            "the machine has been starved for 1.2 s (load 7.9 on 2 cores): 3 of 9 components are "
+            "late");
+  EXPECT_TRUE(wait(10, 0));
+  EXPECT_FALSE(wait(2, 0)) << "less than half of the last two seconds";
+}
+
 TEST_F(BusyMachineTest, WhoIsSilentIsNotLate) {
   EXPECT_FALSE(at(1.2, 0, kComponents, true, kOverdue));
 }

@@ -1,0 +1,65 @@
+#include "monitor/processor_watch.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <optional>
+
+#include "self_awareness/core/stream/event.h"
+
+namespace self_awareness {
+namespace {
+
+constexpr std::int64_t kSecond = core::kNanosecondsPerSecond;
+constexpr std::int64_t kPause = kSecond / 40;
+constexpr std::int64_t kStart = 1790000000 * kSecond;
+
+// The clocks are the test's, the kernel's pressure is the machine's: what a look says may be more
+// than what the test says, but never less.
+class ProcessorWatchTest : public testing::Test {
+ protected:
+  ProcessorWatchTest() { EXPECT_FALSE(watch_.look(kStart, 0, kPause)) << "nothing has passed"; }
+
+  ProcessorWatch watch_;
+};
+
+TEST_F(ProcessorWatchTest, TimeIsToldAfterASecondAtTheLatest) {
+  std::int64_t told = 0;
+  std::int64_t until = kStart;
+  for (std::int64_t now = kPause; now <= 10 * kSecond; now += kPause) {
+    if (const auto waiting = watch_.look(kStart + now, now, kPause)) {
+      EXPECT_EQ(waiting->from, until) << "one stretch after the other";
+      EXPECT_LE(waiting->to - waiting->from, kSecond);
+      EXPECT_LE(waiting->waited, waiting->to - waiting->from);
+      until = waiting->to;
+      ++told;
+    }
+  }
+  EXPECT_GE(told, 10);
+  EXPECT_GT(until, kStart + 9 * kSecond);
+}
+
+TEST_F(ProcessorWatchTest, ALookThatComesLateIsToldAtOnce) {
+  const auto waiting = watch_.look(kStart + 4 * kPause, 4 * kPause, kPause);
+  ASSERT_TRUE(waiting);
+  EXPECT_EQ(waiting->from, kStart);
+  EXPECT_EQ(waiting->to, kStart + 4 * kPause);
+  // Of the three pauses too many, this thread had some microseconds itself.
+  EXPECT_GT(waiting->waited, 3 * kPause - kSecond / 100);
+}
+
+TEST_F(ProcessorWatchTest, SimulatedTimeHasItsOwnPace) {
+  const auto waiting = watch_.look(kStart + 40 * kPause, 4 * kPause, kPause);
+  ASSERT_TRUE(waiting);
+  EXPECT_EQ(waiting->to, kStart + 40 * kPause);
+  EXPECT_GT(waiting->waited, 30 * kPause - kSecond / 10);
+}
+
+TEST_F(ProcessorWatchTest, WhereTimeWasSetItBeginsAnew) {
+  EXPECT_FALSE(watch_.look(kStart - kSecond, 4 * kPause, kPause));
+  watch_.restart();
+  EXPECT_FALSE(watch_.look(kStart + 100 * kSecond, 8 * kPause, kPause));
+}
+
+}  // namespace
+}  // namespace self_awareness
