@@ -66,7 +66,7 @@ RecordedEvents readEvents(const std::string& path, const InLog& recording,
     reader.read(rules, ids, range, handler, progressTo(progress),
                 [&](const core::Waiting& waiting) { events.waiting.push_back(waiting); });
   } else {
-    const ros1::BagReader reader(path);
+    const ros1::BagReader reader(path, progressTo(progress));
     events.summary = reader.summary();
     events.stamps.reserve(events.summary.messages);
     events.ids.reserve(events.summary.messages);

@@ -9,7 +9,9 @@
 #include <unordered_set>
 #include <utility>
 
+#include "../text.h"
 #include "bag_records.h"
+#include "chunk_records.h"
 #include "former_bag.h"
 
 namespace self_awareness::ros1 {
@@ -21,6 +23,7 @@ constexpr std::uint64_t kFileHeaderBytes = 4096;  // every writer fills it up to
 constexpr std::uint64_t kIndexEntryBytes = 12;    // of a message in a record of the index
 // Entries that are read at once.
 constexpr std::uint64_t kEntriesPerPiece = 1 << 14;
+constexpr std::size_t kLongestQuote = 100;  // of a name in an error [bytes]
 
 struct ChunkInfo {
   std::uint64_t position = 0;
@@ -29,7 +32,9 @@ struct ChunkInfo {
 
 class IndexReader {
  public:
-  explicit IndexReader(const std::string& path) : file_(path) {}
+  explicit IndexReader(const std::string& path, bool unpack = false,
+                       const ChunkProgress& progress = nullptr)
+      : file_(path), unpack_(unpack), progress_(progress) {}
 
   /// None if the bag is of another format.
   std::optional<BagIndex> read() {
@@ -100,10 +105,63 @@ class IndexReader {
     }
     index_.recorded |= in_order && header.count("latching") > 0;
     const auto id = number<std::uint32_t>(record.header, "conn");
-    if (ids_.emplace(id, ids_.size()).second) {
-      index_.connections.push_back(
-          connectionFrom(header, std::string(field(record.header, "topic"))));
-      index_.numbers.push_back(id);
+    if (ids_.count(id) > 0) {
+      checkConnection(id, field(record.header, "topic"), record.data);
+      return;
+    }
+    const std::string topic(field(record.header, "topic"));
+    const auto said = header.find("topic");
+    if (said != header.end() && !isTheSame(topic, said->second)) {
+      throw FormatError("the connection " + std::to_string(id) + " is on " + quoted(topic) +
+                        " by its header, and on " + quoted(said->second) + " by its data");
+    }
+    ids_.emplace(id, ids_.size());
+    index_.connections.push_back(connectionFrom(header, topic));
+    index_.numbers.push_back(id);
+    connections_.push_back({topic, std::string(record.data)});
+  }
+
+  /// `rosbag record` in a namespace writes the name that it was given, which may be relative; what
+  /// the publisher said is the whole name.
+  static bool isTheSame(const std::string& topic, const std::string& said) {
+    const bool relative = topic.empty() || topic[0] != '/';
+    const std::string end = relative ? "/" + topic : topic;
+    return said == topic || (relative && said.size() >= end.size() &&
+                             said.compare(said.size() - end.size(), end.size(), end) == 0);
+  }
+
+  static std::string quoted(std::string_view name) {
+    return "'" + printable(name, kLongestQuote) + "'";
+  }
+
+  /// A connection that is there again, as it is in every chunk, must be what it was.
+  void checkConnection(std::uint32_t id, std::string_view topic, std::string_view data) const {
+    const auto known = ids_.find(id);
+    if (known == ids_.end()) {
+      return;  // no message is of it
+    }
+    const ConnectionRecord& first = connections_[known->second];
+    if (topic != first.topic) {
+      throw FormatError("the connection " + std::to_string(id) + " is there twice, on " +
+                        quoted(first.topic) + " and on " + quoted(topic));
+    }
+    if (data == first.data) {  // so it mostly is: to compare the fields takes much longer
+      return;
+    }
+    ros::M_string fields;
+    while (!data.empty()) {
+      const auto [name, value] = takeField(data);
+      fields.emplace(name, value);
+    }
+    const Connection again = connectionFrom(fields, std::string(topic));
+    const Connection& before = index_.connections[known->second];
+    if (again.datatype != before.datatype || again.md5sum != before.md5sum ||
+        again.definition != before.definition || again.callerid != before.callerid) {
+      throw FormatError("the connection " + std::to_string(id) + ", on " + quoted(topic) +
+                        ", is there twice, with " + quoted(before.datatype) + " from " +
+                        quoted(before.callerid) + " and with " + quoted(again.datatype) +
+                        " from " + quoted(again.callerid) +
+                        (again.datatype == before.datatype ? " of another definition" : ""));
     }
   }
 
@@ -127,7 +185,16 @@ class IndexReader {
   void readChunks() {
     for (std::uint32_t i = 0; i < chunks_; ++i) {
       const auto first = index_.entries.size();
-      readChunk(takeChunkInfo());
+      const ChunkInfo info = takeChunkInfo();
+      try {
+        readChunk(info);
+      } catch (const rosbag::BagException& error) {
+        throw FormatError("chunk " + std::to_string(i + 1) + " of " + std::to_string(chunks_) +
+                          ", at byte " + std::to_string(info.position) + ": " + error.what());
+      }
+      if (progress_) {
+        progress_(i + 1, chunks_);
+      }
       // Recordings are nearly in order, so it is mostly enough to sort each chunk.
       std::sort(index_.entries.begin() + static_cast<std::ptrdiff_t>(first), index_.entries.end(),
                 Earlier());
@@ -151,6 +218,8 @@ class IndexReader {
       if (opOf(record.header) != Op::kConnection) {
         throw FormatError("its index leaves out a chunk");
       }
+      checkConnection(number<std::uint32_t>(record.header, "conn"), field(record.header, "topic"),
+                      record.data);
       position_ = record.end;
     }
     if (position_ != position) {
@@ -179,9 +248,9 @@ class IndexReader {
       if (i > 0 && places_[i].first == places_[i - 1].first) {
         throw FormatError("its index has a message twice");
       }
-      if (chunk.compression == "none") {
-        checkMessage(index_.entries[places_[i].second], chunk);
-      }
+    }
+    if (unpack_ || !chunk.isPacked()) {
+      checkMessages(chunk);
     }
     if (!chunks_seen_.insert(hashOf(first)).second && spansTime(first)) {
       throw FormatError("it holds the same messages twice");
@@ -247,22 +316,59 @@ class IndexReader {
     }
   }
 
-  /// Compares what the index says of a message with the message.
-  void checkMessage(const BagIndexEntry& entry, const Chunk& chunk) {
-    const PiecesOfFile::Head head = headOfMessage(file_, chunk.begin + entry.offset);
-    const MessageHeader message = messageHeader(head.header);
-    if (message.stamp != entry.stamp || message.connection != index_.numbers[entry.connection] ||
-        head.end > chunk.end) {
-      throw FormatError("its index and its messages contradict each other");
+  /// Compares what the index says of the messages in a chunk, in places_, with the messages, and
+  /// the connections between them with what the bag says of these.
+  void checkMessages(const Chunk& chunk) {
+    const ChunkRecords records(file_, chunk);
+    std::uint64_t place = 0;
+    for (const auto& [offset, number_of_entry] : places_) {
+      place = checkMessage(index_.entries[number_of_entry], records, place);
     }
   }
 
+  /// @param place that a record of the chunk begins at
+  /// @return place after the message
+  std::uint64_t checkMessage(const BagIndexEntry& entry, const ChunkRecords& records,
+                             std::uint64_t place) {
+    for (bool reached = false;;) {
+      reached |= place == entry.offset;
+      if (place > entry.offset && !reached) {
+        throw FormatError("its index points into a message");
+      }
+      const PiecesOfFile::Head head = records.head(place);
+      place = head.end;
+      if (opOf(head.header) == Op::kConnection) {
+        const auto id = number<std::uint32_t>(head.header, "conn");
+        const std::string topic(field(head.header, "topic"));
+        checkConnection(id, topic, records.data(head));
+        continue;
+      }
+      const MessageHeader message = messageHeader(head.header);
+      if (!reached) {
+        continue;  // one without a time
+      }
+      if (message.stamp != entry.stamp || message.connection != index_.numbers[entry.connection]) {
+        throw FormatError("its index and its messages contradict each other");
+      }
+      return place;
+    }
+  }
+
+  /// Of a connection, as the bag has it at its end.
+  struct ConnectionRecord {
+    std::string topic;
+    std::string data;
+  };
+
   PiecesOfFile file_;
+  bool unpack_;
+  ChunkProgress progress_;
   std::uint64_t position_ = 0;        // up to here, all that is in the file has been looked at
   std::uint64_t index_position_ = 0;  // of the connections at the end
   std::uint64_t info_position_ = 0;   // of the next chunk info
   std::uint32_t chunks_ = 0;
   std::unordered_map<std::uint32_t, std::uint32_t> ids_;       // index by the connection's number
+  std::vector<ConnectionRecord> connections_;                  // by that index
   std::vector<std::pair<std::uint32_t, std::size_t>> places_;  // offset, and index of the entry
   std::unordered_set<std::uint64_t> chunks_seen_;              // by hashOf()
   BagIndex index_;
@@ -278,8 +384,8 @@ std::optional<BagIndex> readIndexOfFormat2(const std::string& path) {
   return IndexReader(path).read();
 }
 
-BagIndex readBagIndex(const std::string& path) {
-  if (std::optional<BagIndex> index = readIndexOfFormat2(path)) {
+BagIndex readBagIndex(const std::string& path, const ChunkProgress& progress) {
+  if (std::optional<BagIndex> index = IndexReader(path, true, progress).read()) {
     return std::move(*index);
   }
   return readFormerBag(path);

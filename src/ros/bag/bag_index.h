@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -43,6 +44,9 @@ struct BagIndex {
   bool recorded = false;   ///< its connections have headers as `rosbag record` writes them
 };
 
+/// Called with the number of chunks that were checked, and of all; may throw to stop.
+using ChunkProgress = std::function<void(std::uint64_t done, std::uint64_t all)>;
+
 /// Only the connections, which takes no time even where the bag is large; none if the file is no
 /// bag, or only rosbag can read it.
 /// @throw rosbag::BagException as readBagIndex()
@@ -53,12 +57,14 @@ std::vector<Connection> readBagConnections(const std::string& path);
 ///
 /// Checks the index as well: it must list every chunk, once, and in it as many messages as it
 /// says, each in a place of its own. Where the chunk is not compressed, the messages themselves
-/// must say the same. What is read follows the size of the file, whatever the numbers in it say.
+/// must say the same, and its connections what the bag says of them. What is read follows the size
+/// of the file, whatever the numbers in it say.
 /// @throw rosbag::BagException if the bag has no index, or it is damaged
 std::optional<BagIndex> readIndexOfFormat2(const std::string& path);
 
-/// The same, and by rosbag of what else it can read.
+/// The same, and by rosbag of what else it can read. Unpacks compressed chunks as well and checks
+/// what is in them, which takes most of the time where there are any.
 /// @throw rosbag::BagException as readIndexOfFormat2()
-BagIndex readBagIndex(const std::string& path);
+BagIndex readBagIndex(const std::string& path, const ChunkProgress& progress = nullptr);
 
 }  // namespace self_awareness::ros1

@@ -1,23 +1,17 @@
 #include "bag_messages.h"
 
 #include <rosbag/bag.h>
-#include <rosbag/chunked_file.h>
 #include <rosbag/view.h>
 
-#include <algorithm>
-#include <cstdlib>
-#include <new>
 #include <optional>
 #include <utility>
+
+#include "chunk_records.h"
 
 namespace self_awareness::ros1 {
 namespace {
 
 using namespace bag_records;  // NOLINT: the format's words, in this file only
-
-void assign(std::vector<std::uint8_t>& content, std::string_view bytes) {
-  content.assign(bytes.begin(), bytes.end());
-}
 
 class MessagesOfChunks : public BagMessages {
  public:
@@ -26,33 +20,19 @@ class MessagesOfChunks : public BagMessages {
       : file_(path), numbers_(std::move(numbers)), largest_(largest) {}
 
   void read(const BagIndexEntry& entry, std::vector<std::uint8_t>& content) override {
-    if (!chunk_ || chunk_position_ != entry.chunk) {
+    if (!records_ || chunk_position_ != entry.chunk) {
       const Chunk chunk(file_, entry.chunk);
-      chunk_.reset();
-      unpack(chunk);
-      chunk_ = chunk;
+      if (chunk.isPacked() && chunk.unpacked_bytes > largest_) {
+        throw FormatError("a chunk that announces too much");
+      }
+      records_.reset();  // the memory holds one
+      records_.emplace(file_, chunk);
       chunk_position_ = entry.chunk;
     }
-    if (chunk_->compression == "none") {
-      const PiecesOfFile::Head head = headOfMessage(file_, chunk_->begin + entry.offset);
-      check(head.header, entry);
-      const std::uint64_t size = head.end - head.data;
-      if (head.end > chunk_->end) {
-        throw FormatError("a message is cut off");
-      }
-      std::string_view bytes = file_.at(head.data, size);
-      assign(content, take(bytes, size));
-      return;
-    }
-    std::string_view bytes(unpacked_.get(), chunk_->unpacked_bytes);
-    take(bytes, entry.offset);
-    std::string_view header = takeBlock(bytes);
-    while (opOf(header) == Op::kConnection) {
-      takeBlock(bytes);
-      header = takeBlock(bytes);
-    }
-    check(header, entry);
-    assign(content, takeBlock(bytes));
+    const PiecesOfFile::Head head = records_->message(entry.offset);
+    check(head.header, entry);
+    const std::string_view bytes = records_->data(head);
+    content.assign(bytes.begin(), bytes.end());
   }
 
  private:
@@ -64,38 +44,11 @@ class MessagesOfChunks : public BagMessages {
     }
   }
 
-  void unpack(const Chunk& chunk) {
-    if (chunk.compression == "none") {
-      return;
-    }
-    if (chunk.compression != "bz2" && chunk.compression != "lz4") {
-      throw FormatError("unknown compression: " + chunk.compression);
-    }
-    if (chunk.unpacked_bytes > largest_) {
-      throw FormatError("a chunk that announces too much");
-    }
-    std::string packed(file_.at(chunk.begin, chunk.end - chunk.begin));
-    // calloc() takes no memory for zeros that nobody writes: the chunk may hold less than it says.
-    unpacked_.reset(static_cast<char*>(std::calloc(std::max(chunk.unpacked_bytes, 1U), 1)));
-    if (!unpacked_) {
-      throw std::bad_alloc();
-    }
-    rosbag::ChunkedFile().decompress(
-        chunk.compression == "bz2" ? rosbag::compression::BZ2 : rosbag::compression::LZ4,
-        reinterpret_cast<std::uint8_t*>(unpacked_.get()), chunk.unpacked_bytes,
-        reinterpret_cast<std::uint8_t*>(&packed[0]), static_cast<unsigned int>(packed.size()));
-  }
-
-  struct Free {
-    void operator()(char* bytes) const { std::free(bytes); }
-  };
-
   PiecesOfFile file_;
-  std::vector<std::uint32_t> numbers_;  // of the connections, in the file
-  std::uint64_t largest_;               // that a chunk may be when it is unpacked [bytes]
-  std::optional<Chunk> chunk_;          // the one that was read last
+  std::vector<std::uint32_t> numbers_;   // of the connections, in the file
+  std::uint64_t largest_;                // that a chunk may be when it is unpacked [bytes]
+  std::optional<ChunkRecords> records_;  // of the chunk that was read last
   std::uint64_t chunk_position_ = 0;
-  std::unique_ptr<char, Free> unpacked_;  // its data, if it is compressed
 };
 
 class MessagesOfRosbag : public BagMessages, private rosbag::View {

@@ -7,6 +7,7 @@
 #include <set>
 #include <vector>
 
+#include "../text.h"
 #include "bag_index.h"
 #include "bag_messages.h"
 #include "event_log_file.h"
@@ -100,8 +101,8 @@ std::pair<std::int64_t, std::int64_t> limitsIn(const BagSummary& summary, const 
                            : summary.end};
 }
 
-BagReader::BagReader(const std::string& path)
-    : index_(std::make_unique<const BagIndex>(openBag(path))) {
+BagReader::BagReader(const std::string& path, const Progress& progress)
+    : index_(std::make_unique<const BagIndex>(openBag(path, progress))) {
   if (isEventLog(path, *index_)) {
     throw BagError(
         path + ": an event log, not a bag of the robot's messages; its recordings have numbers");
@@ -110,7 +111,7 @@ BagReader::BagReader(const std::string& path)
     throw BagError(path + ": the bag holds no messages");
   }
   summary_.path = path;
-  summary_.bag = path.substr(path.rfind('/') + 1);
+  summary_.bag = printable(path.substr(path.rfind('/') + 1));
   summary_.start = index_->entries.front().stamp;
   summary_.end = index_->entries.back().stamp;
   summary_.messages = index_->entries.size();

@@ -63,14 +63,6 @@ PiecesOfFile::Record PiecesOfFile::record(std::uint64_t position, std::uint64_t 
   return record;
 }
 
-PiecesOfFile::Head headOfMessage(PiecesOfFile& file, std::uint64_t position) {
-  PiecesOfFile::Head head = file.head(position);
-  while (opOf(head.header) == Op::kConnection) {
-    head = file.head(head.end);
-  }
-  return head;
-}
-
 std::int64_t takeTime(std::string_view& bytes) {
   const std::int64_t seconds = takeNumber<std::uint32_t>(bytes);
   const std::int64_t nanoseconds = takeNumber<std::uint32_t>(bytes);

@@ -147,9 +147,6 @@ struct MessageHeader {
 /// @throw FormatError if it is the header of another kind of record
 MessageHeader messageHeader(std::string_view header);
 
-/// The beginning of a message, or of the one after a connection: an index may point there, too.
-PiecesOfFile::Head headOfMessage(PiecesOfFile& file, std::uint64_t position);
-
 /// Takes a time [ns].
 /// @throw FormatError if it has a second of nanoseconds, or more
 std::int64_t takeTime(std::string_view& bytes);
@@ -159,8 +156,10 @@ struct Chunk {
   /// @throw FormatError if there is none, it is cut off, or it says what cannot be
   Chunk(PiecesOfFile& file, std::uint64_t position);
 
+  bool isPacked() const { return compression != "none"; }
+
   bool by_python = false;            ///< rosbag's Python library wrote it, not that in C++
-  std::string compression;           ///< "none", "bz2" or "lz4"
+  std::string compression;           ///< "none", "bz2" or "lz4"; others are unknown
   std::uint32_t unpacked_bytes = 0;  ///< of the data
   std::uint64_t begin = 0;           ///< of the data in the file [bytes]
   std::uint64_t end = 0;

@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "../text.h"
 #include "bag_records.h"
 
 namespace self_awareness::ros1 {
@@ -62,6 +65,9 @@ class FormerBagCheck {
       }
       records_.push_back(position);
       const Op op = opOf(head.header);
+      if (op == kDefinition) {
+        checkType(head.header);
+      }
       if (op == Op::kFileHeader) {
         index = number<std::uint64_t>(head.header, "index_pos");
       } else if (op == Op::kIndex) {
@@ -81,12 +87,26 @@ class FormerBagCheck {
   static constexpr std::string_view kFormerFormat = "#ROSBAG V1.2\n";
   static constexpr std::uint64_t kEntryBytes = 16;  // a time, and a position
   static constexpr std::uint64_t kReadAhead = 1 << 16;
+  static constexpr Op kDefinition{0x01};             // of a topic's messages
+  static constexpr std::size_t kLongestQuote = 100;  // of a name in an error [bytes]
 
   struct Index {
     std::uint64_t data = 0;
     std::uint64_t end = 0;
     std::uint64_t messages = 0;
   };
+
+  /// The type of a topic stays the same.
+  void checkType(std::string_view header) {
+    const std::string topic(field(header, "topic"));
+    const std::string type(field(header, "type"));
+    const auto known = types_.emplace(topic, type).first;
+    if (known->second != type) {
+      throw FormatError("the topic '" + printable(topic, kLongestQuote) +
+                        "' is there twice, with '" + printable(known->second, kLongestQuote) +
+                        "' and with '" + printable(type, kLongestQuote) + "'");
+    }
+  }
 
   void checkIndex(const Index& index) {
     if (index.end - index.data != index.messages * kEntryBytes) {
@@ -108,6 +128,7 @@ class FormerBagCheck {
   PiecesOfFile file_;
   std::vector<std::uint64_t> records_;  // positions, in order
   std::vector<Index> indexes_;
+  std::map<std::string, std::string> types_;  // by topic
 };
 
 }  // namespace

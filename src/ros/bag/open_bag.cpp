@@ -23,10 +23,10 @@ bool startsLikeABag(const std::string& path) {
 }  // namespace
 
 std::string reindexHint(const std::string& path) {
-  return "; mend it with: rosbag reindex '" + path + "'";
+  return "; mend it with: rosbag reindex '" + path + "', or leave it out";
 }
 
-BagIndex openBag(const std::string& path) {
+BagIndex openBag(const std::string& path, const ChunkProgress& progress) {
   boost::system::error_code error;
   const boost::filesystem::file_status status = boost::filesystem::status(path, error);
   if (status.type() == boost::filesystem::file_not_found) {
@@ -42,7 +42,7 @@ BagIndex openBag(const std::string& path) {
     throw BagError(path + ": not a bag of ROS 1");
   }
   try {
-    return readBagIndex(path);
+    return readBagIndex(path, progress);
   } catch (const bag_records::EncryptedError&) {
     throw BagError(path +
                    ": the bag is encrypted; write it again without: rosbag encrypt --plugin "

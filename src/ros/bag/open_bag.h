@@ -6,9 +6,9 @@
 
 namespace self_awareness::ros1 {
 
-/// The index of a bag.
+/// The index of a bag, whose compressed chunks are checked as well.
 /// @throw BagError if the file is missing, no bag, unindexed, truncated or damaged
-BagIndex openBag(const std::string& path);
+BagIndex openBag(const std::string& path, const ChunkProgress& progress = nullptr);
 
 /// What to do about a damaged bag: the end of an error message.
 std::string reindexHint(const std::string& path);

@@ -8,6 +8,7 @@ from typing import Callable, List, Tuple
 
 import numpy as np
 import pytest
+import rosbag
 from conftest import jittery_robot, learned, robot, train_tuned, write_bag
 
 from self_awareness import (EncodingRules, EventType, EvidenceCounts, EvidenceModel, TrainedModel,
@@ -149,6 +150,23 @@ def test_more_is_added_to_a_model(bags: List[str], tmp_path: Path, capsys) -> No
     assert [each.bag for each in found.recordings] == ['3.bag', '4.bag']
     assert found.windows < whole.calibration.windows
     assert [path.name for path in tmp_path.iterdir() if path.name.startswith('m')] == ['m']
+
+
+@pytest.mark.parametrize('compression', [rosbag.Compression.BZ2, rosbag.Compression.LZ4])
+def test_a_damaged_chunk_is_told_and_its_bag_left_out(bags: List[str], compression: str,
+                                                      tmp_path: Path, capsys) -> None:
+    bad = tmp_path / 'bad.bag'
+    write_bag(bad, jittery_robot(70000.0, LENGTH_S, 7), compression=compression)
+    content = bytearray(bad.read_bytes())
+    at = content.index(b'compression=') + 1000
+    content[at:at + 100] = bytes(100)
+    bad.write_bytes(content)
+    assert train.main([bags[0], str(bad), '-o', str(tmp_path / 'm')]) == 1
+    error = capsys.readouterr().err
+    assert error.count('\n') == 1 and f'{bad}: ' in error and 'chunk 1 of ' in error
+    model = trained([bags[0], str(bad)], tmp_path / 'm', '--skip-bad')
+    told = capsys.readouterr().err
+    assert len(model.recordings) == 1 and f'skipped: {bad}: ' in told and 'chunk 1 of ' in told
 
 
 def test_limits_of_a_model_do_not_outlast_what_is_added(bags: List[str], robot_bags,

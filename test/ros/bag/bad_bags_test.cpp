@@ -7,16 +7,10 @@
 #include <algorithm>
 #include <boost/filesystem.hpp>
 #include <random>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "bag_bytes.h"
-#include "self_awareness/core/stream/vocabulary.h"
-#include "self_awareness/ros/bag/bag_reader.h"
-#include "self_awareness/ros/bag/bag_to_event_log.h"
-#include "self_awareness/ros/bag/bag_writer.h"
-#include "self_awareness/ros/bag/event_log_reader.h"
+#include "bad_bags_case.h"
 
 namespace self_awareness::ros1 {
 namespace {
@@ -47,88 +41,6 @@ class MemoryLimit {
 
  private:
   rlimit before_{};
-};
-
-class BadBagsTest : public testing::Test {
- protected:
-  BadBagsTest() : folder_(fs::temp_directory_path() / fs::unique_path("self_awareness-%%%%%%%%")) {
-    fs::create_directory(folder_);
-    parts_.messages = {{100, block("x")}, {101, block("y")}, {102, block("z")}};
-    rules_.type_fields = {{"std_msgs/String", "data"}};
-  }
-  ~BadBagsTest() override { fs::remove_all(folder_); }
-
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
-  /// What is wrong with a bag; empty: it was read.
-  std::string errorOf(const std::string& bytes) {
-    bag_bytes::writeFile(path("bad.bag"), bytes);
-    events_.clear();
-    vocabulary_ = {};
-    try {
-      const Encoder encoder(
-          rules_, [this](const core::EventType& type) { return vocabulary_.intern(type); });
-      BagReader(path("bad.bag")).read(encoder, {}, [this](const core::Event& event) {
-        events_.push_back(event);
-      });
-    } catch (const BagError& error) {
-      EXPECT_EQ(std::string(error.what()).rfind(path("bad.bag") + ": ", 0), 0U) << error.what();
-      return error.what();
-    } catch (const std::invalid_argument& error) {  // the definition; the caller names the bag
-      return error.what();
-    }
-    return "";
-  }
-  std::string errorOfLog(const std::string& bytes) {
-    bag_bytes::writeFile(path("bad.log"), bytes);
-    events_.clear();
-    vocabulary_ = {};
-    try {
-      const std::size_t recordings = recordingsInEventLog(path("bad.log")).value_or(1);
-      for (std::size_t k = 0; k < std::min<std::size_t>(recordings, 3); ++k) {
-        const EventLogReader log(path("bad.log"), k);
-        log.read(
-            *log.summary().encoding,
-            [this](const core::EventType& type) { return vocabulary_.intern(type); }, {},
-            [this](const core::Event& event) { events_.push_back(event); });
-      }
-    } catch (const BagError& error) {
-      EXPECT_EQ(std::string(error.what()).rfind(path("bad.log") + ": ", 0), 0U) << error.what();
-      return error.what();
-    }
-    return "";
-  }
-  static bool has(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-  }
-  /// Three chunks of three messages each.
-  std::string threeChunks() {
-    std::vector<std::string> chunks;
-    for (std::uint32_t k = 0; k < 3; ++k) {
-      for (auto& [second, content] : parts_.messages) {
-        second += 10;
-      }
-      const std::string data = parts_.chunk();
-      chunks.push_back(parts_.chunkRecord(data, static_cast<std::uint32_t>(data.size())) +
-                       parts_.indexRecord());
-    }
-    return parts_.bag(chunks);
-  }
-  std::string eventLog() {
-    bag_bytes::writeFile(path("good.bag"), parts_.bag());
-    EventLogWriter log(path("good.log"));
-    Graph graph;
-    graph.topics["/a"] = {"std_msgs/String", {"/node"}, {"/other"}};
-    addToEventLog(BagReader(path("good.bag")), rules_, graph, log);
-    log.close();
-    return bag_bytes::readFile(path("good.log"));
-  }
-
-  fs::path folder_;
-  Parts parts_;
-  EncodingRules rules_;
-  core::Vocabulary vocabulary_;
-  std::vector<core::Event> events_;
 };
 
 TEST_F(BadBagsTest, TheBagThatTheOthersAreMadeFromIsGood) {
@@ -363,6 +275,11 @@ TEST_F(BadBagsTest, AFormerBagIsCheckedBeforeRosbagReadsIt) {
           << position;
     }
   }
+  std::string other_type = whole;
+  const std::size_t definition = records[1];
+  other_type.insert(records[2], whole.substr(definition, records[2] - definition));
+  other_type.replace(other_type.find("std_msgs/String", records[2]), 15, "std_msgs/Binary");
+  EXPECT_TRUE(has(errorOf(other_type), "the topic '/a' is there twice")) << errorOf(other_type);
   std::string other_topic = whole;
   other_topic.replace(whole.rfind("topic=/a"), 8, "topic=/A");
   EXPECT_TRUE(has(errorOf(other_topic), "messages without a connection"));

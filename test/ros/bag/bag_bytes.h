@@ -65,6 +65,7 @@ struct Parts {
   std::string definition = "string data\n";
   std::string datatype = "std_msgs/String";
   std::string topic = "/a";
+  std::string topic_of_data;  ///< of the connection, by its data; empty: the same
   std::string callerid = "/node";
   std::string compression = "none";
   std::vector<std::pair<std::uint32_t, std::string>> messages;  ///< second, and content
@@ -104,7 +105,7 @@ struct Parts {
                   fields({{"callerid", callerid},
                           {"md5sum", "*"},
                           {"message_definition", definition},
-                          {"topic", topic},
+                          {"topic", topic_of_data.empty() ? topic : topic_of_data},
                           {"type", datatype}}));
   }
   static std::string chunkInfo(std::uint64_t position, std::uint32_t messages) {

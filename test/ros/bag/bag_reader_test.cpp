@@ -222,23 +222,6 @@ TEST_F(BagReaderTest, ABagOfTheFormerFormatIsLeftToRosbag) {
             "- /a std_msgs/String[data=z]\n");
 }
 
-TEST_F(BagReaderTest, NoMessageIsReadUnlessItsContentIsNeeded) {
-  const std::string bag = writeBag("a.bag", rosbag::compression::BZ2);
-  // Data that cannot be unpacked: it cannot have been read.
-  std::fstream file(bag, std::ios::in | std::ios::out | std::ios::binary);
-  file.seekg(0, std::ios::beg);
-  std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  const std::size_t compressed = bytes.find("BZh");
-  ASSERT_NE(compressed, std::string::npos);
-  file.clear();
-  file.seekp(static_cast<std::streamoff>(compressed + 20));
-  file.write("\0\0\0\0\0\0\0\0", 8);
-  file.close();
-  EXPECT_EQ(read(bag).size(), 111U);
-  rules_.type_fields = {{"std_msgs/String", "data"}};
-  EXPECT_THROW(read(bag), BagError);
-}
-
 TEST_F(BagReaderTest, ContentIsReadWhereTheEncodingNamesAField) {
   rules_.type_fields = {{"std_msgs/String", "data"}};
   const std::vector<core::Event> events = read(writeBag("a.bag", rosbag::compression::LZ4));

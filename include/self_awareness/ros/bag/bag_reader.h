@@ -75,8 +75,11 @@ class BagReader {
   /// Called from time to time with the number of messages passed and of all; may throw to stop.
   using Progress = std::function<void(std::uint64_t done, std::uint64_t all)>;
 
-  /// @throw BagError if the file is missing, no bag, unindexed, truncated or without messages
-  explicit BagReader(const std::string& path);
+  /// Reads the index, and unpacks compressed chunks to check what is in them.
+  /// @param progress called with the number of chunks, not of messages
+  /// @throw BagError if the file is missing, no bag, unindexed, truncated, damaged or without
+  /// messages
+  explicit BagReader(const std::string& path, const Progress& progress = nullptr);
   ~BagReader();
 
   const BagSummary& summary() const { return summary_; }
