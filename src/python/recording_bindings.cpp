@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bindings.h"
+#include "ros/text.h"
 #include "self_awareness/ros/bag/bag_reader.h"
 #include "self_awareness/ros/bag/event_log_reader.h"
 #include "self_awareness/ros/stable_name.h"
@@ -103,6 +104,9 @@ ros1::EncodingRules fromState(const EncodingState& state) {
 void bindEncoding(py::module& m) {
   m.def("stable_name", &ros1::stableName, py::arg("name"),
         "A node's name without the number that makes it anonymous.");
+  m.def(
+      "printable", [](const std::string& text) { return ros1::printable(text); }, py::arg("text"),
+      "The text with U+FFFD in place of what controls a terminal, or turns the text around.");
   py::class_<core::EventType>(m, "EventType", "What happened: (source, scope, type).")
       .def(py::init<std::string, std::string, std::string>(), py::arg("source"), py::arg("scope"),
            py::arg("type"))

@@ -17,6 +17,12 @@ namespace {
 
 constexpr std::size_t kLongestQuote = 100;  // [bytes]
 
+/// All event types that are too many.
+const core::EventType& furtherTypes() {
+  static const core::EventType kType{"", "(further topics)", "(further unknown events)"};
+  return kType;
+}
+
 /// Whether a node is `rostopic pub`, in any namespace.
 bool isRostopic(const std::string& source) {
   return source.substr(source.rfind('/') + 1) == "rostopic";
@@ -58,6 +64,13 @@ void EncodingRules::validate() const {
        {&include_topics, &exclude_topics, &include_sources, &exclude_sources}) {
     NamePatterns{*patterns};
   }
+  for (const auto& [datatype, field] : type_fields) {
+    if (!isPrintable(datatype) || !isPrintable(field)) {
+      throw std::invalid_argument("encoding: the type field '" +
+                                  printable(datatype + ": " + field, kLongestQuote) +
+                                  "' is no UTF-8, or has control characters");
+    }
+  }
 }
 
 bool operator==(const EncodingRules& a, const EncodingRules& b) {
@@ -93,7 +106,7 @@ void checkEventTypes(const EncodingRules& rules, const core::Vocabulary& vocabul
 core::EventId internUpTo(std::size_t most, const core::EventType& type,
                          core::Vocabulary& vocabulary) {
   if (vocabulary.size() >= most && !vocabulary.find(type)) {
-    return vocabulary.intern({"", "(further topics)", "(further unknown events)"});
+    return vocabulary.intern(furtherTypes());
   }
   return vocabulary.intern(type);
 }
@@ -112,6 +125,10 @@ std::string whyLeftOut(const Connection& connection) {
     }
   }
   return whyLeftOut(connection.topic);
+}
+
+std::string whyImpossible(const core::EventType& type) {
+  return type == furtherTypes() ? "" : whyLeftOut(type.scope);
 }
 
 Connection connectionFrom(const ros::M_string& header, const std::string& topic) {

@@ -9,8 +9,9 @@ void checkMessage(const MessageSteps& steps, const std::uint8_t* data, std::size
   MessageCursor cursor(data, size);
   try {
     cursor.cross(steps, [](std::string_view text) {
-      if (text.size() > kLongestText || !isUtf8(text)) {
-        throw std::invalid_argument("a text in it is no UTF-8, or too long");
+      if (text.size() > kLongestText || !isPrintable(text)) {
+        throw std::invalid_argument(
+            "a text in it is no UTF-8, has control characters, or is too long");
       }
     });
   } catch (const std::out_of_range&) {

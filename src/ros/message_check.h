@@ -16,8 +16,8 @@ namespace self_awareness::ros1 {
 constexpr std::size_t kLongestText = 1 << 16;
 
 /// Checks a serialized message before it is read: each length in it fits into it, and nothing is
-/// left over; its texts are UTF-8. roscpp's deserializer would make room for what a length says
-/// before it looks at the rest.
+/// left over; its texts are printable. roscpp's deserializer would make room for what a length
+/// says before it looks at the rest.
 /// @throw std::invalid_argument says what is wrong
 void checkMessage(const MessageSteps& steps, const std::uint8_t* data, std::size_t size);
 

@@ -18,6 +18,10 @@ NamePatterns::NamePatterns(const std::vector<std::string>& patterns) {
   options.set_max_mem(kMostMemory);
   int states = 0;
   for (const std::string& pattern : patterns) {
+    if (!isPrintable(pattern)) {
+      throw std::invalid_argument("encoding: '" + printable(pattern, kLongestQuote) +
+                                  "' is no UTF-8, or has control characters; no name has any");
+    }
     auto compiled = std::make_unique<const re2::RE2>(pattern, options);
     if (!compiled->ok()) {
       throw std::invalid_argument("encoding: '" + printable(pattern, kLongestQuote) +

@@ -56,6 +56,29 @@ bool isControl(std::string_view character) {
          (character.size() == 2 && character[0] == '\xC2' && isBetween(character[1], 0x80, 0x9F));
 }
 
+/// Whether a character turns the order of what follows it around, or breaks the line: a name with
+/// one reads as another name.
+bool isMisleading(std::string_view character) {
+  if (character == "\xD8\x9C") {  // U+061C
+    return true;
+  }
+  if (character.size() != 3 || character[0] != '\xE2') {
+    return false;
+  }
+  return character[1] == '\x80'
+             // U+200E, U+200F, and U+2028 to U+202E
+             ? isBetween(character[2], 0x8E, 0x8F) || isBetween(character[2], 0xA8, 0xAE)
+             // U+2066 to U+2069
+             : character[1] == '\x81' && isBetween(character[2], 0xA6, 0xA9);
+}
+
+/// Length of the character that the bytes begin with, if it may be shown; else 0.
+std::size_t printableLength(std::string_view bytes) {
+  const std::size_t length = characterLength(bytes);
+  const std::string_view character = bytes.substr(0, length);
+  return isControl(character) || isMisleading(character) ? 0 : length;
+}
+
 /// The first bytes, without a character that this cuts.
 std::string_view firstBytes(std::string_view bytes, std::size_t most) {
   if (bytes.size() <= most) {
@@ -73,9 +96,9 @@ std::string_view firstBytes(std::string_view bytes, std::size_t most) {
 
 }  // namespace
 
-bool isUtf8(std::string_view bytes) {
+bool isPrintable(std::string_view bytes) {
   while (!bytes.empty()) {
-    const std::size_t length = characterLength(bytes);
+    const std::size_t length = printableLength(bytes);
     if (length == 0) {
       return false;
     }
@@ -89,10 +112,10 @@ std::string printable(std::string_view bytes, std::size_t most) {
   std::string text;
   text.reserve(bytes.size());
   while (!bytes.empty()) {
-    const std::size_t length = characterLength(bytes);
-    const std::string_view character = bytes.substr(0, length);
-    text += length == 0 || isControl(character) ? kReplacement : character;
-    bytes.remove_prefix(std::max<std::size_t>(length, 1));
+    const bool shown = printableLength(bytes) > 0;
+    const std::size_t length = std::max<std::size_t>(characterLength(bytes), 1);
+    text += shown ? bytes.substr(0, length) : kReplacement;
+    bytes.remove_prefix(length);
   }
   return text;
 }

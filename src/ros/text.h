@@ -6,11 +6,11 @@
 
 namespace self_awareness::ros1 {
 
-/// Whether the bytes are UTF-8, as of RFC 3629: no other program can be handed anything else.
-bool isUtf8(std::string_view bytes);
+/// Whether every program can read the bytes, and every terminal show them as what they are: UTF-8,
+/// as of RFC 3629, without characters that control the terminal or the direction of the text.
+bool isPrintable(std::string_view bytes);
 
-/// Bytes of a stranger as text that every program can read and every terminal can show: what is no
-/// UTF-8, and each control character, becomes U+FFFD.
+/// Bytes of a stranger as such a text: what does not belong in it becomes U+FFFD.
 /// @param most so many bytes are read; a character that this cuts is left out
 std::string printable(std::string_view bytes, std::size_t most = std::string_view::npos);
 

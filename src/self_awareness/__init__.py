@@ -65,6 +65,7 @@ from self_awareness._core import (  # noqa: F401
     find_clock_steps,
     half_of,
     judge_by_evidence,
+    printable,
     read_events,
     recordings_in_event_log,
     stable_name,

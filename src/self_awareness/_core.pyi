@@ -568,6 +568,7 @@ def judge_by_evidence(trained: TrainedModel, model: EvidenceModel, parameters: D
                       monitor: Optional[ReplayedMonitor] = ...,
                       clock_steps: Sequence[int] = ...,
                       waiting: Sequence[Waiting] = ...) -> Verdicts: ...
+def printable(text: str) -> str: ...
 def read_events(path: str, encoding: EncodingRules, event_types: Sequence[EventType] = ...,
                 start: Optional[float] = ..., end: Optional[float] = ...,
                 progress: Optional[Callable[[int, int], Any]] = ...,

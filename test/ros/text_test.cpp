@@ -8,13 +8,32 @@ namespace {
 TEST(Text, TellsUtf8FromOtherBytes) {
   for (const char* text : {"", "/scan", "\xC3\xA4", "\xE2\x82\xAC", "\xF0\x9F\x98\x80",
                            "\xED\x9F\xBF", "\xF4\x8F\xBF\xBF"}) {
-    EXPECT_TRUE(isUtf8(text)) << text;
+    EXPECT_TRUE(isPrintable(text)) << text;
   }
   // Latin-1, a cut character, overlong forms, a surrogate, above U+10FFFF.
   for (const char* text : {"\xE4", "\xC3", "\xE2\x82", "\xC0\x80", "\xE0\x80\x80", "\xED\xA0\x80",
                            "\xF4\x90\x80\x80", "\xF5\x80\x80\x80", "\x80", "a\xFF"}) {
-    EXPECT_FALSE(isUtf8(text));
+    EXPECT_FALSE(isPrintable(text));
   }
+}
+
+TEST(Text, TellsWhatReadsAsSomethingElse) {
+  // U+202E (right to left), U+2066 (isolate), U+200F and U+061C (marks), U+2028 (line separator).
+  for (const char* text : {"/a\xE2\x80\xAE"
+                           "b",
+                           "\xE2\x81\xA6", "\xE2\x80\x8F", "\xD8\x9C", "\xE2\x80\xA8", "a\x1B[2J",
+                           "a\nb", "\xC2\x9B"}) {
+    EXPECT_FALSE(isPrintable(text)) << text;
+  }
+  // Hebrew and Arabic letters, quotation marks, and what lies beside them.
+  for (const char* text :
+       {"\xD7\xA9", "\xD8\xA9", "\xE2\x80\x9C", "\xE2\x80\xAF", "\xE2\x81\xA4", "\xE2\x81\xAA"}) {
+    EXPECT_TRUE(isPrintable(text)) << text;
+  }
+  EXPECT_EQ(printable("/a\xE2\x80\xAE"
+                      "b"),
+            "/a\xEF\xBF\xBD"
+            "b");
 }
 
 TEST(Text, ReplacesWhatNoTerminalShouldGet) {

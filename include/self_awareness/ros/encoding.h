@@ -37,8 +37,8 @@ struct EncodingRules {
   /// Rules that suit most robots: everything but the monitor's own output, clocks, aggregated
   /// logs, bonds and tools that only look on.
   static EncodingRules defaults();
-  /// @throw std::invalid_argument names the pattern that is no regular expression; or they are too
-  /// large together
+  /// @throw std::invalid_argument names the pattern that is no regular expression, or what has
+  /// control characters; or the patterns are too large together
   void validate() const;
 };
 
@@ -80,6 +80,9 @@ constexpr std::size_t kLongestName = 1000;
 std::string whyLeftOut(const Connection& connection);
 /// The same, as far as the name of the topic says it.
 std::string whyLeftOut(const std::string& topic);
+
+/// Why a file cannot hold an event type: no node could subscribe to its topic. Empty: it can.
+std::string whyImpossible(const core::EventType& type);
 
 /// What a connection header says, in UTF-8: what is none is replaced. Fields that it lacks are
 /// empty.

@@ -151,7 +151,7 @@ EventLogReader::EventLogReader(const std::string& path, std::size_t recording) {
       }
       summary_.path = path;
       summary_.clock_watched = start.bag.empty();
-      summary_.bag = start.bag.empty() ? path.substr(path.rfind('/') + 1) : start.bag;
+      summary_.bag = start.bag.empty() ? printable(path.substr(path.rfind('/') + 1)) : start.bag;
       summary_.start = nanoseconds(start.begin);
       summary_.end = summary_.start;
       summary_.fingerprint = start.fingerprint;
@@ -205,6 +205,10 @@ void EventLogReader::read(const EncodingRules& rules, const EventIds& ids, const
     }
     for (const self_awareness::EventType& type : part.new_types) {
       types.push_back({type.source, type.scope, type.type});
+      const std::string problem = whyImpossible(types.back());
+      if (!problem.empty()) {
+        messages.fail(problem);
+      }
     }
     known.resize(types.size());
     PackedEvents packed;

@@ -25,7 +25,7 @@ from self_awareness.commands import cli
 from self_awareness.judging import evidence_judge, paper_judge
 from self_awareness.output_files import MODEL, PICTURE, TABLE, check_outputs, replacing
 from self_awareness.recordings import BagPart, RecordingEvents, expand
-from self_awareness.reporting import evidence_report
+from self_awareness.reporting import csv_text, evidence_report
 from self_awareness.reporting.plots import save_roc
 from self_awareness.stamps import SECOND_NS
 
@@ -286,12 +286,13 @@ def _save_csv(path: str, runs: Sequence[JudgedRun]) -> None:
             writer = csv.writer(file, lineterminator='\n')
             writer.writerow(_COLUMNS)
             for judged in runs:
+                part = csv_text.cell(str(judged.run.source.part))
                 columns = (judged.verdicts.start, judged.verdicts.events, judged.verdicts.unknown,
                            judged.scores, judged.labels)
                 for start, events, unknown, score, label in zip(
                         *(column.tolist() for column in columns)):
-                    writer.writerow((judged.run.source.part, judged.run.fault, start, events,
-                                     unknown, repr(score), _LABELS[label]))
+                    writer.writerow((part, judged.run.fault, start, events, unknown, repr(score),
+                                     _LABELS[label]))
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -9,7 +9,7 @@ import sys
 from typing import Callable, Optional, Sequence, TypeVar
 
 from self_awareness import (SHORTEST_WINDOW, BagError, DetectorParameters, ModelFileError,
-                            TrainedModel, UnknownEvents, recordings)
+                            TrainedModel, UnknownEvents, printable, recordings)
 from self_awareness.recordings import BagPart, RecordingEvents
 from self_awareness.stamps import SECOND_NS, nanoseconds
 
@@ -33,7 +33,7 @@ def run(parser: argparse.ArgumentParser, work: Callable[[argparse.Namespace], No
         0 on success, 1 after an error, 2 after wrong usage, 130 after Ctrl-C.
     """
     try:
-        _check_utf8(sys.argv[1:] if argv is None else argv)
+        _check_texts(sys.argv[1:] if argv is None else argv)
         work(parser.parse_args(argv))
         sys.stdout.flush()
     except SystemExit as stop:  # of argparse: after --help, or after wrong usage
@@ -53,12 +53,14 @@ def run(parser: argparse.ArgumentParser, work: Callable[[argparse.Namespace], No
     return 0
 
 
-def _check_utf8(argv: Sequence[str]) -> None:
+def _check_texts(argv: Sequence[str]) -> None:
     for argument in argv:
         try:
             argument.encode()
         except UnicodeEncodeError:  # bytes that Python could not decode
             raise ValueError(f'{ascii(argument)}: not in UTF-8; rename the file') from None
+        if printable(argument) != argument:
+            raise ValueError(f'{ascii(argument)}: has control characters; rename the file')
 
 
 def _output_problem() -> str:

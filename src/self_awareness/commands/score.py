@@ -17,7 +17,7 @@ from self_awareness.judging import evidence_judge, paper_judge
 from self_awareness.output_files import (PAGE, PICTURE, RESULT_BAG, TABLE, VALUES, check_outputs,
                                          replacing)
 from self_awareness.recordings import BagPart, RecordingEvents, expand
-from self_awareness.reporting import coverage_text
+from self_awareness.reporting import coverage_text, csv_text
 from self_awareness.reporting.plots import NamedAlarm, ScorePlot, save_scores
 from self_awareness.reporting.report.judged import Judged, JudgedBy
 from self_awareness.reporting.report.page import (check_installed, check_name,
@@ -34,7 +34,8 @@ BAG@START-END stands for a part of a recording, in s from its first message. Tim
 count from there, too. A suspicion (level WARN) is something abnormal that is too little for an
 alarm, or an event that training never saw.
 The CSV has one row a window: score and threshold are empty where there is none, abnormal is 1
-where the score lies below the threshold, also while settling. With the paper's detector a window
+where the score lies below the threshold, also while settling. A name that a spreadsheet would
+compute (=, +, -, @) has a ' before it. With the paper's detector a window
 without events has no score and counts as 0.
 The result bag has /self_awareness/status, /self_awareness/alarm and /diagnostics, without what the
 monitor says of itself; that of several recordings has all of them, which must not overlap in time.
@@ -170,12 +171,13 @@ def _save_csv(path: str, judged: Sequence[Tuple[RecordingEvents, Verdicts]],
             writer = csv.writer(file, lineterminator='\n')
             writer.writerow(_COLUMNS)
             for recording, verdicts in judged:
+                part = csv_text.cell(str(recording.part))
                 columns = (verdicts.start, verdicts.events, verdicts.unknown, verdicts.score,
                            verdicts.abnormal)
                 for begin in range(0, len(verdicts.start), _ROWS):  # lists take much memory
                     for start, events, unknown, score, abnormal in zip(
                             *(column[begin:begin + _ROWS].tolist() for column in columns)):
-                        writer.writerow((recording.part, start, events, unknown,
+                        writer.writerow((part, start, events, unknown,
                                          '' if math.isnan(score) else repr(score), limit,
                                          int(abnormal)))
 

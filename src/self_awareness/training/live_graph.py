@@ -1,6 +1,9 @@
 """Asks the running robot who listens to whom; the blame needs it to tell roots from victims."""
 from __future__ import annotations
 
+from typing import Any, Dict, Set
+
+from self_awareness import printable
 from self_awareness.training.robot_graph import RobotGraph
 
 _CALLER_ID = '/train'
@@ -20,5 +23,8 @@ def fetch() -> RobotGraph:
     except (OSError, rosgraph.MasterException) as error:
         raise ValueError(f'no master at {rosgraph.get_master_uri()}: is the robot running, and is '
                          'ROS_MASTER_URI right?') from error
-    return RobotGraph({topic: set(nodes) for topic, nodes in publishers},
-                      {topic: set(nodes) for topic, nodes in subscribers})
+    return RobotGraph(_by_topic(publishers), _by_topic(subscribers))
+
+
+def _by_topic(state: Any) -> Dict[str, Set[str]]:
+    return {printable(topic): {printable(node) for node in nodes} for topic, nodes in state}

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 import os
 import random
+import time
 from pathlib import Path
 
 import pytest
@@ -56,6 +57,18 @@ def test_a_file_name_that_is_no_utf8_is_one_line(make_bag, tmp_path: Path, capsy
     assert error.count('\n') == 1 and 'UTF-8' in error
 
 
+def test_a_file_name_with_control_characters_is_one_line(make_bag, tmp_path: Path,
+                                                         capsys) -> None:
+    bag = make_bag('good.bag', robot(1.0))
+    for name in ('a\x1b[2J.bag', 'a\u202eb.bag', 'a\nb.bag'):
+        os.rename(bag, tmp_path / name)
+        bag = str(tmp_path / name)
+        assert train.main([bag, '-o', str(tmp_path / 'm')]) == 1
+        error = capsys.readouterr().err
+        assert error.count('\n') == 1 and 'control characters' in error
+        assert '\x1b' not in error and '\u202e' not in error
+
+
 def test_windows_without_end_are_refused(make_bag, model_file: str, tmp_path: Path,
                                          capsys) -> None:
     bag = make_bag('rare.bag', [(1.0 + 3000.0 * i, '/laser', '/scan') for i in range(400)])
@@ -70,7 +83,10 @@ def test_windows_without_end_are_refused(make_bag, model_file: str, tmp_path: Pa
 @pytest.mark.parametrize('text, told', [
     (BOMB, 'alias'), ('[' * 2000, 'deep'), ('- ' * 2000 + 'x', 'deep'), ('source: 2001-99-99', ''),
     ('source: !!python/object/apply:os.system [true]', ''), ('source: "\\ud800"', ''),
-    (f'source: {"9" * 10000}', ''), ('source: \xff', '')])
+    (f'source: {"9" * 10000}', ''), ('source: \xff', ''),
+    ('a: 1\nb: 2\na: 3\n', "'a' is there twice"),
+    ('/a: {publishers: [/x], publishers: [], subscribers: []}', 'twice'),
+    ('source: "\\e[2J"', 'control'), ('source: "\\u202e"', 'control'), ('? [a]\n: b', '')])
 def test_a_bad_yaml_file_is_one_line_that_names_it(tmp_path: Path, text: str, told: str) -> None:
     path = tmp_path / 'e.yaml'
     path.write_bytes(text.encode('latin-1', 'replace'))
@@ -78,6 +94,7 @@ def test_a_bad_yaml_file_is_one_line_that_names_it(tmp_path: Path, text: str, to
         with pytest.raises(ValueError, match=str(path)) as error:
             load(str(path))
         assert told in str(error.value) and len(str(error.value)) < 1000
+        assert '\x1b' not in str(error.value) and '\u202e' not in str(error.value)
 
 
 def test_a_large_yaml_file_is_refused(tmp_path: Path) -> None:
@@ -86,6 +103,27 @@ def test_a_large_yaml_file_is_refused(tmp_path: Path) -> None:
         file.truncate(1 << 30)  # takes no room on the disk
     with pytest.raises(ValueError, match='larger than'):
         yaml_file.load(str(path))
+
+
+def test_the_largest_yaml_file_is_read_in_seconds(tmp_path: Path) -> None:
+    path = tmp_path / 'e.yaml'
+    one = '- {a: x, b: y}\n'
+    path.write_text(one * ((1 << 20) // len(one)))
+    begin = time.process_time()
+    assert len(yaml_file.load(str(path))) == (1 << 20) // len(one)
+    assert time.process_time() - begin < 15.0  # by the Python loader 30 s and more
+    path.write_text(one * ((1 << 20) // len(one) + 1))
+    with pytest.raises(ValueError, match='larger than 1 MB'):
+        yaml_file.load(str(path))
+
+
+def test_many_keys_with_one_twice_are_told_at_once(tmp_path: Path) -> None:
+    path = tmp_path / 'e.yaml'
+    path.write_text(''.join(f'k{i}: 1\n' for i in range(60_000)) + 'k59999: 2\n')
+    begin = time.process_time()
+    with pytest.raises(ValueError, match="'k59999' is there twice"):
+        yaml_file.load(str(path))
+    assert time.process_time() - begin < 15.0  # not by comparing each with each
 
 
 def test_a_changed_encoding_file_is_read_or_refused(tmp_path: Path) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 import csv
 import math
 import re
+import shutil
 from typing import Callable, Dict, List, Tuple
 
 import numpy as np
@@ -111,6 +112,18 @@ def test_unknown_events_are_counted_and_named(calibrated: str, make_bag: Callabl
     out = capsys.readouterr().out
     assert '    /new /a std_msgs/String: 2\n    /new /b std_msgs/String: 1\n' in out
     assert sum(int(row['unknown']) for row in rows_of(table)) == 3
+
+
+def test_a_name_that_a_spreadsheet_would_compute_is_a_text(calibrated: str, robot_bags, tmp_path,
+                                                           monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name in ('=1+1.bag', '@a.bag', '+a.bag'):
+        shutil.copy(robot_bags[1], name)
+        assert score.main([name, '--model', calibrated, *PAPER, '--csv', 'w.csv']) == 0
+        assert {row['bag'] for row in rows_of(tmp_path / 'w.csv')} == {f"'{name}"}
+        assert calibrate.main(['--model', calibrated, '--normal', name, '--detector', 'paper',
+                               '--cutoff', 'fpr=0.1', '-o', 'm', '--csv', 'c.csv']) == 0
+        assert {row['bag'] for row in rows_of(tmp_path / 'c.csv')} == {f"'{name}"}
 
 
 def test_a_model_without_a_threshold_scores_and_says_so(model_file: str, dead_laser: str, tmp_path,

@@ -7,6 +7,7 @@
 #include <boost/filesystem.hpp>
 #include <cstdint>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <string>
 #include <utility>
@@ -296,6 +297,56 @@ TEST_F(EventLogTest, AFullDiskIsAnErrorAndNoEndOfTheProgram) {
   }
   EXPECT_THROW(EventLogWriter("/dev/full"), BagError);
   EXPECT_THROW(EventLogWriter(path("none/log.bag")), BagError);
+}
+
+TEST_F(EventLogTest, NamesThatNoTerminalShouldGetOrNoTopicHasAreRefused) {
+  using Change = std::function<void(self_awareness::EventLogStart&, self_awareness::EventType&,
+                                    self_awareness::TopicNodes&)>;
+  const auto error = [this](const Change& change) -> std::string {
+    self_awareness::EventLogStart start = startOfRecording(rules_, kBegin);
+    self_awareness::EventType type;
+    type.source = "/node";
+    type.scope = "/topic";
+    type.type = "std_msgs/String";
+    self_awareness::EventLogGraph graph;
+    graph.topics.resize(1);
+    graph.topics[0].topic = "/topic";
+    graph.topics[0].publishers = {"/node"};
+    change(start, type, graph.topics[0]);
+    EventLogWriter log(path("named"));
+    log.start(start);
+    EventLogPacker packer([&](self_awareness::EventLog part) { log.write(std::move(part)); });
+    core::Vocabulary vocabulary({{type.source, type.scope, type.type}});
+    packer.add({kBegin, 0}, vocabulary);
+    packer.flush(kBegin + kSecond);
+    Graph written;
+    written.topics[graph.topics[0].topic].publishers = {graph.topics[0].publishers[0]};
+    log.writeGraph(written, kBegin);
+    log.close();
+    try {
+      read(EventLogReader(path("named"), 0));
+    } catch (const BagError& problem) {
+      return problem.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(error([](auto& /*start*/, auto& /*type*/, auto& /*nodes*/) {}), "");
+  const std::string escape = "a\x1B[2J";
+  for (const Change& change : std::vector<Change>{
+           [&](auto&start, auto&, auto&) { start.bag = escape; },
+           [&](auto&start, auto&, auto&) { start.encoding.exclude_topics = {escape}; },
+           [&](auto&, auto&type, auto&) { type.source = escape; },
+           [&](auto&, auto&type, auto&) {
+             type.type =
+                 "a\xE2\x80\xAE"
+                 "b";
+           },
+           [&](auto&, auto&type, auto&) { type.scope = "/a b"; },
+           [&](auto&, auto&, auto&nodes) { nodes.publishers = {escape}; }}) {
+    const std::string told = error(change);
+    EXPECT_EQ(told.rfind(path("named") + ": ", 0), 0U) << told;
+    EXPECT_EQ(told.find('\x1B'), std::string::npos);
+  }
 }
 
 }  // namespace
