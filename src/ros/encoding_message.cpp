@@ -34,7 +34,9 @@ EncodingRules fromMessage(const self_awareness::Encoding& message) {
   rules.include_sources = message.include_sources;
   rules.exclude_sources = message.exclude_sources;
   for (const self_awareness::TypeField& type_field : message.type_fields) {
-    rules.type_fields[type_field.datatype] = type_field.field;
+    if (!rules.type_fields.emplace(type_field.datatype, type_field.field).second) {
+      throw std::invalid_argument("its encoding has two type fields of " + type_field.datatype);
+    }
   }
   rules.validate();
   return rules;

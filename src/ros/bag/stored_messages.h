@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "../content_digest.h"
 #include "../message_check.h"
 #include "../message_upgrade.h"
 #include "bag_index.h"
@@ -32,11 +33,15 @@ class StoredMessages {
 
   /// @param entry of a connection that holds this type of message
   /// @throw rosbag::BagException if it cannot be read
+  /// @param digest the message is added to it, as it lies in the file; null: to none
   /// @throw std::invalid_argument if it is damaged, or a field of it has another type here
   template <typename Message>
-  Message read(const BagIndexEntry& entry) {
+  Message read(const BagIndexEntry& entry, ContentDigest* digest = nullptr) {
     namespace traits = ros::message_traits;
     messages_->read(entry, content_);
+    if (digest != nullptr) {
+      digest->add(content_.data(), content_.size());
+    }
     if (index_->connections[entry.connection].md5sum != traits::md5sum<Message>()) {
       upgrade(entry.connection, traits::definition<Message>());
     }

@@ -10,8 +10,16 @@
 namespace self_awareness::ros1 {
 namespace {
 
+// Of evidence, in any unit: no method finds others.
+constexpr double kLeastLimit = 1e-9;
+constexpr double kLargestLimit = 1e12;
+
 bool isNoRate(double value) {
   return !(value >= 0 && std::isfinite(value)) && !std::isnan(value);
+}
+
+bool isNoShare(double value) {
+  return !(value >= 0 && value <= 1) && !std::isnan(value);
 }
 
 }  // namespace
@@ -23,7 +31,7 @@ std::vector<self_awareness::Recording> toMessages(
     self_awareness::Recording& message = messages.emplace_back();
     message.bag = recording.bag;
     message.start = toRosTime(recording.start);
-    message.end = toRosTime(recording.end);
+    message.end = toRosTime(std::max(recording.start, recording.end));
     message.events = recording.events;
     message.robot_start = toRosTime(recording.robot_start);
     message.fingerprint = recording.fingerprint;
@@ -35,6 +43,7 @@ std::vector<core::RecordingInfo> fromMessages(
     const std::vector<self_awareness::Recording>& messages) {
   std::vector<core::RecordingInfo> recordings;
   for (const self_awareness::Recording& message : messages) {
+    check(message.start <= message.end, "a recording of it ends before it starts");
     recordings.push_back({message.bag, fromRosTime(message.start), fromRosTime(message.end),
                           message.events, fromRosTime(message.robot_start), message.fingerprint});
   }
@@ -63,8 +72,8 @@ core::Calibration fromMessage(const self_awareness::EvidenceCalibration& message
         "its limits are not those of its evidence; calibrate it again");
   // NaN: the track is not judged.
   check(std::none_of(message.limits.begin(), message.limits.end(),
-                     [](double limit) { return limit <= 0 || std::isinf(limit); }),
-        "a limit of its evidence is not above 0");
+                     [](double limit) { return limit < kLeastLimit || limit > kLargestLimit; }),
+        "a limit of its evidence cannot be");
   check(tracks == 0 || std::any_of(message.limits.begin(), message.limits.end(),
                                    [](double limit) { return limit > 0; }),
         "its limits judge nothing; calibrate it again");
@@ -107,6 +116,9 @@ self_awareness::Calibration toMessage(const core::paper::Calibration& calibratio
 
 core::paper::Calibration fromMessage(const self_awareness::Calibration& message) {
   check(std::isfinite(message.threshold), "its threshold is not a finite number");
+  check(!isNoShare(message.auc) && !isNoShare(message.true_positive_rate) &&
+            !isNoShare(message.false_positive_rate) && !isNoRate(message.false_alarms_per_hour),
+        "a rate of its calibration cannot be");
   core::paper::Calibration calibration;
   calibration.threshold = message.threshold;
   calibration.method = message.method;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -63,6 +64,7 @@ evidence::Statistics::Type typeOf(const self_awareness::Evidence& message, std::
   check(std::max({type.events, type.gaps, type.rate_sum, type.rate_squares}) <
             static_cast<std::uint64_t>(kLargestSum),
         "its evidence has counts that cannot be");
+  check(type.gaps <= type.events, "its evidence has more gaps than events");
   check(type.gap_sum >= 0 && type.gap_sum < kLargestSum &&
             (type.gaps > 0) == !type.longest_gaps.empty() && areTimes(type.longest_gaps, 0),
         "its evidence has impossible gaps");
@@ -78,7 +80,7 @@ self_awareness::Evidence toMessage(const evidence::Statistics& statistics) {
   for (const evidence::Statistics::Recording& recording : statistics.recordings()) {
     self_awareness::RecordingCounts counts;
     counts.start = toRosTime(recording.start);
-    counts.end = toRosTime(recording.end);
+    counts.end = toRosTime(std::max(recording.start, recording.end));
     counts.robot_start = toRosTime(recording.robot_start);
     counts.longest_silence = recording.longest_silence;
     counts.events = recording.events;
@@ -137,6 +139,7 @@ evidence::Statistics fromMessage(const self_awareness::Evidence& message,
     check(counts.events.size() <= n && counts.events.size() == counts.longest_gaps.size() &&
               counts.events.size() == counts.firsts.size(),
           "its recordings do not fit its event types");
+    check(counts.start <= counts.end, "a recording of it ends before it starts");
     check(areTimes({counts.longest_silence}, 0) && areTimes(counts.longest_gaps, 0) &&
               areTimes(counts.firsts, -1),
           "its recordings have times that cannot be");
@@ -188,7 +191,7 @@ evidence::Track fromMessage(const self_awareness::Track& message) {
 self_awareness::RecordingFindings toMessage(const evidence::LimitFinder::Recording& recording) {
   self_awareness::RecordingFindings message;
   message.start = toRosTime(recording.start);
-  message.end = toRosTime(recording.end);
+  message.end = toRosTime(std::max(recording.start, recording.end));
   message.robot_start = toRosTime(recording.robot_start);
   message.windows = recording.windows;
   for (const evidence::LimitFinder::Recording::Part& part : recording.parts) {
@@ -219,8 +222,12 @@ evidence::LimitFinder::Recording fromMessage(const self_awareness::RecordingFind
   check(parts <= evidence::LimitFinder::kMostParts, "its findings have too many parts");
   check(areTimes(message.longest_gaps, 0) &&
             std::all_of(message.evidence.begin(), message.evidence.end(),
-                        [](float evidence) { return std::isfinite(evidence); }),
+                        [](float evidence) { return evidence >= 0 && std::isfinite(evidence); }),
         "its findings are no numbers");
+  check(message.start <= message.end, "a recording of its findings ends before it starts");
+  check(std::accumulate(message.part_windows.begin(), message.part_windows.end(),
+                        std::uint64_t{0}) == message.windows,
+        "its findings have other windows than their parts");
   LimitFinder::Recording recording;
   recording.start = fromRosTime(message.start);
   recording.end = fromRosTime(message.end);
@@ -253,6 +260,7 @@ self_awareness::Relation toMessage(const evidence::Relation& relation) {
 }
 
 evidence::Relation fromMessage(const self_awareness::Relation& message) {
+  check(message.spread >= 0 && message.spread <= 1, "the spread of a relation cannot be");
   return {message.watched != 0, message.reaches != 0, message.irregular != 0,
           message.spread,       message.starts,       message.starts_needed};
 }

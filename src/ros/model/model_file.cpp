@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <boost/filesystem/operations.hpp>
+#include <map>
 #include <memory>
 #include <new>
 #include <optional>
@@ -16,6 +17,7 @@
 #include "../bag/version_of_bag.h"
 #include "check.h"
 #include "model_upgrade.h"
+#include "self_awareness/ContentDigest.h"
 #include "self_awareness/ros/bag/bag_reader.h"
 #include "self_awareness/ros/bag/bag_writer.h"
 #include "self_awareness/ros/encoding_message.h"
@@ -32,11 +34,15 @@ namespace {
 
 constexpr char kTopic[] = "/model";
 constexpr char kDelaysTopic[] = "/delays";
+constexpr char kDigestTopic[] = "/digest";
 constexpr std::array<const char*, 2> kEvidenceTopics{"/evidence/first", "/evidence/second"};
 
 // Of a file that may be made to fill the memory: many times what the largest model needs.
 constexpr std::uint64_t kLargestChunk = 1 << 28;  // [bytes]
 constexpr std::size_t kMostTracks = 200000;
+
+constexpr char kOtherDelays[] = "its histograms do not fit its event types";
+constexpr char kOtherEvidence[] = "its evidence does not fit its event types";
 
 self_awareness::GraphEdge graphMessage(const core::SourceGraph::Edge& edge) {
   self_awareness::GraphEdge message;
@@ -51,7 +57,10 @@ core::paper::DelayStatistics eventTypesOf(const self_awareness::Model& message) 
       core::paper::Binning{message.bin_size, message.horizon_bins});
   for (const self_awareness::EventType& type : message.event_types) {
     const std::size_t before = statistics.vocabulary().size();
-    const core::EventId id = statistics.intern({type.source, type.scope, type.type});
+    const core::EventType named{type.source, type.scope, type.type};
+    const std::string problem = whyImpossible(named);
+    check(problem.empty(), problem.c_str());
+    const core::EventId id = statistics.intern(named);
     check(id == before, "an event type occurs twice");
     statistics.countEvent(id, type.count);
   }
@@ -78,31 +87,57 @@ class ModelMessages {
     }
     index_ = std::move(*index);
     messages_ = std::make_unique<StoredMessages>(path_, index_, kLargestChunk);
+    readDigests();
   }
 
   /// @throw BagError as checkedVersion()
-  self_awareness::FileVersion version() const { return checkedVersion(path_, index_, kModelFile); }
+  self_awareness::FileVersion version() {
+    self_awareness::FileVersion version = checkedVersion(path_, index_, kModelFile);
+    forEach<self_awareness::FileVersion>(kVersionTopic, [](const auto& /*checked*/) {});
+    return version;
+  }
 
   /// Calls visit(message) for every message on a topic; returns their number.
+  /// @throw std::invalid_argument if one is damaged, or they are not what was written
   template <typename Message, typename Visit>
   std::size_t forEach(const std::string& topic, Visit visit) {
     std::size_t number = 0;
+    ContentDigest digest;
     for (const BagIndexEntry& entry : index_.entries) {
       const Connection& connection = index_.connections[entry.connection];
       if (connection.topic == topic && holds<Message>(connection)) {
-        visit(messages_->read<Message>(entry));
+        visit(messages_->read<Message>(entry, &digest));
         ++number;
       }
     }
+    const auto known = digests_.find(topic);
+    check(known == digests_.end() ? digests_.empty() || number == 0
+                                  : known->second == digest.value(),
+          "its content is not what was written: its digest is another one");
     return number;
   }
 
   const std::string& path() const { return path_; }
 
  private:
+  void readDigests() {
+    std::map<std::string, std::uint64_t> found;
+    forEach<self_awareness::ContentDigest>(
+        kDigestTopic, [&](const self_awareness::ContentDigest& message) {
+          check(message.topics.size() == message.digests.size() && !message.topics.empty(),
+                "its digest is none");
+          for (std::size_t k = 0; k < message.topics.size(); ++k) {
+            check(found.emplace(message.topics[k], message.digests[k]).second,
+                  "it holds a digest twice");
+          }
+        });
+    digests_ = std::move(found);
+  }
+
   std::string path_;
   BagIndex index_;
   std::unique_ptr<StoredMessages> messages_;
+  std::map<std::string, std::uint64_t> digests_;  // by topic; none: the file is of before
 };
 
 TrainedModel read(ModelMessages& messages, ModelCounts counts) {
@@ -124,39 +159,73 @@ TrainedModel read(ModelMessages& messages, ModelCounts counts) {
   }
   if (counts != ModelCounts::kWatched || !model->isWatched()) {
     const std::size_t number = messages.forEach<self_awareness::DelayHistograms>(
-        kDelaysTopic, [&](const self_awareness::DelayHistograms& message) {
+        kDelaysTopic,
+        [&, next = core::EventId{0}](const self_awareness::DelayHistograms& message) mutable {
+          check(message.to_id == next++, kOtherDelays);
           addMessage(message, model->statistics);
         });
     check(number == model->vocabulary().size() || (number == 0 && model->isWatched()),
-          "its histograms do not fit its event types");
+          kOtherDelays);
   }
   const std::size_t halves = counts == ModelCounts::kAll && model->isWatched() ? 2 : 0;
   for (std::size_t half = 0; half < halves; ++half) {
     model->evidence.at(half) = model->watched.halves.at(half).withoutPairs();
     const std::size_t number = messages.forEach<self_awareness::EvidencePairs>(
-        kEvidenceTopics.at(half), [&](const self_awareness::EvidencePairs& message) {
+        kEvidenceTopics.at(half),
+        [&, next = core::EventId{0}](const self_awareness::EvidencePairs& message) mutable {
+          check(message.id == next++, kOtherEvidence);
           setPairs(message, model->evidence.at(half));
         });
-    check(number == model->vocabulary().size(), "its evidence does not fit its event types");
+    check(number == model->vocabulary().size(), kOtherEvidence);
   }
   return std::move(*model);
 }
 
-void write(const TrainedModel& model, BagWriter& bag) {
-  // A bag cannot hold a message with the time 0.
-  const ros::Time stamp = std::max(toRosTime(model.stamp), ros::TIME_MIN);
+/// Writes the messages of a model file.
+class ModelWriter {
+ public:
+  ModelWriter(BagWriter& bag, std::int64_t stamp)
+      // A bag cannot hold a message with the time 0.
+      : bag_(bag), stamp_(std::max(toRosTime(stamp), ros::TIME_MIN)) {}
+
+  template <typename Message>
+  void write(const std::string& topic, const Message& message) {
+    bag_.write({topic}, stamp_, message);
+    digests_[topic].add(bag_.written().data(), bag_.written().size());
+  }
+  const std::vector<std::uint8_t>& written() const { return bag_.written(); }
+  /// Writes the digest of all before it.
+  void writeDigests() {
+    self_awareness::ContentDigest message;
+    for (const auto& [topic, digest] : digests_) {
+      message.topics.push_back(topic);
+      message.digests.push_back(digest.value());
+    }
+    bag_.write({kDigestTopic}, stamp_, message);
+  }
+
+ private:
+  BagWriter& bag_;
+  ros::Time stamp_;
+  std::map<std::string, ContentDigest> digests_;  // by topic
+};
+
+void write(const TrainedModel& model, ModelWriter& file) {
   self_awareness::FileVersion version = versionOf(kModelFile);
   version.method = model.version.method;
-  bag.write({kVersionTopic}, stamp, version);
-  bag.write({kTopic}, stamp, toMessage(model));
+  file.write(kVersionTopic, version);
+  file.write(kTopic, toMessage(model));
+  // A file that nobody could read would be found out when it is needed.
+  fromMessage(readMessage<self_awareness::Model>(file.written().data(), file.written().size()));
   for (core::EventId id = 0; id < model.vocabulary().size(); ++id) {
     if (model.hasDelays()) {
-      bag.write({kDelaysTopic}, stamp, toMessage(model.statistics, id));
+      file.write(kDelaysTopic, toMessage(model.statistics, id));
     }
     for (std::size_t half = 0; model.hasEvidence() && half < model.evidence.size(); ++half) {
-      bag.write({kEvidenceTopics.at(half)}, stamp, pairsMessage(model.evidence.at(half), id));
+      file.write(kEvidenceTopics.at(half), pairsMessage(model.evidence.at(half), id));
     }
   }
+  file.writeDigests();
 }
 
 }  // namespace
@@ -224,6 +293,7 @@ TrainedModel fromMessage(const self_awareness::Model& message) {
   for (const self_awareness::GraphEdge& edge : message.graph) {
     model.graph.connect(edge.publisher, edge.topic, edge.subscriber);
   }
+  check(model.graph.edges().size() == message.graph.size(), "its graph has an edge twice");
   model.recordings = fromMessages(message.recordings);
   for (const self_awareness::RecordingFindings& findings : message.findings) {
     model.findings.push_back(
@@ -248,13 +318,16 @@ void saveModel(const TrainedModel& model, const std::string& path) {
   try {
     OutputFile file(path);
     BagWriter bag(file.temporary(), BagWriter::Chunks::kCompressed, path);
-    write(model, bag);
+    ModelWriter writer(bag, model.stamp);
+    write(model, writer);
     bag.close();
     file.complete();
   } catch (const BagError& error) {
     throw ModelFileError(error.what());
   } catch (const FileError& error) {
     throw ModelFileError(error.what());
+  } catch (const std::invalid_argument& error) {
+    throw ModelFileError(path + ": the model cannot be written: " + error.what());
   }
 }
 

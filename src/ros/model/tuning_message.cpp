@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,8 @@ evidence::Tuning tuningOf(const self_awareness::Model& message) {
   evidence::Tuning tuning;
   const self_awareness::Tuning& given = message.tuning;
   check(given.names.size() == given.values.size(), "its tuning has names without numbers");
+  check(std::set<std::string>(given.names.begin(), given.names.end()).size() == given.names.size(),
+        "its tuning has a number twice");
   if (given.names.empty()) {  // format 1, where an event type was one of its own predecessors
     evidence::set(tuning, "predecessors", std::max(message.predecessors, 1U) - 1);
     evidence::set(tuning, "least_effect", message.least_effect / 1e9);

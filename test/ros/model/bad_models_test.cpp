@@ -97,7 +97,7 @@ TEST_F(BadModelsTest, NumbersThatCannotBeAreRefused) {
         return damagedModel([&](Message& m) { set(m.evidence_calibration.at(0)); });
       };
   EXPECT_EQ(limits([](auto& /*c*/) {}), "");
-  for (const double limit : {-1.0, 0.0, kInf, -kInf}) {
+  for (const double limit : {-1.0, 0.0, 5e-324, 1e300, kInf, -kInf}) {
     EXPECT_NE(limits([&](auto& c) { c.limits.at(1) = limit; }), "") << limit;
   }
   EXPECT_NE(limits([&](auto& c) { c.limits.assign(c.limits.size(), kNan); }), "")
@@ -144,7 +144,120 @@ TEST_F(BadModelsTest, TimesThatWouldRunOverAreRefused) {
   EXPECT_NE(damagedModel([](Message& m) { m.findings.at(0).longest_gaps.at(0) = kLong; }), "");
 }
 
-TEST_F(BadModelsTest, TextsThatAreNoUtf8AreRefused) {
+TEST_F(BadModelsTest, WhatContradictsItselfIsRefused) {
+  const ros::Time late(2000000000, 0);
+  EXPECT_NE(damagedModel([&](Message& m) { m.recordings.at(0).start = late; }), "");
+  EXPECT_NE(damagedModel([&](Message& m) { m.findings.at(0).start = late; }), "");
+  EXPECT_NE(damagedModel([&](Message& m) { m.watched.at(0).recordings.at(0).start = late; }), "");
+  EXPECT_NE(damagedModel(
+                [&](Message& m) { m.evidence_calibration.at(0).recordings.at(0).start = late; }),
+            "");
+  EXPECT_NE(damagedModel([](Message& m) { ++m.findings.at(1).windows; }), "");
+  EXPECT_NE(damagedModel([](Message& m) { m.findings.at(0).evidence.at(0) = -1; }), "");
+  EXPECT_NE(damagedModel(
+                [](Message& m) { m.watched.at(0).gaps.at(0) = m.watched.at(0).events.at(0) + 1; }),
+            "");
+  for (const double spread : {-0.5, 1.5, std::numeric_limits<double>::quiet_NaN()}) {
+    EXPECT_NE(damagedModel([&](Message& m) {
+                m.evidence_calibration.at(0).relations.at(1).spread = spread;
+              }),
+              "")
+        << spread;
+  }
+}
+
+TEST_F(BadModelsTest, WhatIsThereTwiceIsRefused) {
+  EXPECT_NE(damagedModel([](Message& m) { m.tracks.at(1) = m.tracks.at(0); }), "");
+  EXPECT_NE(damagedModel([](Message& m) {
+              m.tuning.names.push_back(m.tuning.names.at(0));
+              m.tuning.values.push_back(m.tuning.values.at(0));
+            }),
+            "");
+  EXPECT_NE(damagedModel([](Message& m) {
+              m.encoding.type_fields.push_back(m.encoding.type_fields.at(0));
+            }),
+            "");
+  EXPECT_NE(damagedModel([](Message& m) {
+              self_awareness::GraphEdge edge;
+              edge.publisher = "/a";
+              edge.topic = "/x";
+              edge.subscriber = "/b";
+              m.graph = {edge, edge};
+            }),
+            "");
+}
+
+TEST_F(BadModelsTest, CountsThatAreNotInOrderAreRefused) {
+  const auto swapped = [](auto& message) { message.id = 1 - message.id; };
+  EXPECT_NE(damagedMessages<self_awareness::EvidencePairs>("/evidence/first", swapped), "");
+  EXPECT_NE(damagedMessages<self_awareness::EvidencePairs>("/evidence/second",
+                                                           [](auto& message) { message.id = 0; }),
+            "");
+}
+
+TEST_F(BadModelsTest, WhatAnotherProgramChangedIsRefused) {
+  saveModel(calibratedModel(), path("whole"));
+  for (const std::string& topic :
+       {std::string("/version"), std::string("/model"), std::string("/evidence/first"),
+        std::string("/evidence/second")}) {
+    const rosbag::Bag whole(path("whole"), rosbag::bagmode::Read);
+    rosbag::Bag changed(path("changed"), rosbag::bagmode::Write);
+    for (const rosbag::MessageInstance& message : rosbag::View(whole)) {
+      if (message.getTopic() == "/version" && topic == "/version") {
+        const auto version = message.instantiate<self_awareness::FileVersion>();
+        version->method = 1;
+        changed.write(topic, message.getTime(), *version);
+      } else if (message.getTopic() == "/model" && topic == "/model") {
+        const auto model = message.instantiate<Message>();
+        std::swap(model->findings.at(0), model->findings.at(1));
+        changed.write(topic, message.getTime(), *model);
+      } else if (message.getTopic() == "/evidence/first" && topic == "/evidence/first") {
+        const auto pairs = message.instantiate<self_awareness::EvidencePairs>();
+        ++pairs->answers.at(0);
+        changed.write(topic, message.getTime(), *pairs);
+      } else if (message.getTopic() != topic) {
+        changed.write(message.getTopic(), message.getTime(), message);
+      }
+    }
+    changed.close();
+    EXPECT_EQ(modelError(path("changed")).rfind(path("changed") + ": ", 0), 0U) << topic;
+  }
+}
+
+TEST_F(BadModelsTest, NoModelIsWrittenThatCannotBeRead) {
+  TrainedModel model = calibratedModel();
+  model.recordings.at(0).bag = "a\x1B[2J.bag";
+  try {
+    saveModel(model, path("unreadable"));
+    FAIL();
+  } catch (const ModelFileError& error) {
+    EXPECT_EQ(std::string(error.what()).rfind(path("unreadable") + ": ", 0), 0U) << error.what();
+  }
+  EXPECT_FALSE(boost::filesystem::exists(path("unreadable")));
+}
+
+TEST_F(BadModelsTest, TopicsThatNoNodeCanSubscribeToAreRefused) {
+  for (const char* topic : {"/a b", "/scan-front", ""}) {
+    EXPECT_NE(damagedModel([&](Message& m) { m.event_types.at(0).scope = topic; }), "") << topic;
+  }
+  EXPECT_EQ(damagedModel([](Message& m) {
+              m.event_types.at(0).source = "";
+              m.event_types.at(0).scope = "(further topics)";
+              m.event_types.at(0).type = "(further unknown events)";
+            }),
+            "");
+}
+
+TEST_F(BadModelsTest, TextsThatNoTerminalShouldGetAreRefused) {
+  EXPECT_NE(damagedModel([](Message& m) { m.recordings.at(0).bag = "a\x1B[2J.bag"; }), "");
+  EXPECT_NE(damagedModel([](Message& m) {
+              m.event_types.at(0).source =
+                  "/a\xE2\x80\xAE"
+                  "b";
+            }),
+            "");
+  EXPECT_NE(damagedModel([](Message& m) { m.evidence_calibration.at(0).method = "a\rb"; }), "");
+  EXPECT_NE(damagedModel([](Message& m) { m.encoding.exclude_topics = {"a\x07"}; }), "");
   EXPECT_NE(damagedModel([](Message& m) { m.event_types.at(0).source = "/m\xFCller"; }), "");
   EXPECT_NE(damagedModel([](Message& m) { m.recordings.at(0).bag = "gr\xFC\xDF.bag"; }), "");
 }

@@ -125,7 +125,9 @@ class ModelFileTest : public testing::Test {
     const rosbag::Bag whole(path("whole"), rosbag::bagmode::Read);
     rosbag::Bag damaged(path("damaged"), rosbag::bagmode::Write);
     for (const rosbag::MessageInstance& message : rosbag::View(whole)) {
-      write(damaged, message);
+      if (message.getTopic() != "/digest") {  // else it says that the file is damaged, and no more
+        write(damaged, message);
+      }
     }
     damaged.close();
     return modelError(path("damaged"));

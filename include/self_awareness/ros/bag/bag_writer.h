@@ -57,6 +57,8 @@ class BagWriter {
     write(stamp, topic,
           {traits::datatype<Message>(), traits::md5sum<Message>(), traits::definition<Message>()});
   }
+  /// The message that was written last, as it lies in the file.
+  const std::vector<std::uint8_t>& written() const { return content_; }
   /// Writes what is left, and the index.
   /// @throw BagError as write(), or if an earlier call has thrown
   void close();

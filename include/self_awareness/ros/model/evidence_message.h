@@ -40,6 +40,7 @@ core::evidence::LimitFinder::Recording fromMessage(
     const self_awareness::RecordingFindings& message, std::size_t tracks, std::size_t types);
 
 self_awareness::Relation toMessage(const core::evidence::Relation& relation);
+/// @throw std::invalid_argument if its spread is no share
 core::evidence::Relation fromMessage(const self_awareness::Relation& message);
 
 }  // namespace self_awareness::ros1

@@ -45,7 +45,7 @@ self_awareness::Model toMessage(const TrainedModel& model);
 TrainedModel fromMessage(const self_awareness::Model& message);
 
 /// Writes the whole file or nothing (see OutputFile): no program ever reads half a model.
-/// @throw ModelFileError if the file cannot be written
+/// @throw ModelFileError if the file cannot be written, or loadModel() would refuse it
 /// @throw std::logic_error if watch() was not called, or counts were dropped
 void saveModel(const TrainedModel& model, const std::string& path);
 /// Reads a file of any version since the first (docs/files.md).

@@ -3,6 +3,7 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 
 #include "core/evidence/channel/channels.h"
 
@@ -72,9 +73,13 @@ Watched watch(const Statistics& first, const Statistics& second, const SourceGra
 }
 
 void checkTracks(const std::vector<Track>& tracks, std::size_t types) {
+  std::set<std::tuple<const Channel*, EventId, EventId>> known;
   for (const Track& track : tracks) {
     if (track.channel == nullptr || track.to >= types || track.from >= types) {
       throw std::invalid_argument("it watches an event type that it does not have");
+    }
+    if (!known.emplace(track.channel, track.to, track.from).second) {
+      throw std::invalid_argument("it watches the same twice");
     }
   }
 }

@@ -28,7 +28,7 @@ Watched watch(const Statistics& first, const Statistics& second, const SourceGra
 
 /// Checks tracks that come from outside.
 /// @param types number of event types
-/// @throw std::invalid_argument if a track is of none of them
+/// @throw std::invalid_argument if a track is of none of them, or there twice
 void checkTracks(const std::vector<Track>& tracks, std::size_t types);
 
 }  // namespace self_awareness::core::evidence
