@@ -1,6 +1,8 @@
 #include <pybind11/stl.h>
+#include <sys/stat.h>
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -43,8 +45,29 @@ py::array_t<T> viewOf(const std::vector<T>& values, const py::object& owner) {
 /// Which recording of a file: none of a bag, which is one; its number, from 0, of an event log.
 using InLog = std::optional<std::size_t>;
 
+/// The event log that was opened last: programs read its recordings in turn, and each would read
+/// the index of all again.
+std::shared_ptr<const ros1::EventLogFile> openLog(const std::string& path) {
+  using Identity = std::tuple<std::string, dev_t, ino_t, off_t, time_t, std::int64_t>;
+  struct Opened {
+    Identity identity;
+    std::shared_ptr<const ros1::EventLogFile> file;
+  };
+  static Opened last;  // who calls holds Python's lock
+  struct stat status {};
+  if (stat(path.c_str(), &status) != 0) {
+    return std::make_shared<const ros1::EventLogFile>(path);  // says what is wrong
+  }
+  const Identity identity{path,           status.st_dev,         status.st_ino,
+                          status.st_size, status.st_mtim.tv_sec, status.st_mtim.tv_nsec};
+  if (!last.file || last.identity != identity) {
+    last = {identity, std::make_shared<const ros1::EventLogFile>(path)};
+  }
+  return last.file;
+}
+
 ros1::BagSummary summaryOf(const std::string& path, const InLog& recording) {
-  return recording ? ros1::EventLogReader(path, *recording).summary()
+  return recording ? ros1::EventLogReader(openLog(path), *recording).summary()
                    : ros1::BagReader(path).summary();
 }
 
@@ -62,7 +85,7 @@ RecordedEvents readEvents(const std::string& path, const InLog& recording,
     events.ids.push_back(event.id);
   };
   if (recording) {
-    const ros1::EventLogReader reader(path, *recording);
+    const ros1::EventLogReader reader(openLog(path), *recording);
     events.summary = reader.summary();
     reader.read(rules, ids, range, handler, progressTo(progress),
                 [&](const core::Waiting& waiting) { events.waiting.push_back(waiting); });

@@ -6,10 +6,11 @@ from pathlib import Path
 import pytest
 import rosbag
 import rospy
+from conftest import robot
 from rosgraph_msgs.msg import Log
 from sensor_msgs.msg import Image
 
-from self_awareness import EncodingRules, read_events, summarise_bag
+from self_awareness import EncodingRules, EventLogWriter, read_events, summarise_bag
 from self_awareness.commands import train
 
 _IMAGE_BYTES = 1_000_000
@@ -50,3 +51,26 @@ def test_events_outlive_what_they_were_read_with(image_bag: str) -> None:
     assert (stamps[1:] >= stamps[:-1]).all()
     with pytest.raises(ValueError):
         stamps[0] = 0
+
+
+def test_the_index_of_an_event_log_is_read_once_for_all_recordings(make_bag, tmp_path: Path
+                                                                   ) -> None:
+    bag, path = make_bag('robot.bag', robot(1000.0, 100.0)), str(tmp_path / 'many.events.bag')
+    log = EventLogWriter(path)
+    for _ in range(40):
+        log.add_bag(bag, EncodingRules.defaults())
+    log.close()
+    before = _bytes_read()
+    for recording in range(40):
+        assert len(read_events(path, EncodingRules.defaults(), recording=recording).stamps) > 4000
+    assert _bytes_read() - before < 8 * Path(path).stat().st_size  # not 40 times and more
+
+
+def test_an_event_log_that_was_replaced_is_read_again(make_bag, tmp_path: Path) -> None:
+    path = str(tmp_path / 'robot.events.bag')
+    for length in (10.0, 20.0):
+        log = EventLogWriter(path)
+        log.add_bag(make_bag('robot.bag', robot(1000.0, length)), EncodingRules.defaults())
+        log.close()
+        events = read_events(path, EncodingRules.defaults(), recording=0)
+        assert events.stamps[-1] - events.stamps[0] > (length - 1.0) * 1e9

@@ -92,10 +92,40 @@ std::vector<core::Waiting> waitingIn(const self_awareness::EventLog& part,
 
 }  // namespace
 
-struct EventLogReader::Parts {
+struct EventLogFile::Content {
   BagIndex index;
-  std::vector<BagIndexEntry> entries;  // of this recording's events
+  /// By recording: its messages, the start first, in the order in which they were written.
+  std::vector<std::vector<BagIndexEntry>> recordings;
 };
+
+EventLogFile::EventLogFile(const std::string& path) : path_(path) {
+  auto content = std::make_unique<Content>();
+  content->index = openBag(path);
+  const BagIndex& index = content->index;
+  if (!isEventLog(path, index)) {
+    throw BagError(path + ": no event log; name a bag as it is");
+  }
+  checkedVersion(path, index, kEventLogFile);
+  sortByPosition(content->index.entries);
+  for (const BagIndexEntry& entry : index.entries) {
+    const Connection& connection = index.connections[entry.connection];
+    if (!isOfEventLog(connection)) {
+      continue;
+    }
+    if (holds<self_awareness::EventLogStart>(connection)) {
+      content->recordings.emplace_back();
+    }
+    if (content->recordings.empty()) {
+      throw BagError(path +
+                     ": the event log has no start: its beginning was cut off; take it as "
+                     "it was written");
+    }
+    content->recordings.back().push_back(entry);
+  }
+  content_ = std::move(content);
+}
+
+EventLogFile::~EventLogFile() = default;
 
 std::optional<std::size_t> recordingsInEventLog(const std::string& path) {
   try {
@@ -117,32 +147,23 @@ std::optional<std::size_t> recordingsInEventLog(const std::string& path) {
   }
 }
 
-EventLogReader::EventLogReader(const std::string& path, std::size_t recording) {
-  auto parts = std::make_unique<Parts>();
-  parts->index = openBag(path);
-  if (!isEventLog(path, parts->index)) {
-    throw BagError(path + ": no event log; name a bag as it is");
+EventLogReader::EventLogReader(const std::string& path, std::size_t recording)
+    : EventLogReader(std::make_shared<const EventLogFile>(path), recording) {}
+
+EventLogReader::EventLogReader(std::shared_ptr<const EventLogFile> file, std::size_t recording)
+    : file_(std::move(file)) {
+  const std::string& path = file_->path_;
+  const EventLogFile::Content& content = *file_->content_;
+  if (recording >= content.recordings.size()) {
+    throw BagError(path + ": holds " + std::to_string(content.recordings.size()) +
+                   " recordings, and none with the "
+                   "number " +
+                   std::to_string(recording + 1));
   }
-  checkedVersion(path, parts->index, kEventLogFile);
-  sortByPosition(parts->index.entries);
-  LogMessages messages(path, parts->index);
-  std::size_t starts = 0;
-  for (const BagIndexEntry& entry : parts->index.entries) {
-    const Connection& connection = parts->index.connections[entry.connection];
-    if (!isOfEventLog(connection)) {
-      continue;
-    }
-    const bool is_start = holds<self_awareness::EventLogStart>(connection);
-    starts += is_start ? 1 : 0;
-    if (starts == 0) {
-      throw BagError(path +
-                     ": the event log has no start: its beginning was cut off; take it as "
-                     "it was written");
-    }
-    if (starts != recording + 1) {
-      continue;
-    }
-    if (is_start) {
+  LogMessages messages(path, content.index);
+  for (const BagIndexEntry& entry : content.recordings[recording]) {
+    const Connection& connection = content.index.connections[entry.connection];
+    if (holds<self_awareness::EventLogStart>(connection)) {
       const auto start = messages.read<self_awareness::EventLogStart>(entry);
       try {
         summary_.encoding = fromMessage(start.encoding);
@@ -162,22 +183,15 @@ EventLogReader::EventLogReader(const std::string& path, std::size_t recording) {
     } else if (holds<self_awareness::EventLogGraph>(connection)) {
       add(messages.read<self_awareness::EventLogGraph>(entry), summary_.graph);
     } else if (holds<self_awareness::EventLog>(connection)) {
-      parts->entries.push_back(entry);
+      parts_.push_back(&entry);
     }
   }
-  if (recording >= starts) {
-    throw BagError(path + ": holds " + std::to_string(starts) +
-                   " recordings, and none with the "
-                   "number " +
-                   std::to_string(recording + 1));
-  }
-  if (!parts->entries.empty()) {
-    const auto last = messages.read<self_awareness::EventLog>(parts->entries.back());
+  if (!parts_.empty()) {
+    const auto last = messages.read<self_awareness::EventLog>(*parts_.back());
     summary_.end = std::max(summary_.start, nanoseconds(last.heard_until));
     summary_.messages = last.events_before + last.events;
     summary_.dropped = last.dropped;
   }
-  parts_ = std::move(parts);
 }
 
 EventLogReader::~EventLogReader() = default;
@@ -191,15 +205,15 @@ void EventLogReader::read(const EncodingRules& rules, const EventIds& ids, const
                    "that is wanted; use its own, or convert or record it again by the wanted one");
   }
   const auto [from, to] = limitsIn(summary_, range);
-  LogMessages messages(summary_.path, parts_->index);
+  LogMessages messages(summary_.path, file_->content_->index);
   std::vector<core::EventType> types;
   std::vector<std::optional<core::EventId>> known;  // by id in the log
   std::uint64_t done = 0;
-  for (std::size_t number = 0; number < parts_->entries.size(); ++number) {
+  for (std::size_t number = 0; number < parts_.size(); ++number) {
     if (progress) {
       progress(done, summary_.messages);
     }
-    auto part = messages.read<self_awareness::EventLog>(parts_->entries[number]);
+    auto part = messages.read<self_awareness::EventLog>(*parts_[number]);
     if (part.number != number || part.events_before != done) {
       messages.fail("a part is missing after " + std::to_string(number) + " parts");
     }

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "self_awareness/core/stream/waiting.h"
 #include "self_awareness/ros/bag/bag_reader.h"
@@ -12,8 +13,27 @@
 
 namespace self_awareness::ros1 {
 
+struct BagIndexEntry;
+
 /// Number of recordings in an event log; none: the file is no event log, or cannot be read.
 std::optional<std::size_t> recordingsInEventLog(const std::string& path);
+
+/// An event log whose index was read: once for all recordings in it, of which there may be
+/// hundreds.
+class EventLogFile {
+ public:
+  /// @throw BagError if the file cannot be read, is no event log, is damaged or too new for this
+  /// version
+  explicit EventLogFile(const std::string& path);
+  ~EventLogFile();
+
+ private:
+  friend class EventLogReader;
+  struct Content;
+
+  std::string path_;
+  std::unique_ptr<const Content> content_;
+};
 
 /// Reads one recording of an event log as a stream of events, like BagReader.
 class EventLogReader {
@@ -22,6 +42,8 @@ class EventLogReader {
   /// @throw BagError if the file cannot be read, is no event log, is damaged or too new for this
   /// version, or does not hold this recording
   EventLogReader(const std::string& path, std::size_t recording);
+  /// The same of a file whose index was read.
+  EventLogReader(std::shared_ptr<const EventLogFile> file, std::size_t recording);
   ~EventLogReader();
 
   using WaitingHandler = std::function<void(const core::Waiting&)>;
@@ -37,9 +59,8 @@ class EventLogReader {
             const WaitingHandler& waiting = nullptr) const;
 
  private:
-  struct Parts;
-
-  std::unique_ptr<const Parts> parts_;
+  std::shared_ptr<const EventLogFile> file_;
+  std::vector<const BagIndexEntry*> parts_;  // where its events lie, in the order of the recording
   BagSummary summary_;
 };
 
