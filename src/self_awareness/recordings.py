@@ -5,6 +5,7 @@ import math
 import os
 import re
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Dict, Iterable, Iterator, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
@@ -160,7 +161,12 @@ class RecordingEvents:
                    () if summary.clock_watched else find_clock_steps(events.stamps, events.ids),
                    events.waiting, tuple(summary.left_out))
 
-    @property
+    @cached_property
+    def heard(self) -> np.ndarray:
+        """Ids of the event types that occur, in order."""
+        return np.flatnonzero(np.bincount(self.ids))
+
+    @cached_property
     def recording(self) -> Recording:
         """What a model file says about the part."""
         start, end = self.part.span(self.origin, self.end)
@@ -188,12 +194,13 @@ def read(model: TrainedModel, part: BagPart) -> RecordingEvents:
                                  part.end, update, part.recording)
         except ValueError as error:
             raise ValueError(f'{part}: {error}') from error
-    _check(model, part, events)
+    recording = RecordingEvents.of(part, events)
+    _check(model, recording, events.summary.has_sources)
     try:
         check_windows(events.stamps, model.window)
     except ValueError as error:
         raise ValueError(f'{part}: {error}') from error
-    return RecordingEvents.of(part, events)
+    return recording
 
 
 def check_windows(stamps: np.ndarray, window: int) -> None:
@@ -217,7 +224,7 @@ def check_windows(stamps: np.ndarray, window: int) -> None:
 
 def few_known(model: TrainedModel, recording: RecordingEvents) -> Optional[str]:
     """Return what to tell of a recording that the model knows little of."""
-    known, heard = _known(model, recording.ids)
+    known, heard = _known(model, recording)
     if known >= LEAST_KNOWN * heard:
         return None
     return (f'{recording.part}: the model knows {known} of the {heard} event types of this '
@@ -241,7 +248,7 @@ def merged_senders(model: TrainedModel, recording: RecordingEvents) -> Optional[
     if not recording.one_sender_a_topic or model.encoding.source == 'none':
         return None
     known = _senders(model.event_types)
-    heard = _senders([recording.event_types[i] for i in np.unique(recording.ids)])
+    heard = _senders([recording.event_types[i] for i in recording.heard])
     sources = set().union(*heard.values())
 
     def are_merged(topic: str) -> bool:
@@ -270,22 +277,23 @@ def overlap(a: Recording, b: Recording) -> bool:
     return a.fingerprint == b.fingerprint and a.start <= b.end and b.start <= a.end
 
 
-def _check(model: TrainedModel, part: BagPart, events: RecordedEvents) -> None:
-    if model.encoding.source == 'callerid' and not events.summary.has_sources:
+def _check(model: TrainedModel, recording: RecordingEvents, has_sources: bool) -> None:
+    part = recording.part
+    if model.encoding.source == 'callerid' and not has_sources:
         raise ValueError(f'{part}: the model was trained with another encoding: it tells sources '
                          'apart, and no connection of this bag names its sender; train a model '
                          'with "source: none" (train --encoding)')
-    if len(events.stamps) == 0:
+    if len(recording.stamps) == 0:
         raise ValueError(f'{part}: no message is an event by the encoding of the model (info '
                          'shows it); a recording of "rosbag play" needs a model with '
                          '"source: none"')
-    known, heard = _known(model, events.ids)
+    known, heard = _known(model, recording)
     if known == 0:
         raise ValueError(f'{part}: the model knows none of the {heard} event types of this '
                          'recording: it was trained with another encoding or on another robot')
 
 
-def _known(model: TrainedModel, ids: np.ndarray) -> Tuple[int, int]:
+def _known(model: TrainedModel, recording: RecordingEvents) -> Tuple[int, int]:
     """Return how many of the event types of a recording a model knows, and how many there are."""
-    heard = np.unique(ids)
+    heard = recording.heard
     return int((heard < len(model.event_types)).sum()), len(heard)

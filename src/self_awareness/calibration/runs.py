@@ -119,8 +119,9 @@ def injected_fault(recording: RecordingEvents, fault: InjectedFault, window: int
 def acts_after_middle(source: str, recording: RecordingEvents, window: int) -> bool:
     """Return whether a source has an event where a fault would be injected, or later."""
     of_source = [i for i, kind in enumerate(recording.event_types) if kind.source == source]
-    later = recording.ids[recording.stamps >= _middle(recording, window)]
-    return bool(np.isin(of_source, later).any())
+    later = np.bincount(recording.ids[recording.stamps >= _middle(recording, window)],
+                        minlength=len(recording.event_types))
+    return bool(later[of_source].any())
 
 
 def _middle(recording: RecordingEvents, window: int) -> int:
