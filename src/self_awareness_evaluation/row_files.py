@@ -20,7 +20,8 @@ def columns(row_type: type) -> List[str]:
     found: List[str] = []
     for field in fields(row_type):
         kind = hints[field.name]
-        found += columns(kind) if is_dataclass(kind) else [field.name]
+        found += (columns(kind) if isinstance(kind, type) and is_dataclass(kind)
+                  else [field.name])
     return found
 
 
@@ -78,8 +79,9 @@ def load(path: Path, row_type: Type[_Row]) -> List[_Row]:
 
 def _row(cells: Dict[str, str], row_type: Type[_Row]) -> _Row:
     hints = get_type_hints(row_type)
+    dataclass_type: Any = row_type
     return row_type(**{field.name: _field(cells, field, hints[field.name])
-                       for field in fields(row_type)})
+                       for field in fields(dataclass_type)})
 
 
 def _field(cells: Dict[str, str], field: Field, kind: Any) -> Any:

@@ -41,7 +41,7 @@ def _scaled(part: Any, factor: float) -> Any:
         return part.times(factor)
     if isinstance(part, tuple):
         return tuple(_scaled(element, factor) for element in part)
-    if not is_dataclass(part):
+    if not is_dataclass(part) or isinstance(part, type):
         return part
     changed = {field.name: _scaled(getattr(part, field.name), factor) for field in fields(part)}
     for name in _SECONDS.get(type(part), ()):

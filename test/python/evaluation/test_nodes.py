@@ -5,7 +5,7 @@ import math
 import re
 import shlex
 from pathlib import Path
-from typing import List, Tuple
+from typing import Any, Dict, List, Tuple
 
 import pytest
 import rosbag
@@ -149,8 +149,9 @@ def test_rows_are_read_as_they_were_written(tmp_path: Path) -> None:
 
 def _with_floats(row: Row) -> Row:
     """Return a row whose counts are floats, as they are read."""
-    return Row(**{name: float(value) if type(value) is int else value
-                  for name, value in vars(row).items()})
+    values: Dict[str, Any] = {name: float(value) if type(value) is int else value
+                              for name, value in vars(row).items()}
+    return Row(**values)
 
 
 def test_the_page_in_the_repository_is_that_of_its_rows() -> None:
