@@ -1,9 +1,22 @@
 #include <ros/node_handle.h>
 
+#include "command_line.h"
 #include "event_recorder.h"
 #include "run_node.h"
 
+namespace {
+
+constexpr char kUsage[] =
+    "usage: rosrun self_awareness record_events _output:=PREFIX [_PARAMETER:=VALUE...]\n\n"
+    "Records event logs of the running robot. Better: roslaunch self_awareness record.launch\n"
+    "output:=PREFIX; with --ros-args, it explains its arguments.";
+
+}  // namespace
+
 int main(int argc, char** argv) {
+  if (self_awareness::answered(argc, argv, kUsage)) {
+    return 0;
+  }
   return self_awareness::runNode(argc, argv, "recorder", [] {
     return std::make_unique<self_awareness::EventRecorder>(ros::NodeHandle(), ros::NodeHandle("~"),
                                                            self_awareness::endNode);

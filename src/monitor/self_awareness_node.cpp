@@ -1,10 +1,23 @@
 #include <ros/node_handle.h>
 #include <ros/this_node.h>
 
+#include "command_line.h"
 #include "monitor.h"
 #include "run_node.h"
 
+namespace {
+
+constexpr char kUsage[] =
+    "usage: rosrun self_awareness self_awareness_node _model:=FILE [_PARAMETER:=VALUE...]\n\n"
+    "The monitor, as a node. Better: roslaunch self_awareness monitor.launch model:=FILE\n"
+    "config/self_awareness.yaml explains each parameter, docs/monitor.md what it publishes.";
+
+}  // namespace
+
 int main(int argc, char** argv) {
+  if (self_awareness::answered(argc, argv, kUsage)) {
+    return 0;
+  }
   return self_awareness::runNode(argc, argv, "self_awareness", [] {
     return std::make_unique<self_awareness::Monitor>(ros::NodeHandle(), ros::NodeHandle("~"),
                                                      ros::this_node::getName());

@@ -39,6 +39,7 @@ void bindFileVersions(py::module& m) {
           py::arg("format"), py::arg("oldest_reader"), py::arg("package"),
           "Why such a file cannot be read; empty: it can.");
   m.attr("METHOD") = ros1::kMethod;
+  m.attr("VERSION") = ros1::kPackageVersion;
 }
 
 }  // namespace self_awareness::python

@@ -9,13 +9,15 @@ constexpr std::size_t kLongestPackage = 32;  // of a stranger's text in an error
 
 }  // namespace
 
+const char* const kPackageVersion = SELF_AWARENESS_VERSION;
+
 self_awareness::FileVersion versionOf(const FileKind& kind) {
   self_awareness::FileVersion version;
   version.kind = kind.name;
   version.format = kind.format;
   version.oldest_reader = kind.oldest_reader;
   version.method = kind.method;
-  version.package = SELF_AWARENESS_VERSION;
+  version.package = kPackageVersion;
   return version;
 }
 
@@ -34,9 +36,8 @@ std::string whyTooNew(const self_awareness::FileVersion& version, const FileKind
   }
   return "written by a newer self_awareness (" + printable(version.package, kLongestPackage) +
          ", format " + std::to_string(version.format) + ", for readers of format " +
-         std::to_string(version.oldest_reader) +
-         " on; this is " SELF_AWARENESS_VERSION ", format " + std::to_string(kind.format) +
-         "); update self_awareness on this machine";
+         std::to_string(version.oldest_reader) + " on; this is " + kPackageVersion + ", format " +
+         std::to_string(kind.format) + "); update self_awareness on this machine";
 }
 
 }  // namespace self_awareness::ros1

@@ -23,6 +23,7 @@ from self_awareness._core import (  # noqa: F401
     RATE_SPAN,
     SHORTEST_WINDOW,
     USUAL_SHARES,
+    VERSION,
     Alarm,
     BagError,
     BagSummary,

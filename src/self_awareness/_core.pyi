@@ -9,6 +9,7 @@ EVIDENCE_THRESHOLD: float
 LEAST_KNOWN: float
 LONGEST_SILENCE: int
 METHOD: int
+VERSION: str
 RATE_SPAN: int
 SHORTEST_WINDOW: int
 USUAL_SHARES: Tuple[float, float]

@@ -25,6 +25,9 @@ inline constexpr FileKind kEventLogFile{"event log", 3, 2, 0};
 inline constexpr FileKind kResultBag{"result bag", 2, 1, kMethod};
 inline constexpr FileKind kGraphFile{"graph", 2, 2, 0};  ///< beside bags, in YAML
 
+/// Of this package, as in package.xml: "0.1.0".
+extern const char* const kPackageVersion;
+
 constexpr char kVersionTopic[] = "/version";  ///< FileVersion
 
 /// What a file of this kind says that is written now.

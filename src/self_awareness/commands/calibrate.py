@@ -41,7 +41,7 @@ examples:
   calibrate --model robot.model --normal wednesday.bag -o robot.model
   calibrate --model robot.model --normal wednesday.bag --inject 'crash:*' starve -o robot.model
   calibrate --model robot.model --normal wednesday.bag --faulty dead_laser.bag@42 -o robot.model
-  calibrate --model robot.model --normal wednesday.bag --detector paper --cutoff fpr=0.001 \
+  calibrate --model robot.model --normal wednesday.bag --detector paper --cutoff fpr=0.001 \\
             -o robot.model
 """
 

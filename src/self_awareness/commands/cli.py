@@ -8,7 +8,7 @@ import re
 import sys
 from typing import Callable, Optional, Sequence, TypeVar
 
-from self_awareness import (SHORTEST_WINDOW, BagError, DetectorParameters, ModelFileError,
+from self_awareness import (SHORTEST_WINDOW, VERSION, BagError, DetectorParameters, ModelFileError,
                             TrainedModel, UnknownEvents, printable, recordings)
 from self_awareness.recordings import BagPart, RecordingEvents
 from self_awareness.stamps import SECOND_NS, nanoseconds
@@ -29,9 +29,12 @@ def run(parser: argparse.ArgumentParser, work: Callable[[argparse.Namespace], No
         argv: Optional[Sequence[str]]) -> int:
     """Parse the arguments, do the work, and turn what goes wrong into one line.
 
+    The parser gets the option --version.
+
     Returns:
         0 on success, 1 after an error, 2 after wrong usage, 130 after Ctrl-C.
     """
+    parser.add_argument('--version', action='version', version=f'self_awareness {VERSION}')
     try:
         _check_texts(sys.argv[1:] if argv is None else argv)
         work(parser.parse_args(argv))

@@ -2,30 +2,29 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from typing import Optional, Sequence
 
 import rospy
 
 from self_awareness.commands import cli
-from self_awareness.yaml_section import SectionError
 from self_awareness_follow_me.node import ComponentNode
 from self_awareness_follow_me.scenario import load_scenario
 from self_awareness_follow_me.speed import sped_up
 
 
 def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Run a component under its own name; return 0 on success, 2 if it cannot run."""
-    parser = _parser()
-    arguments = parser.parse_args(rospy.myargv(argv)[1:])
-    try:
-        scenario = sped_up(load_scenario(arguments.scenario or None), arguments.speed)
-        intruder = scenario.faults.extra.spec
-        spec = intruder if arguments.name == intruder.name else scenario.component(arguments.name)
-        rospy.init_node(spec.name)
-        ComponentNode(scenario, spec, arguments.seed).spin()
-    except SectionError as error:
-        parser.exit(2, f'component: {error}\n')
-    return 0
+    """Run a component under its own name; return the exit code (see cli.run)."""
+    # Under roslaunch, the name of a node comes with the arguments.
+    return cli.run(_parser(), _run, rospy.myargv(sys.argv if argv is None else argv)[1:])
+
+
+def _run(arguments: argparse.Namespace) -> None:
+    scenario = sped_up(load_scenario(arguments.scenario or None), arguments.speed)
+    intruder = scenario.faults.extra.spec
+    spec = intruder if arguments.name == intruder.name else scenario.component(arguments.name)
+    rospy.init_node(spec.name)
+    ComponentNode(scenario, spec, arguments.seed).spin()
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -1,14 +1,15 @@
 """The end of scripts/demo.sh: kills a component and reports the alarm as operators get it."""
 from __future__ import annotations
 
-import sys
+import argparse
 import threading
 import time
-from typing import Dict, Optional
+from typing import Dict, Optional, Sequence
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
+from self_awareness.commands import cli
 from self_awareness.progress import waiting
 from self_awareness_follow_me import induction
 from self_awareness_follow_me.scenario import load_scenario
@@ -60,26 +61,33 @@ class _Operator:
             return self._changed.wait_for(lambda: name in self._first_error, seconds)
 
 
-def main() -> int:
+def main(argv: Optional[Sequence[str]] = None) -> int:
     """Kill `player` in the running robot; return 0 if the alarm came after that, and only then."""
+    parser = argparse.ArgumentParser(
+        prog='demo_fault', description='Kills the laser driver of the simulated robot, and prints '
+        'the alarm of the monitor that runs; it is the end of scripts/demo.sh.')
+    return cli.run(parser, _demonstrate, argv)
+
+
+def _demonstrate(_arguments: argparse.Namespace) -> None:
     component = load_scenario().faults.cc1
     rospy.init_node('demo', anonymous=True, disable_signals=True)
     operator = _Operator()
     if not operator.await_message('normal communication', _SETTLED_WITHIN_S):
-        return _fail('the monitor does not settle; is it running, with a calibrated model?')
+        raise ValueError('the monitor does not settle; is it running, with a calibrated model?')
     for _ in waiting(_NORMAL_FOR_S, 'normal operation'):
         if operator.error_since(_STATUS) is not None:
-            return _fail('an alarm came before the fault: ' + operator.status(_STATUS).message)
+            raise ValueError('an alarm came before the fault: '
+                             + operator.status(_STATUS).message)
     killed_at = time.time()
     pid = induction.crash(component)
     print(f'killed {component.component} (kill -9 {pid})')
     if not operator.await_error(_STATUS, _ALARM_WITHIN_S):
-        return _fail(f'no alarm within {_ALARM_WITHIN_S} s')
+        raise ValueError(f'no alarm within {_ALARM_WITHIN_S} s')
     _report(operator, killed_at)
     if not operator.await_error(_AGGREGATED, _ALARM_WITHIN_S):
-        return _fail('no alarm on /diagnostics_agg')
+        raise ValueError('no alarm on /diagnostics_agg')
     print(f'on /diagnostics_agg as {_AGGREGATED}')
-    return 0
 
 
 def _report(operator: _Operator, killed_at: float) -> None:
@@ -93,8 +101,3 @@ def _report(operator: _Operator, killed_at: float) -> None:
     for key in sorted(key for key in values if key.startswith('suspect')):
         print(f'  {key}: {values[key]}')
     print()
-
-
-def _fail(text: str) -> int:
-    print(f'demo: error: {text}', file=sys.stderr)
-    return 1
