@@ -16,7 +16,7 @@ from self_awareness.reporting.evidence_report import counts
 from self_awareness.reporting.model_summary import summarise
 from self_awareness.reporting.result_summary import summarise_results
 from self_awareness.reporting.version_summary import describe_version
-from self_awareness.stamps import utc
+from self_awareness.stamps import moment, span
 
 _DRAWN = 0.99  # share of the delays that have rows of their own
 
@@ -65,7 +65,7 @@ def _info_of_results(arguments: argparse.Namespace) -> None:
         return
     print(f'result bag   {summary["size"] / 1e6:.1f} MB, {summary["messages"]} messages')
     _print_version(summary['version'])
-    print(f'results      {utc(summary["start_ns"])} - {utc(summary["end_ns"])} UTC')
+    print(f'results      {span(summary["start_ns"], summary["end_ns"])}')
 
 
 def _print_version(version: Dict[str, Any]) -> None:
@@ -80,8 +80,8 @@ def _print_log(summary: Dict[str, Any]) -> None:
     for number, recording in enumerate(summary['recordings'], 1):
         start = recording['robot_start_ns']
         print(f'    #{number} {recording["bag"]}: {recording["duration"]:.1f} s, '
-              f'{recording["events"]} events, from {utc(recording["start_ns"])} UTC'
-              + ('' if start is None else f', robot started {utc(start)} UTC')
+              f'{recording["events"]} events, from {moment(recording["start_ns"])}'
+              + ('' if start is None else f', robot started {moment(start)}')
               + (f', {recording["dropped"]} messages were dropped' if recording['dropped']
                  else ''))
     encodings = [recording['encoding'] for recording in summary['recordings']]
@@ -100,7 +100,7 @@ def _print_log(summary: Dict[str, Any]) -> None:
 
 def _print(summary: Dict[str, Any]) -> None:
     horizon = summary['horizon']
-    print(f'trained      {utc(summary["trained_ns"])} UTC')
+    print(f'trained      {moment(summary["trained_ns"])}')
     _print_version(summary['version'])
     print(f'detector     {summary["detectors"]}')
     print(f'recordings   {len(summary["recordings"])}, {summary["duration"]:.1f} s')
@@ -167,7 +167,7 @@ def _print_evidence(evidence: Dict[str, Any], fewest_gaps: int) -> None:
         print('limits       not calibrated (rosrun self_awareness calibrate)')
         return
     print(f'limits       {calibration["method"]}, for {calibration["budget"]:g} false alarms an '
-          f'hour, calibrated {utc(calibration["calibrated_ns"])} UTC')
+          f'hour, calibrated {moment(calibration["calibrated_ns"])}')
     print(f'  of {counts(calibration["judged_tracks"])}')
     print(f'  {calibration["windows"]} windows; at most '
           f'{_or_none(calibration["false_alarms_per_hour"])} false alarms an hour (95 %)')
@@ -184,7 +184,7 @@ def _print_calibration(calibration: Optional[Dict[str, Any]]) -> None:
         print('threshold    not calibrated (rosrun self_awareness calibrate --detector paper)')
         return
     print(f'threshold    {calibration["threshold"]!r} ({calibration["method"]}), calibrated '
-          f'{utc(calibration["calibrated_ns"])} UTC')
+          f'{moment(calibration["calibrated_ns"])}')
     print(f'  AUC {_or_none(calibration["auc"])}, TPR '
           f'{_or_none(calibration["true_positive_rate"])} of {calibration["faulty_windows"]} '
           f'abnormal windows, FPR {_or_none(calibration["false_positive_rate"])} of '
@@ -203,7 +203,7 @@ def _print_calibration(calibration: Optional[Dict[str, Any]]) -> None:
 def _print_recordings(recordings: Sequence[Dict[str, Any]]) -> None:
     for recording in recordings:
         print(f'    {recording["bag"]}: {recording["duration"]:.1f} s, '
-              f'{recording["events"]} events, from {utc(recording["start_ns"])} UTC')
+              f'{recording["events"]} events, from {moment(recording["start_ns"])}')
 
 
 def _or_none(value: Optional[float]) -> str:

@@ -24,7 +24,7 @@ from self_awareness.reporting.report.page import (check_installed, check_name,
                                                   save_report)
 from self_awareness.reporting.report.section import section
 from self_awareness.results import check_apart, result_bag
-from self_awareness.stamps import SECOND_NS, utc
+from self_awareness.stamps import SECOND_NS, span
 
 _COLUMNS = ('bag', 'window_start_ns', 'events', 'unknown', 'score', 'threshold', 'abnormal')
 _ROWS = 1 << 16  # of the table that are made at once
@@ -122,7 +122,7 @@ def _lines(recording: RecordingEvents, alarm: Alarm,
     level = 'suspicion: ' if alarm.level == 'WARN' else ''
     end = '' if alarm.over else ' (to the end of the recording)'
     yield (f'  {level}{seconds(alarm.begin)} - {seconds(alarm.end)} s{end}, '
-           f'{utc(alarm.begin)} - {utc(alarm.end)} UTC: '
+           f'{span(alarm.begin, alarm.end)}: '
            f'lowest score {alarm.lowest_score:.4g}, threshold {threshold:.4g}, '
            f'{alarm.evidence or "what is left of the alarm"}')
     if alarm.busy is not None:

@@ -13,7 +13,7 @@ from self_awareness.reporting.report.delays import Histogram
 from self_awareness.reporting.report.judged import Judged
 from self_awareness.reporting.report.neighbours import Neighbourhood, neighbourhood
 from self_awareness.reporting.report.timeline import Overview, strongest_track
-from self_awareness.stamps import utc
+from self_awareness.stamps import moment
 
 ALARM, SUSPICION = 'alarm', 'suspicion'
 """The levels of an interval."""
@@ -62,7 +62,7 @@ class Interval:
         level: ALARM or SUSPICION.
         start: of it.
         end: of it, or of the recording.
-        utc: date and time of the start.
+        moment: date and time of the start, with the time zone.
         cleared: False: it stood until the recording's end.
         began: when the trouble began, as far as the first suspect tells; None: it does not.
         lowest: score.
@@ -78,7 +78,7 @@ class Interval:
     level: str
     start: float
     end: float
-    utc: str
+    moment: str
     cleared: bool
     began: Optional[float]
     lowest: float
@@ -121,7 +121,7 @@ def _interval(judged: Judged, found: Overview, key: str, alarm: Alarm,
     first = alarm.suspects[0] if alarm.suspects else None
     return Interval(
         key, ALARM if alarm.level == 'ERROR' else SUSPICION, start, judged.seconds(alarm.end),
-        utc(alarm.begin), alarm.over,
+        moment(alarm.begin), alarm.over,
         None if first is None else _began(first, start), alarm.lowest_score,
         alarm.evidence or 'what is left of the alarm',
         _decided(judged, found, start - judged.by.trained.window / 2e9), alarm.busy, suspects,

@@ -11,7 +11,7 @@ from self_awareness.reporting.report.intervals import ALARM, Interval
 from self_awareness.reporting.report.judged import Judged
 from self_awareness.reporting.report.timeline import Overview, overview
 from self_awareness.reporting.report.unjudged import Unjudged, unjudged
-from self_awareness.stamps import SECOND_NS, utc
+from self_awareness.stamps import SECOND_NS, moment
 
 QUIET, SUSPICIOUS, ALARMED, NOT_JUDGED = 'quiet', 'suspicious', 'alarmed', 'not judged'
 """How a recording was."""
@@ -81,7 +81,7 @@ def _facts(judged: Judged) -> List[Tuple[str, str]]:
     recording, by = judged.recording, judged.by
     start, end = recording.part.span(recording.origin, recording.end)
     types = int(np.count_nonzero(np.bincount(recording.ids)))
-    return [('recorded', f'{utc(start)} UTC, {clock((end - start) / SECOND_NS)}'),
+    return [('recorded', f'{moment(start)}, {clock((end - start) / SECOND_NS)}'),
             ('events', f'{len(recording.stamps):,} of {types:,} event types'),
             ('windows', f'{len(judged.verdicts.start):,} of {by.trained.window / SECOND_NS:g} s'),
             ('model', by.model_name),
@@ -140,7 +140,7 @@ def _headline(first: Interval) -> str:
 def _when(first: Interval) -> str:
     end = 'cleared' if first.cleared else 'stood until the end of the recording'
     return (f'{first.level} from {clock(first.start)} to {clock(first.end)} ({end}); '
-            f'{first.utc} UTC')
+            f'{first.moment}')
 
 
 def _others(first: Interval, listed: List[Interval], alarms: int, suspicions: int) -> str:
