@@ -10,9 +10,10 @@ from typing import Dict, Iterable, Iterator, List, Optional, Sequence, Set, Tupl
 
 import numpy as np
 
-from self_awareness import (LEAST_KNOWN, LONGEST_SILENCE, EventType, RecordedEvents, Recording,
-                            TrainedModel, Waiting, find_clock_steps, progress, read_events,
-                            recordings_in_event_log)
+from self_awareness import (LEAST_KNOWN, LONGEST_SILENCE, BagError, EventType, ModelFileError,
+                            RecordedEvents, Recording, ResultBag, TrainedModel, Waiting,
+                            find_clock_steps, progress, read_events, recordings_in_event_log,
+                            summarise_bag)
 from self_awareness.stamps import SECOND_NS, nanoseconds
 
 MOST_WINDOWS = 10_000_000
@@ -84,11 +85,28 @@ class BagPart:
 def expand(parts: Iterable[BagPart]) -> List[BagPart]:
     """Return the recordings of files: a bag is one, and an event log may hold several.
 
+    A folder stands for its bags and event logs.
+
     Raises:
-        ValueError: a file does not hold the recording that is asked for, or it is not said which
-            one a part is of.
+        ValueError: a file does not hold the recording that is asked for, it is not said which
+            one a part is of, or a folder has no bag.
     """
-    return [recording for part in parts for recording in _recordings_of(part)]
+    return [recording for part in parts for path in files(part.path)
+            for recording in _recordings_of(replace(part, path=path))]
+
+
+def files(path: str) -> List[str]:
+    """Return the bags of a folder, by name, or the path of a file as it is.
+
+    Raises:
+        ValueError: the folder has no bag.
+    """
+    if not os.path.isdir(path):
+        return [path]
+    found = sorted(name for name in os.listdir(path) if name.endswith('.bag'))
+    if not found:
+        raise ValueError(f'{path}: a folder without bags (*.bag)')
+    return [os.path.join(path, name) for name in found]
 
 
 def _recordings_of(part: BagPart) -> Iterator[BagPart]:
@@ -277,8 +295,41 @@ def overlap(a: Recording, b: Recording) -> bool:
     return a.fingerprint == b.fingerprint and a.start <= b.end and b.start <= a.end
 
 
+def is_bag(path: str) -> bool:
+    """Return whether a file is a bag that holds no model, which is a bag itself."""
+    try:
+        summarise_bag(path)
+    except BagError:
+        return False
+    try:
+        TrainedModel.load(path, watched_only=True)
+    except ModelFileError as error:
+        return 'holds no model' in str(error)
+    return False
+
+
+def check_kind(path: str) -> None:
+    """Check that a bag with nothing to learn or to judge is at least a recording of a robot.
+
+    Raises:
+        ValueError: it is what the programs write.
+    """
+    if ResultBag.is_one(path):
+        raise ValueError('is a result bag (score --result-bag), and no recording')
+    try:
+        TrainedModel.load(path, watched_only=True)
+    except ModelFileError:
+        return
+    raise ValueError('is a model, and no recording')
+
+
 def _check(model: TrainedModel, recording: RecordingEvents, has_sources: bool) -> None:
     part = recording.part
+    if not has_sources or len(recording.stamps) == 0:
+        try:
+            check_kind(part.path)
+        except ValueError as error:
+            raise ValueError(f'{part}: {error}') from error
     if model.encoding.source == 'callerid' and not has_sources:
         raise ValueError(f'{part}: the model was trained with another encoding: it tells sources '
                          'apart, and no connection of this bag names its sender; train a model '

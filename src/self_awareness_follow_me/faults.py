@@ -40,6 +40,11 @@ def check_form(kind: str) -> None:
     _split(kind)
 
 
+def in_short(kind: str) -> str:
+    """Return the name of a fault with the component's, where it has its node's: `crash:/slam`."""
+    return kind.replace(':/', ':')
+
+
 def described() -> str:
     """Return the table of all faults, a line each, for the help of a program."""
     return '\n'.join(f'  {form:19}{kind.text}' for form, kind in zip(forms(), _KINDS.values()))

@@ -109,6 +109,12 @@ def _advertised(call: str) -> List[str]:
     return re.findall(rf'private_node_handle_\s*\.{call}\(\s*"(\w+)"', code)
 
 
+def test_the_page_on_security_names_the_services_that_there_are() -> None:
+    page = (ROOT / 'docs' / 'security.md').read_text(encoding='utf-8')
+    named, = re.findall(r'^\| services \((.*?)\) \|', page, re.MULTILINE)
+    assert set(re.findall(r'`~(\w+)`', named)) == set(_advertised('advertiseService'))
+
+
 def test_lists_topics_and_services() -> None:
     topics, services = _advertised('advertise<[^>]*>'), _advertised('advertiseService')
     assert topics and services

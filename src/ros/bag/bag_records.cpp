@@ -1,6 +1,7 @@
 #include "bag_records.h"
 
 #include <algorithm>
+#include <boost/filesystem/operations.hpp>
 
 #include "self_awareness/core/stream/event.h"
 
@@ -15,7 +16,10 @@ constexpr std::uint64_t kReadAhead = 1024;
 
 PiecesOfFile::PiecesOfFile(const std::string& path) {
   file_.rdbuf()->pubsetbuf(nullptr, 0);
-  file_.open(path, std::ios::binary | std::ios::ate);
+  // To open a pipe would wait for its writer.
+  if (boost::system::error_code error; boost::filesystem::is_regular_file(path, error)) {
+    file_.open(path, std::ios::binary | std::ios::ate);
+  }
   size_ = static_cast<std::uint64_t>(std::max<std::streamoff>(file_.tellg(), 0));
 }
 

@@ -332,6 +332,9 @@ void saveModel(const TrainedModel& model, const std::string& path) {
 }
 
 TrainedModel loadModel(const std::string& path, ModelCounts counts) {
+  if (boost::filesystem::exists(path) && !boost::filesystem::is_regular_file(path)) {
+    throw ModelFileError(path + ": not a file; name a model");
+  }
   if (!boost::filesystem::is_regular_file(path)) {
     throw ModelFileError(path +
                          ": no such file; train a model first "

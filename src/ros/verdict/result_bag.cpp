@@ -4,6 +4,7 @@
 #include <rosbag/view.h>
 
 #include <algorithm>
+#include <boost/filesystem/operations.hpp>
 #include <utility>
 #include <vector>
 
@@ -62,6 +63,10 @@ void ResultBag::writeDiagnostics(std::int64_t now,
 }
 
 bool ResultBag::isOne(const std::string& path) {
+  // To open a pipe would wait for its writer.
+  if (boost::system::error_code error; !boost::filesystem::is_regular_file(path, error)) {
+    return false;
+  }
   try {
     const rosbag::Bag bag(path, rosbag::bagmode::Read);
     rosbag::View view(bag);

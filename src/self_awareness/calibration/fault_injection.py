@@ -83,15 +83,17 @@ def of_each_source(fault: InjectedFault, event_types: Sequence[EventType]) -> Li
             for source in sorted({event_type.source for event_type in event_types} - {''})]
 
 
-def check_source(fault: InjectedFault, event_types: Sequence[EventType]) -> None:
-    """Check that the model has the source that a fault hits.
+def of_known_source(fault: InjectedFault, event_types: Sequence[EventType]) -> InjectedFault:
+    """Return the fault with the source as the model names it: `player` is `/player`.
 
     Raises:
         ValueError: there is none of that name; the message lists all sources.
     """
     sources = sorted({event_type.source for event_type in event_types})
-    if fault.source is None or fault.source in sources:
-        return
+    if fault.source in (None, EACH, *sources):
+        return fault
+    if f'/{fault.source}' in sources:
+        return replace(fault, source=f'/{fault.source}')
     if sources == ['']:
         raise ValueError(f'{fault}: the model does not tell sources apart (source: none); only '
                          'starve can be injected')

@@ -13,8 +13,8 @@ import numpy as np
 from self_awareness import (EVIDENCE_THRESHOLD, DetectorParameters, PaperCalibration, PaperModel,
                             Roc, RocPoint, TrainedModel)
 from self_awareness.calibration import confidence, holes, limits
-from self_awareness.calibration.fault_injection import (EACH, FORMS, InjectedFault, check_source,
-                                                        of_each_source)
+from self_awareness.calibration.fault_injection import (FORMS, InjectedFault, of_each_source,
+                                                        of_known_source)
 from self_awareness.calibration.results import (FalseAlarms, FaultResult, false_alarms,
                                                 fault_results, labelled)
 from self_awareness.calibration.runs import (ABNORMAL, LEFT_OUT, NORMAL, RECORDED, JudgedRun, Run,
@@ -63,7 +63,8 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 
 def _calibrate(arguments: argparse.Namespace) -> None:
-    bags = [part.path for part in arguments.normal + arguments.faulty]
+    parts = {option: expand(getattr(arguments, option)) for option in ('normal', 'faulty')}
+    bags = [part.path for part in parts['normal'] + parts['faulty']]
     check_outputs([(arguments.roc, PICTURE), (arguments.csv, TABLE)],
                   bags + [arguments.model, arguments.output])
     check_outputs([(arguments.output, MODEL)], bags)
@@ -73,17 +74,15 @@ def _calibrate(arguments: argparse.Namespace) -> None:
     parameters = cli.detector_parameters(arguments)
     _check_options(arguments)
     trained = cli.load_model(arguments.model, arguments.detector)
-    for fault in arguments.inject:
-        if fault.source != EACH:
-            check_source(fault, trained.event_types)
+    faults = [of_known_source(fault, trained.event_types) for fault in arguments.inject]
 
-    normal = [cli.read_recording('calibrate', trained, part) for part in expand(arguments.normal)]
+    normal = [cli.read_recording('calibrate', trained, part) for part in parts['normal']]
     faulty = [dataclasses.replace(cli.read_recording('calibrate', trained, part.whole()),
                                   part=part)
-              for part in expand(arguments.faulty)]
+              for part in parts['faulty']]
     check_unseen(trained, normal + faulty)
     normal_runs = [normal_run(recording) for recording in normal]
-    injected, silent = _inject(arguments.inject, trained, normal)
+    injected, silent = _inject(faults, trained, normal)
     faulty_runs = [recorded_fault(recording, trained.window) for recording in faulty] + injected
 
     if arguments.detector == 'evidence':
@@ -302,7 +301,8 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('--model', required=True, help='file written by train or calibrate')
     parser.add_argument('--normal', type=BagPart.parse, nargs='+', action='extend',
                         required=True, default=[], metavar='BAG',
-                        help='recording of normal operation that was not trained on')
+                        help='recording of normal operation that was not trained on, or a folder '
+                             'of them')
     parser.add_argument('--faulty', type=BagPart.parse, nargs='+', action='extend', default=[],
                         metavar='BAG', help='recording with a fault, from its beginning to its '
                         'end or, as BAG@START or BAG@START-END, in this part')

@@ -9,6 +9,7 @@ from self_awareness import (EncodingRules, EventLogWriter, encoding_file, progre
                             recordings_in_event_log, summarise_bag)
 from self_awareness.commands import cli
 from self_awareness.output_files import EVENT_LOG, check_outputs, replacing
+from self_awareness.recordings import files
 from self_awareness.training.robot_graph import RobotGraph, graph_file
 
 _EPILOG = """\
@@ -27,14 +28,15 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 
 def _convert(arguments: argparse.Namespace) -> None:
-    check_outputs([(arguments.output, EVENT_LOG)], [*arguments.bags, arguments.encoding])
+    bags = [bag for path in arguments.bags for bag in files(path)]
+    check_outputs([(arguments.output, EVENT_LOG)], [*bags, arguments.encoding])
     encoding = None if arguments.encoding is None else encoding_file.load(arguments.encoding)
     with replacing(arguments.output) as temporary:
         log = EventLogWriter(temporary, arguments.output)
-        for bag in arguments.bags:
+        for bag in bags:
             _add(log, bag, encoding)
         log.close()
-    of_bags = sum(os.path.getsize(bag) for bag in arguments.bags)
+    of_bags = sum(os.path.getsize(bag) for bag in bags)
     size = os.path.getsize(arguments.output)
     print(f'written: {arguments.output}, {size / 1e6:.1f} MB of {of_bags / 1e6:.1f} MB')
 
@@ -60,7 +62,8 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog='convert', description=__doc__.split(': ', 1)[1], epilog=_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('bags', nargs='+', metavar='BAG', help='a recording')
+    parser.add_argument('bags', nargs='+', metavar='BAG',
+                        help='a recording, or a folder of bags')
     parser.add_argument('-o', '--output', required=True, metavar='LOG', help='file to write')
     parser.add_argument('--encoding', metavar='FILE',
                         help='how messages become events (example: config/encoding.yaml)')

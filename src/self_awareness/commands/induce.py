@@ -13,7 +13,7 @@ from self_awareness import progress
 from self_awareness.commands import cli
 from self_awareness_follow_me import induction
 from self_awareness_follow_me.effects import Crash, Silence
-from self_awareness_follow_me.faults import described, effect_of
+from self_awareness_follow_me.faults import described, effect_of, in_short
 from self_awareness_follow_me.scenario import load_scenario
 
 
@@ -58,7 +58,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog='induce', description=__doc__.split(': ', 1)[1], epilog=f'faults:\n{described()}',
         formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument('kind', metavar='KIND', help='one of the faults below')
+    parser.add_argument('kind', type=in_short, metavar='KIND', help='one of the faults below')
     parser.add_argument('--duration', type=cli.checked(_duration_s), metavar='S',
                         help='how long it lasts in s, unless somebody dies (default: until '
                              'Ctrl-C)')

@@ -6,9 +6,11 @@ import json
 import shutil
 from typing import Any, Dict, List, Optional, Sequence
 
-from self_awareness import EventType, PaperModel, ResultBag, TrainedModel, recordings_in_event_log
+from self_awareness import (EventType, ModelFileError, PaperModel, ResultBag, TrainedModel,
+                            recordings_in_event_log)
 from self_awareness.commands import cli
 from self_awareness.judging import EVIDENCE
+from self_awareness.recordings import is_bag
 from self_awareness.reporting import histogram_text
 from self_awareness.reporting import coverage_text, relations_text, tuning_text
 from self_awareness.reporting.event_log_summary import summarise_event_log
@@ -34,7 +36,7 @@ def _info(arguments: argparse.Namespace) -> None:
     if ResultBag.is_one(arguments.model):
         _info_of_results(arguments)
         return
-    model = TrainedModel.load(arguments.model)
+    model = _load(arguments.model)
     if arguments.pair is not None:
         _print_pair(model, *(_find(model.event_types, text) for text in arguments.pair))
     elif arguments.tuning:
@@ -43,6 +45,17 @@ def _info(arguments: argparse.Namespace) -> None:
         print(json.dumps(summarise(model), indent=2, allow_nan=False))
     else:
         _print(summarise(model))
+
+
+def _load(path: str) -> TrainedModel:
+    try:
+        return TrainedModel.load(path)
+    except ModelFileError as error:
+        if is_bag(path):
+            raise ValueError(f'{path}: a recording, and no model; what is in it says rosbag info '
+                             f"'{path}', and when it was abnormal and why: rosrun self_awareness "
+                             f"score '{path}' --model MODEL") from error
+        raise
 
 
 def _info_of_log(arguments: argparse.Namespace, recordings: int) -> None:

@@ -49,12 +49,12 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 
 def _score(arguments: argparse.Namespace) -> None:
+    parts = expand(arguments.bags)
     check_outputs([(arguments.csv, TABLE), (arguments.json, VALUES), (arguments.plot, PICTURE),
                    (arguments.report, PAGE), (arguments.result_bag, RESULT_BAG)],
-                  [part.path for part in arguments.bags] + [arguments.model])
+                  [part.path for part in parts] + [arguments.model])
     if arguments.report is not None:
         check_installed()
-    parts = expand(arguments.bags)
     check_apart(arguments.result_bag, parts)
     parameters = cli.detector_parameters(arguments)
     paper = arguments.detector == 'paper'
@@ -205,7 +205,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog='score', description=__doc__.split(': ', 1)[1], epilog=_EPILOG)
     parser.add_argument('bags', type=BagPart.parse, nargs='+', metavar='BAG',
-                        help='a recording')
+                        help='a recording, or a folder of bags')
     parser.add_argument('--model', required=True, help='file written by train or calibrate')
     cli.add_detector_argument(parser)
     parser.add_argument('--csv', metavar='FILE', help='write the score of every window')

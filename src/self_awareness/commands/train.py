@@ -171,8 +171,8 @@ def _parser() -> argparse.ArgumentParser:
         prog='train', description=__doc__.split(': ', 1)[1], epilog=_EPILOG,
         formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('bags', type=BagPart.parse, nargs='+', metavar='BAG',
-                        help='a recording of normal operation; delays never cross from one to the '
-                             'next')
+                        help='a recording of normal operation, or a folder of them; delays never '
+                             'cross from one to the next')
     parser.add_argument('-o', '--output', required=True, metavar='MODEL', help='file to write')
     parser.add_argument('--detector', choices=(EVIDENCE, PAPER, BOTH),
                         help='who is trained: only that detector can judge by the model (default: '

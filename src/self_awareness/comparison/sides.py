@@ -2,14 +2,12 @@
 from __future__ import annotations
 
 import copy
-import os
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Dict, List, Optional, Set, Tuple
 
-from self_awareness import (BagError, EventType, EvidenceCounts, EvidenceModel, ModelFileError,
-                            TrainedModel, Training, recordings, recordings_in_event_log,
-                            summarise_bag)
+from self_awareness import (EventType, EvidenceCounts, EvidenceModel, TrainedModel, Training,
+                            recordings, recordings_in_event_log)
 from self_awareness.recordings import BagPart
 from self_awareness.stamps import SECOND_NS
 
@@ -96,7 +94,7 @@ def _model_of(name: str) -> Optional[TrainedModel]:
     part = BagPart.parse(name)
     if (part.start is not None or part.recording is not None
             or recordings_in_event_log(part.path) is not None
-            or (os.path.isfile(name) and _is_recording(name))):
+            or recordings.is_bag(name)):
         return None
     model = TrainedModel.load(name)
     try:
@@ -104,19 +102,6 @@ def _model_of(name: str) -> Optional[TrainedModel]:
     except ValueError as error:
         raise ValueError(f'{name}: {error}') from error
     return model
-
-
-def _is_recording(name: str) -> bool:
-    """Return whether a file is a bag that holds no model, which is a bag itself."""
-    try:
-        summarise_bag(name)
-    except BagError:
-        return False
-    try:
-        TrainedModel.load(name, watched_only=True)
-    except ModelFileError as error:
-        return 'holds no model' in str(error)
-    return False
 
 
 def _recording_side(name: str, like: TrainedModel) -> Side:

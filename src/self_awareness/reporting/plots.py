@@ -99,7 +99,7 @@ def save_roc(path: str, title: str, curves: Sequence[Tuple[str, Roc]], chosen: R
                  ylim=(-0.01, 1.01))
         axes.grid(alpha=0.3)
     whole.plot([0, 1], [0, 1], color='0.6', linestyle=':', linewidth=1)
-    whole.set(title=title, xlim=(-0.01, 1.01),
+    whole.set(title=_plain(title), xlim=(-0.01, 1.01),
               ylabel='true positive rate (abnormal windows found)')
     edge.set(title=f'the same up to {_LEFT_EDGE:.0%} of false positives',
              xlim=(-0.01 * _LEFT_EDGE, 1.01 * _LEFT_EDGE))
@@ -123,7 +123,7 @@ def _draw_roc(axes: Axes, roc: Roc, colour: Optional[str], width: float,
               label: Optional[str]) -> None:
     axes.plot([point.false_positive_rate for point in roc.points],
               [point.true_positive_rate for point in roc.points],
-              color=colour, linewidth=width, label=label)
+              color=colour, linewidth=width, label=label and _plain(label))
 
 
 def _draw_scores(axes: Axes, plot: ScorePlot) -> None:
@@ -139,7 +139,7 @@ def _draw_scores(axes: Axes, plot: ScorePlot) -> None:
     axes.plot(times, lowest, color=_GREY, linewidth=0.7,
               label='score' if len(times) == len(plot.times) else 'lowest score of each stretch')
     _mark(axes, plot, limit, unit)
-    axes.set(title=plot.title, xlabel='time from the first message [s]',
+    axes.set(title=_plain(plot.title), xlabel='time from the first message [s]',
              ylabel='score' if limit is None else
              f'score in units of the limit\n(below {limit:g} is abnormal)')
     axes.margins(x=0.005)
@@ -196,3 +196,8 @@ def _shade(axes: Axes, stretches: Sequence[Tuple[float, float]], label: str,
 def _save(path: str, figure: Figure) -> None:
     with replacing(path) as temporary:
         figure.savefig(temporary, format=path.lower().rpartition('.')[2])
+
+
+def _plain(text: str) -> str:
+    """Return a text that matplotlib shows as it is: between two $ it expects a formula."""
+    return text.replace('$', r'\$')

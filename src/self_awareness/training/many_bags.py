@@ -333,6 +333,8 @@ def _read(counting: Counting, part: BagPart) -> Tuple[RecordingEvents, EncodingR
         encoding = summarise_bag(part.path, part.recording).encoding or encoding
     with progress.messages(os.path.basename(part.path)) as update:
         read = read_events(part.path, encoding, [], part.start, part.end, update, part.recording)
+    if not read.summary.has_sources or len(read.stamps) == 0:
+        recordings.check_kind(part.path)
     if encoding.source == 'callerid' and not read.summary.has_sources:
         if counting.encoding is not None:
             raise ValueError(_NAMELESS)

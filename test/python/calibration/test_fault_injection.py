@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from self_awareness import EventType
-from self_awareness.calibration.fault_injection import InjectedFault, check_source, inject
+from self_awareness.calibration.fault_injection import InjectedFault, inject, of_known_source
 
 S = 1_000_000_000
 TYPES = [EventType('/laser', '/scan', 'T'), EventType('/slam', '/map', 'T'),
@@ -88,11 +88,13 @@ def test_a_fault_is_written_as_it_is_read(text: str) -> None:
 
 
 def test_an_unknown_source_lists_those_there_are() -> None:
-    check_source(InjectedFault.parse('crash:/slam'), TYPES)
+    fault = InjectedFault.parse('crash:/slam')
+    assert of_known_source(fault, TYPES) == fault
+    assert of_known_source(InjectedFault.parse('crash:slam'), TYPES) == fault, 'as simulate says it'
     with pytest.raises(ValueError, match='/laser, /slam$'):
-        check_source(InjectedFault.parse('crash:/motor'), TYPES)
+        of_known_source(InjectedFault.parse('crash:/motor'), TYPES)
     with pytest.raises(ValueError, match='does not tell sources apart'):
-        check_source(InjectedFault.parse('crash:/motor'), [EventType('', '/scan', 'T')])
+        of_known_source(InjectedFault.parse('crash:/motor'), [EventType('', '/scan', 'T')])
 
 
 def test_a_fault_that_would_change_nothing_is_refused() -> None:

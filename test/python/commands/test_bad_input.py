@@ -45,7 +45,7 @@ def error_of(program: str, arguments: List[str], capsys: pytest.CaptureFixture) 
 
 @pytest.mark.parametrize('kind, told', [
     ('truncated', 'rosbag reindex'), ('foreign', 'not a bag'), ('nothing', 'not a bag'),
-    ('folder', 'not a file'), ('empty', 'no messages'), ('unindexed', 'rosbag reindex'),
+    ('folder', 'without bags'), ('empty', 'no messages'), ('unindexed', 'rosbag reindex'),
     ('missing', 'no such file')])
 def test_a_bad_bag_is_named_with_the_mend(bad_bags: Dict[str, str], model_file: str,
                                           robot_bags, kind: str, told: str, tmp_path: Path,

@@ -1,6 +1,7 @@
 """Plots as files: their formats, and what they keep of long recordings."""
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Optional
 
@@ -60,3 +61,15 @@ def test_an_abnormal_window_of_a_long_recording_is_seen(tmp_path: Path) -> None:
         in_plot = pixels[330:448, 100:1150]  # below the line of the threshold
         seen.append(int((np.abs(in_plot - (0.776, 0.184, 0.208)).max(axis=2) < 0.1).sum()))
     assert seen[0] == 0 and seen[1] > 0
+
+
+def test_a_name_with_dollars_is_no_formula(tmp_path: Path) -> None:
+    from matplotlib import rc_context
+    name = r'$HOME/a_$x^{robot.bag'
+    plot = scores(600)
+    roc = Roc([-0.1, -0.2, -0.3], [-2.0, -0.15])
+    with rc_context({'svg.fonttype': 'none'}):  # text as text
+        save_scores(str(tmp_path / 'scores.svg'), [replace(plot, title=name)])
+        save_roc(str(tmp_path / 'roc.svg'), name, [(name, roc)], roc.at(-1.0))
+    for path in tmp_path.iterdir():
+        assert name in path.read_text(encoding='utf-8')

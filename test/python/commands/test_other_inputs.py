@@ -1,0 +1,131 @@
+"""What is named in place of a bag or a model: folders, pipes, files of another kind."""
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import threading
+from pathlib import Path
+from typing import Callable, Dict, List
+
+import pytest
+
+from self_awareness import TrainedModel, recordings_in_event_log
+from self_awareness.commands import calibrate, convert, diff, info, merge, score, train
+
+PROGRAMS: Dict[str, Callable[[List[str]], int]] = {
+    program.__name__.rpartition('.')[2]: program.main
+    for program in (calibrate, convert, diff, info, merge, score, train)}
+PIPE_S = 60.0
+
+
+@pytest.fixture
+def folder(robot_bags, tmp_path: Path) -> Path:
+    """Two recordings in a folder, with something else beside them."""
+    made = tmp_path / 'bags'
+    made.mkdir()
+    for bag in robot_bags:
+        shutil.copy(bag, made)
+    (made / 'notes.txt').write_text('monday, tuesday\n')
+    return made
+
+
+def error_of(program: str, arguments: List[str], capsys: pytest.CaptureFixture) -> str:
+    assert PROGRAMS[program](arguments) == 1
+    error = capsys.readouterr().err
+    assert error.startswith(f'{program}: error: ') and error.count('\n') == 1
+    return error
+
+
+def test_a_folder_stands_for_its_bags(folder: Path, model_file: str, tmp_path: Path,
+                                      capsys) -> None:
+    model, log = str(tmp_path / 'm'), str(tmp_path / 'all.bag')
+    assert train.main([str(folder), '-o', model]) == 0
+    assert [Path(each.bag).name for each in TrainedModel.load(model).recordings] == [
+        'first.bag', 'second.bag']
+    assert score.main([str(folder), '--model', model]) == 0
+    out = capsys.readouterr().out
+    assert f'{folder}/first.bag: ' in out and f'{folder}/second.bag: ' in out
+    assert convert.main([str(folder), '-o', log]) == 0
+    assert recordings_in_event_log(log) == 2
+
+
+def test_a_part_of_a_folder_is_that_part_of_each_bag(folder: Path, tmp_path: Path) -> None:
+    model = str(tmp_path / 'm')
+    assert train.main([f'{folder}@5-20', '-o', model]) == 0
+    assert all(each.end - each.start < 15.1e9 for each in TrainedModel.load(model).recordings)
+
+
+def test_a_bag_of_a_folder_is_not_overwritten(folder: Path, model_file: str, capsys) -> None:
+    bag = folder / 'first.bag'
+    before = bag.read_bytes()
+    for program, arguments in (
+            ('train', [str(folder), '-o', str(bag)]),
+            ('calibrate', ['--model', model_file, '--normal', str(folder), '-o', str(bag)]),
+            ('score', [str(folder), '--model', model_file, '--result-bag', str(bag)]),
+            ('convert', [str(folder), '-o', str(bag)])):
+        assert str(bag) in error_of(program, arguments, capsys)
+    assert bag.read_bytes() == before
+
+
+def test_a_folder_without_bags_is_named(tmp_path: Path, capsys) -> None:
+    for program in ('train', 'convert'):
+        error = error_of(program, [str(tmp_path), '-o', str(tmp_path / 'out')], capsys)
+        assert f'{tmp_path}: a folder without bags' in error
+
+
+@pytest.mark.parametrize('program, arguments', [
+    ('train', ['{pipe}', '-o', '{out}']),
+    ('calibrate', ['--model', '{pipe}', '--normal', '{bag}', '-o', '{out}']),
+    ('calibrate', ['--model', '{model}', '--normal', '{pipe}', '-o', '{out}']),
+    ('score', ['{pipe}', '--model', '{model}']),
+    ('score', ['{bag}', '--model', '{pipe}']),
+    ('info', ['{pipe}']),
+    ('convert', ['{pipe}', '-o', '{out}']),
+    ('merge', ['{pipe}', '{model}', '-o', '{out}']),
+    ('diff', ['{model}', '{pipe}'])])
+def test_a_pipe_is_no_bag_and_no_model(program: str, arguments: List[str], robot_bags,
+                                       model_file: str, tmp_path: Path) -> None:
+    """Opened, it would let the program wait for a writer for ever."""
+    pipe = tmp_path / 'pipe'
+    os.mkfifo(pipe)
+    names = {'pipe': str(pipe), 'out': str(tmp_path / 'out'), 'bag': robot_bags[1],
+             'model': model_file}
+    done = subprocess.run(
+        (sys.executable, '-c', f'import sys; from self_awareness.commands import {program}; '
+         f'sys.exit({program}.main())', *(each.format(**names) for each in arguments)),
+        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=PIPE_S)
+    assert done.returncode == 1
+    assert f'{pipe}: not a file' in done.stderr and done.stderr.count('\n') == 1
+
+
+def test_a_pipe_without_a_name_is_read_as_yaml(robot_bags, tmp_path: Path) -> None:
+    """As the shell makes one of `--encoding <(...)`."""
+    reader, writer = os.pipe()
+    threading.Thread(target=lambda: (os.write(writer, b'source: none\n'),
+                                     os.close(writer))).start()
+    assert train.main([robot_bags[0], '--encoding', f'/dev/fd/{reader}', '-o',
+                       str(tmp_path / 'm')]) == 0
+    os.close(reader)
+
+
+def test_a_model_or_a_result_is_no_recording(robot_bags, model_file: str, tmp_path: Path,
+                                             capsys) -> None:
+    results, output = str(tmp_path / 'results.bag'), str(tmp_path / 'out')
+    assert score.main([robot_bags[0], '--model', model_file, '--result-bag', results]) == 0
+    capsys.readouterr()
+    for path, told in ((model_file, 'is a model'), (results, 'is a result bag')):
+        for program, arguments in (
+                ('train', [path, '-o', output]),
+                ('score', [path, '--model', model_file]),
+                ('calibrate', ['--model', model_file, '--normal', path, '-o', output])):
+            error = error_of(program, arguments, capsys)
+            assert f'{path}: {told}' in error and 'rosbag play' not in error
+
+
+def test_info_of_a_recording_says_what_to_do_with_it(robot_bags, capsys) -> None:
+    error = error_of('info', [robot_bags[0]], capsys)
+    assert f"rosbag info '{robot_bags[0]}'" in error
+    assert f"rosrun self_awareness score '{robot_bags[0]}' --model MODEL" in error
+    assert 'train' not in error
