@@ -32,6 +32,9 @@ from self_awareness_follow_me.scenario import Scenario, load_scenario
 START_S = 1_600_000_000.0
 """Start of a recording if none is given (s since 1970)."""
 
+_DAY_S = 86_400.0
+_DAYS = 10_000  # that a recording may be of; bags end in 2106
+
 # A recording starts on a robot that has been running: every component has had its inputs by then.
 _WARM_UP_NS = 15 * SECOND_NS
 
@@ -80,6 +83,11 @@ class InducedFault:
 @functools.lru_cache(maxsize=1)
 def _packaged_robot() -> Scenario:
     return load_scenario()
+
+
+def start_of(seed: int) -> float:
+    """Return when the recording of a seed starts (s since 1970): each on a day of its own."""
+    return START_S + _DAY_S * (seed % _DAYS)
 
 
 def events(duration_s: float, seed: int, fault: Optional[InducedFault] = None,

@@ -7,14 +7,17 @@ from typing import List, Optional, Sequence, Tuple
 
 from self_awareness import progress
 from self_awareness.commands import cli
-from self_awareness_follow_me.faults import described
-from self_awareness_follow_me.scenario import load_scenario
-from self_awareness_follow_me.simulation import InducedFault, simulate
+from self_awareness.training.robot_graph import RobotGraph, graph_file
+from self_awareness_follow_me.faults import described, in_short
+from self_awareness_follow_me.scenario import Scenario, load_scenario
+from self_awareness_follow_me.simulation import InducedFault, simulate, start_of
 
 _EPILOG = f"""\
 faults:
 {described()}
 
+Each seed is another start of the robot, on another day. Beside a bag lies who subscribes to
+what, as record.launch writes it down; train reads it.
 examples:
   simulate -o normal.bag                     one recording of 100 s
   simulate -o bags --runs 4                  bags/normal_1.bag to bags/normal_4.bag
@@ -30,13 +33,25 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 def _simulate(arguments: argparse.Namespace) -> None:
     scenario = load_scenario(arguments.scenario)
+    graph = _graph(scenario)
     fault = _fault(arguments.fault, arguments.duration)
     bags = _bags(arguments.output, arguments.runs, arguments.seed, fault)
     with progress.items(int(arguments.duration) * arguments.runs, 'simulating') as seconds_done:
         for seed, bag in bags:
             bag.parent.mkdir(parents=True, exist_ok=True)
-            simulate(bag, arguments.duration, seed, fault, scenario, progress=seconds_done)
+            simulate(bag, arguments.duration, seed, fault, scenario, start_of(seed), seconds_done)
+            graph.save(graph_file(str(bag)))
             progress.say(str(bag))
+
+
+def _graph(scenario: Scenario) -> RobotGraph:
+    graph = RobotGraph()
+    for spec in scenario.components:
+        for topics, nodes in ((spec.outputs(), graph.publishers),
+                              (spec.inputs(), graph.subscribers)):
+            for topic in topics:
+                nodes.setdefault(f'/{topic}', set()).add(f'/{spec.name}')
+    return graph
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -66,7 +81,7 @@ def _fault(text: Optional[str], duration_s: float) -> Optional[InducedFault]:
     """
     if text is None:
         return None
-    kind, at, onset = text.partition('@')
+    kind, at, onset = in_short(text).partition('@')
     try:
         fault = InducedFault(kind, float(onset) if at else duration_s / 2.0)
     except ValueError as error:
