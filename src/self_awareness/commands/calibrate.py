@@ -25,7 +25,7 @@ from self_awareness.commands import cli
 from self_awareness.judging import evidence_judge, paper_judge
 from self_awareness.output_files import MODEL, PICTURE, TABLE, check_outputs, replacing
 from self_awareness.recordings import BagPart, RecordingEvents, expand
-from self_awareness.reporting import csv_text, evidence_report
+from self_awareness.reporting import coverage_text, csv_text, evidence_report
 from self_awareness.reporting.plots import save_roc
 from self_awareness.stamps import SECOND_NS
 
@@ -87,10 +87,11 @@ def _calibrate(arguments: argparse.Namespace) -> None:
 
     if arguments.detector == 'evidence':
         measured = _find_limits(arguments, trained, parameters, normal_runs, faulty_runs)
-        evidence_report.print_limits(trained, arguments.model)
+        coverage = coverage_text.summarise(trained.coverage())
+        evidence_report.print_verdict(trained, coverage)
         _say_holes(trained, normal)
+        evidence_report.print_coverage(trained, coverage)
         evidence_report.print_measured(measured.normal, measured.false_alarms)
-        evidence_report.print_promise(trained)
         evidence_report.print_faults(measured.faulty)
         evidence_report.print_not_tried(silent)
     else:

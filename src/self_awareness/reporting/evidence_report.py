@@ -2,14 +2,13 @@
 from __future__ import annotations
 
 from statistics import median
-from typing import Dict, List, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Optional, Sequence, Tuple
 
-from self_awareness import TrainedModel
+from self_awareness import EvidenceModel, TrainedModel
 from self_awareness.calibration import confidence
 from self_awareness.calibration.results import FalseAlarms
 from self_awareness.calibration.runs import RECORDED, JudgedRun
 from self_awareness.reporting import coverage_text, relations_text
-from self_awareness.reporting.model_summary import summarise_evidence
 from self_awareness.reporting.text_table import aligned
 from self_awareness.stamps import SECOND_NS
 
@@ -21,22 +20,16 @@ def counts(tracks: Dict[str, int]) -> str:
     return ', '.join(f'{channel} {count}' for channel, count in tracks.items() if count) or 'none'
 
 
-def print_limits(trained: TrainedModel, path: str) -> None:
-    """Print what is watched, and what is not."""
-    evidence = summarise_evidence(trained)
-    judged = evidence['calibration']['judged_tracks']
-    dropped = {channel: count - judged.get(channel, 0)
-               for channel, count in evidence['tracks'].items()}
-    print(f'{path}: watched: {counts(judged)}')
-    if any(dropped.values()):
-        print(f'  left out, since they say nothing or too little: {counts(dropped)}')
-    for line in relations_text.lines(evidence['calibration']['relations']):
+def print_verdict(trained: TrainedModel, coverage: Sequence[Dict[str, Any]]) -> None:
+    """Print what the model is worth, and then what to record next, and why."""
+    print_promise(trained)
+    found_s = [each['death_found_after'] for each in coverage if each['death_found_after']]
+    if found_s:
+        print(f'deaths found: those of {len(found_s)} of {len(coverage)} components, after '
+              f'{min(found_s):.2g} s to {max(found_s):.2g} s')
+    for line in relations_text.to_record(relations_text.relations(trained,
+                                                                  EvidenceModel(trained))):
         print(f'  {line}')
-    for line in coverage_text.lines(evidence['calibration']['coverage'], trained.fewest_gaps):
-        print(f'  {line}')
-    if evidence['not_judged']:
-        print(f'  not judged, fewer than {trained.fewest_gaps} gaps in training: '
-              f'{"; ".join(evidence["not_judged"])}')
 
 
 def print_promise(trained: TrainedModel) -> None:
@@ -46,6 +39,12 @@ def print_promise(trained: TrainedModel) -> None:
     print(f'at most {trained.calibration.false_alarms_per_hour:.2g} false alarms an hour are to be '
           'expected (95 %), by leaving starts out in turn; twice as many hours of normal '
           'operation, of more starts, may halve that')
+
+
+def print_coverage(trained: TrainedModel, coverage: Sequence[Dict[str, Any]]) -> None:
+    """Print a table of all components."""
+    for line in coverage_text.lines(coverage, trained.fewest_gaps):
+        print(line)
 
 
 def print_measured(normal: Sequence[JudgedRun], alarms: FalseAlarms) -> None:
@@ -85,10 +84,6 @@ def print_not_tried(faults: Sequence[str]) -> None:
     """Print which faults no recording can show."""
     if faults:
         print('not tried, silent after the middle of every recording: ' + ', '.join(faults))
-
-
-def _hours(hours: float) -> str:
-    return f'{hours:.2g} h' if hours >= 1.0 else f'{60.0 * hours:.0f} min'
 
 
 def _names(run: JudgedRun) -> Tuple[str, str]:

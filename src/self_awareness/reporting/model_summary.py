@@ -50,18 +50,8 @@ def summarise(model: TrainedModel) -> Dict[str, Any]:
     }
 
 
-def summarise_evidence(model: TrainedModel) -> Dict[str, Any]:
-    """Return what the evidence detector watches, as the key `evidence` of summarise().
-
-    Tracks are counted by channel: overdue, rate, pairs and deadlines.
-
-    Raises:
-        ValueError: the model was not trained for the evidence detector.
-    """
-    return _evidence(model, EvidenceModel(model))
-
-
 def _evidence(model: TrainedModel, evidence: EvidenceModel) -> Dict[str, Any]:
+    """Return what the evidence detector watches; tracks are counted by channel."""
     tracks = evidence.tracks
     summary: Dict[str, Any] = {
         'tracks': dict(Counter(track.channel for track in tracks)),

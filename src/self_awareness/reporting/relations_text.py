@@ -58,21 +58,29 @@ def lines(found: List[Dict[str, Any]]) -> List[str]:
     """Return lines for people: what is watched and why, and what more starts would add."""
     text = []
     watched = [relation for relation in found if relation['judged']]
-    waiting = [relation for relation in found if not relation['watched']
-               and relation['starts'] < relation['starts_needed'] <= MOST_STARTS]
     for relation in watched[:_MOST_LINES]:
         text.append(f'{relation["channel"]}: {relation["from"]} -> {relation["to"]}: '
                     f'{reasons(relation)}')
     if len(watched) > _MOST_LINES:
         text.append(f'and {len(watched) - _MOST_LINES} more (info --json lists all)')
+    return text + to_record(found)
+
+
+def to_record(found: List[Dict[str, Any]]) -> List[str]:
+    """Return lines for people: what more starts of the robot would add."""
+    text = []
+    waiting = [relation for relation in found if not relation['watched']
+               and relation['starts'] < relation['starts_needed'] <= MOST_STARTS]
     if found and max(relation['starts'] for relation in found) == 1:
         text.append('all recordings are taken for one start of the robot: event logs say when it '
                     'was started, and between bags of different starts lies a minute or more')
     if waiting:
         fewest = min(waiting, key=lambda each: each['starts_needed'] - each['starts'])
         more = fewest['starts_needed'] - fewest['starts']
-        text.append(f'{len(waiting)} relations are not watched, since there were too few starts '
-                    f'of the robot: record after {more} more to watch late answers of '
-                    f'{fewest["to"]}'
+        late = list(dict.fromkeys(each['to'] for each in waiting))
+        others = f' and {len(late) - 1} others' if len(late) > 1 else ''
+        text.append(f'record after {more} more start{"s" if more > 1 else ""} of the robot to '
+                    f'watch late answers of {fewest["to"]}{others}: there were too few starts to '
+                    'tell an answer from chance'
                     + ('' if fewest['graph'] else '; train with the graph (--graph) needs fewer'))
     return text

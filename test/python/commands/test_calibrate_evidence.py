@@ -38,7 +38,7 @@ def _run(trained: str, long_bags: Bags, tmp_path, capsys) -> Callable[..., Tuple
 def test_the_limits_are_stored_with_how_they_were_found(run, trained: str, tmp_path) -> None:
     code, out, err = run('--budget', '0.25')
     assert code == 0 and err == ''
-    assert re.search(r'watched: overdue 3, rate \d+', out)
+    assert 'deaths found: those of 3 of 3 components, after ' in out
     model = TrainedModel.load(str(tmp_path / 'm'))
     found = model.calibration
     assert len(found.limits) == len(EvidenceModel(model).tracks)
@@ -77,8 +77,18 @@ def test_relations_are_told_with_their_reasons_or_what_is_missing(run, tmp_path)
     assert relations  # /slam answers to /laser, as a timer may
     waiting = [relation for relation in relations if not relation.watched
                and relation.starts < relation.starts_needed]
-    assert waiting and 'since there were too few starts' in out
-    assert re.search(r'record after \d+ more to watch late answers of /', out)
+    assert waiting and 'there were too few starts' in out
+    assert re.search(r'record after \d+ more starts? of the robot to watch late answers of /', out)
+
+
+def test_the_verdict_comes_first_then_what_to_record_then_the_table(run) -> None:
+    _, out, _ = run()
+    lines = out.splitlines()
+    assert lines[0].startswith('at most ')
+    table = next(i for i, line in enumerate(lines) if line.startswith('component '))
+    assert [i for i, line in enumerate(lines) if 'record after' in line][0] < table
+    assert [line for line in lines[:table] if line.startswith('deaths found: those of 3 of 3 ')]
+    assert not re.search(r'\b(tracks?|relations?|gains?|overdue|linkers?|pairs)\b', out), out
 
 
 def test_faults_are_told_in_a_table_by_source(run) -> None:

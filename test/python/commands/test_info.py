@@ -139,7 +139,7 @@ def test_too_rare_is_what_has_fewer_gaps_than_the_model_asks_for(long_bags, tmp_
     assert info.main([output]) == 0
     assert 'too rare to judge: fewer than 1000 gaps' in capsys.readouterr().out
     assert calibrate.main(['--model', output, '--normal', long_bags[1], '-o', output]) == 0
-    assert 'not judged, fewer than 1000 gaps in training: /battery' in capsys.readouterr().out
+    assert 'not watched: 324 gaps in training, 1000 are needed' in capsys.readouterr().out
     assert as_json(capsys, str(output))['fewest_gaps'] == 1000
     assert train.main([long_bags[0], '-o', str(tmp_path / 'n')]) == 0
     assert 'too rare to judge (fewer than 30 gaps between two of a kind)  0' in (
