@@ -160,6 +160,7 @@ void EventRecorder::begin(std::int64_t now) {
     return;
   }
   attempt([&] {
+    ros1::checkFolder(parameters_.output);
     file_ = std::make_unique<File>(newPath());
     graph_.reset();
     packer_.emplace([this](self_awareness::EventLog part) { file_->log.write(std::move(part)); });

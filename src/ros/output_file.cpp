@@ -119,6 +119,14 @@ std::string writeProblem(const std::string& path, int error, const std::string& 
   return problem + ")";
 }
 
+void checkFolder(const std::string& path) {
+  const fs::path folder = fs::absolute(folderOf(path));
+  if (boost::system::error_code error; !fs::is_directory(folder, error)) {
+    throw FileError("there is no folder " + folder.string() + ": create it (mkdir -p '" +
+                    folder.string() + "')");
+  }
+}
+
 void putInPlace(const std::string& written, const std::string& path) {
   const int file = ::open(written.c_str(), O_RDONLY | O_CLOEXEC);
   if (file < 0) {

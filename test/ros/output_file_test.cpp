@@ -201,6 +201,21 @@ TEST_F(OutputFileTest, WhatKilledProgramsLeftIsRemovedAndNothingElse) {
   EXPECT_EQ(textOf(path("b")), "b");
 }
 
+TEST_F(OutputFileTest, AMissingFolderIsNamedWithTheWayOut) {
+  checkFolder("run");  // in this folder
+  checkFolder(path("run"));
+  try {
+    checkFolder(path("no such/run"));
+    FAIL();
+  } catch (const FileError& error) {
+    const std::string folder = path("no such");
+    EXPECT_EQ(error.what(),
+              "there is no folder " + folder + ": create it (mkdir -p '" + folder + "')");
+  }
+  put(path("file"), "a");
+  EXPECT_THROW(checkFolder(path("file/run")), FileError);
+}
+
 TEST_F(OutputFileTest, AFullDiskIsToldWithTheRoomThatThereIs) {
   put(path("a"), std::string(2000000, 'x'));
   const std::string problem = writeProblem("/far/b", ENOSPC, path("a"));

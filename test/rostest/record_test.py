@@ -12,6 +12,7 @@ import rosbag
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
+from rosgraph_msgs.msg import Log
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
@@ -119,6 +120,23 @@ class RecordTest(unittest.TestCase):
             recorder.wait(30)
         log, = glob.glob(self.folder + '/run*.bag')
         self.assertEqual(recordings_in_event_log(log), 1)
+
+    def test_a_missing_folder_is_told_once_and_recording_begins_when_it_is_there(self) -> None:
+        said, folder = [], self.folder + '/new'
+        listener = rospy.Subscriber('/rosout', Log, said.append)
+        with Process('rosrun', 'self_awareness', 'record_events', '__name:=early',
+                     '_output:={}/run'.format(folder)), Talker('/a'):
+            looks: List[object] = []
+            looking = rospy.Subscriber('/diagnostics', DiagnosticArray, lambda array: looks.extend(
+                status for status in array.status if status.name == 'early: recording'
+                and "mkdir -p '{}'".format(folder) in status.message))
+            await_condition('it has looked again and again', lambda: len(looks) >= 4, 60)
+            told = [log.msg for log in said if log.name == '/early' and log.level >= Log.ERROR]
+            os.mkdir(folder)
+            await_condition('a log', lambda: glob.glob(folder + '/run*.bag.active'), 30)
+            looking.unregister()
+        listener.unregister()
+        self.assertEqual(len(told), 1, told)
 
     def test_a_disk_without_space_is_an_error_on_diagnostics(self) -> None:
         said = []

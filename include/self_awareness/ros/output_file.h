@@ -17,6 +17,12 @@ class FileError : public std::runtime_error {
 /// @param temporary what was written so far, if it is removed after that; empty: nothing
 std::string writeProblem(const std::string& path, int error, const std::string& temporary = "");
 
+/// Looks whether there is a folder for files that are written later, and says the way out if not:
+/// the same words each time.
+/// @param path of such a file, or the beginning of it
+/// @throw FileError if there is none
+void checkFolder(const std::string& path);
+
 /// Gives a file that was written its final name, in the place of a file that has it. Its content
 /// is on the disk before, so that a power cut leaves the one file or the other.
 /// @throw FileError if that fails; both files are as they were then

@@ -3,7 +3,9 @@ from __future__ import annotations
 
 import argparse
 import os
+import signal
 import sys
+from contextlib import suppress
 from typing import List, Optional, Sequence
 
 import rospy
@@ -18,6 +20,7 @@ from self_awareness.output_files import MODEL, check_outputs
 
 _MONITOR = 'self_awareness_node'
 _START_UP_S = 30.0
+_WRONG_USAGE = 2
 
 _EPILOG = """\
 learn.launch runs it. The model is the parameter ~model, as of the monitor. If the file is there
@@ -27,29 +30,48 @@ again, it goes on with the logs that are there.
 
 
 def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Run the program; return its exit code (see cli.run)."""
+    """Run the program; return its exit code (see cli.run).
+
+    Under roslaunch, wrong arguments do not end it, but somebody must: launched with `respawn`, it
+    would come back with the same arguments for ever.
+    """
+    given = sys.argv if argv is None else ['', *argv]
     # Under roslaunch, the name of a node comes with the arguments.
-    return cli.run(_parser(), _learn, rospy.myargv(sys.argv if argv is None else ['', *argv])[1:])
+    code = cli.run(_parser(), _learn, rospy.myargv(given)[1:])
+    if code == _WRONG_USAGE and any(each.startswith('__name:=') for each in given):
+        print('learn: waiting for the end: launch it again with other arguments', file=sys.stderr,
+              flush=True)
+        with suppress(KeyboardInterrupt):
+            signal.pause()
+    return code
 
 
 def _learn(arguments: argparse.Namespace) -> None:
     limit_goodbye()
     rospy.init_node('self_awareness')
     model = str(rospy.get_param('~model', ''))
-    if not model:
-        raise ValueError('the parameter ~model is not set: which file is the model to be?')
     if os.path.exists(model):
         rospy.loginfo('%s is there: this is the monitor; remove it to learn again', model)
     else:
-        check_outputs([(model, MODEL)], [])
-        encoding = without(rospy.get_name(), encoding_file.load(arguments.encoding)
-                           if arguments.encoding else EncodingRules.defaults())
-        plan = Plan(model, arguments.logs or f'{model}.logs', arguments.hours, arguments.start_up,
-                    arguments.budget, encoding, arguments.subscribe)
+        try:
+            plan = _plan(arguments, model)
+        except (OSError, ValueError) as error:
+            print(f'learn: error: {error}', file=sys.stderr)
+            raise SystemExit(_WRONG_USAGE) from error
         if not Learner(plan).run():
             return
         rospy.loginfo('%s is learned: this is the monitor from now on', model)
     _become_monitor()
+
+
+def _plan(arguments: argparse.Namespace, model: str) -> Plan:
+    if not model:
+        raise ValueError('the parameter ~model is not set: which file is the model to be?')
+    check_outputs([(model, MODEL)], [])
+    encoding = without(rospy.get_name(), encoding_file.load(arguments.encoding)
+                       if arguments.encoding else EncodingRules.defaults())
+    return Plan(model, arguments.logs or f'{model}.logs', arguments.hours, arguments.start_up,
+                arguments.budget, encoding, arguments.subscribe)
 
 
 def without(node: str, encoding: EncodingRules) -> EncodingRules:
