@@ -70,6 +70,17 @@ def test_ros_finds_the_package_and_python_its_module_there(installed: Dict[str, 
         assert prefix in Path(module).parents
 
 
+def test_rosrun_offers_programs_and_nothing_of_the_developers(installed: Dict[str, str]) -> None:
+    """As its completion finds them."""
+    folders = run('catkin_find', '--without-underlays', '--libexec', '--share', 'self_awareness',
+                  env=installed).split()
+    offered = {path.name for folder in folders for path in Path(folder).rglob('*')
+               if path.is_file() and os.access(path, os.X_OK)}
+    assert offered == {'calibrate', 'component', 'convert', 'diff', 'induce', 'info', 'learn',
+                       'merge', 'record_events', 'record_graph', 'score', 'self_awareness_node',
+                       'simulate', 'train'}
+
+
 def test_no_text_that_is_installed_names_the_workspace(installed: Dict[str, str],
                                                        devel: Path) -> None:
     texts = {path: path.read_bytes() for path in (Path(installed['HOME']) / 'install').rglob('*')
