@@ -1,18 +1,20 @@
 #!/usr/bin/env bash
 # Shows the whole way on a simulated robot of 15 nodes: build, record normal runs, train,
-# calibrate, run the monitor with a diagnostic_aggregator, kill the laser driver, print the alarm.
+# calibrate, run the monitor with a diagnostic_aggregator, kill the laser driver, print the alarm, make
+# the report of it.
 #
-# usage: scripts/demo.sh [FOLDER]     where bags, model and plots go; out/ in the checkout by default
+# usage: scripts/demo.sh [FOLDER]     where all files go; out/ in the checkout by default
 #
 # Exit code 0 only if the alarm came, and none before the fault.
 
 source "$(dirname "${BASH_SOURCE[0]}")/prepare.sh"
+source "$(dirname "${BASH_SOURCE[0]}")/processes.sh"
 
 out=$(mkdir -p "${1:-$checkout/out}" && cd "${1:-$checkout/out}" && pwd)
 run_seconds=60
 
-install_packages
-build > "$out/build.log" 2>&1 || { tail -n 40 "$out/build.log" >&2; exit 1; }
+install_packages without-tests
+build > >(tee "$out/build.log" | progress_of_make) 2>&1 || { tail -n 40 "$out/build.log" >&2; exit 1; }
 
 # The demo has its own master, on a free port of the loopback interface.
 port=$(/usr/bin/python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0))
@@ -20,7 +22,6 @@ print(s.getsockname()[1])')
 export ROS_MASTER_URI=http://127.0.0.1:$port ROS_IP=127.0.0.1 ROS_LOG_DIR=$out/log
 unset ROS_HOSTNAME
 
-source "$(dirname "${BASH_SOURCE[0]}")/processes.sh"
 trap stop_all EXIT
 
 heard() { timeout 5 rostopic echo -n 1 "$1"; }
@@ -38,7 +39,7 @@ for _ in waiting($2, '$1'): pass" &
   wait $bar
 }
 
-rm -f "$out"/*.bag "$out"/*.active "$out"/*.model "$out"/*.yaml "$out"/*.png "$out"/*.csv
+rm -f "$out"/*.bag "$out"/*.active "$out"/*.model "$out"/*.yaml "$out"/*.png "$out"/*.html
 
 say "Starting the simulated robot (launch/follow_me.launch)"
 start roscore.log roscore -p "$port"
@@ -60,7 +61,9 @@ rosrun self_awareness calibrate --model "$out/trained.model" \
   --roc "$out/roc.png" -o "$out/calibrated.model"
 
 say "Starting the monitor and a diagnostic_aggregator"
-start monitor.log roslaunch --wait self_awareness monitor.launch model:="$out/calibrated.model"
+printf 'recorder: {directory: "%s"}\n' "$out" > "$out/monitor.yaml"
+start monitor.log roslaunch --wait self_awareness monitor.launch model:="$out/calibrated.model" \
+  config:="$out/monitor.yaml"
 start diagnostics.log roslaunch --wait self_awareness diagnostics.launch
 rosbag record --all --exclude '/rosout_agg|/self_awareness/.*|/diagnostics.*' --quiet \
   --output-name "$out/fault.bag" __name:=record > "$out/fault.log" 2>&1 &
@@ -73,7 +76,11 @@ wait $recorder || true
 
 say "The same from the bag that was recorded meanwhile"
 rosrun self_awareness score "$out/fault.bag" --model "$out/calibrated.model" \
-  --csv "$out/score.csv" --plot "$out/score.png"
+  --report "$out/report.html" --plot "$out/score.png"
 
-say "Plots: $out/roc.png, $out/score.png"
+say "What next"
+echo "See who failed, when and why:  xdg-open $out/report.html"
+echo "Learn your own robot:          source $workspace/devel/setup.bash &&" \
+  "roslaunch self_awareness learn.launch hours:=2 model:=$HOME/robot.model"
+echo "Read what to do with alarms:   $checkout/docs/alarm.md"
 exit $verdict

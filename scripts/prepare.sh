@@ -26,8 +26,12 @@ packages_debian=(
   libvisualization-msgs-dev libsensor-msgs-dev libstd-srvs-dev
   pybind11-dev libboost-filesystem-dev libeigen3-dev libre2-dev pkg-config
   python3-numpy python3-matplotlib python3-tqdm python3-yaml python3-jinja2 python3-plotly
+  libgtest-dev libgmock-dev nlohmann-json3-dev procps
+)
+# Without these, the tests cannot run, or leave something out; all else can.
+packages_debian_tests=(
   chromium chromium-driver python3-selenium poppler-utils
-  catkin-lint clang-format clang-tidy doxygen libfaketime libgtest-dev libgmock-dev nlohmann-json3-dev procps
+  catkin-lint clang-format clang-tidy doxygen libfaketime
   python3-pytest python3-pytest-xdist
   python3-hypothesis python3-flake8 python3-mypy
   # Debian 11's distributed imports tornado, but its package does not depend on it.
@@ -42,9 +46,11 @@ packages_noetic=(
   ros-noetic-geometry-msgs
   pybind11-dev libboost-filesystem-dev libeigen3-dev libre2-dev pkg-config
   python3-numpy python3-matplotlib python3-tqdm python3-yaml python3-jinja2 python3-plotly
-  ros-noetic-rostest ros-noetic-roslaunch libfaketime libgtest-dev libgmock-dev nlohmann-json3-dev procps
-  python3-pytest python3-pytest-xdist python3-hypothesis python3-catkin-lint clang-format python3-distributed
-  python3-flake8 python3-mypy
+  ros-noetic-rostest ros-noetic-roslaunch libgtest-dev libgmock-dev nlohmann-json3-dev procps
+)
+packages_noetic_tests=(
+  libfaketime python3-pytest python3-pytest-xdist python3-hypothesis python3-catkin-lint clang-format
+  python3-distributed python3-flake8 python3-mypy
 )
 
 say() { printf '\n== %s\n' "$*"; }
@@ -57,9 +63,14 @@ installed() {
   [ "$(dpkg-query --show --showformat='${db:Status-Status}' "$1" 2>/dev/null)" = installed ]
 }
 
+# install_packages [without-tests]
 install_packages() {
-  local wanted=("${packages_debian[@]}")
-  [ ! -d /opt/ros/noetic ] || wanted=("${packages_noetic[@]}")
+  local wanted=("${packages_debian[@]}") tests=("${packages_debian_tests[@]}")
+  if [ -d /opt/ros/noetic ]; then
+    wanted=("${packages_noetic[@]}")
+    tests=("${packages_noetic_tests[@]}")
+  fi
+  [ "${1:-}" = without-tests ] || wanted+=("${tests[@]}")
   install_apt "${wanted[@]}"
 }
 

@@ -1,4 +1,4 @@
-# Sourced by demo.sh: processes in the background, each with its log in the folder $out. If one of
+# Sourced by demo.sh: the progress of a build, and processes in the background, each with its log in the folder $out. If one of
 # them ends by itself, its last lines are shown at once, and the script ends.
 
 started=()  # log by process id
@@ -25,6 +25,17 @@ stop_all() {
     done
     kill -KILL -- "-$pid" 2> /dev/null || true
     wait "$pid" 2> /dev/null || true
+  done
+}
+
+# Shows how far a build is, in steps of 5 %, by the output of make.
+progress_of_make() {
+  local line next=0
+  while read -r line; do
+    if [[ $line =~ ^\[\ *([0-9]+)%\] ]] && [ "${BASH_REMATCH[1]}" -ge "$next" ]; then
+      echo "${BASH_REMATCH[1]} % built"
+      next=$((BASH_REMATCH[1] - BASH_REMATCH[1] % 5 + 5))
+    fi
   done
 }
 

@@ -53,3 +53,13 @@ def test_what_does_not_come_is_told(tmp_path: Path) -> None:
     done = run(f'start a.log sleep {LONG_S}\nawait 1 "the master answers" false', tmp_path)
     assert done.returncode == 1
     assert 'not within 1 s: the master answers' in done.stderr
+
+
+def test_a_build_shows_how_far_it_is_while_it_goes_on(tmp_path: Path) -> None:
+    make = ('echo "-- Configuring done"; for i in $(seq 0 3 99); do '
+            'printf "[%3d%%] Building CXX object a.o\\n" $i; done; echo "[100%] Built target a"')
+    done = run(f'(touch {tmp_path}/begun; {make}; until [ -e {tmp_path}/seen ]; do sleep 0.1; done)'
+               f' | progress_of_make | (read -r first; touch {tmp_path}/seen; echo "$first"; cat)',
+               tmp_path)
+    assert done.stdout.splitlines() == [f'{percent} % built' for percent in (
+        0, 6, 12, 15, 21, 27, 30, 36, 42, 45, 51, 57, 60, 66, 72, 75, 81, 87, 90, 96, 100)]
