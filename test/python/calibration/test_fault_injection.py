@@ -90,7 +90,8 @@ def test_a_fault_is_written_as_it_is_read(text: str) -> None:
 def test_an_unknown_source_lists_those_there_are() -> None:
     fault = InjectedFault.parse('crash:/slam')
     assert of_known_source(fault, TYPES) == fault
-    assert of_known_source(InjectedFault.parse('crash:slam'), TYPES) == fault, 'as simulate says it'
+    as_simulate_says_it = InjectedFault.parse('crash:slam')
+    assert of_known_source(as_simulate_says_it, TYPES) == fault
     with pytest.raises(ValueError, match='/laser, /slam$'):
         of_known_source(InjectedFault.parse('crash:/motor'), TYPES)
     with pytest.raises(ValueError, match='does not tell sources apart'):

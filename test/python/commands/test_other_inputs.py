@@ -5,7 +5,6 @@ import os
 import shutil
 import subprocess
 import sys
-import threading
 from pathlib import Path
 from typing import Callable, Dict, List
 
@@ -103,8 +102,8 @@ def test_a_pipe_is_no_bag_and_no_model(program: str, arguments: List[str], robot
 def test_a_pipe_without_a_name_is_read_as_yaml(robot_bags, tmp_path: Path) -> None:
     """As the shell makes one of `--encoding <(...)`."""
     reader, writer = os.pipe()
-    threading.Thread(target=lambda: (os.write(writer, b'source: none\n'),
-                                     os.close(writer))).start()
+    with open(writer, 'w', encoding='utf-8') as rules:  # fits into a pipe
+        rules.write('source: none\n')
     assert train.main([robot_bags[0], '--encoding', f'/dev/fd/{reader}', '-o',
                        str(tmp_path / 'm')]) == 0
     os.close(reader)
