@@ -37,9 +37,7 @@ def test_every_argument_says_what_it_is(path: Path) -> None:
 
 
 @pytest.mark.parametrize('given, meant', [
-    ('r.model', '{cwd}/r.model'), ('a/r.model', '{cwd}/a/r.model'),
-    ('../r.model', '{cwd}/../r.model'),
-    ('/data/r.model', '/data/r.model'), ('~/r.model', '~/r.model')])
+    ('r.model', '{cwd}/r.model'), ('/data/r.model', '/data/r.model'), ('~/r.model', '~/r.model')])
 def test_a_relative_path_means_the_folder_of_who_launches(given: str, meant: str,
                                                           tmp_path: Path) -> None:
     meant = meant.format(cwd=tmp_path)
