@@ -215,7 +215,8 @@ TEST(EvidenceTracks, AChannelThatIsSwitchedOffMustExist) {
 TEST(EvidenceTracks, ThoseFromOutsideAreChecked) {
   const Track overdue = trackOf(kOverdue, kA, kA);
   const Track pair = trackOf(kPairs, kB, kA);
-  EXPECT_NO_THROW(checkTracks({overdue, pair, overdue}, 2));
+  EXPECT_NO_THROW(checkTracks({overdue, pair}, 2));
+  EXPECT_THROW(checkTracks({overdue, pair, overdue}, 2), std::invalid_argument);
   EXPECT_THROW(checkTracks({overdue}, 0), std::invalid_argument);
   EXPECT_THROW(checkTracks({pair}, 1), std::invalid_argument);
   EXPECT_THROW(checkTracks({trackOf(kPairs, kA, kB)}, 1), std::invalid_argument);
