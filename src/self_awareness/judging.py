@@ -14,7 +14,8 @@ BOTH = 'both'
 Judge = Callable[..., Verdicts]
 """Judges stamps and ids of a recording, and the silence up to its end [ns]. Further arguments: the
 event types by id, those of the model first (without, those of unknown events are not known), a
-ReplayedMonitor that is told of all of it, where the clock was set (clock_steps), and how the machine was (waiting)."""
+ReplayedMonitor that is told of all of it, where the clock was set (clock_steps), and how the
+machine was (waiting)."""
 
 
 def paper_judge(trained: TrainedModel, model: PaperModel, threshold: Optional[float],

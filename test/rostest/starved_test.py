@@ -68,16 +68,19 @@ class StarvedTest(MonitorCase):
                 float(listener.value(node, 'events a second') or 0) > 5
                 for node in ('/driver', '/base')), 20)
             began = rospy.get_time()
-            loops = [Process('python3', '-c', LOOP) for _ in range(2 * multiprocessing.cpu_count())]
+            loops = [Process('python3', '-c', LOOP)
+                     for _ in range(2 * multiprocessing.cpu_count())]
             try:
                 said = await_condition('the machine is starved', lambda: next(
-                    (status for status in listener.statuses if status.kind == SelfAwareness.BUSY_MACHINE
+                    (status for status in listener.statuses
+                     if status.kind == SelfAwareness.BUSY_MACHINE
                      and status.header.stamp.to_sec() > began), None), 20)
                 self.assertLess(said.header.stamp.to_sec() - began, 3)
                 self.assertEqual(said.level, SelfAwareness.WARN)
                 self.assertEqual([suspect.component for suspect in said.suspects], [])
                 self.assertEqual(said.component, '')
-                self.assertRegex(said.message, r'the machine has been starved for \d\.\d s \(load ')
+                self.assertRegex(said.message,
+                                 r'the machine has been starved for \d\.\d s \(load ')
                 await_condition('it is said on /diagnostics', lambda: any(
                     status.level == DiagnosticStatus.WARN and 'starved' in status.message
                     for status in listener.diagnostics('communication')), 20)

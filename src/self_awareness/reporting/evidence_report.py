@@ -36,8 +36,8 @@ def print_promise(trained: TrainedModel) -> None:
     """Print how many false alarms the limits promise, and what would promise fewer."""
     if trained.calibration is None:
         return
-    print(f'at most {trained.calibration.false_alarms_per_hour:.2g} false alarms an hour are to be '
-          'expected (95 %), by leaving starts out in turn; twice as many hours of normal '
+    print(f'at most {trained.calibration.false_alarms_per_hour:.2g} false alarms an hour are to '
+          'be expected (95 %), by leaving starts out in turn; twice as many hours of normal '
           'operation, of more starts, may halve that')
 
 

@@ -61,8 +61,8 @@ All figures, also of the other systems: [{name}.csv]({name}.csv).
 _BUDGETS = """\
 ## What the budget comes to
 
-False alarms an hour of `{system}` in all families: what the calibrations promised on average (95 %),
-and what came.
+False alarms an hour of `{system}` in all families: what the calibrations promised on average
+(95 %), and what came.
 """
 
 

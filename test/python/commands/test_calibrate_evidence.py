@@ -6,7 +6,7 @@ import math
 import os
 import re
 from pathlib import Path
-from typing import Callable, List, Optional, Tuple
+from typing import Callable, List, Tuple
 
 import pytest
 from conftest import jittery_robot

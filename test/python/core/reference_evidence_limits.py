@@ -341,9 +341,9 @@ class ReferenceLimits:
                 if not math.isnan(limits[index]):
                     judged_tracks[of_gaps].append(
                         (largest, least, found / max(largest) if of_gaps else margin))
-        of_gaps, of_evidence = left_out(with_gaps, judged_tracks[True]), left_out(
-            judged, judged_tracks[False])
-        return limits, highest_rate(of_gaps[0] + of_evidence[0], max(of_gaps[1], of_evidence[1]))
+        gaps, gap_hours = left_out(with_gaps, judged_tracks[True])
+        evidence, hours = left_out(judged, judged_tracks[False])
+        return limits, highest_rate(gaps + evidence, max(gap_hours, hours))
 
     def _tail(self, kind: str, hours: float, starts: int) -> Tail:
         gaps = list(self._model.both.gaps[kind])

@@ -209,7 +209,9 @@ def test_program_writes_numbered_bags(tmp_path: Path, capsys: pytest.CaptureFixt
     folder = tmp_path / 'bags'
     assert main(['-o', str(folder), '--runs', '2', '--seed', '3', *common]) == 0
     assert main(['-o', str(folder), '--fault', 'cc1@1', *common]) == 0
-    assert sorted(os.listdir(str(folder))) == ['cc1_1.bag', 'normal_3.bag', 'normal_4.bag']
+    runs = ('cc1_1', 'normal_3', 'normal_4')
+    assert (sorted(os.listdir(str(folder)))
+            == sorted(run + end for run in runs for end in ('.bag', '.graph.yaml')))
     assert str(folder / 'normal_3.bag') in capsys.readouterr().out
 
 
