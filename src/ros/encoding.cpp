@@ -17,12 +17,6 @@ namespace {
 
 constexpr std::size_t kLongestQuote = 100;  // [bytes]
 
-/// All event types that are too many.
-const core::EventType& furtherTypes() {
-  static const core::EventType kType{"", "(further topics)", "(further unknown events)"};
-  return kType;
-}
-
 /// Whether a node is `rostopic pub`, in any namespace.
 bool isRostopic(const std::string& source) {
   return source.substr(source.rfind('/') + 1) == "rostopic";
@@ -106,7 +100,7 @@ void checkEventTypes(const EncodingRules& rules, const core::Vocabulary& vocabul
 core::EventId internUpTo(std::size_t most, const core::EventType& type,
                          core::Vocabulary& vocabulary) {
   if (vocabulary.size() >= most && !vocabulary.find(type)) {
-    return vocabulary.intern(furtherTypes());
+    return vocabulary.intern({"", "(further topics)", "(further unknown events)"});
   }
   return vocabulary.intern(type);
 }
@@ -125,10 +119,6 @@ std::string whyLeftOut(const Connection& connection) {
     }
   }
   return whyLeftOut(connection.topic);
-}
-
-std::string whyImpossible(const core::EventType& type) {
-  return type == furtherTypes() ? "" : whyLeftOut(type.scope);
 }
 
 Connection connectionFrom(const ros::M_string& header, const std::string& topic) {

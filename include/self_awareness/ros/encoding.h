@@ -81,9 +81,6 @@ std::string whyLeftOut(const Connection& connection);
 /// The same, as far as the name of the topic says it.
 std::string whyLeftOut(const std::string& topic);
 
-/// Why a file cannot hold an event type: no node could subscribe to its topic. Empty: it can.
-std::string whyImpossible(const core::EventType& type);
-
 /// What a connection header says, in UTF-8: what is none is replaced. Fields that it lacks are
 /// empty.
 Connection connectionFrom(const ros::M_string& header, const std::string& topic);

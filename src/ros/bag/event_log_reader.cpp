@@ -219,10 +219,6 @@ void EventLogReader::read(const EncodingRules& rules, const EventIds& ids, const
     }
     for (const self_awareness::EventType& type : part.new_types) {
       types.push_back({type.source, type.scope, type.type});
-      const std::string problem = whyImpossible(types.back());
-      if (!problem.empty()) {
-        messages.fail(problem);
-      }
     }
     known.resize(types.size());
     PackedEvents packed;

@@ -64,7 +64,7 @@ struct Tuning {
   double still_busy_share = 0.5;
   double starved = 0.5;
   double usual_load_time = 600;
-  double longest_starvation = 10;
+  double longest_starvation = 60;
   double fewest_busy = 4;
   double busy_one_in = 3;
 

@@ -4,6 +4,14 @@
 #include <utility>
 
 namespace self_awareness::core::evidence {
+namespace {
+
+// Share of the last kRateSpan. Processes that wait for less are forgiven, and not spoken of: that
+// comes and goes wherever more is begun at once than there are processors.
+constexpr double kNearlyAll = 0.9;
+
+}  // namespace
+
 BusyMachine::BusyMachine(std::shared_ptr<const Model> model)
     : model_(std::move(model)), followers_(model_) {}
 
@@ -19,7 +27,7 @@ std::optional<Busy> BusyMachine::closeWindow(const std::vector<double>& shares,
 
 double BusyMachine::starved(const Heard& heard) {
   const std::int64_t waited = heard.starved();
-  if (toSeconds(waited) < model_->tuning().starved * toSeconds(kRateSpan)) {
+  if (static_cast<double>(waited) < kNearlyAll * static_cast<double>(kRateSpan)) {
     starved_since_.reset();
     return 0;
   }
