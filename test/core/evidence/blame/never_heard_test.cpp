@@ -47,6 +47,19 @@ class NeverHeardTest : public testing::Test {
     return ids;
   }
 
+  // What the judge says once B has been silent for 30 s, and C was never heard.
+  Judgement afterSilenceOfB() const {
+    Limits limits;
+    limits.tracks.assign(model_->tracks().size(), std::numeric_limits<double>::quiet_NaN());
+    limits.tracks[indexOf(model_->tracks(), kOverdue, kB, kB)] = 5;
+    const std::unique_ptr<core::Judge> judge = makeJudge(model_, limits, kWindow, graph_);
+    for (const Event& event : start(std::nullopt, 3, 10 * kSecond)) {
+      judge->add(event);
+    }
+    judge->add({40 * kSecond, kA});
+    return judge->judge({40 * kSecond, {}}, 40 * kSecond, NameSuspects::kIfUnusual);
+  }
+
   std::shared_ptr<const Model> model_;
   std::shared_ptr<SourceGraph> graph_ = std::make_shared<SourceGraph>();
 };
@@ -221,16 +234,7 @@ TEST_F(NeverHeardTest, TheJudgeSuspectsAndThenAlarms) {
 
 TEST_F(NeverHeardTest, WhatFellSilentIsNamedBeforeWhatNeverCame) {
   train({start(0, 1)}, {start(0, 7)});
-  Limits limits;
-  limits.tracks.assign(model_->tracks().size(), std::numeric_limits<double>::quiet_NaN());
-  limits.tracks[indexOf(model_->tracks(), kOverdue, kB, kB)] = 5;
-  const std::unique_ptr<core::Judge> judge = makeJudge(model_, limits, kWindow, graph_);
-  for (const Event& event : start(std::nullopt, 3, 10 * kSecond)) {
-    judge->add(event);
-  }
-  judge->add({40 * kSecond, kA});
-  const Judgement judgement =
-      judge->judge({40 * kSecond, {}}, 40 * kSecond, NameSuspects::kIfUnusual);
+  const Judgement judgement = afterSilenceOfB();
   ASSERT_EQ(judgement.suspects.size(), 2U);
   EXPECT_EQ(judgement.suspects[0].id, kB);
   EXPECT_EQ(judgement.suspects[1].id, kC);
@@ -240,16 +244,7 @@ TEST_F(NeverHeardTest, WhatFellSilentIsNamedBeforeWhatNeverCame) {
 TEST_F(NeverHeardTest, WhoWaitsForItIsNamedAfterIt) {
   train({start(0, 1)}, {start(0, 7)});
   graph_->connect("/c", "/z", "/b");
-  Limits limits;
-  limits.tracks.assign(model_->tracks().size(), std::numeric_limits<double>::quiet_NaN());
-  limits.tracks[indexOf(model_->tracks(), kOverdue, kB, kB)] = 5;
-  const std::unique_ptr<core::Judge> judge = makeJudge(model_, limits, kWindow, graph_);
-  for (const Event& event : start(std::nullopt, 3, 10 * kSecond)) {
-    judge->add(event);
-  }
-  judge->add({40 * kSecond, kA});
-  const Judgement judgement =
-      judge->judge({40 * kSecond, {}}, 40 * kSecond, NameSuspects::kIfUnusual);
+  const Judgement judgement = afterSilenceOfB();
   ASSERT_EQ(judgement.suspects.size(), 2U);
   EXPECT_EQ(judgement.suspects[0].id, kC);
   EXPECT_EQ(judgement.suspects[1].id, kB);
