@@ -15,11 +15,15 @@ constexpr std::int64_t kKept = 3 * kRateSpan;  // [ns]
 }  // namespace
 
 Starvation::Starvation(const Tuning& tuning)
-    : starved_(tuning.starved), usual_time_(tuning.usual_load_time * 1e9) {}
+    : starved_(tuning.starved),
+      usual_time_(tuning.usual_load_time * 1e9),
+      unknown_time_(std::min(tuning.longest_starvation * 1e9, usual_time_)) {
+  restart();
+}
 
 void Starvation::restart() {
   usual_ = 0;
-  known_for_ = 0;
+  known_for_ = unknown_time_;
   starved_in_.clear();
 }
 

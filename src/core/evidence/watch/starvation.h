@@ -26,8 +26,11 @@ class Starvation {
   void restart();
 
  private:
-  double starved_;                  // share of a stretch beyond what is usual
-  double usual_time_;               // that what is usual is the mean of [ns]
+  double starved_;     // share of a stretch beyond what is usual
+  double usual_time_;  // that what is usual is the mean of [ns]
+  // A machine that nothing is known of counts as one that was free for so long [ns]. So a load
+  // that begins with it is told, and one that stays is usual before it is an alarm.
+  double unknown_time_;
   double usual_ = 0;                // share of the time
   double known_for_ = 0;            // [ns], at most usual_time_
   std::deque<Waiting> starved_in_;  // the last ones, one after the other

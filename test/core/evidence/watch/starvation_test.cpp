@@ -64,8 +64,15 @@ TEST_F(StarvationTest, ALoadThatStaysIsUsual) {
   go(700 * kSecond, 0.95, kSecond);
   EXPECT_EQ(starvation_.waitedIn(0, now_), 0);
   starvation_.restart();
-  go(10 * kSecond, 0.95);
+  go(70 * kSecond, 0.95, kSecond);
   EXPECT_EQ(starvation_.waitedIn(0, now_), 0) << "it was so from the start";
+}
+
+TEST_F(StarvationTest, ALoadThatBeginsSoonIsNotUsual) {
+  starvation_.restart();
+  go(kSecond, 0);
+  go(20 * kSecond, 1);
+  EXPECT_EQ(starvation_.waitedIn(0, now_), kRateSpan);
 }
 
 TEST_F(StarvationTest, ARestartForgetsIt) {

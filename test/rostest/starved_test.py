@@ -1,0 +1,111 @@
+#!/usr/bin/python3
+"""A machine with too much to do is told from its nodes, live and in a file of the recorder."""
+
+import multiprocessing
+import os
+import re
+import subprocess
+import time
+
+import rospy
+import rostest
+from diagnostic_msgs.msg import DiagnosticStatus
+
+from live_system import (MonitorListener, Process, again_if_clock_was_set, await_condition,
+                         operation, write_bag)
+from monitor_case import MonitorCase
+from self_awareness.msg import SelfAwareness
+
+PRESSURE = '/proc/pressure/cpu'
+LOOP = 'while True: pass'
+MOST_WAITING = 0.3
+"""Share of the time for which processes wait, at most, where a test can tell a load of its own."""
+
+
+class Waiting:
+    """How long processes have waited for a processor since this was made."""
+
+    def __init__(self) -> None:
+        self._before = self._total()
+        self._began = time.monotonic()
+
+    def share(self) -> float:
+        """The share of the time."""
+        return (self._total() - self._before) / (time.monotonic() - self._began)
+
+    @staticmethod
+    def _total() -> float:
+        """Since the machine began [s]."""
+        with open(PRESSURE) as file:
+            return int(re.search(r'total=(\d+)', file.read()).group(1)) / 1e6
+
+
+def talker(name: str, topic: str, rate: float) -> Process:
+    """A node whose periods vary as those of operation()."""
+    return Process('rosrun', 'self_awareness', 'talker.py', '__name:=' + name, '_output:=' + topic,
+                   '_rate:={}'.format(rate), '_variation:=0.3')
+
+
+class StarvedTest(MonitorCase):
+
+    def setUp(self) -> None:
+        super().setUp()
+        if not os.path.exists(PRESSURE):
+            self.skipTest('this kernel does not tell its pressure: no ' + PRESSURE)
+
+    def run_program(self, *command: str) -> str:
+        done = subprocess.run(['rosrun', 'self_awareness', *command], stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout
+
+    @again_if_clock_was_set
+    def test_busy_loops_are_the_machines_fault(self) -> None:
+        bags = [write_bag(self.path('{}.bag'.format(seed)), operation(
+            [('/driver', '/scan', 0.08), ('/base', '/odom', 0.1)], 120, seed)) for seed in (1, 2)]
+        self.run_program('train', *bags, '-o', self.path('model'))
+        with talker('driver', '/scan', 12.5), talker('base', '/odom', 10), \
+                self.monitor(self.path('model'), detector='evidence'), \
+                MonitorListener() as listener:
+            waiting = Waiting()
+            listener.await_settled()
+            await_condition('both are heard', lambda: all(
+                float(listener.value(node, 'events a second') or 0) > 5
+                for node in ('/driver', '/base')), 20)
+            if waiting.share() > MOST_WAITING:  # to the monitor, that is usual
+                self.skipTest('this machine has too much to do already: processes wait for '
+                              '{:.0%} of the time'.format(waiting.share()))
+            began = rospy.get_time()
+            loops = [Process('python3', '-c', LOOP)
+                     for _ in range(2 * multiprocessing.cpu_count())]
+            try:
+                said = await_condition('the machine is starved', lambda: next(
+                    (status for status in listener.statuses
+                     if status.kind == SelfAwareness.BUSY_MACHINE
+                     and status.header.stamp.to_sec() > began), None), 20)
+                self.assertLess(said.header.stamp.to_sec() - began, 3)
+                self.assertEqual(said.level, SelfAwareness.WARN)
+                self.assertEqual([suspect.component for suspect in said.suspects], [])
+                self.assertEqual(said.component, '')
+                self.assertRegex(said.message,
+                                 r'the machine has been starved for \d\.\d s \(load ')
+                await_condition('it is said on /diagnostics', lambda: any(
+                    status.level == DiagnosticStatus.WARN and 'starved' in status.message
+                    for status in listener.diagnostics('communication')), 20)
+            finally:
+                for loop in loops:
+                    loop.stop()
+            await_condition('it is over', lambda: (
+                listener.statuses[-1].level == SelfAwareness.OK), 20)
+            response = self.call('/self_awareness/dump')
+            path = re.search(r' go to (\S+\.bag)$', response.message).group(1)
+            await_condition('it is written', lambda: os.path.exists(path), 20)
+        printed = self.run_program('score', path, '--model', self.path('model'), '--unknown',
+                                   'ignore', '--settle-time', '0.5')
+        self.assertIn('the machine has been starved for', printed)
+        self.assertIn('alarms: 0,', printed)
+
+
+if __name__ == '__main__':
+    rospy.init_node('starved')  # as rostest calls it, too
+    rostest.rosrun('self_awareness', 'starved', StarvedTest)
