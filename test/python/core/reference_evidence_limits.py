@@ -17,16 +17,17 @@ LEAST_MARGIN = {'deadlines': 2.0}
 MOST_MARGIN = 4.0
 MOST_GAP_MARGIN = 1.6
 MOST_OWN_MARGIN = 2.0
-MOST_TAIL_MARGIN = 2.0
+MOST_TAIL_MARGIN = {False: 2.0, True: 8.0}
+"""By whether there are several starts."""
 SCALE = {'timers': 0.05, 'fast timers': 0.05}
 """By pool; 0.2 elsewhere."""
 REGULAR = 1.5
 FAST = 2
-LONGEST_WAIT = 10 * SECOND
 MOST_MEAN_GAPS = 3.0
-PAUSES = 5
+PAUSES = 10
 PRIOR_PAUSES = 2
-FEWEST_STARTS = 3
+PAUSES_IN_RECORDING = 25
+OWED_OF_SILENCE = 0.9
 POOLS = ('fast timers', 'timers', 'others', 'rate', 'pairs', 'deadlines')
 CHUNK = 120 * SECOND
 LEAST_GAIN_LEFT = 0.7
@@ -330,14 +331,17 @@ class ReferenceLimits:
                     starts = len({part.start for part, gap in zip(with_gaps, largest) if gap > 0})
                     tail = self._tail(track[1], hours, starts)
                     rare = self._window + tail.gap(self._rate / len(tracks))
-                    longest = self._window + MOST_TAIL_MARGIN * (max(largest) - self._window)
+                    longest = self._window + (MOST_TAIL_MARGIN[starts > 1]
+                                              * (max(largest) - self._window))
                     if pool == 'others':
                         found = max(found, min(rare, longest))
                     mean = self._model.both.mean_gap(track[1])
-                    if found - self._window > max(LONGEST_WAIT, MOST_MEAN_GAPS * mean):
-                        all_time = self._window + hours * HOUR if starts < FEWEST_STARTS else 0.0
-                        found = max(found, rare, all_time)
-                limits[index] = self._limit(track, found)
+                    recorded = self._longest_recording()
+                    if max(largest) - self._window > max(recorded / PAUSES_IN_RECORDING,
+                                                         MOST_MEAN_GAPS * mean):
+                        all_time = min(hours * HOUR, PAUSES_IN_RECORDING * recorded)
+                        found = max(found, rare, self._window + all_time)
+                limits[index] = self._limit(track, max(largest), found)
                 if not math.isnan(limits[index]):
                     judged_tracks[of_gaps].append(
                         (largest, least, found / max(largest) if of_gaps else margin))
@@ -360,8 +364,18 @@ class ReferenceLimits:
         return Tail(shortest, excess if longest else 0.0, len(longest) / hours,
                     min(len(longest), starts) + PRIOR_PAUSES)
 
-    def _limit(self, track: Track, found: float) -> float:
-        channel, kind, _ = track
+    def _longest_recording(self) -> float:
+        judged = [sum(part.hours for part in self._parts_of(number, 0)) * HOUR
+                  for number in range(len(self._recordings))]
+        return max([float(seen.end - seen.start) for seen in self._training()] + judged)
+
+    def _limit(self, track: Track, largest: float, found: float) -> float:
+        channel, kind, other = track
+        both = self._model.both
         if channel == 'overdue':
             return self._model.overdue(kind, round(found - self._window))
+        if channel == 'deadlines':
+            wait = largest * (both.mean_gap(other) if self._model.counts_requests(track)
+                              else SECOND)
+            return found if wait < OWED_OF_SILENCE * max(both.gaps[kind]) else math.nan
         return found

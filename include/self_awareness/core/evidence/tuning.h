@@ -82,17 +82,18 @@ struct Tuning {
   double most_margin = 4;
   double most_gap_margin = 1.6;
   double most_own_margin = 2;
-  double most_tail_margin = 2;
+  double most_tail_margin = 8;
+  double most_tail_margin_of_start = 2;
   double regular = 1.5;
   double fast = 2;
-  double pauses = 5;
+  double pauses = 10;
   double prior_pauses = 2;
-  double fewest_starts = 3;
+  double pauses_in_recording = 25;
   double most_of_training = 10;
   double least_rate_limit = 3;
   double least_deadline = 0.5;
   double least_requests = 3;
-  double longest_wait = 10;
+  double owed_of_silence = 0.9;
   double most_mean_gaps = 3;
 
   // From evidence to an alarm, and to who is to blame.

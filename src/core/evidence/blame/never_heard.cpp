@@ -27,9 +27,20 @@ NeverHeard::NeverHeard(const Model& model, const Limits& limits,
       graph_(std::move(graph)),
       heard_(model.components().size(), false) {
   const Statistics& statistics = model.statistics();
+  const double due_times = model.tuning().due_times;
+  std::vector<std::int64_t> silent;
+  for (EventId id = 0; id < model.size(); ++id) {
+    silent.push_back(std::llround(due_times * static_cast<double>(model.longestGap(id))));
+  }
+  for (std::size_t track = 0; track < limits.tracks.size(); ++track) {
+    if (model.finding(track) == Finding::kSilent && !std::isnan(limits.tracks[track])) {
+      const EventId id = model.tracks()[track].to;
+      silent[id] = model.ageBeyond(id, limits.tracks[track]);
+    }
+  }
   for (EventId id = 0; id < model.size(); ++id) {
     component_of_.push_back(model.componentIndex(id));
-    Expected expected{id, std::numeric_limits<std::int64_t>::max(), 0, 0, 0};
+    Expected expected{id, std::numeric_limits<std::int64_t>::max(), 0, 0, 0, 0};
     bool always = !statistics.recordings().empty() &&
                   static_cast<double>(statistics.type(id).gaps) >= model.tuning().fewest_gaps;
     for (const Statistics::Recording& recording : statistics.recordings()) {
@@ -44,9 +55,8 @@ NeverHeard::NeverHeard(const Model& model, const Limits& limits,
       expected.longest = std::max(expected.longest, limits.firsts[id]);
     }
     if (always) {
-      expected.least =
-          std::llround(model.tuning().due_times *
-                       static_cast<double>(std::max(expected.longest, model.longestGap(id))));
+      expected.late = std::llround(due_times * static_cast<double>(expected.longest));
+      expected.silent = silent[id];
       all_.push_back(expected);
     }
   }
@@ -88,9 +98,9 @@ void NeverHeard::closeWindow(std::int64_t end, std::int64_t settle_time) {
   }
   share_ = 0;
   for (Expected& expected : missing_) {
-    const std::int64_t due = expected.due(settle_time);
     const double alarm =
-        std::max(alarm_times_ * static_cast<double>(due), static_cast<double>(due + alarm_later_));
+        std::max(alarm_times_ * static_cast<double>(expected.started(settle_time)),
+                 static_cast<double>(expected.due(settle_time) + alarm_later_));
     expected.share = static_cast<double>(passed) / alarm;
     // A recording may lack a topic. And what never comes must not hide what breaks next.
     if (heard_[component_of_[expected.id]] ||

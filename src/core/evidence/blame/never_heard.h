@@ -47,12 +47,17 @@ class NeverHeard {
     EventId id = 0;
     std::int64_t shortest = 0;  // usual time from the start to its first event [ns]
     std::int64_t longest = 0;   // [ns]
-    std::int64_t least = 0;     // it is due so long after the start at the earliest [ns]
+    std::int64_t late = 0;      // so long after the start it comes late [ns]
+    std::int64_t silent = 0;    // a silence of it is normal for so long [ns]
     double share = 0;           // of its limit that its absence has reached, once it is due
 
+    /// When its start has had its time [ns].
+    std::int64_t started(std::int64_t settle_time) const {
+      return std::max(longest + settle_time, late);
+    }
     /// When it is due after the start [ns].
     std::int64_t due(std::int64_t settle_time) const {
-      return std::max(longest + settle_time, least);
+      return std::max(started(settle_time), silent);
     }
   };
 
@@ -61,8 +66,8 @@ class NeverHeard {
   std::vector<Expected> rootFirst(std::vector<Expected> missing) const;
 
   Vocabulary vocabulary_;
-  double alarm_times_;        // as late as due, it is an alarm
-  std::int64_t alarm_later_;  // and at least so much later [ns]
+  double alarm_times_;        // the time for its start: then it is an alarm
+  std::int64_t alarm_later_;  // and at least so much later than due [ns]
   double accept_after_;       // so long after that, it is accepted [ns]
   std::shared_ptr<const SourceGraph> graph_;
   std::vector<Expected> all_;

@@ -84,8 +84,11 @@ class Expectation {
   /// Least limit that a track may have, in units of its evidence (docs/method.md, section 5.3).
   virtual double leastLimit(std::size_t track) const = 0;
   /// The limit of a track, in units of its evidence; NaN: of no use (docs/method.md, section 5.4).
-  /// @param most that is normal: evidence, or, of silences, their length [ns]
-  virtual double limit(std::size_t /*track*/, double most) const { return most; }
+  /// @param largest that was seen: evidence, or, of silences, their length [ns]
+  /// @param most that is normal, in the same unit
+  virtual double limit(std::size_t /*track*/, double /*largest*/, double most) const {
+    return most;
+  }
 
  private:
   std::vector<std::size_t> tracks_;

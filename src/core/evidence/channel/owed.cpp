@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <limits>
 
 #include "self_awareness/core/evidence/channel/model.h"
 
@@ -19,6 +20,13 @@ class ExpectedAnswers : public Expectation {
   std::unique_ptr<ChannelState> start() const override;
   double leastLimit(std::size_t track) const override {
     return countsRequests(track) ? model_.tuning().least_requests : model_.tuning().least_deadline;
+  }
+  double limit(std::size_t track, double largest, double most) const override {
+    const Track& owed = model_.tracks()[track];
+    const double wait = largest * (countsRequests(track) ? model_.meanGap(owed.from) : 1e9);
+    return wait < model_.tuning().owed_of_silence * static_cast<double>(model_.longestGap(owed.to))
+               ? most
+               : std::numeric_limits<double>::quiet_NaN();
   }
   /// Whether requests come in series, or stay without an answer now and then, and are counted.
   bool countsRequests(std::size_t track) const {

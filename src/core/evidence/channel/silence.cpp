@@ -56,7 +56,7 @@ class ExpectedSilence : public Expectation {
     return std::make_unique<SilenceState>(model_, tracks());
   }
   double leastLimit(std::size_t /*track*/) const override { return 0; }
-  double limit(std::size_t track, double most) const override {
+  double limit(std::size_t track, double /*largest*/, double most) const override {
     const EventId id = model_.tracks()[track].to;
     // Nothing is known of what came at one moment only.
     const double limit =

@@ -10,20 +10,6 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-/// Age [ns] at which the silence of an event type is beyond its limit [nat].
-std::int64_t ageAt(const Model& model, EventId id, double limit) {
-  std::int64_t above = 1;
-  while (above < kLongestAge && model.overdue(id, above) <= limit) {
-    above *= 2;
-  }
-  std::int64_t below = 0;
-  while (above - below > 1) {
-    const std::int64_t middle = below + (above - below) / 2;
-    (model.overdue(id, middle) <= limit ? below : above) = middle;
-  }
-  return above;
-}
-
 /// The fewest starts that a relation lacks, of those so far (0: of none) and one more.
 std::size_t fewer(std::size_t so_far, const Relation& relation) {
   if (relation.starts_needed <= relation.starts) {
@@ -58,7 +44,7 @@ std::vector<Coverage> coverageOf(const Model& model, const Limits& limits,
     const bool judged = !std::isnan(limit);
     if (model.finding(number) == Finding::kSilent && judged) {
       // It is looked at when a window ends, and certain when the next one does.
-      const double found = toSeconds(ageAt(model, track.to, limit) + 2 * window);
+      const double found = toSeconds(model.ageBeyond(track.to, limit) + 2 * window);
       of.death_found_after = std::min(of.death_found_after.value_or(found), found);
     } else if (model.finding(number) == Finding::kUnanswered) {
       of.owes_answers = of.owes_answers || judged;

@@ -101,16 +101,19 @@ void LimitSearch::gatherParts(const LimitFinder::Findings& findings) {
   }
   const std::vector<std::size_t> starts = startsOf(spans, toNanoseconds(tuning_.start_time));
   for (std::size_t k = 0; k < training.size(); ++k) {
-    with_gaps_.push_back(
-        {starts[k], static_cast<double>(training[k].end - training[k].start) / kHour});
+    const auto length = static_cast<double>(training[k].end - training[k].start);
+    with_gaps_.push_back({starts[k], length / kHour});
+    longest_recording_ = std::max(longest_recording_, length);
   }
   for (std::size_t k = 0; k < findings.size(); ++k) {
+    const double hours = hoursOf(findings[k].windows, parameters_.window);
+    longest_recording_ = std::max(longest_recording_, hours * kHour);
     for (const LimitFinder::Recording::Part& part : findings[k].parts) {
-      const Part hours{starts[training.size() + k], hoursOf(part.windows, parameters_.window)};
-      judged_.push_back(hours);
+      const Part its{starts[training.size() + k], hoursOf(part.windows, parameters_.window)};
+      judged_.push_back(its);
       judged_parts_.push_back(&part);
       if (!findings[k].trained_on) {
-        with_gaps_.push_back(hours);
+        with_gaps_.push_back(its);
         gap_parts_.push_back(&part);
       }
     }
@@ -199,7 +202,7 @@ void LimitSearch::search(Kind kind, const std::vector<Seen>& tracks, double shar
         gaps ? longestAge(kind, seen, found - window(), share / static_cast<double>(tracks.size()))
              : found;
     double& limit = limits_[seen.track];
-    limit = model_.expectation(seen.track).limit(seen.track, most);
+    limit = model_.expectation(seen.track).limit(seen.track, largest, most);
     if (!std::isnan(limit)) {
       left_out.add(seen.largest, seen.least, gaps ? (most + window()) / largest : margin);
     }
@@ -209,18 +212,19 @@ void LimitSearch::search(Kind kind, const std::vector<Seen>& tracks, double shar
 double LimitSearch::longestAge(Kind kind, const Seen& seen, double age, double rate) const {
   const double starts = startsThatHeard(seen);
   const double rare = tailOf(seen, starts).age(rate);
+  const double largest = *std::max_element(seen.largest.begin(), seen.largest.end()) - window();
   if (kind == Kind::kOthers) {
-    const double largest = *std::max_element(seen.largest.begin(), seen.largest.end());
-    age = std::max(age, std::min(rare, tuning_.most_tail_margin * (largest - window())));
+    // Pauses of one start may be a host's hiccups.
+    const double most = starts > 1 ? tuning_.most_tail_margin : tuning_.most_tail_margin_of_start;
+    age = std::max(age, std::min(rare, most * largest));
   }
+  const double told = longest_recording_ / tuning_.pauses_in_recording;
   const double mean_gap = model_.meanGap(model_.tracks()[seen.track].to);
-  if (age > std::max(tuning_.longest_wait * 1e9, tuning_.most_mean_gaps * mean_gap)) {
-    // What comes when something happens may stay away for as long as nothing does: few pauses do
-    // not say how long that is, and those of few starts say nothing of the next one.
-    age = std::max(age, rare);
-    if (starts < tuning_.fewest_starts) {
-      age = std::max(age, sumOf(with_gaps_) * kHour);
-    }
+  if (largest > std::max(told, tuning_.most_mean_gaps * mean_gap)) {
+    // What comes when something happens may stay away for as long as nothing does. Recordings
+    // that are hardly longer than a pause do not say how long that is.
+    const double all = sumOf(with_gaps_) * kHour;
+    age = std::max({age, rare, std::min(all, tuning_.pauses_in_recording * longest_recording_)});
   }
   return age;
 }

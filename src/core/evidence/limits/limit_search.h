@@ -74,6 +74,7 @@ class LimitSearch {
   std::vector<const LimitFinder::Recording::Part*> judged_parts_;
   std::vector<Part> with_gaps_;  // the recordings of the training first
   std::vector<const LimitFinder::Recording::Part*> gap_parts_;
+  double longest_recording_ = 0;  // [ns]
 
   std::vector<double> limits_;
   double rate_ = 0;

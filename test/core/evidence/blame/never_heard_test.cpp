@@ -154,6 +154,20 @@ TEST_F(NeverHeardTest, WhatIsSlowHasTwiceItsLongestGap) {
   EXPECT_GT(shareAt(never_heard, 61 * kSecond), 0);
 }
 
+TEST_F(NeverHeardTest, WhoMayBeSilentIsNotDueBefore) {
+  train({start(0, 1)}, {start(0, 7)});
+  Limits limits;
+  limits.tracks.assign(model_->tracks().size(), std::numeric_limits<double>::quiet_NaN());
+  limits.tracks[indexOf(model_->tracks(), kOverdue, kC, kC)] = model_->overdue(kC, 100 * kSecond);
+  NeverHeard never_heard = neverHeard(limits);
+  never_heard.add({0, kA});
+  never_heard.add({0, kB});
+  EXPECT_EQ(shareAt(never_heard, 99 * kSecond), 0);
+  EXPECT_GT(shareAt(never_heard, 101 * kSecond), 0);
+  EXPECT_LT(shareAt(never_heard, 159 * kSecond), 1) << "a minute later, not four times as late";
+  EXPECT_GT(shareAt(never_heard, 161 * kSecond), 1);
+}
+
 TEST_F(NeverHeardTest, TooFewGapsSayNothing) {
   const Events rare = timer(kC, 0, 15 * kSecond, kSecond);  // 14 gaps in each half
   train({together({start(std::nullopt, 1), rare})}, {together({start(std::nullopt, 7), rare})});

@@ -41,8 +41,8 @@ TEST_F(SilenceTest, IsCertainOnceItHasLastedAWindowLonger) {
 
 TEST_F(SilenceTest, WhatNeverPausedHasNoLimit) {
   const Expectation& expectation = model_->expectation(overdue_);
-  EXPECT_GT(expectation.limit(overdue_, kSecond), 0);
-  EXPECT_TRUE(std::isnan(expectation.limit(overdue_, 0))) << "all came at one moment";
+  EXPECT_GT(expectation.limit(overdue_, 0, kSecond), 0);
+  EXPECT_TRUE(std::isnan(expectation.limit(overdue_, 0, 0))) << "all came at one moment";
 }
 
 TEST_F(SilenceTest, ASuspectIsToldOfByWhatTrainingMeasured) {

@@ -102,6 +102,65 @@ TEST_F(LimitFinderTest, HoweverLongWhoPausesIsJudged) {
   EXPECT_LT(limit(limits, kOverdue, kB, kB), model_->overdue(kB, kSecond));
 }
 
+TEST_F(LimitFinderTest, RecordingsHardlyLongerThanPausesDoNotSayHowLongTheseGet) {
+  // It pauses for about 30 s.
+  const auto every_half_minute = [](std::int64_t from, std::int64_t length) {
+    std::vector<std::int64_t> bursts;
+    for (std::int64_t burst = from; burst < length; burst += 35 * kSecond) {
+      bursts.push_back(burst);
+    }
+    return joystick(bursts, length);
+  };
+  for (const std::int64_t length : {200 * kSecond, 1000 * kSecond}) {
+    model_ = modelOf(every_half_minute(0, length), later(every_half_minute(kSecond, length)));
+    const Limits limits =
+        limitsOf(model_, later(every_half_minute(3 * kSecond, length), 2 * kStart));
+    if (length < 300 * kSecond) {
+      EXPECT_GT(limit(limits, kOverdue, kA, kA), model_->overdue(kA, 590 * kSecond));
+    } else {
+      EXPECT_LT(limit(limits, kOverdue, kA, kA), model_->overdue(kA, 100 * kSecond));
+    }
+  }
+}
+
+TEST_F(LimitFinderTest, PausesOfOneStartMayBeHiccupsOfItsHost) {
+  // Up to 1.2 s, a dozen times.
+  Events hiccups = timer(kA, 0, 200 * kSecond, 100 * kMillisecond);
+  hiccups.erase(std::remove_if(hiccups.begin(), hiccups.end(),
+                               [](const Event& event) {
+                                 const std::int64_t into = event.stamp % (15 * kSecond);
+                                 const std::int64_t number = event.stamp / (15 * kSecond);
+                                 return into > 0 && into < number * 90 * kMillisecond;
+                               }),
+                hiccups.end());
+  const auto limit_of = [&](std::int64_t apart) {
+    model_ = modelOf(hiccups, later(hiccups, apart));
+    return limit(limitsOf(model_, later(hiccups, 2 * apart)), kOverdue, kA, kA);
+  };
+  EXPECT_LT(limit_of(210 * kSecond), model_->overdue(kA, 2600 * kMillisecond));
+  EXPECT_GT(limit_of(kStart), model_->overdue(kA, 2800 * kMillisecond));
+}
+
+TEST_F(LimitFinderTest, WhoWasSilentThoughAskedIsWatchedForSilenceOnly) {
+  // B answers A, but for a quarter of a minute.
+  const auto pausing = [](unsigned seed, bool pauses) {
+    Events events = robot(200 * kSecond, seed);
+    events.erase(std::remove_if(events.begin(), events.end(),
+                                [&](const Event& event) {
+                                  return pauses && event.id == kB && event.stamp > 100 * kSecond &&
+                                         event.stamp < 115 * kSecond;
+                                }),
+                 events.end());
+    return events;
+  };
+  for (const bool pauses : {false, true}) {
+    model_ = modelOf(pausing(1, pauses), later(pausing(2, pauses)));
+    const Limits limits = limitsOf(model_, later(pausing(3, pauses), 2 * kStart));
+    EXPECT_EQ(std::isnan(limit(limits, kDeadlines, kB, kA)), pauses);
+    EXPECT_FALSE(std::isnan(limit(limits, kOverdue, kB, kB)));
+  }
+}
+
 TEST_F(LimitFinderTest, WhoTalkedOnceOnlyMayBeSilentForAsLong) {
   // No gap says that A pauses, but it is silent most of the time.
   model_ = modelOf(joystick({100 * kSecond}, 200 * kSecond),
