@@ -60,6 +60,8 @@ void Diagnostics::tellMonitor(const MonitorState& state, Status& status) {
     status.mergeSummary(DiagnosticStatus::WARN, std::to_string(state.left_out_topics) +
                                                     " topics are left out: there are too many");
   }
+  tellUnheard(state.unheard, status);
+  tellStrangers(state.strangers_closed, state.strangers_newly_closed, status);
   status.add("events a second", number(heard.rate));
   status.add("dropped messages", heard.dropped);
   status.add("subscriptions", state.subscriptions);

@@ -8,8 +8,10 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "flight_recorder.h"
+#include "not_heard.h"
 #include "ros/verdict/diagnostic_status.h"
 
 namespace self_awareness {
@@ -22,6 +24,9 @@ struct MonitorState {
   std::size_t left_out_topics = 0;  ///< there were too many
   bool full_of_unknown = false;     ///< further unknown event types are not told apart
   bool master_answers = true;
+  std::vector<ros1::Unheard> unheard;       ///< publishers that the master names
+  std::size_t strangers_closed = 0;         ///< connections, since the start
+  std::size_t strangers_newly_closed = 0;   ///< since the last report
   std::int64_t ros_now = 0;                 ///< [ns]
   std::int64_t clock_stands_still_for = 0;  ///< [ns of steady time]
   double longest_pause = 0;  ///< for which this program stood still, since the last report [s]

@@ -3,6 +3,8 @@
 #include <ros/console.h>
 #include <ros/this_node.h>
 
+#include <algorithm>
+#include <map>
 #include <utility>
 
 #include "now.h"
@@ -13,8 +15,10 @@ namespace {
 
 // A master that takes longer than this to answer all that it is asked hangs.
 constexpr std::chrono::seconds kPatience(5);
-// To look for lost publishers costs more than a poll, where there are many.
-constexpr std::int64_t kBetweenLooks = 3 * core::kNanosecondsPerSecond;
+// At who calls this node.
+constexpr std::chrono::duration<double> kBetweenLooks(0.1);
+// Who calls this node all the time must not have the master asked all the time.
+constexpr std::int64_t kBetweenCalls = core::kNanosecondsPerSecond / 5;
 
 // Topics that are subscribed to stay: the first by name may be anybody's.
 std::size_t leaveOutMost(const std::set<std::string>& model_topics,
@@ -39,15 +43,39 @@ std::size_t leaveOutMost(const std::set<std::string>& model_topics,
   return wanted.size() - topics.size();
 }
 
+ros1::Listening publishersOf(const std::set<std::string>& topics, const ros1::Graph& graph,
+                             const std::set<std::string>& first) {
+  std::set<std::string> nodes;
+  for (const std::string& topic : topics) {
+    const auto known = graph.topics.find(topic);
+    if (known != graph.topics.end()) {
+      nodes.insert(known->second.publishers.begin(), known->second.publishers.end());
+    }
+  }
+  std::map<std::string, std::string> addresses = ros1::fetchAddresses(nodes);
+  ros1::Listening listening;
+  listening.first = first;
+  for (const std::string& topic : topics) {
+    std::set<ros1::Publisher>& publishers = listening.topics[topic];
+    const auto known = graph.topics.find(topic);
+    if (known != graph.topics.end()) {
+      for (const std::string& node : known->second.publishers) {
+        publishers.insert({node, addresses[node]});
+      }
+    }
+  }
+  return listening;
+}
+
 }  // namespace
 
-Discovery::Discovery(const ros::NodeHandle& node_handle, ros1::Arrivals& arrivals,
+Discovery::Discovery(ros1::Arrivals& arrivals, const ros1::ReadLimits& limits,
                      ros1::SubscribePolicy policy, double interval,
                      std::vector<std::string> services)
     : policy_(policy),
       interval_(interval),
       registration_(std::move(services)),
-      subscriptions_(node_handle, arrivals),
+      subscriptions_(arrivals, limits),
       thread_([this] { run(); }) {}
 
 Discovery::~Discovery() {
@@ -65,14 +93,10 @@ void Discovery::setWanted(Wanted wanted) {
   wake_.notify_all();
 }
 
-void Discovery::pollNow() {
-  shared_.lock()->poll_now = true;
-  wake_.notify_all();
-}
-
 Discovery::State Discovery::state() const {
   const auto shared = shared_.lock();
   State state = shared->state;
+  state.unheard = subscriptions_.unheard();
   if (shared->asked_at && std::chrono::steady_clock::now() - *shared->asked_at > kPatience) {
     state.master_answers = false;
   }
@@ -87,31 +111,52 @@ void Discovery::run() {
 }
 
 std::optional<Discovery::Wanted> Discovery::awaitPoll() {
-  auto shared = shared_.lock();
-  shared.waitFor(wake_, interval_, [](const Shared& now) { return now.stopping || now.poll_now; });
-  if (shared->stopping) {
-    return std::nullopt;
+  const auto due = std::chrono::steady_clock::now() + interval_;
+  while (true) {
+    auto shared = shared_.lock();
+    const std::chrono::duration<double> left = due - std::chrono::steady_clock::now();
+    shared.waitFor(wake_, std::min(left, kBetweenLooks),
+                   [](const Shared& now) { return now.stopping || now.poll_now; });
+    if (shared->stopping) {
+      return std::nullopt;
+    }
+    if (shared->poll_now || left <= kBetweenLooks) {
+      shared->poll_now = false;
+      shared->asked_at = std::chrono::steady_clock::now();
+      return shared->wanted;
+    }
+    shared.release();
+    lookAtStrangers();
   }
-  shared->poll_now = false;
-  shared->asked_at = std::chrono::steady_clock::now();
-  return shared->wanted;
+}
+
+void Discovery::lookAtStrangers() {
+  const std::int64_t now = steadyNow();
+  const ros1::Strangers::Seen seen = strangers_.look(now);
+  called_ = called_ || seen.called;
+  const auto shared = shared_.lock();
+  shared->state.strangers_closed += seen.closed;
+  shared->poll_now = shared->poll_now || (called_ && now >= polled_at_ + kBetweenCalls);
 }
 
 void Discovery::poll(const Wanted& wanted) {
   using ros1::MasterRegistration;
-  subscriptions_.adaptReading();  // at once, whether the master answers or not
+  lookAtStrangers();
+  called_ = false;
+  polled_at_ = steadyNow();
   State state;
   const MasterRegistration::Master master = registration_.check();
-  std::optional<ros1::Graph> graph = ros1::fetchGraph();
-  state.master_answers = master != MasterRegistration::Master::kAway && graph;
+  const bool restarted = master == MasterRegistration::Master::kRestarted;
+  std::optional<ros1::SystemState> known = ros1::fetchSystemState();
+  state.master_answers = master != MasterRegistration::Master::kAway && known;
   if (state.master_answers) {
-    nameIllegal(wanted, *graph);
-    subscribe(wanted, *graph, master == MasterRegistration::Master::kRestarted, state);
-    state.graph = std::make_shared<const ros1::Graph>(std::move(*graph));
+    nameIllegal(wanted, known->graph);
+    listen(wanted, *known, restarted, state);
+    state.graph = std::make_shared<const ros1::Graph>(std::move(known->graph));
   }
   const auto shared = shared_.lock();
-  state.master_restarts = shared->state.master_restarts +
-                          (master == ros1::MasterRegistration::Master::kRestarted ? 1 : 0);
+  state.master_restarts = shared->state.master_restarts + (restarted ? 1 : 0);
+  state.strangers_closed = shared->state.strangers_closed;
   if (!state.master_answers) {
     state.subscriptions = shared->state.subscriptions;
     state.left_out = shared->state.left_out;
@@ -122,23 +167,9 @@ void Discovery::poll(const Wanted& wanted) {
   shared->state = state;
 }
 
-void Discovery::subscribe(const Wanted& wanted, const ros1::Graph& graph, bool master_restarted,
-                          State& state) {
-  std::set<std::string> again;
-  if (steadyNow() >= looked_for_lost_ + kBetweenLooks) {
-    looked_for_lost_ = steadyNow();
-    again = lost_publishers_.look(ros1::linksToPublishers(), looked_for_lost_);
-  }
-  if (master_restarted) {
-    ROS_WARN("the master was restarted: registered all topics and services again");
-    // roscpp does not hear of those that registered before it did.
-    for (const auto& [name, topic] : graph.topics) {
-      if (!topic.publishers.empty()) {
-        again.insert(name);
-      }
-    }
-  }
-  subscriptions_.renew(again);
+void Discovery::listen(const Wanted& wanted, const ros1::SystemState& known, bool master_restarted,
+                       State& state) {
+  const ros1::Graph& graph = known.graph;
   std::set<std::string> topics;
   if (wanted.encoder) {
     const ros1::Encoder& encoder = *wanted.encoder;
@@ -151,8 +182,17 @@ void Discovery::subscribe(const Wanted& wanted, const ros1::Graph& graph, bool m
   }
   state.left_out = leaveOutMost(wanted.model_topics, topics_, topics);
   topics_ = topics;
-  subscriptions_.setTopics(topics, graph);
   state.subscriptions = topics.size();
+  const std::size_t vanished = registration_.keep(known, topics);
+  if (master_restarted) {
+    ROS_WARN("the master was restarted: registered all topics and services again");
+  } else if (vanished > 0) {
+    ROS_WARN_THROTTLE(10,
+                      "the master had forgotten %zu topics and services of this node: they are "
+                      "registered again",
+                      vanished);
+  }
+  subscriptions_.listen(publishersOf(topics, graph, wanted.model_topics));
 }
 
 void Discovery::nameIllegal(const Wanted& wanted, const ros1::Graph& graph) {

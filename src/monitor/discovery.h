@@ -1,7 +1,5 @@
 #pragma once
 
-#include <ros/node_handle.h>
-
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
@@ -17,15 +15,20 @@
 #include "self_awareness/ros/graph.h"
 #include "self_awareness/ros/live/arrivals.h"
 #include "self_awareness/ros/live/guarded.h"
-#include "self_awareness/ros/live/lost_publishers.h"
 #include "self_awareness/ros/live/master_registration.h"
 #include "self_awareness/ros/live/named_once.h"
+#include "self_awareness/ros/live/read_limits.h"
+#include "self_awareness/ros/live/strangers.h"
 #include "self_awareness/ros/live/subscriptions.h"
 
 namespace self_awareness {
 
-/// Polls the master in a thread of its own, on steady time, and keeps the subscriptions up to
-/// date. All calls that may block on the network are made here.
+/// Polls the master in a thread of its own, on steady time, and keeps what is listened to as the
+/// master says: who publishes where, and what the master knows of this node. All calls that may
+/// block on the network are made here.
+///
+/// The master tells news by the slave API. roscpp has nothing to do with it, since it does not
+/// know these subscriptions; but where the slave API is called, the master is asked at once.
 ///
 /// What the thread shares with others is in Shared; the rest is the thread's own.
 class Discovery {
@@ -44,16 +47,20 @@ class Discovery {
     std::size_t subscriptions = 0;
     std::size_t left_out = 0;         ///< topics beyond kMostOthers
     std::size_t master_restarts = 0;  ///< that were noticed
+    std::size_t strangers_closed =
+        0;  ///< connections to this node that said too little or too much
+    std::vector<ros1::Unheard> unheard;  ///< publishers that the master names
     /// Who publishes and subscribes what; none before the first answer of the master, the last one
     /// while it does not answer.
     std::shared_ptr<const ros1::Graph> graph;
   };
 
   /// @param arrivals where messages of what is chosen go; must outlive this
+  /// @param limits of what is kept of messages
   /// @param interval between polls [s]
   /// @param services full names of services to register again after a restart of the master
-  Discovery(const ros::NodeHandle& node_handle, ros1::Arrivals& arrivals,
-            ros1::SubscribePolicy policy, double interval, std::vector<std::string> services);
+  Discovery(ros1::Arrivals& arrivals, const ros1::ReadLimits& limits, ros1::SubscribePolicy policy,
+            double interval, std::vector<std::string> services);
   /// Ends the thread and the subscriptions; waits for a call to the master that is under way.
   ~Discovery();
   Discovery(const Discovery&) = delete;
@@ -61,8 +68,6 @@ class Discovery {
 
   /// Polls at once with what is wanted from now on.
   void setWanted(Wanted wanted);
-  /// Polls at once, not only when the interval is over.
-  void pollNow();
   State state() const;
 
  private:
@@ -79,9 +84,12 @@ class Discovery {
   /// Waits until it is time to poll; none: the thread must end.
   std::optional<Wanted> awaitPoll();
   void poll(const Wanted& wanted);
-  /// Brings the subscriptions up to date, and says how many there are.
-  void subscribe(const Wanted& wanted, const ros1::Graph& graph, bool master_restarted,
-                 State& state);
+  /// Brings what is listened to up to date, and says how much it is.
+  void listen(const Wanted& wanted, const ros1::SystemState& known, bool master_restarted,
+              State& state);
+  /// Closes connections of strangers that take too much; asks for a poll where the master may have
+  /// told something.
+  void lookAtStrangers();
   /// Says which topics are left out, since nobody can subscribe to them.
   void nameIllegal(const Wanted& wanted, const ros1::Graph& graph);
 
@@ -89,8 +97,9 @@ class Discovery {
   const std::chrono::duration<double> interval_;
   ros1::MasterRegistration registration_;
   ros1::Subscriptions subscriptions_;
-  ros1::LostPublishers lost_publishers_;
-  std::int64_t looked_for_lost_ = 0;  // steady time [ns]
+  ros1::Strangers strangers_;
+  bool called_ = false;         // by a stranger, since the last poll
+  std::int64_t polled_at_ = 0;  // steady time [ns]
   ros1::NamedOnce illegal_;
   std::set<std::string> topics_;  // that are subscribed to
 

@@ -12,6 +12,7 @@
 
 #include "clock_status.h"
 #include "encoding_parameters.h"
+#include "not_heard.h"
 #include "now.h"
 #include "parameter_reader.h"
 #include "ros/verdict/diagnostic_status.h"
@@ -46,6 +47,7 @@ EventRecorder::Parameters EventRecorder::Parameters::load(
       reader.seconds("poll_interval", parameters.live.poll_interval, {0.01, 3600});
   parameters.live.queue_size = static_cast<std::uint32_t>(reader.wholeNumber(
       "queue_size", static_cast<int>(parameters.live.queue_size), {1, 1000000}));
+  parameters.live.read_limits = loadReadLimits(reader);
   reader.expectNamespace("encoding");
   parameters.encoding = loadEncoding(private_node_handle);
   parameters.live.diagnostic_period =
@@ -246,6 +248,12 @@ void EventRecorder::onReport() {
                             " event types: further ones are not told apart");
   }
   tellClock(live_->clock().standsStillFor(), rosNow(), status);
+  const Discovery::State discovered = live_->discovery().state();
+  tellUnheard(discovered.unheard, status);
+  tellStrangers(
+      discovered.strangers_closed,
+      discovered.strangers_closed - std::exchange(strangers_closed_, discovered.strangers_closed),
+      status);
   status.add("file", file_ ? file_->log.path() : "none");
   status.add("files before", files_);
   status.add("events", events_);

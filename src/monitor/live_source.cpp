@@ -20,7 +20,7 @@ LiveSource::LiveSource(ros::CallbackQueue& queue, const ros::NodeHandle& node_ha
       reported_at_(steadyNow()),
       timer_(node_handle.createSteadyTimer(tick_, &LiveSource::onTick, this)),
       live_events_(node_handle, parameters.queue_size, handlers()),
-      discovery_(node_handle, live_events_.arrivals(), parameters.subscribe,
+      discovery_(live_events_.arrivals(), parameters.read_limits, parameters.subscribe,
                  parameters.poll_interval, std::move(services)),
       spinner_(1, &queue) {}
 
@@ -31,8 +31,6 @@ ros1::LiveEvents::Handlers LiveSource::handlers() {
       listener_.onEvent(event);
     }
   };
-  // Whether its messages must be read cannot wait for the next poll.
-  handlers.on_connection = [this] { discovery_.pollNow(); };
   handlers.on_arrivals = [this] {
     watchClock();
     deliver();

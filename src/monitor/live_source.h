@@ -21,6 +21,7 @@
 #include "self_awareness/ros/live/clock_watch.h"
 #include "self_awareness/ros/live/live_events.h"
 #include "self_awareness/ros/live/own_output.h"
+#include "self_awareness/ros/live/read_limits.h"
 
 namespace self_awareness {
 
@@ -30,6 +31,7 @@ struct LiveParameters {
   double poll_interval = 1.0;       ///< ~poll_interval: of the master [s]
   std::uint32_t queue_size = 1000;  ///< ~queue_size: messages a connection may have waiting
   double diagnostic_period = 1.0;   ///< ~diagnostic_period: between two reports [s]
+  ros1::ReadLimits read_limits;     ///< ~max_message, ~max_unfinished [MB]
 };
 
 /// The robot's communication as it happens, for one listener: subscribes to what Discovery finds,

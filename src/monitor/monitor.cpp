@@ -181,7 +181,13 @@ void Monitor::onVerdict(const core::Verdict& verdict) {
   if (verdict.alarm && !stood) {
     alarm_file_ = recorder_.onAlarm(steadyNow());
   }
-  announcer_.add(verdict, session_->vocabulary(), session_->window(),
+  core::Verdict said = verdict;
+  if (!said.suspects.empty()) {
+    not_heard_.set(live_->discovery().state().unheard);
+    not_heard_.explain(said.suspects, session_->vocabulary());
+    not_heard_.explain(said.new_suspects, session_->vocabulary());
+  }
+  announcer_.add(said, session_->vocabulary(), session_->window(),
                  {verdict.busy ? loadInWords() : "", alarm_file_});
 }
 
@@ -220,6 +226,12 @@ void Monitor::onReport() {
   state.clock_stands_still_for = live_->clock().standsStillFor();
   state.longest_pause = core::toSeconds(std::exchange(longest_pause_, 0));
   state.master_answers = discovered.master_answers;
+  state.unheard = discovered.unheard;
+  state.strangers_closed = discovered.strangers_closed;
+  state.strangers_newly_closed =
+      discovered.strangers_closed - std::exchange(strangers_closed_, discovered.strangers_closed);
+  not_heard_.set(discovered.unheard);
+  state.communication.not_heard = not_heard_.components();
   if (recorder_.enabled()) {
     state.recorder = recorder_.report();
   }

@@ -14,6 +14,7 @@
 #include "diagnostics.h"
 #include "flight_recorder.h"
 #include "live_source.h"
+#include "not_heard.h"
 #include "parameters.h"
 #include "ros/verdict/announcer.h"
 #include "ros/verdict/heard_tally.h"
@@ -54,6 +55,10 @@ namespace self_awareness {
 /// - `~queue_size` (int, messages; default: 1000; 1 to 1000000): how many of a publisher may wait
 /// on a topic;
 ///   what comes then is dropped, and counted in the diagnostics.
+/// - `~max_message` (int, MB; default: 100; 1 to 1000): longest message whose content is kept,
+///   where the model needs it; a longer one is heard, not read, and counts as dropped.
+/// - `~max_unfinished` (int, MB; default: 400; 1 to 10000): most for such messages of all
+///   publishers together, while they come.
 /// - `~source_diagnostics` (bool; default: true): one status for every source of the model.
 /// - `~hardware_id` (string; default: none): of the diagnostics.
 /// - `~recorder/duration` (double, s; default: 300.0; 0 to 86400): the flight recorder keeps the
@@ -146,6 +151,8 @@ class Monitor : public NodeProgram, public LiveSource::Listener {
 
   std::string model_error_;
   std::unique_ptr<Session> session_;  // none: no model
+  NotHeard not_heard_;
+  std::size_t strangers_closed_ = 0;  // that were reported
   std::int64_t longest_pause_ = 0;    // of this program, since the last report [ns of steady time]
   ros1::Announcer announcer_;
   ros1::HeardTally heard_;

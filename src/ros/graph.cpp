@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <iterator>
+#include <vector>
 
+#include "live/master_calls.h"
 #include "self_awareness/ros/encoding.h"
 #include "self_awareness/ros/stable_name.h"
 #include "text.h"
@@ -48,14 +50,15 @@ bool operator==(const Graph& a, const Graph& b) {
   return std::equal(a.topics.begin(), a.topics.end(), b.topics.begin(), b.topics.end(), same);
 }
 
-std::optional<Graph> fetchGraph() {
+std::optional<SystemState> fetchSystemState() {
   std::optional<XmlRpc::XmlRpcValue> state = ask("getSystemState");
   std::optional<XmlRpc::XmlRpcValue> types = ask("getTopicTypes");
   if (!state || !types) {
     return std::nullopt;
   }
   try {
-    Graph graph;
+    SystemState known;
+    Graph& graph = known.graph;
     addNodes((*state)[0], &Graph::Topic::publishers, graph);
     addNodes((*state)[1], &Graph::Topic::subscribers, graph);
     for (int i = 0; i < types->size(); ++i) {
@@ -64,10 +67,30 @@ std::optional<Graph> fetchGraph() {
         topic->second.datatype = printable(std::string((*types)[i][1]));
       }
     }
-    return graph;
+    for (int i = 0; i < (*state)[2].size(); ++i) {
+      known.services.insert(printable(std::string((*state)[2][i][0])));
+    }
+    return known;
   } catch (const XmlRpc::XmlRpcException&) {
     return std::nullopt;  // not what a master answers
   }
+}
+
+std::map<std::string, std::string> fetchAddresses(const std::set<std::string>& nodes) {
+  MasterCalls calls;
+  for (const std::string& node : nodes) {
+    calls.add("lookupNode", {node});
+  }
+  std::vector<std::optional<XmlRpc::XmlRpcValue>> answers = calls.execute();
+  std::map<std::string, std::string> addresses;
+  auto answer = answers.begin();
+  for (const std::string& node : nodes) {
+    if (*answer && (*answer)->getType() == XmlRpc::XmlRpcValue::TypeString) {
+      addresses[node] = static_cast<std::string>(**answer);
+    }
+    ++answer;
+  }
+  return addresses;
 }
 
 void addEdges(const Graph& graph, const std::string& own_name, core::SourceGraph& edges) {

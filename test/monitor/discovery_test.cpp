@@ -4,16 +4,26 @@
 
 #include <gtest/gtest.h>
 #include <ros/callback_queue.h>
+#include <ros/network.h>
 #include <ros/ros.h>
+#include <ros/xmlrpc_manager.h>
 #include <std_msgs/String.h>
+#include <xmlrpcpp/XmlRpcClient.h>
+#include <xmlrpcpp/XmlRpcValue.h>
 
+#include <algorithm>
 #include <functional>
+#include <memory>
+#include <string>
+#include <vector>
 
 namespace self_awareness {
 namespace {
 
-bool await(const std::function<bool()>& condition) {
-  const ros::SteadyTime deadline = ros::SteadyTime::now() + ros::WallDuration(20);
+constexpr double kAtOnce = 5;  // [s]: what the monitor promises
+
+bool await(const std::function<bool()>& condition, double seconds = 20) {
+  const ros::SteadyTime deadline = ros::SteadyTime::now() + ros::WallDuration(seconds);
   while (!condition()) {
     if (ros::SteadyTime::now() > deadline) {
       return false;
@@ -23,6 +33,41 @@ bool await(const std::function<bool()>& condition) {
   return true;
 }
 
+/// Says something to the master, as any stranger can.
+XmlRpc::XmlRpcValue tellMaster(const std::string& method,
+                               const std::vector<std::string>& arguments) {
+  XmlRpc::XmlRpcClient master(ros::master::getHost().c_str(),
+                              static_cast<int>(ros::master::getPort()), "/");
+  XmlRpc::XmlRpcValue request;
+  for (std::size_t i = 0; i < arguments.size(); ++i) {
+    request[static_cast<int>(i)] = arguments[i];
+  }
+  XmlRpc::XmlRpcValue response;
+  EXPECT_TRUE(master.execute(method.c_str(), request, response));
+  return response;
+}
+
+std::string ownUri() {
+  return ros::XMLRPCManager::instance()->getServerURI();
+}
+
+/// A publisher that only the master knows.
+class MadeUpPublisher {
+ public:
+  MadeUpPublisher(std::string node, std::string topic, std::string uri)
+      : node_(std::move(node)), topic_(std::move(topic)), uri_(std::move(uri)) {
+    tellMaster("registerPublisher", {node_, topic_, "std_msgs/String", uri_});
+  }
+  ~MadeUpPublisher() { tellMaster("unregisterPublisher", {node_, topic_, uri_}); }
+  MadeUpPublisher(const MadeUpPublisher&) = delete;
+  MadeUpPublisher& operator=(const MadeUpPublisher&) = delete;
+
+ private:
+  const std::string node_;
+  const std::string topic_;
+  const std::string uri_;
+};
+
 class DiscoveryTest : public testing::Test {
  protected:
   DiscoveryTest() {
@@ -31,18 +76,52 @@ class DiscoveryTest : public testing::Test {
     wanted_.encoder = std::make_shared<ros1::Encoder>(
         ros1::EncodingRules(), [](const core::EventType& /*type*/) { return 0; });
   }
-  /// @param interval [s]; by default, so long that nothing is polled unless asked for
+  /// @param interval [s]; by default, so long that nothing is polled unless there is news
   std::unique_ptr<Discovery> discover(double interval = 3600) {
-    return std::make_unique<Discovery>(node_handle_, arrivals_, ros1::SubscribePolicy::kModel,
-                                       interval, std::vector<std::string>());
+    auto discovery =
+        std::make_unique<Discovery>(arrivals_, ros1::ReadLimits(), ros1::SubscribePolicy::kModel,
+                                    interval, std::vector<std::string>());
+    discovery->setWanted(wanted_);
+    return discovery;
   }
   ros::Publisher publish(const std::string& topic) {
     return node_handle_.advertise<std_msgs::String>(topic, 1);
+  }
+  /// Whether a message that is published now is heard.
+  bool hears(const ros::Publisher& publisher, double seconds = kAtOnce) {
+    const std::uint64_t before = arrivals_.arrived();
+    return await(
+        [&] {
+          publisher.publish(std_msgs::String());
+          return arrivals_.arrived() > before;
+        },
+        seconds);
   }
   static bool knows(const Discovery& discovery, const std::string& topic) {
     const std::shared_ptr<const ros1::Graph> graph = discovery.state().graph;
     return graph && graph->topics.count(topic) > 0 &&
            graph->topics.at(topic).publishers.count(ros::this_node::getName()) > 0;
+  }
+  static bool masterKnows(int kind, const std::string& topic) {
+    XmlRpc::XmlRpcValue state = tellMaster("getSystemState", {"/test"})[2][kind];
+    for (int i = 0; i < state.size(); ++i) {
+      for (int k = 0; k < state[i][1].size(); ++k) {
+        if (static_cast<std::string>(state[i][0]) == topic &&
+            static_cast<std::string>(state[i][1][k]) == ros::this_node::getName()) {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+  /// Why a publisher is not heard; empty: nothing is said of it.
+  static std::string whyUnheard(const Discovery& discovery, const std::string& node) {
+    for (const ros1::Unheard& unheard : discovery.state().unheard) {
+      if (unheard.node == node) {
+        return unheard.why;
+      }
+    }
+    return "";
   }
 
   ros::NodeHandle node_handle_;
@@ -62,15 +141,73 @@ TEST_F(DiscoveryTest, KeepsTheNewestGraph) {
   EXPECT_TRUE(knows(*discovery, "/a"));
 }
 
-TEST_F(DiscoveryTest, PollsAtOnceWhenItIsAsked) {
+TEST_F(DiscoveryTest, PollsAtOnceWhenItsSlaveApiIsCalled) {
   const auto discovery = discover();
-  discovery->setWanted(wanted_);
   ASSERT_TRUE(await([&] { return discovery->state().subscriptions == 2; }));
-  const ros::Publisher publisher = publish("/b");
-  EXPECT_TRUE(await([&] {
-    discovery->pollNow();
-    return knows(*discovery, "/b");
-  }));
+  ASSERT_TRUE(await([&] { return masterKnows(1, "/b"); }));
+  const ros::Publisher publisher = publish("/b");  // the master calls
+  EXPECT_TRUE(await([&] { return knows(*discovery, "/b"); }));
+  EXPECT_TRUE(hears(publisher));
+}
+
+TEST_F(DiscoveryTest, AForgedUpdateDisconnectsNobody) {
+  const auto discovery = discover(0.1);
+  const ros::Publisher publisher = publish("/a");
+  ASSERT_TRUE(await([&] { return publisher.getNumSubscribers() == 1; }));
+  std::string host;
+  std::uint32_t port = 0;
+  ASSERT_TRUE(ros::network::splitURI(ownUri(), host, port));
+  XmlRpc::XmlRpcClient slave(host.c_str(), static_cast<int>(port), "/");
+  XmlRpc::XmlRpcValue request;
+  request[0] = "/master";
+  request[1] = "/a";
+  request[2].setSize(0);
+  XmlRpc::XmlRpcValue response;
+  ASSERT_TRUE(slave.execute("publisherUpdate", request, response));
+  EXPECT_EQ(publisher.getNumSubscribers(), 1U);
+  EXPECT_TRUE(hears(publisher));
+}
+
+TEST_F(DiscoveryTest, WhatTheMasterForgetsIsRegisteredAgain) {
+  const auto discovery = discover(0.1);
+  const ros::Publisher publisher = publish("/a");
+  ASSERT_TRUE(await([&] { return masterKnows(1, "/a"); }));
+  tellMaster("unregisterSubscriber", {ros::this_node::getName(), "/a", ownUri()});
+  tellMaster("unregisterPublisher", {ros::this_node::getName(), "/a", ownUri()});
+  EXPECT_TRUE(await([&] { return masterKnows(1, "/a") && masterKnows(0, "/a"); }, kAtOnce));
+  EXPECT_TRUE(hears(publisher));
+}
+
+TEST_F(DiscoveryTest, TakesItsRegistrationsBack) {
+  auto discovery = discover(0.1);
+  ASSERT_TRUE(await([&] { return masterKnows(1, "/a") && masterKnows(1, "/b"); }));
+  wanted_.model_topics = {"/b"};
+  discovery->setWanted(wanted_);
+  EXPECT_TRUE(await([&] { return !masterKnows(1, "/a"); }));
+  EXPECT_TRUE(masterKnows(1, "/b"));
+  discovery.reset();
+  EXPECT_FALSE(masterKnows(1, "/b"));
+}
+
+TEST_F(DiscoveryTest, NamesWhoCannotBeReachedAndHearsTheOthersAtOnce) {
+  std::vector<std::unique_ptr<MadeUpPublisher>> unreachable;
+  for (int i = 0; i < 300; ++i) {
+    const std::string number = std::to_string(i);
+    unreachable.push_back(std::make_unique<MadeUpPublisher>(
+        "/lost_" + number, "/a", "http://no-such-host-" + number + ".invalid:1/"));
+  }
+  const MadeUpPublisher refused("/refused", "/a", "http://127.0.0.1:9/");
+  const MadeUpPublisher senseless("/senseless", "/a", "http://senseless");
+  const ros::Publisher publisher = publish("/a");
+  const auto discovery = discover(0.1);
+  EXPECT_TRUE(hears(publisher));
+  EXPECT_TRUE(await([&] { return discovery->state().unheard.size() == 302; }, kAtOnce));
+  EXPECT_NE(whyUnheard(*discovery, "/lost_7").find("no-such-host-7.invalid"), std::string::npos);
+  EXPECT_EQ(whyUnheard(*discovery, "/refused"), "nobody listens at its address");
+  EXPECT_NE(whyUnheard(*discovery, "/senseless"), "");
+  EXPECT_EQ(whyUnheard(*discovery, ros::this_node::getName()), "");
+  unreachable.clear();
+  EXPECT_TRUE(await([&] { return discovery->state().unheard.size() == 2; }, kAtOnce));
 }
 
 }  // namespace

@@ -24,8 +24,18 @@ struct Graph {
 
 bool operator==(const Graph& a, const Graph& b);
 
+/// What the master knows.
+struct SystemState {
+  Graph graph;
+  std::set<std::string> services;  ///< that somebody offers
+};
+
 /// Asks the master, and blocks until it answers; none if it does not.
-std::optional<Graph> fetchGraph();
+std::optional<SystemState> fetchSystemState();
+
+/// Asks the master for the URIs of nodes' XML-RPC servers, and blocks until it answers.
+/// @return by node; without those that the master does not know
+std::map<std::string, std::string> fetchAddresses(const std::set<std::string>& nodes);
 
 /// Most edges that are kept: what is new then is left out. They name roots, no more, and a robot
 /// of 300 nodes with all of tf and /rosout has some ten thousand.

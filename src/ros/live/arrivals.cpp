@@ -1,7 +1,5 @@
 #include "self_awareness/ros/live/arrivals.h"
 
-#include <topic_tools/shape_shifter.h>
-
 #include <algorithm>
 
 namespace self_awareness::ros1 {
@@ -13,6 +11,7 @@ void Arrivals::add(Arrival arrival) {
   bool wake = false;
   {
     const auto waiting = waiting_.lock();
+    ++waiting->arrived;
     const std::size_t content = arrival.content ? arrival.content->size() : 0;
     std::uint32_t& of_connection = waiting->of_connection[arrival.header.get()];
     // A single message is taken however long it is.

@@ -1,8 +1,6 @@
 #include "self_awareness/ros/live/live_events.h"
 
 #include <ros/console.h>
-#include <ros/serialization.h>
-#include <topic_tools/shape_shifter.h>
 
 #include <algorithm>
 #include <boost/make_shared.hpp>
@@ -84,11 +82,17 @@ void LiveEvents::deliver() {
   }
   for (const Arrivals::Dropped& of : dropped) {
     const auto known = connections_.find(of.header.get());
-    if (known != connections_.end() && known->second.encoder && handlers_.on_dropped) {
-      handlers_.on_dropped({connectionFrom(*of.header, of.topic->name).callerid, of.topic->name});
+    if (known != connections_.end() && known->second.encoder) {
+      tellDropped(of.topic->name, *of.header);
     }
   }
   delivered_.clear();  // now: whether a connection is closed is seen by the users of its header
+}
+
+void LiveEvents::tellDropped(const std::string& topic, const ros::M_string& header) const {
+  if (handlers_.on_dropped) {
+    handlers_.on_dropped({connectionFrom(header, topic).callerid, topic});
+  }
 }
 
 void LiveEvents::onArrival(const Arrival& arrival) {
@@ -103,27 +107,20 @@ void LiveEvents::onArrival(const Arrival& arrival) {
     handlers_.on_event({arrival.stamp, encoder->id()});
     return;
   }
-  if (!arrival.content) {  // it came before its content was wanted
+  if (!arrival.content) {  // it came before its content was wanted, or is too long
     ++unread_;
+    tellDropped(arrival.topic->name, *arrival.header);
     return;
   }
   core::Event event{arrival.stamp, 0};
   try {
-    event.id = read(*arrival.content, *encoder);
+    event.id = encoder->id(arrival.content->data(), arrival.content->size());
   } catch (const std::out_of_range& error) {
     ROS_ERROR_THROTTLE(10, "%s: %s; the message is left out", arrival.topic->name.c_str(),
                        printable(error.what(), kLongestName).c_str());
     return;
   }
   handlers_.on_event(event);
-}
-
-core::EventId LiveEvents::read(const topic_tools::ShapeShifter& content,
-                               ConnectionEncoder& encoder) {
-  content_.resize(content.size());
-  ros::serialization::OStream stream(content_.data(), content.size());
-  content.write(stream);
-  return encoder.id(content_.data(), content_.size());
 }
 
 LiveEvents::LiveConnection& LiveEvents::connectionOf(const Arrival& arrival) {
@@ -140,9 +137,6 @@ LiveEvents::LiveConnection& LiveEvents::connectionOf(const Arrival& arrival) {
     live.encoder = connect(connectionFrom(*arrival.header, arrival.topic->name));
   }
   chooseContent(*live.topic);
-  if (is_new && live.encoder) {
-    handlers_.on_connection();
-  }
   return live;
 }
 

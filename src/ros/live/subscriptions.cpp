@@ -1,59 +1,83 @@
 #include "self_awareness/ros/live/subscriptions.h"
 
-#include <ros/console.h>
+#include <poll.h>
+#include <ros/time.h>
+#include <sys/eventfd.h>
+#include <unistd.h>
 
-#include "../text.h"
-#include "self_awareness/ros/encoding.h"
-#include "topic_subscription.h"
+#include <array>
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+#include "publisher_table.h"
 
 namespace self_awareness::ros1 {
+namespace {
 
-Subscriptions::Subscriptions(const ros::NodeHandle& node_handle, Arrivals& arrivals)
-    : node_handle_(node_handle), arrivals_(arrivals) {}
+constexpr int kBetweenLooks = 50;  // [ms]
 
-Subscriptions::~Subscriptions() = default;
-
-void Subscriptions::setTopics(const std::set<std::string>& topics, const Graph& graph) {
-  for (auto subscription = subscriptions_.begin(); subscription != subscriptions_.end();) {
-    const auto published = graph.topics.find(subscription->first);
-    const std::string datatype = published == graph.topics.end() ? "" : published->second.datatype;
-    std::string& expected = subscription->second.datatype;
-    if (expected.empty() || expected == "*") {
-      expected = datatype;
-    }
-    const bool type_changed = !datatype.empty() && datatype != "*" && datatype != expected;
-    if (type_changed && changed_.add(subscription->first)) {
-      ROS_WARN("%s: the type changed from %s to %s; subscribing again",
-               subscription->first.c_str(), printable(expected, kLongestName).c_str(),
-               printable(datatype, kLongestName).c_str());
-    }
-    if (type_changed || topics.count(subscription->first) == 0) {
-      subscription = subscriptions_.erase(subscription);
-    } else {
-      ++subscription;
-    }
-  }
-  for (const std::string& topic : topics) {
-    if (subscriptions_.count(topic) > 0) {
-      continue;
-    }
-    const auto published = graph.topics.find(topic);
-    Subscription& subscription = subscriptions_[topic];
-    subscription.datatype = published == graph.topics.end() ? "" : published->second.datatype;
-    subscription.subscription =
-        std::make_unique<TopicSubscription>(node_handle_, arrivals_, topic);
-  }
+std::int64_t steadyNow() {
+  return static_cast<std::int64_t>(ros::SteadyTime::now().toNSec());
 }
 
-void Subscriptions::adaptReading() {
-  for (auto& [topic, subscription] : subscriptions_) {
-    subscription.subscription->adaptReading();
+int makeBell() {
+  const int bell = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);
+  if (bell < 0) {
+    throw std::system_error(errno, std::generic_category(), "cannot listen to publishers");
   }
+  return bell;
 }
 
-void Subscriptions::renew(const std::set<std::string>& topics) {
-  for (const std::string& topic : topics) {
-    subscriptions_.erase(topic);
+}  // namespace
+
+Subscriptions::Subscriptions(Arrivals& arrivals, const ReadLimits& limits)
+    : wake_(makeBell()),
+      table_(std::make_unique<PublisherTable>(arrivals, limits)),
+      thread_([this] { run(); }) {}
+
+Subscriptions::~Subscriptions() {
+  shared_.lock()->stopping = true;
+  wake();
+  thread_.join();
+  table_.reset();
+  close(wake_);
+}
+
+void Subscriptions::listen(Listening listening) {
+  shared_.lock()->listening = std::make_shared<const Listening>(std::move(listening));
+  wake();
+}
+
+void Subscriptions::wake() const {
+  eventfd_write(wake_, 1);
+}
+
+void Subscriptions::run() {
+  std::vector<pollfd> sockets;
+  while (true) {
+    std::shared_ptr<const Listening> listening;
+    {
+      const auto shared = shared_.lock();
+      if (shared->stopping) {
+        return;
+      }
+      listening = std::exchange(shared->listening, nullptr);
+    }
+    const std::int64_t now = steadyNow();
+    if (listening) {
+      table_->setListening(*listening, now);
+    }
+    table_->attend(now);
+    std::vector<Unheard> unheard = table_->unheard(now);
+    shared_.lock()->unheard = std::move(unheard);
+    sockets.assign(1, {wake_, POLLIN, 0});
+    table_->sockets(sockets);
+    if (poll(sockets.data(), sockets.size(), kBetweenLooks) > 0) {
+      eventfd_t rings = 0;
+      eventfd_read(wake_, &rings);
+      table_->advance(steadyNow());
+    }
   }
 }
 

@@ -131,6 +131,10 @@ void tellComponent(const CommunicationState& state, const std::string& name,
       break;
     }
   }
+  const auto not_heard = state.not_heard.find(name);
+  if (status.level == DiagnosticStatus::OK && not_heard != state.not_heard.end()) {
+    status.summary(DiagnosticStatus::WARN, not_heard->second);
+  }
   if (component.last_heard) {
     status.add("last heard [s ago]", number(*component.last_heard));
   }

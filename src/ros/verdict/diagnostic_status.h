@@ -4,6 +4,7 @@
 #include <diagnostic_updater/DiagnosticStatusWrapper.h>
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,8 @@ struct CommunicationState {
   bool busy = false;                               ///< the machine is to blame, no component
   double level_for = 0;                            ///< how long it has had its level [s]
   HeardReport heard;
+  /// Who cannot be heard by the monitor, and why, in words; by component.
+  std::map<std::string, std::string> not_heard;
 
   /// Takes over what the alarm says, and what was heard.
   /// @param now ROS time [ns]

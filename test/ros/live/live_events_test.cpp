@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
+#include <ros/xmlrpc_manager.h>
 #include <std_msgs/String.h>
-#include <topic_tools/shape_shifter.h>
 
 #include <algorithm>
 #include <atomic>
@@ -53,13 +53,9 @@ class LiveEventsTest : public testing::Test {
     handlers.on_event = [this](const core::Event& event) {
       types_.push_back(vocabulary_.at(event.id).type);
     };
-    handlers.on_connection = [this] {
-      ++connections_;
-      subscriptions_->adaptReading();  // as the poll does that the monitor asks for then
-    };
     handlers.on_arrivals = [this] { ++wakes_; };
     live_events_ = std::make_unique<LiveEvents>(node_handle_, kQueueSize, handlers);
-    subscriptions_ = std::make_unique<Subscriptions>(node_handle_, live_events_->arrivals());
+    subscriptions_ = std::make_unique<Subscriptions>(live_events_->arrivals());
     encode({});
   }
 
@@ -71,35 +67,27 @@ class LiveEventsTest : public testing::Test {
         std::make_shared<Encoder>(
             rules, [this](const core::EventType& type) { return vocabulary_.intern(type); }),
         {}, window);
-    subscriptions_->adaptReading();  // as the poll does that follows in the monitor
   }
-  /// A publisher that is subscribed to.
+  /// This process as the publisher of a topic.
+  static Listening ownTopic(const std::string& topic) {
+    const std::string uri = ros::XMLRPCManager::instance()->getServerURI();
+    return {{{topic, {{ros::this_node::getName(), uri}}}}, {}};
+  }
+  /// A publisher that is listened to.
   ros::Publisher advertise(const std::string& topic, bool latching = false) {
-    ros::Publisher publisher =
-        node_handle_.advertise<std_msgs::String>(topic, kQueueSize, latching);
-    subscriptions_->setTopics({topic}, {});
-    const boost::function<void(const topic_tools::ShapeShifter::ConstPtr&)> count =
-        [this](const topic_tools::ShapeShifter::ConstPtr& /*message*/) { ++arrived_; };
-    arrivals_ = node_handle_.subscribe<topic_tools::ShapeShifter>(topic, 0, count);
+    ros::Publisher publisher = node_handle_.advertise<std_msgs::String>(topic, 0, latching);
+    subscriptions_->listen(ownTopic(topic));
     await([&] { return publisher.getNumSubscribers() > 0; });
     return publisher;
   }
   /// Publishes so many messages, and waits until they have arrived.
   void publish(const ros::Publisher& publisher, const std_msgs::String& message,
                std::size_t count = 1) {
-    arrived_ = 0;
+    const std::uint64_t before = live_events_->arrivals().arrived();
     for (std::size_t i = 0; i < count; ++i) {
       publisher.publish(message);
     }
-    await([&] { return arrived_ == count; });
-    awaitHandedOut(publisher.getTopic());
-  }
-  /// Waits until each subscription of this process has the last message that came.
-  void awaitHandedOut(const std::string& topic) {
-    // To subscribe takes the mutex that is held meanwhile.
-    const boost::function<void(const topic_tools::ShapeShifter::ConstPtr&)> nothing =
-        [](const topic_tools::ShapeShifter::ConstPtr& /*message*/) {};
-    node_handle_.subscribe<topic_tools::ShapeShifter>(topic, 1, nothing);
+    await([&] { return live_events_->arrivals().arrived() == before + count; });
   }
   void await(const std::function<bool()>& condition) {
     const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(20);
@@ -117,11 +105,8 @@ class LiveEventsTest : public testing::Test {
   using Types = std::vector<std::string>;
   ros::NodeHandle node_handle_;
   ros::CallbackQueue queue_;
-  ros::Subscriber arrivals_;
-  std::size_t arrived_ = 0;
   core::Vocabulary vocabulary_;
   Types types_;
-  int connections_ = 0;
   int wakes_ = 0;
   std::unique_ptr<LiveEvents> live_events_;
   std::unique_ptr<Subscriptions> subscriptions_;
@@ -132,7 +117,7 @@ TEST_F(LiveEventsTest, DropsAndCountsWhatDoesNotFit) {
   publish(publisher, message(""), kQueueSize + 7);
   EXPECT_EQ(live_events_->dropped(), 7U);
   EXPECT_EQ(delivered().size(), kQueueSize);
-  EXPECT_EQ(connections_, 1);
+  EXPECT_EQ(live_events_->connections(), 1U);
   publish(publisher, message(""));
   EXPECT_EQ(delivered().size(), 1U);
   EXPECT_EQ(live_events_->dropped(), 7U);
@@ -160,7 +145,7 @@ TEST_F(LiveEventsTest, AnotherEncoderMayReadWhatThisOneDoesNot) {
   publish(publisher, message("on"));
   EXPECT_EQ(delivered(), Types{"std_msgs/String"});
   EXPECT_EQ(live_events_->dropped(), 1U);
-  EXPECT_EQ(connections_, 1);
+  EXPECT_EQ(live_events_->connections(), 1U);
 }
 
 TEST_F(LiveEventsTest, TwoOfOneProcessDoNotDisturbEachOther) {
@@ -169,19 +154,21 @@ TEST_F(LiveEventsTest, TwoOfOneProcessDoNotDisturbEachOther) {
   handlers.on_event = [&](const core::Event& event) {
     others.push_back(vocabulary_.at(event.id).type);
   };
-  handlers.on_connection = handlers.on_arrivals = [] {};
+  handlers.on_arrivals = [] {};
   LiveEvents other(node_handle_, kQueueSize, handlers);
-  Subscriptions others_subscriptions(node_handle_, other.arrivals());
+  Subscriptions others_subscriptions(other.arrivals());
   EncodingRules rules;
   rules.type_fields = {{"std_msgs/String", "data"}};
   other.setEncoder(
       std::make_shared<Encoder>(
           rules, [this](const core::EventType& type) { return vocabulary_.intern(type); }),
       {}, kWindow);
-  others_subscriptions.setTopics({"/a"}, {});
   const ros::Publisher publisher = advertise("/a");
-  for (int i = 0; i < 2; ++i) {
+  others_subscriptions.listen(ownTopic("/a"));
+  await([&] { return publisher.getNumSubscribers() == 2; });
+  for (std::uint64_t i = 1; i <= 2; ++i) {
     publish(publisher, message("on"));
+    await([&] { return other.arrivals().arrived() == i; });
     EXPECT_EQ(delivered(), Types{"std_msgs/String"});
     other.deliver();
   }
@@ -212,7 +199,7 @@ TEST_F(LiveEventsTest, AChangeOfReadingLosesNothingAndCountsNothingTwice) {
     const std::size_t before = events + live_events_->dropped();
     std::atomic<std::size_t> heard{0};
     std::atomic<std::size_t> published{0};
-    arrived_ = 0;
+    const std::uint64_t arrived = live_events_->arrivals().arrived();
     const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(20);
     std::thread publishing([&] {
       for (; published < kMessages; ++published) {
@@ -244,8 +231,7 @@ TEST_F(LiveEventsTest, AChangeOfReadingLosesNothingAndCountsNothingTwice) {
       }
     }
     publishing.join();
-    await([&] { return arrived_ == kMessages; });
-    awaitHandedOut(publisher.getTopic());
+    await([&] { return live_events_->arrivals().arrived() == arrived + kMessages; });
     deliver();
     EXPECT_EQ(heard, kMessages);
     EXPECT_GT(changes, 100U);
@@ -270,7 +256,7 @@ TEST_F(LiveEventsTest, AChangeOfReadingIsNoNewConnection) {
     EXPECT_EQ(delivered(), Types{"std_msgs/String"});
   }
   EXPECT_EQ(publisher.getNumSubscribers(), 1U);
-  EXPECT_EQ(connections_, 1);
+  EXPECT_EQ(live_events_->connections(), 1U);
   EXPECT_EQ(live_events_->dropped(), 0U);
 }
 

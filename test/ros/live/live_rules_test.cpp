@@ -1,11 +1,7 @@
 // What the live side decides without a master: which topics, what its own output is, and when the
 // clock was set.
 
-#include <arpa/inet.h>
 #include <gtest/gtest.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
 #include <set>
 #include <string>
@@ -14,7 +10,6 @@
 #include "self_awareness/ros/encoding.h"
 #include "self_awareness/ros/graph.h"
 #include "self_awareness/ros/live/clock_watch.h"
-#include "self_awareness/ros/live/lost_publishers.h"
 #include "self_awareness/ros/live/named_once.h"
 #include "self_awareness/ros/live/own_output.h"
 
@@ -91,139 +86,6 @@ TEST(NamedOnce, NamesEachOnceAndNotTooMany) {
     count += named.add("/b" + std::to_string(i)) ? 1 : 0;
   }
   EXPECT_EQ(count, NamedOnce::kMost);
-}
-
-constexpr char kUri[] = "http://robot:4711/";
-
-class LostPublishersTest : public testing::Test {
- protected:
-  /// Looks at a node with two topics, and at another one that is connected all the time.
-  Topics look(bool connected, std::int64_t second) {
-    return lost_.look({{kUri, "/scan", connected},
-                       {kUri, "/rare", connected},
-                       {"http://robot:1/", "/scan", true}},
-                      second * kSecond);
-  }
-
-  Reached reached_ = Reached::kYes;
-  int asked_ = 0;
-  LostPublishers lost_{[this](const std::string& uri) {
-    ++asked_;
-    EXPECT_EQ(uri, kUri);
-    return reached_;
-  }};
-};
-
-TEST_F(LostPublishersTest, ConnectsAgainToTheTopicsOfANodeThatLives) {
-  EXPECT_EQ(look(true, 0), Topics());
-  EXPECT_EQ(look(true, 1), Topics());
-  EXPECT_EQ(asked_, 0);
-  reached_ = Reached::kRefused;
-  EXPECT_EQ(look(false, 2), Topics());
-  EXPECT_EQ(look(false, 3), Topics());
-  EXPECT_EQ(look(false, 4), Topics());
-  EXPECT_EQ(asked_, 3);
-  reached_ = Reached::kYes;
-  EXPECT_EQ(look(false, 5), (Topics{"/rare", "/scan"}));
-  EXPECT_EQ(look(true, 6), Topics());
-  EXPECT_EQ(look(true, 7), Topics());
-  EXPECT_EQ(asked_, 4);
-}
-
-TEST_F(LostPublishersTest, NoticesWhoDiedBeforeTheFirstLook) {
-  EXPECT_EQ(look(false, 0), Topics()) << "they may be connecting";
-  EXPECT_EQ(look(false, 1), (Topics{"/rare", "/scan"}));
-}
-
-TEST_F(LostPublishersTest, LeavesAloneWhatRoscppHasGivenUp) {
-  look(true, 0);
-  reached_ = Reached::kRefused;
-  look(false, 1);
-  reached_ = Reached::kYes;
-  EXPECT_EQ(lost_.look({}, 2 * kSecond), Topics());
-  EXPECT_EQ(look(true, 3), Topics());
-  EXPECT_EQ(asked_, 1);
-}
-
-TEST_F(LostPublishersTest, LeavesAloneWhatRoscppHasConnectedAgain) {
-  look(true, 0);
-  reached_ = Reached::kRefused;
-  look(false, 1);
-  reached_ = Reached::kYes;
-  EXPECT_EQ(look(true, 2), Topics());
-  EXPECT_EQ(asked_, 1);
-}
-
-TEST_F(LostPublishersTest, AsksAgainWhereTheNodeDidNotKnowItsTopicYet) {
-  look(true, 0);
-  look(false, 1);  // asked for both
-  const Link rare{kUri, "/rare", true};
-  const Link scan{kUri, "/scan", true};
-  EXPECT_EQ(lost_.look({rare}, 2 * kSecond), Topics{"/scan"});
-  EXPECT_EQ(lost_.look({rare, scan}, 4 * kSecond), Topics());
-  EXPECT_EQ(lost_.look({rare, scan}, 9 * kSecond), Topics());
-  EXPECT_EQ(asked_, 2);
-}
-
-TEST_F(LostPublishersTest, GivesUpWhoDoesNotPublishAnyMore) {
-  look(true, 0);
-  look(false, 1);
-  for (int second = 2; second < 1000; ++second) {
-    lost_.look({}, second * kSecond);
-    reached_ = second % 2 == 0 ? Reached::kYes : Reached::kRefused;
-  }
-  EXPECT_GT(asked_, 4);
-  EXPECT_LT(asked_, 10);
-}
-
-TEST_F(LostPublishersTest, WhoComesAndGoesDoesNotDisturbOthersAllTheTime) {
-  int renewed = 0;
-  for (int second = 0; second < 600; ++second) {
-    renewed += look(second % 2 == 0, second).empty() ? 0 : 1;
-  }
-  EXPECT_GT(renewed, 2);
-  EXPECT_LT(renewed, 20);
-}
-
-TEST_F(LostPublishersTest, AMachineThatIsOffIsAskedLessAndLess) {
-  look(true, 0);
-  reached_ = Reached::kNoAnswer;
-  for (int second = 1; second < 600; ++second) {
-    look(false, second);
-  }
-  EXPECT_LT(asked_, 20);
-  reached_ = Reached::kYes;
-  Topics again;
-  for (int second = 600; second < 700; ++second) {
-    again.merge(look(false, second));
-  }
-  EXPECT_EQ(again, (Topics{"/rare", "/scan"}));
-}
-
-TEST(LostPublishers, AConnectionStandsAsLongAsItsSocketIsTheSame) {
-  const int server = socket(AF_INET, SOCK_STREAM, 0);
-  sockaddr_in address{};
-  address.sin_family = AF_INET;
-  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-  socklen_t size = sizeof address;
-  auto* const any = reinterpret_cast<sockaddr*>(&address);
-  ASSERT_EQ(bind(server, any, size), 0);
-  ASSERT_EQ(listen(server, 1), 0);
-  ASSERT_EQ(getsockname(server, any, &size), 0);
-  const int client = socket(AF_INET, SOCK_STREAM, 0);
-  ASSERT_EQ(connect(client, any, size), 0);
-  ASSERT_EQ(getsockname(client, any, &size), 0);
-  const auto describe = [&](int port) {
-    return "TCPROS connection on port " + std::to_string(port) + " to [robot:4711 on socket " +
-           std::to_string(client) + "]";
-  };
-  const int port = ntohs(address.sin_port);
-  EXPECT_TRUE(isConnected(describe(port)));
-  EXPECT_FALSE(isConnected(describe(port == 1 ? 2 : 1))) << "the socket is another one";
-  close(client);
-  EXPECT_FALSE(isConnected(describe(port)));
-  EXPECT_TRUE(isConnected("another transport")) << "nothing is known of it";
-  close(server);
 }
 
 TEST(OwnOutput, IsWhatTheModelDoesNotKnowFromTheProcess) {

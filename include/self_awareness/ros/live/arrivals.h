@@ -16,11 +16,10 @@
 #include "self_awareness/core/stream/windows.h"
 #include "self_awareness/ros/live/guarded.h"
 
-namespace topic_tools {
-class ShapeShifter;
-}
-
 namespace self_awareness::ros1 {
+
+/// The bytes of a message.
+using Content = std::vector<std::uint8_t>;
 
 /// One message, as it was received.
 struct Arrival {
@@ -37,7 +36,7 @@ struct Arrival {
   std::shared_ptr<Topic> topic;
   boost::shared_ptr<ros::M_string> header;  ///< all messages of a connection share one
   std::int64_t stamp = 0;                   ///< of its receipt [ns]
-  boost::shared_ptr<const topic_tools::ShapeShifter> content;  ///< none: it was not read
+  std::shared_ptr<const Content> content;   ///< none: it was not read
 };
 
 /// Keeps what arrives, in any thread, for the one thread that takes it, many messages at a time.
@@ -66,6 +65,8 @@ class Arrivals {
   /// Puts what waits into `arrivals`, in the order of its arrival, in place of what is there.
   /// @return connections of which messages were dropped since the last call
   std::vector<Dropped> take(std::vector<Arrival>& arrivals);
+  /// Number of messages that came since the start, with those that were dropped.
+  std::uint64_t arrived() const { return waiting_.lock()->arrived; }
   /// Number of messages that were dropped since the start.
   std::uint64_t dropped() const { return waiting_.lock()->dropped; }
 
@@ -76,6 +77,7 @@ class Arrivals {
     std::unordered_map<const ros::M_string*, std::uint32_t> of_connection;
     std::size_t content = 0;  // bytes
     std::vector<Dropped> dropped_of;
+    std::uint64_t arrived = 0;
     std::uint64_t dropped = 0;
     std::int64_t interval = core::kDefaultWindow;
     std::int64_t last_interval = 0;  // start of the last arrival's

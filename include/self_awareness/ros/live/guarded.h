@@ -41,6 +41,9 @@ class Guarded<T>::BasicLock {
   Data& operator*() const& { return data_; }
   Data& operator*() const&& = delete;  // the reference would outlive the lock
 
+  /// Releases the mutex; the data must not be touched after it.
+  void release() { lock_.unlock(); }
+
   /// Releases the mutex and waits until the condition holds or the time is over. The condition
   /// is looked at with the mutex held, at first and after each notification.
   /// @param condition called with the data

@@ -34,9 +34,6 @@ class LiveEvents {
  public:
   struct Handlers {
     std::function<void(const core::Event&)> on_event;
-    /// Called with the first message of a connection, before its event, unless the rules leave it
-    /// out.
-    std::function<void()> on_connection;
     /// Called by the callback queue when deliver() should not wait any longer: by the first
     /// message after the end of a window, or where a topic's queue fills.
     std::function<void()> on_arrivals;
@@ -85,8 +82,7 @@ class LiveEvents {
   /// Chooses anew what is left out, of connections that were heard.
   void encodeAgain();
   void onArrival(const Arrival& arrival);
-  /// @throw std::out_of_range if the message is shorter than its definition says
-  core::EventId read(const topic_tools::ShapeShifter& content, ConnectionEncoder& encoder);
+  void tellDropped(const std::string& topic, const ros::M_string& header) const;
   LiveConnection& connectionOf(const Arrival& arrival);
   /// The content of the topic's messages is wanted if any of its connections needs it.
   void chooseContent(Arrival::Topic& topic) const;
@@ -101,10 +97,9 @@ class LiveEvents {
   OwnOutput own_output_;
   // All messages of a connection share one header object.
   std::unordered_map<const ros::M_string*, LiveConnection> connections_;
-  std::vector<Arrival> delivered_;     // kept for its memory
-  std::vector<std::uint8_t> content_;  // kept for its memory
-  NamedOnce complained_of_;            // connections
-  std::uint64_t unread_ = 0;           // messages that would have had to be read
+  std::vector<Arrival> delivered_;  // kept for its memory
+  NamedOnce complained_of_;         // connections
+  std::uint64_t unread_ = 0;        // messages that would have had to be read
 };
 
 }  // namespace self_awareness::ros1

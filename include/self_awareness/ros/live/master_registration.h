@@ -1,29 +1,40 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
+#include "self_awareness/ros/graph.h"
+
 namespace self_awareness::ros1 {
 
-/// Registers this process's topics and services again after a restart of the master, which roscpp
-/// does not do: without that, no other node finds them, and they find no new node. Connections
-/// that exist are left alone; they do not need the master.
+/// What the master knows of this process: its topics and services, and the topics that it listens
+/// to. roscpp registers once; what the master has forgotten since (it was restarted, or somebody
+/// has cleaned up) is registered again. Without that no other node finds this one.
 class MasterRegistration {
  public:
   /// @param services full names of the services to register, besides the logger levels' ones
   explicit MasterRegistration(std::vector<std::string> services);
+  /// Takes back the topics that are listened to; waits for the master.
+  ~MasterRegistration();
+  MasterRegistration(const MasterRegistration&) = delete;
+  MasterRegistration& operator=(const MasterRegistration&) = delete;
 
   enum class Master { kSame, kAway, kRestarted };
-  /// Asks who the master is; blocks for as long as it takes to answer. Registers all again if it
-  /// is another one than the last time.
+  /// Asks who the master is; blocks for as long as it takes to answer.
   Master check();
 
- private:
-  void registerAll() const;
+  /// Registers what the master does not know, and takes back topics that are listened to no more.
+  /// @param topics that are listened to by Subscriptions, of which roscpp does not know
+  /// @return number of registrations that had been there, and had vanished
+  std::size_t keep(const SystemState& state, const std::set<std::string>& topics);
 
+ private:
   std::vector<std::string> services_;
   std::optional<int> master_pid_;
+  std::set<std::string> listens_to_;  // that were registered here
 };
 
 }  // namespace self_awareness::ros1

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <string>
+
+namespace self_awareness::ros1 {
+
+/// The connections that others have made to this process's ports (slave API and TCPROS). roscpp
+/// keeps each for as long as the other side likes, and reads whatever it sends: a thousand that
+/// say nothing leave no file for anybody else, and one that sends a header without an end takes
+/// all memory. Here such ones are closed.
+///
+/// Belongs to one thread. Times are steady [ns].
+class Strangers {
+ public:
+  /// So long may a connection be without being answered.
+  static constexpr std::int64_t kPatience = 5000000000;
+  /// So much may it send meanwhile [bytes].
+  static constexpr std::uint64_t kMostUnanswered = 16000000;
+  /// So many to the slave API may stay; the ones that said nothing for longest go first.
+  static constexpr std::size_t kMost = 200;
+
+  /// What has happened since the last look.
+  struct Seen {
+    bool called = false;  ///< the slave API: the master may have something to tell
+    std::size_t closed = 0;
+  };
+  Seen look(std::int64_t now);
+  /// Looks at connections to these ports.
+  Seen look(std::int64_t now, int slave_port, int data_port);
+
+ private:
+  struct Connection {
+    std::int64_t since = 0;            // it was not answered
+    std::uint64_t received = 0;        // in all [bytes]
+    std::uint64_t sent = 0;            // in all [bytes]
+    std::uint64_t received_until = 0;  // it was answered last [bytes]
+  };
+
+  std::map<std::string, Connection> known_;  // by both ends
+};
+
+}  // namespace self_awareness::ros1

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <diagnostic_updater/DiagnosticStatusWrapper.h>
+
+#include <cstddef>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "self_awareness/core/stream/vocabulary.h"
+#include "self_awareness/core/verdict/detector.h"
+#include "self_awareness/ros/live/subscriptions.h"
+
+namespace self_awareness {
+
+/// Adds to the status of a node who it does not hear, though the master names them: a warning.
+void tellUnheard(const std::vector<ros1::Unheard>& unheard,
+                 diagnostic_updater::DiagnosticStatusWrapper& status);
+
+/// Adds how many connections of strangers were closed: a warning, where there are new ones.
+/// @param closed since the start
+/// @param newly since the last report
+void tellStrangers(std::size_t closed, std::size_t newly,
+                   diagnostic_updater::DiagnosticStatusWrapper& status);
+
+/// Keeps apart who is silent and who the monitor cannot hear: where the network between them is
+/// gone, or the publisher does not let the monitor in, nothing is known of who does not come.
+///
+/// A node that is dead is silent, as its machine says that nobody listens at its address.
+class NotHeard {
+ public:
+  /// Takes over who is not heard now.
+  void set(const std::vector<ros1::Unheard>& unheard);
+  /// Says so of suspects that do not come, or come late.
+  void explain(std::vector<core::Suspect>& suspects, const core::Vocabulary& vocabulary) const;
+  /// In words, by component (core::componentOf()).
+  std::map<std::string, std::string> components() const;
+
+ private:
+  std::map<std::pair<std::string, std::string>, std::string> why_;  // by source and topic
+};
+
+}  // namespace self_awareness
