@@ -248,9 +248,11 @@ void PublisherTable::connect(Node& node, const std::string& ip, std::int64_t now
     topic = std::make_shared<Arrival::Topic>(node.topic);
     known = topic;
   }
-  publication.link = std::make_shared<TopicLink>(topic, arrivals_, limits_, in_flight_);
+  const auto link = std::make_shared<TopicLink>(topic, arrivals_, limits_, in_flight_);
   publication.connected_at = now;
-  publication.link->connect(ip, node.data_port);
+  link->connect(ip, node.data_port);
+  // The thread that receives may hold it for a moment longer.
+  publication.link = {link.get(), [link](TopicLink* ending) { ending->close(); }};
 }
 
 void PublisherTable::fail(Node& node, const std::string& why, bool dead, bool all,

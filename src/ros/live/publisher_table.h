@@ -51,7 +51,7 @@ class PublisherTable {
     std::int64_t missing_since = 0;
     std::int64_t connected_at = 0;  // when the link was made
     std::int64_t try_at = 0;
-    std::string why;
+    std::string why = "has not answered yet";
     bool dead = false;
   };
   struct Node {  // as an address has it

@@ -114,7 +114,7 @@ Strangers::Seen Strangers::look(std::int64_t now, int slave_port, int data_port)
     }
     OwnFile file(number);
     const std::optional<Socket> socket = socketOf(file.number(), slave_port, data_port);
-    if (!socket) {
+    if (!socket || all.count(socket->ends) > 0) {  // one of ours may have the number of another
       continue;
     }
     const auto known = known_.find(socket->ends);
