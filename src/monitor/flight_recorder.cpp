@@ -69,7 +69,7 @@ FlightRecorder::FlightRecorder(const RecorderParameters& parameters,
       after_(nanoseconds(parameters.after)),
       most_bytes_(static_cast<std::size_t>(parameters.memory) * kMegabyte),
       source_(std::move(source)),
-      folder_(parameters.directory, static_cast<std::size_t>(parameters.files),
+      folder_(parameters.directory, parameters.name, static_cast<std::size_t>(parameters.files),
               static_cast<std::uint64_t>(parameters.disk) * kMegabyte),
       packer_([this](self_awareness::EventLog part) { keep(std::move(part)); }),
       writer_(kPause) {}
@@ -120,7 +120,8 @@ std::string FlightRecorder::onAlarm(std::int64_t now) {
   if (!pending_) {
     pending_ = Pending{newPath(RecorderFolder::Cause::kAlarm), now + after_};
   }
-  return pending_->path;
+  kept_ = pending_->path;
+  return kept_;
 }
 
 std::optional<std::string> FlightRecorder::dump() {
@@ -187,10 +188,10 @@ void FlightRecorder::write(const std::string& path) {
   recording.types_before = forgotten_types_;
   recording.parts.assign(parts_.begin(), parts_.end());
   const RecorderFolder folder = folder_;
-  writer_.add({path, bytes_, [folder, recording](const std::string& file) {
+  writer_.add({path, bytes_, [folder, recording, kept = kept_](const std::string& file) {
                  folder.create();
                  writeLog(recording, file);
-                 folder.removeOldest();
+                 folder.removeOldest(kept);
                }});
 }
 

@@ -24,12 +24,13 @@ namespace self_awareness {
 
 /// Parameters of the flight recorder; config/self_awareness.yaml explains each to its user.
 struct RecorderParameters {
-  double duration = 300;                            ///< ~recorder/duration [s]; 0: no recorder
-  double after = 10;                                ///< ~recorder/after [s]
-  std::string directory = "~/.ros/self_awareness";  ///< ~recorder/directory
-  int files = 20;                                   ///< ~recorder/files: most of them
-  int disk = 200;                                   ///< ~recorder/disk: most of all files [MB]
-  int memory = 32;                                  ///< ~recorder/memory: most for events [MB]
+  double duration = 300;  ///< ~recorder/duration [s]; 0: no recorder
+  double after = 10;      ///< ~recorder/after [s]
+  std::string directory = "$ROS_HOME/self_awareness/$NAME";  ///< ~recorder/directory
+  int files = 20;                                            ///< ~recorder/files: most of them
+  int disk = 200;    ///< ~recorder/disk: most of all files [MB]
+  int memory = 32;   ///< ~recorder/memory: most for events [MB]
+  std::string name;  ///< full name of the monitor
 };
 
 /// Keeps the events of the last minutes in memory, and writes them as an event log when there is a
@@ -66,13 +67,15 @@ class FlightRecorder {
   /// encodes them. A file that waits for what follows is written as it is.
   void restart();
 
-  /// An alarm was raised: what was heard, and what follows, will be in a file. Alarms that are
-  /// raised meanwhile are in the same one.
+  /// An alarm was raised: what was heard, and what follows, will be in a file, which stays until
+  /// onAlarmOver(). Alarms that are raised meanwhile are in the same one.
   /// @return path of the file; empty without a recorder
   std::string onAlarm(std::int64_t now);
   /// Writes what was heard up to now.
   /// @return path of the file; none if nothing was heard
   std::optional<std::string> dump();
+  /// The alarm that was raised last is over: its file may be removed for newer ones.
+  void onAlarmOver() { kept_.clear(); }
   /// The program ends: writes what waits, or what was heard if an alarm stands, and waits for the
   /// disk. Nothing is recorded after it; a second call does nothing.
   void finish(bool alarm_stands);
@@ -106,6 +109,7 @@ class FlightRecorder {
   std::int64_t last_ = 0;              // up to where all was heard
   std::vector<self_awareness::EventType> forgotten_types_;  // of parts that were forgotten
   std::optional<Pending> pending_;
+  std::string kept_;           // path of the file of an alarm that stands; empty: none does
   std::int64_t named_at_ = 0;  // wall time that the last file is named by [ns]
   bool finished_ = false;
   FileWriter writer_;  // last: it writes what the others have handed over

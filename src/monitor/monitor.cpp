@@ -182,6 +182,9 @@ void Monitor::onVerdict(const core::Verdict& verdict) {
     alarm_file_ = recorder_.onAlarm(steadyNow());
   }
   core::Verdict said = verdict;
+  if (!verdict.alarm && stood) {
+    recorder_.onAlarmOver();
+  }
   if (!said.suspects.empty()) {
     not_heard_.set(live_->discovery().state().unheard);
     not_heard_.explain(said.suspects, session_->vocabulary());
@@ -192,6 +195,7 @@ void Monitor::onVerdict(const core::Verdict& verdict) {
 }
 
 void Monitor::standDown(const std::string& message) {
+  recorder_.onAlarmOver();
   announcer_.standDown(message, rosNow());
 }
 

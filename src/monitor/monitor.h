@@ -66,9 +66,12 @@ namespace self_awareness {
 ///   there is no recorder.
 /// - `~recorder/after` (double, s; default: 10.0; 0 to 3600): how much of what follows an alarm
 ///   is in its file (steady time).
-/// - `~recorder/directory` (string; default: ~/.ros/self_awareness): folder of the files, which is
-///   created. ROS keeps what it writes beside it.
-/// - `~recorder/files` (int; default: 20; 1 to 100000): most files; the oldest are removed.
+/// - `~recorder/directory` (string; default: $ROS_HOME/self_awareness/$NAME): folder of the files,
+///   which is created. "$ROS_HOME/" is where ROS keeps what it writes (~/.ros if it is not set),
+///   "$NAME" the name of the monitor.
+/// - `~recorder/files` (int; default: 20; 1 to 100000): most files; the oldest are removed, but
+/// not
+///   that of an alarm that stands.
 /// - `~recorder/disk` (int, MB; default: 200; 1 to 1000000): most of all files together.
 /// - `~recorder/memory` (int, MB; default: 32; 1 to 10000): most for the events in memory; the
 ///   oldest are forgotten. Files that the disk does not take keep as much each, three at most.

@@ -61,6 +61,7 @@ MonitorParameters MonitorParameters::load(const ros::NodeHandle& private_node_ha
   parameters.source_diagnostics = reader.flag("source_diagnostics", defaults.source_diagnostics);
   parameters.hardware_id = reader.text("hardware_id", defaults.hardware_id);
   RecorderParameters& recorder = parameters.recorder;
+  recorder.name = private_node_handle.getNamespace();
   recorder.duration = reader.seconds("recorder/duration", recorder.duration, {0, kDay});
   recorder.after = reader.seconds("recorder/after", recorder.after, {0, kHour});
   recorder.directory = reader.text("recorder/directory", recorder.directory);

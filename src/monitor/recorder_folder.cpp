@@ -29,9 +29,28 @@ const char* nameOf(RecorderFolder::Cause cause) {
   throw std::logic_error("no such cause");
 }
 
+constexpr std::int64_t kMillisecond = 1000000;  // names tell milliseconds [ns]
+constexpr char kRosHome[] = "$ROS_HOME/";
+constexpr char kName[] = "$NAME";
+
 std::string inHomeFolder(const std::string& path) {
   const char* home = std::getenv("HOME");
   return path.rfind("~/", 0) == 0 && home != nullptr ? home + path.substr(1) : path;
+}
+
+std::string written(std::string path, std::string name) {
+  if (path.rfind(kRosHome, 0) == 0) {
+    const char* ros_home = std::getenv("ROS_HOME");
+    path = (ros_home != nullptr && *ros_home != '\0' ? std::string(ros_home) : "~/.ros") +
+           path.substr(sizeof kRosHome - 2);
+  }
+  name = name.substr(std::min(name.find_first_not_of('/'), name.size()));
+  std::replace(name.begin(), name.end(), '/', '_');
+  for (std::size_t at = path.find(kName); at != std::string::npos; at = path.find(kName, at)) {
+    path.replace(at, sizeof kName - 1, name);
+    at += name.size();
+  }
+  return inHomeFolder(path);
 }
 
 struct RecorderFile {
@@ -58,13 +77,23 @@ std::vector<RecorderFile> filesIn(const filesystem::path& folder) {
 
 }  // namespace
 
-RecorderFolder::RecorderFolder(const std::string& path, std::size_t most_files,
-                               std::uint64_t most_bytes)
-    : path_(filesystem::absolute(inHomeFolder(path)).string()),
+RecorderFolder::RecorderFolder(const std::string& path, const std::string& name,
+                               std::size_t most_files, std::uint64_t most_bytes)
+    : path_(filesystem::absolute(written(path, name)).string()),
       most_files_(most_files),
       most_bytes_(most_bytes) {}
 
 std::string RecorderFolder::pathOf(Cause cause, std::int64_t wall_time) const {
+  boost::system::error_code error;
+  std::string path = nameOfFile(cause, wall_time);
+  while (filesystem::exists(path, error)) {
+    wall_time += kMillisecond;
+    path = nameOfFile(cause, wall_time);
+  }
+  return path;
+}
+
+std::string RecorderFolder::nameOfFile(Cause cause, std::int64_t wall_time) const {
   const std::time_t seconds = wall_time / core::kNanosecondsPerSecond;
   std::tm utc{};
   gmtime_r(&seconds, &utc);
@@ -72,7 +101,7 @@ std::string RecorderFolder::pathOf(Cause cause, std::int64_t wall_time) const {
   std::strftime(time, sizeof time, "%Y-%m-%d-%H-%M-%S", &utc);
   char milliseconds[8];
   std::snprintf(milliseconds, sizeof milliseconds, ".%03d",
-                static_cast<int>(wall_time % core::kNanosecondsPerSecond / 1000000));
+                static_cast<int>(wall_time % core::kNanosecondsPerSecond / kMillisecond));
   return path_ + "/" + nameOf(cause) + "_" + time + milliseconds + ".bag";
 }
 
@@ -88,20 +117,23 @@ void RecorderFolder::create() const {
   }
 }
 
-void RecorderFolder::removeOldest() const {
+void RecorderFolder::removeOldest(const std::string& kept) const {
   std::vector<RecorderFile> files = filesIn(path_);
   std::size_t left = files.size();
   std::uint64_t bytes = 0;
   for (const RecorderFile& file : files) {
     bytes += file.bytes;
   }
-  for (const RecorderFile& file : files) {
-    if (left <= 1 || (left <= most_files_ && bytes <= most_bytes_)) {
+  for (std::size_t i = 0; i + 1 < files.size(); ++i) {  // the newest one stays
+    const RecorderFile& file = files[i];
+    if (left <= most_files_ && bytes <= most_bytes_) {
       break;
     }
-    filesystem::remove(file.path);
-    --left;
-    bytes -= file.bytes;
+    if (file.path.string() != kept) {
+      filesystem::remove(file.path);
+      --left;
+      bytes -= file.bytes;
+    }
   }
 }
 

@@ -13,12 +13,16 @@ class RecorderFolder {
   /// Why a file was written; its name begins with it.
   enum class Cause { kAlarm, kDump, kShutdown };
 
-  /// @param path a leading "~/" stands for the home folder
+  /// @param path a leading "~/" stands for the home folder, a leading "$ROS_HOME/" for where ROS
+  /// keeps what it writes (~/.ros), a "$NAME" for the name of the monitor
+  /// @param name full name of the monitor; its slashes become underscores
   /// @param most_files, most_bytes that the recorder's files may be in all; the newest one stays
   /// even if it alone is larger
-  RecorderFolder(const std::string& path, std::size_t most_files, std::uint64_t most_bytes);
+  RecorderFolder(const std::string& path, const std::string& name, std::size_t most_files,
+                 std::uint64_t most_bytes);
 
-  /// Path of a file that does not exist yet: "alarm_2026-11-22-05-10-33.123.bag".
+  /// Path of a file that does not exist yet: "alarm_2026-11-22-05-10-33.123.bag", or a millisecond
+  /// or more later if there is one already.
   /// @param wall_time in UTC [ns since 1970]: names sort in the order in which they were given,
   /// whatever ROS time does
   std::string pathOf(Cause cause, std::int64_t wall_time) const;
@@ -26,10 +30,13 @@ class RecorderFolder {
   /// @throw std::runtime_error if it cannot be created
   void create() const;
   /// Removes the recorder's oldest files until the rest is within the bounds.
+  /// @param kept path of a file that stays, however old it is: that of an alarm that stands
   /// @throw std::runtime_error if a file cannot be removed
-  void removeOldest() const;
+  void removeOldest(const std::string& kept) const;
 
  private:
+  std::string nameOfFile(Cause cause, std::int64_t wall_time) const;
+
   std::string path_;
   std::size_t most_files_;
   std::uint64_t most_bytes_;

@@ -66,11 +66,11 @@ class MonitorTest(unittest.TestCase):
 
     def start_monitor(self) -> Process:
         standalone = rospy.get_param('~standalone')
-        # The flight recorder writes below the home folder.
+        # The flight recorder writes below the folder of ROS.
         return Process('roslaunch', 'self_awareness', 'monitor.launch',
                        'model:=' + self.path('model'),
                        'standalone:=' + ('true' if standalone else 'false'),
-                       env={'HOME': self.folder})
+                       env={'ROS_HOME': self.path('.ros')})
 
     @again_if_clock_was_set
     def test_from_recordings_to_an_alarm(self) -> None:
@@ -151,7 +151,7 @@ class MonitorTest(unittest.TestCase):
 
     def check_recorder(self, alarm: SelfAwareness) -> None:
         """It wrote when the monitor ended, since what follows the alarm had not yet come."""
-        folder = self.path('.ros/self_awareness')
+        folder = self.path('.ros/self_awareness/self_awareness')
         path, = [os.path.join(folder, name) for name in os.listdir(folder)
                  if name.startswith('alarm_')]
         self.assertTrue(alarm.message.endswith('; events in ' + path), alarm.message)
