@@ -32,4 +32,12 @@ void tellClock(std::int64_t stands_still_for, std::int64_t ros_now,
   }
 }
 
+void tellRivals(const std::string& rivals, diagnostic_updater::DiagnosticStatusWrapper& status) {
+  if (!rivals.empty()) {
+    status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN,
+                        "several nodes publish /clock (" + rivals +
+                            "): where ROS time jumps, the steady clock counts");
+  }
+}
+
 }  // namespace self_awareness

@@ -3,6 +3,7 @@
 #include <diagnostic_updater/DiagnosticStatusWrapper.h>
 
 #include <cstdint>
+#include <string>
 
 namespace self_awareness {
 
@@ -15,5 +16,9 @@ bool clockStands(std::int64_t stands_still_for);
 /// @param ros_now ROS time [ns]
 void tellClock(std::int64_t stands_still_for, std::int64_t ros_now,
                diagnostic_updater::DiagnosticStatusWrapper& status);
+
+/// Adds that several nodes publish /clock: a warning, since ROS time jumps between theirs.
+/// @param rivals their names; empty: there are not several
+void tellRivals(const std::string& rivals, diagnostic_updater::DiagnosticStatusWrapper& status);
 
 }  // namespace self_awareness

@@ -50,6 +50,7 @@ void Diagnostics::tellMonitor(const MonitorState& state, Status& status) {
                                                     " s; all are judged later");
   }
   tellClock(state.clock_stands_still_for, state.ros_now, status);
+  tellRivals(state.clock_rivals, status);
   if (state.full_of_unknown) {
     status.mergeSummary(DiagnosticStatus::WARN,
                         "more than " + std::to_string(Session::kMostUnknownTypes) +
@@ -68,6 +69,9 @@ void Diagnostics::tellMonitor(const MonitorState& state, Status& status) {
   status.add("event types that the model does not know", heard.unknown_types);
   status.add("publishers heard", state.connections);
   status.add("share of a core spent", number(heard.cpu_share));
+  if (!state.taken_back.empty()) {
+    status.add("alarm taken back", state.taken_back);
+  }
   status.add("times the clock was set", heard.clock_steps);
   if (state.recorder) {
     tellRecorder(*state.recorder, status);

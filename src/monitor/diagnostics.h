@@ -29,6 +29,8 @@ struct MonitorState {
   std::size_t strangers_newly_closed = 0;   ///< since the last report
   std::int64_t ros_now = 0;                 ///< [ns]
   std::int64_t clock_stands_still_for = 0;  ///< [ns of steady time]
+  std::string clock_rivals;                 ///< who publishes /clock, if several do
+  std::string taken_back;                   ///< who took an alarm back last; empty: nobody
   double longest_pause = 0;  ///< for which this program stood still, since the last report [s]
   std::optional<FlightRecorder::Report> recorder;  ///< none: there is no recorder
 };

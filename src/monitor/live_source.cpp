@@ -31,6 +31,9 @@ ros1::LiveEvents::Handlers LiveSource::handlers() {
       listener_.onEvent(event);
     }
   };
+  handlers.time = [this](std::int64_t ros_time, std::int64_t steady_time) {
+    return contest_.timeOf(ros_time, steady_time);
+  };
   handlers.on_arrivals = [this] {
     watchClock();
     deliver();
@@ -58,6 +61,11 @@ void LiveSource::report() {
 void LiveSource::onTick(const ros::SteadyTimerEvent& /*tick*/) {
   const std::int64_t now = watchClock();
   const Discovery::State discovered = discovery_.state();
+  if (discovered.graph) {
+    const auto clock = discovered.graph->topics.find("/clock");
+    contest_.setPublishers(clock == discovered.graph->topics.end() ? std::set<std::string>()
+                                                                   : clock->second.publishers);
+  }
   if (std::exchange(master_restarts_, discovered.master_restarts) != discovered.master_restarts) {
     listener_.onMasterRestart(now);
   }
@@ -79,8 +87,16 @@ void LiveSource::onTick(const ros::SteadyTimerEvent& /*tick*/) {
   }
 }
 
+std::int64_t LiveSource::now() const {
+  return contest_.timeOf(rosNow(), steadyNow());
+}
+
+std::string LiveSource::clockRivals() const {
+  return ros::Time::isSimTime() ? contest_.rivals() : "";
+}
+
 std::int64_t LiveSource::watchClock() {
-  const std::int64_t now = rosNow();
+  const std::int64_t now = contest_.look(rosNow(), steadyNow(), ros::Time::isSimTime());
   if (clock_watch_.look(now, steadyNow(), ros::Time::isSimTime())) {
     processor_watch_.restart();
     listener_.onClockSet(now);

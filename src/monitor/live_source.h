@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "clock_contest.h"
 #include "discovery.h"
 #include "processor_watch.h"
 #include "self_awareness/core/stream/event.h"
@@ -99,6 +100,10 @@ class LiveSource {
   /// Who talks to whom; none: not known yet, since what is wanted was set.
   const std::shared_ptr<const ros1::Graph>& graph() const { return graph_; }
   const ros1::ClockWatch& clock() const { return clock_watch_; }
+  /// ROS time, or what counts in its place while several nodes set it [ns].
+  std::int64_t now() const;
+  /// Who publishes /clock, if several do; else empty.
+  std::string clockRivals() const;
   const ros1::LiveEvents& events() const { return live_events_; }
   const Discovery& discovery() const { return discovery_; }
 
@@ -114,6 +119,7 @@ class LiveSource {
   std::int64_t reported_at_;  // steady time [ns]
   ros::WallDuration tick_ = Wanted().tick;
   ros::SteadyTimer timer_;
+  ClockContest contest_;
   ros1::ClockWatch clock_watch_;
   ProcessorWatch processor_watch_;
   std::shared_ptr<const ros1::Encoder> encoder_;  // none: nothing is wanted yet

@@ -10,6 +10,7 @@
 
 #include "load.h"
 #include "now.h"
+#include "ros/text.h"
 #include "self_awareness/SelfAwareness.h"
 #include "self_awareness/core/stream/event.h"
 
@@ -152,7 +153,7 @@ void Monitor::onWaiting(const core::Waiting& waiting) {
 
 void Monitor::onDropped(const ros1::Publication& publication) {
   if (session_) {
-    session_->detector().onMissed(session_->typesOf(publication), rosNow());
+    session_->detector().onMissed(session_->typesOf(publication), live_->now());
   }
 }
 
@@ -181,10 +182,10 @@ void Monitor::onVerdict(const core::Verdict& verdict) {
   if (verdict.alarm && !stood) {
     alarm_file_ = recorder_.onAlarm(steadyNow());
   }
-  core::Verdict said = verdict;
   if (!verdict.alarm && stood) {
     recorder_.onAlarmOver();
   }
+  core::Verdict said = verdict;
   if (!said.suspects.empty()) {
     not_heard_.set(live_->discovery().state().unheard);
     not_heard_.explain(said.suspects, session_->vocabulary());
@@ -196,7 +197,7 @@ void Monitor::onVerdict(const core::Verdict& verdict) {
 
 void Monitor::standDown(const std::string& message) {
   recorder_.onAlarmOver();
-  announcer_.standDown(message, rosNow());
+  announcer_.standDown(message, live_->now());
 }
 
 void Monitor::publishAlarm(const self_awareness::SelfAwareness& alarm) {
@@ -212,7 +213,8 @@ void Monitor::publishAlarm(const self_awareness::SelfAwareness& alarm) {
 
 void Monitor::onReport() {
   const Discovery::State discovered = live_->discovery().state();
-  const ros1::HeardTally::Moment moment = momentNow();
+  ros1::HeardTally::Moment moment = momentNow();
+  moment.ros = live_->now();
   MonitorState state;
   state.communication.model = parameters_.model;
   state.communication.model_error = model_error_;
@@ -234,6 +236,8 @@ void Monitor::onReport() {
   state.strangers_closed = discovered.strangers_closed;
   state.strangers_newly_closed =
       discovered.strangers_closed - std::exchange(strangers_closed_, discovered.strangers_closed);
+  state.taken_back = calls_.onRecord();
+  state.clock_rivals = live_->clockRivals();
   not_heard_.set(discovered.unheard);
   state.communication.not_heard = not_heard_.components();
   if (recorder_.enabled()) {
@@ -242,25 +246,45 @@ void Monitor::onReport() {
   diagnostics_.publish(state);
 }
 
-bool Monitor::onReset(std_srvs::Trigger::Request& /*request*/,
-                      std_srvs::Trigger::Response& response) {
-  response.success = session_ != nullptr;
-  response.message = session_ ? "delays, windows and the alarm start afresh" : model_error_;
-  if (session_) {
-    session_->detector().restart();
-    standDown("settling: reset");
+bool Monitor::mayServe(const std::string& service, Call& call) {
+  if (calls_.admit(service, call.getCallerName(), steadyNow())) {
+    return true;
+  }
+  call.getResponse().success = 0U;
+  call.getResponse().message = OperatorCalls::refusal(service);
+  return false;
+}
+
+void Monitor::standDownFor(const Call& call, const std::string& service,
+                           const std::string& message) {
+  if (announcer_.alarm().stands()) {
+    calls_.record(service, call.getCallerName(), wallNow());
+  }
+  standDown(message);
+}
+
+bool Monitor::onReset(Call& call) {
+  if (mayServe("reset", call)) {
+    call.getResponse().success = session_ != nullptr;
+    call.getResponse().message =
+        session_ ? "delays, windows and the alarm start afresh" : model_error_;
+    if (session_) {
+      session_->detector().restart();
+      standDownFor(call, "reset", "settling: reset");
+    }
   }
   return true;
 }
 
-bool Monitor::onClear(std_srvs::Trigger::Request& /*request*/,
-                      std_srvs::Trigger::Response& response) {
-  const bool stood = announcer_.alarm().stands();
-  response.success = true;
-  response.message = stood ? "the alarm is cleared" : "there is no alarm";
-  if (stood) {
-    session_->detector().clearAlarm();
-    standDown("cleared by hand");
+bool Monitor::onClear(Call& call) {
+  if (mayServe("clear", call)) {
+    const bool stood = announcer_.alarm().stands();
+    call.getResponse().success = 1U;
+    call.getResponse().message = stood ? "the alarm is cleared" : "there is no alarm";
+    if (stood) {
+      session_->detector().clearAlarm();
+      standDownFor(call, "clear", "cleared by hand, by " + ros1::printable(call.getCallerName()));
+    }
   }
   return true;
 }
@@ -282,21 +306,24 @@ bool Monitor::onDump(std_srvs::Trigger::Request& /*request*/,
   return true;
 }
 
-bool Monitor::onReload(std_srvs::Trigger::Request& /*request*/,
-                       std_srvs::Trigger::Response& response) {
+bool Monitor::onReload(Call& call) {
+  if (!mayServe("reload", call)) {
+    return true;
+  }
+  std_srvs::Trigger::Response& response = call.getResponse();
   try {
     load(modelPath());
   } catch (const std::exception& error) {
     if (!session_) {
       model_error_ = error.what();
     }
-    response.success = false;
+    response.success = 0U;
     response.message = std::string(error.what()) + (session_ ? "; the old model stays" : "");
     ROS_ERROR("%s", response.message.c_str());
     return true;
   }
-  standDown("settling: model loaded");
-  response.success = true;
+  standDownFor(call, "reload", "settling: model loaded");
+  response.success = 1U;
   response.message = "loaded " + parameters_.model;
   return true;
 }

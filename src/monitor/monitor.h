@@ -15,6 +15,7 @@
 #include "flight_recorder.h"
 #include "live_source.h"
 #include "not_heard.h"
+#include "operator_calls.h"
 #include "parameters.h"
 #include "ros/verdict/announcer.h"
 #include "ros/verdict/heard_tally.h"
@@ -88,6 +89,9 @@ namespace self_awareness {
 ///   source, one for the monitor itself.
 ///
 /// **Services**
+///
+/// ~reset, ~clear and ~reload take an alarm back. Who did so last, and when, is said on
+/// /diagnostics. Each is answered five times at once, and then once in 10 s (OperatorCalls).
 /// - `~reset` (std_srvs/Trigger): delays, windows and the alarm start from the beginning.
 /// - `~clear` (std_srvs/Trigger): ends the alarm and forgets the windows that led to it; delays go
 ///   on.
@@ -114,6 +118,8 @@ class Monitor : public NodeProgram, public LiveSource::Listener {
   void finish() override;
 
  private:
+  using Call = ros::ServiceEvent<std_srvs::Trigger::Request, std_srvs::Trigger::Response>;
+
   /// Starts with the model of a file; if that fails, all stays as it was.
   /// @throw ros1::ModelFileError if it cannot be read, or its calibration does not fit it
   void load(const std::string& path);
@@ -134,14 +140,18 @@ class Monitor : public NodeProgram, public LiveSource::Listener {
   void onReport() override;
 
   void onVerdict(const core::Verdict& verdict);
-  bool onReset(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
-  bool onClear(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  /// Whether a call is not one too many; else it is answered.
+  bool mayServe(const std::string& service, Call& call);
+  bool onReset(Call& call);
+  bool onClear(Call& call);
   bool onDump(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
-  bool onReload(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
+  bool onReload(Call& call);
 
   void restart();
   /// Says that what stood is over, although no window brought that about.
   void standDown(const std::string& message);
+  /// The same, because somebody called a service; keeps on record who.
+  void standDownFor(const Call& call, const std::string& service, const std::string& message);
   void publishAlarm(const self_awareness::SelfAwareness& alarm);
 
   ros::CallbackQueue queue_;
@@ -155,6 +165,7 @@ class Monitor : public NodeProgram, public LiveSource::Listener {
   std::string model_error_;
   std::unique_ptr<Session> session_;  // none: no model
   NotHeard not_heard_;
+  OperatorCalls calls_;
   std::size_t strangers_closed_ = 0;  // that were reported
   std::int64_t longest_pause_ = 0;    // of this program, since the last report [ns of steady time]
   ros1::Announcer announcer_;

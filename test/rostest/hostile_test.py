@@ -2,12 +2,11 @@
 """The monitor in a system of ROS 1 that is broken, or means ill."""
 
 import os
-import resource
 import socket
 import struct
 import time
 from contextlib import ExitStack
-from typing import List
+from typing import Any, List
 from urllib.parse import urlsplit
 from xmlrpc.client import ServerProxy
 
@@ -17,17 +16,18 @@ import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
 
 from fake_publisher import FakePublisher, string_header
-from live_system import MonitorListener, Process, again_if_clock_was_set, await_condition
-from monitor_case import MonitorCase, Talker, subscribers
+from live_system import MonitorListener, Process, again_if_clock_was_set, await_condition, pid_of
+from monitor_case import MonitorCase, Talker, publishers, subscribers
 from self_awareness.msg import SelfAwareness
 
 MEGABYTE = 10**6
+ALARM = '/self_awareness/alarm'
 AT_ONCE_S = 5.0
 """Within so long the monitor hears whom it can hear, and names the others."""
 
 
-def slave_uri(node: str = '/self_awareness') -> str:
-    return rosgraph.Master(rospy.get_name()).lookupNode(node)
+def slave_uri() -> str:
+    return rosgraph.Master(rospy.get_name()).lookupNode('/self_awareness')
 
 
 def slave_socket() -> socket.socket:
@@ -35,18 +35,9 @@ def slave_socket() -> socket.socket:
     return socket.create_connection((address.hostname or '', address.port or 0), timeout=5)
 
 
-def resident_bytes(node: str = '/self_awareness') -> int:
-    pid = ServerProxy(slave_uri(node)).getPid(rospy.get_name())[2]  # type: ignore
-    return resident_of(pid)
-
-
 def resident_of(pid: int) -> int:
     with open('/proc/{}/statm'.format(pid)) as statm:
         return int(statm.read().split()[1]) * os.sysconf('SC_PAGESIZE')
-
-
-def monitor_pid() -> int:
-    return ServerProxy(slave_uri()).getPid(rospy.get_name())[2]  # type: ignore
 
 
 class HostileTest(MonitorCase):
@@ -74,16 +65,18 @@ class HostileTest(MonitorCase):
         with Talker('/a'), self.monitor(self.model()), MonitorListener() as listener:
             listener.await_settled()
             uri = slave_uri()
-            for publishers in ([], ['http://127.0.0.1:9/'], ['http://no-such-host.invalid:1/']):
-                ServerProxy(uri).publisherUpdate('/master', '/a', publishers)
+            slave = ServerProxy(uri)  # type: Any
+            for uris in ([], ['http://127.0.0.1:9/'], ['http://no-such-host.invalid:1/']):
+                slave.publisherUpdate('/master', '/a', uris)
                 self.await_heard(listener, AT_ONCE_S)
             # As `rosnode cleanup` does with a node that it cannot reach.
-            master = ServerProxy(rosgraph.get_master_uri())
-            master.unregisterSubscriber('/self_awareness', '/a', uri)
-            master.unregisterPublisher('/self_awareness', '/self_awareness/alarm', uri)
-            self.assertNotIn('/self_awareness', subscribers('/a'))
-            await_condition('it is registered again',
-                            lambda: '/self_awareness' in subscribers('/a'), AT_ONCE_S)
+            master = ServerProxy(rosgraph.get_master_uri())  # type: Any
+            for answer in (master.unregisterSubscriber('/self_awareness', '/a', uri),
+                           master.unregisterPublisher('/self_awareness', ALARM, uri)):
+                self.assertEqual(answer[2], 1, 'one registration is taken back')
+            await_condition('it is registered again', lambda: (
+                '/self_awareness' in subscribers('/a')
+                and '/self_awareness' in publishers(ALARM)), AT_ONCE_S)
             self.await_heard(listener, AT_ONCE_S)
             self.check_no_error(listener)
 
@@ -97,7 +90,8 @@ class HostileTest(MonitorCase):
                 listener = stack.enter_context(MonitorListener())
                 listener.await_settled()
                 idle = self.idle_connections(400)
-                self.addCleanup(lambda: [each.close() for each in idle])
+                for connection in idle:
+                    self.addCleanup(connection.close)
             # The publisher starts again.
             with Talker('/a'):
                 self.await_warning(listener, 'connections to this node were closed', 15)
@@ -126,11 +120,42 @@ class HostileTest(MonitorCase):
             warning = self.await_warning(listener, '/fake on /b (does not answer)')
             self.assertTrue(warning.message.startswith('not heard: '), warning.message)
             listener.await_settled()
-            component = await_condition('the component is told', lambda: next(
-                (s for s in listener.diagnostics('/fake') if 'monitor' in s.message), None), 20)
-            self.assertIn('not heard by the monitor: does not answer', component.message)
+            await_condition('the component is told', lambda: any(
+                'not heard by the monitor: does not answer' in s.message
+                for s in listener.diagnostics('/fake')), 20)
             said = [s.message for s in listener.statuses]
             self.assertEqual([each for each in said if '/fake' in each and 'silent' in each], [])
+
+    # Operators
+
+    @again_if_clock_was_set
+    def test_services_that_are_called_in_a_loop(self) -> None:
+        with Talker('/a') as talker, self.monitor(self.model(), alarm_windows=1) as monitor, \
+                MonitorListener() as listener:
+            listener.await_settled()
+            self.assertTrue(self.call('/self_awareness/dump').success)
+            talker.stop()
+            alarm = listener.await_alarm()
+            self.check_answered_sometimes('clear')
+            again = listener.alarms[-1]  # it is back
+            self.assertEqual(again.level, SelfAwareness.ERROR)
+            self.assertNotEqual(again.header.stamp, alarm.header.stamp)
+            answer = self.call('/self_awareness/clear')
+            self.assertFalse(answer.success)
+            self.assertIn('too many calls', answer.message)
+            self.assertIn('cleared by hand, by ' + rospy.get_name(),
+                          [each.message for each in listener.alarms])
+            taken_back = await_condition('it is on record', lambda: (
+                listener.value('monitor', 'alarm taken back')), 20)
+            self.assertIn(' by {} at 20'.format(rospy.get_name()), taken_back)
+            self.check_answered_sometimes('reload')
+            monitor.stop()  # what it logs comes when the buffer is emptied
+            self.assertLess(len(monitor.output), 20000)
+
+    def check_answered_sometimes(self, service: str) -> None:
+        answers = [self.call('/self_awareness/' + service).success for _ in range(200)]
+        self.assertLess(sum(answers), 10, service)
+        self.assertGreater(sum(answers), 0, service)
 
     # What it costs
 
@@ -141,7 +166,7 @@ class HostileTest(MonitorCase):
         with Talker('/a'), self.monitor(self.model(type_fields=type_fields, threshold=-1.0),
                                         subscribe='all'), MonitorListener() as listener:
             listener.await_settled()
-            pid = monitor_pid()
+            pid = pid_of('/self_awareness')
             before = resident_of(pid)
             with ExitStack() as stack:
                 for number in range(3):
@@ -160,10 +185,28 @@ class HostileTest(MonitorCase):
                 self.await_heard(listener, AT_ONCE_S)
 
     @again_if_clock_was_set
+    def test_subscribers_that_announce_a_gigabyte_are_cut_off(self) -> None:
+        with Talker('/a'), self.monitor(self.model()), MonitorListener() as listener:
+            listener.await_settled()
+            pid = pid_of('/self_awareness')
+            before = resident_of(pid)
+            slave = ServerProxy(slave_uri())  # type: Any
+            answer = slave.requestTopic(rospy.get_name(), '/self_awareness/status', [['TCPROS']])
+            connections = [socket.create_connection((answer[2][1], answer[2][2]), timeout=15)
+                           for _ in range(60)]
+            for connection in connections:
+                self.addCleanup(connection.close)
+                connection.sendall(struct.pack('<I', 1000 * MEGABYTE) + b'abc')
+            for connection in connections:
+                self.assertEqual(connection.recv(1), b'', 'it is closed')
+            self.assertLess(resident_of(pid), before + 60 * MEGABYTE)
+            self.await_heard(listener, AT_ONCE_S)
+
+    @again_if_clock_was_set
     def test_a_header_without_an_end_is_cut_off(self) -> None:
         with Talker('/a'), self.monitor(self.model()), MonitorListener() as listener:
             listener.await_settled()
-            pid = monitor_pid()
+            pid = pid_of('/self_awareness')
             before = resident_of(pid)
             with slave_socket() as connection:
                 sent = 0
@@ -183,5 +226,4 @@ class HostileTest(MonitorCase):
 
 if __name__ == '__main__':
     rospy.init_node('hostile_test')
-    resource.setrlimit(resource.RLIMIT_NOFILE, (4096, resource.getrlimit(resource.RLIMIT_NOFILE)[1]))
     rostest.rosrun('self_awareness', 'hostile', HostileTest)

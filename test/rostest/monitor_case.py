@@ -36,9 +36,13 @@ class Talker:
         return self
 
     def __exit__(self, *_) -> None:
+        self.stop()
+        self.publisher.unregister()
+
+    def stop(self) -> None:
+        """Nothing is published any more; the topic stays."""
         self._stop.set()
         self._thread.join()
-        self.publisher.unregister()
 
 
 def publishers(topic: str) -> List[str]:

@@ -56,6 +56,7 @@ class SimulatedRobot:
         self._lock = threading.Lock()
         self._ahead = START_S - self._time()
         self._standing = False
+        self._silent = False
         self._ended = threading.Event()
         self._thread = threading.Thread(target=self._run)
 
@@ -72,6 +73,10 @@ class SimulatedRobot:
     def set_clock_by(self, seconds: float) -> None:
         with self._lock:
             self._ahead += seconds
+
+    def fall_silent(self) -> None:
+        """No messages any more; the clock goes on."""
+        self._silent = True
 
     def stop_clock(self) -> None:
         """No /clock and no messages any more."""
@@ -91,7 +96,7 @@ class SimulatedRobot:
                 continue
             self._clock.publish(Clock(rospy.Time.from_sec(min(now + ahead, END_S))))
             for _, topic, period in COMPONENTS:
-                if due[topic] <= now:
+                if due[topic] <= now and not self._silent:
                     self._publishers[topic].publish(String())
                     self.published += 1
                     due[topic] += period * rng.uniform(0.7, 1.3)
@@ -228,6 +233,25 @@ class SimTimeTest(unittest.TestCase):
                 passes.append([])
             passes[-1].append(status)
         return passes
+
+    @again_if_clock_was_set
+    def test_two_publishers_of_the_clock_hide_no_death(self) -> None:
+        with MonitorListener() as listener, self.start_monitor(), SimulatedRobot() as robot:
+            listener.await_settled()
+            with Process('rostopic', 'pub', '-r', '50', '/clock', 'rosgraph_msgs/Clock',
+                         '{clock: {secs: 5000, nsecs: 0}}'):
+                warning = await_condition('both are named', lambda: next((
+                    s for s in listener.diagnostics('monitor')
+                    if s.level == DiagnosticStatus.WARN and '/clock' in s.message), None), 20)
+                self.assertIn(rospy.get_name(), warning.message)
+                self.assertIn('/rostopic_', warning.message)
+                listener.await_settled()
+                seen = len(listener.statuses)
+                await_condition('3 s', lambda: len(listener.statuses) > seen + 30, 20)
+                self.check_no_alarm(listener)
+                self.assertFalse(any(s.settling for s in listener.statuses[seen:]))
+                robot.fall_silent()
+                listener.await_alarm()
 
     @again_if_clock_was_set
     def test_clock_is_set_and_stops(self) -> None:

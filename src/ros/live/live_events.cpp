@@ -103,8 +103,10 @@ void LiveEvents::onArrival(const Arrival& arrival) {
   if (!encoder || !encoder->accept()) {
     return;
   }
+  const std::int64_t stamp =
+      handlers_.time ? handlers_.time(arrival.stamp, arrival.steady) : arrival.stamp;
   if (!encoder->needsContent()) {
-    handlers_.on_event({arrival.stamp, encoder->id()});
+    handlers_.on_event({stamp, encoder->id()});
     return;
   }
   if (!arrival.content) {  // it came before its content was wanted, or is too long
@@ -112,7 +114,7 @@ void LiveEvents::onArrival(const Arrival& arrival) {
     tellDropped(arrival.topic->name, *arrival.header);
     return;
   }
-  core::Event event{arrival.stamp, 0};
+  core::Event event{stamp, 0};
   try {
     event.id = encoder->id(arrival.content->data(), arrival.content->size());
   } catch (const std::out_of_range& error) {

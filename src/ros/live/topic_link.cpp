@@ -170,9 +170,10 @@ void TopicLink::handOn() {
   std::shared_ptr<Content> content = content_;
   dropContent();
   const auto now = static_cast<std::int64_t>(ros::Time::now().toNSec());
+  const auto steady = static_cast<std::int64_t>(ros::SteadyTime::now().toNSec());
   const std::lock_guard<std::mutex> lock(mutex_);
   if (!closed_) {
-    arrivals_.add({topic_, header_, now, std::move(content)});
+    arrivals_.add({topic_, header_, now, steady, std::move(content)});
   }
 }
 

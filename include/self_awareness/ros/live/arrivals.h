@@ -35,7 +35,8 @@ struct Arrival {
 
   std::shared_ptr<Topic> topic;
   boost::shared_ptr<ros::M_string> header;  ///< all messages of a connection share one
-  std::int64_t stamp = 0;                   ///< of its receipt [ns]
+  std::int64_t stamp = 0;                   ///< ROS time of its receipt [ns]
+  std::int64_t steady = 0;                  ///< the same by the steady clock [ns]
   std::shared_ptr<const Content> content;   ///< none: it was not read
 };
 

@@ -34,6 +34,9 @@ class LiveEvents {
  public:
   struct Handlers {
     std::function<void(const core::Event&)> on_event;
+    /// The time that an event is stamped with, by ROS time and the steady clock when its message
+    /// came [ns]. May be empty: ROS time.
+    std::function<std::int64_t(std::int64_t, std::int64_t)> time;
     /// Called by the callback queue when deliver() should not wait any longer: by the first
     /// message after the end of a window, or where a topic's queue fills.
     std::function<void()> on_arrivals;

@@ -1,0 +1,82 @@
+#include "clock_contest.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "ros/text.h"
+#include "self_awareness/core/stream/event.h"
+#include "self_awareness/ros/encoding.h"
+
+namespace self_awareness {
+namespace {
+
+using core::kNanosecondsPerSecond;
+
+// A replay may be faster than the robot was, but no clock of one publisher goes back by so much.
+constexpr std::int64_t kBack = kNanosecondsPerSecond / 10;
+constexpr std::int64_t kForth = 5 * kNanosecondsPerSecond;
+constexpr double kFastest = 100;
+constexpr std::size_t kMostRecent = 10;
+constexpr std::size_t kMostNamed = 5;
+
+}  // namespace
+
+bool ClockContest::wasSet(const Look& look) const {
+  const std::int64_t advance = look.ros_time - last_->ros_time;
+  const auto passed = static_cast<double>(look.steady_time - last_->steady_time);
+  return advance < -kBack ||
+         (advance > kForth && static_cast<double>(advance) > kFastest * passed);
+}
+
+double ClockContest::pace() const {
+  const auto passed =
+      static_cast<double>(recent_.back().steady_time - recent_.front().steady_time);
+  const auto advance = static_cast<double>(recent_.back().ros_time - recent_.front().ros_time);
+  return passed > 0 ? std::clamp(advance / passed, 0.0, kFastest) : 1.0;
+}
+
+std::int64_t ClockContest::look(std::int64_t ros_now, std::int64_t steady_now, bool simulated) {
+  const Look now{ros_now, steady_now};
+  const bool set = simulated && last_ && wasSet(now);
+  if (set) {
+    set_at_ = steady_now;
+    if (!since_ && publishers_.size() > 1) {
+      pace_ = recent_.empty() ? 1.0 : pace();
+      since_ = last_;
+    }
+    recent_.clear();
+  }
+  if (since_ && (!simulated || steady_now - set_at_ > kOverAfter)) {
+    since_.reset();
+  }
+  if (recent_.empty() || steady_now - recent_.back().steady_time >= kNanosecondsPerSecond) {
+    recent_.push_back(now);
+    if (recent_.size() > kMostRecent) {
+      recent_.pop_front();
+    }
+  }
+  last_ = now;
+  return timeOf(ros_now, steady_now);
+}
+
+std::int64_t ClockContest::timeOf(std::int64_t ros_time, std::int64_t steady_time) const {
+  return since_ ? since_->ros_time +
+                      std::llround(pace_ * static_cast<double>(steady_time - since_->steady_time))
+                : ros_time;
+}
+
+std::string ClockContest::rivals() const {
+  std::string names;
+  if (publishers_.size() > 1) {
+    std::size_t named = 0;
+    for (const std::string& publisher : publishers_) {
+      if (named == kMostNamed) {
+        return names + " and " + std::to_string(publishers_.size() - named) + " more";
+      }
+      names += (named++ > 0 ? ", " : "") + ros1::printable(publisher, ros1::kLongestName);
+    }
+  }
+  return names;
+}
+
+}  // namespace self_awareness
