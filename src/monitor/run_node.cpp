@@ -1,6 +1,9 @@
 #include "run_node.h"
 
+#include <ros/names.h>
 #include <ros/ros.h>
+#include <ros/service_manager.h>
+#include <ros/this_node.h>
 
 #include <chrono>
 #include <condition_variable>
@@ -98,6 +101,15 @@ class Leaving {
   std::thread goodbye_thread_;
 };
 
+// With the log4cxx of Debian 12, rosconsole frees all loggers once it has listed them, and the
+// next one that is looked for ends the process.
+void withdrawListOfLoggers() {
+#if __has_include(<log4cxx/log4cxx.h>)
+  ros::ServiceManager::instance()->unadvertiseService(
+      ros::names::append(ros::this_node::getName(), "get_loggers"));
+#endif
+}
+
 Leaving* leaving = nullptr;  // of the node that runs
 
 void run(const std::function<std::unique_ptr<NodeProgram>()>& make) {
@@ -118,6 +130,7 @@ int runNode(int argc, char** argv, const std::string& name,
   leaving = &this_leaving;
   ros::init(argc, argv, name, ros::init_options::NoSigintHandler);
   const ros::NodeHandle node_handle;  // waits for the master, and outlives what is made
+  withdrawListOfLoggers();
   leaving->change([](Life& life) { life.connected = true; });
   try {
     run(make);

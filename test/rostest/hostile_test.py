@@ -14,6 +14,7 @@ import rosgraph
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
+from roscpp.srv import GetLoggers, SetLoggerLevel
 
 from fake_publisher import FakePublisher, string_header
 from live_system import MonitorListener, Process, again_if_clock_was_set, await_condition, pid_of
@@ -151,6 +152,19 @@ class HostileTest(MonitorCase):
             self.check_answered_sometimes('reload')
             monitor.stop()  # what it logs comes when the buffer is emptied
             self.assertLess(len(monitor.output), 20000)
+
+    @again_if_clock_was_set
+    def test_a_logger_that_is_set_to_debug(self) -> None:
+        with Talker('/a'), self.monitor(self.model()), MonitorListener() as listener:
+            listener.await_settled()
+            # As rqt does: it lists the loggers at first, where that is offered.
+            services = dict(rosgraph.Master(rospy.get_name()).getSystemState()[2])
+            if '/self_awareness/get_loggers' in services:
+                rospy.ServiceProxy('/self_awareness/get_loggers', GetLoggers)()
+            for logger in ('ros.self_awareness', 'ros.roscpp', 'ros'):
+                rospy.ServiceProxy('/self_awareness/set_logger_level', SetLoggerLevel)(
+                    logger, 'debug')
+            self.await_heard(listener)
 
     def check_answered_sometimes(self, service: str) -> None:
         answers = [self.call('/self_awareness/' + service).success for _ in range(200)]

@@ -291,7 +291,7 @@ class MasterTest(unittest.TestCase):
         await_condition('the monitor listens', lambda: (
             '/self_awareness' in self.registered(1, '/from/talker')), 20)
         self.assertLess(time.monotonic() - noticed, LONGEST_SILENCE_S)
-        for service in ('reset', 'clear', 'reload', 'get_loggers'):
+        for service in ('reset', 'clear', 'reload', 'set_logger_level'):
             await_condition('the monitor serves ' + service, lambda: (
                 self.registered(2, '/self_awareness/' + service)), 20)
         with Process('rosservice', 'call', '/self_awareness/reset',
