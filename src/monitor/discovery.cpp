@@ -1,7 +1,9 @@
 #include "discovery.h"
 
+#include <ros/connection_manager.h>
 #include <ros/console.h>
 #include <ros/this_node.h>
+#include <ros/xmlrpc_manager.h>
 
 #include <algorithm>
 #include <map>
@@ -76,6 +78,8 @@ Discovery::Discovery(ros1::Arrivals& arrivals, const ros1::ReadLimits& limits,
       interval_(interval),
       registration_(std::move(services)),
       subscriptions_(arrivals, limits),
+      slave_port_(static_cast<int>(ros::XMLRPCManager::instance()->getServerPort())),
+      data_port_(static_cast<int>(ros::ConnectionManager::instance()->getTCPPort())),
       thread_([this] { run(); }) {}
 
 Discovery::~Discovery() {
@@ -132,7 +136,7 @@ std::optional<Discovery::Wanted> Discovery::awaitPoll() {
 
 void Discovery::lookAtStrangers() {
   const std::int64_t now = steadyNow();
-  const ros1::Strangers::Seen seen = strangers_.look(now);
+  const ros1::Strangers::Seen seen = strangers_.look(now, slave_port_, data_port_);
   called_ = called_ || seen.called;
   const auto shared = shared_.lock();
   shared->state.strangers_closed += seen.closed;
@@ -141,9 +145,9 @@ void Discovery::lookAtStrangers() {
 
 void Discovery::poll(const Wanted& wanted) {
   using ros1::MasterRegistration;
-  lookAtStrangers();
-  called_ = false;
   polled_at_ = steadyNow();
+  lookAtStrangers();  // this poll answers what it sees
+  called_ = false;
   State state;
   const MasterRegistration::Master master = registration_.check();
   const bool restarted = master == MasterRegistration::Master::kRestarted;

@@ -98,6 +98,9 @@ class Discovery {
   ros1::MasterRegistration registration_;
   ros1::Subscriptions subscriptions_;
   ros1::Strangers strangers_;
+  // Asked for while roscpp runs: once it ends, it knows its ports no more.
+  const int slave_port_;
+  const int data_port_;
   bool called_ = false;         // by a stranger, since the last poll
   std::int64_t polled_at_ = 0;  // steady time [ns]
   ros1::NamedOnce illegal_;

@@ -4,6 +4,7 @@
 import os
 import socket
 import struct
+import subprocess
 import time
 from contextlib import ExitStack
 from typing import Any, List
@@ -58,6 +59,18 @@ class HostileTest(MonitorCase):
         return await_condition('a warning of ' + part, lambda: next(
             (s for s in listener.diagnostics('monitor')[seen:]
              if part in s.message and s.level == DiagnosticStatus.WARN), None), timeout)
+
+    @again_if_clock_was_set
+    def test_rosnode_kill_ends_it_in_order(self) -> None:
+        """roscpp takes its ports away before it says that it ends."""
+        for attempt in range(4):
+            with Talker('/a'), self.monitor(self.model()) as monitor, \
+                    MonitorListener() as listener:
+                listener.await_settled()
+                subprocess.run(['rosnode', 'kill', '/self_awareness'], check=True,
+                               stdout=subprocess.DEVNULL)
+                self.assertEqual(monitor.wait(20), 0, monitor.output)
+                self.assertNotIn('Assertion', monitor.output, attempt)
 
     # Who is heard
 

@@ -72,6 +72,9 @@ Hosts::Answer Hosts::find(const std::string& host, std::int64_t now) {
   if (known.lookup) {
     finish(known, now);
   } else if (known.good_until < now) {
+    if (known.answer.state == State::kUnknown) {
+      known.answer = {};  // that was then: nobody is put off before it is looked up again
+    }
     start(host, known);
   }
   return known.answer;
@@ -84,7 +87,9 @@ void Hosts::start(const std::string& host, Known& known) {
   known.lookup = std::make_unique<Lookup>();
   known.lookup->host = host;
   known.lookup->hints.ai_socktype = SOCK_STREAM;
-  known.lookup->hints.ai_family = ros::TransportTCP::s_use_ipv6_ ? AF_UNSPEC : AF_INET;
+  // roscpp's sockets are of the one family or of the other.
+  known.lookup->hints.ai_family = ros::TransportTCP::s_use_ipv6_ ? AF_INET6 : AF_INET;
+  known.lookup->hints.ai_flags = ros::TransportTCP::s_use_ipv6_ ? AI_V4MAPPED : 0;
   known.lookup->request.ar_name = known.lookup->host.c_str();
   known.lookup->request.ar_request = &known.lookup->hints;
   std::array<gaicb*, 1> requests{&known.lookup->request};

@@ -54,7 +54,9 @@ void tellRoscpp(const std::string& topic, const XmlRpcValue& publishers) {
 }  // namespace
 
 MasterRegistration::MasterRegistration(std::vector<std::string> services)
-    : services_(std::move(services)) {
+    : service_uri_("rosrpc://" + ros::network::getHost() + ":" +
+                   std::to_string(ros::ConnectionManager::instance()->getTCPPort())),
+      services_(std::move(services)) {
   services_.push_back(ros::names::append(ros::this_node::getName(), "get_loggers"));
   services_.push_back(ros::names::append(ros::this_node::getName(), "set_logger_level"));
 }
@@ -126,12 +128,10 @@ std::size_t MasterRegistration::keep(const SystemState& state,
       ++vanished;
     }
   }
-  const std::string service_uri = "rosrpc://" + ros::network::getHost() + ":" +
-                                  std::to_string(ros::ConnectionManager::instance()->getTCPPort());
   for (const std::string& service : services_) {
     if (state.services.count(service) == 0 &&
         ros::ServiceManager::instance()->lookupServicePublication(service)) {
-      calls.add("registerService", {service, service_uri, uri});
+      calls.add("registerService", {service, service_uri_, uri});
       ++vanished;
     }
   }

@@ -116,12 +116,13 @@ void PublisherTable::attend(std::int64_t now) {
         next.publication = &publication;
       }
     }
-    if (node.request && now - node.asked_at > kPatience) {
-      fail(node, "does not answer", false, true, now);
-    }
     if (!node.data_host.empty()) {
       onAnswer(node, now);
-    } else if (!node.request && next.publication != nullptr) {
+    } else if (node.request) {
+      if (now - node.asked_at > kPatience) {
+        fail(node, "does not answer", false, true, now);
+      }
+    } else if (next.publication != nullptr) {
       due.push_back(next);
     }
   }

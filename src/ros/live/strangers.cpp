@@ -4,8 +4,6 @@
 #include <fcntl.h>
 #include <linux/tcp.h>
 #include <netinet/in.h>
-#include <ros/connection_manager.h>
-#include <ros/xmlrpc_manager.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
@@ -99,11 +97,6 @@ void end(const OwnFile& file) {
 
 }  // namespace
 
-Strangers::Seen Strangers::look(std::int64_t now) {
-  return look(now, static_cast<int>(ros::XMLRPCManager::instance()->getServerPort()),
-              static_cast<int>(ros::ConnectionManager::instance()->getTCPPort()));
-}
-
 Strangers::Seen Strangers::look(std::int64_t now, int slave_port, int data_port) {
   Seen seen;
   std::map<std::string, Connection> all;
@@ -129,7 +122,11 @@ Strangers::Seen Strangers::look(std::int64_t now, int slave_port, int data_port)
         seen.called || (to_slave && socket->info.tcpi_bytes_received != connection.received);
     connection.received = socket->info.tcpi_bytes_received;
     const bool never_answered = connection.sent == 0 && now - connection.since > kPatience;
-    if (never_answered || connection.received - connection.received_until > kMostUnanswered) {
+    // A service may be asked for something large, once it has answered the header.
+    const bool sends_too_much =
+        connection.received - connection.received_until > kMostUnanswered &&
+        (to_slave || connection.sent == 0);
+    if (never_answered || sends_too_much) {
       end(file);
       ++seen.closed;
     } else if (to_slave) {

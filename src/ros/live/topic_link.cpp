@@ -56,6 +56,8 @@ bool TopicLink::connect(const std::string& ip, int port) {
   }
   connection_ = boost::make_shared<ros::Connection>();
   connection_->initialize(transport, false, ros::HeaderReceivedFunc());
+  // Before it can be dropped: what was dropped by then would stay in roscpp for good.
+  ros::ConnectionManager::instance()->addConnection(connection_);
   connection_->addDropListener([weak = weak_from_this()](const ros::ConnectionPtr& /*connection*/,
                                                          ros::Connection::DropReason /*reason*/) {
     if (const auto link = weak.lock()) {
@@ -69,7 +71,6 @@ bool TopicLink::connect(const std::string& ip, int port) {
                             {"type", "*"},
                             {"tcp_nodelay", "1"}},
                            [](const ros::ConnectionPtr& /*connection*/) {});
-  ros::ConnectionManager::instance()->addConnection(connection_);
   return true;
 }
 
@@ -94,7 +95,9 @@ void TopicLink::read(std::uint32_t size, Step next) {
                                                           const Bytes& bytes, std::uint32_t length,
                                                           bool success) {
     const auto link = weak.lock();
-    if (link && !link->lost_ && success) {
+    if (link && !success) {
+      link->lose("the connection was closed");
+    } else if (link && !link->lost_) {
       (*link.*next)(bytes, length);
     }
   });

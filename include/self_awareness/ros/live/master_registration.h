@@ -32,6 +32,8 @@ class MasterRegistration {
   std::size_t keep(const SystemState& state, const std::set<std::string>& topics);
 
  private:
+  // Of the services; asked for while roscpp runs: once it ends, it knows its port no more.
+  const std::string service_uri_;
   std::vector<std::string> services_;
   std::optional<int> master_pid_;
   std::set<std::string> listens_to_;  // that were registered here

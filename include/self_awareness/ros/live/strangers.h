@@ -27,8 +27,8 @@ class Strangers {
     bool called = false;  ///< the slave API: the master may have something to tell
     std::size_t closed = 0;
   };
-  Seen look(std::int64_t now);
   /// Looks at connections to these ports.
+  /// @param now steady time [ns]
   Seen look(std::int64_t now, int slave_port, int data_port);
 
  private:
