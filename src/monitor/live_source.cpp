@@ -49,7 +49,8 @@ void LiveSource::setWanted(Wanted wanted) {
   graph_.reset();
   tick_ = wanted.tick;
   timer_.setPeriod(tick_);
-  live_events_.setEncoder(wanted.encoder, std::move(wanted.own_output), wanted.window);
+  live_events_.setEncoder(wanted.encoder, std::move(wanted.own_output), wanted.window,
+                          wanted.encoder->tellsSources() ? wanted.hold : 0);
   discovery_.setWanted({std::move(wanted.model_topics), std::move(wanted.encoder)});
 }
 

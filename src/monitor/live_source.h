@@ -76,7 +76,8 @@ class LiveSource {
     std::set<std::string> model_topics;          ///< besides those by the policy
     ros1::OwnOutput own_output;                  ///< left out
     std::int64_t window = core::kDefaultWindow;  ///< length: at its end events wait no longer [ns]
-    ros::WallDuration tick{0.025};               ///< between two ticks, also before setWanted()
+    std::int64_t hold = 0;  ///< how long what may yet be left out is kept back [ns of steady time]
+    ros::WallDuration tick{0.025};  ///< between two ticks, also before setWanted()
   };
 
   /// @param queue that of the node handle; must outlive this, as the listener must

@@ -4,6 +4,7 @@
 #include <ros/this_node.h>
 
 #include <algorithm>
+#include <cmath>
 #include <ctime>
 #include <stdexcept>
 #include <utility>
@@ -18,6 +19,9 @@ namespace self_awareness {
 namespace {
 
 constexpr int kTicksPerWindow = 4;
+// A node of this package has logged and read its parameters before the master knows what it
+// publishes; so long that may take, besides the time until the master is asked [s].
+constexpr double kToBeKnown = 4;
 
 ros1::HeardTally::Moment momentNow() {
   timespec cpu{};
@@ -115,6 +119,7 @@ void Monitor::startSession(std::unique_ptr<Session> session) {
   wanted.model_topics = session_->topics();
   wanted.own_output = session_->ownOutput(ros::this_node::getName());
   wanted.window = session_->window();
+  wanted.hold = std::llround((parameters_.live.poll_interval + kToBeKnown) * 1e9);
   wanted.tick = ros::WallDuration(core::toSeconds(wanted.window) / kTicksPerWindow);
   live_->setWanted(std::move(wanted));
   ROS_INFO("model %s: %zu event types of %zu components, %s", parameters_.model.c_str(),

@@ -17,8 +17,12 @@ void Siblings::add(const std::string& node, const std::string& datatype) {
   }
 }
 
+bool Siblings::mayCover(const std::string& topic) {
+  return topic == "/rosout" || topic == "/diagnostics";
+}
+
 bool Siblings::cover(const std::string& node, const std::string& topic) const {
-  return (topic == "/rosout" || topic == "/diagnostics") && nodes_.count(node) > 0;
+  return mayCover(topic) && nodes_.count(node) > 0;
 }
 
 }  // namespace self_awareness::ros1

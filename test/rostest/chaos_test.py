@@ -202,6 +202,24 @@ class ChaosTest(MonitorCase):
             self.check_no_alarm(listener)
 
     @again_if_clock_was_set
+    def test_what_a_node_of_this_package_says_before_it_is_known_counts_for_nothing(self) -> None:
+        with driver(), self.judging_monitor(poll_interval=1.0), MonitorListener() as listener:
+            self.await_heard(listener)
+            heard = int(listener.value('monitor', 'publishers heard') or 0)
+            await_condition('the monitor listens to this node', lambda: any(
+                ('/self_awareness', '/rosout') == (link[1], link[4]) for link in
+                ServerProxy(rospy.get_node_uri()).getBusInfo('/x')[2]), 20)  # type: ignore
+            rospy.logwarn('what this node is, is not known yet')
+            await_condition('it is heard', lambda: (
+                listener.value('monitor', 'publishers heard') == str(heard + 1)), 20)
+            known_by = rospy.Publisher('~status', SelfAwareness, queue_size=1)
+            self.addCleanup(known_by.unregister)
+            await_condition('it is known', lambda: (
+                listener.value('monitor', 'publishers heard') == str(heard)), 20)
+            self.assertEqual([each.message for each in listener.statuses
+                              if each.unknown_events and not each.settling], [])
+
+    @again_if_clock_was_set
     def test_new_names_without_end_silence_nothing(self) -> None:
         topics = ['/come_and_go_{}'.format(number) for number in range(200)]
         stop = threading.Event()

@@ -17,7 +17,9 @@ class Siblings {
   /// @param node full name; empty: not known, and nobody is recognised by it
   void add(const std::string& node, const std::string& datatype);
 
-  /// Whether this is what every node says of itself, of one of them: /rosout or /diagnostics.
+  /// Whether this is what every node says of itself: /rosout or /diagnostics.
+  static bool mayCover(const std::string& topic);
+  /// Whether it is that, of one of them.
   bool cover(const std::string& node, const std::string& topic) const;
 
   friend bool operator==(const Siblings& a, const Siblings& b) { return a.nodes_ == b.nodes_; }

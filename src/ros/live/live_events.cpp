@@ -37,10 +37,15 @@ LiveEvents::~LiveEvents() {
 }
 
 void LiveEvents::setEncoder(std::shared_ptr<const Encoder> encoder, OwnOutput own_output,
-                            std::int64_t window) {
+                            std::int64_t window, std::int64_t hold) {
   encoder_ = std::move(encoder);
   own_output_ = std::move(own_output);
+  hold_ = hold;
   arrivals_.setInterval(window);
+  for (auto& [key, live] : connections_) {
+    live.held.clear();  // ids of another encoder
+    live.held_until.reset();
+  }
   encodeAgain();
 }
 
@@ -55,6 +60,8 @@ void LiveEvents::encodeAgain() {
     live.encoder = connect(connectionFrom(*live.header, live.topic->name));
     if (live.encoder) {
       live.encoder->accept();  // the first message came before
+    } else {
+      live.held.clear();
     }
   }
   for (auto& [key, live] : connections_) {
@@ -64,8 +71,9 @@ void LiveEvents::encodeAgain() {
 
 void LiveEvents::forgetClosedConnections() {
   for (auto connection = connections_.begin(); connection != connections_.end();) {
-    connection = connection->second.header.use_count() == 1 ? connections_.erase(connection)
-                                                            : std::next(connection);
+    const LiveConnection& live = connection->second;
+    const bool closed = live.header.use_count() == 1 && live.held.empty();
+    connection = closed ? connections_.erase(connection) : std::next(connection);
   }
 }
 
@@ -86,6 +94,7 @@ void LiveEvents::deliver() {
       tellDropped(of.topic->name, *of.header);
     }
   }
+  release();
   delivered_.clear();  // now: whether a connection is closed is seen by the users of its header
 }
 
@@ -99,30 +108,69 @@ void LiveEvents::onArrival(const Arrival& arrival) {
   if (!encoder_) {
     return;
   }
-  std::optional<ConnectionEncoder>& encoder = connectionOf(arrival).encoder;
+  LiveConnection& live = connectionOf(arrival);
+  std::optional<ConnectionEncoder>& encoder = live.encoder;
   if (!encoder || !encoder->accept()) {
     return;
   }
-  const std::int64_t stamp =
-      handlers_.time ? handlers_.time(arrival.stamp, arrival.steady) : arrival.stamp;
+  core::Event event{handlers_.time ? handlers_.time(arrival.stamp, arrival.steady) : arrival.stamp,
+                    0};
   if (!encoder->needsContent()) {
-    handlers_.on_event({stamp, encoder->id()});
-    return;
-  }
-  if (!arrival.content) {  // it came before its content was wanted, or is too long
+    event.id = encoder->id();
+  } else if (!arrival.content) {  // it came before its content was wanted, or is too long
     ++unread_;
     tellDropped(arrival.topic->name, *arrival.header);
     return;
+  } else {
+    try {
+      event.id = encoder->id(arrival.content->data(), arrival.content->size());
+    } catch (const std::out_of_range& error) {
+      ROS_ERROR_THROTTLE(10, "%s: %s; the message is left out", arrival.topic->name.c_str(),
+                         printable(error.what(), kLongestName).c_str());
+      return;
+    }
   }
-  core::Event event{stamp, 0};
-  try {
-    event.id = encoder->id(arrival.content->data(), arrival.content->size());
-  } catch (const std::out_of_range& error) {
-    ROS_ERROR_THROTTLE(10, "%s: %s; the message is left out", arrival.topic->name.c_str(),
-                       printable(error.what(), kLongestName).c_str());
+  if (!hold(live, event, arrival.steady)) {
+    handlers_.on_event(event);
+  }
+}
+
+bool LiveEvents::hold(LiveConnection& live, const core::Event& event, std::int64_t steady_time) {
+  if (hold_ == 0) {
+    return false;
+  }
+  if (!live.held_until) {
+    const bool undecided = own_output_.mayCover(
+        connectionFrom(*live.header, live.topic->name).callerid, live.topic->name);
+    live.held_until = undecided ? steady_time + hold_ : steady_time;
+  }
+  if (steady_time >= *live.held_until) {
+    return false;
+  }
+  live.held.push_back(event.id);
+  if (live.held.size() == kMostHeld) {
+    live.held_until = steady_time;
+  }
+  holds_ = true;
+  return true;
+}
+
+void LiveEvents::release() {
+  if (!holds_) {
     return;
   }
-  handlers_.on_event(event);
+  const auto steady_now = static_cast<std::int64_t>(ros::SteadyTime::now().toNSec());
+  const auto ros_now = static_cast<std::int64_t>(ros::Time::now().toNSec());
+  const std::int64_t now = handlers_.time ? handlers_.time(ros_now, steady_now) : ros_now;
+  holds_ = false;
+  for (auto& [key, live] : connections_) {
+    if (!live.held.empty() && steady_now >= *live.held_until) {
+      for (const core::EventId id : std::exchange(live.held, {})) {
+        handlers_.on_event({now, id});
+      }
+    }
+    holds_ = holds_ || !live.held.empty();
+  }
 }
 
 LiveEvents::LiveConnection& LiveEvents::connectionOf(const Arrival& arrival) {

@@ -17,13 +17,20 @@ bool OwnOutput::setGraph(const Graph& graph) {
 }
 
 bool OwnOutput::covers(const std::string& node, const std::string& topic) const {
-  const bool known = known_.count({stableName(node), topic}) > 0;
   if (node == node_) {
-    return topic == "/rosout" || topic == "/diagnostics" || !known;
+    return Siblings::mayCover(topic) || !knows(node, topic);
   }
   // What the model knows goes on to be judged: a node is not left out because it claims to be one
   // of ours.
-  return !known && siblings_.cover(node, topic);
+  return siblings_.cover(node, topic) && !knows(node, topic);
+}
+
+bool OwnOutput::mayCover(const std::string& node, const std::string& topic) const {
+  return Siblings::mayCover(topic) && !knows(node, topic);
+}
+
+bool OwnOutput::knows(const std::string& node, const std::string& topic) const {
+  return known_.count({stableName(node), topic}) > 0;
 }
 
 }  // namespace self_awareness::ros1

@@ -20,12 +20,15 @@
 #include <vector>
 
 #include "self_awareness/core/stream/vocabulary.h"
+#include "self_awareness/ros/graph.h"
+#include "self_awareness/ros/live/own_output.h"
 #include "self_awareness/ros/live/subscriptions.h"
 
 namespace self_awareness::ros1 {
 namespace {
 
-constexpr std::int64_t kWindow = 100000000;  // [ns]
+constexpr std::int64_t kWindow = 100000000;       // [ns]
+constexpr std::int64_t kForever = 3600000000000;  // [ns]
 constexpr std::uint32_t kQueueSize = 300;
 constexpr std::size_t kMegabyte = 1000000;
 
@@ -67,6 +70,14 @@ class LiveEventsTest : public testing::Test {
         std::make_shared<Encoder>(
             rules, [this](const core::EventType& type) { return vocabulary_.intern(type); }),
         {}, window);
+  }
+  /// Encodes as a monitor does that keeps back for so long [ns] what may be a sibling's.
+  void encodeHolding(std::int64_t hold, OwnOutput::Known known = {}) {
+    live_events_->setEncoder(std::make_shared<Encoder>(EncodingRules(),
+                                                       [this](const core::EventType& type) {
+                                                         return vocabulary_.intern(type);
+                                                       }),
+                             OwnOutput("/watch", std::move(known)), kWindow, hold);
   }
   /// This process as the publisher of a topic.
   static Listening ownTopic(const std::string& topic) {
@@ -146,6 +157,59 @@ TEST_F(LiveEventsTest, AnotherEncoderMayReadWhatThisOneDoesNot) {
   EXPECT_EQ(delivered(), Types{"std_msgs/String"});
   EXPECT_EQ(live_events_->dropped(), 1U);
   EXPECT_EQ(live_events_->connections(), 1U);
+}
+
+TEST_F(LiveEventsTest, WhatASiblingSaidBeforeItWasKnownIsNoEvent) {
+  encodeHolding(kForever);
+  const ros::Publisher publisher = advertise("/diagnostics");
+  publish(publisher, message("early"));
+  EXPECT_EQ(delivered(), Types());
+  EXPECT_EQ(live_events_->connections(), 1U);
+  Graph graph;
+  graph.topics["/any/status"] = {"self_awareness/SelfAwareness", {ros::this_node::getName()}, {}};
+  live_events_->setGraph(graph);
+  EXPECT_EQ(live_events_->connections(), 0U);
+  encodeHolding(1);
+  live_events_->setGraph(graph);
+  publish(publisher, message("late"));
+  EXPECT_EQ(delivered(), Types());
+}
+
+TEST_F(LiveEventsTest, WhoTurnsOutToBeNoSiblingIsHeardAfterAll) {
+  encodeHolding(kWindow);
+  ros::Publisher publisher = advertise("/diagnostics");
+  publish(publisher, message(""));
+  live_events_->deliver();
+  publisher.shutdown();
+  live_events_->forgetClosedConnections();
+  await([&] {
+    live_events_->deliver();
+    return !types_.empty();
+  });
+  EXPECT_EQ(types_, Types{"std_msgs/String"});
+  EXPECT_EQ(delivered(), Types());
+}
+
+TEST_F(LiveEventsTest, KeepsBackNoMoreThanASiblingSays) {
+  encodeHolding(kForever);
+  const ros::Publisher publisher = advertise("/diagnostics");
+  publish(publisher, message(""), LiveEvents::kMostHeld - 1);
+  EXPECT_EQ(delivered(), Types());
+  publish(publisher, message(""));
+  EXPECT_EQ(delivered().size(), LiveEvents::kMostHeld);
+  publish(publisher, message(""));
+  EXPECT_EQ(delivered().size(), 1U);
+}
+
+TEST_F(LiveEventsTest, KeepsBackOnlyWhatNodesSayOfThemselvesAndTheModelDoesNotKnow) {
+  encodeHolding(kForever);
+  const ros::Publisher other = advertise("/a");
+  publish(other, message(""));
+  EXPECT_EQ(delivered().size(), 1U);
+  encodeHolding(kForever, {{ros::this_node::getName(), "/diagnostics"}});
+  const ros::Publisher known = advertise("/diagnostics");
+  publish(known, message(""));
+  EXPECT_EQ(delivered().size(), 1U);
 }
 
 TEST_F(LiveEventsTest, TwoOfOneProcessDoNotDisturbEachOther) {

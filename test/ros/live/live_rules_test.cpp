@@ -67,6 +67,9 @@ TEST(OwnOutput, LeavesOutWhatOtherNodesOfThePackageSayOfThemselves) {
   graph.topics["/second/status"] = {"self_awareness/SelfAwareness", {"/second", "/base"}, {}};
   graph.topics["/scan"] = {"sensor_msgs/LaserScan", {"/player"}, {}};
   EXPECT_FALSE(own.covers("/second", "/rosout"));
+  EXPECT_TRUE(own.mayCover("/second", "/rosout"));
+  EXPECT_FALSE(own.mayCover("/second", "/scan"));
+  EXPECT_FALSE(own.mayCover("/base", "/rosout")) << "the model knows it";
   EXPECT_TRUE(own.setGraph(graph));
   EXPECT_FALSE(own.setGraph(graph));
   EXPECT_TRUE(own.covers("/second", "/rosout"));

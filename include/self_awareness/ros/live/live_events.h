@@ -32,6 +32,9 @@ struct Publication {
 /// subscribes (Subscriptions) may be another one: the two share what has arrived, no more.
 class LiveEvents {
  public:
+  /// Most messages of a publisher that wait to be known for a sibling's: who says more is none.
+  static constexpr std::size_t kMostHeld = 100;
+
   struct Handlers {
     std::function<void(const core::Event&)> on_event;
     /// The time that an event is stamped with, by ROS time and the steady clock when its message
@@ -60,9 +63,12 @@ class LiveEvents {
   /// message on a latching one is an event.
   /// @param own_output left out
   /// @param window length [ns]
+  /// @param hold for so long what a publisher says that may be left out once the graph is known
+  /// is kept back [ns of steady time]; then it counts as of that moment. 0: nothing is
   void setEncoder(std::shared_ptr<const Encoder> encoder, OwnOutput own_output,
-                  std::int64_t window);
-  /// Takes in who publishes what now: the other nodes of this package are left out.
+                  std::int64_t window, std::int64_t hold = 0);
+  /// Takes in who publishes what now: the other nodes of this package are left out, with what was
+  /// kept back of them.
   void setGraph(const Graph& graph);
   /// Turns what has arrived into events. Messages wait for this call.
   void deliver();
@@ -80,11 +86,19 @@ class LiveEvents {
     boost::shared_ptr<ros::M_string> header;  // keeps the key below alive
     std::shared_ptr<Arrival::Topic> topic;
     std::optional<ConnectionEncoder> encoder;  // none: left out by the rules
+    // While it may be left out by a graph to come: until when, from its first message on [ns of
+    // steady time], and what it said.
+    std::optional<std::int64_t> held_until;
+    std::vector<core::EventId> held;
   };
 
   /// Chooses anew what is left out, of connections that were heard.
   void encodeAgain();
   void onArrival(const Arrival& arrival);
+  /// Keeps an event back, if it is to be.
+  bool hold(LiveConnection& live, const core::Event& event, std::int64_t steady_time);
+  /// Hands on what was kept back for long enough.
+  void release();
   void tellDropped(const std::string& topic, const ros::M_string& header) const;
   LiveConnection& connectionOf(const Arrival& arrival);
   /// The content of the topic's messages is wanted if any of its connections needs it.
@@ -98,6 +112,8 @@ class LiveEvents {
   Arrivals arrivals_;
   std::shared_ptr<const Encoder> encoder_;
   OwnOutput own_output_;
+  std::int64_t hold_ = 0;  // [ns]
+  bool holds_ = false;     // some connections have something held
   // All messages of a connection share one header object.
   std::unordered_map<const ros::M_string*, LiveConnection> connections_;
   std::vector<Arrival> delivered_;  // kept for its memory

@@ -28,8 +28,13 @@ class OwnOutput {
   bool setGraph(const Graph& graph);
 
   bool covers(const std::string& node, const std::string& topic) const;
+  /// Whether setGraph() may have it covered later: a node of this package logs before it publishes
+  /// what it is recognised by.
+  bool mayCover(const std::string& node, const std::string& topic) const;
 
  private:
+  bool knows(const std::string& node, const std::string& topic) const;
+
   std::string node_;
   Known known_;
   Siblings siblings_;
