@@ -48,7 +48,7 @@ OPTIONAL = {
     'selenium',             # the test of the report in a browser
     'dynamic_reconfigure', 'hmmlearn', 'sklearn',  # the evaluation, which is not installed
 }
-OF_THE_SYSTEM = {'arpa', 'netinet', 'sys'}  # folders of C headers
+OF_THE_SYSTEM = {'arpa', 'linux', 'netinet', 'sys'}  # folders of C headers
 PROGRAMS_OF_ROS = ('rosbag', 'roscore', 'roslaunch', 'rosnode', 'rospack', 'rosparam', 'rosrun',
                    'rosservice', 'rostopic')
 

@@ -75,10 +75,7 @@ bool TopicLink::connect(const std::string& ip, int port) {
 }
 
 void TopicLink::close() {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    closed_ = true;
-  }
+  shared_.lock()->closed = true;
   lost_ = true;
   if (connection_) {
     connection_->drop(ros::Connection::Destructing);
@@ -86,8 +83,7 @@ void TopicLink::close() {
 }
 
 std::string TopicLink::why() const {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  return why_;
+  return shared_.lock()->why;
 }
 
 void TopicLink::read(std::uint32_t size, Step next) {
@@ -174,8 +170,8 @@ void TopicLink::handOn() {
   dropContent();
   const auto now = static_cast<std::int64_t>(ros::Time::now().toNSec());
   const auto steady = static_cast<std::int64_t>(ros::SteadyTime::now().toNSec());
-  const std::lock_guard<std::mutex> lock(mutex_);
-  if (!closed_) {
+  const auto shared = shared_.lock();
+  if (!shared->closed) {
     arrivals_.add({topic_, header_, now, steady, std::move(content)});
   }
 }
@@ -189,9 +185,9 @@ void TopicLink::dropContent() {
 
 void TopicLink::lose(const std::string& why) {
   {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    if (why_.empty()) {
-      why_ = why;
+    const auto shared = shared_.lock();
+    if (shared->why.empty()) {
+      shared->why = why;
     }
   }
   if (!lost_.exchange(true)) {

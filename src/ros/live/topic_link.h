@@ -7,10 +7,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <string>
 
 #include "self_awareness/ros/live/arrivals.h"
+#include "self_awareness/ros/live/guarded.h"
 #include "self_awareness/ros/live/read_limits.h"
 
 namespace self_awareness::ros1 {
@@ -51,6 +51,10 @@ class TopicLink : public std::enable_shared_from_this<TopicLink> {
   std::string why() const;
 
  private:
+  struct Shared {
+    bool closed = false;  // while it is locked with false, something may arrive
+    std::string why;      // it was lost
+  };
   using Bytes = boost::shared_array<std::uint8_t>;
   /// What is done with bytes that were read.
   using Step = void (TopicLink::*)(const Bytes& bytes, std::uint32_t size);
@@ -77,9 +81,7 @@ class TopicLink : public std::enable_shared_from_this<TopicLink> {
   std::shared_ptr<Content> content_;  // of the message, so far; none: it is not read
   std::atomic<bool> answered_{false};
   std::atomic<bool> lost_{false};
-  mutable std::mutex mutex_;  // guards what is below, and that nothing arrives after close()
-  bool closed_ = false;
-  std::string why_;
+  Guarded<Shared> shared_;
 };
 
 }  // namespace self_awareness::ros1
