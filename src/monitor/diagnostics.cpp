@@ -61,6 +61,10 @@ void Diagnostics::tellMonitor(const MonitorState& state, Status& status) {
     status.mergeSummary(DiagnosticStatus::WARN, std::to_string(state.left_out_topics) +
                                                     " topics are left out: there are too many");
   }
+  if (!state.keeper_error.empty()) {
+    status.mergeSummary(DiagnosticStatus::WARN,
+                        "the alarm is not kept for another start: " + state.keeper_error);
+  }
   tellUnheard(state.unheard, status);
   tellStrangers(state.strangers_closed, state.strangers_newly_closed, status);
   status.add("events a second", number(heard.rate));

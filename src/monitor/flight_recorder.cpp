@@ -63,14 +63,18 @@ void writeLog(const Recording& recording, const std::string& path) {
 
 }  // namespace
 
+RecorderFolder folderOf(const RecorderParameters& parameters) {
+  return {parameters.directory, parameters.name, static_cast<std::size_t>(parameters.files),
+          static_cast<std::uint64_t>(parameters.disk) * kMegabyte};
+}
+
 FlightRecorder::FlightRecorder(const RecorderParameters& parameters,
                                std::function<Source()> source)
     : duration_(nanoseconds(parameters.duration)),
       after_(nanoseconds(parameters.after)),
       most_bytes_(static_cast<std::size_t>(parameters.memory) * kMegabyte),
       source_(std::move(source)),
-      folder_(parameters.directory, parameters.name, static_cast<std::size_t>(parameters.files),
-              static_cast<std::uint64_t>(parameters.disk) * kMegabyte),
+      folder_(folderOf(parameters)),
       packer_([this](self_awareness::EventLog part) { keep(std::move(part)); }),
       writer_(kPause) {}
 

@@ -33,6 +33,9 @@ struct RecorderParameters {
   std::string name;  ///< full name of the monitor
 };
 
+/// Where its files are, and that of the alarm that stands (AlarmKeeper).
+RecorderFolder folderOf(const RecorderParameters& parameters);
+
 /// Keeps the events of the last minutes in memory, and writes them as an event log when there is a
 /// reason to. It belongs to the thread that judges, which packs events and no more: files are
 /// written by the thread of a FileWriter. Times "now" are steady time [ns], others ROS time [ns].
@@ -71,6 +74,8 @@ class FlightRecorder {
   /// onAlarmOver(). Alarms that are raised meanwhile are in the same one.
   /// @return path of the file; empty without a recorder
   std::string onAlarm(std::int64_t now);
+  /// An alarm of before the start stands: its file stays until onAlarmOver().
+  void onAlarmResumed(const std::string& path) { kept_ = path; }
   /// Writes what was heard up to now.
   /// @return path of the file; none if nothing was heard
   std::optional<std::string> dump();

@@ -1,6 +1,7 @@
 #include "monitor.h"
 
 #include <ros/console.h>
+#include <ros/param.h>
 #include <ros/this_node.h>
 
 #include <algorithm>
@@ -12,8 +13,10 @@
 #include "load.h"
 #include "now.h"
 #include "ros/text.h"
+#include "ros/verdict/standing_alarm.h"
 #include "self_awareness/SelfAwareness.h"
 #include "self_awareness/core/stream/event.h"
+#include "self_awareness/ros/ros_time.h"
 
 namespace self_awareness {
 namespace {
@@ -29,6 +32,12 @@ ros1::HeardTally::Moment momentNow() {
   return {rosNow(), steadyNow(), cpu.tv_sec * core::kNanosecondsPerSecond + cpu.tv_nsec};
 }
 
+std::string runId() {
+  std::string run_id;
+  ros::param::get("/run_id", run_id);
+  return run_id;
+}
+
 }  // namespace
 
 Monitor::Monitor(ros::NodeHandle node_handle, const ros::NodeHandle& private_node_handle,
@@ -42,9 +51,11 @@ Monitor::Monitor(ros::NodeHandle node_handle, const ros::NodeHandle& private_nod
                   [this](const self_awareness::SelfAwareness& alarm) { publishAlarm(alarm); },
                   [this] { live_->report(); }}),
       heard_(momentNow()),
-      recorder_(parameters_.recorder, [this] {
-        return FlightRecorder::Source{session_->encoding(), live_->graph()};
-      }) {
+      recorder_(parameters_.recorder,
+                [this] {
+                  return FlightRecorder::Source{session_->encoding(), live_->graph()};
+                }),
+      keeper_(folderOf(parameters_.recorder), runId()) {
   node_handle.setCallbackQueue(&queue_);
   private_node_handle_.setCallbackQueue(&queue_);
   status_publisher_ = private_node_handle_.advertise<self_awareness::SelfAwareness>("status", 100);
@@ -62,6 +73,7 @@ Monitor::Monitor(ros::NodeHandle node_handle, const ros::NodeHandle& private_nod
                                        std::move(service_names), *this);
   try {
     load(parameters_.model);
+    resumeAlarm();
   } catch (const ros1::ModelFileError& error) {
     // Not fatal: the operator sees it in the diagnostics, and ~reload tries again.
     model_error_ = error.what();
@@ -77,6 +89,7 @@ Monitor::~Monitor() {
 void Monitor::finish() {
   live_->stop();  // first: what it serves uses the recorder
   recorder_.finish(announcer_.alarm().message().level == self_awareness::SelfAwareness::ERROR);
+  keeper_.finish();
 }
 
 void Monitor::load(const std::string& path) {
@@ -182,6 +195,19 @@ void Monitor::restart() {
   standDown(ros1::kClockWasSet);
 }
 
+void Monitor::resumeAlarm() {
+  const std::optional<self_awareness::StandingAlarm> standing = keeper_.read();
+  if (!standing || !session_->calibrated()) {
+    return;
+  }
+  session_->detector().resume(
+      ros1::fromMessages(standing->alarm.suspects, session_->vocabulary()));
+  alarm_file_ = standing->recording;
+  recorder_.onAlarmResumed(alarm_file_);
+  ROS_WARN("an alarm stood when this monitor ended: it stands until its cause is over");
+  announcer_.resume(standing->alarm, ros1::fromRosTime(standing->since));
+}
+
 void Monitor::onVerdict(const core::Verdict& verdict) {
   const bool stood = announcer_.alarm().message().level == self_awareness::SelfAwareness::ERROR;
   if (verdict.alarm && !stood) {
@@ -214,6 +240,7 @@ void Monitor::publishAlarm(const self_awareness::SelfAwareness& alarm) {
     ROS_INFO("%s", alarm.message.c_str());
   }
   alarm_publisher_.publish(alarm);
+  keeper_.keep(alarm, announcer_.alarm().since(), alarm_file_);
 }
 
 void Monitor::onReport() {
@@ -245,6 +272,7 @@ void Monitor::onReport() {
   state.clock_rivals = live_->clockRivals();
   not_heard_.set(discovered.unheard);
   state.communication.not_heard = not_heard_.components();
+  state.keeper_error = keeper_.error();
   if (recorder_.enabled()) {
     state.recorder = recorder_.report();
   }

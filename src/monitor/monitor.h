@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "alarm_keeper.h"
 #include "diagnostics.h"
 #include "flight_recorder.h"
 #include "live_source.h"
@@ -53,9 +54,8 @@ namespace self_awareness {
 ///   wake publishers that work only while somebody listens.
 /// - `~poll_interval` (double, s; default: 1.0; 0.01 to 3600): time between two questions to the
 ///   master about who publishes and who listens (steady time).
-/// - `~queue_size` (int, messages; default: 1000; 1 to 1000000): how many of a publisher may wait
-/// on a topic;
-///   what comes then is dropped, and counted in the diagnostics.
+/// - `~queue_size` (int, messages; default: 1000; 1 to 1000000): how many of a
+///   publisher may wait on a topic; what comes then is dropped, and counted in the diagnostics.
 /// - `~max_message` (int, MB; default: 100; 1 to 1000): longest message whose content is kept,
 ///   where the model needs it; a longer one is heard, not read, and counts as dropped.
 /// - `~max_unfinished` (int, MB; default: 400; 1 to 10000): most for such messages of all
@@ -70,15 +70,13 @@ namespace self_awareness {
 /// - `~recorder/directory` (string; default: $ROS_HOME/self_awareness/$NAME): folder of the files,
 ///   which is created. "$ROS_HOME/" is where ROS keeps what it writes (~/.ros if it is not set),
 ///   "$NAME" the name of the monitor.
-/// - `~recorder/files` (int; default: 20; 1 to 100000): most files; the oldest are removed, but
-/// not
-///   that of an alarm that stands.
+/// - `~recorder/files` (int; default: 20; 1 to 100000): most files; the oldest
+///   are removed, but not that of an alarm that stands.
 /// - `~recorder/disk` (int, MB; default: 200; 1 to 1000000): most of all files together.
 /// - `~recorder/memory` (int, MB; default: 32; 1 to 10000): most for the events in memory; the
 ///   oldest are forgotten. Files that the disk does not take keep as much each, three at most.
-/// - `~diagnostic_period` (double, s; default: 1.0; 0.1 to 3600): time between two reports on
-/// /diagnostics
-///   (steady time); a change of the level is reported at once.
+/// - `~diagnostic_period` (double, s; default: 1.0; 0.1 to 3600): time between two
+///   reports on /diagnostics (steady time); a change of the level is reported at once.
 ///
 /// **Subscribed topics**: those of the model and others by `~subscribe`, of any type.
 ///
@@ -87,6 +85,9 @@ namespace self_awareness {
 /// - `~alarm` (self_awareness/SelfAwareness): latched; each change of the level.
 /// - `/diagnostics` (diagnostic_msgs/DiagnosticArray): one status for the whole, one for every
 ///   source, one for the monitor itself.
+///
+/// **Files**: those of the flight recorder, and the alarm that stands (AlarmKeeper): a monitor
+/// that is started again goes on with it.
 ///
 /// **Services**
 ///
@@ -102,7 +103,7 @@ namespace self_awareness {
 ///
 /// **Threads**: one thread (LiveSource) serves messages, windows, services and diagnostics through
 /// a queue of its own. What may block on the network is done by the thread of Discovery, what
-/// waits for the disk by that of FileWriter. They share what has arrived (Arrivals), what the
+/// waits for the disk by those of FileWriter. They share what has arrived (Arrivals), what the
 /// master said (Discovery) and the files to write (FileWriter), each with a lock (Guarded).
 class Monitor : public NodeProgram, public LiveSource::Listener {
  public:
@@ -139,6 +140,8 @@ class Monitor : public NodeProgram, public LiveSource::Listener {
   void onTick(std::int64_t now) override;
   void onReport() override;
 
+  /// Goes on with an alarm that stood when the monitor ended.
+  void resumeAlarm();
   void onVerdict(const core::Verdict& verdict);
   /// Whether a call is not one too many; else it is answered.
   bool mayServe(const std::string& service, Call& call);
@@ -171,6 +174,7 @@ class Monitor : public NodeProgram, public LiveSource::Listener {
   ros1::Announcer announcer_;
   ros1::HeardTally heard_;
   FlightRecorder recorder_;
+  AlarmKeeper keeper_;
   std::string alarm_file_;            // of the alarm that was raised last
   std::unique_ptr<LiveSource> live_;  // last: its listener uses all of the above
 };

@@ -27,11 +27,6 @@ std::string inWords(const std::string& why) {
   return "not heard by the monitor: " + why;
 }
 
-bool isMissing(core::Kind kind) {
-  return kind == core::Kind::kDied || kind == core::Kind::kNeverCame ||
-         kind == core::Kind::kSlow || kind == core::Kind::kLate;
-}
-
 }  // namespace
 
 void tellUnheard(const std::vector<ros1::Unheard>& unheard,
@@ -77,7 +72,7 @@ void NotHeard::explain(std::vector<core::Suspect>& suspects,
   for (core::Suspect& suspect : suspects) {
     const core::EventType& type = vocabulary.at(suspect.id);
     const auto why = why_.find({type.source, type.scope});
-    if (why != why_.end() && isMissing(suspect.reason.kind)) {
+    if (why != why_.end() && core::isMissing(suspect.reason.kind)) {
       suspect.reason.words = inWords(why->second);
     }
   }

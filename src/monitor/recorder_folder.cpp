@@ -38,14 +38,19 @@ std::string inHomeFolder(const std::string& path) {
   return path.rfind("~/", 0) == 0 && home != nullptr ? home + path.substr(1) : path;
 }
 
-std::string written(std::string path, std::string name) {
+std::string asFileName(std::string name) {
+  name = name.substr(std::min(name.find_first_not_of('/'), name.size()));
+  std::replace(name.begin(), name.end(), '/', '_');
+  return name;
+}
+
+/// @param name of the monitor, as asFileName() has it
+std::string written(std::string path, const std::string& name) {
   if (path.rfind(kRosHome, 0) == 0) {
     const char* ros_home = std::getenv("ROS_HOME");
     path = (ros_home != nullptr && *ros_home != '\0' ? std::string(ros_home) : "~/.ros") +
            path.substr(sizeof kRosHome - 2);
   }
-  name = name.substr(std::min(name.find_first_not_of('/'), name.size()));
-  std::replace(name.begin(), name.end(), '/', '_');
   for (std::size_t at = path.find(kName); at != std::string::npos; at = path.find(kName, at)) {
     path.replace(at, sizeof kName - 1, name);
     at += name.size();
@@ -79,7 +84,8 @@ std::vector<RecorderFile> filesIn(const filesystem::path& folder) {
 
 RecorderFolder::RecorderFolder(const std::string& path, const std::string& name,
                                std::size_t most_files, std::uint64_t most_bytes)
-    : path_(filesystem::absolute(written(path, name)).string()),
+    : name_(asFileName(name)),
+      path_(filesystem::absolute(written(path, name_)).string()),
       most_files_(most_files),
       most_bytes_(most_bytes) {}
 

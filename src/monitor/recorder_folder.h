@@ -26,6 +26,9 @@ class RecorderFolder {
   /// @param wall_time in UTC [ns since 1970]: names sort in the order in which they were given,
   /// whatever ROS time does
   std::string pathOf(Cause cause, std::int64_t wall_time) const;
+  /// Path of the file that says what the alarm is. It has the monitor's name: others may have the
+  /// same folder.
+  std::string pathOfStandingAlarm() const { return path_ + "/standing_alarm_" + name_ + ".bag"; }
   /// Creates the folder if it is not there.
   /// @throw std::runtime_error if it cannot be created
   void create() const;
@@ -37,6 +40,7 @@ class RecorderFolder {
  private:
   std::string nameOfFile(Cause cause, std::int64_t wall_time) const;
 
+  std::string name_;  // of the monitor, as a part of a file's name
   std::string path_;
   std::size_t most_files_;
   std::uint64_t most_bytes_;

@@ -31,6 +31,15 @@ from self_awareness.msg import SelfAwareness
 Message = Tuple[float, str, str]
 """Stamp [s], source, topic."""
 MEGABYTE = 10**6
+RESPAWNED = """<launch>
+  <node pkg="self_awareness" type="self_awareness_node" name="self_awareness" respawn="true">
+    <param name="model" value="{model}"/>
+    <param name="settle_time" value="1.0"/>
+    <param name="subscribe" value="all"/>
+    <param name="recorder/directory" value="{folder}"/>
+  </node>
+</launch>
+"""
 OVERLOADED = 'overloaded: '
 
 
@@ -417,20 +426,50 @@ class ChaosTest(MonitorCase):
     def events(self, listener: MonitorListener) -> int:
         return sum(status.events for status in listener.statuses)
 
+    # The monitor itself
+
+    @again_if_clock_was_set
+    def test_a_monitor_that_is_killed_is_back_with_its_alarm(self) -> None:
+        launch = self.path('respawn.launch')
+        self.write(launch, RESPAWNED.format(model=self.trained, folder=self.path('recorder')))
+        with Process('roslaunch', launch), MonitorListener() as listener:
+            with driver() as victim:
+                self.await_heard(listener)
+                victim.send(signal.SIGKILL)
+                alarm = listener.await_alarm(30)
+            kept = self.path('recorder/standing_alarm_self_awareness.bag')
+            await_condition('it is kept', lambda: os.path.exists(kept), 20)
+            alarms, statuses = len(listener.alarms), len(listener.statuses)
+            os.kill(pid_of('/self_awareness'), signal.SIGKILL)
+            again = await_condition('it is back', lambda: next(
+                iter(listener.alarms[alarms:]), None), 5)
+            self.assertEqual((again.level, again.alarm, again.component),
+                             (SelfAwareness.ERROR, alarm.alarm, '/driver'))
+            # Longer than it settles, and than it holds an alarm whose cause is over.
+            self.next_statuses(listener, 50)
+            self.assertEqual({(status.level, status.alarm)
+                              for status in listener.statuses[statuses:]},
+                             {(SelfAwareness.ERROR, alarm.alarm)})
+            with driver():
+                await_condition('it is over', lambda: any(
+                    each.level != SelfAwareness.ERROR for each in listener.alarms[alarms:]), 40)
+
     # The nodelet
 
     @again_if_clock_was_set
     def test_the_nodelet_is_unloaded_and_loaded_again(self) -> None:
         """In a manager that lives on; every second time while an alarm stands."""
         rospy.set_param('/watch', {'model': self.model(), 'detector': 'paper',
-                                   'settle_time': 0.1, 'poll_interval': 0.1, 'hold_time': 600.0,
-                                   'recorder': {'directory': self.path('recorder')}})
+                                   'settle_time': 0.1, 'poll_interval': 0.1, 'hold_time': 600.0})
         self.addCleanup(rospy.delete_param, '/watch')
         sizes = []  # type: List[int]
         with Process('rosrun', 'nodelet', 'nodelet', 'manager', '__name:=manager') as manager, \
                 MonitorListener('/watch') as listener:
             await_condition('the manager serves', lambda: self.loaded() is not None, 30)
             for number in range(self.unloads + 1):
+                # The alarm of the one before is none of this one's.
+                rospy.set_param('/watch/recorder/directory',
+                                self.path('recorder_{}'.format(number)))
                 talking = ExitStack()
                 talking.enter_context(Talker('/a'))
                 seen = len(listener.statuses)

@@ -112,7 +112,8 @@ class MasterTest(unittest.TestCase):
         return self.start('rosrun', 'self_awareness', 'self_awareness_node',
                           '__name:=' + name, '_model:=' + self.model, '_detector:=paper',
                           '_unknown:=ignore', '_poll_interval:=0.2', '_settle_time:=1.0',
-                          '_alarm_windows:=10', '_alarm_of:=15', '_hold_time:=1.0')
+                          '_alarm_windows:=10', '_alarm_of:=15', '_hold_time:=1.0',
+                          '_recorder/directory:=' + tempfile.mkdtemp(dir=self.folder))
 
     def start_recorder(self) -> Process:
         return self.start('rosrun', 'self_awareness', 'record_events', '__name:=recorder_1',

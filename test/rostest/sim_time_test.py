@@ -122,7 +122,8 @@ class SimTimeTest(unittest.TestCase):
         # A busy machine may hold messages back for some windows, so an alarm needs a second.
         return Process('rosrun', 'self_awareness', 'self_awareness_node', '_model:=' + self.model,
                        '_detector:=paper', '_subscribe:=model', '_settle_time:=1.0',
-                       '_alarm_windows:=10', '_alarm_of:=15')
+                       '_alarm_windows:=10', '_alarm_of:=15',
+                       '_recorder/directory:=' + tempfile.mkdtemp(dir=self.folder))
 
     def await_listening(self, listener: MonitorListener) -> None:
         await_condition('the monitor subscribes', lambda: (

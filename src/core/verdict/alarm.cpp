@@ -59,6 +59,11 @@ std::optional<Alarm> Alarms::end(std::int64_t now) {
   return ended;
 }
 
+void Alarms::resume(Alarm alarm) {
+  last_id_ = alarm.id;
+  standing_ = std::move(alarm);
+}
+
 void Alarms::begin(const Verdict& verdict, std::int64_t end, const std::optional<Alarm>& before) {
   last_id_ = std::max(static_cast<std::uint64_t>(std::max<std::int64_t>(end, 1)), last_id_ + 1);
   Alarm& alarm = standing_.emplace();

@@ -69,8 +69,30 @@ void Detector::onClockStep() {
 
 void Detector::clearAlarm() {
   persistence_.clear();
+  resumed_ = false;
+  awaited_.clear();
   suspicion_ = false;
   named_.clear();
+}
+
+void Detector::resume(const std::vector<Suspect>& suspects) {
+  resumed_ = true;
+  persistence_.raise(0);
+  for (const Suspect& suspect : suspects) {
+    named_.emplace(std::pair(suspect.component, suspect.component.empty() ? suspect.id : 0),
+                   suspect.since);
+    if (isMissing(suspect.reason.kind)) {
+      awaited_[suspect.id];
+    }
+  }
+}
+
+bool Detector::awaitsSuspects(std::int64_t end) const {
+  const std::int64_t long_enough =
+      std::max(parameters_.settle_time, parameters_.persistence.alarm_of * windows_.length());
+  return std::any_of(awaited_.begin(), awaited_.end(), [&](const auto& awaited) {
+    return !awaited.second || end - *awaited.second < long_enough;
+  });
 }
 
 ObservedEvent Detector::observe(const Event& event) {
@@ -80,6 +102,9 @@ ObservedEvent Detector::observe(const Event& event) {
   if (!heard_[event.id]) {
     heard_[event.id] = true;
     judge_->settle(event, parameters_.settle_time);
+    if (const auto awaited = awaited_.find(event.id); awaited != awaited_.end()) {
+      awaited->second = event.stamp;
+    }
   }
   return judge_->add(event);
 }
@@ -120,6 +145,11 @@ void Detector::close(const Window& window, std::int64_t end) {
     verdict.suspects = std::move(judgement.suspects);
     count(judgement, window_end);
     verdict.alarm = persistence_.raised();
+  }
+  resumed_ = resumed_ && (starting || awaitsSuspects(window_end));
+  if (resumed_) {
+    persistence_.raise(window_end);
+    verdict.alarm = true;
   }
   verdict.suspicion = suspicion_ && !verdict.alarm;
   verdict.changed = verdict.alarm != stood || verdict.suspicion != (was_suspicion && !stood);

@@ -42,6 +42,11 @@ bool Persistence::leaveOut(std::int64_t length) {
   return raised_;
 }
 
+void Persistence::raise(std::int64_t end) {
+  raised_ = true;
+  last_abnormal_ = end;
+}
+
 void Persistence::clear() {
   recent_.clear();
   raised_ = false;

@@ -31,6 +31,20 @@ std::string toString(Kind kind) {
   throw std::invalid_argument("a kind without a name");
 }
 
+std::optional<Kind> kindOf(const std::string& name) {
+  for (int kind = 0; kind <= static_cast<int>(Kind::kAllSilent); ++kind) {
+    if (toString(static_cast<Kind>(kind)) == name) {
+      return static_cast<Kind>(kind);
+    }
+  }
+  return std::nullopt;
+}
+
+bool isMissing(Kind kind) {
+  return kind == Kind::kDied || kind == Kind::kNeverCame || kind == Kind::kSlow ||
+         kind == Kind::kLate;
+}
+
 Reason strangerIn(std::size_t events) {
   Reason reason;
   reason.kind = Kind::kStranger;

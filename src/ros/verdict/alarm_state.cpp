@@ -1,6 +1,7 @@
 #include "alarm_state.h"
 
 #include <limits>
+#include <utility>
 
 #include "self_awareness/core/stream/event.h"
 #include "self_awareness/ros/ros_time.h"
@@ -52,6 +53,20 @@ void AlarmState::add(const core::Verdict& verdict, const core::Vocabulary& vocab
   message_.settling = verdict.settling;
   message_.events = static_cast<std::uint32_t>(verdict.window->events.size());
   message_.unknown_events = static_cast<std::uint32_t>(verdict.window->unknown());
+}
+
+void AlarmState::resume(const self_awareness::SelfAwareness& alarm, std::int64_t since) {
+  core::Alarm standing;
+  standing.id = alarm.alarm;
+  standing.level = core::Alarm::Level::kAlarm;
+  standing.begin = standing.end = since;
+  standing.kind = core::kindOf(alarm.kind).value();
+  standing.culprit = alarm.component;
+  standing.reason = alarm.reason;
+  standing.evidence = alarm.evidence;
+  alarms_.resume(std::move(standing));
+  message_ = alarm;
+  level_since_ = since;
 }
 
 bool AlarmState::standDown(const std::string& message, std::int64_t now) {

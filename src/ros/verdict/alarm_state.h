@@ -30,6 +30,10 @@ class AlarmState {
   /// @param window length [ns]
   void add(const core::Verdict& verdict, const core::Vocabulary& vocabulary, std::int64_t window,
            const Circumstances& circumstances = {});
+  /// Goes on with an alarm of before the start, whose kind is one.
+  /// @param alarm as it was published
+  /// @param since end of the window that raised it [ns]
+  void resume(const self_awareness::SelfAwareness& alarm, std::int64_t since);
   /// Takes back what stands, for another reason than a window: there is nothing abnormal any more.
   /// @param message the reason
   /// @param now ROS time [ns]
@@ -47,6 +51,8 @@ class AlarmState {
   const std::string& busy() const { return busy_; }
   /// Whether anything was said since the start, or since forgetWindow().
   bool spoken() const { return !message_.message.empty(); }
+  /// End of the window with which the level changed last [ns].
+  std::int64_t since() const { return level_since_; }
   /// How long an alarm or a suspicion has stood [s], at the ROS time `now` [ns].
   double standsFor(std::int64_t now) const;
   /// All of it, as it is published.

@@ -16,6 +16,11 @@ void Announcer::add(const core::Verdict& verdict, const core::Vocabulary& vocabu
   }
 }
 
+void Announcer::resume(const self_awareness::SelfAwareness& alarm, std::int64_t since) {
+  alarm_.resume(alarm, since);
+  handlers_.on_alarm(alarm_.message());
+}
+
 void Announcer::standDown(const std::string& message, std::int64_t now) {
   if (alarm_.standDown(message, now)) {
     handlers_.on_alarm(alarm_.message());

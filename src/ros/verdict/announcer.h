@@ -31,6 +31,8 @@ class Announcer {
   /// Says what the verdict on the next window is. The arguments are those of AlarmState::add().
   void add(const core::Verdict& verdict, const core::Vocabulary& vocabulary, std::int64_t window,
            const Circumstances& circumstances = {});
+  /// Says that an alarm of before the start stands, as AlarmState::resume().
+  void resume(const self_awareness::SelfAwareness& alarm, std::int64_t since);
   /// Says that what stood is over, as AlarmState::standDown().
   void standDown(const std::string& message, std::int64_t now);
   /// As AlarmState::forgetWindow().

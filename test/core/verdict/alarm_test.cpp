@@ -169,5 +169,23 @@ TEST_F(AlarmsTest, MayBeEndedByHand) {
   EXPECT_FALSE(alarms_.standing());
 }
 
+TEST_F(AlarmsTest, AnAlarmOfBeforeTheStartKeepsItsIdAndItsCulprit) {
+  Alarm before;
+  before.id = 1ULL << 60;  // later than all that follows
+  before.level = Alarm::Level::kAlarm;
+  before.culprit = "/b";
+  before.evidence = "overdue";
+  alarms_.resume(before);
+  EXPECT_FALSE(add(verdict(kAlarm, {suspect(0, Kind::kSlow)})));
+  ASSERT_TRUE(alarms_.standing());
+  EXPECT_EQ(alarms_.standing()->id, before.id);
+  EXPECT_EQ(alarms_.standing()->culprit, "/b");
+  const std::optional<Alarm> ended = add(verdict(kOk));
+  ASSERT_TRUE(ended);
+  EXPECT_EQ(ended->id, before.id);
+  add(verdict(kAlarm, {suspect(0, Kind::kDied)}));
+  EXPECT_EQ(alarms_.standing()->id, before.id + 1);
+}
+
 }  // namespace
 }  // namespace self_awareness::core

@@ -205,6 +205,50 @@ TEST_F(DetectorTest, ANewComponentHoldsAlarmsOffAndLetsAStandingOneStand) {
   EXPECT_GE(*firstAlarm(), 1015 * kSecond);
 }
 
+TEST_F(DetectorTest, AResumedAlarmStandsUntilItsSuspectIsHeardForLongEnough) {
+  Suspect laser;
+  laser.component = kLaser.source;
+  laser.since = 7;
+  Detector detector = makeDetector(0.01);
+  detector.resume({laser});
+  feed(detector, clockwork(0, 20 * kSecond, false));
+  const auto changes = [&] {
+    return std::count_if(seen_.begin(), seen_.end(), [](const Seen& s) { return s.changed; });
+  };
+  EXPECT_TRUE(std::all_of(seen_.begin(), seen_.end(), [](const Seen& s) { return s.alarm; }));
+  EXPECT_EQ(changes(), 0);
+  feed(detector, clockwork(20 * kSecond, 40 * kSecond, true));
+  detector.finish();
+  EXPECT_EQ(changes(), 1);
+  const auto over =
+      std::find_if(seen_.begin(), seen_.end(), [](const Seen& s) { return !s.alarm; });
+  ASSERT_NE(over, seen_.end());
+  // It settles for 5 s, and the hold time is 2 s.
+  EXPECT_GE(over->start, 26800 * kMillisecond);
+  EXPECT_LE(over->start, 28 * kSecond);
+}
+
+TEST_F(DetectorTest, AResumedAlarmWhoseSuspectsCameAllTheTimeStandsWhileAllSettle) {
+  Suspect fast;
+  fast.id = 1;
+  fast.reason.kind = Kind::kFast;
+  for (const bool cleared : {false, true}) {
+    seen_.clear();
+    Detector detector = makeDetector(0.01);
+    detector.resume({fast});
+    if (cleared) {
+      detector.clearAlarm();
+    }
+    feed(detector, clockwork(0, 20 * kSecond, true));
+    EXPECT_EQ(seen_.front().alarm, !cleared);
+    EXPECT_FALSE(seen_.back().alarm);
+    const auto over =
+        std::find_if(seen_.begin(), seen_.end(), [](const Seen& s) { return !s.alarm; });
+    EXPECT_GE(over->start, cleared ? 0 : 6900 * kMillisecond);
+    EXPECT_LE(over->start, cleared ? 0 : 8 * kSecond);
+  }
+}
+
 TEST_F(DetectorTest, AComponentThatWasHeardMayBeHeardOnANewTopic) {
   paper::DelayStatistics statistics(paper::Binning{10 * kMillisecond, 0});
   statistics.intern({"/a", "/often", "T"});

@@ -21,6 +21,14 @@ TEST(Suspect, AStrangerIsToldByWhatCameOfIt) {
   EXPECT_EQ(before.words, "never seen in training, the last one 1.2 s ago");
 }
 
+TEST(Suspect, AKindIsFoundByItsName) {
+  EXPECT_EQ(kindOf("died"), Kind::kDied);
+  EXPECT_EQ(kindOf("all silent"), Kind::kAllSilent);
+  EXPECT_EQ(kindOf("none of them"), std::nullopt);
+  EXPECT_TRUE(isMissing(Kind::kNeverCame));
+  EXPECT_FALSE(isMissing(Kind::kFast));
+}
+
 TEST(Suspect, WhatIsNotKnownIsNoNumber) {
   const Reason reason;
   for (const double value :

@@ -56,6 +56,8 @@ class Alarms {
   /// @param now [ns]
   /// @return what stood; none: nothing did
   std::optional<Alarm> end(std::int64_t now);
+  /// Goes on with an alarm of before the start.
+  void resume(Alarm alarm);
   /// The alarm or suspicion that stands; none: all is normal.
   const std::optional<Alarm>& standing() const { return standing_; }
 

@@ -86,6 +86,12 @@ class Detector : private WindowObserver {
   /// Forgets the alarm and the windows that led to it; the judge forgets nothing.
   void clearAlarm();
 
+  /// An alarm stands that was raised before this program began. It ends as usual, but not before
+  /// all have settled, and those of its suspects that had not come, or came late, were heard for
+  /// as long as it takes to raise one. To be called before the first event.
+  /// @param suspects of the alarm, with ids of known event types
+  void resume(const std::vector<Suspect>& suspects);
+
   /// Whether an event has come since the start.
   bool started() const { return windows_.lastStamp().has_value(); }
 
@@ -103,11 +109,18 @@ class Detector : private WindowObserver {
   /// @return the first of each component that was not named before
   std::vector<Suspect> name(std::vector<Suspect>& suspects, bool begins, std::int64_t end);
 
+  /// Whether the alarm of before the start has to stand on.
+  /// @param end of the window [ns]
+  bool awaitsSuspects(std::int64_t end) const;
+
   std::unique_ptr<Judge> judge_;
   Parameters parameters_;
   Handler handler_;
   Windows windows_;
   Persistence persistence_;
+  bool resumed_ = false;  // the alarm is that of before the start, and has to stand on
+  // Its suspects that have to be heard, and when they were for the first time [ns].
+  std::map<EventId, std::optional<std::int64_t>> awaited_;
   bool suspicion_ = false;          // whether it stands
   std::int64_t suspicious_at_ = 0;  // end of the last suspicious window [ns], while it stands
   std::int64_t settled_at_ = 0;     // [ns], valid once started

@@ -29,6 +29,9 @@ class Persistence {
   /// @param length of the window [ns]
   /// @return raised()
   bool leaveOut(std::int64_t length);
+  /// Raises the alarm, whatever the windows say.
+  /// @param end of the window that counts as abnormal [ns]
+  void raise(std::int64_t end);
   /// Whether the alarm stands.
   bool raised() const { return raised_; }
   /// Forgets all windows and the alarm.

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 
 #include "self_awareness/core/stream/event.h"
@@ -40,6 +41,10 @@ enum class Kind {
 /// "died", "slow", "fast", "late", "early", "out of order", "never came", "stranger", "busy
 /// machine" or "all silent".
 std::string toString(Kind kind);
+/// The kind of this name; none: there is no such kind.
+std::optional<Kind> kindOf(const std::string& name);
+/// Whether it is that something has not come, or comes too late or too seldom.
+bool isMissing(Kind kind);
 
 /// Units of a reason's values; a channel may have others.
 namespace unit {

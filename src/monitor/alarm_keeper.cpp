@@ -1,0 +1,53 @@
+#include "alarm_keeper.h"
+
+#include <ros/console.h>
+
+#include <exception>
+#include <utility>
+
+#include "ros/verdict/standing_alarm.h"
+#include "self_awareness/ros/ros_time.h"
+
+namespace self_awareness {
+namespace {
+
+constexpr double kPause = 5;  // between two attempts to write the file [s]
+
+}  // namespace
+
+AlarmKeeper::AlarmKeeper(RecorderFolder folder, std::string run_id)
+    : folder_(std::move(folder)),
+      path_(folder_.pathOfStandingAlarm()),
+      run_id_(std::move(run_id)),
+      writer_(kPause) {}
+
+std::optional<self_awareness::StandingAlarm> AlarmKeeper::read() const {
+  try {
+    std::optional<self_awareness::StandingAlarm> standing = ros1::readStandingAlarm(path_);
+    if (standing && standing->run_id == run_id_) {
+      return standing;
+    }
+  } catch (const std::exception& error) {
+    ROS_ERROR("%s; whether an alarm stood is not known", error.what());
+  }
+  return std::nullopt;
+}
+
+void AlarmKeeper::keep(const self_awareness::SelfAwareness& alarm, std::int64_t since,
+                       const std::string& recording) {
+  const bool stands = alarm.level == self_awareness::SelfAwareness::ERROR;
+  if (!std::exchange(stands_, stands) && !stands) {
+    return;
+  }
+  self_awareness::StandingAlarm standing;
+  standing.run_id = run_id_;
+  standing.since = ros1::toRosTime(since);
+  standing.recording = recording;
+  standing.alarm = alarm;
+  writer_.add({path_, 0, [folder = folder_, standing](const std::string& path) {
+                 folder.create();
+                 ros1::writeStandingAlarm(standing, path);
+               }});
+}
+
+}  // namespace self_awareness
