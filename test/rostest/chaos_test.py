@@ -13,7 +13,7 @@ import tempfile
 import threading
 import time
 from contextlib import ExitStack
-from typing import Iterator, List, Optional, Set, Tuple
+from typing import Any, Iterator, List, Optional, Set, Tuple
 from xmlrpc.client import ServerProxy
 
 import rosgraph
@@ -215,9 +215,7 @@ class ChaosTest(MonitorCase):
         with driver(), self.judging_monitor(poll_interval=1.0), MonitorListener() as listener:
             self.await_heard(listener)
             heard = int(listener.value('monitor', 'publishers heard') or 0)
-            await_condition('the monitor listens to this node', lambda: any(
-                ('/self_awareness', '/rosout') == (link[1], link[4]) for link in
-                ServerProxy(rospy.get_node_uri()).getBusInfo('/x')[2]), 20)  # type: ignore
+            await_condition('the monitor listens to this node', self.is_heard_on_rosout, 20)
             rospy.logwarn('what this node is, is not known yet')
             await_condition('it is heard', lambda: (
                 listener.value('monitor', 'publishers heard') == str(heard + 1)), 20)
@@ -227,6 +225,11 @@ class ChaosTest(MonitorCase):
                 listener.value('monitor', 'publishers heard') == str(heard)), 20)
             self.assertEqual([each.message for each in listener.statuses
                               if each.unknown_events and not each.settling], [])
+
+    def is_heard_on_rosout(self) -> bool:
+        """Whether the monitor is connected to what this node logs."""
+        links = ServerProxy(rospy.get_node_uri()).getBusInfo(rospy.get_name())  # type: Any
+        return ('/self_awareness', '/rosout') in [(link[1], link[4]) for link in links[2]]
 
     @again_if_clock_was_set
     def test_new_names_without_end_silence_nothing(self) -> None:

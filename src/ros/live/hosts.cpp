@@ -50,7 +50,8 @@ Hosts::Hosts() = default;
 Hosts::~Hosts() {
   for (auto& [host, known] : known_) {
     if (known.lookup && gai_cancel(&known.lookup->request) == EAI_NOTCANCELED) {
-      known.lookup.release();  // glibc writes into it some time: it is lost, or the process is
+      // glibc writes into it some time: it is lost, or the process is.
+      static_cast<void>(known.lookup.release());
     }
   }
 }
