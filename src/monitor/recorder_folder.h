@@ -28,7 +28,7 @@ class RecorderFolder {
   std::string pathOf(Cause cause, std::int64_t wall_time) const;
   /// Path of the file that says what the alarm is. It has the monitor's name: others may have the
   /// same folder.
-  std::string pathOfStandingAlarm() const { return path_ + "/standing_alarm_" + name_ + ".bag"; }
+  std::string pathOfStandingAlarm() const { return path_ + "/" + name_ + ".alarm"; }
   /// Creates the folder if it is not there.
   /// @throw std::runtime_error if it cannot be created
   void create() const;

@@ -67,6 +67,11 @@ TEST_F(RecorderFolderTest, KnowsTheFolderOfRosAndTheNameOfTheMonitor) {
   }
 }
 
+TEST_F(RecorderFolderTest, TheFileOfTheAlarmHasTheNameOfTheMonitor) {
+  EXPECT_EQ(RecorderFolder("/shared", "/robot/watch", 1, 1).pathOfStandingAlarm(),
+            "/shared/robot_watch.alarm");
+}
+
 TEST_F(RecorderFolderTest, ANameIsGivenOnce) {
   const RecorderFolder folder(path_.string(), "/watch", 1, 1);
   folder.create();

@@ -440,7 +440,7 @@ class ChaosTest(MonitorCase):
                 self.await_heard(listener)
                 victim.send(signal.SIGKILL)
                 alarm = listener.await_alarm(30)
-            kept = self.path('recorder/standing_alarm_self_awareness.bag')
+            kept = self.path('recorder/self_awareness.alarm')
             await_condition('it is kept', lambda: os.path.exists(kept), 20)
             alarms, statuses = len(listener.alarms), len(listener.statuses)
             os.kill(pid_of('/self_awareness'), signal.SIGKILL)

@@ -83,7 +83,7 @@ class FlightRecorderTest(MonitorCase):
             self.assertGreater(float(listener.value('monitor', 'memory of the recorder [MB]')), 0)
             statuses = listener.statuses
         self.check_same_verdicts(path, alarm, statuses)
-        self.assertEqual([os.path.basename(name).split('_')[0] for name in self.files()],
+        self.assertEqual([os.path.basename(name).split('_')[0] for name in self.files('*.bag')],
                          ['alarm', 'shutdown'], 'the alarm stood when the monitor ended')
 
     def check_same_verdicts(self, path: str, alarm: SelfAwareness,
