@@ -190,6 +190,9 @@ TEST_F(DiscoveryTest, TakesItsRegistrationsBack) {
 }
 
 TEST_F(DiscoveryTest, NamesWhoCannotBeReachedAndHearsTheOthersAtOnce) {
+#ifdef __SANITIZE_THREAD__
+  GTEST_SKIP() << "ThreadSanitizer does not know the threads of getaddrinfo_a(), and dies in them";
+#endif
   std::vector<std::unique_ptr<MadeUpPublisher>> unreachable;
   for (int i = 0; i < 300; ++i) {
     const std::string number = std::to_string(i);
