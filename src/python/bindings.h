@@ -45,6 +45,13 @@ inline py::array_t<bool> toArray(const std::vector<bool>& values) {
   return array;
 }
 
+/// The getter of an optional member: Python gets a copy. As a mere member (def_readonly),
+/// pybind11 2.4 of Ubuntu 20.04 moves the value out of the object.
+template <typename Class, typename Base, typename Value>
+auto copyOf(std::optional<Value> Base::*member) {
+  return [member](const Class& self) { return self.*member; };
+}
+
 /// An edge of a graph: publisher, topic, subscriber.
 using EdgeState = std::tuple<std::string, std::string, std::string>;
 

@@ -159,12 +159,20 @@ void bindModel(py::module& m) {
                     "FileVersion of its file; of this version if it has none")
       .def_readonly("left_out", &TrainedModel::left_out,
                     "channels that its file watches and this version does not have")
-      .def_readwrite("paper_calibration", &TrainedModel::paper_calibration,
-                     "PaperCalibration; None: not calibrated")
+      .def_property(
+          "paper_calibration", copyOf<TrainedModel>(&TrainedModel::paper_calibration),
+          [](TrainedModel& self, std::optional<core::paper::Calibration> calibration) {
+            self.paper_calibration = std::move(calibration);
+          },
+          "a copy of the PaperCalibration; None: not calibrated")
       .def_readwrite("findings", &TrainedModel::findings,
                      "LimitFindings of the recordings of the training")
-      .def_readwrite("calibration", &TrainedModel::calibration,
-                     "Calibration of the evidence detector; None: not calibrated")
+      .def_property(
+          "calibration", copyOf<TrainedModel>(&TrainedModel::calibration),
+          [](TrainedModel& self, std::optional<core::Calibration> calibration) {
+            self.calibration = std::move(calibration);
+          },
+          "a copy of the Calibration of the evidence detector; None: not calibrated")
       .def_property(
           "graph",
           [](const TrainedModel& self) {

@@ -208,7 +208,8 @@ void bindBags(py::module& m) {
                     "of an event log that was heard live: it ended when ROS time was set")
       .def_readonly("left_out", &ros1::BagSummary::left_out,
                     "of a bag: why some connections are no events, whatever the encoding")
-      .def_readonly("encoding", &ros1::BagSummary::encoding, "of an event log; None: a bag")
+      .def_property_readonly("encoding", copyOf<ros1::BagSummary>(&ros1::BagSummary::encoding),
+                             "a copy of that of an event log; None: a bag")
       .def_readonly("robot_start", &ros1::BagSummary::robot_start, "[ns]; 0: not known")
       .def_readonly("dropped", &ros1::BagSummary::dropped,
                     "messages that came too fast for an event log")

@@ -465,7 +465,7 @@ class ChaosTest(MonitorCase):
         rospy.set_param('/watch', {'model': self.model(), 'detector': 'paper',
                                    'settle_time': 0.1, 'poll_interval': 0.1, 'hold_time': 600.0})
         self.addCleanup(rospy.delete_param, '/watch')
-        sizes = []  # type: List[int]
+        sizes: List[int] = []
         with Process('rosrun', 'nodelet', 'nodelet', 'manager', '__name:=manager') as manager, \
                 MonitorListener('/watch') as listener:
             await_condition('the manager serves', lambda: self.loaded() is not None, 30)

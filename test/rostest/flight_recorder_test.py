@@ -49,8 +49,8 @@ class FlightRecorderTest(MonitorCase):
 
     def recording_monitor(self, model: str, detector: str = 'paper', **options: Any) -> Process:
         """A monitor with parameters of the recorder."""
-        parameters = {'recorder/' + name: value
-                      for name, value in options.items()}  # type: Dict[str, Any]
+        parameters: Dict[str, Any] = {'recorder/' + name: value
+                                      for name, value in options.items()}
         return self.monitor(model, detector=detector, **parameters)
 
     @again_if_clock_was_set

@@ -293,12 +293,13 @@ class LiveRulesTest(MonitorCase):
             await_condition('it goes on', lambda: len(listener.statuses) > seen + 5, 20)
 
     def test_bad_parameters_are_named(self) -> None:
-        bad = {'settle_time': ('-1', '.nan', 'soon'), 'hold_time': ('-0.1', '.inf'),
-               'alarm_windows': ('0', '6'), 'alarm_of': ('-3',), 'subscribe': ('everything',),
-               'silence': ('golden',), 'poll_interval': ('0', '1e12'),
-               'queue_size': ('0', '1.5'), 'detector': ('oracle', '7'), 'unknown': ('panic',),
-               'diagnostic_period': ('-1', '0', 'abc'), 'source_diagnostics': ('maybe',),
-               'hardware_id': ('5',), 'recorder/memory': ('1e12',)}  # type: Dict[str, tuple]
+        bad: Dict[str, tuple] = {
+            'settle_time': ('-1', '.nan', 'soon'), 'hold_time': ('-0.1', '.inf'),
+            'alarm_windows': ('0', '6'), 'alarm_of': ('-3',), 'subscribe': ('everything',),
+            'silence': ('golden',), 'poll_interval': ('0', '1e12'),
+            'queue_size': ('0', '1.5'), 'detector': ('oracle', '7'), 'unknown': ('panic',),
+            'diagnostic_period': ('-1', '0', 'abc'), 'source_diagnostics': ('maybe',),
+            'hardware_id': ('5',), 'recorder/memory': ('1e12',)}
         model = self.model()
         for name, values in bad.items():
             for value in values:

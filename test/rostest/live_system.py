@@ -45,7 +45,7 @@ def await_condition(what: str, condition: Callable[[], Optional[T]], timeout: fl
 def pid_of(node: str) -> int:
     """Asks a node for its process id, as `induce` does; needs rospy.init_node()."""
     uri = rosgraph.Master(rospy.get_name()).lookupNode(node)
-    answer = ServerProxy(uri).getPid(rospy.get_name())  # type: Any
+    answer: Any = ServerProxy(uri).getPid(rospy.get_name())
     return int(answer[2])
 
 
@@ -143,10 +143,10 @@ class MonitorListener:
     def __init__(self, name: str = '/self_awareness') -> None:
         self._name = name
         self._lock = threading.Lock()
-        self._statuses = []  # type: List[SelfAwareness]
-        self._alarms = []  # type: List[SelfAwareness]
-        self._diagnostics = []  # type: List[DiagnosticStatus]
-        self._heartbeats = []  # type: List[float]
+        self._statuses: List[SelfAwareness] = []
+        self._alarms: List[SelfAwareness] = []
+        self._diagnostics: List[DiagnosticStatus] = []
+        self._heartbeats: List[float] = []
         self._subscribers = [
             rospy.Subscriber(name + '/status', SelfAwareness, self._keep(self._statuses)),
             rospy.Subscriber(name + '/alarm', SelfAwareness, self._keep(self._alarms)),
@@ -237,7 +237,7 @@ def operation(components: Iterable[Tuple[str, str, float]], length: float,
 
 def write_bag(path: str, messages: Iterable[Tuple[float, str, str]]) -> str:
     """Writes std_msgs/String messages, given as (stamp [s], source, topic); returns the path."""
-    connections = {}  # type: Dict[Tuple[str, str], Any]
+    connections: Dict[Tuple[str, str], Any] = {}
     with rosbag.Bag(path, 'w') as bag:
         for stamp, source, topic in sorted(messages):
             # rosbag itself has one connection for each topic, however many nodes publish there.

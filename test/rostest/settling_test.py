@@ -196,7 +196,7 @@ class SettlingTest(MonitorCase):
 
     @again_if_clock_was_set
     def test_after_reload_windows_are_judged_in_the_pace_of_the_new_model(self) -> None:
-        arrivals = []  # type: List[float]
+        arrivals: List[float] = []
         with self.monitor(self.model(window=4 * 10**9)), MonitorListener() as listener:
             with Talker('/a'):
                 self.await_statuses(listener, 1)

@@ -228,7 +228,7 @@ class SimTimeTest(unittest.TestCase):
 
     def passes(self, statuses: List[SelfAwareness]) -> List[List[SelfAwareness]]:
         """The statuses, cut where the windows went back in time."""
-        passes = []  # type: List[List[SelfAwareness]]
+        passes: List[List[SelfAwareness]] = []
         for status in statuses:
             if not passes or status.window_start < passes[-1][-1].window_start:
                 passes.append([])
