@@ -15,11 +15,12 @@ from judged_recordings import judged, with_graph, without_laser
 from self_awareness.commands import score, train
 from self_awareness.reporting.report import figures
 from self_awareness.reporting.report.delays import Histogram
-from self_awareness.reporting.report.page import save_report, script_json
+from self_awareness.reporting.report.page import save_page, save_report, script_json
 from self_awareness.reporting.report.section import section
 from self_awareness.reporting.report.timeline import MOST_LANES
 from self_awareness.reporting.report.unjudged import MOST_NAMES
 
+FOLDER = Path(figures.__file__).parent
 MOST_BYTES = 10_000_000
 
 
@@ -189,3 +190,23 @@ def test_a_model_of_many_nodes_has_its_most_unusual_lanes(tmp_path: Path) -> Non
     save_report(str(tmp_path / 'r.html'), [found])
     assert f'{lanes.left_out} more components have evidence' in re.sub(
         r'\s+', ' ', (tmp_path / 'r.html').read_text()[:100_000])
+
+
+@pytest.mark.parametrize('version, allowed', [('4.14.3', True), ('5.0.0', False),
+                                              ('10.1', False)])
+def test_eval_is_allowed_to_a_plotly_that_cannot_do_without(version: str, allowed: bool,
+                                                            monkeypatch, tmp_path: Path) -> None:
+    """Else the page of Debian 11 or Ubuntu 20.04 has no figures."""
+    plotly = pytest.importorskip('plotly')
+    monkeypatch.setattr(plotly, '__version__', version)
+    path = tmp_path / 'page.html'
+    save_page(str(path), 'base.html', {})
+    policy, = re.findall(r'content="(default-src .*?)"', path.read_text(encoding='utf-8'))
+    assert ('unsafe-eval' in policy) == allowed
+
+
+def test_no_template_leaves_out_an_else() -> None:
+    """Jinja2 before 2.11, that of Ubuntu 20.04, calls what is left out an error."""
+    for path in FOLDER.glob('*.html'):
+        for expression in re.findall(r'{{.*?}}', path.read_text(encoding='utf-8'), re.DOTALL):
+            assert (' if ' in expression) == (' else ' in expression), expression

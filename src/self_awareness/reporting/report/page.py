@@ -14,6 +14,7 @@ from self_awareness.reporting.report.section import Section, clock
 
 _FOLDER = os.path.dirname(__file__)
 _ENDING = '.html'
+_WITHOUT_EVAL = 5  # the first version of plotly whose plotly.js calls no eval()
 
 
 def check_name(path: str) -> str:
@@ -65,13 +66,15 @@ def save_page(path: str, template: str, data: Dict[str, Any], **values: Any) -> 
     """
     # Both take long to import: only a program that writes a page imports them.
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
+    import plotly
     from plotly.offline import get_plotlyjs
 
     environment = Environment(loader=FileSystemLoader(_FOLDER), autoescape=True,
                               undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     page = environment.get_template(template).stream(
         data=script_json(data), style=_contents('page.css'), script=_contents('page.js'),
-        plotly=get_plotlyjs(), **values)
+        plotly=get_plotlyjs(), evals=int(plotly.__version__.split('.')[0]) < _WITHOUT_EVAL,
+        **values)
     with replacing(path) as temporary:
         with open(temporary, 'w', encoding='utf-8') as file:
             file.writelines(page)
