@@ -15,10 +15,10 @@ from self_awareness.reporting.report.diff_page import save_diff
 from self_awareness.reporting.report.page import check_installed, check_name
 
 _EPILOG = """\
-A and B are models, or one of them a recording: BAG, or a part of it, BAG@START-END. A recording is
-counted with the encoding of the model. What matters most comes first: what is gone or new, then
-the largest changes of rates, gaps and delays. Not listed is what could be chance, and what is
-less than the model's least effect (info --tuning).
+A and B are models, or one of them recordings: BAG, a part of it, BAG@START-END, or a folder of
+bags. They are counted with the encoding of the model. What matters most comes first: what is gone,
+ended or new, then the largest changes of rates, gaps and delays. Not listed is what could be
+chance, and what is less than the model's least effect (info --tuning).
 examples:
   diff before_update.model after_update.model
   diff robot.model today.bag --html today.html

@@ -13,15 +13,17 @@ from typing import Callable, Dict, Iterable, List, Optional, Sequence, Set, Tupl
 
 from self_awareness import RATE_SPAN, USUAL_SHARES, EvidenceCounts
 from self_awareness.comparison import chance
-from self_awareness.comparison.sides import Kind, Side
+from self_awareness.comparison.sides import End, Kind, Side
 from self_awareness.stamps import SECOND_NS
 
-GONE, NEW, RATE, GAP, DELAY = 'gone', 'new', 'rate', 'gap', 'delay'
+GONE, ENDED, NEW, RATE, GAP, DELAY = 'gone', 'ended', 'new', 'rate', 'gap', 'delay'
 """What may have changed."""
 
 FEWEST_OF_HALF = 25
 """Delays are not compared if a half of a side has fewer."""
 
+_CLEARLY_LONGER = 3
+_LEAST_END_S = 1.0
 _SPAN_S = RATE_SPAN / SECOND_NS
 _MEDIAN = 0.5
 
@@ -31,13 +33,14 @@ class Change:
     """Something that changed.
 
     Args:
-        what: GONE, NEW, RATE, GAP or DELAY.
+        what: GONE, ENDED, NEW, RATE, GAP or DELAY.
         kind: event type.
         other: the one that the delay counts from; None: it is no delay.
         before: rate [Hz], longest usual gap [s] or median delay [s]; None: it is new.
         after: likewise; None: it is gone.
-        effect: its size in units of the least effect; infinite: new or gone.
-        whole: its whole source is new or gone.
+        effect: its size in units of the least effect; infinite: new, gone or ended.
+        whole: its whole source is new, gone or ended.
+        end: how it ended in a recording; None: it did not.
     """
 
     what: str
@@ -47,6 +50,7 @@ class Change:
     after: Optional[float]
     effect: float
     whole: bool = False
+    end: Optional[End] = None
 
 
 @dataclass(frozen=True)
@@ -67,6 +71,11 @@ class Comparison:
     changes: List[Change]
     unsure: List[Kind]
     compared_delays: Optional[int]
+
+    @property
+    def is_complete(self) -> bool:
+        """Whether delays were compared, too: who answers late changes neither rates nor gaps."""
+        return bool(self.compared_delays)
 
 
 @dataclass(frozen=True)
@@ -111,7 +120,10 @@ def compare(before: Side, after: Side) -> Comparison:
     level = chance.LEVEL / max(number, 1)
 
     of_rates = _inflation(rates)
-    found = _significant(rates, level, of_rates)
+    found = _ended(before, after, both)
+    ended = {change.kind for change in found}
+    found += [change for change in _significant(rates, level, of_rates)
+              if change.kind not in ended]
     explained = {change.kind for change in found}
     found += [change for change in _significant([*gaps, *delays], level,
                                                 _inflation([*gaps, *delays]))
@@ -242,6 +254,28 @@ def _missing_by_chance(here: Side, there: Side, kind: Kind, common: float) -> fl
     return (here.duration / max(here.duration + there.duration, 1e-9)) ** independent
 
 
+def _ended(before: Side, after: Side, both: Sequence[Kind]) -> List[Change]:
+    """Return who fell silent in a recording, until its end: that is no other rate."""
+    found: Dict[Kind, End] = {}
+    for side in (before, after):
+        for kind in both:
+            end = side.ends.get(kind)
+            longest = max(_longest_gap(each, kind) for each in (before, after))
+            least = max(_CLEARLY_LONGER * longest, _LEAST_END_S)
+            if end is not None and end.silent > least:
+                found[kind] = end
+    return [Change(ENDED, kind, None, before.all.events(before.ids[kind]) / before.duration,
+                   after.all.events(after.ids[kind]) / after.duration, math.inf,
+                   bool(kind[0]) and all(other in found for other in both if other[0] == kind[0]),
+                   end) for kind, end in found.items()]
+
+
+def _longest_gap(side: Side, kind: Kind) -> float:
+    """Return the begin of the bin that holds the longest gap of an event type [s]."""
+    counted = side.all.delays(side.ids[kind], side.ids[kind])
+    return max((begin / SECOND_NS for begin, count in counted if count > 0), default=0.0)
+
+
 def _one_sided(what: str, here: Side, there: Side, kind: Kind) -> Change:
     rate = here.all.events(here.ids[kind]) / max(here.duration, _SPAN_S)
     whole = bool(kind[0]) and all(other[0] != kind[0] for other in there.ids)
@@ -250,9 +284,9 @@ def _one_sided(what: str, here: Side, there: Side, kind: Kind) -> Change:
 
 
 def _ranked(changes: Sequence[Change], graph: Set[Tuple[str, str, str]]) -> List[Change]:
-    """Return what is gone or new, then the largest effects; of equal ones, the root first."""
+    """Return who is gone, ended or new, then the largest effects; of equal ones, the root."""
     upstream = _upstream({change.kind[0] for change in changes}, graph)
-    order = (GONE, NEW, RATE, DELAY, GAP)
+    order = (GONE, ENDED, NEW, RATE, DELAY, GAP)
     # Victims change as much as the root does, but for some per cent.
     return sorted(changes, key=lambda each: (
         -round(4.0 * math.log2(each.effect)) if math.isfinite(each.effect) else -math.inf,

@@ -2,17 +2,33 @@
 from __future__ import annotations
 
 import copy
-from dataclasses import dataclass
+import os
+from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Dict, List, Optional, Set, Tuple
+from typing import Dict, Iterator, List, Optional, Set, Tuple
+
+import numpy as np
 
 from self_awareness import (EventType, EvidenceCounts, EvidenceModel, TrainedModel, Training,
                             recordings, recordings_in_event_log)
-from self_awareness.recordings import BagPart
+from self_awareness.recordings import BagPart, RecordingEvents
 from self_awareness.stamps import SECOND_NS
 
 Kind = Tuple[str, str, str]
 """Source, scope and type of an event type."""
+
+
+@dataclass(frozen=True)
+class End:
+    """How an event type ended in a recording.
+
+    Args:
+        last: its last event [s] from the recording's first message.
+        silent: time from then to the recording's end [s].
+    """
+
+    last: float
+    silent: float
 
 
 @dataclass(frozen=True)
@@ -22,12 +38,14 @@ class Side:
     Args:
         name: of its file.
         model: with all counts of the evidence detector.
-        is_recording: it is one, and not a model.
+        is_recording: it is one or several, and not a model.
+        ends: of each event type of recordings, its last event and how long it was silent then.
     """
 
     name: str
     model: TrainedModel
     is_recording: bool
+    ends: Dict[Kind, End] = field(default_factory=dict)
 
     @cached_property
     def halves(self) -> Tuple[EvidenceCounts, EvidenceCounts]:
@@ -71,7 +89,7 @@ def key_of(kind: EventType) -> Kind:
 
 
 def read_sides(before: str, after: str) -> Tuple[Side, Side]:
-    """Return the two sides; a recording is counted with the encoding of the model.
+    """Return the two sides; recordings are counted with the encoding of the model.
 
     Raises:
         BagError, ModelFileError: a file cannot be read.
@@ -92,7 +110,7 @@ def read_sides(before: str, after: str) -> Tuple[Side, Side]:
 def _model_of(name: str) -> Optional[TrainedModel]:
     """Return the model of a file; None: it is a recording, or a part of one."""
     part = BagPart.parse(name)
-    if (part.start is not None or part.recording is not None
+    if (part.start is not None or part.recording is not None or os.path.isdir(part.path)
             or recordings_in_event_log(part.path) is not None
             or recordings.is_bag(name)):
         return None
@@ -105,16 +123,25 @@ def _model_of(name: str) -> Optional[TrainedModel]:
 
 
 def _recording_side(name: str, like: TrainedModel) -> Side:
-    parts = recordings.expand([BagPart.parse(name)])
-    if len(parts) > 1:
-        raise ValueError(f'{name}: the event log holds {len(parts)} recordings; name one: '
-                         f'{parts[0]}')
-    recording = recordings.read(like, parts[0])
     training = Training(copy.copy(like.encoding), like.bin_size, like.window, like.horizon_bins,
                         True, False, like.tuning)
-    training.add_events(recording.event_types, recording.stamps, recording.ids,
-                        recording.recording, clock_steps=recording.clock_steps)
-    return Side(name, training.model(watch=False), True)
+    ends: Dict[Kind, End] = {}
+    for part in recordings.expand([BagPart.parse(name)]):
+        recording = recordings.read(like, part)
+        training.add_events(recording.event_types, recording.stamps, recording.ids,
+                            recording.recording, clock_steps=recording.clock_steps)
+        for kind, end in _ends(recording):
+            if kind not in ends or end.silent > ends[kind].silent:
+                ends[kind] = end
+    return Side(name, training.model(watch=False), True, ends)
+
+
+def _ends(recording: RecordingEvents) -> Iterator[Tuple[Kind, End]]:
+    backwards = recording.ids[::-1]
+    for index, place in zip(*np.unique(backwards, return_index=True)):
+        last = int(recording.stamps[len(backwards) - 1 - place])
+        yield (key_of(recording.event_types[index]),
+               End((last - recording.origin) / SECOND_NS, (recording.end - last) / SECOND_NS))
 
 
 def _check(before: Side, after: Side) -> None:

@@ -4,7 +4,8 @@ from __future__ import annotations
 import math
 from typing import Any, Dict, List
 
-from self_awareness.comparison.changes import DELAY, GAP, GONE, NEW, RATE, Change, Comparison
+from self_awareness.comparison.changes import (DELAY, ENDED, GAP, GONE, NEW, RATE, Change,
+                                               Comparison)
 from self_awareness.comparison.sides import Kind, Side
 
 _MOST_UNSURE = 10
@@ -18,6 +19,9 @@ def name(kind: Kind) -> str:
 def numbers(change: Change) -> str:
     """Return what it was and what it is."""
     before, after = change.before, change.after
+    if change.end is not None:
+        return (f'last heard at {change.end.last:.1f} s, {change.end.silent:.1f} s before the end'
+                + (', as all of its source' if change.whole else ''))
     if before is None or after is None:
         rate = after if before is None else before
         return f'{rate:.3g} Hz' + (', as all of its source' if change.whole else '')
@@ -42,15 +46,17 @@ def lines(comparison: Comparison) -> List[str]:
     text += [f'{change.what:<6}  {subject(change)}: {numbers(change)}'
              for change in comparison.changes]
     if not comparison.changes:
-        text.append('nothing changed by more than chance and the least effect')
+        text.append(('' if comparison.is_complete else 'of what was compared, ')
+                    + 'nothing changed by more than chance and the least effect')
     return text + [f'  {note}' for note in notes(comparison)]
 
 
 def side_line(side: Side) -> str:
     """Return a side in a line."""
     number = len(side.model.recordings)
-    what = 'a recording' if side.is_recording else (
-        f'a model of {number} recording{"" if number == 1 else "s"}')
+    what = f'{number} recordings' if number > 1 else 'a recording'
+    if not side.is_recording:
+        what = f'a model of {"1 recording" if number == 1 else what}'
     return f'{side.name}: {what}, {side.duration:.1f} s, {len(side.ids)} event types'
 
 
@@ -64,8 +70,12 @@ def notes(comparison: Comparison) -> List[str]:
                      + shown + (f', and {more} more' if more > 0 else ''))
     if comparison.compared_delays is None:
         found.append('delays between event types were not compared: no model is calibrated, so '
-                     'nobody knows which of them have to do with each other')
-    elif not comparison.changes or comparison.compared_delays == 0:
+                     'nobody knows which of them have to do with each other; calibrate one')
+    elif comparison.compared_delays == 0:
+        found.append('delays between event types were not compared: the model watches no late '
+                     'answers, or there are too few of them on a side; record several starts of '
+                     'the robot with who subscribes to what (record.launch), and train on them')
+    elif not comparison.changes:
         found.append(f'delays were compared of {comparison.compared_delays} pairs of event types: '
                      'of those that the model watches, with enough delays on both sides')
     return found
@@ -85,10 +95,11 @@ def as_values(comparison: Comparison) -> Dict[str, Any]:
 def headline(comparison: Comparison) -> str:
     """Return the most important in a line."""
     if not comparison.changes:
-        return 'Nothing changed by more than chance.'
+        return ('Nothing changed by more than chance.' if comparison.is_complete else
+                'Rates and gaps are as before; delays were not compared.')
     first, more = comparison.changes[0], len(comparison.changes) - 1
     who = first.kind[0] or first.kind[1]
-    verbs = {GONE: 'is gone', NEW: 'is new', RATE: 'sends at another rate',
+    verbs = {GONE: 'is gone', ENDED: 'ended', NEW: 'is new', RATE: 'sends at another rate',
              GAP: 'sends at another pace', DELAY: 'answers after another delay'}
     whole = who if first.whole else f'{who} ({first.kind[1]})' if first.kind[0] else who
     text = f'{whole} {verbs[first.what]}'
@@ -100,6 +111,8 @@ def _change(change: Change) -> Dict[str, Any]:
                               'before': change.before, 'after': change.after,
                               'effect': change.effect if math.isfinite(change.effect) else None,
                               'whole_source': change.whole}
+    if change.end is not None:
+        values['last_heard_s'] = change.end.last
     if change.other is not None:
         values['from'] = _kind(change.other)
     return values

@@ -49,7 +49,7 @@ def changes(capsys: pytest.CaptureFixture, *arguments: str) -> List[str]:
     assert diff.main(list(arguments)) == 0
     out = capsys.readouterr().out
     assert out.startswith('before  ') and '\nafter   ' in out
-    found = re.findall(r'^(?:gone|new|rate|gap|delay) .*$', out, re.MULTILINE)
+    found = re.findall(r'^(?:gone|ended|new|rate|gap|delay) .*$', out, re.MULTILINE)
     assert bool(found) != ('nothing changed by more than chance' in out)
     return found
 
@@ -91,6 +91,47 @@ def test_half_the_rate(before: str, trained, capsys) -> None:
     assert re.match(r'rate +/battery /charge std_msgs/String: 2\.7\d? Hz, now 1\.3\d? Hz '
                     r'\(0\.50 times\)', found[0])
     assert len(found) == 1  # its gaps are explained by that
+
+
+def test_a_node_that_ended_has_no_other_rate(before: str, make_bag, tmp_path: Path,
+                                             capsys) -> None:
+    bag = make_bag('ended.bag', [m for m in jittery_robot(3000.0, 120.0, 5)
+                                 if m[1] != '/battery' or m[0] < 3060.0])
+    found, = changes(capsys, before, bag)
+    assert re.match(r'ended +/battery /charge std_msgs/String: last heard at (59|60)\.\d s, '
+                    r'(59|60)\.\d s before the end, as all of its source$', found)
+    page = tmp_path / 'd.html'
+    assert diff.main([before, bag, '--json', '--html', str(page)]) == 0
+    change, = json.loads(capsys.readouterr().out)['changes']
+    assert (change['change'], change['last_heard_s']) == ('ended', pytest.approx(60.0, abs=0.5))
+    assert '/battery ended' in page.read_text()
+
+
+def test_a_folder_stands_for_its_bags(before: str, tmp_path: Path, capsys) -> None:
+    folder = tmp_path / 'week'
+    folder.mkdir()
+    for number in range(3):
+        write_bag(folder / f'{number}.bag', jittery_robot(5000.0 * (number + 1), 60.0, number))
+    assert changes(capsys, before, str(folder)) == []
+    assert diff.main([before, str(folder)]) == 0
+    assert f'{folder}: 3 recordings, 1' in capsys.readouterr().out
+
+
+def test_what_could_not_be_compared_is_not_called_unchanged(model_file: str, make_bag,
+                                                            tmp_path: Path, capsys) -> None:
+    """All answers of this recording are 60 ms late, and no pair is compared."""
+    bag = make_bag('late.bag', sorted(
+        (m[0] + 0.06, *m[1:]) if m[1] == '/slam' else m
+        for m in jittery_robot(3000.0, 120.0, 5)))
+    page = tmp_path / 'd.html'
+    assert diff.main([model_file, bag, '--html', str(page)]) == 0
+    out = capsys.readouterr().out
+    text = page.read_text()
+    if 'of what was compared, nothing changed' in out:
+        assert 'summary unknown' in text and 'Rates and gaps are as before' in text
+    assert 'summary quiet' not in text
+    assert 'delays between event types were not compared' in out
+    assert 'record several starts' in out or 'calibrate one' in out
 
 
 def sooner(message: Message) -> List[Message]:
