@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "bindings.h"
+#include "ros/bag/log_lines.h"
 #include "ros/text.h"
 #include "self_awareness/ros/bag/bag_reader.h"
 #include "self_awareness/ros/bag/event_log_reader.h"
@@ -233,6 +234,26 @@ void bindBags(py::module& m) {
       "BagError.");
   m.def("recordings_in_event_log", &ros1::recordingsInEventLog, py::arg("path"),
         "Number of recordings in an event log; None: it is none, or cannot be read.");
+  m.def(
+      "last_log_lines",
+      [](const std::string& path, const std::vector<std::pair<std::string, std::int64_t>>& nodes,
+         std::size_t most) {
+        std::vector<ros1::LogQuery> queries;
+        for (const auto& [node, until] : nodes) {
+          queries.push_back({node, until});
+        }
+        std::vector<std::vector<std::tuple<std::int64_t, int, std::string>>> found;
+        for (const std::vector<ros1::LogLine>& lines : ros1::lastLogLines(path, queries, most)) {
+          found.emplace_back();
+          for (const ros1::LogLine& line : lines) {
+            found.back().emplace_back(line.stamp, line.level, line.text);
+          }
+        }
+        return found;
+      },
+      py::arg("path"), py::arg("nodes"), py::arg("most"),
+      "The last lines that nodes wrote to /rosout, of each pair of a node and a time [ns] up to\n"
+      "that time: (stamp [ns], level as in rosgraph_msgs/Log, text). Raises BagError.");
 
   py::class_<core::Waiting>(
       m, "Waiting",

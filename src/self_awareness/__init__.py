@@ -66,6 +66,7 @@ from self_awareness._core import (  # noqa: F401
     find_clock_steps,
     half_of,
     judge_by_evidence,
+    last_log_lines,
     printable,
     read_events,
     recordings_in_event_log,

@@ -28,6 +28,7 @@ KEYS: Dict[str, str] = {
     'Python': 'python3-dev',
     'boost': 'libboost-filesystem-dev',
     'catkin_pkg': 'catkin',
+    'dot': 'graphviz',
     'genpy': 'message_runtime',
     'nlohmann': 'nlohmann-json-dev',
     'nlohmann_json': 'nlohmann-json-dev',
@@ -49,8 +50,8 @@ OPTIONAL = {
     'dynamic_reconfigure', 'hmmlearn', 'sklearn',  # the evaluation, which is not installed
 }
 OF_THE_SYSTEM = {'arpa', 'linux', 'netinet', 'sys'}  # folders of C headers
-PROGRAMS_OF_ROS = ('rosbag', 'roscore', 'roslaunch', 'rosnode', 'rospack', 'rosparam', 'rosrun',
-                   'rosservice', 'rostopic')
+PROGRAMS = ('dot', 'rosbag', 'roscore', 'roslaunch', 'rosnode', 'rospack', 'rosparam', 'rosrun',
+            'rosservice', 'rostopic')
 
 BUILD = ('buildtool_depend', 'build_depend', 'depend')
 RUN = ('exec_depend', 'depend')
@@ -130,9 +131,9 @@ def _of_python(name: str) -> bool:
 
 
 def _started(*patterns: str) -> Set[str]:
-    """Return the programs of ROS that Python code starts, or names so."""
+    """Return the programs of others that Python code starts, or names so."""
     text = '\n'.join(path.read_text(encoding='utf-8') for path in _python(*patterns))
-    return {name for name in PROGRAMS_OF_ROS if f"'{name}'" in text}
+    return {name for name in PROGRAMS if f"'{name}'" in text}
 
 
 INSTALLED = ('src/self_awareness/**/*.py', 'src/self_awareness_follow_me/**/*.py', 'scripts/*',
@@ -160,7 +161,7 @@ def test_what_the_sources_include() -> None:
 
 def test_what_python_imports_when_it_runs() -> None:
     needed = _imported(*INSTALLED) | _started(*INSTALLED)
-    assert {'jinja2', 'matplotlib', 'numpy', 'rospy', 'rosrun', 'tqdm', 'yaml'} <= needed
+    assert {'dot', 'jinja2', 'matplotlib', 'numpy', 'rospy', 'rosrun', 'tqdm', 'yaml'} <= needed
     assert _missing(needed, *RUN) == []
 
 

@@ -5,7 +5,7 @@ import argparse
 import csv
 import json
 import math
-from typing import Iterator, List, Optional, Sequence, Tuple
+from typing import Iterator, List, Optional, Sequence
 
 import numpy as np
 
@@ -19,9 +19,11 @@ from self_awareness.output_files import (PAGE, PICTURE, RESULT_BAG, TABLE, VALUE
 from self_awareness.recordings import BagPart, RecordingEvents, expand
 from self_awareness.reporting import coverage_text, csv_text
 from self_awareness.reporting.plots import NamedAlarm, ScorePlot, save_scores
+from self_awareness.reporting.report import neighbours
+from self_awareness.reporting.report.incidents import as_values, incidents
+from self_awareness.reporting.report.intervals import intervals
 from self_awareness.reporting.report.judged import Judged, JudgedBy
-from self_awareness.reporting.report.page import (check_installed, check_name,
-                                                  save_report)
+from self_awareness.reporting.report.page import check_installed, check_name, save_report
 from self_awareness.reporting.report.section import section
 from self_awareness.results import check_apart, result_bag
 from self_awareness.stamps import SECOND_NS, span
@@ -55,6 +57,7 @@ def _score(arguments: argparse.Namespace) -> None:
                   [part.path for part in parts] + [arguments.model])
     if arguments.report is not None:
         check_installed()
+        neighbours.check_installed()
     check_apart(arguments.result_bag, parts)
     parameters = cli.detector_parameters(arguments)
     paper = arguments.detector == 'paper'
@@ -73,7 +76,8 @@ def _score(arguments: argparse.Namespace) -> None:
     missing = coverage_text.not_watched(coverage_text.summarise(coverage))
     if missing:
         print(f'{arguments.model}: {missing}')
-    judged: List[Tuple[RecordingEvents, Verdicts]] = []
+    by = JudgedBy(trained, arguments.model, parameters, threshold, evidence, missing)
+    judged: List[Judged] = []
     with result_bag(arguments.result_bag, arguments.model, trained,
                     threshold is not None, coverage) as replay:
         for part in parts:
@@ -81,20 +85,17 @@ def _score(arguments: argparse.Namespace) -> None:
             verdicts = judge(recording.stamps, recording.ids, recording.end,
                              recording.event_types, replay(recording),
                              recording.clock_steps, recording.waiting)
-            judged.append((recording, verdicts))
+            judged.append(Judged(by, recording, verdicts))
             _print(recording, verdicts, len(trained.event_types), threshold)
     if arguments.csv is not None:
         _save_csv(arguments.csv, judged, threshold)
     if arguments.json is not None:
         _save_json(arguments.json, judged, missing)
     if arguments.plot is not None:
-        save_scores(arguments.plot, [_plot(recording, verdicts, trained.window, threshold)
-                                     for recording, verdicts in judged])
+        save_scores(arguments.plot, [_plot(each, trained.window, threshold) for each in judged])
     if arguments.report is not None:
-        by = JudgedBy(trained, arguments.model, parameters, threshold, evidence, missing)
-        save_report(arguments.report,
-                    [section(Judged(by, recording, verdicts), f'recording-{number}')
-                     for number, (recording, verdicts) in enumerate(judged, 1)])
+        save_report(arguments.report, [section(each, f'recording-{number}')
+                                       for number, each in enumerate(judged, 1)])
 
 
 def _print(recording: RecordingEvents, verdicts: Verdicts, known: int,
@@ -148,30 +149,31 @@ def _print_unknown(recording: RecordingEvents, known: int) -> None:
         print(f'    {name}: {count}')
 
 
-def _save_json(path: str, judged: Sequence[Tuple[RecordingEvents, Verdicts]],
-               missing: str) -> None:
+def _save_json(path: str, judged: Sequence[Judged], missing: str) -> None:
     values = {
         'not_watched': missing or None,
         'recordings': [{
-            'bag': str(recording.part),
-            'alarms': [alarms.as_values(alarm, recording.event_types, recording.origin)
-                       for alarm in alarms.in_order(verdicts)],
-        } for recording, verdicts in judged],
+            'bag': str(each.recording.part),
+            'alarms': [alarms.as_values(alarm, each.recording.event_types, each.recording.origin)
+                       for alarm in alarms.in_order(each.verdicts)],
+            'incidents': [as_values(incident)
+                          for incident in incidents(each, intervals(each), 'incident')],
+        } for each in judged],
     }
     with replacing(path) as temporary, open(temporary, 'w', encoding='utf-8') as file:
         json.dump(values, file, indent=2, allow_nan=False)
         file.write('\n')
 
 
-def _save_csv(path: str, judged: Sequence[Tuple[RecordingEvents, Verdicts]],
-              threshold: Optional[float]) -> None:
+def _save_csv(path: str, judged: Sequence[Judged], threshold: Optional[float]) -> None:
     limit = '' if threshold is None else repr(threshold)
     with replacing(path) as temporary:
         with open(temporary, 'w', encoding='utf-8', newline='') as file:
             writer = csv.writer(file, lineterminator='\n')
             writer.writerow(_COLUMNS)
-            for recording, verdicts in judged:
-                part = csv_text.cell(str(recording.part))
+            for each in judged:
+                verdicts = each.verdicts
+                part = csv_text.cell(str(each.recording.part))
                 columns = (verdicts.start, verdicts.events, verdicts.unknown, verdicts.score,
                            verdicts.abnormal)
                 for begin in range(0, len(verdicts.start), _ROWS):  # lists take much memory
@@ -182,8 +184,9 @@ def _save_csv(path: str, judged: Sequence[Tuple[RecordingEvents, Verdicts]],
                                          int(abnormal)))
 
 
-def _plot(recording: RecordingEvents, verdicts: Verdicts, window: int,
-          threshold: Optional[float]) -> ScorePlot:
+def _plot(judged: Judged, window: int, threshold: Optional[float]) -> ScorePlot:
+    recording, verdicts = judged.recording, judged.verdicts
+
     def seconds(stamps: np.ndarray) -> np.ndarray:
         return (stamps - recording.origin) / SECOND_NS
 

@@ -1,43 +1,76 @@
-"""The part of the graph that the report draws, and where."""
+"""The part of the graph that the report draws, and how."""
 from __future__ import annotations
 
+import xml.etree.ElementTree as ElementTree
+
+import pytest
+
 from self_awareness.reporting.report.neighbours import (MOST_NODES, OTHER, ROOT, VICTIM,
+                                                        check_installed, downstream, draw,
                                                         neighbourhood)
 
 
-def test_publishers_stand_before_their_subscribers() -> None:
+def test_the_root_has_its_publishers_and_subscribers() -> None:
     found = neighbourhood([('/a', '/x', '/b'), ('/b', '/y', '/c'), ('/a', '/x', '/c'),
-                           ('/a', '/z', '/c')], ['/b', '/c'])
-    assert {node.name: (node.role, node.layer) for node in found.nodes} == {
-        '/a': (OTHER, 0), '/b': (ROOT, 1), '/c': (VICTIM, 2)}
-    topics = {(link.publisher, link.subscriber): link.topics for link in found.connections}
-    assert topics['/a', '/c'] == ['/x', '/z']
-    assert found.left_out == 0
+                           ('/a', '/z', '/c'), ('/c', '/w', '/far'), ('/a', '/self', '/a')],
+                          ['/b', '/c'])
+    assert found.roles == {'/a': OTHER, '/b': ROOT, '/c': VICTIM}
+    assert found.topics['/a', '/c'] == ['/x', '/z'] and ('/a', '/a') not in found.topics
+    assert found.left_out == 1
 
 
-def test_a_loop_goes_back() -> None:
-    found = neighbourhood([('/a', '/x', '/b'), ('/b', '/y', '/a'), ('/a', '/self', '/a')], ['/a'])
-    assert {node.name: node.layer for node in found.nodes} == {'/a': 0, '/b': 1}
-    assert len(found.connections) == 2
+def test_who_hears_nearly_everybody_is_left_out() -> None:
+    """Recorders and /rosout put all nodes within two steps of each other."""
+    edges = [(f'/n{i}', f'/t{i}', f'/n{i + 1}') for i in range(9)]
+    edges += [(publisher, topic, '/recorder') for publisher, topic, _ in edges]
+    edges += [(publisher, '/rosout', '/rosout') for publisher, _, _ in edges]
+    found = neighbourhood(edges, ['/n4', '/n5'])
+    assert set(found.roles) == {'/n3', '/n4', '/n5'}
+    assert found.listeners == ['/recorder']
+    assert '/recorder' in neighbourhood(edges, ['/recorder']).roles  # unless it is a suspect
+    assert neighbourhood([('/a', '/x', '/b'), ('/c', '/y', '/b')], ['/a']).listeners == []
 
 
-def test_no_two_nodes_stand_at_one_place() -> None:
-    edges = [('/hub', '/x', f'/n{i}') for i in range(9)]
-    edges += [(f'/n{i}', '/y', '/end') for i in range(9)]
-    found = neighbourhood(edges, ['/hub'])
-    assert len({(node.layer, node.place) for node in found.nodes}) == 11
+def test_suspects_farther_away_come_with_the_way_to_them() -> None:
+    edges = [(f'/n{i}', f'/t{i}', f'/n{i + 1}') for i in range(9)]
+    found = neighbourhood(edges, ['/n2', '/n5'])
+    assert list(found.roles)[0] == '/n2' and found.roles['/n5'] == VICTIM
+    assert set(found.roles) == {'/n1', '/n2', '/n3', '/n4', '/n5'}
 
 
 def test_a_large_graph_is_drawn_near_the_suspects_only() -> None:
     edges = [(f'/n{i}', f'/t{i}', f'/n{i + 1}') for i in range(500)]
     edges += [('/n250', '/many', f'/m{i}') for i in range(500)]
-    found = neighbourhood(edges, ['/n250', '/n300', '/nobody'])
-    names = {node.name for node in found.nodes}
-    assert len(names) == MOST_NODES and {'/n249', '/n250', '/n299', '/n300'} <= names
+    found = neighbourhood(edges, ['/n250', '/n252', '/n400', '/nobody'])
+    assert len(found.roles) == MOST_NODES and {'/n249', '/n251', '/n252'} <= set(found.roles)
     assert found.left_out == 1001 - MOST_NODES
 
 
 def test_suspects_that_are_not_in_the_graph_are_left_out() -> None:
-    assert neighbourhood([('/a', '/x', '/b')], ['/c']).nodes == []
+    assert neighbourhood([('/a', '/x', '/b')], ['/c']).roles == {}
     found = neighbourhood([('/a', '/x', '/b')], ['/c', '/b'])
-    assert {node.name: node.role for node in found.nodes} == {'/a': OTHER, '/b': VICTIM}
+    assert found.roles == {'/b': VICTIM, '/a': OTHER}
+
+
+def test_who_needs_a_node() -> None:
+    edges = [('/a', '/x', '/b'), ('/b', '/y', '/c'), ('/c', '/z', '/b'), ('/b', '/rosout', '/d')]
+    assert downstream(edges, '/b') == {'/b', '/c'}
+    assert downstream(edges, '/d') == set()
+
+
+def test_names_are_shown_as_they_are() -> None:
+    """Names come from strangers; dot has escapes and entities of its own."""
+    evil = r'</svg><script>"\N\l&amp;'
+    drawn = draw(neighbourhood([(evil, '/x', '/a/very/long/name/of/a/node')], [evil]))
+    texts = [element.text for element in ElementTree.fromstring(drawn).iter()
+             if element.tag.endswith('}text')]
+    assert ''.join(texts[:texts.index('/a/very/long')]).replace('/x', '') == evil
+    assert {'/x', '/a/very/long', '/name/of/a/node'} <= set(texts)
+    assert '<script' not in drawn and ' id=' not in drawn
+    assert 'class="node root"' in drawn and 'class="node other"' in drawn
+
+
+def test_without_dot_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv('PATH', '/nowhere')
+    with pytest.raises(ValueError, match='apt install graphviz'):
+        check_installed()

@@ -32,7 +32,7 @@ def _range(browser: Browser, section: int = 0) -> List[float]:
 
 
 DRAWN = 'return document.querySelectorAll(".over-time .main-svg").length >= 2'
-ALARM = 'document.querySelector("details.interval.alarm")'
+ALARM = 'document.querySelector("details.incident.alarm")'
 
 
 def test_it_opens_without_error_and_without_network(report: Path) -> None:

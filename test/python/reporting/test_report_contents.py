@@ -2,16 +2,19 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Callable
+from types import SimpleNamespace
+from typing import Any, Callable
 
 import numpy as np
 import pytest
 from conftest import jittery_robot
 from judged_recordings import judged, with_graph, without_laser
 
-from self_awareness.reporting.report import columns
+from self_awareness.reporting.report import columns, figures
+from self_awareness.reporting.report.delays import histogram_of
 from self_awareness.reporting.report.intervals import ALARM
 from self_awareness.reporting.report.neighbours import ROOT, VICTIM
+from self_awareness.reporting.report.rates import counts_of
 from self_awareness.reporting.report.section import (ALARMED, NOT_JUDGED, QUIET, SUSPICIOUS,
                                                      section)
 from self_awareness.reporting.report.timeline import overview
@@ -31,26 +34,47 @@ def test_the_summary_says_who_when_why_and_since_when(evidence_model: str, make_
     assert answers['Why'].startswith('silent for 0.') and 'usually every 0.050 s' in answers['Why']
     assert answers['Since'].startswith('12.0 s, 0.')
     assert 'overdue of /laser /scan std_msgs/String: 1.' in answers['Evidence']
-    assert '/slam' in answers['What else']
+    assert answers['Victims'] == '/slam' and 'Also named' not in answers
 
 
-def test_an_alarm_has_its_suspects_delays_and_graph(evidence_model: str, make_bag,
-                                                    tmp_path: Path) -> None:
+def test_an_incident_has_its_suspects_delays_and_graph(evidence_model: str, make_bag,
+                                                       tmp_path: Path) -> None:
     bag = make_bag('dead.bag', without_laser(3000.0))
     found = section(judged(with_graph(evidence_model, tmp_path / 'm'), bag), 'x')
-    alarm, = [each for each in found.intervals if each.level == ALARM]
-    assert 12.0 < alarm.start < 13.0 and alarm.cleared
-    first = alarm.suspects[0]
+    incident = found.incidents[0]
+    alarm, details = incident.main, found.details[incident.key]
+    assert incident.level == ALARM and 12.0 < alarm.start < 13.0 and alarm.cleared
+    first, histogram = alarm.suspects[0], details.evidence[0].histogram
     assert (first.component, first.short) == ('/laser', 'fell silent')
-    assert first.histogram.title == 'gaps between two /laser /scan std_msgs/String'
-    assert first.histogram.seen == pytest.approx(alarm.start - alarm.began)
-    assert first.histogram.seen > first.histogram.edges[-1] > 0.05
-    assert first.histogram.edges[0] < 0.05 < first.histogram.usual[1]
-    assert sum(first.histogram.counts) == 2399  # gaps of 2400 messages
-    roles = {node.name: node.role for node in alarm.graph.nodes}
-    assert roles['/laser'] == ROOT and roles['/slam'] == VICTIM and '/planner' in roles
-    layers = {node.name: node.layer for node in alarm.graph.nodes}
-    assert layers['/laser'] < layers['/slam'] < layers['/planner']
+    assert histogram.title == 'gaps between two /laser /scan std_msgs/String'
+    assert histogram.seen == pytest.approx(alarm.start - alarm.began)
+    assert histogram.seen > histogram.edges[-1] > 0.05
+    assert histogram.edges[0] < 0.05 < histogram.usual[1]
+    assert sum(histogram.counts) == 2399  # gaps of 2400 messages
+    assert details.graph.roles['/laser'] == ROOT and details.graph.roles['/slam'] == VICTIM
+    assert [each.component for each in incident.silent] == ['/laser', '/slam']
+    assert incident.silent[0].silence.back == pytest.approx(20.0, abs=0.1)
+
+
+def test_a_rate_has_counts_and_what_is_usual(evidence_model: str, make_bag) -> None:
+    """A histogram of gaps would have the gap that was seen among those of training."""
+    messages = [m for i, m in enumerate(jittery_robot(3000.0, 60.0, 3))
+                if not (m[1] == '/laser' and 3020.0 < m[0] < 3030.0 and i % 3 == 0)]
+    of = judged(evidence_model, make_bag('seldom.bag', messages))
+    laser = [kind.source for kind in of.recording.event_types].index('/laser')
+    reason = SimpleNamespace(kind='slow', after='', unit='Hz', value=13.0, usual=20.0,
+                             usual_shortest=18.0, usual_longest=22.0, lasted=2.0, words='')
+    suspect: Any = SimpleNamespace(id=laser, reason=reason)
+    alarm: Any = SimpleNamespace(begin=3_021_000_000_000, end=3_032_000_000_000)
+    assert histogram_of(of, suspect) is None
+    counts = counts_of(of, alarm, suspect)
+    assert counts.usual == (36.0, 44.0) and counts.title.startswith('/laser /scan')
+    by_time = dict(zip(counts.times, counts.counts))
+    assert all(36 <= by_time[time] <= 44 for time in (10.0, 18.0, 36.0))
+    assert all(count < 36 for time, count in by_time.items() if 22.5 < time < 29.5)
+    assert (counts.begin, counts.end) == pytest.approx((21.0, 32.0), abs=0.1)
+    drawn = figures.counts(counts)
+    assert drawn['layout']['shapes'][0]['y0'] == 36.0
 
 
 def test_lanes_and_score_agree(evidence_model: str, make_bag) -> None:
@@ -110,7 +134,7 @@ def test_what_was_not_judged_is_told(evidence_model: str, make_bag) -> None:
 def test_normal_operation_is_called_so(evidence_model: str, make_bag) -> None:
     found = section(judged(evidence_model, make_bag('n.bag', jittery_robot(7000.0, 30.0, 4))), 'x')
     assert (found.summary.state, found.summary.headline) == (QUIET, 'Nothing abnormal.')
-    assert found.intervals == [] and found.overview.lanes.names
+    assert found.incidents == [] and found.overview.lanes.names
 
 
 def test_without_limits_nothing_is_judged(model_file: str, make_bag) -> None:
@@ -127,8 +151,10 @@ def test_the_papers_detector_has_suspects_and_no_lanes(evidence_model: str,
     found = section(judged(evidence_model, bag, 'paper', threshold), 'x')
     assert found.overview.lanes is None
     assert found.overview.timeline.limit == 1.0 and found.overview.timeline.unit == threshold
-    suspects = [suspect for each in found.intervals for suspect in each.suspects]
-    silent = next(suspect for suspect in suspects if suspect.short == 'fell silent')
-    assert silent.component == '/laser' and silent.histogram.seen > 0.05
-    assert sum(silent.histogram.counts) == 2399
+    silent, shown = next(
+        (suspect, shown) for each in found.incidents
+        for suspect, shown in zip(each.main.named, found.details[each.key].evidence)
+        if suspect.short == 'fell silent')
+    assert silent.component == '/laser' and shown.histogram.seen > 0.05
+    assert sum(shown.histogram.counts) == 2399
     assert any('one score for all' in each.why for each in found.unjudged)

@@ -21,7 +21,7 @@ from self_awareness.reporting.report.timeline import MOST_LANES
 from self_awareness.reporting.report.unjudged import MOST_NAMES
 
 FOLDER = Path(figures.__file__).parent
-MOST_BYTES = 10_000_000
+MOST_BYTES = 3_500_000
 
 
 def data_of(page: str) -> Dict[str, Any]:
@@ -33,8 +33,8 @@ def data_of(page: str) -> Dict[str, Any]:
 def all_figures(page: str) -> List[Dict[str, Any]]:
     sections = data_of(page)['sections']
     return [each['overTime'] for each in sections] + [
-        figure for each in sections for interval in each['intervals'].values()
-        for figure in interval['figures'].values()]
+        figure for each in sections for incident in each['incidents'].values()
+        for figure in incident['figures'].values()]
 
 
 def test_score_writes_a_report_of_each_recording(evidence_model: str, make_bag, tmp_path: Path,
@@ -51,7 +51,7 @@ def test_score_writes_a_report_of_each_recording(evidence_model: str, make_bag, 
     # The report and the text agree.
     start, end = re.findall(r'^  ([\d.]+) - ([\d.]+) s, ', capsys.readouterr().out, re.M)[0]
     assert f'{start} s – {end} s' in page
-    interval, = [each for each in data_of(page)['sections'][0]['intervals'].values()
+    interval, = [each for each in data_of(page)['sections'][0]['incidents'].values()
                  if [f'{time:.1f}' for time in each['range']] == [start, end]]
     assert len(interval['figures']) >= 2
 
@@ -115,6 +115,16 @@ def test_a_name_cannot_become_a_part_of_the_page(evidence_model: str, tmp_path: 
     assert '<script>alert' not in page and '&lt;script&gt;alert' in page
     assert all('<script' not in text for text in
                re.findall(r'id="data">(.*?)</script>', page, re.S))
+
+
+def test_normal_operation_draws_no_walls(evidence_model: str, make_bag) -> None:
+    """The evidence of a slow topic grows to nearly its limit between any two of its messages."""
+    of = judged(evidence_model, make_bag('n.bag', jittery_robot(7000.0, 60.0, 4)))
+    found = section(of, 'x')
+    assert np.nanmin(of.verdicts.score) < -0.5
+    drawn = figures.over_time(found.overview, found.incidents)
+    score = [trace for trace in drawn['data'] if trace.get('yaxis') == 'y2']
+    assert {value for trace in score for value in trace['y']} == {-1.0}
 
 
 def test_json_cannot_end_its_element() -> None:

@@ -66,10 +66,6 @@ def _seen(reason: Reason) -> Optional[Tuple[Optional[float], str]]:
     """Return the delay that was seen [s], if it is one, and its words."""
     if reason.unit == 's' and reason.value > 0 and reason.kind not in ('never came', 'stranger'):
         return reason.value, f'now: {seconds(reason.value)}'
-    if reason.unit == 'Hz':
-        if reason.value == 0:
-            return reason.lasted, f'now: none in {reason.lasted:g} s'
-        return 1 / reason.value, f'now: {seconds(1 / reason.value)} on the average'
     if reason.unit == 'requests':
         return None, f'now: none after the last {reason.value:.0f}'
     return None

@@ -11,8 +11,9 @@ from typing import Any, Dict, List, Optional, Sequence, Tuple
 import numpy as np
 
 from self_awareness.reporting.report.delays import Histogram, seconds
+from self_awareness.reporting.report.incidents import Incident
 from self_awareness.reporting.report.intervals import ALARM, Interval
-from self_awareness.reporting.report.neighbours import ROOT, VICTIM, Neighbourhood
+from self_awareness.reporting.report.rates import Counts
 from self_awareness.reporting.report.timeline import Lanes, Overview, Timeline
 
 Figure = Dict[str, Any]
@@ -23,14 +24,18 @@ Bins = List[Tuple[float, float]]
 
 RED, AMBER, BLUE, GREY = '#e5484d', '#e08a00', '#4a8fdd', '#8b93a1'
 SHOWN = 4.0
-"""Scores beyond so many limits are drawn at the edge."""
+"""Scores beyond so many limits are drawn at the edge; those within the limits are not drawn.
+
+The evidence of a topic that comes every few seconds grows to nearly its limit again and again: of
+normal operation, that drew walls.
+"""
 
 _LANE_PX = 18
 _HEIGHTS_PX = {'strip': 26, 'score': 190, 'gap': 26, 'bottom': 52}
 _MOST_LABEL = 26
 
 
-def over_time(found: Overview, intervals: Sequence[Interval]) -> Figure:
+def over_time(found: Overview, incidents: Sequence[Incident]) -> Figure:
     """Return alarms, score and lanes over the whole recording, one above the other."""
     timeline, lanes = found.timeline, found.lanes
     heights = [_HEIGHTS_PX['strip'], _HEIGHTS_PX['score']]
@@ -41,7 +46,8 @@ def over_time(found: Overview, intervals: Sequence[Interval]) -> Figure:
     for height in heights:
         domains.append([max(top - height, 0.0) / total, top / total])
         top -= height + _HEIGHTS_PX['gap']
-    traces = [_strip(intervals), *_score(timeline)]
+    stretches = [(incident.key, each) for incident in incidents for each in incident.intervals]
+    traces = [_strip(stretches), *_score(timeline)]
     layout: Figure = {
         'height': total + _HEIGHTS_PX['bottom'] + 10,
         'margin': {'l': 10, 'r': 12, 't': 10, 'b': _HEIGHTS_PX['bottom']},
@@ -52,7 +58,7 @@ def over_time(found: Overview, intervals: Sequence[Interval]) -> Figure:
         'yaxis': {'domain': domains[0], 'visible': False, 'range': [0, 1], 'fixedrange': True},
         'yaxis2': {**_score_axis(timeline), 'domain': domains[1], 'fixedrange': True,
                    'automargin': True},
-        'shapes': _shapes(timeline, intervals),
+        'shapes': _shapes(timeline, [each for _, each in stretches]),
     }
     if len(heights) == 3 and lanes is not None:
         traces.append(_heat(timeline, lanes))
@@ -129,58 +135,35 @@ def two_histograms(before: Bins, after: Bins) -> Figure:
         'yaxis': {'title': {'text': '%'}, 'fixedrange': True}}}
 
 
-def graph(shown: Neighbourhood) -> Figure:
-    """Return who publishes to whom, from left to right."""
-    colours = {ROOT: RED, VICTIM: AMBER}
-    at = {node.name: (node.layer, 1 - node.place) for node in shown.nodes}
-    largest = max([sum(each.layer == node.layer for each in shown.nodes)
-                   for node in shown.nodes], default=1)
-    arrows, middles = [], []
-    for link in shown.connections:
-        (x0, y0), (x1, y1) = at[link.publisher], at[link.subscriber]
-        arrows.append({'xref': 'x', 'yref': 'y', 'axref': 'x', 'ayref': 'y', 'x': x1, 'y': y1,
-                       'ax': x0, 'ay': y0, 'text': '', 'showarrow': True, 'arrowhead': 2,
-                       'arrowwidth': 1.1, 'arrowcolor': GREY, 'standoff': 9,
-                       'startstandoff': 8})
-        text = f'{link.publisher} → {link.subscriber}: {", ".join(link.topics)}'
-        middles.append((0.5 * (x0 + x1), 0.5 * (y0 + y1), escape(text)))
-    nodes = {
-        'type': 'scatter', 'mode': 'markers+text',
-        'x': [at[node.name][0] for node in shown.nodes],
-        'y': [at[node.name][1] for node in shown.nodes],
-        'text': [_shortened(node.name) for node in shown.nodes], 'textposition': 'top center',
-        'hoverinfo': 'text',
-        'hovertext': [escape(f'{node.name} ({node.role})') for node in shown.nodes],
-        'marker': {'size': [17 if node.role == ROOT else 13 for node in shown.nodes],
-                   'color': [colours.get(node.role, GREY) for node in shown.nodes]}}
-    links = {
-        'type': 'scatter', 'mode': 'markers', 'x': [each[0] for each in middles],
-        'y': [each[1] for each in middles], 'hoverinfo': 'text',
-        'hovertext': [each[2] for each in middles],
-        'marker': {'size': 9, 'color': GREY, 'opacity': 0.25}}
-    last = max([node.layer for node in shown.nodes], default=0)
-    axis = {'visible': False, 'fixedrange': True}
-    return {'data': [links, nodes], 'layout': {
-        'height': 70 + 46 * largest, 'margin': {'l': 10, 'r': 10, 't': 10, 'b': 10},
-        'showlegend': False, 'hovermode': 'closest', 'annotations': arrows,
-        'xaxis': {**axis, 'range': [-0.5, last + 0.5]}, 'yaxis': {**axis, 'range': [-0.05, 1.12]},
-    }}
+def counts(shown: Counts) -> Figure:
+    """Return the number of messages by time, with what is usual as a band."""
+    low, high = shown.usual
+    return {'data': [{
+        'type': 'scatter', 'mode': 'lines', 'line': {'shape': 'hv', 'color': BLUE, 'width': 1.5},
+        'x': _rounded(shown.times, 3), 'y': shown.counts,
+        'hovertemplate': 'until %{x:.1f} s: %{y}<extra></extra>'}], 'layout': {
+            'height': 210, 'margin': {'l': 46, 'r': 10, 't': 10, 'b': 44}, 'showlegend': False,
+            'xaxis': {'title': {'text': 'time [s]'}, 'zeroline': False},
+            'yaxis': {'title': {'text': 'messages'}, 'rangemode': 'tozero', 'fixedrange': True},
+            'shapes': [{'type': 'rect', 'xref': 'paper', 'yref': 'y', 'x0': 0, 'x1': 1,
+                        'y0': low, 'y1': high, 'fillcolor': BLUE, 'opacity': 0.13,
+                        'line': {'width': 0}, 'layer': 'below'},
+                       _band(shown.begin, shown.end, RED, 0.12)]}}
 
 
-def _strip(intervals: Sequence[Interval]) -> Figure:
-    """Return a bar for each alarm and suspicion, which can be clicked."""
+def _strip(stretches: Sequence[Tuple[str, Interval]]) -> Figure:
+    """Return a bar for each alarm and suspicion, which can be clicked to see its incident."""
+    intervals = [each for _, each in stretches]
+    colours = [RED if each.level == ALARM else AMBER for each in intervals]
     return {
         'type': 'bar', 'orientation': 'h', 'y': [0.5] * len(intervals),
         'base': [round(each.start, 3) for each in intervals],
         'x': [round(each.end - each.start, 3) for each in intervals],
         'width': [0.9 if each.level == ALARM else 0.5 for each in intervals],
-        'marker': {'color': [RED if each.level == ALARM else AMBER for each in intervals],
-                   'line': {'color': [RED if each.level == ALARM else AMBER
-                                      for each in intervals], 'width': 1.5}},
-        'customdata': [each.key for each in intervals], 'hoverinfo': 'text',
+        'marker': {'color': colours, 'line': {'color': colours, 'width': 1.5}},
+        'customdata': [key for key, _ in stretches], 'hoverinfo': 'text',
         'hovertext': [escape(f'{each.level} {each.start:.1f} to {each.end:.1f} s: '
-                             + (each.suspects[0].component if each.suspects else 'no suspect'))
-                      for each in intervals]}
+                             + (each.of.culprit or each.of.kind)) for each in intervals]}
 
 
 def _score(timeline: Timeline) -> List[Figure]:
@@ -208,7 +191,7 @@ def _score_axis(timeline: Timeline) -> Figure:
     if timeline.limit < 0:
         low = max(-SHOWN, float(np.nanmin(np.append(timeline.lowest, timeline.limit))))
         return {'title': {'text': 'score [limits]'}, 'zeroline': False,
-                'range': [min(low, -1.5) * 1.05, 0.05], 'dtick': 1}
+                'range': [min(low, -1.5) * 1.05, timeline.limit + 0.1], 'dtick': 1}
     return {'title': {'text': 'score [thresholds]'}, 'zeroline': False, 'rangemode': 'tozero'}
 
 
@@ -240,7 +223,7 @@ def _heat(timeline: Timeline, lanes: Lanes) -> Figure:
 
 def _clipped(timeline: Timeline, scores: np.ndarray) -> List[Optional[float]]:
     if timeline.limit is not None and timeline.limit < 0:
-        scores = np.maximum(scores, -SHOWN)
+        scores = np.clip(scores, -SHOWN, timeline.limit)
     return _numbers(scores)
 
 

@@ -3,27 +3,20 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Dict, List, Optional, Sequence
-
-import numpy as np
+from typing import Dict, List, Optional
 
 from self_awareness import Alarm, Suspect
-from self_awareness.reporting.report import delays
-from self_awareness.reporting.report.delays import Histogram
 from self_awareness.reporting.report.judged import Judged
-from self_awareness.reporting.report.neighbours import Neighbourhood, neighbourhood
-from self_awareness.reporting.report.timeline import Overview, strongest_track
+from self_awareness.reporting.report.silences import Silence, silence_of, silence_of_all
 from self_awareness.stamps import moment
 
 ALARM, SUSPICION = 'alarm', 'suspicion'
 """The levels of an interval."""
 
-MOST_DETAILS = 40
-"""Alarms and suspicions with details, at most so many; those of alarms come first."""
 MOST_LISTED = 400
 """Alarms and suspicions that are listed, at most so many; alarms come first."""
 
-_SHORT = {'died': 'stopped sending', 'slow': 'sends too seldom', 'fast': 'sends too often',
+_SHORT = {'slow': 'sends too seldom', 'fast': 'sends too often',
           'late': 'paused for too long', 'out of order': 'sends at an irregular pace',
           'never came': 'was not heard', 'stranger': 'is new'}
 _SHORT_OF_ANSWERS = {'died': 'does not answer', 'late': 'answers late', 'early': 'answers early',
@@ -40,8 +33,9 @@ class NamedSuspect:
         short: what it does wrong, in a few words.
         why: the numbers, seen and usual.
         named: when it was named [s] from the recording's first message.
-        back: when it was heard again after that [s]; None: it was not, or was not silent.
-        histogram: of the delays that speak against it; None: it is not about a delay.
+        abnormal: its evidence alone is beyond its limit.
+        silence: its longest one meanwhile; None: it was not silent.
+        of: the suspect itself.
     """
 
     component: str
@@ -49,8 +43,9 @@ class NamedSuspect:
     short: str
     why: str
     named: float
-    back: Optional[float]
-    histogram: Optional[Histogram]
+    abnormal: bool
+    silence: Optional[Silence]
+    of: Suspect
 
 
 @dataclass(frozen=True)
@@ -58,7 +53,7 @@ class Interval:
     """An alarm or a suspicion; times in seconds from the recording's first message.
 
     Args:
-        key: unique in the page.
+        of: the alarm or suspicion itself.
         level: ALARM or SUSPICION.
         start: of it.
         end: of it, or of the recording.
@@ -67,14 +62,13 @@ class Interval:
         began: when the trouble began, as far as the first suspect tells; None: it does not.
         lowest: score.
         evidence: channels that speak, in words.
-        decided: which track was strongest when it was raised, in words; empty: not known.
         busy: that the machine had too much to do, in words; None: it had not.
+        silence: of all, where nobody was heard; None: somebody was.
         suspects: best first.
         later: suspects that were named later.
-        graph: who publishes to whom near them; None: not known.
     """
 
-    key: str
+    of: Alarm
     level: str
     start: float
     end: float
@@ -83,12 +77,21 @@ class Interval:
     began: Optional[float]
     lowest: float
     evidence: str
-    decided: str
     busy: Optional[str]
+    silence: Optional[Silence]
     suspects: List[NamedSuspect]
     later: List[NamedSuspect]
-    graph: Optional[Neighbourhood]
-    detailed: bool
+
+    @property
+    def named(self) -> List[NamedSuspect]:
+        """All suspects, the most likely first."""
+        return [*self.suspects, *self.later]
+
+    @property
+    def first(self) -> Optional[NamedSuspect]:
+        """The suspect that is the culprit; None: nobody is to blame."""
+        return next((suspect for suspect in self.named
+                     if suspect.component == self.of.culprit), None)
 
 
 def components(judged: Judged) -> List[str]:
@@ -100,54 +103,40 @@ def components(judged: Judged) -> List[str]:
     return list(named)
 
 
-def intervals(judged: Judged, found: Overview, prefix: str) -> List[Interval]:
-    """Return alarms and suspicions in the order of their start, at most MOST_LISTED.
-
-    Args:
-        prefix: of their keys.
-    """
+def intervals(judged: Judged) -> List[Interval]:
+    """Return alarms and suspicions in the order of their start, at most MOST_LISTED."""
     verdicts = judged.verdicts
     ranked = [*verdicts.alarms, *verdicts.suspicions][:MOST_LISTED]
-    made = [_interval(judged, found, f'{prefix}-{number}', alarm, number < MOST_DETAILS)
-            for number, alarm in enumerate(ranked)]
-    return sorted(made, key=lambda each: each.start)
+    return sorted((_interval(judged, alarm) for alarm in ranked),
+                  key=lambda each: each.start)
 
 
-def _interval(judged: Judged, found: Overview, key: str, alarm: Alarm,
-              detailed: bool) -> Interval:
-    suspects = [_named(judged, suspect, alarm.over, detailed) for suspect in alarm.suspects]
-    later = [_named(judged, suspect, alarm.over, detailed) for suspect in alarm.later]
+def _interval(judged: Judged, alarm: Alarm) -> Interval:
+    suspects = [_named(judged, suspect, alarm) for suspect in alarm.suspects]
+    later = [_named(judged, suspect, alarm) for suspect in alarm.later]
     start = judged.seconds(alarm.begin)
     first = alarm.suspects[0] if alarm.suspects else None
     return Interval(
-        key, ALARM if alarm.level == 'ERROR' else SUSPICION, start, judged.seconds(alarm.end),
-        moment(alarm.begin), alarm.over,
+        alarm, ALARM if alarm.level == 'ERROR' else SUSPICION, start,
+        judged.seconds(alarm.end), moment(alarm.begin), alarm.over,
         None if first is None else _began(first, start), alarm.lowest_score,
         alarm.evidence or 'what is left of the alarm',
-        _decided(judged, found, start - judged.by.trained.window / 2e9), alarm.busy, suspects,
-        later, _graph(judged, [each.component for each in [*suspects, *later]], detailed),
-        detailed)
+        alarm.busy,
+        silence_of_all(judged, alarm) if alarm.kind == 'all silent' else None, suspects, later)
 
 
-def _named(judged: Judged, suspect: Suspect, over: bool, detailed: bool) -> NamedSuspect:
-    silent = suspect.reason.kind == 'died' and over  # it has come back since
+def _named(judged: Judged, suspect: Suspect, alarm: Alarm) -> NamedSuspect:
+    silence = silence_of(judged, alarm, suspect)
     return NamedSuspect(
         suspect.component, str(judged.recording.event_types[suspect.id]),
-        'fell silent' if silent else _short(suspect), suspect.reason.words,
-        judged.seconds(suspect.since), _back(judged, suspect) if silent else None,
-        delays.histogram_of(judged, suspect) if detailed else None)
+        _short(suspect, silence), suspect.reason.words, judged.seconds(suspect.since),
+        suspect.abnormal, silence, suspect)
 
 
-def _back(judged: Judged, suspect: Suspect) -> Optional[float]:
-    """Return when a suspect was heard again after it was named [s]; None: it was not."""
-    stamps, ids = judged.recording.stamps, judged.recording.ids
-    first = int(np.searchsorted(stamps, suspect.since))
-    again = np.flatnonzero(ids[first:] == suspect.id)
-    return judged.seconds(int(stamps[first + again[0]])) if len(again) else None
-
-
-def _short(suspect: Suspect) -> str:
+def _short(suspect: Suspect, silence: Optional[Silence]) -> str:
     reason = suspect.reason
+    if silence is not None and not reason.after:
+        return 'stopped sending' if silence.back is None else 'fell silent'
     if reason.unit == 'score':
         return 'came at unusual times'
     if reason.after or (reason.of > 0 and reason.times == 0):
@@ -158,24 +147,3 @@ def _short(suspect: Suspect) -> str:
 def _began(suspect: Suspect, start: float) -> Optional[float]:
     """Return when the trouble began [s]: what the suspect's numbers look back to."""
     return None if math.isnan(suspect.reason.lasted) else start - suspect.reason.lasted
-
-
-def _decided(judged: Judged, found: Overview, time: float) -> str:
-    if found.evidence is None:
-        return ''
-    strongest = strongest_track(found, judged, time)
-    if strongest is None:
-        return ''
-    track, share = strongest
-    kinds = judged.by.trained.event_types
-    name = str(kinds[track.to_id])
-    if track.from_id != track.to_id:
-        name = f'{kinds[track.from_id]} → {name}'
-    return f'{track.channel} of {name}: {share:.2f} of its limit'
-
-
-def _graph(judged: Judged, named: Sequence[str], detailed: bool) -> Optional[Neighbourhood]:
-    if not detailed or not named:
-        return None
-    found = neighbourhood(judged.by.trained.graph, named)
-    return found if found.nodes else None

@@ -2,7 +2,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Optional
+from functools import cached_property
+from typing import Dict, Optional
 
 import numpy as np
 
@@ -44,6 +45,24 @@ class Judged:
     def seconds(self, stamp: int) -> float:
         """Return a stamp [ns] in seconds from the recording's first message."""
         return (stamp - self.recording.origin) / SECOND_NS
+
+    def edges_of(self, kind: int) -> np.ndarray:
+        """Return the recording's first stamp, those of the events of a type, and its end [ns]."""
+        if kind not in self._edges:
+            recording = self.recording
+            self._edges[kind] = self._between_edges(recording.stamps[recording.ids == kind])
+        return self._edges[kind]
+
+    def edges_of_all(self) -> np.ndarray:
+        """Return the same of all events."""
+        return self._between_edges(self.recording.stamps)
+
+    def _between_edges(self, stamps: np.ndarray) -> np.ndarray:
+        return np.concatenate(([self.recording.origin], stamps, [self.recording.end]))
+
+    @cached_property
+    def _edges(self) -> Dict[int, np.ndarray]:
+        return {}
 
     def lanes(self, starts: np.ndarray) -> Optional[EvidenceLanes]:
         """Return the evidence of each component in stretches that start at these stamps [ns].

@@ -1,54 +1,62 @@
-"""Who publishes to whom near the suspects of an alarm, and where each node is drawn."""
+"""Who publishes to whom near the cause of an incident, drawn by dot of Graphviz."""
 from __future__ import annotations
 
-from collections import defaultdict
+import re
+import shutil
+import subprocess
+from collections import defaultdict, deque
 from dataclasses import dataclass
-from itertools import zip_longest
 from typing import Dict, Iterable, List, Mapping, Sequence, Set, Tuple
 
-MOST_NODES = 30
-"""Nodes that are drawn, at most so many."""
+MOST_NODES = 14
+"""Nodes that are drawn, at most so many: what a phone can show."""
+MOST_TOPICS = 2
+"""Topics that are named at a connection, at most so many."""
 
 ROOT, VICTIM, OTHER = 'root', 'victim', 'other'
 """What a node is: the first suspect, another suspect, or a neighbour of them."""
 
-_FARTHEST = 2
-_SWEEPS = 4
+_FEWEST_HEARD, _NEARLY_ALL = 5, 0.8
+_LOG_TOPICS = ('/rosout', '/rosout_agg')
+_LONGEST_LINE = 16
+_TIMEOUT_S = 20
 
 Edge = Tuple[str, str, str]
 """Publisher, topic, subscriber."""
 
 
 @dataclass(frozen=True)
-class Node:
-    """A node of the graph; it is drawn in a layer, from left to right, at a place in it."""
-
-    name: str
-    role: str
-    layer: int
-    place: float
-
-
-@dataclass(frozen=True)
-class Connection:
-    """All topics from one node to another."""
-
-    publisher: str
-    subscriber: str
-    topics: List[str]
-
-
-@dataclass(frozen=True)
 class Neighbourhood:
-    """What is drawn of the graph; `left_out` nodes of it are not."""
+    """What is drawn of a graph.
 
-    nodes: List[Node]
-    connections: List[Connection]
+    Args:
+        roles: of the nodes, by name, the most important first.
+        topics: by publisher and subscriber.
+        left_out: number of nodes that are farther away.
+        listeners: nodes that hear nearly everybody, and are left out.
+    """
+
+    roles: Dict[str, str]
+    topics: Dict[Tuple[str, str], List[str]]
     left_out: int
+    listeners: List[str]
+
+
+def check_installed() -> None:
+    """Check before long work that graphs can be drawn.
+
+    Raises:
+        ValueError: dot is missing.
+    """
+    if shutil.which('dot') is None:
+        raise ValueError('a report needs dot, which is not installed: apt install graphviz')
 
 
 def neighbourhood(edges: Iterable[Edge], suspects: Sequence[str]) -> Neighbourhood:
     """Return the part of a graph that lies near the suspects.
+
+    Kept are the first suspect, the shortest ways from it to the others, and who publishes to it or
+    hears it. Listeners to nearly everybody, such as recorders, are not: all nodes would be near.
 
     Args:
         edges: of the graph.
@@ -56,109 +64,123 @@ def neighbourhood(edges: Iterable[Edge], suspects: Sequence[str]) -> Neighbourho
     """
     topics: Dict[Tuple[str, str], List[str]] = defaultdict(list)
     for publisher, topic, subscriber in sorted(edges):
-        if publisher != subscriber:
+        if publisher != subscriber and topic not in _LOG_TOPICS:
             topics[publisher, subscriber].append(topic)
+    listeners = _listeners(topics, suspects)
+    topics = {pair: names for pair, names in topics.items() if pair[1] not in listeners}
     beside: Dict[str, List[str]] = defaultdict(list)
     for publisher, subscriber in topics:  # publishers first: one of them may be the cause
         beside[subscriber].append(publisher)
     for publisher, subscriber in topics:
         beside[publisher].append(subscriber)
     inside = [name for name in dict.fromkeys(suspects) if name in beside]
-    kept = _nearest(beside, inside)
-    links = {pair: names for pair, names in topics.items() if set(pair) <= set(kept)}
-    placed = _places(kept, list(links))
-    roles = {name: VICTIM for name in inside}
-    roles.update({name: ROOT for name in suspects[:1]})
-    nodes = [Node(name, roles.get(name, OTHER), *placed[name]) for name in kept]
-    return Neighbourhood(nodes, [Connection(*pair, names) for pair, names in links.items()],
-                         len(beside) - len(kept) if kept else 0)
+    kept = _near(beside, inside)
+    roles = {name: OTHER for name in kept}
+    roles.update({name: VICTIM for name in inside if name in roles})
+    roles.update({name: ROOT for name in suspects[:1] if name in roles})
+    return Neighbourhood(roles, {pair: names for pair, names in topics.items()
+                                 if set(pair) <= set(kept)},
+                         len(beside) - len(kept) if kept else 0, sorted(listeners))
 
 
-def _nearest(beside: Mapping[str, Sequence[str]], start: Sequence[str]) -> List[str]:
-    kept = list(start[:MOST_NODES])
-    ring = kept
-    for _ in range(_FARTHEST):
-        in_turn = zip_longest(*[beside[name] for name in ring])  # nobody takes all the room
-        following = dict.fromkeys(name for each in in_turn for name in each if name is not None)
-        ring = [name for name in following if name not in kept][:MOST_NODES - len(kept)]
-        kept = kept + ring
-    return kept
+def downstream(edges: Iterable[Edge], node: str) -> Set[str]:
+    """Return who needs a node's messages, directly or through others."""
+    followers: Dict[str, Set[str]] = defaultdict(set)
+    for publisher, topic, subscriber in edges:
+        if topic not in _LOG_TOPICS:
+            followers[publisher].add(subscriber)
+    reached: Set[str] = set()
+    ways = [node]
+    while ways:
+        new = followers[ways.pop()] - reached
+        reached |= new
+        ways += new
+    return reached
 
 
-def _places(names: Sequence[str], links: Sequence[Tuple[str, str]]) -> Dict[str,
-                                                                            Tuple[int, float]]:
-    """Return layer and place of each node: publishers to the left of their subscribers.
+def draw(shown: Neighbourhood) -> str:
+    """Return a neighbourhood as an element of a page (SVG); its style is in page.css.
 
-    A connection that closes a loop goes back. In a layer, nodes stand near those that they are
-    connected to (the barycentre method of Sugiyama, Tagawa and Toda, 1981).
+    Raises:
+        OSError: dot fails.
     """
-    followers = _without_loops(names, links)
-    layer = {name: 0 for name in names}
-    for name in _in_order(names, followers):
-        for follower in followers[name]:
-            layer[follower] = max(layer[follower], layer[name] + 1)
-    layers: Dict[int, List[str]] = defaultdict(list)
-    for name in names:
-        layers[layer[name]].append(name)
-    beside: Dict[str, Set[str]] = defaultdict(set)
-    for publisher, subscriber in links:
-        beside[publisher].add(subscriber)
-        beside[subscriber].add(publisher)
-    place = _spread(layers)
-    for _ in range(_SWEEPS):
-        for members in layers.values():
-            members.sort(key=lambda name: _mean([place[other] for other in beside[name]],
-                                                place[name]))
-        place = _spread(layers)
-    return {name: (layer[name], place[name]) for name in names}
+    try:
+        done = subprocess.run(('dot', '-Tsvg'), input=_dot(shown).encode(), check=True,
+                              stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=_TIMEOUT_S)
+    except subprocess.SubprocessError as error:
+        raise OSError(f'dot cannot draw who publishes to whom: {error}') from error
+    svg = done.stdout.decode('utf-8')
+    # Several in a page have the same ids, and nothing needs them.
+    return re.sub(r' id="[^"]*"', '', svg[svg.index('<svg'):])
 
 
-def _without_loops(names: Sequence[str],
-                   links: Sequence[Tuple[str, str]]) -> Dict[str, List[str]]:
-    """Return the followers of each node, without the connections that close a loop."""
-    all_followers: Dict[str, List[str]] = {name: [] for name in names}
-    for publisher, subscriber in links:
-        all_followers[publisher].append(subscriber)
-    followers: Dict[str, List[str]] = {name: [] for name in names}
-    done: Set[str] = set()
-    for start in names:
-        way = [(start, iter(all_followers[start]))] if start not in done else []
-        open_nodes = {start}
-        while way:
-            name, rest = way[-1]
-            follower = next(rest, None)
-            if follower is None:
-                way.pop()
-                open_nodes.discard(name)
-                done.add(name)
-            elif follower not in open_nodes:
-                followers[name].append(follower)
-                if follower not in done:
-                    open_nodes.add(follower)
-                    way.append((follower, iter(all_followers[follower])))
-    return followers
+def _listeners(topics: Mapping[Tuple[str, str], Sequence[str]],
+               suspects: Sequence[str]) -> Set[str]:
+    """Return who hears nearly everybody, and is no suspect."""
+    publishers = {publisher for publisher, _ in topics}
+    heard: Dict[str, int] = defaultdict(int)
+    for _, subscriber in topics:
+        heard[subscriber] += 1
+    return {name for name, number in heard.items()
+            if number >= max(_FEWEST_HEARD, _NEARLY_ALL * len(publishers - {name}))
+            and name not in suspects}
 
 
-def _in_order(names: Sequence[str], followers: Mapping[str, Sequence[str]]) -> List[str]:
-    """Return the nodes of a graph without loops, each before its followers."""
-    waits = {name: 0 for name in names}
-    for each in followers.values():
-        for follower in each:
-            waits[follower] += 1
-    ready = [name for name in names if waits[name] == 0]
-    for name in ready:  # grows meanwhile
-        for follower in followers[name]:
-            waits[follower] -= 1
-            if waits[follower] == 0:
-                ready.append(follower)
-    return ready
+def _near(beside: Mapping[str, Sequence[str]], inside: Sequence[str]) -> List[str]:
+    if not inside:
+        return []
+    # Breadth first: by whom each node was reached on a shortest way from the root.
+    reached_by = {inside[0]: inside[0]}
+    waiting = deque(inside[:1])
+    while waiting:
+        name = waiting.popleft()
+        for other in beside[name]:
+            if other not in reached_by:
+                reached_by[other] = name
+                waiting.append(other)
+    kept = dict.fromkeys(inside[:1])
+    for suspect in inside[1:]:
+        way = [suspect]
+        while way[-1] in reached_by and way[-1] not in kept:
+            way.append(reached_by[way[-1]])
+        if len(set(kept) | set(way)) <= MOST_NODES:
+            kept.update(dict.fromkeys(way))
+    for name in beside[inside[0]]:
+        if len(kept) < MOST_NODES:
+            kept[name] = None
+    return list(kept)
 
 
-def _spread(layers: Mapping[int, Sequence[str]]) -> Dict[str, float]:
-    """Return places from 0 to 1, evenly spread in each layer."""
-    return {name: (index + 0.5) / len(members)
-            for members in layers.values() for index, name in enumerate(members)}
+def _dot(shown: Neighbourhood) -> str:
+    numbers = {name: f'n{number}' for number, name in enumerate(shown.roles)}
+    lines = ['digraph {', 'rankdir=LR; bgcolor=transparent; nodesep=0.15; ranksep=0.3;',
+             'node [shape=box, fontname="sans-serif", fontsize=12, height=0.3, '
+             'margin="0.08,0.04"];',
+             'edge [fontname="sans-serif", fontsize=9, arrowsize=0.6];']
+    for name, role in shown.roles.items():
+        lines.append(f'{numbers[name]} [label={_quoted(_in_lines(name))}, class={role}];')
+    for (publisher, subscriber), topics in shown.topics.items():
+        more = len(topics) - MOST_TOPICS
+        label = [_in_lines(topic) for topic in topics[:MOST_TOPICS]]
+        label += [f'and {more} more'] if more > 0 else []
+        lines.append(f'{numbers[publisher]} -> {numbers[subscriber]} '
+                     f'[label={_quoted(chr(10).join(label))}];')
+    return '\n'.join([*lines, '}'])
 
 
-def _mean(values: Sequence[float], otherwise: float) -> float:
-    return sum(values) / len(values) if values else otherwise
+def _in_lines(name: str) -> str:
+    """Return a name in lines that break before a slash."""
+    lines = ['']
+    for number, part in enumerate(name.split('/')):
+        part = part if number == 0 else f'/{part}'
+        if lines[-1] and len(lines[-1] + part) > _LONGEST_LINE:
+            lines.append('')
+        lines[-1] += part
+    return '\n'.join(lines)
+
+
+def _quoted(text: str) -> str:
+    """Return a text as dot shows it as it is: it has escapes and entities of its own."""
+    for character, escape in (('\\', '\\\\'), ('"', '\\"'), ('&', '&amp;'), ('\n', '\\n')):
+        text = text.replace(character, escape)
+    return f'"{text}"'

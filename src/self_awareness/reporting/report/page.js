@@ -50,8 +50,8 @@
       {displaylogo: false, responsive: true, displayModeBar: false});
   }
 
-  function drawDetails(interval) {
-    for (const [id, figure] of Object.entries(interval.figures)) {
+  function drawDetails(incident) {
+    for (const [id, figure] of Object.entries(incident.figures)) {
       const element = document.getElementById(id);
       if (element && !drawn.has(element)) {
         draw(element, figure);
@@ -65,9 +65,8 @@
     }
   }
 
-  // Shows an interval with what comes before and after it.
-  function zoom(section, interval) {
-    const [start, end] = interval.range;
+  // Shows an alarm with what comes before and after it.
+  function zoom(section, [start, end]) {
     const [first, last] = section.overTime.layout.xaxis.range;
     const around = Math.max(5, 0.25 * (end - start));
     Plotly.relayout(section.element,
@@ -75,9 +74,9 @@
   }
 
   function show(key) {
-    const section = data.sections.find(function (each) { return key in each.intervals; });
-    drawDetails(section.intervals[key]);
-    zoom(section, section.intervals[key]);
+    const section = data.sections.find(function (each) { return key in each.incidents; });
+    drawDetails(section.incidents[key]);
+    zoom(section, section.incidents[key].range);
   }
 
   function open(key) {
@@ -87,66 +86,93 @@
     details.scrollIntoView({block: 'nearest'});
   }
 
-  document.querySelectorAll('.over-time').forEach(function (element) {
-    const section = data.sections[Number(element.dataset.section)];
-    section.element = element;
-    draw(element, section.overTime).then(function () {
-      element.on('plotly_click', function (event) {
-        const key = event.points[0] && event.points[0].customdata;
-        if (key in section.intervals) {
-          open(key);
-        }
+  // Needs plotly.js; what it is for is in the page already.
+  function start() {
+    document.querySelectorAll('.over-time').forEach(function (element) {
+      const section = data.sections[Number(element.dataset.section)];
+      section.element = element;
+      draw(element, section.overTime).then(function () {
+        element.on('plotly_click', function (event) {
+          const key = event.points[0] && event.points[0].customdata;
+          if (key in section.incidents) {
+            open(key);
+          }
+        });
       });
-    });
-    for (const [key, interval] of Object.entries(section.intervals)) {
-      const details = document.getElementById(key);
-      if (details.open) {
-        drawDetails(interval);
+      for (const [key, incident] of Object.entries(section.incidents)) {
+        const details = document.getElementById(key);
+        if (details.open) {
+          drawDetails(incident);
+        }
+        details.querySelectorAll('[data-zoom]').forEach(function (button) {
+          button.addEventListener('click', function () {
+            zoom(section, button.dataset.zoom.split(' ').map(Number));
+            element.scrollIntoView({block: 'nearest'});
+          });
+        });
+        details.querySelector('summary').addEventListener('click', function () {
+          if (!details.open) { // it opens after this event
+            setTimeout(show, 0, key);
+          }
+        });
       }
-      details.querySelector('summary').addEventListener('click', function () {
-        if (!details.open) { // it opens after this event
-          setTimeout(show, 0, key);
-        }
-      });
-    }
-  });
-  (data.figures || []).forEach(function (figure) {
-    draw(document.getElementById(figure.id), figure);
-  });
-
-  document.querySelectorAll('[data-open]').forEach(function (button) {
-    button.addEventListener('click', function () { open(button.dataset.open); });
-  });
-  document.querySelectorAll('[data-whole]').forEach(function (button) {
-    const section = data.sections[Number(button.dataset.whole)];
-    button.addEventListener('click', function () {
-      Plotly.relayout(section.element,
-        {'xaxis.range': section.overTime.layout.xaxis.range.slice()});
     });
-  });
+    (data.figures || []).forEach(function (figure) {
+      draw(document.getElementById(figure.id), figure);
+    });
 
-  // On paper nothing can be opened: the alarm that the summary is about is printed with details.
-  window.addEventListener('beforeprint', function () {
-    printing = true;
     document.querySelectorAll('[data-open]').forEach(function (button) {
-      document.getElementById(button.dataset.open).open = true;
+      button.addEventListener('click', function () { open(button.dataset.open); });
     });
-    (data.sections || []).forEach(function (section) {
-      for (const [key, interval] of Object.entries(section.intervals)) {
-        if (document.getElementById(key).open) {
-          drawDetails(interval);
+    document.querySelectorAll('[data-whole]').forEach(function (button) {
+      const section = data.sections[Number(button.dataset.whole)];
+      button.addEventListener('click', function () {
+        Plotly.relayout(section.element,
+          {'xaxis.range': section.overTime.layout.xaxis.range.slice()});
+      });
+    });
+
+    // On paper nothing can be opened: the alarm that the summary is about is printed with details.
+    window.addEventListener('beforeprint', function () {
+      printing = true;
+      document.querySelectorAll('[data-open]').forEach(function (button) {
+        document.getElementById(button.dataset.open).open = true;
+      });
+      (data.sections || []).forEach(function (section) {
+        for (const [key, incident] of Object.entries(section.incidents)) {
+          if (document.getElementById(key).open) {
+            drawDetails(incident);
+          }
         }
-      }
+      });
+      redraw();
     });
-    redraw();
-  });
-  window.addEventListener('afterprint', function () {
-    printing = false;
-    redraw();
-  });
-  for (const media of [dark, narrow]) {
-    if (media.addEventListener) {
-      media.addEventListener('change', redraw);
+    window.addEventListener('afterprint', function () {
+      printing = false;
+      redraw();
+    });
+    for (const media of [dark, narrow]) {
+      if (media.addEventListener) {
+        media.addEventListener('change', redraw);
+      }
     }
+  }
+
+  // plotly.js is packed: it would be nearly all of the page.
+  async function loadPlotly() {
+    const packed = atob(document.getElementById('plotly').textContent);
+    const bytes = Uint8Array.from(packed, function (each) { return each.charCodeAt(0); });
+    const unpacked = new Blob([bytes]).stream().pipeThrough(new DecompressionStream('deflate'));
+    const script = document.createElement('script');
+    script.textContent = await new Response(unpacked).text();
+    document.head.append(script);
+  }
+
+  if ('DecompressionStream' in window) {
+    loadPlotly().then(start);
+  } else {
+    document.querySelectorAll('.figure').forEach(function (element) {
+      element.textContent = 'This browser is too old to draw this.';
+    });
   }
 }());

@@ -1,16 +1,21 @@
 """Makes the page of a report: one file that needs no network."""
 from __future__ import annotations
 
+import base64
 import importlib.util
 import json
 import math
 import os
-from typing import Any, Dict, Sequence
+import zlib
+from typing import Any, Dict, Optional, Sequence
+from urllib.parse import quote
 
 from self_awareness.output_files import replacing
-from self_awareness.reporting.report import figures
-from self_awareness.reporting.report.intervals import Interval
-from self_awareness.reporting.report.section import Section, clock
+from self_awareness.reporting.report import figures, neighbours
+from self_awareness.reporting.report.details import Details
+from self_awareness.reporting.report.headline import clock
+from self_awareness.reporting.report.incidents import Incident
+from self_awareness.reporting.report.section import Section
 
 _FOLDER = os.path.dirname(__file__)
 _ENDING = '.html'
@@ -35,7 +40,7 @@ def check_installed() -> None:
         ValueError: plotly is missing; rosdep does not know it.
     """
     if importlib.util.find_spec('plotly') is None:
-        raise ValueError('a report needs plotly, which is not installed: apt install '
+        raise ValueError('a page needs plotly, which is not installed: apt install '
                          'python3-plotly')
 
 
@@ -43,13 +48,16 @@ def save_report(path: str, sections: Sequence[Section]) -> None:
     """Write the report of recordings.
 
     Raises:
-        OSError: the file cannot be written.
+        OSError: the file cannot be written, or a graph cannot be drawn.
     """
     save_page(path, 'report.html', {
         'sections': [{
-            'overTime': figures.over_time(section.overview, section.intervals),
-            'intervals': {each.key: _details(each) for each in section.intervals},
-        } for section in sections]}, sections=sections, clock=clock, isnan=math.isnan)
+            'overTime': figures.over_time(section.overview, section.incidents),
+            'incidents': {each.key: _drawn(each, section.details.get(each.key))
+                          for each in section.incidents},
+        } for section in sections]},
+        sections=sections, clock=clock, isnan=math.isnan,
+        draw=neighbours.draw, address=_address)
 
 
 def save_page(path: str, template: str, data: Dict[str, Any], **values: Any) -> None:
@@ -73,7 +81,8 @@ def save_page(path: str, template: str, data: Dict[str, Any], **values: Any) -> 
                               undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True)
     page = environment.get_template(template).stream(
         data=script_json(data), style=_contents('page.css'), script=_contents('page.js'),
-        plotly=get_plotlyjs(), evals=int(plotly.__version__.split('.')[0]) < _WITHOUT_EVAL,
+        plotly=_packed(get_plotlyjs()),
+        evals=int(plotly.__version__.split('.')[0]) < _WITHOUT_EVAL,
         **values)
     with replacing(path) as temporary:
         with open(temporary, 'w', encoding='utf-8') as file:
@@ -92,14 +101,25 @@ def script_json(value: Any) -> str:
     return text
 
 
-def _details(interval: Interval) -> Dict[str, Any]:
-    drawn: Dict[str, figures.Figure] = {
-        f'{interval.key}-delays-{index}': figures.histogram(suspect.histogram)
-        for index, suspect in enumerate([*interval.suspects, *interval.later])
-        if suspect.histogram is not None}
-    if interval.graph is not None:
-        drawn[f'{interval.key}-graph'] = figures.graph(interval.graph)
-    return {'range': [round(interval.start, 3), round(interval.end, 3)], 'figures': drawn}
+def _drawn(incident: Incident, details: Optional[Details]) -> Dict[str, Any]:
+    drawn: Dict[str, figures.Figure] = {}
+    for index, evidence in enumerate([] if details is None else details.evidence):
+        if evidence.histogram is not None:
+            drawn[f'{incident.key}-delays-{index}'] = figures.histogram(evidence.histogram)
+        elif evidence.counts is not None:
+            drawn[f'{incident.key}-delays-{index}'] = figures.counts(evidence.counts)
+    return {'range': [round(incident.main.start, 3), round(incident.main.end, 3)],
+            'figures': drawn}
+
+
+def _address(text: str) -> str:
+    """Return a text as the address of a link that saves it."""
+    return f'data:application/xml,{quote(text)}'
+
+
+def _packed(script: str) -> str:
+    """Return a script as page.js unpacks it: Debian's plotly.js has 8.7 MB, and packed 2.5."""
+    return base64.b64encode(zlib.compress(script.encode('utf-8'), 9)).decode('ascii')
 
 
 def _contents(name: str) -> str:

@@ -2,12 +2,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import List, Optional, Tuple
+from typing import Dict, List, Optional, Tuple
 
 import numpy as np
 
 from self_awareness.reporting.report import intervals
-from self_awareness.reporting.report.intervals import ALARM, Interval
+from self_awareness.reporting.report.details import Details, details
+from self_awareness.reporting.report.headline import clock
+from self_awareness.reporting.report.incidents import Incident, incidents
+from self_awareness.reporting.report.intervals import ALARM, SUSPICION
 from self_awareness.reporting.report.judged import Judged
 from self_awareness.reporting.report.timeline import Overview, overview
 from self_awareness.reporting.report.unjudged import Unjudged, unjudged
@@ -25,7 +28,7 @@ class Summary:
         state: QUIET, SUSPICIOUS, ALARMED or NOT_JUDGED.
         headline: who did what when; or that nothing happened.
         answers: question (when, who, why, ...) and answer.
-        first: key of the interval that it is about; None: there is none.
+        first: key of the incident that it is about; None: there is none.
     """
 
     state: str
@@ -44,8 +47,9 @@ class Section:
         facts: name and value: how long it is and what judged it.
         summary: in words.
         overview: the score and the evidence over time.
-        intervals: alarms and suspicions.
-        not_listed: number of further ones.
+        incidents: what happened, the worst first.
+        details: of the first incidents, by their keys.
+        not_listed: number of further alarms and suspicions.
         unjudged: what was not judged.
     """
 
@@ -54,27 +58,26 @@ class Section:
     facts: List[Tuple[str, str]]
     summary: Summary
     overview: Overview
-    intervals: List[Interval]
+    incidents: List[Incident]
+    details: Dict[str, Details]
     not_listed: int
     unjudged: List[Unjudged]
 
 
 def section(judged: Judged, key: str) -> Section:
-    """Return what the report says of a recording."""
+    """Return what the report says of a recording.
+
+    Raises:
+        BagError: the bag cannot be read any more.
+    """
     found = overview(judged, intervals.components(judged))
-    listed = intervals.intervals(judged, found, key)
+    listed = intervals.intervals(judged)
+    happened = incidents(judged, listed, key)
+    shown = details(judged, found, happened)
     total = len(judged.verdicts.alarms) + len(judged.verdicts.suspicions)
-    return Section(key, str(judged.recording.part), _facts(judged), _summary(judged, listed),
-                   found, listed, total - len(listed), unjudged(judged))
-
-
-def clock(seconds: float) -> str:
-    """Return a time from the recording's first message as people read it: 75.3 s, 1 h 02 min."""
-    if seconds < 600:
-        return f'{seconds:.1f} s'
-    minutes, rest = divmod(round(seconds), 60)
-    hours, minutes = divmod(minutes, 60)
-    return f'{hours} h {minutes:02d} min {rest:02d} s' if hours else f'{minutes} min {rest:02d} s'
+    return Section(key, str(judged.recording.part), _facts(judged),
+                   _summary(judged, happened, shown), found, happened, shown,
+                   total - len(listed), unjudged(judged))
 
 
 def _facts(judged: Judged) -> List[Tuple[str, str]]:
@@ -88,77 +91,69 @@ def _facts(judged: Judged) -> List[Tuple[str, str]]:
             ('detector', 'paper' if by.evidence is None else 'evidence')]
 
 
-def _summary(judged: Judged, listed: List[Interval]) -> Summary:
+def _summary(judged: Judged, happened: List[Incident],
+             shown: Dict[str, Details]) -> Summary:
     if judged.by.threshold is None:
         return Summary(NOT_JUDGED, 'Not judged: the model is not calibrated.',
                        [('Way out', 'calibrate the model on recordings of normal operation: '
                          'rosrun self_awareness calibrate')], None)
-    alarms = [each for each in listed if each.level == ALARM]
     missing = judged.by.not_watched
-    if not listed:
+    if not happened:
         return Summary(QUIET, f'Nothing abnormal, but {missing}.' if missing
                        else 'Nothing abnormal.', [], None)
-    first = (alarms or listed)[0]
-    answers = [('When', _when(first))]
-    if first.suspects:
-        culprit = first.suspects[0]
-        answers.append(('Who', f'{culprit.component}, by its {culprit.event_type}'
-                        if culprit.component not in culprit.event_type.split(' ')
-                        else culprit.event_type))
-        answers.append(('Why', culprit.why))
-        if first.began is not None:
-            answers.append(('Since', f'{clock(max(first.began, 0.0))}, '
-                            f'{first.start - first.began:.2f} s before the {first.level}'))
-    else:
-        answers.append(('Who', 'no suspect stands out'))
-    if first.busy is not None:
-        answers.append(('But', first.busy))
-    answers.append(('Evidence', first.evidence + (f' ({first.decided})' if first.decided else '')))
-    others = _others(first, listed, len(judged.verdicts.alarms), len(judged.verdicts.suspicions))
-    if others:
-        answers.append(('What else', others))
+    worst = happened[0]
+    answers = [('When', _when(worst)), *_blamed(worst)]
+    if worst.together:
+        answers.append(('At once', ', '.join(worst.together)))
+    main = worst.main
+    if main.busy is not None:
+        answers.append(('But', main.busy))
+    decided = shown[worst.key].decided
+    answers.append(('Evidence', main.evidence + (f' ({decided})' if decided else '')))
+    if worst.victims:
+        answers.append(('Victims', ', '.join(worst.victims)))
+    if worst.others:
+        answers.append(('Also named', ', '.join(worst.others) + (
+            '' if judged.by.trained.graph else
+            ' (the model has no graph: nobody knows who is a victim of whom)')))
+    if len(happened) > 1:
+        answers.append(('What else', _others(happened[1:])))
     if missing:
         answers.append(('Blind', missing))
-    return Summary(ALARMED if alarms else SUSPICIOUS, _headline(first), answers, first.key)
+    return Summary(ALARMED if worst.level == ALARM else SUSPICIOUS, worst.headline, answers,
+                   worst.key)
 
 
-def _headline(first: Interval) -> str:
-    if first.busy is not None:
-        return f'At {clock(first.start)} the machine may have been busy: many are late at once.'
-    if not first.suspects:
-        return f'Something is abnormal at {clock(first.start)}; no suspect stands out.'
-    culprit = first.suspects[0]
-    topic = culprit.event_type.split(' ')[-2]
-    subject = (f'{culprit.component} ({topic})' if topic != culprit.component
-               else culprit.component)
-    began = first.start if first.began is None else max(first.began, 0.0)
-    since = f'at {clock(began)}' if began else 'since the start'
-    back = '' if culprit.back is None else f', and came back at {clock(culprit.back)}'
-    return f'{subject} {culprit.short} {since}{back}.'
+def _blamed(worst: Incident) -> List[Tuple[str, str]]:
+    main, first = worst.main, worst.main.first
+    if first is None:
+        return [('Who', 'no suspect stands out')]
+    who = (f'{first.component}, by its {first.event_type}'
+           if first.component not in first.event_type.split(' ') else first.event_type)
+    answers = [('Who', who), ('Why', first.why)]
+    if main.began is not None:
+        answers.append(('Since', f'{clock(max(main.began, 0.0))}, '
+                        f'{main.start - main.began:.2f} s before the {worst.level}'))
+    return answers
 
 
-def _when(first: Interval) -> str:
-    end = 'cleared' if first.cleared else 'stood until the end of the recording'
-    return (f'{first.level} from {clock(first.start)} to {clock(first.end)} ({end}); '
-            f'{first.moment}')
+def _when(worst: Incident) -> str:
+    main = worst.main
+    end = 'cleared' if main.cleared else 'stood until the end of the recording'
+    times = len(worst.alarms)
+    often = f'; {times} {worst.level}s in all, for {clock(worst.standing)}' if times > 1 else ''
+    return (f'{worst.level} from {clock(main.start)} to {clock(main.end)} ({end}); '
+            f'{main.moment}{often}')
 
 
-def _others(first: Interval, listed: List[Interval], alarms: int, suspicions: int) -> str:
-    named = list(dict.fromkeys(
-        suspect.component for suspect in [*first.suspects[1:], *first.later]
-        if suspect.component != first.suspects[0].component)) if first.suspects else []
+def _others(rest: List[Incident]) -> str:
     texts = []
-    if named:
-        texts.append(f'also named: {", ".join(named)}')
-    elsewhere = list(dict.fromkeys(
-        each.suspects[0].component for each in listed
-        if each is not first and each.level == ALARM and each.suspects))
-    more = alarms - (1 if first.level == ALARM else 0)
-    if more > 0:
-        text = f'{more} more alarm{"" if more == 1 else "s"}'
-        texts.append(text + (f', first suspects: {", ".join(elsewhere)}' if elsewhere else ''))
-    more = suspicions - (0 if first.level == ALARM else 1)
-    if more > 0:
-        texts.append(f'{more} {"" if first.level == ALARM else "more "}'
-                     f'suspicion{"" if more == 1 else "s"}')
+    for level in (ALARM, SUSPICION):
+        of_level = [each for each in rest if each.level == level]
+        if of_level:
+            causes = dict.fromkeys(each.cause for each in of_level if each.cause)
+            number = sum(len(each.alarms) for each in of_level)
+            texts.append(f'{number} {level}{"" if number == 1 else "s"} of '
+                         f'{len(of_level)} other cause{"" if len(of_level) == 1 else "s"}'
+                         + (f': {", ".join(causes)}' if causes else ''))
     return '; '.join(texts)

@@ -1,0 +1,122 @@
+"""What an engineer looks at next: the log of who is to blame, and the recording at that time."""
+from __future__ import annotations
+
+import os
+import shlex
+from dataclasses import dataclass
+from typing import Dict, List, Optional, Sequence, Tuple
+from xml.etree import ElementTree
+
+from self_awareness import last_log_lines
+from self_awareness.reporting.report.incidents import MOST_DETAILS, Incident
+from self_awareness.reporting.report.judged import Judged
+from self_awareness.stamps import SECOND_NS, nanoseconds
+
+MOST_LINES = 12
+"""Lines of the log of a node, at most so many."""
+
+_BEFORE_S, _AFTER_S = 5.0, 5.0
+_LONGEST_S = 60.0
+_MOST_TOPICS = 5
+_LEVELS = {1: 'DEBUG', 2: 'INFO', 4: 'WARN', 8: 'ERROR', 16: 'FATAL'}
+
+
+@dataclass(frozen=True)
+class LogLine:
+    """A line of a node's log; its time in seconds from the recording's first message."""
+
+    time: float
+    level: str
+    text: str
+
+
+@dataclass(frozen=True)
+class NextSteps:
+    """What to look at.
+
+    Args:
+        log: the last lines of who is to blame on /rosout, up to shortly after the alarm.
+        play: command that plays the recording at that time; None: it is no bag.
+        layout: a layout for PlotJuggler of that time; None likewise.
+    """
+
+    log: List[LogLine]
+    play: Optional[str]
+    layout: Optional[str]
+
+
+def next_steps(judged: Judged, found: Sequence[Incident]) -> Dict[str, NextSteps]:
+    """Return what to look at of each incident that has details, by its key.
+
+    Raises:
+        BagError: the bag cannot be read any more.
+    """
+    detailed = found[:MOST_DETAILS]
+    if judged.recording.part.recording is not None:  # of an event log, which holds no messages
+        return {incident.key: NextSteps([], None, None) for incident in detailed}
+    path = judged.recording.part.path
+    spans = {incident.key: _span(judged, incident) for incident in detailed}
+    until = [(incident.cause, judged.recording.origin
+              + nanoseconds(min(spans[incident.key][1], incident.main.start + _AFTER_S)))
+             for incident in detailed]
+    logs = last_log_lines(path, until, MOST_LINES) if detailed else []
+    return {incident.key: NextSteps(
+        [LogLine(judged.seconds(stamp), _LEVELS.get(level, str(level)), text)
+         for stamp, level, text in log],
+        _play(path, *spans[incident.key]), _layout(judged, incident, *spans[incident.key]))
+        for incident, log in zip(detailed, logs)}
+
+
+def _span(judged: Judged, incident: Incident) -> Tuple[float, float]:
+    main = incident.main
+    begin = main.start if main.began is None else main.began
+    begin = max(begin - _BEFORE_S, 0.0)
+    return begin, min(main.end + _AFTER_S, begin + _LONGEST_S,
+                      judged.seconds(judged.recording.end))
+
+
+def _play(path: str, begin: float, end: float) -> str:
+    return (f'rosbag play -s {begin:.1f} -u {end - begin:.1f} '
+            f'{shlex.quote(os.path.abspath(path))}')
+
+
+def _layout(judged: Judged, incident: Incident, begin: float, end: float) -> str:
+    """Return a layout that loads the topics of the suspects, and shows when messages came."""
+    named = [judged.recording.event_types[suspect.of.id] for suspect in incident.main.named]
+    types = {kind.scope: kind.type for kind in named[:_MOST_TOPICS]}
+    first, last = (f'{judged.recording.origin / SECOND_NS + time:.3f}' for time in (begin, end))
+    root = ElementTree.Element('root')
+    tabs = ElementTree.SubElement(root, 'tabbed_widget',
+                                  {'name': 'Main Window', 'parent': 'main_window'})
+    tab = ElementTree.SubElement(tabs, 'Tab', containers='1', tab_name=incident.cause or 'alarm')
+    container = ElementTree.SubElement(tab, 'Container')
+    # Stamps rise with the time: a line that stands still is a node that sends no more.
+    curves = [f'{topic}/header/stamp' for topic, name in types.items() if _has_header(name)]
+    number = max(len(curves), 1)
+    splitter = ElementTree.SubElement(container, 'DockSplitter', orientation='|',
+                                      count=str(number),
+                                      sizes=';'.join([f'{1 / number:.3f}'] * number))
+    for curve in curves or ['']:
+        area = ElementTree.SubElement(splitter, 'DockArea', name=curve or '...')
+        plot = ElementTree.SubElement(area, 'plot', mode='TimeSeries', style='Dots')
+        ElementTree.SubElement(plot, 'range', left=first, right=last, bottom=first, top=last)
+        if curve:
+            ElementTree.SubElement(plot, 'curve', name=curve, color='#e5484d')
+    ElementTree.SubElement(tabs, 'currentTabIndex', index='0')
+    ElementTree.SubElement(root, 'use_relative_time_offset', enabled='0')
+    files = ElementTree.SubElement(root, 'previouslyLoaded_Datafiles')
+    file = ElementTree.SubElement(files, 'fileInfo', prefix='',
+                                  filename=os.path.abspath(judged.recording.part.path))
+    ElementTree.SubElement(file, 'selected_datasources', value=';'.join(types))
+    ElementTree.SubElement(file, 'plugin', ID='DataLoad ROS bags')
+    return ElementTree.tostring(root, encoding='unicode')
+
+
+def _has_header(datatype: str) -> bool:
+    """Return whether messages of a type have a header, as far as it is installed here."""
+    from roslib.message import get_message_class  # takes long, and few programs need it
+    try:
+        message = get_message_class(datatype)
+    except ValueError:  # no name of a type
+        return False
+    return message is not None and bool(message._has_header)

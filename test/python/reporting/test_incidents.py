@@ -1,0 +1,150 @@
+"""What the report takes for one incident, and the sentence about it."""
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, Callable, List, Optional, Sequence
+
+import pytest
+from conftest import Message, jittery_robot
+from judged_recordings import judged, with_graph, without_laser
+
+from self_awareness.commands import score
+from self_awareness.reporting.report.headline import headline
+from self_awareness.reporting.report.incidents import Incident, incidents
+from self_awareness.reporting.report.intervals import (ALARM, SUSPICION, Interval, NamedSuspect,
+                                                       intervals)
+from self_awareness.reporting.report.silences import Silence
+
+
+def suspect(component: str, short: str = 'fell silent', silence: Optional[Silence] = None,
+            kind: str = 'died', **reason: Any) -> NamedSuspect:
+    of: Any = SimpleNamespace(reason=SimpleNamespace(kind=kind, after='', **reason))
+    return NamedSuspect(component, f'{component} /t x/Y', short, 'why', 0.0, True, silence, of)
+
+
+def interval(start: float, end: float, suspects: Sequence[NamedSuspect] = (), level: str = ALARM,
+             cleared: bool = True, kind: str = 'died', busy: Optional[str] = None,
+             silence: Optional[Silence] = None) -> Interval:
+    of: Any = SimpleNamespace(culprit=suspects[0].component if suspects else '', kind=kind)
+    return Interval(of, level, start, end, '', cleared, None, -2.0, 'overdue', busy, silence,
+                    list(suspects), [])
+
+
+def found(*listed: Interval, graph: Any = ()) -> List[Incident]:
+    of: Any = SimpleNamespace(by=SimpleNamespace(trained=SimpleNamespace(graph=set(graph))))
+    return incidents(of, listed, 'x')
+
+
+def test_ten_alarms_of_one_cause_are_one_incident() -> None:
+    """Also those far apart, and that between them of somebody else."""
+    listed = [interval(100.0 * i, 100.0 * i + 3, [suspect('/a', silence=Silence(
+        100.0 * i - 1, 100.0 * i + i))]) for i in range(1, 11)]
+    incident, other = found(*listed, interval(2000.0, 2001.0, [suspect('/b')]))
+    assert len(incident.intervals) == 10 and incident.standing == pytest.approx(30.0)
+    assert incident.cause == '/a' and other.cause == '/b'
+    assert incident.key != other.key
+
+
+def test_a_suspicion_is_of_the_incident_of_its_alarm() -> None:
+    """It may have blamed a victim first."""
+    incident, = found(interval(28.5, 28.7, [suspect('/b'), suspect('/a')], SUSPICION),
+                      interval(28.7, 40.0, [suspect('/a'), suspect('/b')]))
+    assert incident.cause == '/a' and incident.others == ['/b']
+    assert incident.main.start == 28.7 and len(incident.intervals) == 2
+
+
+def test_what_stood_longest_comes_first() -> None:
+    worst, short, slight = found(
+        interval(1.0, 99.0, [suspect('/c')], SUSPICION),
+        interval(200.0, 202.0, [suspect('/a')]), interval(300.0, 330.0, [suspect('/b')]))
+    assert [worst.cause, short.cause, slight.cause] == ['/b', '/a', '/c']
+
+
+def test_several_that_fail_at_once_are_in_the_headline() -> None:
+    silent = [suspect(name, silence=Silence(28.0 + 0.1 * i, 36.1))
+              for i, name in enumerate(('/a', '/b', '/c'))]
+    later = suspect('/d', silence=Silence(33.0, 36.0))
+    incident, = found(interval(28.7, 40.0, [*silent, later]))
+    assert incident.together == ['/b', '/c'] and incident.others == ['/d']
+    assert incident.headline == '/a, /b and /c fell silent at 28.0 s, and came back at 36.1 s.'
+    # Who needs the messages of the cause is its victim.
+    incident, = found(interval(28.7, 40.0, silent), graph=[('/a', '/t', '/b'), ('/b', '/u', '/c')])
+    assert incident.together == [] and incident.others == []
+    assert incident.victims == ['/b', '/c']
+    assert incident.headline == '/a (/t) fell silent at 28.0 s, and came back at 36.1 s.'
+
+
+def test_only_who_did_not_come_back_has_stopped() -> None:
+    gone = [suspect(name, 'stopped sending', Silence(8.0, None)) for name in ('/a', '/b')]
+    assert headline(interval(8.5, 20.0, gone, cleared=False), [], 1) == (
+        '/a (/t) stopped sending at 8.0 s.')
+    assert headline(interval(8.5, 20.0, gone), ['/b'], 1) == (
+        '/a and /b stopped sending at 8.0 s.')
+    four = [suspect(f'/{name}', silence=Silence(8.0, 10.0 + 2 * i))
+            for i, name in enumerate('abcd')]
+    assert headline(interval(8.5, 20.0, four), ['/b', '/c', '/d'], 1) == (
+        '4 nodes at once (/a, /b, /c and others) fell silent at 8.0 s; the last came back at '
+        '16.0 s.')
+
+
+def test_what_is_no_silence_has_a_begin_and_an_end() -> None:
+    slow = suspect('/a', 'sends too seldom', kind='slow')
+    assert headline(interval(31.6, 45.0, [slow]), [], 1) == (
+        '/a (/t) sends too seldom from 31.6 s to 45.0 s.')
+    assert headline(interval(31.6, 60.0, [slow], cleared=False), ['/b'], 3) == (
+        '/a and /b send too seldom 3 times, the longest from 31.6 s to the end of the recording.')
+
+
+def test_where_nobody_is_to_blame_the_kind_of_the_verdict_is_told() -> None:
+    """The first suspect of a busy machine is not its cause."""
+    busy = interval(3.0, 9.0, kind='busy machine',
+                    busy='the machine may be busy: 12 of 26 are late')
+    assert found(busy)[0].headline == (
+        'The machine may be busy: 12 of 26 are late, from 3.0 s to 9.0 s.')
+    silent = interval(3.0, 9.0, kind='all silent', silence=Silence(2.8, 7.0))
+    assert found(silent)[0].headline == 'All nodes fell silent at 2.8 s, and came back at 7.0 s.'
+    assert 'no suspect stands out' in found(interval(3.0, 9.0))[0].headline
+    assert len(found(busy, interval(300.0, 310.0, kind='busy machine', busy='x'), silent)) == 2
+
+
+def pauses(start: float) -> List[Message]:
+    """A laser that pauses for 1.5 s twice, and for 8 s."""
+    gaps = [(12.0, 13.5), (30.0, 38.0), (60.0, 61.5)]
+    return [m for m in jittery_robot(start, 90.0, 3)
+            if not (m[1] == '/laser' and any(a <= m[0] - start < b for a, b in gaps))]
+
+
+def test_a_recording_of_several_pauses(evidence_model: str, make_bag: Callable[..., str],
+                                       tmp_path: Path) -> None:
+    bag, values = make_bag('pauses.bag', pauses(3000.0)), tmp_path / 'v.json'
+    model = with_graph(evidence_model, tmp_path / 'm')
+    assert score.main([bag, '--model', model, '--json', str(values)]) == 0
+    recording, = json.loads(values.read_text())['recordings']
+    incident = recording['incidents'][0]
+    assert re.fullmatch(r'/laser \(/scan\) fell silent 3 times, the longest at (29.9|30.0) s, and '
+                        r'came back at 38.0 s\.', incident['headline'])
+    assert incident['cause'] == '/laser' and len(incident['alarms']) >= 3
+    assert set(incident['alarms']) <= {alarm['id'] for alarm in recording['alarms']}
+    laser, = [each for each in incident['silent'] if each['component'] == '/laser']
+    assert (laser['from_s'], laser['back_s']) == pytest.approx((30.0, 38.0), abs=0.1)
+
+
+def test_who_is_silent_to_the_end_has_stopped(evidence_model: str,
+                                              make_bag: Callable[..., str]) -> None:
+    messages = [m for m in jittery_robot(3000.0, 30.0, 3)
+                if not (m[1] == '/laser' and m[0] > 3012.0)]
+    of = judged(evidence_model, make_bag('dead.bag', messages))
+    first = incidents(of, intervals(of), 'x')[0]
+    assert '/laser' in first.headline and 'came back' not in first.headline
+    assert 'stopped sending at 12.0 s' in first.headline
+    assert {each.silence.back for each in first.silent if each.component == '/laser'} == {None}
+
+
+def test_without_a_graph_nobody_is_called_a_victim(evidence_model: str,
+                                                   make_bag: Callable[..., str]) -> None:
+    of = judged(evidence_model, make_bag('dead.bag', without_laser(3000.0)))
+    first = incidents(of, intervals(of), 'x')[0]
+    assert first.headline == ('/slam and /laser fell silent at 12.0 s, and came back at 20.0 s.')
