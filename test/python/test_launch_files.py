@@ -2,9 +2,11 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
+from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Dict
+from typing import Dict, Iterator
 from xml.etree import ElementTree
 
 import pytest
@@ -12,6 +14,7 @@ import yaml
 
 ROOT = Path(__file__).resolve().parents[2]
 FILES = sorted((ROOT / 'launch').glob('*.launch'))
+LONG_S = 60
 
 
 def _roslaunch(*words: object, cwd: Path = ROOT) -> subprocess.CompletedProcess[str]:
@@ -67,3 +70,59 @@ def test_one_or_many_are_the_same(what: str, node: str) -> None:
 def test_what_is_neither_is_told_in_a_sentence() -> None:
     done = _roslaunch('--nodes', 'self_awareness', 'record.launch', 'what:=logs')
     assert 'what:=logs is neither events nor bags' in done.stdout + done.stderr
+
+
+@contextmanager
+def _prefixed(*command: str) -> Iterator[subprocess.Popen[str]]:
+    with subprocess.Popen(('bash', ROOT / 'launch' / 'until_refused.sh', *command),
+                          stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+                          start_new_session=True, preexec_fn=_take_sigint) as node:
+        try:
+            yield node
+        finally:
+            with suppress(ProcessLookupError):
+                os.killpg(node.pid, signal.SIGKILL)
+
+
+def _take_sigint() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # who runs the tests may ignore it
+
+
+@pytest.mark.parametrize('command, code', [
+    ('exit 0', 0), ('exit 3', 3), ('kill -SEGV $$', 139), ('kill -KILL $$', 137)])
+def test_a_node_that_did_not_refuse_may_be_started_again(command: str, code: int) -> None:
+    with _prefixed('bash', '-c', command) as node:
+        assert node.wait(LONG_S) == code
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_a_node_that_refuses_its_parameters_is_not_started_again(number: int) -> None:
+    """As long as this waits, roslaunch takes the node for alive."""
+    with _prefixed('bash', '-c', 'echo "~alarm_of: must be at least 1" >&2; exit 1') as node:
+        assert node.stderr.readline() == '~alarm_of: must be at least 1\n'
+        assert 'launch it again with other parameters' in node.stderr.readline()
+        assert node.poll() is None
+        os.killpg(node.pid, number)
+        assert node.wait(LONG_S) == -number
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize('to_all', [True, False])
+def test_a_node_gets_the_signal_and_its_exit_code_is_handed_on(number: int, to_all: bool) -> None:
+    """Also 1, and also one that takes its time."""
+    program = ('trap "sleep 0.2; echo ended; exit 1" INT TERM; echo begun; '
+               'while :; do sleep 0.05; done')
+    with _prefixed('bash', '-c', program) as node:
+        assert node.stdout.readline() == 'begun\n'
+        (os.killpg if to_all else os.kill)(node.pid, number)
+        assert node.wait(LONG_S) == 1
+        assert 'ended\n' in node.stdout.read()
+
+
+def test_the_monitor_is_started_so() -> None:
+    for standalone, node in (('true', '/self_awareness'), ('false', '/self_awareness')):
+        done = _roslaunch('--args', node, 'self_awareness', 'monitor.launch',
+                          f'standalone:={standalone}')
+        words = done.stdout.split()
+        assert words[0] == 'bash' and words[1].endswith('/launch/until_refused.sh')
+        assert os.path.isfile(words[1])

@@ -1,0 +1,28 @@
+# The launch-prefix of nodes that are respawned: bash until_refused.sh NODE [ARGUMENT...]
+#
+# A node that ends with exit code 1 has said why it cannot run: a parameter that is wrong, a model
+# that is no model. roslaunch would start it again with the same for ever, so this waits for its
+# own end in its place. Any other end is handed on: a node that crashed is started again.
+
+node=
+# The first signal is handed on to the node alone; roslaunch sends it to both.
+trap 'ending=1; [ -z "$node" ] || kill -INT "$node" 2> /dev/null' INT
+trap 'ending=1; [ -z "$node" ] || kill -TERM "$node" 2> /dev/null' TERM
+
+(
+  trap - INT TERM  # in the background, it would be deaf to SIGINT
+  exec "$@"
+) &
+node=$!
+wait "$node"
+code=$?
+while [ -n "$ending" ] && kill -0 "$node" 2> /dev/null; do  # the signal ended only the wait
+  wait "$node"
+  code=$?
+done
+trap - INT TERM  # from here on, a signal ends this at once
+if [ "$code" -ne 1 ] || [ -n "$ending" ]; then
+  exit "$code"
+fi
+echo "${1##*/}: waiting for the end: launch it again with other parameters" >&2
+exec sleep infinity
