@@ -5,6 +5,7 @@ import json
 from pathlib import Path
 from typing import Any, Dict, List, Sequence
 
+from self_awareness import METHOD
 from self_awareness_evaluation.page_section import machine, write_section
 
 __all__ = ['machine', 'publish', 'table']
@@ -17,7 +18,8 @@ def publish(name: str, result: Dict[str, Any], text: str, docs: Path) -> None:
         ValueError: the page has no such section; the JSON file is written anyway.
     """
     (docs / 'performance').mkdir(parents=True, exist_ok=True)
-    (docs / 'performance' / f'{name}.json').write_text(json.dumps(result, indent=1) + '\n')
+    numbers = {'method': METHOD, **result}
+    (docs / 'performance' / f'{name}.json').write_text(json.dumps(numbers, indent=1) + '\n')
     write_section(docs / 'performance.md', name, text)
 
 

@@ -13,12 +13,13 @@ from typing import TYPE_CHECKING, Iterator, Optional, Sequence
 
 from self_awareness.calibration.limits import BUDGET
 from self_awareness.commands import cli
-from self_awareness_evaluation import catalogue, options, tunings
+from self_awareness_evaluation import catalogue, options, pages, readme_numbers, tunings
 from self_awareness_evaluation.ablation import command as ablation
 from self_awareness_evaluation.compare import report as compare
 from self_awareness_evaluation.families import experiment as families, report as families_report
 from self_awareness_evaluation.families.kinds import FAMILIES
 from self_awareness_evaluation.families.protocol import KINDS, Learning
+from self_awareness_evaluation.page_section import write_section
 from self_awareness_evaluation.recordings import outages, report as recordings_report
 from self_awareness_evaluation.simulated import experiment, report
 from self_awareness_evaluation.simulated.experiment import Plan
@@ -127,6 +128,17 @@ def _soak(arguments: argparse.Namespace, command: str) -> None:
         print(f'written: {path}')
 
 
+def _pages(arguments: argparse.Namespace, command: str) -> None:
+    del command
+    print('\n'.join(pages.check(arguments.docs)))
+
+
+def _numbers(arguments: argparse.Namespace, command: str) -> None:
+    del command
+    write_section(arguments.readme, readme_numbers.SECTION, readme_numbers.section(arguments.docs))
+    print(f'written: {arguments.readme}')
+
+
 def nodes_plan(arguments: argparse.Namespace) -> nodes_session.SessionPlan:
     """Return the plan that the arguments of `nodes` ask for."""
     from self_awareness_evaluation.nodes.session import SessionPlan
@@ -196,7 +208,28 @@ def parser() -> argparse.ArgumentParser:
         'the monitor, and lets faults drawn by the seed hit the robot. It fails if one is missed, '
         'if an alarm comes without one, or if the memory of the monitor grows. scripts/soak.sh '
         'runs this.'))
+    _add_pages(parts.add_parser(
+        'pages', help='which pages were measured with an older method',
+        description='Lists the pages that a measurement wrote, with the version of the method, '
+        'and the command that measures those of an older method again.'))
+    _add_numbers(parts.add_parser(
+        'numbers', help='copy the numbers of the README out of these pages',
+        description='Writes the measured numbers of the README again. They are cells of the '
+        'tables of the pages; src/self_awareness_evaluation/readme_numbers.py says which.'))
     return parser
+
+
+def _add_pages(parser: argparse.ArgumentParser) -> None:
+    parser.set_defaults(work=_pages)
+    parser.add_argument('--docs', type=Path, default=Path('docs'), metavar='DIR',
+                        help='folder of the pages (default: docs)')
+
+
+def _add_numbers(parser: argparse.ArgumentParser) -> None:
+    _add_pages(parser)
+    parser.set_defaults(work=_numbers)
+    parser.add_argument('--readme', type=Path, default=Path('README.md'), metavar='FILE',
+                        help='the README (default: README.md)')
 
 
 def _add_recordings(parser: argparse.ArgumentParser) -> None:

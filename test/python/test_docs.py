@@ -129,3 +129,8 @@ def test_the_search_finds_broken_links(tmp_path: Path) -> None:
         '![e](gone.png) [f](there.md#no-heading) [g](#there) [h](https://a.example/b)\n'
         '`[i](code.md)`\n```\n[j](code.md)\n```\n')
     assert _broken(page) == ['gone.png', 'there.md#no-heading', '#there']
+
+
+def test_the_readme_is_short() -> None:
+    """Who reads on for more than ten minutes has given up before."""
+    assert len((ROOT / 'README.md').read_text(encoding='utf-8').split()) <= 1700

@@ -12,6 +12,7 @@ from self_awareness_evaluation.ablation.bench import (AFTER_DEATH_S, FAMILIES, O
                                                       RECORDINGS, Plan)
 from self_awareness_evaluation.ablation.experiment import Results
 from self_awareness_evaluation.ablation.variants import DEFAULT, NUMBER, Variant
+from self_awareness_evaluation.pages import written_by
 from self_awareness_evaluation.simulated.tables import table
 from self_awareness_evaluation.tally import NONE
 
@@ -23,7 +24,7 @@ FULL = 'full'
 _INTRODUCTION = """\
 # What each part of the method buys
 
-Written by `{command}`; do not edit.
+{written}
 
 The evidence detector (method {method}) with one change at a time: a channel left out, a rule
 switched off, a number halved or doubled. All variants learn from and judge the same records:
@@ -85,7 +86,7 @@ def write(folder: Path, plan: Plan, results: Results, command: str) -> List[Path
 def page(plan: Plan, results: Results, command: str) -> str:
     """Return the page."""
     lines = [_INTRODUCTION.format(
-        command=command, name=NAME, method=METHOD,
+        written=written_by(command), name=NAME, method=METHOD,
         families=', '.join(f'`{name}`' for name in plan.families),
         seeds=', '.join(str(seed) for seed in plan.seeds),
         own=', '.join(str(seed) for seed in plan.own_seeds), death_s=AFTER_DEATH_S,

@@ -9,13 +9,14 @@ from self_awareness.output_files import replacing
 from self_awareness_evaluation import options
 from self_awareness_evaluation.compare import results, tables
 from self_awareness_evaluation.compare.results import Measured
+from self_awareness_evaluation.pages import written_by
 
 NAME = 'before_after'
 
 _INTRODUCTION = """\
 # Before and after
 
-Written by `{command}`; do not edit.
+{written}
 
 What two versions of the detector say of the same records: same commands, same seeds. A cell with
 one value is the same in both; else it is before → **after**. Counts are of records; the time is
@@ -48,7 +49,7 @@ def page(before: Path, after: Path, command: str) -> str:
         ValueError: a folder holds no results, or the two were measured by other commands.
         OSError: a folder or a file cannot be read.
     """
-    lines = [_INTRODUCTION.format(command=command)]
+    lines = [_INTRODUCTION.format(written=written_by(command))]
     names = results.folders(before)
     missing = sorted(set(names) ^ set(results.folders(after)))
     if missing:

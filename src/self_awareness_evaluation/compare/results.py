@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import List, Type, TypeVar
 
-from self_awareness_evaluation import row_files
+from self_awareness_evaluation import pages, row_files
 from self_awareness_evaluation.families import measures, report as families_report
 from self_awareness_evaluation.recordings import report as recordings_report
 from self_awareness_evaluation.recordings.outages import OutageRow
@@ -15,7 +15,6 @@ from self_awareness_evaluation.simulated.measures import Row
 
 _Row = TypeVar('_Row')
 
-_COMMAND = re.compile(r'^Written by `(?P<command>.+)`; do not edit', re.MULTILINE)
 _FOLDERS = re.compile(r' (-o|--output|--data)[ =]\S+')
 
 
@@ -78,5 +77,5 @@ def _rows(path: Path, row_type: Type[_Row]) -> List[_Row]:
 
 
 def _command(page: Path) -> List[str]:
-    found = _COMMAND.search(page.read_text(encoding='utf-8')) if page.is_file() else None
-    return [_FOLDERS.sub('', found['command'])] if found else []
+    found = pages.written(page.read_text(encoding='utf-8')) if page.is_file() else []
+    return [_FOLDERS.sub('', each.command) for each in found]

@@ -9,6 +9,7 @@ from self_awareness import DetectorParameters
 from self_awareness.output_files import replacing
 from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation import row_files
+from self_awareness_evaluation.pages import written_by
 from self_awareness_evaluation.families import summary
 from self_awareness_evaluation.families.experiment import Plan, Results
 from self_awareness_evaluation.families.kinds import FAMILIES
@@ -29,7 +30,7 @@ _WITHIN_S = (1.0, 3.0, 5.0, 50.0)
 _INTRODUCTION = """\
 # Evaluation on families of robots
 
-Written by `{command}`; do not edit.
+{written}
 
 Simulated robots that differ in what decides on false alarms, each drawn by its seed: {seeds}.
 
@@ -94,7 +95,7 @@ def write(folder: Path, plan: Plan, results: Results, command: str) -> List[Path
 def page(plan: Plan, results: Results, command: str) -> str:
     """Return the page."""
     lines = [_INTRODUCTION.format(
-        command=command, name=NAME, system=main_system(plan),
+        written=written_by(command), name=NAME, system=main_system(plan),
         seeds=', '.join(str(seed) for seed in plan.seeds),
         families='\n'.join(f'- `{name}`: {FAMILIES[name].told}' for name in plan.families),
         learnings='; '.join(str(learning) for learning in plan.learnings),

@@ -14,6 +14,7 @@ from self_awareness_evaluation.live import offline
 from self_awareness_evaluation.live.listeners import QUIET_S
 from self_awareness_evaluation.live.samples import Sample, of_system
 from self_awareness_evaluation.live.session import FAULTS_S, SessionPlan
+from self_awareness_evaluation.pages import written_by
 from self_awareness_evaluation.simulated import summary
 from self_awareness_evaluation.simulated.measures import NORMAL
 from self_awareness_evaluation.simulated.tables import percent, seconds, table
@@ -29,7 +30,7 @@ _DPI = 120
 _INTRODUCTION = """\
 # Evaluation on the running robot
 
-Written by `{command}` on {date}; do not edit.
+{written}
 
 Faults induced in the 15 processes of `launch/follow_me.launch` under a real master, on a machine
 of {cores} cores, while the monitor of `launch/monitor.launch` listened with the evidence
@@ -106,7 +107,7 @@ def page(plan: SessionPlan, samples: Sequence[Sample], command: str) -> str:
     kinds = [kind for kind in FAULTS_S if any(sample.fault == kind for sample in samples)]
     loads = [sample.load for sample in samples if sample.fault == NORMAL]
     lines = [_INTRODUCTION.format(
-        command=command, date=time.strftime('%Y-%m-%d', time.gmtime()), live=LIVE,
+        written=written_by(command, time.strftime('%Y-%m-%d', time.gmtime())), live=LIVE,
         cores=len(os.sched_getaffinity(0)), rounds=plan.rounds, normal=plan.normal_s,
         training=' + '.join(f'{length:g}' for length in plan.training),
         calibration=plan.calibration_s, quiet=QUIET_S, low=min(loads), high=max(loads))]

@@ -14,6 +14,7 @@ from self_awareness_evaluation.nodes.measures import SEPARATOR, UNDISTURBED, Row
 from self_awareness_evaluation.nodes.session import (APART_S, QUIET_AFTER_S,
                                                      RECOVERED_WITHIN_S, SessionPlan)
 from self_awareness_evaluation.nodes.system import NODES, RELAY
+from self_awareness_evaluation.pages import written_by
 from self_awareness_evaluation.simulated.tables import table
 
 _NAME = 'nodes'
@@ -22,7 +23,7 @@ _NONE = '–'
 _INTRODUCTION = """\
 # Evaluation beside packaged nodes
 
-Written by `{command}`; do not edit.
+{written}
 
 {nodes} nodes of Debian packages, which nobody of this project wrote, publish on {topics} topics:
 
@@ -109,7 +110,7 @@ def page(plan: SessionPlan, rows: Sequence[Row], command: str) -> str:
     """Return the page."""
     packaged = [node for node in NODES if node is not RELAY]
     lines = [_INTRODUCTION.format(
-        command=command, nodes=len(packaged), relay=RELAY.name,
+        written=written_by(command), nodes=len(packaged), relay=RELAY.name,
         topics=len({topic for node in packaged for topic in node.topics}),
         packages='\n'.join(_packages()), starts=plan.starts, training_s=plan.training_s,
         calibrations=plan.calibrations, calibration_s=plan.calibration_s, apart_s=APART_S,

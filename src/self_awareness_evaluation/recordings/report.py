@@ -6,6 +6,7 @@ from typing import List, Sequence
 
 from self_awareness.output_files import replacing
 from self_awareness_evaluation import row_files
+from self_awareness_evaluation.pages import written_by
 from self_awareness_evaluation.recordings.outages import (CASES, END, MOST_SILENT, RATE, Case,
                                                           OutageRow, Span)
 from self_awareness_evaluation.simulated.tables import seconds, table
@@ -15,7 +16,7 @@ NAME = 'recordings'
 _INTRODUCTION = """\
 # Evaluation on recordings of real robots
 
-Written by `{command}`; do not edit.
+{written}
 
 Recordings that others made and published; what is abnormal in them was judged by eye from the
 timing, not by those who made them. Every system learns from normal recordings of the same robot
@@ -63,7 +64,7 @@ def page(rows: Sequence[OutageRow], command: str) -> str:
     head = ['recording', 'system', 'watched', 'outage', 'latency', 'false alarms',
             'alarm stood in normal operation']
     return '\n'.join([
-        _INTRODUCTION.format(command=command, name=NAME, rate=RATE, silent=MOST_SILENT,
+        _INTRODUCTION.format(written=written_by(command), name=NAME, rate=RATE, silent=MOST_SILENT,
                              cases='\n'.join(_told(case) for case in CASES)),
         *table(head, [_cells(row) for row in rows]), ''])
 

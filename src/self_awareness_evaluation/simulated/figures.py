@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Dict, List, Sequence
+from typing import TYPE_CHECKING, Any, Dict, List, Sequence
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from self_awareness_evaluation.simulated.tradeoff import TradeOff
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 _DPI = 120
 _AROUND_S = 1.0  # the paper shows two seconds around the onset
@@ -57,21 +58,32 @@ def save_overview(path: str, rows: Dict[str, List[Row]],
     Raises:
         OSError: the file cannot be written.
     """
+    drawn = overview(rows, trade_offs)
+    with replacing(path) as temporary:
+        drawn.savefig(temporary, format='png')
+
+
+def overview(rows: Dict[str, List[Row]], trade_offs: Dict[str, List[TradeOff]]) -> Figure:
+    """Return the figure of save_overview().
+
+    The first system is drawn last, and wider: others have the same values now and then.
+    """
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(14, 5.6), dpi=_DPI, constrained_layout=True)
     left, right = figure.subplots(1, 2)
     for index, name in enumerate(rows):
-        colour = f'C{index}'
+        style: Dict[str, Any] = {'color': f'C{index}', 'label': name, 'zorder': 10 - 0.1 * index,
+                                 'linewidth': 1.3 if index else 3.0}
         points = [point for point in summary.operating_points(trade_offs.get(name, []))
                   if math.isfinite(point.latency_s)]
         left.plot([point.latency_s for point in points],
-                  [point.false_alarms_per_hour for point in points], 'o-', color=colour,
-                  markersize=4, label=name)
+                  [point.false_alarms_per_hour for point in points], 'o-',
+                  markersize=4 if index else 7, **style)
         crashes = summary.of_fault(rows[name], 'crash')
         if crashes:
             right.plot(_LATENCIES_S, [100.0 * summary.found(crashes, limit)
-                                      for limit in _LATENCIES_S], color=colour, label=name)
+                                      for limit in _LATENCIES_S], **style)
     left.set(title='cc1, thresholds from lax to strict', xlabel='median latency [s]', xscale='log',
              ylabel='false alarms an hour', xlim=(_LATENCIES_S[0], _LATENCIES_S[-1]))
     left.set_yscale('symlog', linthresh=1.0)
@@ -81,8 +93,7 @@ def save_overview(path: str, rows: Dict[str, List[Row]],
     for axes in (left, right):
         axes.grid(alpha=0.3)
     left.legend()
-    with replacing(path) as temporary:
-        figure.savefig(temporary, format='png')
+    return figure
 
 
 def _draw_trace(axes: Axes, trace: Trace, times: np.ndarray, scores: np.ndarray) -> None:

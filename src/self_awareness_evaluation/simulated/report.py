@@ -8,6 +8,7 @@ from self_awareness import DEFAULT_WINDOW
 from self_awareness.calibration import limits
 from self_awareness.output_files import replacing
 from self_awareness_evaluation import row_files
+from self_awareness_evaluation.pages import written_by
 from self_awareness_evaluation.simulated import figures, tables
 from self_awareness_evaluation.simulated.experiment import Plan, Results
 from self_awareness_evaluation.simulated.measures import Row
@@ -19,8 +20,6 @@ NAME = 'simulated'
 
 FULL = 'full'
 """Folder below the page's for all numbers: too long to read, and not kept in the repository."""
-
-_WRITTEN = 'Written by `{command}`; do not edit.'
 
 _INTRODUCTION = """\
 # Evaluation in simulated time
@@ -90,7 +89,7 @@ def page(plan: Plan, results: Results, command: str) -> str:
     """Return the page that is read: targets, false alarms, latencies and blame."""
     rows = _by_system(_whole(results.rows))
     lines = [_INTRODUCTION.format(
-        written=_WRITTEN.format(command=command), name=NAME, full=FULL, rate=FALSE_POSITIVE_RATE,
+        written=written_by(command), name=NAME, full=FULL, rate=FALSE_POSITIVE_RATE,
         seeds=', '.join(str(seed) for seed in plan.seeds),
         names=', '.join(f'`{name}`' for name in NORMAL_NAMES),
         training=len(TRAINING_NAMES), record_s=RECORD_S,
@@ -114,7 +113,7 @@ def page(plan: Plan, results: Results, command: str) -> str:
 
 def full_page(plan: Plan, results: Results, command: str) -> str:
     """Return the page of a table of every quantity for every fault."""
-    lines = ['# Evaluation in simulated time: all tables', '', _WRITTEN.format(command=command),
+    lines = ['# Evaluation in simulated time: all tables', '', written_by(command),
              '', f'What was done, and how to read it: [{NAME}.md](../{NAME}.md). All numbers: '
              f'[{NAME}.csv]({NAME}.csv).', '',
              '## With all of the training data', '',

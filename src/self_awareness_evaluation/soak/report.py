@@ -10,6 +10,7 @@ from typing import Any, Dict, List, Optional, Sequence
 
 from self_awareness.output_files import replacing
 from self_awareness_evaluation.page_section import machine, write_section
+from self_awareness_evaluation.pages import written_by
 from self_awareness_evaluation.simulated.tables import table
 from self_awareness_evaluation.soak import measures
 from self_awareness_evaluation.soak.measures import MUST_BE_FOUND_S, FalseAlarm, Found
@@ -105,7 +106,7 @@ def section(soaked: Result) -> str:
     """Return the section, without its heading."""
     plan = soaked.plan
     lines = [
-        f'Written by `{soaked.command}` on {soaked.date}; do not edit. Seed {plan.seed}, '
+        f'{written_by(soaked.command, soaked.date)} Seed {plan.seed}, '
         f'{soaked.machine["cores"]} cores ({soaked.machine["machine"]}), load average at the '
         f'faults {" to ".join(f"{load:.1f}" for load in soaked.loads) or "unknown"}, the robot\'s '
         'own included.', '',

@@ -11,7 +11,7 @@ from typing import Iterator
 
 import pytest
 
-from self_awareness import EvidenceModel, TrainedModel
+from self_awareness import METHOD, EvidenceModel, TrainedModel
 
 ROOT = Path(__file__).resolve().parents[3]
 DOCS = ROOT / 'docs'
@@ -79,7 +79,8 @@ def test_publishing_replaces_a_section_and_nothing_else(tmp_path: Path) -> None:
     (tmp_path / 'performance.md').write_text('a\n<!-- x -->\nold\n<!-- /x -->\nb\n')
     module('page').publish('x', {'cores': 2}, 'new', tmp_path)
     assert (tmp_path / 'performance.md').read_text() == 'a\n<!-- x -->\nnew\n<!-- /x -->\nb\n'
-    assert json.loads((tmp_path / 'performance' / 'x.json').read_text()) == {'cores': 2}
+    assert json.loads((tmp_path / 'performance' / 'x.json').read_text()) == {
+        'method': METHOD, 'cores': 2}
 
 
 def test_a_page_without_the_section_is_an_error(tmp_path: Path) -> None:
