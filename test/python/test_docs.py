@@ -134,3 +134,22 @@ def test_the_search_finds_broken_links(tmp_path: Path) -> None:
 def test_the_readme_is_short() -> None:
     """Who reads on for more than ten minutes has given up before."""
     assert len((ROOT / 'README.md').read_text(encoding='utf-8').split()) <= 1700
+
+
+# Words that only method.md and those who work on the method need; and sentences that had to be
+# read twice.
+JARGON = re.compile(r'\b(linkers?|own history|evidence overdue|tracks?)\b', re.IGNORECASE)
+OF_DEVELOPERS = ('docs/method.md', 'docs/glossary.md', 'docs/architecture.md',
+                 'docs/performance.md', 'docs/evaluation/')
+TWICE = ('Models of before', 'the file of before', 'models of before', 'by it the model knows',
+         'what is none becomes', 'and not the way', 'as they were recorded',
+         'are left out by [the encoding]')
+
+
+@pytest.mark.parametrize('page', PAGES, ids=_name)
+def test_pages_are_in_plain_words(page: Path) -> None:
+    text = page.read_text(encoding='utf-8')
+    assert [each for each in TWICE if each in text] == []
+    if not _name(page).startswith(OF_DEVELOPERS):
+        prose = re.sub(r'```.*?```|`[^`\n]*`', '', text, flags=re.DOTALL)
+        assert JARGON.findall(prose) == []

@@ -15,8 +15,8 @@ from self_awareness.training.robot_graph import RobotGraph, graph_file
 _EPILOG = """\
 An event log holds when each message came, from whom, and of which type: 3 to 4 bytes a message,
 whatever its size. train, calibrate and score read it like the bags, and get the same. Each bag is
-a recording of its own: LOG#1, LOG#2 and so on. Who subscribes to what is taken from the file that
-record.launch writes beside a bag.
+a recording of its own: LOG#1, LOG#2 and so on. Keep the file NAME.graph.yaml, which record.launch
+writes, beside the bag: it says who subscribes to what.
 example:
   convert /nfs/bags/*.bag -o robot.events.bag
 """

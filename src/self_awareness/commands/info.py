@@ -170,7 +170,7 @@ def _graph(graph: List[Dict[str, str]]) -> str:
 
 
 def _print_evidence(evidence: Dict[str, Any], fewest_gaps: int) -> None:
-    print(f'evidence     tracks: {counts(evidence["tracks"])}')
+    print(f'evidence     watches: {counts(evidence["tracks"])}')
     if evidence['not_judged']:
         print(f'  not judged: {"; ".join(evidence["not_judged"])}')
     if evidence['left_out']:

@@ -24,8 +24,8 @@ _WRONG_USAGE = 2
 
 _EPILOG = """\
 learn.launch runs it. The model is the parameter ~model, as of the monitor. If the file is there
-already, this is the monitor at once. ~finish (std_srvs/Trigger) ends the recording early. Started
-again, it goes on with the logs that are there.
+already, this is the monitor at once. Call ~finish (std_srvs/Trigger) to end the recording early.
+If it is started again, it goes on with the logs that are there.
 """
 
 

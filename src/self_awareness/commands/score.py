@@ -34,7 +34,7 @@ _ROWS = 1 << 16  # of the table that are made at once
 _EPILOG = """\
 BAG@START-END stands for a part of a recording, in s from its first message. Times that are printed
 count from there, too. A suspicion (level WARN) is something abnormal that is too little for an
-alarm, or an event that training never saw.
+alarm, or an event that training never saw. An incident is all alarms and suspicions of one cause.
 The CSV has one row a window: score and threshold are empty where there is none, abnormal is 1
 where the score lies below the threshold, also while settling. A name that a spreadsheet would
 compute (=, +, -, @) has a ' before it. With the paper's detector a window
@@ -213,7 +213,7 @@ def _parser() -> argparse.ArgumentParser:
     cli.add_detector_argument(parser)
     parser.add_argument('--csv', metavar='FILE', help='write the score of every window')
     parser.add_argument('--json', metavar='FILE',
-                        help='write alarms and suspicions, for programs')
+                        help='write alarms, suspicions and incidents, for programs')
     parser.add_argument('--plot', type=cli.plot_file, metavar='FILE',
                         help='draw the scores over time; the name ends in .png, .pdf or .svg')
     parser.add_argument('--report', type=cli.checked(check_name), metavar='FILE.html',

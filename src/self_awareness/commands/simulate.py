@@ -16,8 +16,8 @@ _EPILOG = f"""\
 faults:
 {described()}
 
-Each seed is another start of the robot, on another day. Beside a bag lies who subscribes to
-what, as record.launch writes it down; train reads it.
+Each seed is another start of the robot, on another day. A file beside each bag says who subscribes
+to what, as record.launch writes it down; train reads it.
 examples:
   simulate -o normal.bag                     one recording of 100 s
   simulate -o bags --runs 4                  bags/normal_1.bag to bags/normal_4.bag

@@ -48,7 +48,7 @@ def reasons(relation: Dict[str, Any]) -> str:
     if relation['reaches']:
         words.append('its messages get there')
     if relation['irregular']:
-        words.append('it says more than the own history')
+        words.append('it says more than its own rhythm')
     if relation['channel'] == 'pairs' and relation['starts'] > 1:
         words.append(f'chance {relation["chance"]:.1g} in {relation["starts"]} starts')
     return ', '.join(words)

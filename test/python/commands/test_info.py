@@ -149,7 +149,7 @@ def test_too_rare_is_what_has_fewer_gaps_than_the_model_asks_for(long_bags, tmp_
 def test_people_read_the_evidence(evidence_model: str, capsys) -> None:
     assert info.main([evidence_model]) == 0
     text = capsys.readouterr().out
-    for part in ('evidence     tracks: overdue 3, rate 6',
+    for part in ('evidence     watches: overdue 3, rate 6',
                  'limits       held-out, for 0.5 false', 'graph        none', 'tuesday.bag'):
         assert part in text
 
