@@ -1,7 +1,7 @@
 # The launch-prefix of nodes that are respawned: bash until_refused.sh NODE [ARGUMENT...]
 #
-# A node that ends with exit code 1 has said why it cannot run: a parameter that is wrong, a model
-# that is no model. roslaunch would start it again with the same for ever, so this waits for its
+# A node that ends with exit code 1 has said why it cannot run, such as a parameter that is wrong.
+# roslaunch would start it again with the same for ever, so this waits for its
 # own end in its place. Any other end is handed on: a node that crashed is started again.
 
 node=

@@ -51,9 +51,10 @@ def test_ten_alarms_of_one_cause_are_one_incident() -> None:
 def test_a_suspicion_is_of_the_incident_of_its_alarm() -> None:
     """It may have blamed a victim first."""
     incident, = found(interval(28.5, 28.7, [suspect('/b'), suspect('/a')], SUSPICION),
-                      interval(28.7, 40.0, [suspect('/a'), suspect('/b')]))
+                      interval(28.7, 40.0, [suspect('/a'), suspect('/b')]),
+                      interval(41.0, 41.1, [suspect('/b'), suspect('/quiet')], SUSPICION))
     assert incident.cause == '/a' and incident.others == ['/b']
-    assert incident.main.start == 28.7 and len(incident.intervals) == 2
+    assert incident.main.start == 28.7 and len(incident.intervals) == 3
 
 
 def test_what_stood_longest_comes_first() -> None:

@@ -134,9 +134,10 @@ def _incident(judged: Judged, cause: str, intervals: List[Interval]) -> Incident
     together = _together(main, judged.by.trained.graph)
     causes = [main.of.culprit, *together]
     reached = set().union(*(downstream(judged.by.trained.graph, name) for name in causes))
-    named = list(dict.fromkeys(suspect.component for each in intervals for suspect in each.named
-                               if suspect.component not in causes))
     alarms = [each for each in intervals if each.level == main.level]
+    # What a suspicion names before its alarm is less sure: some of it is only quiet.
+    named = list(dict.fromkeys(suspect.component for each in alarms for suspect in each.named
+                               if suspect.component not in causes))
     return Incident('', intervals, main, together, [name for name in named if name in reached],
                     [name for name in named if name not in reached],
                     headline(main, together, len(alarms)))

@@ -99,5 +99,6 @@ def _without_limit(judged: Judged) -> List[Unjudged]:
     if not left_out:
         return []
     text = ', '.join(f'{channel} {count}' for channel, count in sorted(left_out.items()))
-    return [Unjudged(f'{sum(left_out.values())} kinds of evidence ({text})', 'they say nothing or too '
-                     'little, or there were too few starts of the robot (info tells more)', [])]
+    return [Unjudged(f'{sum(left_out.values())} kinds of evidence ({text})',
+                     'they say nothing or too little, or there were too few starts of the robot '
+                     '(info tells more)', [])]
