@@ -21,4 +21,4 @@ done
 make -C "$workspace/build" run_tests_self_awareness_rostest -j3 || true
 
 catkin_test_results --verbose "$results" || true
-exec /usr/bin/python3 "$checkout/test/count_results.py" "$results"
+exec /usr/bin/python3 "$checkout/test/count_results.py" "$results" gtest pytest rostest

@@ -2,7 +2,8 @@
 """Adds up the JUnit files below a folder: prints `N passed, N failed, N skipped`, and what failed.
 
 Exit code 0 only if something passed and nothing failed. A file that cannot be read is a failure:
-its tests did not end.
+its tests did not end. So is a kind of files (what their names begin with) that is asked for, and
+of which there is none.
 """
 
 import pathlib
@@ -10,8 +11,11 @@ import sys
 import xml.etree.ElementTree
 
 
-def main(folder: str) -> int:
+def main(folder: str, *kinds: str) -> int:
     passed, failed, skipped = 0, [], []
+    for kind in kinds:
+        if not list(pathlib.Path(folder).rglob(kind + '-*.xml')):
+            failed.append('{}: no results'.format(kind))
     for path in sorted(pathlib.Path(folder).rglob('*.xml')):
         try:
             root = xml.etree.ElementTree.parse(str(path)).getroot()
@@ -42,4 +46,4 @@ def main(folder: str) -> int:
 
 
 if __name__ == '__main__':
-    sys.exit(main(sys.argv[1]))
+    sys.exit(main(*sys.argv[1:]))

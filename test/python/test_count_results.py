@@ -1,0 +1,28 @@
+"""The line that tests end with: no result may get lost before it is counted."""
+from __future__ import annotations
+
+import subprocess
+from pathlib import Path
+
+import pytest
+
+PROGRAM = Path(__file__).parents[1] / 'count_results.py'
+PASSED = '<testsuite tests="1"><testcase classname="a" name="b"/></testsuite>'
+FAILED = '<testsuite tests="1"><testcase classname="a" name="c"><failure/></testcase></testsuite>'
+
+
+@pytest.mark.parametrize('files, kinds, code, told', [
+    ({'gtest-a': PASSED, 'pytest-b': PASSED}, ['gtest', 'pytest'], 0,
+     '2 passed, 0 failed, 0 skipped\n'),
+    ({'gtest-a': PASSED, 'pytest-b': FAILED}, [], 1,
+     'FAILED: a c\n1 passed, 1 failed, 0 skipped\n'),
+    ({'gtest-a': PASSED}, ['gtest', 'pytest'], 1,
+     'FAILED: pytest: no results\n1 passed, 1 failed, 0 skipped\n'),
+    ({}, [], 1, '0 passed, 0 failed, 0 skipped\n')])
+def test_what_passed_and_failed_is_counted(tmp_path: Path, files: dict, kinds: list, code: int,
+                                           told: str) -> None:
+    for name, text in files.items():
+        (tmp_path / f'{name}.xml').write_text(text)
+    done = subprocess.run([str(PROGRAM), str(tmp_path), *kinds], stdout=subprocess.PIPE,
+                          universal_newlines=True)
+    assert (done.returncode, done.stdout) == (code, told)
