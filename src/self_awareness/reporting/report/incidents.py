@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Collection, Dict, List, Sequence
 
 from self_awareness.reporting.report.headline import headline
@@ -80,8 +80,7 @@ def incidents(judged: Judged, listed: Sequence[Interval], prefix: str) -> List[I
         by_cause.setdefault(_cause(_first(episode)), []).extend(episode)
     made = [_incident(judged, cause, each) for cause, each in by_cause.items()]
     made.sort(key=lambda each: (each.level != ALARM, -each.standing, each.main.start))
-    return [Incident(f'{prefix}-{number}', each.intervals, each.main, each.together, each.victims,
-                     each.others, each.headline) for number, each in enumerate(made)]
+    return [replace(each, key=f'{prefix}-{number}') for number, each in enumerate(made)]
 
 
 def as_values(incident: Incident) -> Dict[str, Any]:
@@ -106,16 +105,17 @@ def _episodes(listed: Sequence[Interval]) -> List[List[Interval]]:
     """Return intervals that follow each other soon and name somebody in common."""
     found: List[List[Interval]] = []
     for interval in listed:
-        names = {suspect.component for suspect in interval.named}
-        for episode in found[-1:]:
-            soon = interval.start - max(each.end for each in episode) <= _JOINED_S
-            if soon and any(suspect.component in names
-                            for each in episode for suspect in each.named):
-                episode.append(interval)
-                break
+        if found and _goes_on(found[-1], interval):
+            found[-1].append(interval)
         else:
             found.append([interval])
     return found
+
+
+def _goes_on(episode: Sequence[Interval], interval: Interval) -> bool:
+    names = {suspect.component for suspect in interval.named}
+    soon = interval.start - max(each.end for each in episode) <= _JOINED_S
+    return soon and any(suspect.component in names for each in episode for suspect in each.named)
 
 
 def _first(episode: Sequence[Interval]) -> Interval:
