@@ -1,8 +1,8 @@
 # The launch-prefix of nodes that are respawned: bash until_refused.sh NODE [ARGUMENT...]
 #
 # A node that ends with exit code 1 has said why it cannot run, such as a parameter that is wrong.
-# roslaunch would start it again with the same for ever, so this waits for its
-# own end in its place. Any other end is handed on: a node that crashed is started again.
+# roslaunch would start it again with the same for ever, so this waits for its own end in its
+# place. Any other end is handed on: a node that crashed is started again.
 
 node=
 # The first signal is handed on to the node alone; roslaunch sends it to both.

@@ -9,7 +9,7 @@
 #include <map>
 #include <utility>
 
-#include "now.h"
+#include "ros/now.h"
 #include "self_awareness/ros/stable_name.h"
 
 namespace self_awareness {
@@ -100,7 +100,6 @@ void Discovery::setWanted(Wanted wanted) {
 Discovery::State Discovery::state() const {
   const auto shared = shared_.lock();
   State state = shared->state;
-  state.unheard = subscriptions_.unheard();
   if (shared->asked_at && std::chrono::steady_clock::now() - *shared->asked_at > kPatience) {
     state.master_answers = false;
   }

@@ -47,9 +47,8 @@ class Discovery {
     std::size_t subscriptions = 0;
     std::size_t left_out = 0;         ///< topics beyond kMostOthers
     std::size_t master_restarts = 0;  ///< that were noticed
-    std::size_t strangers_closed =
-        0;  ///< connections to this node that said too little or too much
-    std::vector<ros1::Unheard> unheard;  ///< publishers that the master names
+    /// Connections to this node that said too little or too much.
+    std::size_t strangers_closed = 0;
     /// Who publishes and subscribes what; none before the first answer of the master, the last one
     /// while it does not answer.
     std::shared_ptr<const ros1::Graph> graph;
@@ -69,6 +68,8 @@ class Discovery {
   /// Polls at once with what is wanted from now on.
   void setWanted(Wanted wanted);
   State state() const;
+  /// Publishers that the master names, and that are not heard.
+  std::vector<ros1::Unheard> unheard() const { return subscriptions_.unheard(); }
 
  private:
   struct Shared {

@@ -13,8 +13,8 @@
 #include "clock_status.h"
 #include "encoding_parameters.h"
 #include "not_heard.h"
-#include "now.h"
 #include "parameter_reader.h"
+#include "ros/now.h"
 #include "ros/verdict/diagnostic_status.h"
 #include "self_awareness/ros/bag/bag_reader.h"
 #include "self_awareness/ros/output_file.h"
@@ -249,7 +249,7 @@ void EventRecorder::onReport() {
   }
   tellClock(live_->clock().standsStillFor(), rosNow(), status);
   const Discovery::State discovered = live_->discovery().state();
-  tellUnheard(discovered.unheard, status);
+  tellUnheard(live_->discovery().unheard(), status);
   tellStrangers(
       discovered.strangers_closed,
       discovered.strangers_closed - std::exchange(strangers_closed_, discovered.strangers_closed),

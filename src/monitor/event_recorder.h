@@ -41,7 +41,7 @@ namespace self_awareness {
 /// - `~diagnostics` (string; default: /diagnostics): topic of its status. If /diagnostics were
 ///   remapped, the recorder would not hear what the robot says there.
 /// - `~poll_interval`, `~queue_size`, `~max_message`, `~max_unfinished`, `~diagnostic_period`: as
-/// those of the monitor.
+///   those of the monitor.
 ///
 /// **Published topics**
 /// - `/diagnostics`, or `~diagnostics`: one status, an error while nothing can be recorded.

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "now.h"
+#include "ros/now.h"
 
 namespace self_awareness {
 namespace {

@@ -35,6 +35,9 @@ struct LiveParameters {
   ros1::ReadLimits read_limits;     ///< ~max_message, ~max_unfinished [MB]
 };
 
+/// Messages that came before a window's end may wait for this long when it is closed [ns].
+constexpr std::int64_t kGrace = 20000000;
+
 /// The robot's communication as it happens, for one listener: subscribes to what Discovery finds,
 /// turns it into events, watches the clock, and ticks.
 ///

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "load.h"
-#include "now.h"
+#include "ros/now.h"
 #include "ros/text.h"
 #include "ros/verdict/standing_alarm.h"
 #include "self_awareness/SelfAwareness.h"
@@ -218,7 +218,7 @@ void Monitor::onVerdict(const core::Verdict& verdict) {
   }
   core::Verdict said = verdict;
   if (!said.suspects.empty()) {
-    not_heard_.set(live_->discovery().state().unheard);
+    not_heard_.set(live_->discovery().unheard());
     not_heard_.explain(said.suspects, session_->vocabulary());
     not_heard_.explain(said.new_suspects, session_->vocabulary());
   }
@@ -264,13 +264,13 @@ void Monitor::onReport() {
   state.clock_stands_still_for = live_->clock().standsStillFor();
   state.longest_pause = core::toSeconds(std::exchange(longest_pause_, 0));
   state.master_answers = discovered.master_answers;
-  state.unheard = discovered.unheard;
+  state.unheard = live_->discovery().unheard();
   state.strangers_closed = discovered.strangers_closed;
   state.strangers_newly_closed =
       discovered.strangers_closed - std::exchange(strangers_closed_, discovered.strangers_closed);
   state.taken_back = calls_.onRecord();
   state.clock_rivals = live_->clockRivals();
-  not_heard_.set(discovered.unheard);
+  not_heard_.set(state.unheard);
   state.communication.not_heard = not_heard_.components();
   state.keeper_error = keeper_.error();
   if (recorder_.enabled()) {

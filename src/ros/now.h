@@ -21,7 +21,4 @@ inline std::int64_t wallNow() {
   return static_cast<std::int64_t>(ros::WallTime::now().toNSec());
 }
 
-/// Messages that came before a window's end may wait for this long when it is closed [ns].
-constexpr std::int64_t kGrace = 20000000;
-
 }  // namespace self_awareness

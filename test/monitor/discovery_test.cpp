@@ -116,7 +116,7 @@ class DiscoveryTest : public testing::Test {
   }
   /// Why a publisher is not heard; empty: nothing is said of it.
   static std::string whyUnheard(const Discovery& discovery, const std::string& node) {
-    for (const ros1::Unheard& unheard : discovery.state().unheard) {
+    for (const ros1::Unheard& unheard : discovery.unheard()) {
       if (unheard.node == node) {
         return unheard.why;
       }
@@ -204,13 +204,13 @@ TEST_F(DiscoveryTest, NamesWhoCannotBeReachedAndHearsTheOthersAtOnce) {
   const ros::Publisher publisher = publish("/a");
   const auto discovery = discover(0.1);
   EXPECT_TRUE(hears(publisher));
-  EXPECT_TRUE(await([&] { return discovery->state().unheard.size() == 302; }, kAtOnce));
+  EXPECT_TRUE(await([&] { return discovery->unheard().size() == 302; }, kAtOnce));
   EXPECT_NE(whyUnheard(*discovery, "/lost_7").find("no-such-host-7.invalid"), std::string::npos);
   EXPECT_EQ(whyUnheard(*discovery, "/refused"), "nobody listens at its address");
   EXPECT_NE(whyUnheard(*discovery, "/senseless"), "");
   EXPECT_EQ(whyUnheard(*discovery, ros::this_node::getName()), "");
   unreachable.clear();
-  EXPECT_TRUE(await([&] { return discovery->state().unheard.size() == 2; }, kAtOnce));
+  EXPECT_TRUE(await([&] { return discovery->unheard().size() == 2; }, kAtOnce));
 }
 
 }  // namespace

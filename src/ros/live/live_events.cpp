@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "../now.h"
 #include "../text.h"
 
 namespace self_awareness::ros1 {
@@ -159,8 +160,8 @@ void LiveEvents::release() {
   if (!holds_) {
     return;
   }
-  const auto steady_now = static_cast<std::int64_t>(ros::SteadyTime::now().toNSec());
-  const auto ros_now = static_cast<std::int64_t>(ros::Time::now().toNSec());
+  const std::int64_t steady_now = steadyNow();
+  const std::int64_t ros_now = rosNow();
   const std::int64_t now = handlers_.time ? handlers_.time(ros_now, steady_now) : ros_now;
   holds_ = false;
   for (auto& [key, live] : connections_) {

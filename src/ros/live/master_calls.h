@@ -15,7 +15,6 @@ class MasterCalls {
   /// @param arguments after the name of this node
   void add(const std::string& method, const std::vector<std::string>& arguments);
 
-  std::size_t size() const { return calls_.size(); }
   /// Blocks until the master has answered, or has failed to.
   /// @return what it answered to each; none where it did not, or refused
   std::vector<std::optional<XmlRpc::XmlRpcValue>> execute() const;

@@ -1,7 +1,6 @@
 #include "self_awareness/ros/live/subscriptions.h"
 
 #include <poll.h>
-#include <ros/time.h>
 #include <sys/eventfd.h>
 #include <unistd.h>
 
@@ -10,16 +9,13 @@
 #include <system_error>
 #include <utility>
 
+#include "../now.h"
 #include "publisher_table.h"
 
 namespace self_awareness::ros1 {
 namespace {
 
 constexpr int kBetweenLooks = 50;  // [ms]
-
-std::int64_t steadyNow() {
-  return static_cast<std::int64_t>(ros::SteadyTime::now().toNSec());
-}
 
 int makeBell() {
   const int bell = eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC);

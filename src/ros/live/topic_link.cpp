@@ -12,6 +12,7 @@
 #include <cstring>
 #include <utility>
 
+#include "../now.h"
 #include "../text.h"
 #include "self_awareness/core/stream/event.h"
 
@@ -47,12 +48,12 @@ TopicLink::~TopicLink() {
   dropContent();
 }
 
-bool TopicLink::connect(const std::string& ip, int port) {
+void TopicLink::connect(const std::string& ip, int port) {
   const auto transport =
       boost::make_shared<ros::TransportTCP>(&ros::PollManager::instance()->getPollSet());
   if (!transport->connect(ip, port)) {
     lose("its address cannot be connected to");
-    return false;
+    return;
   }
   connection_ = boost::make_shared<ros::Connection>();
   connection_->initialize(transport, false, ros::HeaderReceivedFunc());
@@ -71,7 +72,6 @@ bool TopicLink::connect(const std::string& ip, int port) {
                             {"type", "*"},
                             {"tcp_nodelay", "1"}},
                            [](const ros::ConnectionPtr& /*connection*/) {});
-  return true;
 }
 
 void TopicLink::close() {
@@ -168,8 +168,8 @@ void TopicLink::onPart(const Bytes& bytes, std::uint32_t size) {
 void TopicLink::handOn() {
   std::shared_ptr<Content> content = content_;
   dropContent();
-  const auto now = static_cast<std::int64_t>(ros::Time::now().toNSec());
-  const auto steady = static_cast<std::int64_t>(ros::SteadyTime::now().toNSec());
+  const std::int64_t now = rosNow();
+  const std::int64_t steady = steadyNow();
   const auto shared = shared_.lock();
   if (!shared->closed) {
     arrivals_.add({topic_, header_, now, steady, std::move(content)});

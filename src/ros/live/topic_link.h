@@ -39,8 +39,7 @@ class TopicLink : public std::enable_shared_from_this<TopicLink> {
 
   /// Begins to connect. To be called once, when a shared pointer holds this.
   /// @param ip as a number: a name would be waited for
-  /// @return whether there is anything to wait for
-  bool connect(const std::string& ip, int port);
+  void connect(const std::string& ip, int port);
   /// Nothing arrives any more.
   void close();
 

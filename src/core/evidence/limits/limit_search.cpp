@@ -198,9 +198,9 @@ void LimitSearch::search(Kind kind, const std::vector<Seen>& tracks, double shar
     const double largest = *std::max_element(seen.largest.begin(), seen.largest.end());
     const double found =
         std::max(seen.least, own * std::max(largest, tuning_.share_of_least * seen.least));
-    const double most =
-        gaps ? longestAge(kind, seen, found - window(), share / static_cast<double>(tracks.size()))
-             : found;
+    const double most = gaps ? longestAge(kind, seen, largest - window(), found - window(),
+                                          share / static_cast<double>(tracks.size()))
+                             : found;
     double& limit = limits_[seen.track];
     limit = model_.expectation(seen.track).limit(seen.track, largest, most);
     if (!std::isnan(limit)) {
@@ -209,10 +209,10 @@ void LimitSearch::search(Kind kind, const std::vector<Seen>& tracks, double shar
   }
 }
 
-double LimitSearch::longestAge(Kind kind, const Seen& seen, double age, double rate) const {
+double LimitSearch::longestAge(Kind kind, const Seen& seen, double largest, double age,
+                               double rate) const {
   const double starts = startsThatHeard(seen);
   const double rare = tailOf(seen, starts).age(rate);
-  const double largest = *std::max_element(seen.largest.begin(), seen.largest.end()) - window();
   if (kind == Kind::kOthers) {
     // Pauses of one start may be a host's hiccups.
     const double most = starts > 1 ? tuning_.most_tail_margin : tuning_.most_tail_margin_of_start;

@@ -55,9 +55,10 @@ class LimitSearch {
   /// @param left_out told of each track that is judged
   void search(Kind kind, const std::vector<Seen>& tracks, double share, LeftOut& left_out);
   /// Age [ns] up to which a silence is normal.
-  /// @param age by what was seen, and its margin [ns]
+  /// @param largest that was seen [ns]
+  /// @param age by that, and its margin [ns]
   /// @param rate of longer ones an hour, where pauses are long or irregular
-  double longestAge(Kind kind, const Seen& seen, double age, double rate) const;
+  double longestAge(Kind kind, const Seen& seen, double largest, double age, double rate) const;
   /// Number of starts with a gap of an event type whose silence is judged.
   double startsThatHeard(const Seen& seen) const;
   /// Of the gaps of training and of the recordings.
