@@ -1,6 +1,6 @@
 # The launch-prefix of nodes that are respawned: bash until_refused.sh NODE [ARGUMENT...]
 #
-# A node that ends with exit code 1 has said why it cannot run, such as a parameter that is wrong.
+# A node that ends with exit code 1 (an error) or 2 (wrong usage) has said why it cannot run.
 # roslaunch would start it again with the same for ever, so this waits for its own end in its
 # place. Any other end is handed on: a node that crashed is started again.
 
@@ -21,8 +21,8 @@ while [ -n "$ending" ] && kill -0 "$node" 2> /dev/null; do  # the signal ended o
   code=$?
 done
 trap - INT TERM  # from here on, a signal ends this at once
-if [ "$code" -ne 1 ] || [ -n "$ending" ]; then
+if [ -n "$ending" ] || { [ "$code" -ne 1 ] && [ "$code" -ne 2 ]; }; then
   exit "$code"
 fi
-echo "${1##*/}: waiting for the end: launch it again with other parameters" >&2
+echo "${1##*/}: waiting for the end: launch it again with other arguments or parameters" >&2
 exec sleep infinity

@@ -6,7 +6,7 @@ import signal
 import subprocess
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Dict, Iterator
+from typing import Dict, Iterator, Tuple
 from xml.etree import ElementTree
 
 import pytest
@@ -96,11 +96,13 @@ def test_a_node_that_did_not_refuse_may_be_started_again(command: str, code: int
 
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
-def test_a_node_that_refuses_its_parameters_is_not_started_again(number: int) -> None:
+@pytest.mark.parametrize('code', [1, 2])
+def test_a_node_that_refuses_its_parameters_is_not_started_again(code: int, number: int) -> None:
     """As long as this waits, roslaunch takes the node for alive."""
-    with _prefixed('bash', '-c', 'echo "~alarm_of: must be at least 1" >&2; exit 1') as node:
+    refuses = f'echo "~alarm_of: must be at least 1" >&2; exit {code}'
+    with _prefixed('bash', '-c', refuses) as node:
         assert node.stderr.readline() == '~alarm_of: must be at least 1\n'
-        assert 'launch it again with other parameters' in node.stderr.readline()
+        assert 'launch it again with other arguments' in node.stderr.readline()
         assert node.poll() is None
         os.killpg(node.pid, number)
         assert node.wait(LONG_S) == -number
@@ -119,10 +121,10 @@ def test_a_node_gets_the_signal_and_its_exit_code_is_handed_on(number: int, to_a
         assert 'ended\n' in node.stdout.read()
 
 
-def test_the_monitor_is_started_so() -> None:
-    for standalone, node in (('true', '/self_awareness'), ('false', '/self_awareness')):
-        done = _roslaunch('--args', node, 'self_awareness', 'monitor.launch',
-                          f'standalone:={standalone}')
-        words = done.stdout.split()
-        assert words[0] == 'bash' and words[1].endswith('/launch/until_refused.sh')
-        assert os.path.isfile(words[1])
+@pytest.mark.parametrize('launched', [
+    ('monitor.launch',), ('monitor.launch', 'standalone:=false'), ('learn.launch',)])
+def test_who_is_respawned_is_started_so(launched: Tuple[str, ...]) -> None:
+    done = _roslaunch('--args', '/self_awareness', 'self_awareness', *launched)
+    words = done.stdout.split()
+    assert words[0] == 'bash' and words[1].endswith('/launch/until_refused.sh')
+    assert os.path.isfile(words[1])

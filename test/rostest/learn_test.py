@@ -117,6 +117,24 @@ class LearnTest(unittest.TestCase):
         self.assertTrue(glob.glob(self.model + '.logs/*.bag'))
         self.assertFalse(os.path.exists(self.model))
 
+    def check_told_once(self, why: str, *arguments: str) -> None:
+        """What a learner is launched with is refused, and roslaunch does not start it again."""
+        waits = 'learn: waiting for the end'
+        with Process('roslaunch', 'self_awareness', 'learn.launch', 'model:=' + self.model,
+                     *arguments) as process:
+            await_condition(waits, lambda: waits in process.output, 60)
+        self.assertEqual(process.output.count(why), 1)
+        self.assertNotIn('restarting process', process.output)
+
+    def test_3_arguments_that_it_cannot_use_are_told_once(self) -> None:
+        self.check_told_once("expected hours, more than 0, not 'two'", 'hours:=two')
+        self.check_told_once('Not a directory', 'logs:=/dev/null/logs')
+
+    def test_4_parameters_that_its_monitor_cannot_use_are_told_once(self) -> None:
+        with open(self.model, 'w') as file:
+            file.write('no model')
+        self.check_told_once('not a model', 'respawn:=true')
+
 
 if __name__ == '__main__':
     rospy.init_node('learning')  # as rostest calls it, too

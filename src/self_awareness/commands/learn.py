@@ -3,9 +3,7 @@ from __future__ import annotations
 
 import argparse
 import os
-import signal
 import sys
-from contextlib import suppress
 from typing import List, Optional, Sequence
 
 import rospy
@@ -16,11 +14,12 @@ from self_awareness.commands import cli
 from self_awareness.learning import programs
 from self_awareness.learning.leaving import limit_goodbye
 from self_awareness.learning.learner import Learner, Plan
+from self_awareness.learning.recorder import RecorderCrash
 from self_awareness.output_files import MODEL, check_outputs
 
 _MONITOR = 'self_awareness_node'
 _START_UP_S = 30.0
-_WRONG_USAGE = 2
+_START_AGAIN = 3
 
 _EPILOG = """\
 learn.launch runs it. The model is the parameter ~model, as of the monitor. If the file is there
@@ -30,20 +29,18 @@ If it is started again, it goes on with the logs that are there.
 
 
 def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Run the program; return its exit code (see cli.run).
+    """Run the program; return its exit code.
 
-    Under roslaunch, wrong arguments do not end it, but somebody must: launched with `respawn`, it
-    would come back with the same arguments for ever.
+    Returns:
+        See cli.run; 3 if it could go on with what it has, once it is started again.
     """
     given = sys.argv if argv is None else ['', *argv]
     # Under roslaunch, the name of a node comes with the arguments.
-    code = cli.run(_parser(), _learn, rospy.myargv(given)[1:])
-    if code == _WRONG_USAGE and any(each.startswith('__name:=') for each in given):
-        print('learn: waiting for the end: launch it again with other arguments', file=sys.stderr,
-              flush=True)
-        with suppress(KeyboardInterrupt):
-            signal.pause()
-    return code
+    try:
+        return cli.run(_parser(), _learn, rospy.myargv(given)[1:])
+    except RecorderCrash as crash:
+        print(f'learn: error: {crash}', file=sys.stderr)
+        return _START_AGAIN
 
 
 def _learn(arguments: argparse.Namespace) -> None:
@@ -53,12 +50,7 @@ def _learn(arguments: argparse.Namespace) -> None:
     if os.path.exists(model):
         rospy.loginfo('%s is there: this is the monitor; remove it to learn again', model)
     else:
-        try:
-            plan = _plan(arguments, model)
-        except (OSError, ValueError) as error:
-            print(f'learn: error: {error}', file=sys.stderr)
-            raise SystemExit(_WRONG_USAGE) from error
-        if not Learner(plan).run():
+        if not Learner(_plan(arguments, model)).run():
             return
         rospy.loginfo('%s is learned: this is the monitor from now on', model)
     _become_monitor()

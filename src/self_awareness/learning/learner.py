@@ -69,7 +69,8 @@ class Learner:
         """Learn the model; return False if the node was told to end before.
 
         Raises:
-            ValueError: another one records in the folder, or the recorder has ended by itself.
+            ValueError: another one records in the folder, or the recorder refused to.
+            RecorderCrash: the recorder has ended by itself.
         """
         with self._folder.locked() as lock:
             for line in self._folder.mend():

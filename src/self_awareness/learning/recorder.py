@@ -16,6 +16,11 @@ from self_awareness import EncodingRules, encoding_file
 from self_awareness.learning.programs import executable
 
 _END_S = 30.0  # to write the last file
+_REFUSED = 1
+
+
+class RecorderCrash(Exception):
+    """The recorder has died, and another one can go on."""
 
 
 class Recorder:
@@ -87,11 +92,14 @@ class Recorder:
         """Return whether it was told to end.
 
         Raises:
-            ValueError: it ended by itself.
+            ValueError: it refused what it was started with.
+            RecorderCrash: it ended by itself.
         """
         code = None if self._process is None else self._process.poll()
+        if code == _REFUSED:
+            raise ValueError('the recorder cannot run; it says why above')
         if code:
-            raise ValueError(f'the recorder ended (exit code {code}); it says why above')
+            raise RecorderCrash(f'the recorder crashed (exit code {code})')
         return code is not None
 
     def _on_diagnostics(self, array: DiagnosticArray) -> None:

@@ -1,14 +1,11 @@
 """`learn`: its command line, and what is no event of the robot. test/learn.test runs it."""
 from __future__ import annotations
 
-import signal
-import subprocess
-
 import pytest
 
 from self_awareness import EncodingRules
-from self_awareness.commands import learn
-from self_awareness.learning.programs import executable
+from self_awareness.commands import cli, learn
+from self_awareness.learning.recorder import RecorderCrash
 
 
 @pytest.mark.parametrize('arguments', [
@@ -27,12 +24,10 @@ def test_the_node_itself_is_no_part_of_the_robot() -> None:
     assert learn.without('/robot1/monitor', rules) == rules
 
 
-def test_wrong_usage_is_told_once_where_roslaunch_would_start_it_again() -> None:
-    with subprocess.Popen((executable('learn'), '--hours', 'two', '__name:=self_awareness'),
-                          stderr=subprocess.PIPE, text=True) as node:
-        assert node.stderr is not None
-        told = list(iter(node.stderr.readline, 'learn: waiting for the end: launch it again with '
-                                               'other arguments\n'))
-        assert 'two' in told[-1]
-        node.send_signal(signal.SIGTERM)
-        assert node.wait(60) != 0
+def test_who_can_go_on_ends_unlike_who_cannot(monkeypatch, capsys) -> None:
+    """launch/until_refused.sh lets roslaunch start it again."""
+    def crash(*_) -> int:
+        raise RecorderCrash('the recorder crashed (exit code -9)')
+    monkeypatch.setattr(cli, 'run', crash)
+    assert learn.main([]) not in (0, 1, 2)
+    assert capsys.readouterr().err == 'learn: error: the recorder crashed (exit code -9)\n'
