@@ -131,6 +131,27 @@ def test_the_search_finds_broken_links(tmp_path: Path) -> None:
     assert _broken(page) == ['gone.png', 'there.md#no-heading', '#there']
 
 
+def test_topics_services_and_parameters_of_the_nodes_exist() -> None:
+    """What a page calls `~name` is advertised, or read as a parameter, by a node of the package."""
+    code = ''.join(path.read_text(encoding='utf-8') for suffix in ('*.cpp', '*.py')
+                   for path in (ROOT / 'src').rglob(suffix))
+    there = set(re.findall(r'advertise(?:Service|<[^>]*>)\(\s*"([\w/]+)"', code))
+    there |= set(re.findall(r'[rR]eader\.\w+(?:<[^>]*>)?\(\s*"([\w/]+)"', code))
+    there |= set(re.findall(r"'~([\w/]+)'", code))
+    named = {page: re.findall(r'`~([\w/]+)`', page.read_text(encoding='utf-8')) for page in PAGES}
+    assert {'clear', 'status', 'alarm_of'} <= there and any(named.values())
+    assert {_name(page): sorted(set(names) - there) for page, names in named.items()
+            if set(names) - there} == {}
+
+
+def test_the_readme_begins_with_what_it_does() -> None:
+    """A picture, what is found in plain words, and the two commands; no word of the method."""
+    text = (ROOT / 'README.md').read_text(encoding='utf-8')
+    first = text[:text.index('scripts/test.sh')]
+    assert '![' in first and 'scripts/demo.sh' in first
+    assert re.findall(r'\b(?:events?|windows?|papers?)\b', first) == []
+
+
 def test_the_readme_is_short() -> None:
     """Who reads on for more than ten minutes has given up before."""
     assert len((ROOT / 'README.md').read_text(encoding='utf-8').split()) <= 1700
