@@ -55,6 +55,10 @@ packages_noetic_tests=(
 
 say() { printf '\n== %s\n' "$*"; }
 
+say_time() {  # WHAT SINCE: how long it took, since a value of SECONDS
+  printf '%s took %d min %d s\n' "$1" $(((SECONDS - $2) / 60)) $(((SECONDS - $2) % 60))
+}
+
 as_root() {
   if [ "$(id -u)" -eq 0 ]; then "$@"; else sudo "$@"; fi
 }
@@ -76,7 +80,7 @@ install_packages() {
 
 # install_apt PACKAGE...
 install_apt() {
-  local missing=() package
+  local missing=() package begin=$SECONDS
   for package in "$@"; do
     installed "$package" || missing+=("$package")
   done
@@ -85,6 +89,7 @@ install_apt() {
   as_root apt-get update -qq -o DPkg::Lock::Timeout=300
   as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq -o DPkg::Lock::Timeout=300 --no-install-recommends \
     "${missing[@]}" > /dev/null
+  say_time "Installing packages" "$begin"
 }
 
 source_ros() {  # ROS's setup files use variables that are not set
@@ -108,13 +113,14 @@ build() {
   mkdir -p "$workspace/src"
   ln -sfn "$checkout" "$workspace/src/self_awareness"
   [ ! -d /opt/ros/noetic ] || source_ros /opt/ros/noetic/setup.bash
-  local options=(-DPYTHON_EXECUTABLE=/usr/bin/python3)
+  local options=(-DPYTHON_EXECUTABLE=/usr/bin/python3) begin=$SECONDS
   # Debian 11's catkin caches that it has found GMock: a second run of CMake does not look for it
   # again, and has no targets of gtest. Without GMock, catkin builds gtest from its sources.
   ! on_debian_11 || options+=(-DCMAKE_DISABLE_FIND_PACKAGE_GMock=TRUE)
   find_plugins_of_debian_11
   # "|| return", because set -e has no effect inside a condition.
   catkin_make --directory "$workspace" "${options[@]}" "$@" || return
+  say_time Building "$begin"
   source_ros "$workspace/devel/setup.bash"
   find_plugins_of_debian_11
 }

@@ -28,13 +28,15 @@ stop_all() {
   done
 }
 
-# Shows how far a build is, in steps of 5 %, by the output of make.
+# Shows how far a build is, in steps of 5 %, by the output of make; and how long it took.
 progress_of_make() {
   local line next=0
   while read -r line; do
     if [[ $line =~ ^\[\ *([0-9]+)%\] ]] && [ "${BASH_REMATCH[1]}" -ge "$next" ]; then
       echo "${BASH_REMATCH[1]} % built"
       next=$((BASH_REMATCH[1] - BASH_REMATCH[1] % 5 + 5))
+    elif [[ $line =~ ^Building\ took\  ]]; then
+      echo "$line"
     fi
   done
 }

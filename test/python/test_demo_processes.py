@@ -57,9 +57,11 @@ def test_what_does_not_come_is_told(tmp_path: Path) -> None:
 
 def test_a_build_shows_how_far_it_is_while_it_goes_on(tmp_path: Path) -> None:
     make = ('echo "-- Configuring done"; for i in $(seq 0 3 99); do '
-            'printf "[%3d%%] Building CXX object a.o\\n" $i; done; echo "[100%] Built target a"')
+            'printf "[%3d%%] Building CXX object a.o\\n" $i; done; echo "[100%] Built target a"; '
+            f'source {ROOT}/scripts/prepare.sh; say_time Building $((SECONDS - 125))')
     done = run(f'({make}; until [ -e {tmp_path}/seen ]; do sleep 0.1; done)'
                f' | progress_of_make | (read -r first; touch {tmp_path}/seen; echo "$first"; cat)',
                tmp_path)
     assert done.stdout.splitlines() == [f'{percent} % built' for percent in (
-        0, 6, 12, 15, 21, 27, 30, 36, 42, 45, 51, 57, 60, 66, 72, 75, 81, 87, 90, 96, 100)]
+        0, 6, 12, 15, 21, 27, 30, 36, 42, 45, 51, 57, 60, 66, 72, 75, 81, 87, 90, 96, 100)
+    ] + ['Building took 2 min 5 s']
