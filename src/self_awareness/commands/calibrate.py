@@ -33,10 +33,10 @@ _COLUMNS = ('bag', 'fault', 'window_start_ns', 'events', 'unknown', 'score', 'la
 _LABELS = {NORMAL: 'normal', ABNORMAL: 'abnormal', LEFT_OUT: ''}
 
 _EPILOG = f"""\
-BAG@START-END stands for a part of a recording, in s from its first message.
+Name a part of a recording as BAG@START-END, in s from its first message.
 FAULT is one of {FORMS}.
-SOURCE may be *: each source in turn. The fault hits a copy of every normal recording in its
-middle, and only its source: unlike in reality, what depends on the source goes on.
+SOURCE may be *: each source in turn. A fault hits a copy of every normal recording, in its middle,
+and only its source. In reality, those who depend on the source would stop, too.
 examples:
   calibrate --model robot.model --normal wednesday.bag -o robot.model
   calibrate --model robot.model --normal wednesday.bag --inject 'crash:*' starve -o robot.model
@@ -305,20 +305,22 @@ def _parser() -> argparse.ArgumentParser:
                         help='recording of normal operation that was not trained on, or a folder '
                              'of them')
     parser.add_argument('--faulty', type=BagPart.parse, nargs='+', action='extend', default=[],
-                        metavar='BAG', help='recording with a fault, from its beginning to its '
-                        'end or, as BAG@START or BAG@START-END, in this part')
+                        metavar='BAG', help='recording with a fault: from its beginning to its '
+                        'end, or, as BAG@START or BAG@START-END, in this part only')
     parser.add_argument('--inject', type=cli.checked(InjectedFault.parse), nargs='+',
                         action='extend', default=[], metavar='FAULT',
-                        help='fault to make out of the normal recordings, see below')
+                        help='fault to make out of the normal recordings, to see how soon it is '
+                             'found; see below')
     parser.add_argument('-o', '--output', required=True, metavar='MODEL',
                         help='file to write; may be the same model')
     cli.add_detector_argument(parser)
-    parser.add_argument('--budget', type=cli.budget, metavar='N', help='evidence: false alarms an '
-                        f'hour that the limits allow (default: {limits.BUDGET:g})')
+    parser.add_argument('--budget', type=cli.budget, metavar='N', help='evidence: how many false '
+                        f'alarms an hour you allow (default: {limits.BUDGET:g})')
     parser.add_argument('--cutoff', type=cli.checked(ThresholdRule.parse),
-                        metavar='HOW', help='paper: youden: largest true less false positive '
-                        'rate; closest: closest to all found and none false; fpr=RATE: this share '
-                        'of normal windows false (default: youden)')
+                        metavar='HOW', help='paper: how to choose the threshold. youden: the '
+                        'largest true positive rate less false positive rate; closest: the closest '
+                        'to all found and none false; fpr=RATE: this share of the normal windows '
+                        'is below it (default: youden)')
     parser.add_argument('--roc', type=cli.plot_file, metavar='FILE',
                         help='draw the ROC; the name ends in .png, .pdf or .svg')
     parser.add_argument('--csv', metavar='FILE', help='write score and label of every window')

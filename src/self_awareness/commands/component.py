@@ -31,7 +31,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog='component', description=__doc__.split(': ', 1)[1])
     parser.add_argument('name', help='name of the component, or of the intruder, in the scenario')
     parser.add_argument('--scenario', help='scenario file (default: config/follow_me.yaml)')
-    parser.add_argument('--seed', type=int, default=0, help='of what is random (default: 0)')
+    parser.add_argument('--seed', type=int, default=0, help='of the random numbers (default: 0)')
     parser.add_argument('--speed', type=cli.above_zero('times the speed'), default=1.0,
                         help='how many times as fast everything goes (default: 1)')
     return parser

@@ -15,10 +15,10 @@ from self_awareness.reporting.report.diff_page import save_diff
 from self_awareness.reporting.report.page import check_installed, check_name
 
 _EPILOG = """\
-A and B are models, or one of them recordings: BAG, a part of it, BAG@START-END, or a folder of
-bags. They are counted with the encoding of the model. What matters most comes first: what is gone,
-ended or new, then the largest changes of rates, gaps and delays. Not listed is what could be
-chance, and what is less than the model's least effect (info --tuning).
+Give two models, or a model and recordings: a bag, a part of it (BAG@START-END), or a folder of
+bags. Recordings are counted with the encoding of the model. What matters most comes first: what is
+gone, ended or new, then the largest changes of rates, gaps and delays. Changes are left out that
+could be chance, or are less than the model's least effect (info --tuning).
 examples:
   diff before_update.model after_update.model
   diff robot.model today.bag --html today.html
@@ -51,7 +51,7 @@ def _parser() -> argparse.ArgumentParser:
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('before', metavar='A', help='how it was')
     parser.add_argument('after', metavar='B', help='how it is')
-    parser.add_argument('--json', action='store_true', help='for programs')
+    parser.add_argument('--json', action='store_true', help='print JSON, for programs')
     parser.add_argument('--html', type=cli.checked(check_name), metavar='FILE.html',
                         help='write a page for a browser, too')
     return parser

@@ -266,9 +266,9 @@ def _parser() -> argparse.ArgumentParser:
                         help='file written by train or calibrate, an event log, or a result bag '
                              'of score')
     how = parser.add_mutually_exclusive_group()
-    how.add_argument('--json', action='store_true', help='all but the counts, for programs')
+    how.add_argument('--json', action='store_true', help='print all but the counts, for programs')
     how.add_argument('--tuning', action='store_true',
-                     help='the numbers of the method that the model was trained with')
+                     help='print the numbers of the method that the model was trained with')
     how.add_argument('--pair', nargs=2, metavar=('A', 'B'),
                      help="draw the delays from the last A to the current B; event types are "
                           "written 'SOURCE SCOPE TYPE', and a part that only one has is enough")

@@ -22,9 +22,9 @@ _START_UP_S = 30.0
 _START_AGAIN = 3
 
 _EPILOG = """\
-learn.launch runs it. The model is the parameter ~model, as of the monitor. If the file is there
-already, this is the monitor at once. Call ~finish (std_srvs/Trigger) to end the recording early.
-If it is started again, it goes on with the logs that are there.
+Better: roslaunch self_awareness learn.launch model:=FILE. The parameter ~model names the file of
+the model. If it is there already, this is the monitor at once. Call ~finish (std_srvs/Trigger) to
+end the recording early. If it is started again, it goes on with the logs that are there.
 """
 
 

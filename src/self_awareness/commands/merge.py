@@ -12,8 +12,9 @@ from self_awareness.reporting.training_report import print_summary
 from self_awareness.training.many_bags import DistinctRecordings
 
 _EPILOG = """\
-The models must agree in encoding, windows, bins and horizon. What they learned adds up, as if one
-training had seen all of their recordings; limits and thresholds do not: calibrate the result.
+Calibrate the result: limits and thresholds are not merged. What the models learned adds up, as if
+one training had seen all of their recordings. They must agree in encoding, windows, bins and
+horizon.
 example:
   merge robot1.model robot2.model robot3.model -o fleet.model
 """

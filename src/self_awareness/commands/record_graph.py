@@ -18,8 +18,8 @@ _PERIOD_S = 1.0
 
 _EPILOG = """\
 Run it while `rosbag record --output-prefix PREFIX` (or --output-name) runs; record.launch does.
-A bag does not say who subscribes. train reads the file PREFIX...graph.yaml by itself where it lies
-beside the bag. Only the master is asked, once a second; no node notices. End it by Ctrl-C.
+End it by Ctrl-C. A bag does not say who subscribes; train finds the file PREFIX...graph.yaml by
+itself if it lies beside the bag. Only the master is asked, once a second; no node notices.
 """
 
 

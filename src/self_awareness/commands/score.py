@@ -32,16 +32,21 @@ _COLUMNS = ('bag', 'window_start_ns', 'events', 'unknown', 'score', 'threshold',
 _ROWS = 1 << 16  # of the table that are made at once
 
 _EPILOG = """\
-BAG@START-END stands for a part of a recording, in s from its first message. Times that are printed
+Name a part of a recording as BAG@START-END, in s from its first message. Times that are printed
 count from there, too. A suspicion (level WARN) is something abnormal that is too little for an
 alarm, or an event that training never saw. An incident is all alarms and suspicions of one cause.
-The CSV has one row a window: score and threshold are empty where there is none, abnormal is 1
-where the score lies below the threshold, also while settling. A name that a spreadsheet would
-compute (=, +, -, @) has a ' before it. With the paper's detector a window
-without events has no score and counts as 0.
+
+The CSV has one row a window. Score and threshold are empty where there is none. abnormal is 1 where
+the score lies below the threshold, also while settling. A name that a spreadsheet would compute
+(=, +, -, @) has a ' before it. With the paper's detector a window without events has no score and
+counts as 0.
+
 The result bag has /self_awareness/status, /self_awareness/alarm and /diagnostics, without what the
-monitor says of itself; that of several recordings has all of them, which must not overlap in time.
-It replaces another result bag, and no other file.
+monitor says of itself. Several recordings go into one bag; they must not overlap in time. It
+replaces another result bag, and no other file.
+examples:
+  score crash.bag --model robot.model --report crash.html
+  score crash.bag@20-60 --model robot.model --json crash.json
 """
 
 
@@ -206,7 +211,8 @@ def _plot(judged: Judged, window: int, threshold: Optional[float]) -> ScorePlot:
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
-        prog='score', description=__doc__.split(': ', 1)[1], epilog=_EPILOG)
+        prog='score', description=__doc__.split(': ', 1)[1], epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('bags', type=BagPart.parse, nargs='+', metavar='BAG',
                         help='a recording, or a folder of bags')
     parser.add_argument('--model', required=True, help='file written by train or calibrate')

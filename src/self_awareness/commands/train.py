@@ -25,8 +25,8 @@ from self_awareness.workers import Cluster, Workers, on_this_machine
 _OF_THE_MODEL = ('detector', 'bin', 'window', 'horizon', 'encoding')
 
 _EPILOG = """\
-The recordings should show all that is normal, but not the start-up: leave it out with --start.
-BAG@START-END stands for a part of a recording, in s from its first message.
+Record all that is normal, after several starts of the robot. Leave the start-up out with --start.
+Name a part of a recording as BAG@START-END, in s from its first message.
 The model is the same with any --jobs, and with --scheduler.
 examples:
   train monday.bag tuesday.bag -o robot.model
@@ -175,7 +175,7 @@ def _parser() -> argparse.ArgumentParser:
                              'cross from one to the next')
     parser.add_argument('-o', '--output', required=True, metavar='MODEL', help='file to write')
     parser.add_argument('--detector', choices=(EVIDENCE, PAPER, BOTH),
-                        help='who is trained: only that detector can judge by the model (default: '
+                        help='train for this detector; no other one can judge by the model (default: '
                              f'{Counting.detector})')
     parser.add_argument('--bin', type=cli.duration, metavar='S',
                         help="size of the bins of the paper's delays in s (default: "
@@ -194,17 +194,17 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('--start', type=cli.offset, metavar='S',
                         help='use each recording that is named without a part from this time '
                              'on, in s from its first message')
-    parser.add_argument('--end', type=cli.offset, metavar='S', help='and up to this one')
+    parser.add_argument('--end', type=cli.offset, metavar='S', help='use it up to this time')
     parser.add_argument('--add-to', metavar='MODEL',
                         help='add to what this model learned, in its encoding, bins and windows; '
                              'it may be the file to write. Its calibrations are dropped')
     parser.add_argument('--leave-out-holes', action='store_true',
                         help='leave out the times in which a component is silent for much longer '
-                             'than in all other recordings; without this option they are named, '
-                             'and trained on')
+                             'than in all other recordings; without this option, train names '
+                             'them and learns from them')
     parser.add_argument('--skip-bad', action='store_true',
                         help='leave out bags that cannot be used, and name them; without this '
-                             'option they end the program')
+                             'option, one such bag ends the program')
     where = parser.add_argument_group('many bags').add_mutually_exclusive_group()
     where.add_argument('--jobs', type=cli.count, metavar='N',
                        help='processes to work in (default: one for each core, and never more '
