@@ -132,7 +132,7 @@ def test_the_search_finds_broken_links(tmp_path: Path) -> None:
 
 
 def test_topics_services_and_parameters_of_the_nodes_exist() -> None:
-    """What a page calls `~name` is advertised, or read as a parameter, by a node of the package."""
+    """What a page calls `~name`, a node of the package advertises, or reads as a parameter."""
     code = ''.join(path.read_text(encoding='utf-8') for suffix in ('*.cpp', '*.py')
                    for path in (ROOT / 'src').rglob(suffix))
     there = set(re.findall(r'advertise(?:Service|<[^>]*>)\(\s*"([\w/]+)"', code))

@@ -26,6 +26,7 @@ from self_awareness.judging import evidence_judge, paper_judge
 from self_awareness.output_files import MODEL, PICTURE, TABLE, check_outputs, replacing
 from self_awareness.recordings import BagPart, RecordingEvents, expand
 from self_awareness.reporting import coverage_text, csv_text, evidence_report
+from self_awareness.reporting.number_text import rounded
 from self_awareness.reporting.plots import save_roc
 from self_awareness.stamps import SECOND_NS
 
@@ -260,7 +261,8 @@ def _print(cutoff: ThresholdRule, measured: _Measured) -> None:
 def _print_false_alarms(alarms: FalseAlarms) -> None:
     low, high = alarms.interval
     print(f'  false alarms after persistence: {alarms.count} in {alarms.hours:.3f} h, '
-          f'{alarms.per_hour:.3g} an hour (95 %: {low:.3g} to {high:.3g})')
+          f'{rounded(alarms.per_hour, 3)} an hour (95 %: {rounded(low, 3)} to '
+          f'{rounded(high, 3)})')
     needed = confidence.poisson_rate(0, 1.0)[1]
     if alarms.hours < needed:
         print(f'  too little to say whether there is less than one an hour: that takes '
@@ -318,9 +320,9 @@ def _parser() -> argparse.ArgumentParser:
                         f'alarms an hour you allow (default: {limits.BUDGET:g})')
     parser.add_argument('--cutoff', type=cli.checked(ThresholdRule.parse),
                         metavar='HOW', help='paper: how to choose the threshold. youden: the '
-                        'largest true positive rate less false positive rate; closest: the closest '
-                        'to all found and none false; fpr=RATE: this share of the normal windows '
-                        'is below it (default: youden)')
+                        'largest true positive rate less false positive rate; closest: the '
+                        'closest to all found and none false; fpr=RATE: this share of the normal '
+                        'windows is below it (default: youden)')
     parser.add_argument('--roc', type=cli.plot_file, metavar='FILE',
                         help='draw the ROC; the name ends in .png, .pdf or .svg')
     parser.add_argument('--csv', metavar='FILE', help='write score and label of every window')

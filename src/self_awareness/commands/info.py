@@ -16,6 +16,7 @@ from self_awareness.reporting import coverage_text, relations_text, tuning_text
 from self_awareness.reporting.event_log_summary import summarise_event_log
 from self_awareness.reporting.evidence_report import counts
 from self_awareness.reporting.model_summary import summarise
+from self_awareness.reporting.number_text import rounded
 from self_awareness.reporting.result_summary import summarise_results
 from self_awareness.reporting.version_summary import describe_version
 from self_awareness.stamps import moment, span
@@ -105,7 +106,7 @@ def _print_log(summary: Dict[str, Any]) -> None:
     print(f'event types  {len(summary["event_types"])}')
     print('     count  rate [Hz]')
     for kind in summary['event_types']:
-        rate = '-' if kind['rate'] is None else f'{kind["rate"]:.3g}'
+        rate = '-' if kind['rate'] is None else rounded(kind['rate'], 3)
         print(f'  {kind["count"]:8d} {rate:>10}  {kind["source"] or "-"} {kind["scope"]} '
               f'{kind["type"]}')
     print(f'graph        {_graph(summary["graph"])}')
@@ -150,11 +151,12 @@ def _print_encoding(encoding: Dict[str, Any]) -> None:
 def _rates(summary: Dict[str, Any]) -> str:
     if summary['lowest_rate'] is None:
         return ''
-    return f', {summary["lowest_rate"]:.3g} to {summary["highest_rate"]:.3g} Hz'
+    return (f', {rounded(summary["lowest_rate"], 3)} to '
+            f'{rounded(summary["highest_rate"], 3)} Hz')
 
 
 def _event_type(kind: Dict[str, Any], fewest_gaps: int) -> str:
-    rate = '-' if kind['rate'] is None else f'{kind["rate"]:.3g}'
+    rate = '-' if kind['rate'] is None else rounded(kind['rate'], 3)
     usual = f'{kind["usual_shortest"]:.3f} - {kind["usual_longest"]:.3f}' if kind['gaps'] else '-'
     rare = '' if kind['judged'] else f'  (too rare to judge: fewer than {fewest_gaps} gaps)'
     return (f'{kind["count"]:8d} {rate:>10}  {usual:<16} '

@@ -36,10 +36,10 @@ Name a part of a recording as BAG@START-END, in s from its first message. Times 
 count from there, too. A suspicion (level WARN) is something abnormal that is too little for an
 alarm, or an event that training never saw. An incident is all alarms and suspicions of one cause.
 
-The CSV has one row a window. Score and threshold are empty where there is none. abnormal is 1 where
-the score lies below the threshold, also while settling. A name that a spreadsheet would compute
-(=, +, -, @) has a ' before it. With the paper's detector a window without events has no score and
-counts as 0.
+The CSV has one row a window. Score and threshold are empty where there is none. abnormal is 1
+where the score lies below the threshold, also while settling. A name that a spreadsheet would
+compute (=, +, -, @) has a ' before it. With the paper's detector a window without events has no
+score and counts as 0.
 
 The result bag has /self_awareness/status, /self_awareness/alarm and /diagnostics, without what the
 monitor says of itself. Several recordings go into one bag; they must not overlap in time. It

@@ -175,8 +175,8 @@ def _parser() -> argparse.ArgumentParser:
                              'cross from one to the next')
     parser.add_argument('-o', '--output', required=True, metavar='MODEL', help='file to write')
     parser.add_argument('--detector', choices=(EVIDENCE, PAPER, BOTH),
-                        help='train for this detector; no other one can judge by the model (default: '
-                             f'{Counting.detector})')
+                        help='train for this detector; no other one can judge by the model '
+                             f'(default: {Counting.detector})')
     parser.add_argument('--bin', type=cli.duration, metavar='S',
                         help="size of the bins of the paper's delays in s (default: "
                              f'{Counting.bin_size / SECOND_NS:g})')

@@ -4,6 +4,7 @@ from __future__ import annotations
 from typing import Any, Dict, List, Sequence
 
 from self_awareness import Coverage
+from self_awareness.reporting.number_text import rounded
 from self_awareness.reporting.relations_text import MOST_STARTS
 from self_awareness.reporting.text_table import aligned
 
@@ -42,7 +43,8 @@ def lines(found: Sequence[Dict[str, Any]], fewest_gaps: int) -> List[str]:
     """
     if not found:
         return []
-    rows = [_COLUMNS, *((each['component'], f'{each["period"]:.3g} s' if each['period'] else '-',
+    rows = [_COLUMNS, *((each['component'],
+                         f'{rounded(each["period"], 3)} s' if each['period'] else '-',
                          _death(each, fewest_gaps), _late(each)) for each in found)]
     missing = not_watched(found)
     return aligned(rows) + ([missing] if missing else [])
@@ -50,7 +52,7 @@ def lines(found: Sequence[Dict[str, Any]], fewest_gaps: int) -> List[str]:
 
 def _death(each: Dict[str, Any], fewest_gaps: int) -> str:
     if each['death_found_after'] is not None:
-        return f'{each["death_found_after"]:.2g} s'
+        return f'{rounded(each["death_found_after"], 2)} s'
     if each['owes_answers']:
         return 'when it is asked'
     if each['gaps'] < fewest_gaps:

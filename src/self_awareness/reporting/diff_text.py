@@ -7,6 +7,7 @@ from typing import Any, Dict, List
 from self_awareness.comparison.changes import (DELAY, ENDED, GAP, GONE, NEW, RATE, Change,
                                                Comparison)
 from self_awareness.comparison.sides import Kind, Side
+from self_awareness.reporting.number_text import rounded
 
 _MOST_UNSURE = 10
 
@@ -24,9 +25,10 @@ def numbers(change: Change) -> str:
                 + (', as all of its source' if change.whole else ''))
     if before is None or after is None:
         rate = after if before is None else before
-        return f'{rate:.3g} Hz' + (', as all of its source' if change.whole else '')
+        return f'{rounded(rate, 3)} Hz' + (', as all of its source' if change.whole else '')
     if change.what == RATE:
-        return f'{before:.3g} Hz, now {after:.3g} Hz ({after / before:.2f} times)'
+        return (f'{rounded(before, 3)} Hz, now {rounded(after, 3)} Hz '
+                f'({after / before:.2f} times)')
     difference = 1000.0 * (after - before)
     usual = 'usually up to ' if change.what == GAP else ''
     return f'{usual}{_seconds(before)}, now {usual and "up to "}{_seconds(after)} ' \
@@ -128,4 +130,4 @@ def _side(side: Side) -> Dict[str, Any]:
 
 
 def _seconds(value: float) -> str:
-    return f'{1000.0 * value:.3g} ms' if value < 1.0 else f'{value:.3g} s'
+    return f'{rounded(1000.0 * value, 3)} ms' if value < 1.0 else f'{rounded(value, 3)} s'

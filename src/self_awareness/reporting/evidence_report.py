@@ -9,6 +9,7 @@ from self_awareness.calibration import confidence
 from self_awareness.calibration.results import FalseAlarms
 from self_awareness.calibration.runs import RECORDED, JudgedRun
 from self_awareness.reporting import coverage_text, relations_text
+from self_awareness.reporting.number_text import rounded
 from self_awareness.reporting.text_table import aligned
 from self_awareness.stamps import SECOND_NS
 
@@ -26,7 +27,7 @@ def print_verdict(trained: TrainedModel, coverage: Sequence[Dict[str, Any]]) -> 
     found_s = [each['death_found_after'] for each in coverage if each['death_found_after']]
     if found_s:
         print(f'deaths found: those of {len(found_s)} of {len(coverage)} components, after '
-              f'{min(found_s):.2g} s to {max(found_s):.2g} s')
+              f'{rounded(min(found_s), 2)} s to {rounded(max(found_s), 2)} s')
     for line in relations_text.to_record(relations_text.relations(trained,
                                                                   EvidenceModel(trained))):
         print(f'  {line}')
@@ -36,9 +37,9 @@ def print_promise(trained: TrainedModel) -> None:
     """Print how many false alarms the limits promise, and what would promise fewer."""
     if trained.calibration is None:
         return
-    print(f'at most {trained.calibration.false_alarms_per_hour:.2g} false alarms an hour are to '
-          'be expected (95 %), by leaving starts out in turn; twice as many hours of normal '
-          'operation, of more starts, may halve that')
+    rate = rounded(trained.calibration.false_alarms_per_hour, 2)
+    print(f'at most {rate} false alarms an hour are to be expected (95 %), by leaving starts out '
+          'in turn; twice as many hours of normal operation, of more starts, may halve that')
 
 
 def print_coverage(trained: TrainedModel, coverage: Sequence[Dict[str, Any]]) -> None:

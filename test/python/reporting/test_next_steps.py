@@ -83,12 +83,12 @@ def test_an_incident_has_the_log_and_the_commands(evidence_model: str, bag: str,
     assert '/scan' in info.find('selected_datasources').get('value').split(';')
     assert list(layout.iter('curve')) == []  # strings have no header with a stamp
     tab, = layout.iter('Tab')
-    assert tab.get('tab_name') == '/laser: 7 to 25 s'
+    assert tab.get('tab_name') == '/laser: 7 to 28 s'
 
 
 def test_plotjuggler_takes_the_layout_without_a_question(evidence_model: str, make_bag) -> None:
     """Without this version it asks; settings of bags that are missing here become 0 for good."""
-    found = section(judged(evidence_model, make_bag(without_laser(3000.0))), 'x')
+    found = section(judged(evidence_model, make_bag('b.bag', without_laser(3000.0))), 'x')
     layout = ElementTree.fromstring(found.details[found.incidents[0].key].next.layout)
     assert layout.tag == 'root' and layout.get('version') == '2.3.8'
     splitter, = layout.findall('tabbed_widget/Tab/Container/DockSplitter')
