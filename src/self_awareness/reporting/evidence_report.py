@@ -23,23 +23,20 @@ def counts(tracks: Dict[str, int]) -> str:
 
 def print_verdict(trained: TrainedModel, coverage: Sequence[Dict[str, Any]]) -> None:
     """Print what the model is worth, and then what to record next, and why."""
-    print_promise(trained)
+    if trained.calibration is not None:
+        rate = rounded(trained.calibration.false_alarms_per_hour, 2)
+        print(f'expect at most {rate} false alarms an hour (95 %; found by leaving starts out in '
+              'turn)')
     found_s = [each['death_found_after'] for each in coverage if each['death_found_after']]
     if found_s:
         print(f'deaths found: those of {len(found_s)} of {len(coverage)} components, after '
               f'{rounded(min(found_s), 2)} s to {rounded(max(found_s), 2)} s')
+    print('what to record next:')
+    print('  twice as many hours of normal operation, of more starts: that may halve the false '
+          'alarms')
     for line in relations_text.to_record(relations_text.relations(trained,
                                                                   EvidenceModel(trained))):
         print(f'  {line}')
-
-
-def print_promise(trained: TrainedModel) -> None:
-    """Print how many false alarms the limits promise, and what would promise fewer."""
-    if trained.calibration is None:
-        return
-    rate = rounded(trained.calibration.false_alarms_per_hour, 2)
-    print(f'at most {rate} false alarms an hour are to be expected (95 %), by leaving starts out '
-          'in turn; twice as many hours of normal operation, of more starts, may halve that')
 
 
 def print_coverage(trained: TrainedModel, coverage: Sequence[Dict[str, Any]]) -> None:

@@ -51,7 +51,7 @@ def test_the_limits_are_stored_with_how_they_were_found(run, trained: str, tmp_p
     assert 'alarms: 0;' in out
     # Nothing exceeded what the others showed: in 95 %, less than three come in as many hours.
     assert found.false_alarms_per_hour == pytest.approx(3.0 / (240.0 / 3600.0), rel=0.1)
-    assert f'at most {found.false_alarms_per_hour:.2g} false alarms an hour' in out
+    assert f'expect at most {found.false_alarms_per_hour:.2g} false alarms an hour' in out
     assert found.stamp > 1.7e18
     assert model.paper_calibration is None  # the paper's detector is another matter
     assert TrainedModel.load(trained).calibration.method == 'cross-fit'  # left alone
@@ -84,7 +84,8 @@ def test_relations_are_told_with_their_reasons_or_what_is_missing(run, tmp_path)
 def test_the_verdict_comes_first_then_what_to_record_then_the_table(run) -> None:
     _, out, _ = run()
     lines = out.splitlines()
-    assert lines[0].startswith('at most ')
+    assert lines[0].startswith('expect at most ')
+    assert lines.index('what to record next:') == 2
     table = next(i for i, line in enumerate(lines) if line.startswith('component '))
     assert [i for i, line in enumerate(lines) if 'record after' in line][0] < table
     assert [line for line in lines[:table] if line.startswith('deaths found: those of 3 of 3 ')]
