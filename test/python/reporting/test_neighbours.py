@@ -1,6 +1,7 @@
 """The part of the graph that the report draws, and how."""
 from __future__ import annotations
 
+import re
 import xml.etree.ElementTree as ElementTree
 
 import pytest
@@ -68,6 +69,17 @@ def test_names_are_shown_as_they_are() -> None:
     assert {'/x', '/a/very/long', '/name/of/a/node'} <= set(texts)
     assert '<script' not in drawn and ' id=' not in drawn
     assert 'class="node root"' in drawn and 'class="node other"' in drawn
+
+
+@pytest.mark.parametrize('edges', [
+    [(f'/n{i}', f'/topic_{i}', f'/n{i + 1}') for i in range(MOST_NODES - 1)],
+    [('/n0', '/topic', f'/n{i + 1}') for i in range(MOST_NODES - 1)]], ids=['a chain', 'a star'])
+def test_a_phone_shows_it_whole(edges: 'list[tuple[str, str, str]]') -> None:
+    """A chain goes down, and who has many listeners has them below each other."""
+    shown = neighbourhood(edges, [edges[0][0], edges[-1][2]])
+    assert len(shown.roles) == MOST_NODES
+    width = re.search(r'<svg width="(\d+)pt"', draw(shown))
+    assert width is not None and 4 / 3 * int(width[1]) < 360  # pixels
 
 
 def test_without_dot_it_says_what_to_install(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -101,11 +101,26 @@ def downstream(edges: Iterable[Edge], node: str) -> Set[str]:
 def draw(shown: Neighbourhood) -> str:
     """Return a neighbourhood as an element of a page (SVG); its style is in page.css.
 
+    Messages go down or to the right, as takes less width: a phone has little.
+
     Raises:
         OSError: dot fails.
     """
+    drawn = [_drawn(shown, direction) for direction in ('TB', 'LR')]
+    return min(drawn, key=_width)
+
+
+def _width(svg: str) -> int:
+    """Return the width of a drawing of dot [pt]."""
+    found = re.search(r'<svg width="(\d+)pt"', svg)
+    assert found is not None
+    return int(found[1])
+
+
+def _drawn(shown: Neighbourhood, direction: str) -> str:
     try:
-        done = subprocess.run(('dot', '-Tsvg'), input=_dot(shown).encode(), check=True,
+        done = subprocess.run(('dot', '-Tsvg', f'-Grankdir={direction}'),
+                              input=_dot(shown).encode(), check=True,
                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=_TIMEOUT_S)
     except subprocess.SubprocessError as error:
         raise OSError(f'dot cannot draw who publishes to whom: {error}') from error
@@ -153,7 +168,7 @@ def _near(beside: Mapping[str, Sequence[str]], inside: Sequence[str]) -> List[st
 
 def _dot(shown: Neighbourhood) -> str:
     numbers = {name: f'n{number}' for number, name in enumerate(shown.roles)}
-    lines = ['digraph {', 'rankdir=LR; bgcolor=transparent; nodesep=0.15; ranksep=0.3;',
+    lines = ['digraph {', 'bgcolor=transparent; nodesep=0.15; ranksep=0.3;',
              'node [shape=box, fontname="sans-serif", fontsize=12, height=0.3, '
              'margin="0.08,0.04"];',
              'edge [fontname="sans-serif", fontsize=9, arrowsize=0.6];']
