@@ -24,7 +24,7 @@ def numbers(change: Change) -> str:
         return (f'last heard at {change.end.last:.1f} s, {change.end.silent:.1f} s before the end'
                 + (', as all of its source' if change.whole else ''))
     if before is None or after is None:
-        rate = after if before is None else before
+        rate, = (each for each in (before, after) if each is not None)
         return f'{rounded(rate, 3)} Hz' + (', as all of its source' if change.whole else '')
     if change.what == RATE:
         return (f'{rounded(before, 3)} Hz, now {rounded(after, 3)} Hz '
