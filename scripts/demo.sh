@@ -78,9 +78,13 @@ say "The same from the bag that was recorded meanwhile"
 rosrun self_awareness score "$out/fault.bag" --model "$out/calibrated.model" \
   --report "$out/report.html" --plot "$out/score.png"
 
+if [ $verdict -ne 0 ]; then
+  echo "demo: error: there was no alarm as expected, see above; the logs are $out/*.log" >&2
+  exit $verdict
+fi
+
 say "What next"
 echo "See who failed, when and why:  xdg-open $out/report.html"
 echo "Learn your own robot:          source $workspace/devel/setup.bash &&" \
   "roslaunch self_awareness learn.launch hours:=2 model:=$HOME/robot.model"
 echo "Read what to do with alarms:   $checkout/docs/alarm.md"
-exit $verdict

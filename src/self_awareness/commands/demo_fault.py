@@ -78,7 +78,8 @@ def _demonstrate(_arguments: argparse.Namespace) -> None:
     for _ in waiting(_NORMAL_FOR_S, 'normal operation'):
         if operator.error_since(_STATUS) is not None:
             raise ValueError('an alarm came before the fault: '
-                             + operator.status(_STATUS).message)
+                             + operator.status(_STATUS).message
+                             + '; if this machine has other work to do, end that and start again')
     killed_at = time.time()
     pid = induction.crash(component)
     print(f'killed {component.component} (kill -9 {pid})')
