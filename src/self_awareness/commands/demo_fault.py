@@ -20,6 +20,7 @@ _AGGREGATED = '/Self-awareness/communication'
 _SETTLED_WITHIN_S = 60
 _NORMAL_FOR_S = 10
 _ALARM_WITHIN_S = 30
+_OTHER_WORK = 'if this machine has other work to do, end that and start again'
 
 
 class _Operator:
@@ -50,6 +51,11 @@ class _Operator:
         with self._changed:
             return self._last[name]
 
+    def message(self) -> str:
+        """Return what the monitor said last; empty: nothing."""
+        with self._changed:
+            return self._last[_STATUS].message if _STATUS in self._last else ''
+
     def await_message(self, text: str, seconds: float) -> bool:
         """Wait until the monitor's status says `text`."""
         with self._changed:
@@ -74,12 +80,13 @@ def _demonstrate(_arguments: argparse.Namespace) -> None:
     rospy.init_node('demo', anonymous=True, disable_signals=True)
     operator = _Operator()
     if not operator.await_message('normal communication', _SETTLED_WITHIN_S):
-        raise ValueError('the monitor does not settle; is it running, with a calibrated model?')
+        if not operator.message():
+            raise ValueError('the monitor says nothing; is it running?')
+        raise ValueError('the monitor does not settle: ' + operator.message() + '; ' + _OTHER_WORK)
     for _ in waiting(_NORMAL_FOR_S, 'normal operation'):
         if operator.error_since(_STATUS) is not None:
-            raise ValueError('an alarm came before the fault: '
-                             + operator.status(_STATUS).message
-                             + '; if this machine has other work to do, end that and start again')
+            raise ValueError('an alarm came before the fault: ' + operator.message() + '; '
+                             + _OTHER_WORK)
     killed_at = time.time()
     pid = induction.crash(component)
     print(f'killed {component.component} (kill -9 {pid})')
