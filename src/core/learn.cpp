@@ -9,7 +9,7 @@ namespace {
 
 evidence::LimitFinder::Parameters ofFinder(const Calibrator::Parameters& parameters,
                                            std::int64_t window) {
-  return {window, parameters.settle_time, parameters.false_alarms_per_hour};
+  return {window, parameters.settle_time};
 }
 
 const Model& watched(const Model& model) {
@@ -100,15 +100,15 @@ void Calibrator::addHeldOut(const Recording& recording) {
   judge(recording, 0, recording.events.size(), std::nullopt);
 }
 
-Calibration Calibrator::find() const {
-  const evidence::LimitFinder::Found found = finder_.find();
+Calibration Calibrator::find(double budget) const {
+  const evidence::LimitFinder::Found found = finder_.find(budget);
   Calibration calibration;
   const bool held_out = std::any_of(findings().begin(), findings().end(),
                                     [](const auto& recording) { return !recording.trained_on; });
   calibration.method = held_out ? Calibration::kHeldOut : Calibration::kCrossFit;
   calibration.limits = found.limits;
   calibration.relations = found.relations;
-  calibration.budget = finder_.parameters().false_alarms_per_hour;
+  calibration.budget = budget;
   calibration.false_alarms_per_hour = found.promised_rate;
   calibration.windows = finder_.windows();
   return calibration;

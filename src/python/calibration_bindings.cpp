@@ -82,13 +82,10 @@ void bindCalibration(py::module& m) {
                          "Finds the limits of a model by recordings of normal operation.\n"
                          "Other calibrators, in other processes, may judge some of them; merge() "
                          "adds their findings.")
-      .def(
-          py::init([](const ros1::TrainedModel& trained, std::int64_t settle_time, double budget) {
-            return std::make_unique<Calibrator>(trained,
-                                                Calibrator::Parameters{settle_time, budget});
-          }),
-          py::arg("trained"), py::arg("settle_time"), py::arg("budget"),
-          "settle_time: [ns]; budget: false alarms an hour")
+      .def(py::init([](const ros1::TrainedModel& trained, std::int64_t settle_time) {
+             return std::make_unique<Calibrator>(trained, Calibrator::Parameters{settle_time});
+           }),
+           py::arg("trained"), py::arg("settle_time"), "settle_time: [ns]")
       .def(
           "add_trained_on",
           [](Calibrator& self, const Stamps& stamps, const Ids& ids, std::uint64_t fingerprint,
@@ -121,12 +118,14 @@ void bindCalibration(py::module& m) {
       .def("merge", &Calibrator::merge, py::arg("findings"))
       .def(
           "find",
-          [](const Calibrator& self) {
-            core::Calibration calibration = self.find();
+          [](const Calibrator& self, double budget) {
+            core::Calibration calibration = self.find(budget);
             calibration.stamp = now();
             return calibration;
           },
-          "Calibration, without its recordings; ValueError if the recordings were too short.");
+          py::arg("budget"),
+          "Calibration, without its recordings; ValueError if the recordings were too short.\n"
+          "budget: false alarms an hour that its limits allow");
 
   using core::Learner;
   py::class_<Learner>(m, "Learner", "Learns from recordings in memory, one after the other.")

@@ -102,8 +102,8 @@ class Model:
         """
         read = [recordings.read(self.trained, part) for part in _parts(bags)]
         check_unseen(self.trained, read)
-        self.trained.calibration = limits.held_out(self.trained, read,
-                                                   DetectorParameters().settle_time, budget)
+        self.trained.calibration, = limits.held_out(self.trained, read,
+                                                    DetectorParameters().settle_time, [budget])
 
     def judge(self, bag: Bag, parameters: Optional[DetectorParameters] = None) -> Alarms:
         """Find out when a recording was abnormal, and who is to blame.

@@ -85,8 +85,8 @@ class Evidence:
         """Find the limits."""
         trained: TrainedModel = required(self._trained, self.name, 'train')
         encoded = [recording.encoded(trained.event_types) for recording in recordings]
-        trained.calibration = limits.find(
-            trained, DetectorParameters().settle_time, self._budget,
+        trained.calibration, = limits.find(
+            trained, DetectorParameters().settle_time, [self._budget],
             [HeldOut(recording.stamps, recording.ids) for recording in encoded])
 
     def judge(self, recording: WindowedEvents) -> Judged:

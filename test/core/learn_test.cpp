@@ -159,7 +159,7 @@ TEST(Learner, RefusesWhatIsNoRecording) {
   EXPECT_THROW(learner.add({}), std::invalid_argument);
   EXPECT_THROW(learner.learn(), std::logic_error);
   Learner::Parameters parameters;
-  parameters.limits.false_alarms_per_hour = 0;
+  parameters.limits.settle_time = -1;
   EXPECT_THROW(Learner(parameters, {}), std::invalid_argument);
 }
 

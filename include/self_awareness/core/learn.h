@@ -44,8 +44,6 @@ class Calibrator {
   struct Parameters {
     /// Left out at a recording's start [ns].
     std::int64_t settle_time = evidence::LimitFinder::Parameters{}.settle_time;
-    /// Allowed, > 0: the budget.
-    double false_alarms_per_hour = evidence::LimitFinder::Parameters{}.false_alarms_per_hour;
   };
 
   /// @param model only what it watches is needed, and its recordings
@@ -68,8 +66,10 @@ class Calibrator {
   void merge(const evidence::LimitFinder::Findings& findings) { finder_.merge(findings); }
 
   /// Finds the limits by all findings; the recordings and the stamp are the caller's to add.
-  /// @throw std::invalid_argument if there was too little data, in words
-  Calibration find() const;
+  /// @param budget false alarms an hour that they allow, > 0
+  /// @throw std::invalid_argument if there was too little data, or the budget is out of range, in
+  /// words
+  Calibration find(double budget = evidence::LimitFinder::kBudget) const;
 
  private:
   Calibrator(std::shared_ptr<const evidence::CrossFit> models,

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from contextlib import closing
 from dataclasses import dataclass, field
-from typing import Any, Iterable, Optional, Sequence, Tuple
+from typing import Any, Iterable, List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -73,25 +73,26 @@ class TrainedOn:
 
 
 def held_out(trained: TrainedModel, found_in: Iterable[RecordingEvents], settle_time: int,
-             budget: float) -> Calibration:
-    """Return limits by recordings that were not trained on.
+             budgets: Sequence[float]) -> List[Calibration]:
+    """Return limits by recordings that were not trained on, for each budget.
 
     Args:
         trained: the model.
         found_in: recordings of normal operation.
         settle_time: left out at the start of every recording [ns].
-        budget: false alarms an hour that the limits allow.
+        budgets: false alarms an hour that the limits allow.
 
     Raises:
         TooLittleError: the recordings are too short.
     """
     found_in = list(found_in)
-    calibration = find(trained, settle_time, budget,
-                       [HeldOut(recording.stamps, recording.ids, recording.robot_start,
-                                recording.clock_steps)
-                        for recording in found_in])
-    calibration.recordings = [recording.recording for recording in found_in]
-    return calibration
+    found = find(trained, settle_time, budgets,
+                 [HeldOut(recording.stamps, recording.ids, recording.robot_start,
+                          recording.clock_steps)
+                  for recording in found_in])
+    for calibration in found:
+        calibration.recordings = [recording.recording for recording in found_in]
+    return found
 
 
 def cross_fit(trained: TrainedModel, trained_on: Sequence[TrainedOn], settle_time: int,
@@ -109,19 +110,19 @@ def cross_fit(trained: TrainedModel, trained_on: Sequence[TrainedOn], settle_tim
         BagError: a recording cannot be read any more.
         TooLittleError: the recordings are too short.
     """
-    calibration = find(trained, settle_time, budget, trained_on, workers, keep_findings=True)
+    calibration, = find(trained, settle_time, [budget], trained_on, workers, keep_findings=True)
     calibration.recordings = trained.recordings[-len(trained_on):]
     return calibration
 
 
-def find(trained: TrainedModel, settle_time: int, budget: float, tasks: Sequence[Any],
-         workers: Optional[Workers] = None, keep_findings: bool = False) -> Calibration:
-    """Return limits by recordings; without their names, which the caller adds.
+def find(trained: TrainedModel, settle_time: int, budgets: Sequence[float], tasks: Sequence[Any],
+         workers: Optional[Workers] = None, keep_findings: bool = False) -> List[Calibration]:
+    """Return limits by recordings, for each budget; without their names, which the caller adds.
 
     Args:
         trained: the model.
         settle_time: left out at the start of every part of a recording [ns].
-        budget: false alarms an hour that the limits allow.
+        budgets: false alarms an hour that the limits allow.
         tasks: HeldOut or TrainedOn recordings.
         workers: who does the work; None: this process.
         keep_findings: the model keeps what the recordings show, for later calibrations.
@@ -130,7 +131,7 @@ def find(trained: TrainedModel, settle_time: int, budget: float, tasks: Sequence
         BagError: a recording cannot be read.
         TooLittleError: the recordings are too short.
     """
-    judging = _Judging(trained, settle_time, budget)
+    judging = _Judging(trained, settle_time)
     if not keep_findings:
         judging.calibrator.merge(trained.findings)
     with closing((workers or InProcess()).map(_judge, judging, tasks, 'limits')) as findings:
@@ -139,7 +140,7 @@ def find(trained: TrainedModel, settle_time: int, budget: float, tasks: Sequence
     if keep_findings:
         trained.findings = judging.calibrator.findings()
     try:
-        return judging.calibrator.find()
+        return [judging.calibrator.find(budget) for budget in budgets]
     except ValueError as error:
         raise TooLittleError(str(error)) from error
 
@@ -151,10 +152,10 @@ class TooLittleError(ValueError):
 class _Judging:
     """What every recording is judged by. Another process gets it without what was found."""
 
-    def __init__(self, trained: TrainedModel, settle_time: int, budget: float) -> None:
-        self._state = (trained.watched_only(), settle_time, budget)
+    def __init__(self, trained: TrainedModel, settle_time: int) -> None:
+        self._state = (trained.watched_only(), settle_time)
         self.trained = trained
-        self.calibrator = Calibrator(trained, settle_time, budget)
+        self.calibrator = Calibrator(trained, settle_time)
 
     def __reduce__(self) -> Tuple[Any, ...]:
         return _Judging, self._state

@@ -6,7 +6,7 @@ import csv
 import dataclasses
 import time
 from statistics import median
-from typing import List, NamedTuple, Optional, Sequence, Tuple
+from typing import Any, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -56,6 +56,7 @@ class _Measured(NamedTuple):
     faulty: List[JudgedRun]
     faults: List[FaultResult]
     false_alarms: FalseAlarms
+    by_budget: Dict[float, List[Dict[str, Any]]]
 
 
 def main(argv: Optional[Sequence[str]] = None) -> int:
@@ -88,10 +89,11 @@ def _calibrate(arguments: argparse.Namespace) -> None:
 
     if arguments.detector == 'evidence':
         measured = _find_limits(arguments, trained, parameters, normal_runs, faulty_runs)
-        coverage = coverage_text.summarise(trained.coverage())
+        coverage = measured.by_budget[arguments.budget]
         evidence_report.print_verdict(trained, coverage)
         _say_holes(trained, normal)
         evidence_report.print_coverage(trained, coverage)
+        evidence_report.print_budgets(measured.by_budget, arguments.budget)
         evidence_report.print_measured(measured.normal, measured.false_alarms)
         evidence_report.print_faults(measured.faulty)
         evidence_report.print_not_tried(silent)
@@ -160,11 +162,15 @@ def _find_limits(arguments: argparse.Namespace, trained: TrainedModel,
                  parameters: DetectorParameters, normal_runs: Sequence[Run],
                  faulty_runs: Sequence[Run]) -> _Measured:
     try:
+        budgets = [factor * arguments.budget for factor in (0.1, 10.0, 1.0)]
         found = limits.held_out(trained, [run.source for run in normal_runs],
-                                parameters.settle_time, arguments.budget)
+                                parameters.settle_time, budgets)
     except ValueError as error:
         raise ValueError(f'--normal: {error}; name longer recordings, or more of them') from error
-    trained.calibration = found
+    by_budget = {}
+    for calibration in found:  # the last one stays
+        trained.calibration = calibration
+        by_budget[calibration.budget] = coverage_text.summarise(trained.coverage())
     judged = judge_runs(evidence_judge(trained, parameters), trained.window,
                         [*normal_runs, *faulty_runs])
     normal, faulty = judged[:len(normal_runs)], judged[len(normal_runs):]
@@ -172,7 +178,7 @@ def _find_limits(arguments: argparse.Namespace, trained: TrainedModel,
     roc = Roc(normal_scores, labelled(faulty, ABNORMAL))
     measured = _Measured(roc.at(EVIDENCE_THRESHOLD), roc, normal, faulty,
                          fault_results(normal_scores, faulty, EVIDENCE_THRESHOLD),
-                         false_alarms(normal, trained.window))
+                         false_alarms(normal, trained.window), by_budget)
     return measured
 
 
@@ -191,7 +197,7 @@ def _find_threshold(trained: TrainedModel, parameters: DetectorParameters, cutof
     normal, faulty = judged[:len(normal_runs)], judged[len(normal_runs):]
     return _Measured(point, roc, normal, faulty,
                      fault_results(normal_scores, faulty, point.cutoff),
-                     false_alarms(normal, trained.window))
+                     false_alarms(normal, trained.window), {})
 
 
 def _normal_scores(normal: Sequence[JudgedRun], faulty: Sequence[JudgedRun],

@@ -1,6 +1,7 @@
 """Prints what `calibrate` found for the evidence detector."""
 from __future__ import annotations
 
+import math
 from statistics import median
 from typing import Any, Dict, List, Optional, Sequence, Tuple
 
@@ -13,6 +14,9 @@ from self_awareness.reporting.number_text import rounded
 from self_awareness.reporting.text_table import aligned
 from self_awareness.stamps import SECOND_NS
 
+_HOURS_OF_ROBOTS = 0.5  # that stand for all robots in the promise, docs/method.md, section 5.5
+_DIFFERENT = 0.8
+_MOST_ROWS = 10
 _COLUMNS = ('fault', 'source', 'found', 'median [s]', 'guilty first', 'among three')
 
 
@@ -25,15 +29,17 @@ def print_verdict(trained: TrainedModel, coverage: Sequence[Dict[str, Any]]) -> 
     """Print what the model is worth, and then what to record next, and why."""
     if trained.calibration is not None:
         rate = rounded(trained.calibration.false_alarms_per_hour, 2)
-        print(f'expect at most {rate} false alarms an hour (95 %; found by leaving starts out in '
-              'turn)')
+        print(f'expect at most {rate} false alarms an hour (95 of 100 robots have fewer)')
     found_s = [each['death_found_after'] for each in coverage if each['death_found_after']]
     if found_s:
         print(f'deaths found: those of {len(found_s)} of {len(coverage)} components, after '
               f'{rounded(min(found_s), 2)} s to {rounded(max(found_s), 2)} s')
     print('what to record next:')
-    print('  twice as many hours of normal operation, of more starts: that may halve the false '
-          'alarms')
+    if trained.calibration is not None:
+        more_h = (trained.calibration.windows * trained.window / SECOND_NS / 3600.0
+                  + _HOURS_OF_ROBOTS)
+        print(f'  {rounded(more_h, 2)} h more of normal operation, of other starts: if they stay '
+              'below the limits, they halve the false alarms to expect')
     for line in relations_text.to_record(relations_text.relations(trained,
                                                                   EvidenceModel(trained))):
         print(f'  {line}')
@@ -43,6 +49,38 @@ def print_coverage(trained: TrainedModel, coverage: Sequence[Dict[str, Any]]) ->
     """Print a table of all components."""
     for line in coverage_text.lines(coverage, trained.fewest_gaps):
         print(line)
+
+
+def print_budgets(by_budget: Dict[float, Sequence[Dict[str, Any]]], chosen: float) -> None:
+    """Print whose death is found how soon with a smaller budget, and with a larger one.
+
+    Args:
+        by_budget: what coverage_text.summarise() returned for the limits of each budget.
+        chosen: the one that was asked for.
+    """
+    budgets = sorted(by_budget)
+    found_s = {component: [_death_s(by_budget[budget], component) for budget in budgets]
+               for component in [each['component'] for each in by_budget[chosen]]}
+    differ = sorted(((component, times) for component, times in found_s.items()
+                     if times[-1] < _DIFFERENT * times[0]), key=lambda each: -each[1][0])
+    names = ', '.join(f'{budget:g}' for budget in budgets)
+    if not differ:
+        print(f'--budget: with {names} false alarms an hour, all deaths are found as soon')
+        return
+    print(f'--budget: deaths found with {names} false alarms an hour allowed; all others, and '
+          'late answers, as soon')
+    rows = [(component, *(f'{rounded(time, 3)} s' for time in times))
+            for component, times in differ[:_MOST_ROWS]]
+    for line in aligned([('component', *(f'{budget:g}' for budget in budgets)), *rows]):
+        print(line)
+    if len(differ) > _MOST_ROWS:
+        print(f'and {len(differ) - _MOST_ROWS} more')
+
+
+def _death_s(coverage: Sequence[Dict[str, Any]], component: str) -> float:
+    """Return after how long the death of a component is found [s]; infinite: it is not."""
+    found = next(each for each in coverage if each['component'] == component)
+    return found['death_found_after'] or math.inf
 
 
 def print_measured(normal: Sequence[JudgedRun], alarms: FalseAlarms) -> None:

@@ -43,7 +43,7 @@ class Learned {
 
  private:
   Limits limitsOf(const std::vector<Events>& training, const std::vector<Events>& calibration) {
-    LimitFinder finder(models_.model(), {kWindow, 5 * kSecond, 0.5});
+    LimitFinder finder(models_.model(), {kWindow, 5 * kSecond});
     const auto add = [&](const Events& events, const std::shared_ptr<const Model>& judging) {
       finder.startRecording(judging);
       for (const Event& event : events) {

@@ -169,7 +169,7 @@ TEST(EvidenceTuning, EveryEndOfARangeGivesLimitsOrSaysWhyNot) {
       Tuning tuning;
       set(tuning, number.name, end);
       const auto model = std::make_shared<Model>(watch(first, second, {}, tuning));
-      LimitFinder finder(model, {kWindow, 5 * kSecond, 0.5});
+      LimitFinder finder(model, {kWindow, 5 * kSecond});
       const std::string error = errorOf([&] {
         for (const unsigned seed : {3U, 4U}) {
           finder.startRecording(model);
@@ -196,7 +196,7 @@ TEST(EvidenceTuning, WithoutARecordingThereAreNoLimitsWhateverTheLeastTime) {
   set(tuning, "least_time", tuningNumber("least_time").least);
   const auto model =
       std::make_shared<Model>(watch(countsOf({robot(1)}), countsOf({robot(2)}), {}, tuning));
-  LimitFinder finder(model, {kWindow, 5 * kSecond, 0.5});
+  LimitFinder finder(model, {kWindow, 5 * kSecond});
   EXPECT_THROW(finder.find(), std::invalid_argument);
 }
 

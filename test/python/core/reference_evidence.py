@@ -275,7 +275,7 @@ class ReferenceModel:
         return -math.log((left + longest * math.exp(-age / longest))
                          / (math.fsum(gaps) + longest))
 
-    def rate(self, kind: str, count: int) -> float:
+    def rate(self, kind: str, count: float) -> float:
         """Return how many spreads more than usual came in 2 s."""
         counts = self.learned.rates[kind]
         mean = sum(counts) / max(len(counts), 1)

@@ -28,6 +28,11 @@ PAUSES = 10
 PRIOR_PAUSES = 2
 PAUSES_IN_RECORDING = 25
 OWED_OF_SILENCE = 0.9
+START_TIME = 60 * SECOND
+RATE_SPAN = 2 * SECOND
+QUIETEST = 0.58
+HOURS_OF_ROBOTS = 0.5
+POOLS_OF_GAPS = ('fast timers', 'timers', 'others')
 POOLS = ('fast timers', 'timers', 'others', 'rate', 'pairs', 'deadlines')
 CHUNK = 120 * SECOND
 LEAST_GAIN_LEFT = 0.7
@@ -135,10 +140,13 @@ def left_out(parts: Sequence[Part],
     return exceeded, hours or all_hours
 
 
-def highest_rate(count: int, hours: float) -> float:
+def highest_rate(exceeded: int, hours: float) -> float:
     """Return the rate that is not below the true one in 95 %."""
-    shape = count + 1.0
-    return shape * (1.0 - 1.0 / (9.0 * shape) + 1.6449 / (3.0 * math.sqrt(shape))) ** 3 / hours
+    if exceeded == 0:
+        return QUIETEST / (HOURS_OF_ROBOTS + hours)
+    shape = exceeded / 2
+    chi = 1.0 - 1.0 / (9.0 * shape) + 1.6449 / (3.0 * math.sqrt(shape))
+    return shape * chi ** 3 / (HOURS_OF_ROBOTS + hours)
 
 
 class Tail(NamedTuple):
@@ -250,12 +258,20 @@ class ReferenceLimits:
 
     def _longest_gaps(self, kind: str) -> List[float]:
         """Return the longest gaps of the recordings of the training, and of parts of others."""
-        begins = self._is_mostly_silent(kind)
-        longest = [float(max(seen.longest_gaps[kind], seen.firsts[kind] if begins else 0))
-                   for seen in self._training()]
+        pause = 0 if self._is_mostly_silent(kind) else START_TIME
+        longest: List[float] = []
+        for seen in self._training():
+            first = seen.firsts[kind] if seen.events[kind] else seen.end - seen.start
+            longest.append(float(max(seen.longest_gaps[kind] if seen.events[kind] else 0,
+                                     first if first > pause else 0)))
         for number, recording in enumerate(self._recordings):
             if not recording.trained_on:
-                longest += self._longest_gaps_of_parts(number, kind)
+                of_parts = self._longest_gaps_of_parts(number, kind)
+                begin = recording.events[0][0]
+                end = next((t for t, other in recording.events if other == kind),
+                           recording.events[-1][0])
+                of_parts[0] = max(of_parts[0], end - begin if end - begin > pause else 0)
+                longest += of_parts
         return [gap + self._window if gap else 0.0 for gap in longest]
 
     def _is_mostly_silent(self, kind: str) -> bool:
@@ -313,8 +329,10 @@ class ReferenceLimits:
         limits = [math.nan] * len(self._model.tracks)
         judged_tracks: Dict[bool, List[Tuple[Sequence[float], float, float]]] = {True: [],
                                                                                  False: []}
-        for pool, tracks in pools.items():
-            of_gaps = pool in ('fast timers', 'timers', 'others')
+        silent_for: Dict[str, float] = {}
+        # Silences first: what they bring by themselves is no evidence of a rate.
+        for pool in sorted(pools, key=lambda pool: pool not in POOLS_OF_GAPS):
+            tracks, of_gaps = pools[pool], pool in POOLS_OF_GAPS
             seen = [(self._longest_gaps(self._model.tracks[index][1]) if of_gaps
                      else self._largest(index), self._model.least_limit(self._model.tracks[index]))
                     for index in tracks]
@@ -324,8 +342,9 @@ class ReferenceLimits:
             for index, (largest, least) in zip(tracks, seen):
                 own = (margin if of_gaps else
                        max(margin, min(held_out.excess(largest, least), MOST_OWN_MARGIN)))
-                found = max(least, own * max(*largest, LEAST_SHARE * least))
                 track = self._model.tracks[index]
+                found = max(least, own * max(*largest, LEAST_SHARE * least),
+                            self._of_silence(track, silent_for.get(track[1], 0.0)))
                 if of_gaps:
                     hours = sum(part.hours for part in with_gaps)
                     starts = len({part.start for part, gap in zip(with_gaps, largest) if gap > 0})
@@ -337,10 +356,12 @@ class ReferenceLimits:
                         found = max(found, min(rare, longest))
                     mean = self._model.both.mean_gap(track[1])
                     recorded = self._longest_recording()
-                    if max(largest) - self._window > max(recorded / PAUSES_IN_RECORDING,
-                                                         MOST_MEAN_GAPS * mean):
+                    again = max(sorted(largest)[-2:][0] - self._window if len(largest) > 1 else 0,
+                                *sorted(self._gaps(track[1]))[-2:-1])
+                    if again > max(recorded / PAUSES_IN_RECORDING, MOST_MEAN_GAPS * mean):
                         all_time = min(hours * HOUR, PAUSES_IN_RECORDING * recorded)
                         found = max(found, rare, self._window + all_time)
+                    silent_for[track[1]] = found - self._window
                 limits[index] = self._limit(track, max(largest), found)
                 if not math.isnan(limits[index]):
                     judged_tracks[of_gaps].append(
@@ -349,11 +370,24 @@ class ReferenceLimits:
         evidence, hours = left_out(judged, judged_tracks[False])
         return limits, highest_rate(gaps + evidence, max(gap_hours, hours))
 
-    def _tail(self, kind: str, hours: float, starts: int) -> Tail:
+    def _gaps(self, kind: str) -> List[int]:
+        """Return all gaps of the training, and the longest ones of parts of others."""
         gaps = list(self._model.both.gaps[kind])
         for number, recording in enumerate(self._recordings):
             if not recording.trained_on:
                 gaps += [int(gap) for gap in self._longest_gaps_of_parts(number, kind)]
+        return gaps
+
+    def _of_silence(self, track: Track, age: float) -> float:
+        """Return the evidence that a silence that is normal brings by itself."""
+        if track[0] != 'fewer':
+            return 0.0
+        counts = self._model.learned.rates[track[1]]
+        mean = sum(counts) / max(len(counts), 1)
+        return -self._model.rate(track[1], mean * max(1.0 - age / RATE_SPAN, 0.0))
+
+    def _tail(self, kind: str, hours: float, starts: int) -> Tail:
+        gaps = self._gaps(kind)
         usual = REGULAR * self._model.both.mean_gap(kind)
         longest = [gap for gap in sorted(gaps)[-PAUSES:] if gap > usual]
         shortest = float(longest[0]) if len(longest) == PAUSES else usual
@@ -374,6 +408,8 @@ class ReferenceLimits:
         both = self._model.both
         if channel == 'overdue':
             return self._model.overdue(kind, round(found - self._window))
+        if channel == 'fewer':
+            return found if found < -self._model.rate(kind, 0) else math.nan
         if channel == 'deadlines':
             wait = largest * (both.mean_gap(other) if self._model.counts_requests(track)
                               else SECOND)

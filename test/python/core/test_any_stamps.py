@@ -173,13 +173,13 @@ def test_evidence_is_a_number_that_does_not_depend_on_what_was_before_the_clock_
 def test_limits_are_numbers(all_events: List[List[Event]], normal: List[List[Event]]) -> None:
     trained = trained_on(all_events)
     assume(len(EvidenceModel(trained).tracks))
-    calibrator = Calibrator(trained, SETTLE, 0.5)
+    calibrator = Calibrator(trained, SETTLE)
     ids = ids_of(trained)
     for events in normal:
         calibrator.add_held_out(arrays(events)[0],
                                 np.array([ids.get(kind, len(ids)) for _, kind in events]))
     try:
-        found = calibrator.find()
+        found = calibrator.find(0.5)
     except ValueError as refused:
         assert 'too little normal operation' in str(refused)
         reject()

@@ -224,7 +224,7 @@ def test_the_limits(learned: Robot, held_out: bool) -> None:
                  (robot(random.Random(9), 40.0, 0.0), None)]
     else:
         parts = [(events, half) for half in (0, 1) for events in learned.halves[half]]
-    calibrator = Calibrator(learned.trained, SETTLE, BUDGET)
+    calibrator = Calibrator(learned.trained, SETTLE)
     for events, half in parts:
         if half is None:
             calibrator.add_held_out(*learned.arrays(events))
@@ -234,7 +234,7 @@ def test_the_limits(learned: Robot, held_out: bool) -> None:
         learned.reference,
         [Judged(events, learned.reference if half is None else learned.reference_of_half[half],
                 half is not None) for events, half in parts], WINDOW, SETTLE, BUDGET)
-    limits_found = calibrator.find()
+    limits_found = calibrator.find(BUDGET)
     assert limits_found.windows == expected.windows
     assert len(limits_found.relations) == len(expected.relations)
     for found, relation in zip(limits_found.relations, expected.relations):

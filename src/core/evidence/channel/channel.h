@@ -83,6 +83,9 @@ class Expectation {
   virtual std::unique_ptr<ChannelState> start() const = 0;
   /// Least limit that a track may have, in units of its evidence (docs/method.md, section 5.3).
   virtual double leastLimit(std::size_t track) const = 0;
+  /// Evidence that a normal silence brings by itself, in units of the track's.
+  /// @param age up to which a silence of the later type is normal [ns]
+  virtual double ofSilence(std::size_t /*track*/, double /*age*/) const { return 0; }
   /// The limit of a track, in units of its evidence; NaN: of no use (docs/method.md, section 5.4).
   /// @param largest that was seen: evidence, or, of silences, their length [ns]
   /// @param most that is normal, in the same unit

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "self_awareness/core/evidence/channel/model.h"
 
@@ -15,10 +16,19 @@ class ExpectedRates : public Expectation {
 
   std::unique_ptr<ChannelState> start() const override;
   double leastLimit(std::size_t /*track*/) const override { return least_limit_; }
+  double ofSilence(std::size_t track, double age) const override {
+    const EventId id = typeOf(track);
+    const double heard = std::max(1 - age / static_cast<double>(kRateSpan), 0.0);
+    return sign_ < 0 ? evidence(id, heard * rates_[id].mean) : 0;
+  }
+  double limit(std::size_t track, double /*largest*/, double most) const override {
+    const bool reached = sign_ > 0 || most < evidence(typeOf(track), 0);
+    return reached ? most : std::numeric_limits<double>::quiet_NaN();
+  }
 
   /// How many spreads a count lies above the mean, or below it if the sign is -1: z of the
   /// section.
-  double evidence(EventId id, std::uint32_t count) const {
+  double evidence(EventId id, double count) const {
     return sign_ * (count - rates_[id].mean) / rates_[id].spread;
   }
   /// The count that lies so many spreads above the mean.

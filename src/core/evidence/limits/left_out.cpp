@@ -5,6 +5,12 @@
 #include <map>
 
 namespace self_awareness::core::evidence {
+namespace {
+
+/// What is known of robots says as much as so many hours of one.
+constexpr double kHoursOfRobots = 0.5;
+
+}  // namespace
 
 LeftOut::LeftOut(const std::vector<Part>& parts, const Tuning& tuning)
     : parts_(parts), share_of_least_(tuning.share_of_least), exceeded_(parts.size(), false) {
@@ -64,11 +70,19 @@ double LeftOut::hours() const {
   return judged > 0 ? judged : all;
 }
 
-double highestRate(std::size_t count, double time) {
-  // Wilson and Hilferty's quantile of the chi-squared distribution, 1 % too low at most.
+double highestRate(std::size_t exceeded, double hours) {
+  // The rates of robots are taken for gamma distributed: few alarms on most, many on some. The
+  // posterior is one, too; this is its quantile.
+  constexpr double kQuietest = 0.58;  // of the shape that was learned from robots, 0.1
+  constexpr double kRaised = 0.5;  // alarms of one exceeded limit: persistence leaves out others
   constexpr double kQuantile = 1.6449;  // of the normal distribution, 95 %
-  const double shape = static_cast<double>(count) + 1;
-  return shape * std::pow(1 - 1 / (9 * shape) + kQuantile / (3 * std::sqrt(shape)), 3) / time;
+  const double shape = kRaised * static_cast<double>(exceeded);
+  // Wilson and Hilferty's quantile of the gamma distribution, 3 % too low at most from 1/2 on.
+  const double alarms =
+      exceeded == 0
+          ? kQuietest
+          : shape * std::pow(1 - 1 / (9 * shape) + kQuantile / (3 * std::sqrt(shape)), 3);
+  return alarms / (kHoursOfRobots + hours);
 }
 
 }  // namespace self_awareness::core::evidence

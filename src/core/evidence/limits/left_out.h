@@ -44,10 +44,10 @@ class LeftOut {
   std::vector<bool> exceeded_;   // by part
 };
 
-/// The rate that is not below the true one with a probability of 95 %: the upper limit of
-/// Poisson's distribution.
-/// @param count of events
-/// @param time that they were counted in, > 0
-double highestRate(std::size_t count, double time);
+/// False alarms an hour of a robot that are not more with a probability of 95 %, by what its
+/// recordings show, and by what robots are like (docs/method.md, section 5.5).
+/// @param exceeded parts whose limits were exceeded
+/// @param hours of all parts that were looked at, > 0
+double highestRate(std::size_t exceeded, double hours);
 
 }  // namespace self_awareness::core::evidence

@@ -31,17 +31,16 @@ double sumOf(const std::vector<Part>& parts) {
 
 /// False alarms an hour that limits are made for. By the training alone, they promise one in so
 /// many times the time that was seen at best.
-double budgetOf(const LimitFinder::Findings& findings, const LimitFinder::Parameters& parameters,
+double budgetOf(const LimitFinder::Findings& findings, std::int64_t window, double budget,
                 double most_of_training) {
   std::uint64_t windows = 0;
   for (const LimitFinder::Recording& recording : findings) {
     if (!recording.trained_on) {
-      return parameters.false_alarms_per_hour;
+      return budget;
     }
     windows += recording.windows;
   }
-  return std::max(parameters.false_alarms_per_hour,
-                  1 / (most_of_training * hoursOf(windows, parameters.window)));
+  return std::max(budget, 1 / (most_of_training * hoursOf(windows, window)));
 }
 
 /// Number of pools that share the budget: silences have three, others one for each label.
@@ -64,11 +63,12 @@ double numberOfPools(const Tuning& tuning) {
 }  // namespace
 
 LimitSearch::LimitSearch(const Model& model, const LimitFinder::Findings& findings,
-                         const std::vector<Relation>& relations,
-                         const LimitFinder::Parameters& parameters)
+                         const std::vector<Relation>& relations, std::int64_t window,
+                         double budget)
     : model_(model),
       tuning_(model.tuning()),
-      parameters_(parameters),
+      window_(window),
+      silent_for_(model.size(), 0),
       limits_(model.tracks().size(), kNone) {
   gatherParts(findings);
   LeftOut gaps(with_gaps_, tuning_);
@@ -81,7 +81,7 @@ LimitSearch::LimitSearch(const Model& model, const LimitFinder::Findings& findin
     }
   }
   const double share =
-      budgetOf(findings, parameters, tuning_.most_of_training) / numberOfPools(tuning_);
+      budgetOf(findings, window, budget, tuning_.most_of_training) / numberOfPools(tuning_);
   for (const auto& [pool, tracks] : pools) {
     search(pool.first, tracks, share, pool.first == Kind::kEvidence ? evidence : gaps);
   }
@@ -106,15 +106,15 @@ void LimitSearch::gatherParts(const LimitFinder::Findings& findings) {
     longest_recording_ = std::max(longest_recording_, length);
   }
   for (std::size_t k = 0; k < findings.size(); ++k) {
-    const double hours = hoursOf(findings[k].windows, parameters_.window);
+    const double hours = hoursOf(findings[k].windows, window_);
     longest_recording_ = std::max(longest_recording_, hours * kHour);
     for (const LimitFinder::Recording::Part& part : findings[k].parts) {
-      const Part its{starts[training.size() + k], hoursOf(part.windows, parameters_.window)};
+      const Part its{starts[training.size() + k], hoursOf(part.windows, window_)};
       judged_.push_back(its);
       judged_parts_.push_back(&part);
       if (!findings[k].trained_on) {
         with_gaps_.push_back(its);
-        gap_parts_.push_back(&part);
+        gap_parts_.push_back({&part, &findings[k]});
       }
     }
   }
@@ -150,15 +150,21 @@ bool LimitSearch::isMostlySilent(EventId id) const {
 
 std::vector<double> LimitSearch::gapsOf(EventId id, bool mostly_silent) const {
   std::vector<double> longest;
+  const std::int64_t pause = mostly_silent ? 0 : toNanoseconds(tuning_.start_time);
+  const auto longestOf = [pause](std::int64_t gap, std::int64_t first) {
+    return static_cast<double>(first > pause ? std::max(gap, first) : gap);
+  };
   for (const Statistics::Recording& recording : model_.statistics().recordings()) {
     const bool heard = id < recording.events.size() && recording.events[id] > 0;
-    longest.push_back(heard ? static_cast<double>(recording.longest_gaps[id]) : 0);
-    if (heard && mostly_silent) {
-      longest.back() = std::max(longest.back(), static_cast<double>(recording.firsts[id]));
-    }
+    longest.push_back(heard ? longestOf(recording.longest_gaps[id], recording.firsts[id])
+                            : longestOf(0, recording.end - recording.start));
   }
-  for (const LimitFinder::Recording::Part* part : gap_parts_) {
-    longest.push_back(static_cast<double>(part->longest_gaps[id]));
+  for (const GapPart& part : gap_parts_) {
+    const std::vector<std::int64_t>& firsts = part.of->firsts;
+    const bool begins = part.said == &part.of->parts.front() && !firsts.empty();
+    const std::int64_t never = part.of->end - part.of->start;
+    const std::int64_t first = !begins ? 0 : firsts[id] < 0 ? never : firsts[id];
+    longest.push_back(longestOf(part.said->longest_gaps[id], first));
   }
   // Windows tell ages no better than this, and hiccups of a host add to a gap, however long.
   for (double& gap : longest) {
@@ -196,13 +202,17 @@ void LimitSearch::search(Kind kind, const std::vector<Seen>& tracks, double shar
                             : std::max(margin, std::min(held_out.excess(seen.largest, seen.least),
                                                         tuning_.most_own_margin));
     const double largest = *std::max_element(seen.largest.begin(), seen.largest.end());
+    const Expectation& expected = model_.expectation(seen.track);
+    double& silent_for = silent_for_[model_.tracks()[seen.track].to];
     const double found =
-        std::max(seen.least, own * std::max(largest, tuning_.share_of_least * seen.least));
+        std::max({seen.least, own * std::max(largest, tuning_.share_of_least * seen.least),
+                  expected.ofSilence(seen.track, silent_for)});
     const double most = gaps ? longestAge(kind, seen, largest - window(), found - window(),
                                           share / static_cast<double>(tracks.size()))
                              : found;
+    silent_for = gaps ? most : silent_for;
     double& limit = limits_[seen.track];
-    limit = model_.expectation(seen.track).limit(seen.track, largest, most);
+    limit = expected.limit(seen.track, largest, most);
     if (!std::isnan(limit)) {
       left_out.add(seen.largest, seen.least, gaps ? (most + window()) / largest : margin);
     }
@@ -212,7 +222,8 @@ void LimitSearch::search(Kind kind, const std::vector<Seen>& tracks, double shar
 double LimitSearch::longestAge(Kind kind, const Seen& seen, double largest, double age,
                                double rate) const {
   const double starts = startsThatHeard(seen);
-  const double rare = tailOf(seen, starts).age(rate);
+  const Statistics::Type gaps = gapsWithParts(model_.tracks()[seen.track].to);
+  const double rare = tailOf(gaps, seen.track, starts).age(rate);
   if (kind == Kind::kOthers) {
     // Pauses of one start may be a host's hiccups.
     const double most = starts > 1 ? tuning_.most_tail_margin : tuning_.most_tail_margin_of_start;
@@ -220,7 +231,12 @@ double LimitSearch::longestAge(Kind kind, const Seen& seen, double largest, doub
   }
   const double told = longest_recording_ / tuning_.pauses_in_recording;
   const double mean_gap = model_.meanGap(model_.tracks()[seen.track].to);
-  if (largest > std::max(told, tuning_.most_mean_gaps * mean_gap)) {
+  std::vector<double> longest = seen.largest;
+  std::sort(longest.rbegin(), longest.rend());
+  const double again =
+      std::max(longest.size() > 1 ? longest[1] - window() : 0,
+               gaps.longest_gaps.size() > 1 ? static_cast<double>(gaps.longest_gaps[1]) : 0);
+  if (again > std::max(told, tuning_.most_mean_gaps * mean_gap)) {
     // What comes when something happens may stay away for as long as nothing does. Recordings
     // that are hardly longer than a pause do not say how long that is.
     const double all = sumOf(with_gaps_) * kHour;
@@ -239,12 +255,16 @@ double LimitSearch::startsThatHeard(const Seen& seen) const {
   return static_cast<double>(starts.size());
 }
 
-GapTail LimitSearch::tailOf(const Seen& seen, double starts) const {
-  const EventId id = model_.tracks()[seen.track].to;
+Statistics::Type LimitSearch::gapsWithParts(EventId id) const {
   Statistics::Type gaps = model_.statistics().type(id);
-  for (const LimitFinder::Recording::Part* part : gap_parts_) {
-    gaps.addGap(part->longest_gaps[id]);
+  for (const GapPart& part : gap_parts_) {
+    gaps.addGap(part.said->longest_gaps[id]);
   }
+  return gaps;
+}
+
+GapTail LimitSearch::tailOf(Statistics::Type gaps, std::size_t track, double starts) const {
+  const EventId id = model_.tracks()[track].to;
   gaps.longest_gaps.resize(
       std::min(gaps.longest_gaps.size(), static_cast<std::size_t>(tuning_.pauses)));
   // What began before the first event of a recording, or ended after its last one.

@@ -19,8 +19,10 @@ class LimitSearch {
  public:
   /// @param model must outlive this, as the findings and the relations must
   /// @param relations by track; those that are not watched get no limit
+  /// @param window length of one [ns]
+  /// @param budget false alarms an hour that the limits allow, > 0
   LimitSearch(const Model& model, const LimitFinder::Findings& findings,
-              const std::vector<Relation>& relations, const LimitFinder::Parameters& parameters);
+              const std::vector<Relation>& relations, std::int64_t window, double budget);
 
   /// Limits by track; NaN: not judged.
   const std::vector<double>& limits() const { return limits_; }
@@ -40,14 +42,20 @@ class LimitSearch {
     std::vector<double> largest;  // by part
   };
 
+  /// A part of a recording that was not trained on.
+  struct GapPart {
+    const LimitFinder::Recording::Part* said = nullptr;
+    const LimitFinder::Recording* of = nullptr;
+  };
+
   void gatherParts(const LimitFinder::Findings& findings);
   /// What a track showed, and the pool that it belongs to.
   std::pair<Pool, Seen> seenBy(std::size_t track) const;
   /// Whether it is silent for more than half of the time of the recordings that it is heard in:
   /// when it does not begin at once, that is a pause, and no start-up.
   bool isMostlySilent(EventId id) const;
-  /// Longest gaps by part [ns], as long as windows can tell them; of who is mostly silent, also
-  /// the times to its first events.
+  /// Longest gaps by part [ns], as long as windows can tell them. Also the times to its first
+  /// events where these are no start-up, of recordings that never heard it all of their time.
   std::vector<double> gapsOf(EventId id, bool mostly_silent) const;
   Kind kindOfGaps(const Seen& seen) const;
   /// Finds the limits of a pool.
@@ -61,21 +69,25 @@ class LimitSearch {
   double longestAge(Kind kind, const Seen& seen, double largest, double age, double rate) const;
   /// Number of starts with a gap of an event type whose silence is judged.
   double startsThatHeard(const Seen& seen) const;
-  /// Of the gaps of training and of the recordings.
+  /// Gaps of the training, and the longest ones of parts.
+  Statistics::Type gapsWithParts(EventId id) const;
+  /// @param gaps of gapsWithParts()
   /// @param starts that heard it
-  GapTail tailOf(const Seen& seen, double starts) const;
-  double window() const { return static_cast<double>(parameters_.window); }
+  GapTail tailOf(Statistics::Type gaps, std::size_t track, double starts) const;
+  double window() const { return static_cast<double>(window_); }
 
   const Model& model_;
   const Tuning& tuning_;
-  const LimitFinder::Parameters& parameters_;
+  std::int64_t window_;
   // Of the training, the gaps of each recording are known; the other evidence only where its
   // recordings were judged by each other.
   std::vector<Part> judged_;
   std::vector<const LimitFinder::Recording::Part*> judged_parts_;
   std::vector<Part> with_gaps_;  // the recordings of the training first
-  std::vector<const LimitFinder::Recording::Part*> gap_parts_;
+  std::vector<GapPart> gap_parts_;
   double longest_recording_ = 0;  // [ns]
+  /// Ages up to which silences are normal [ns], by id; silences are searched first.
+  std::vector<double> silent_for_;
 
   std::vector<double> limits_;
   double rate_ = 0;

@@ -18,9 +18,6 @@ void LimitFinder::Parameters::validate() const {
   if (window <= 0 || settle_time < 0) {
     throw std::invalid_argument("window must be more than 0 ns, settle_time 0 or more");
   }
-  if (!(false_alarms_per_hour > 0) || !std::isfinite(false_alarms_per_hour)) {
-    throw std::invalid_argument("the budget of false alarms an hour must be more than 0");
-  }
 }
 
 LimitFinder::LimitFinder(std::shared_ptr<const Model> model, const Parameters& parameters,
@@ -169,7 +166,10 @@ std::uint64_t LimitFinder::windows() const {
   return windows;
 }
 
-LimitFinder::Found LimitFinder::find() const {
+LimitFinder::Found LimitFinder::find(double budget) const {
+  if (!(budget > 0) || !std::isfinite(budget)) {
+    throw std::invalid_argument("the budget of false alarms an hour must be more than 0");
+  }
   if (model_->tracks().empty()) {
     throw std::invalid_argument("the model watches nothing, as no event type has " +
                                 std::to_string(std::llround(model_->tuning().fewest_gaps)) +
@@ -191,7 +191,7 @@ LimitFinder::Found LimitFinder::find() const {
   }
   Found found;
   found.relations = findRelations();
-  const LimitSearch search(*model_, findings_, found.relations, parameters_);
+  const LimitSearch search(*model_, findings_, found.relations, parameters_.window, budget);
   found.limits.tracks = search.limits();
   found.limits.firsts = latestFirsts();
   found.promised_rate = search.rate();

@@ -50,11 +50,14 @@ TEST(LeftOut, APartCountsOnceWhateverNumberOfTracksExceed) {
   EXPECT_EQ(left_out.exceeded(), 2U);
 }
 
-TEST(LeftOut, TheHighestRateIsThatOfPoissonsDistribution) {
-  EXPECT_NEAR(highestRate(0, 1), 2.996, 0.03);
-  EXPECT_NEAR(highestRate(1, 1), 4.744, 0.03);
-  EXPECT_NEAR(highestRate(10, 1), 16.96, 0.03);
-  EXPECT_NEAR(highestRate(100, 10), 11.81, 0.03);
+TEST(LeftOut, TheHighestRateIsThatOfRobotsAndOfWhatOneShows) {
+  // 95 % quantiles of gamma distributions; half an hour is known of all robots.
+  EXPECT_NEAR(highestRate(0, 0.5), 0.58, 0.01);
+  EXPECT_NEAR(highestRate(1, 0.5), 1.92, 0.06);
+  EXPECT_NEAR(highestRate(2, 0.5), 2.996, 0.03);
+  EXPECT_NEAR(highestRate(20, 0.5), 15.71, 0.03);
+  EXPECT_NEAR(highestRate(200, 9.5), 11.70, 0.03);
+  EXPECT_LT(highestRate(0, 10), 0.06) << "hours without an alarm promise more";
 }
 
 }  // namespace

@@ -23,11 +23,13 @@ class LimitFinder : private WindowObserver {
   struct Parameters {
     std::int64_t window = kDefaultWindow;   ///< length of a window [ns]
     std::int64_t settle_time = 5000000000;  ///< left out at a recording's start [ns]
-    double false_alarms_per_hour = 0.5;     ///< allowed, > 0
 
     /// @throw std::invalid_argument if a value is out of range.
     void validate() const;
   };
+
+  /// False alarms an hour that limits allow by default.
+  static constexpr double kBudget = 0.5;
 
   /// What one recording says. It is cut into at most kMostParts parts of one length.
   struct Recording {
@@ -85,9 +87,10 @@ class LimitFinder : private WindowObserver {
     std::vector<Relation> relations;
   };
   /// Finds the limits by all findings.
+  /// @param budget false alarms an hour that they allow, > 0
   /// @throw std::invalid_argument if there was too little data: less than its tuning asks for, or
-  /// so little to train on that the model has no tracks
-  Found find() const;
+  /// so little to train on that the model has no tracks; or if the budget is out of range
+  Found find(double budget = kBudget) const;
 
   /// As given to the constructor.
   const Parameters& parameters() const { return parameters_; }
