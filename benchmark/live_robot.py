@@ -67,11 +67,7 @@ def _master_answers() -> bool:
 
 
 class Robot:
-    """The publishers of one configuration. As a context manager, it ends them.
-
-    Args:
-        configuration: its image topic is advertised in any case.
-    """
+    """The publishers of one configuration. As a context manager, it ends them."""
 
     def __init__(self, configuration: Configuration) -> None:
         self.configuration = configuration
@@ -83,7 +79,7 @@ class Robot:
         rate = self.configuration.rate / self.configuration.topics
         command = pin(LOAD_CORE, 'rosrun', 'self_awareness', _PROGRAM, _prefix(node),
                       str(self._counts[node]), repr(rate), str(node + 1))
-        if node == 0:
+        if node == 0 and self.configuration.image:
             command.append(IMAGE_TOPIC)
         return subprocess.Popen([*command, f'__name:={self.node_name(node)}'],
                                 stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True,
@@ -98,9 +94,10 @@ class Robot:
 
     @property
     def topics(self) -> List[str]:
-        """All topics, the image's first."""
-        return [IMAGE_TOPIC, *(f'{_prefix(node)}{i}' for node, count in enumerate(self._counts)
-                               for i in range(count))]
+        """All topics, the image's last, if there is one."""
+        numbers = [f'{_prefix(node)}{i}' for node, count in enumerate(self._counts)
+                   for i in range(count)]
+        return numbers + ([IMAGE_TOPIC] if self.configuration.image else [])
 
     @staticmethod
     def node_name(node: int) -> str:
@@ -121,8 +118,9 @@ class Robot:
         return sum(int(answer) for answer in self._answers())
 
     def publish_for_training(self, seconds: float) -> None:
-        """Publish everything, with tiny images."""
-        self._tell(f'publish {seconds} {_TINY_IMAGE_BYTES}')
+        """Publish everything; images, if there are any, are tiny."""
+        image_bytes = _TINY_IMAGE_BYTES if self.configuration.image else 0
+        self._tell(f'publish {seconds} {image_bytes}')
         self._answers()
 
     def crash(self, node: int) -> float:

@@ -7,6 +7,7 @@ import subprocess
 import threading
 import time
 from pathlib import Path
+from tempfile import mkdtemp
 from typing import Callable, List, NamedTuple, Sequence, Tuple
 
 import rosbag
@@ -126,7 +127,9 @@ class Monitor(Subject):
         self._process = self._processes.start(
             'monitor', *pin(SUBJECT_CORE, executable('self_awareness_node'),
                             f'__name:={self.NAME[1:]}', f'_model:={self._model}',
-                            '_subscribe:=model'))
+                            '_subscribe:=model',
+                            # An alarm of the one before is none of this one's.
+                            '_recorder/directory:=' + mkdtemp(dir=self._model.parent)))
         return self._process
 
     def stop(self) -> int:
