@@ -3,6 +3,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/evidence/watch/silent_pairs.h"
 #include "self_awareness/core/evidence/judge.h"
 
 namespace self_awareness::core {
@@ -68,6 +69,7 @@ void Model::watch() {
   if (!hasEvidence()) {
     throw std::invalid_argument("loaded without its counts");
   }
+  evidence::leaveOutSilentPairs(evidence, graph, tuning);
   watched = evidence::watch(evidence[0], evidence[1], graph, tuning);
 }
 

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/paper/delay_trainer.h"
+#include "self_awareness/core/evidence/count/trainer.h"
 
 namespace self_awareness::core {
 

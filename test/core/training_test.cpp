@@ -10,6 +10,7 @@
 
 #include "core/paper/delay_trainer.h"
 #include "self_awareness/core/evidence/channel/watched.h"
+#include "self_awareness/core/evidence/count/trainer.h"
 #include "self_awareness/core/evidence/limits/cross_fit.h"
 
 namespace self_awareness::core {

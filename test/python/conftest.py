@@ -94,7 +94,7 @@ def learned(model: TrainedModel, calibrations: bool = False) -> bytes:
         limits.stamp = 0
         model.calibration = limits
     state = model.__getstate__()
-    stamp = 3 * 32 + 4  # after the md5 of three messages and the length of the first
+    stamp = 4 * 32 + 4  # after the md5 of four messages and the length of the first
     return state[:stamp] + state[stamp + 8:]
 
 

@@ -26,6 +26,9 @@ FORMATS = sorted(DATA.glob('format_*'))
 RECORDINGS = ('normal_6.events.bag', 'dead.events.bag', 'late.events.bag')
 FILES = ('robot.model', 'dead.events.bag', 'results.bag')
 
+RESULT_FORMAT = 2
+"""Of result bags now: they did not change with the models."""
+
 GONE = {'answers'}
 """Channels that this version does not judge any more."""
 
@@ -67,7 +70,7 @@ def with_version(path: Path, output: Path, **changes: Any) -> str:
                 for name, value in changes.items():
                     setattr(version, name, value)
                 copy.write(topic, version, stamp, connection_header=header)
-            else:
+            elif topic != '/digest':  # of a content that it has no more
                 copy.write(topic, message, stamp, raw=True, connection_header=header)
     return str(output)
 
@@ -138,9 +141,10 @@ def test_info_prints_the_versions(folder: Path, capsys) -> None:
     number = int(folder.name.split('_')[1])
     for name in FILES:
         version = json.loads(printed(capsys, folder / name, '--json'))['version']
-        assert version['format'] == number and version['oldest_reader'] <= number
+        expected = number if name != 'results.bag' else min(number, RESULT_FORMAT)
+        assert version['format'] == expected and version['oldest_reader'] <= expected
         assert (version['method'] is None) == (name == 'dead.events.bag')
-        text = f'written by   self_awareness {version["package"]}, format {number}'
+        text = f'written by   self_awareness {version["package"]}, format {expected}'
         assert text in printed(capsys, folder / name)
     assert (version['package'], version['method']) == ('0.1.0', 1) or number > 1
 
@@ -156,7 +160,7 @@ def test_programs_go_on_with_files_of_any_format(folder: Path, tmp_path: Path, c
     assert after.version.method == before.version.method, 'but its counts are not'
     assert score.main([dead, '--model', model, '--result-bag', results]) == 0
     assert '1. /laser' in capsys.readouterr().out
-    assert FileVersion.of_result_bag(results).format == len(FORMATS)
+    assert FileVersion.of_result_bag(results).format == RESULT_FORMAT
     assert train.main([normal, '--add-to', model, '-o', model]) == 0
     other = str(tmp_path / 'other')
     assert train.main([dead, '--detector', 'both', '-o', other]) == 0
@@ -168,7 +172,8 @@ def test_programs_go_on_with_files_of_any_format(folder: Path, tmp_path: Path, c
 def test_result_bags_of_any_format_are_known(folder: Path) -> None:
     results = str(folder / 'results.bag')
     assert ResultBag.is_one(results)
-    assert FileVersion.of_result_bag(results).format == int(folder.name.split('_')[1])
+    number = int(folder.name.split('_')[1])
+    assert FileVersion.of_result_bag(results).format == min(number, RESULT_FORMAT)
     with rosbag.Bag(results) as bag:
         assert any(bag.read_messages('/self_awareness/alarm', raw=True))
 

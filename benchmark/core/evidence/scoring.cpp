@@ -16,6 +16,7 @@
 #include "event_loop.h"
 #include "self_awareness/core/evidence/channel/model.h"
 #include "self_awareness/core/evidence/count/statistics.h"
+#include "self_awareness/core/evidence/count/trainer.h"
 #include "synthetic_system.h"
 
 namespace self_awareness::benchmarks {

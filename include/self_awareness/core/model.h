@@ -85,6 +85,7 @@ struct Model {
   /// Forgets all counts but those that the evidence detector judges by.
   void dropCounts();
   /// Chooses what is watched, by all counts of the evidence detector (docs/method.md, section 3).
+  /// Of more than 200 event types, counts of pairs that say too little are left out (section 3.1).
   /// @throw std::invalid_argument if hasEvidence() is false
   void watch();
   /// s* of eq. 5; none: not calibrated.

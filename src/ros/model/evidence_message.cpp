@@ -101,15 +101,9 @@ self_awareness::EvidencePairs pairsMessage(const evidence::Statistics& statistic
   self_awareness::EvidencePairs message;
   message.id = id;
   message.offsets.push_back(0);
-  std::size_t filled = 0;
-  for (const evidence::Statistics::Partner& partner : statistics.partners(id)) {
-    filled +=
-        static_cast<std::size_t>(std::count_if(partner.delays.begin(), partner.delays.end(),
-                                               [](std::uint32_t count) { return count > 0; }));
-  }
-  message.bins.reserve(filled);
-  message.counts.reserve(filled);
-  for (const evidence::Statistics::Partner& partner : statistics.partners(id)) {
+  const evidence::Partners& partners = statistics.partners(id);
+  for (std::size_t k = 0; k < partners.size(); ++k) {
+    const evidence::Partner partner = partners.at(k);
     for (std::size_t bin = 0; bin < partner.delays.size(); ++bin) {
       if (partner.delays[bin] > 0) {
         message.bins.push_back(static_cast<std::uint8_t>(bin));
@@ -160,14 +154,16 @@ void setPairs(const self_awareness::EvidencePairs& message, evidence::Statistics
             areOffsets(message.offsets, message.partners.size(), message.bins.size()) &&
             message.bins.size() == message.counts.size(),
         "its evidence does not fit its event types");
-  evidence::Statistics::Partners partners(message.partners.size());
-  for (std::size_t k = 0; k < partners.size(); ++k) {
-    partners[k].id = message.partners[k];
-    partners[k].answers = message.answers[k];
+  evidence::Partners partners;
+  for (std::size_t k = 0; k < message.partners.size(); ++k) {
+    evidence::Partner partner;
+    partner.id = message.partners[k];
+    partner.answers = message.answers[k];
     for (std::size_t i = message.offsets[k]; i < message.offsets[k + 1]; ++i) {
       check(message.bins[i] < evidence::kDelayBins, "its evidence has an impossible bin");
-      partners[k].delays[message.bins[i]] += message.counts[i];
+      partner.delays[message.bins[i]] += message.counts[i];
     }
+    partners.append(partner);
   }
   statistics.setPartners(message.id, std::move(partners));
   check(statistics.total(message.id, message.id) <= statistics.type(message.id).gaps,

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "../message_check.h"
+#include "packed_pairs.h"
 #include "self_awareness/ros/model/delays_message.h"
 #include "self_awareness/ros/model/evidence_message.h"
 
@@ -24,6 +25,7 @@ constexpr unsigned kEvidence = 2;
 std::string version() {
   return std::string(ros::message_traits::md5sum<self_awareness::Model>()) +
          ros::message_traits::md5sum<self_awareness::DelayHistograms>() +
+         ros::message_traits::md5sum<self_awareness::PackedPairs>() +
          ros::message_traits::md5sum<self_awareness::FileVersion>();
 }
 
@@ -95,7 +97,7 @@ std::string toBytes(const TrainedModel& model) {
       if (id == 0) {
         append(toMessage(half.withoutPairs()), bytes);
       }
-      append(pairsMessage(half, id), bytes);
+      append(packedPairs(half, id), bytes);
     }
   }
   return bytes;
@@ -119,7 +121,7 @@ TrainedModel fromBytes(const std::string& bytes) {
       if (id == 0) {
         half = fromMessage(reader.take<self_awareness::Evidence>(), model.vocabulary());
       }
-      setPairs(reader.take<self_awareness::EvidencePairs>(), half);
+      setPairs(reader.take<self_awareness::PackedPairs>(), half);
     }
   }
   if (!reader.done()) {

@@ -17,6 +17,7 @@
 #include "../bag/version_of_bag.h"
 #include "check.h"
 #include "model_upgrade.h"
+#include "packed_pairs.h"
 #include "self_awareness/ContentDigest.h"
 #include "self_awareness/ros/bag/bag_reader.h"
 #include "self_awareness/ros/bag/bag_writer.h"
@@ -36,6 +37,8 @@ constexpr char kTopic[] = "/model";
 constexpr char kDelaysTopic[] = "/delays";
 constexpr char kDigestTopic[] = "/digest";
 constexpr std::array<const char*, 2> kEvidenceTopics{"/evidence/first", "/evidence/second"};
+
+constexpr std::uint32_t kFirstPacked = 3;  // format with PackedPairs; before, EvidencePairs
 
 // Of a file that may be made to fill the memory: many times what the largest model needs.
 constexpr std::uint64_t kLargestChunk = 1 << 28;  // [bytes]
@@ -167,12 +170,14 @@ TrainedModel read(ModelMessages& messages, ModelCounts counts) {
   const std::size_t halves = counts == ModelCounts::kAll && model->isWatched() ? 2 : 0;
   for (std::size_t half = 0; half < halves; ++half) {
     model->evidence.at(half) = model->watched.halves.at(half).withoutPairs();
-    const std::size_t number = messages.forEach<self_awareness::EvidencePairs>(
-        kEvidenceTopics.at(half),
-        [&, next = core::EventId{0}](const self_awareness::EvidencePairs& message) mutable {
-          check(message.id == next++, kOtherEvidence);
-          setPairs(message, model->evidence.at(half));
-        });
+    const auto set = [&, next = core::EventId{0}](const auto& message) mutable {
+      check(message.id == next++, kOtherEvidence);
+      setPairs(message, model->evidence.at(half));
+    };
+    const std::string topic = kEvidenceTopics.at(half);
+    const std::size_t number = version.format < kFirstPacked
+                                   ? messages.forEach<self_awareness::EvidencePairs>(topic, set)
+                                   : messages.forEach<self_awareness::PackedPairs>(topic, set);
     check(number == model->vocabulary().size(), kOtherEvidence);
   }
   return std::move(*model);
@@ -219,7 +224,7 @@ void write(const TrainedModel& model, ModelWriter& file) {
       file.write(kDelaysTopic, toMessage(model.statistics, id));
     }
     for (std::size_t half = 0; model.hasEvidence() && half < model.evidence.size(); ++half) {
-      file.write(kEvidenceTopics.at(half), pairsMessage(model.evidence.at(half), id));
+      file.write(kEvidenceTopics.at(half), packedPairs(model.evidence.at(half), id));
     }
   }
   file.writeDigests();

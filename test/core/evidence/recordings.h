@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "self_awareness/core/evidence/channel/watched.h"
-#include "self_awareness/core/evidence/count/statistics.h"
+#include "self_awareness/core/evidence/count/trainer.h"
 
 /// Small recordings for the tests of the evidence detector.
 namespace self_awareness::core::evidence {
@@ -102,6 +102,15 @@ inline Statistics countsOf(const std::vector<Events>& recordings,
                            std::size_t types = kTypes.size()) {
   return countsOf(recordings,
                   {kTypes.begin(), kTypes.begin() + static_cast<std::ptrdiff_t>(types)});
+}
+
+/// Partners of an event type.
+inline Partners partnersOf(std::initializer_list<Partner> all) {
+  Partners partners;
+  for (const Partner& partner : all) {
+    partners.append(partner);
+  }
+  return partners;
 }
 
 /// Names of the channels.

@@ -12,6 +12,7 @@
 
 #include "../bag/bag_bytes.h"
 #include "model_file_case.h"
+#include "self_awareness/PackedPairs.h"
 
 namespace self_awareness::ros1 {
 namespace {
@@ -189,9 +190,9 @@ TEST_F(BadModelsTest, WhatIsThereTwiceIsRefused) {
 
 TEST_F(BadModelsTest, CountsThatAreNotInOrderAreRefused) {
   const auto swapped = [](auto& message) { message.id = 1 - message.id; };
-  EXPECT_NE(damagedMessages<self_awareness::EvidencePairs>("/evidence/first", swapped), "");
-  EXPECT_NE(damagedMessages<self_awareness::EvidencePairs>("/evidence/second",
-                                                           [](auto& message) { message.id = 0; }),
+  EXPECT_NE(damagedMessages<self_awareness::PackedPairs>("/evidence/first", swapped), "");
+  EXPECT_NE(damagedMessages<self_awareness::PackedPairs>("/evidence/second",
+                                                         [](auto& message) { message.id = 0; }),
             "");
 }
 
@@ -212,8 +213,8 @@ TEST_F(BadModelsTest, WhatAnotherProgramChangedIsRefused) {
         std::swap(model->findings.at(0), model->findings.at(1));
         changed.write(topic, message.getTime(), *model);
       } else if (message.getTopic() == "/evidence/first" && topic == "/evidence/first") {
-        const auto pairs = message.instantiate<self_awareness::EvidencePairs>();
-        ++pairs->answers.at(0);
+        const auto pairs = message.instantiate<self_awareness::PackedPairs>();
+        ++pairs->others.at(0);
         changed.write(topic, message.getTime(), *pairs);
       } else if (message.getTopic() != topic) {
         changed.write(message.getTopic(), message.getTime(), message);

@@ -58,6 +58,21 @@ TEST_F(ModelFileTest, TheEvidenceItsLimitsAndTheGraphComeBackAsTheyWereSaved) {
                    .limits());
 }
 
+TEST_F(ModelFileTest, PairsThatWereLeftOutForGoodComeBackAsSuch) {
+  TrainedModel model = calibratedModel();
+  core::evidence::PairSet pairs;
+  pairs.add(1, 0);
+  for (core::evidence::Statistics& half : model.evidence) {
+    half = half.without(pairs);
+  }
+  saveModel(model, path("m"));
+  for (const TrainedModel& loaded : {loadModel(path("m")), fromBytes(toBytes(model))}) {
+    EXPECT_TRUE(loaded.evidence == model.evidence);
+    EXPECT_TRUE(loaded.evidence[0].leftOut() == pairs);
+    EXPECT_EQ(loaded.evidence[1].delaysToAny(), model.watched.halves[1].delaysToAny());
+  }
+}
+
 TEST_F(ModelFileTest, WhatTheTrainingShowedComesBackAsItWasSaved) {
   const TrainedModel model = calibratedModel();
   saveModel(model, path("m"));

@@ -12,6 +12,7 @@
 
 #include "core/paper/delay_trainer.h"
 #include "self_awareness/core/evidence/channel/model.h"
+#include "self_awareness/core/evidence/count/trainer.h"
 #include "self_awareness/core/evidence/limits/limits.h"
 #include "self_awareness/ros/model/model_file.h"
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/paper/delay_trainer.h"
+#include "self_awareness/core/evidence/count/trainer.h"
 #include "self_awareness/ros/model/model_bytes.h"
 
 namespace self_awareness::ros1 {

@@ -10,59 +10,29 @@
 #include <utility>
 
 #include "core/evidence/count/bin_arrays.h"
-#include "core/evidence/count/log_bins.h"
-#include "self_awareness/core/stream/clock.h"
-#include "self_awareness/core/stream/windows.h"
 
 namespace self_awareness::core::evidence {
 namespace {
-
-using Partner = Statistics::Partner;
-using Partners = Statistics::Partners;
-
-constexpr DelayHistogram kNoDelays{};
-
-bool lowerId(const Partner& partner, EventId id) {
-  return partner.id < id;
-}
 
 template <typename Counts>
 void addCounts(const Counts& counts, SumOfDelays& sum) {
   asArray(sum) += asArray(counts).template cast<std::uint64_t>();
 }
 
-// The years of a fleet may be more than a count holds: it then stays at the largest number.
-void addCounts(const DelayHistogram& counts, DelayHistogram& sum) {
-  asArray(sum) += asArray(counts).min(std::numeric_limits<std::uint32_t>::max() - asArray(sum));
-}
-
-const Partner* find(const Partners& partners, EventId id) {
-  if (id < partners.size() && partners[id].id == id) {
-    return &partners[id];  // if all event types are partners
+Partners renamed(const Partners& partners, const std::vector<EventId>& here) {
+  std::vector<Partner> theirs;
+  theirs.reserve(partners.size());
+  for (std::size_t k = 0; k < partners.size(); ++k) {
+    theirs.push_back(partners.at(k));
+    theirs.back().id = here[theirs.back().id];
   }
-  const auto place = std::lower_bound(partners.begin(), partners.end(), id, lowerId);
-  return place != partners.end() && place->id == id ? &*place : nullptr;
-}
-
-// Adds up counts by id; both are in order, and so is the result.
-Partners sum(const Partners& a, const Partners& b) {
-  Partners both;
-  both.reserve(std::max(a.size(), b.size()));
-  auto x = a.begin();
-  auto y = b.begin();
-  while (x != a.end() || y != b.end()) {
-    if (y == b.end() || (x != a.end() && x->id < y->id)) {
-      both.push_back(*x++);
-    } else if (x == a.end() || y->id < x->id) {
-      both.push_back(*y++);
-    } else {
-      both.push_back(*x++);
-      both.back().answers += y->answers;
-      addCounts(y->delays, both.back().delays);
-      ++y;
-    }
+  std::sort(theirs.begin(), theirs.end(),
+            [](const Partner& a, const Partner& b) { return a.id < b.id; });
+  Partners ours;
+  for (const Partner& partner : theirs) {
+    ours.append(partner);
   }
-  return both;
+  return ours;
 }
 
 bool startsEarlier(const Statistics::Recording& a, const Statistics::Recording& b) {
@@ -86,8 +56,14 @@ bool isSame(const Statistics::Recording& a, const Statistics::Recording& b, std:
   return same;
 }
 
-bool isEmpty(const Partner& partner) {
-  return partner.answers == 0 && partner.delays == kNoDelays;
+std::vector<Partner> counted(const Partners& partners) {
+  std::vector<Partner> counted;
+  for (std::size_t k = 0; k < partners.size(); ++k) {
+    if (partners.answers(k) > 0 || partners.total(k) > 0) {
+      counted.push_back(partners.at(k));
+    }
+  }
+  return counted;
 }
 
 }  // namespace
@@ -136,13 +112,9 @@ void Statistics::merge(const Statistics& other) {
     for (const std::int64_t gap : theirs.longest_gaps) {
       ours.addGap(gap);
     }
-    Partners partners = other.partners_[id];
-    for (Partner& partner : partners) {
-      partner.id = here[partner.id];
+    if (other.partners_[id].size() > 0) {
+      partners_[here[id]] = Partners::sum(partners_[here[id]], renamed(other.partners_[id], here));
     }
-    std::sort(partners.begin(), partners.end(),
-              [](const Partner& a, const Partner& b) { return a.id < b.id; });
-    partners_[here[id]] = sum(partners_[here[id]], partners);
   }
   for (const Recording& theirs : other.recordings_) {
     Recording ours{theirs.start,
@@ -161,6 +133,11 @@ void Statistics::merge(const Statistics& other) {
   }
   rate_windows_ += other.rate_windows_;
   duration_ += other.duration_;
+  if (!left_out_.empty() || !other.left_out_.empty()) {
+    PairSet left_out;
+    other.left_out_.forEach([&](EventId to, EventId from) { left_out.add(here[to], here[from]); });
+    *this = without(left_out);
+  }
 }
 
 void Statistics::addRecording(Recording recording) {
@@ -178,36 +155,32 @@ void Statistics::addRecording(Recording recording) {
   recordings_.insert(place, std::move(recording));
 }
 
-const DelayHistogram& Statistics::delays(EventId from, EventId to) const {
-  const Partner* partner = find(partners_.at(to), from);
-  return partner != nullptr ? partner->delays : kNoDelays;
+DelayHistogram Statistics::delays(EventId from, EventId to) const {
+  const std::optional<std::size_t> place = partners_.at(to).find(from);
+  return place ? partners_[to].at(*place).delays : DelayHistogram{};
+}
+
+std::uint64_t Statistics::total(EventId from, EventId to) const {
+  const std::optional<std::size_t> place = partners_.at(to).find(from);
+  return place ? partners_[to].total(*place) : 0;
 }
 
 std::uint64_t Statistics::answers(EventId from, EventId to) const {
-  const Partner* partner = find(partners_.at(from), to);
-  return partner != nullptr ? partner->answers : 0;
+  const std::optional<std::size_t> place = partners_.at(from).find(to);
+  return place ? partners_[from].answers(*place) : 0;
 }
 
 void Statistics::setPartners(EventId id, Partners partners) {
-  const auto unordered =
-      std::adjacent_find(partners.begin(), partners.end(),
-                         [](const Partner& a, const Partner& b) { return a.id >= b.id; });
-  if (unordered != partners.end() || (!partners.empty() && partners.back().id >= size())) {
+  if (partners.size() > 0 && partners.id(partners.size() - 1) >= size()) {
     throw std::invalid_argument("partners of an event type must be event types, in order");
   }
   partners_.at(id) = std::move(partners);
 }
 
-Statistics::Partners& Statistics::allPartners(EventId id) {
-  Partners& partners = partners_.at(id);
-  if (partners.size() < size()) {
-    Partners none(size());
-    for (EventId other = 0; other < none.size(); ++other) {
-      none[other].id = other;
-    }
-    partners = sum(partners, none);
-  }
-  return partners;
+void Statistics::count(EventId id, const std::vector<std::uint8_t>& bins,
+                       const std::vector<std::uint8_t>& came) {
+  partners_.at(id).makeAll(size());
+  partners_[id].count(bins, came);
 }
 
 std::vector<SumOfDelays> Statistics::delaysToAny() const {
@@ -217,8 +190,8 @@ std::vector<SumOfDelays> Statistics::delaysToAny() const {
     sums.push_back(type.left_out);
   }
   for (const Partners& partners : partners_) {
-    for (const Partner& partner : partners) {
-      addCounts(partner.delays, sums[partner.id]);
+    for (std::size_t k = 0; k < partners.size(); ++k) {
+      addCounts(partners.at(k).delays, sums[partners.id(k)]);
     }
   }
   return sums;
@@ -244,13 +217,34 @@ Statistics Statistics::only(const std::vector<Pair>& pairs) const {
     kept.at(pair.to).push_back(pair.from);
     kept.at(pair.from).push_back(pair.to);
   }
+  for (std::vector<EventId>& of_type : kept) {
+    std::sort(of_type.begin(), of_type.end());
+  }
+  return filtered([&](EventId to, EventId from) {
+    return std::binary_search(kept[to].begin(), kept[to].end(), from);
+  });
+}
+
+Statistics Statistics::without(const PairSet& pairs) const {
+  PairSet left_out = left_out_;
+  pairs.forEach([&](EventId to, EventId from) { left_out.add(to, from); });
+  Statistics rest =
+      filtered([&](EventId to, EventId from) { return !left_out.contains(to, from); });
+  rest.left_out_ = std::move(left_out);
+  return rest;
+}
+
+template <typename Keep>
+Statistics Statistics::filtered(Keep keep) const {
   Statistics rest = withoutPairs();
-  for (EventId id = 0; id < size(); ++id) {
-    addCounts(types_[id].left_out, rest.types_[id].left_out);
-    std::sort(kept[id].begin(), kept[id].end());
-    for (const Partner& partner : partners_[id]) {
-      if (std::binary_search(kept[id].begin(), kept[id].end(), partner.id)) {
-        rest.partners_[id].push_back(partner);
+  for (EventId to = 0; to < size(); ++to) {
+    addCounts(types_[to].left_out, rest.types_[to].left_out);
+  }
+  for (EventId to = 0; to < size(); ++to) {
+    for (std::size_t k = 0; k < partners_[to].size(); ++k) {
+      const Partner partner = partners_[to].at(k);
+      if (keep(to, partner.id)) {
+        rest.partners_[to].append(partner);
       } else {
         addCounts(partner.delays, rest.types_[partner.id].left_out);
       }
@@ -259,24 +253,21 @@ Statistics Statistics::only(const std::vector<Pair>& pairs) const {
   return rest;
 }
 
-bool operator==(const Statistics::Partner& a, const Statistics::Partner& b) {
-  return a.id == b.id && a.answers == b.answers && a.delays == b.delays;
+void Statistics::leaveOut(EventId from, EventId to) {
+  if (from >= size() || to >= size() || total(from, to) > 0) {
+    throw std::invalid_argument("pairs that were left out must be of event types, without counts");
+  }
+  left_out_.add(to, from);
 }
 
 bool operator==(const Statistics& a, const Statistics& b) {
   if (a.vocabulary().types() != b.vocabulary().types() || a.rateWindows() != b.rateWindows() ||
-      a.duration() != b.duration() ||
+      a.duration() != b.duration() || !(a.leftOut() == b.leftOut()) ||
       !std::equal(a.recordings().begin(), a.recordings().end(), b.recordings().begin(),
                   b.recordings().end(),
                   [&](const auto& x, const auto& y) { return isSame(x, y, a.size()); })) {
     return false;
   }
-  const auto counted = [](const Partners& partners) {
-    Partners without_zeros;
-    std::remove_copy_if(partners.begin(), partners.end(), std::back_inserter(without_zeros),
-                        isEmpty);
-    return without_zeros;
-  };
   for (EventId id = 0; id < a.size(); ++id) {
     const Statistics::Type& x = a.type(id);
     const Statistics::Type& y = b.type(id);
@@ -288,101 +279,6 @@ bool operator==(const Statistics& a, const Statistics& b) {
     }
   }
   return true;
-}
-
-Trainer::Trainer(Statistics& statistics, std::int64_t window)
-    : statistics_(&statistics), window_(window), counts_(0, rateWindows(window)) {}
-
-void Trainer::startRecording(std::optional<std::int64_t> since, std::int64_t robot_start) {
-  if (last_stamp_) {
-    recording_.end = newest_stamp_;
-    for (EventId id = 0; id < last_seen_.size(); ++id) {
-      if (recording_.events[id] > 1) {
-        std::int64_t& longest = recording_.longest_gaps[id];
-        longest = std::max(longest, newest_stamp_ - kEnding - last_seen_[id].stamp);
-      }
-    }
-    statistics_->addRecording(std::move(recording_));
-  }
-  recording_ = {};
-  recording_.robot_start = robot_start;
-  since_ = since;
-  last_seen_.clear();
-  last_stamp_.reset();
-  number_ = 0;
-  counts_.restart();
-}
-
-void Trainer::resizeRecording() {
-  recording_.events.resize(statistics_->size());
-  recording_.longest_gaps.resize(statistics_->size());
-  recording_.firsts.resize(statistics_->size(), -1);
-}
-
-void Trainer::addBefore(const Event& event) {
-  resizeRecording();
-  since_ = since_.value_or(event.stamp);
-  std::int64_t& first = recording_.firsts.at(event.id);
-  if (first < 0) {
-    first = std::max<std::int64_t>(event.stamp - *since_, 0);
-  }
-}
-
-void Trainer::add(const Event& event) {
-  if (last_stamp_ && isClockStep(*last_stamp_, event.stamp)) {
-    onClockStep();
-  }
-  last_seen_.resize(statistics_->size());
-  addBefore(event);
-  counts_.resize(statistics_->size());
-  if (last_stamp_) {
-    closeWindows(event.stamp);
-    recording_.longest_silence = std::max(recording_.longest_silence, event.stamp - *last_stamp_);
-    statistics_->addDuration(std::max<std::int64_t>(event.stamp - newest_stamp_, 0));
-    newest_stamp_ = std::max(newest_stamp_, event.stamp);
-  } else {
-    newest_stamp_ = event.stamp;
-    recording_.start = event.stamp;
-    window_end_ = floorToGrid(event.stamp, window_) + window_;
-  }
-  last_stamp_ = event.stamp;
-
-  Statistics::Type& type = statistics_->type(event.id);
-  Seen& last = last_seen_.at(event.id);
-  ++type.events;
-  ++recording_.events[event.id];
-  counts_.add(event.id);
-  Partner* partner = statistics_->allPartners(event.id).data();
-  for (const Seen& other : last_seen_) {
-    if (other.number > 0) {
-      ++partner->delays[log_bins::bin(event.stamp - other.stamp)];
-      partner->answers += last.number > 0 && other.number > last.number ? 1 : 0;
-    }
-    ++partner;
-  }
-  if (last.number > 0) {
-    const std::int64_t gap = std::max<std::int64_t>(event.stamp - last.stamp, 0);
-    ++type.gaps;
-    type.gap_sum += gap;
-    type.addGap(gap);
-    recording_.longest_gaps[event.id] = std::max(recording_.longest_gaps[event.id], gap);
-  }
-  last = Seen{event.stamp, ++number_};
-}
-
-void Trainer::closeWindows(std::int64_t now) {
-  for (; window_end_ <= now; window_end_ += window_) {
-    counts_.close();
-    if (!counts_.full()) {
-      continue;
-    }
-    statistics_->addRateWindows(1);
-    for (EventId id = 0; id < counts_.counts().size(); ++id) {
-      const std::uint64_t count = counts_.counts()[id];
-      statistics_->type(id).rate_sum += count;
-      statistics_->type(id).rate_squares += count * count;
-    }
-  }
 }
 
 }  // namespace self_awareness::core::evidence

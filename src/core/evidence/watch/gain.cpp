@@ -21,13 +21,13 @@ double InformationGain::operator()(EventId from, EventId to) const {
   if (!id_there_[from] || !id_there_[to]) {
     return 0;
   }
-  const DelayHistogram& measured = measured_on_.delays(*id_there_[from], *id_there_[to]);
-  const auto number = static_cast<double>(measured.total());
-  const DelayHistogram& learned = learned_from_.delays(from, to);
-  const std::uint64_t learned_number = learned.total();
+  const auto number = static_cast<double>(measured_on_.total(*id_there_[from], *id_there_[to]));
+  const std::uint64_t learned_number = learned_from_.total(from, to);
   if (number < fewest_delays_ || learned_number == 0) {
     return 0;
   }
+  const DelayHistogram measured = measured_on_.delays(*id_there_[from], *id_there_[to]);
+  const DelayHistogram learned = learned_from_.delays(from, to);
   const double total = static_cast<double>(learned_number) + log_bins::kBins;
   double sum = 0;
   for (std::size_t bin = 0; bin < log_bins::kBins; ++bin) {
@@ -36,6 +36,21 @@ double InformationGain::operator()(EventId from, EventId to) const {
     }
   }
   return sum / number;
+}
+
+double InformationGain::most(EventId from, EventId to) const {
+  if (!id_there_[from] || !id_there_[to]) {
+    return 0;
+  }
+  const DelayHistogram measured = measured_on_.delays(*id_there_[from], *id_there_[to]);
+  const auto number = static_cast<double>(measured.total());
+  double sum = 0;
+  for (std::size_t bin = 0; bin < log_bins::kBins; ++bin) {
+    if (measured[bin] > 0) {
+      sum += measured[bin] * (std::log(measured[bin] / number) - any_[from][bin]);
+    }
+  }
+  return number > 0 ? sum / number : 0;
 }
 
 Gains::Gains(const std::array<const Statistics*, 2>& halves, double fewest_delays)
@@ -48,7 +63,9 @@ void Gains::add(const Statistics& learned_from, const Statistics& measured_on,
                 double fewest_delays) {
   const InformationGain gain(learned_from, measured_on, fewest_delays);
   for (EventId to = 0; to < size_; ++to) {
-    for (EventId from = 0; from < size_; ++from) {
+    const Partners& partners = measured_on.partners(to);  // all others have no gain
+    for (std::size_t k = 0; k < partners.size(); ++k) {
+      const EventId from = partners.id(k);
       gains_[to * size_ + from] += gain(from, to) / 2;
     }
   }

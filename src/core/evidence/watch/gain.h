@@ -24,6 +24,9 @@ class InformationGain {
   /// Gain [nat]; 0 if there are too few delays to learn from or to measure on. Ids are those of
   /// `learned_from`.
   double operator()(EventId from, EventId to) const;
+  /// Gain [nat] that no learning exceeds: of what fits the delays that it is measured on best. 0
+  /// without any.
+  double most(EventId from, EventId to) const;
 
  private:
   const Statistics& learned_from_;

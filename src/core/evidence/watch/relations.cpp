@@ -206,28 +206,45 @@ double Relations::missRateByChance(EventId from, EventId to) const {
   return std::min(misses / meanGap(to), 1.0);
 }
 
-Relation Relations::owed(EventId from, EventId to) const {
-  Relation relation;
-  const auto gaps = static_cast<double>(counts_.type(from).gaps);
-  const double misses = missRate(counts_.type(from).gaps, counts_.answers(from, to));
+Relations::Asked Relations::asked(EventId from, EventId to, std::uint64_t answers) const {
+  Asked asked;
+  const std::uint64_t gaps = counts_.type(from).gaps;
+  const double misses = missRate(gaps, answers);
   const double by_chance = missRateByChance(from, to);
-  relation.reaches = reaches(from, to);
+  asked.reaches = reaches(from, to);
   // Timers of one rate keep one phase, and so miss each other less often than by chance; who
   // pauses, or is asked, does not.
   const bool pauses =
       static_cast<double>(counts_.type(to).longestGap()) > tuning_.most_mean_gaps * meanGap(to);
-  relation.irregular =
-      by_chance >= (pauses || relation.reaches ? tuning_.least_chance_misses_of_pausing
-                                               : tuning_.least_chance_misses) &&
+  asked.beyond_chance =
+      by_chance >= (pauses || asked.reaches ? tuning_.least_chance_misses_of_pausing
+                                            : tuning_.least_chance_misses) &&
       misses <= tuning_.most_of_chance_misses * by_chance;
+  asked.divergence =
+      asked.beyond_chance ? divergence(static_cast<double>(gaps), misses, by_chance) : 0;
+  return asked;
+}
+
+Relation Relations::owed(EventId from, EventId to) const {
+  const Asked asked = this->asked(from, to, counts_.answers(from, to));
+  Relation relation;
+  relation.reaches = asked.reaches;
+  relation.irregular = asked.beyond_chance;
   // Two that answer to the same come one after the other, now in this order, now in that.
   const DelayHistogram::Bins usual = counts_.delays(from, to).middle(0.9);
   const bool in_order =
       log_bins::middle(usual.first) >= tuning_.least_of_longest * log_bins::middle(usual.last);
-  relation.watched =
-      relation.irregular && in_order && (graph_.empty() || relation.reaches) &&
-      divergence(gaps, misses, by_chance) > std::log(looked_at_ / tuning_.chance_of_any);
+  relation.watched = asked.beyond_chance && in_order && (graph_.empty() || asked.reaches) &&
+                     asked.divergence > std::log(looked_at_ / tuning_.chance_of_any);
   return relation;
+}
+
+bool Relations::mayBeOwed(EventId from, EventId to, std::uint64_t answers) const {
+  if (missRate(counts_.type(from).gaps, answers) > tuning_.most_misses) {
+    return false;
+  }
+  const Asked asked = this->asked(from, to, answers);
+  return asked.beyond_chance && asked.divergence > -std::log(tuning_.chance_of_any);
 }
 
 double missRate(std::uint64_t gaps, std::uint64_t answers) {

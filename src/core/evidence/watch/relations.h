@@ -29,6 +29,10 @@ class Relations {
   /// Reasons to watch whether `to` comes in time after `from` asks for it: that it comes says more
   /// than what `to` does at any time.
   Relation owed(EventId from, EventId to) const;
+  /// Whether more recordings may show that it is owed: it may be chance in one of the many pairs,
+  /// but hardly in this one alone.
+  /// @param answers gaps of `from` in which a `to` came
+  bool mayBeOwed(EventId from, EventId to, std::uint64_t answers) const;
 
   /// Share of the gaps of `from` in which no `to` would come if they had nothing to do with each
   /// other, 0 to 1.
@@ -40,6 +44,14 @@ class Relations {
     double share = 0;   // of the gaps
   };
 
+  /// Requests and their answers.
+  struct Asked {
+    bool reaches = false;
+    bool beyond_chance = false;  // fewer misses than if they had nothing to do with each other
+    double divergence = 0;       // from that [nat]
+  };
+
+  Asked asked(EventId from, EventId to, std::uint64_t answers) const;
   bool reaches(EventId from, EventId to) const;
   bool isIrregular(EventId from, EventId to) const;
   double meanGap(EventId id) const { return counts_.type(id).meanGap(); }  // [ns]

@@ -292,10 +292,10 @@ TEST(EvidenceStatistics, MergingKeepsTheRecordingsOfBothByTheirIds) {
 
 TEST(EvidenceStatistics, CountsDoNotWrapAround) {
   Statistics counts = countsOf({}, 1);
-  Statistics::Partner partner;
+  Partner partner;
   partner.delays[3] = 3000000000U;
   partner.delays[4] = 2000000000U;
-  counts.setPartners(kA, {partner});
+  counts.setPartners(kA, partnersOf({partner}));
   counts.merge(Statistics(counts));
   EXPECT_EQ(counts.delays(kA, kA)[3], 4294967295U);
   EXPECT_EQ(counts.delays(kA, kA)[4], 4000000000U);
@@ -303,16 +303,19 @@ TEST(EvidenceStatistics, CountsDoNotWrapAround) {
 
 TEST(EvidenceStatistics, PartnersComeInOrder) {
   Statistics counts = countsOf({}, 2);
-  counts.setPartners(kA, {{kB, 3, {}}});
+  counts.setPartners(kA, partnersOf({{kB, 3, {}}}));
   EXPECT_EQ(counts.answers(kA, kB), 3U);
   EXPECT_EQ(counts.answers(kB, kA), 0U);
-  EXPECT_THROW(counts.setPartners(kA, {{kB, 3, {}}, {kA, 1, {}}}), std::invalid_argument);
-  EXPECT_THROW(counts.setPartners(kA, {{kB, 3, {}}, {kB, 1, {}}}), std::invalid_argument);
-  EXPECT_THROW(counts.setPartners(kA, {{kC, 1, {}}}), std::invalid_argument);
-  const Statistics::Partners& all = counts.allPartners(kA);
+  EXPECT_THROW(counts.setPartners(kA, partnersOf({{kB, 3, {}}, {kA, 1, {}}})),
+               std::invalid_argument);
+  EXPECT_THROW(counts.setPartners(kA, partnersOf({{kB, 3, {}}, {kB, 1, {}}})),
+               std::invalid_argument);
+  EXPECT_THROW(counts.setPartners(kA, partnersOf({{kC, 1, {}}})), std::invalid_argument);
+  counts.count(kA, {Partners::kNotSeen, 0}, {0, 0});
+  const Partners& all = counts.partners(kA);
   ASSERT_EQ(all.size(), 2U);
-  EXPECT_EQ(all[kA].id, kA);
-  EXPECT_EQ(all[kB].answers, 3U);
+  EXPECT_EQ(all.id(kA), kA);
+  EXPECT_EQ(all.answers(kB), 3U);
 }
 
 }  // namespace

@@ -2,12 +2,12 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "self_awareness/core/evidence/count/delay_histogram.h"
+#include "self_awareness/core/evidence/count/pair_set.h"
+#include "self_awareness/core/evidence/count/partners.h"
 #include "self_awareness/core/stream/event.h"
-#include "self_awareness/core/stream/recent_counts.h"
 #include "self_awareness/core/stream/vocabulary.h"
 
 namespace self_awareness::core::evidence {
@@ -39,7 +39,7 @@ class Statistics {
     std::vector<std::int64_t> longest_gaps;  ///< [ns], the longest first
     std::uint64_t rate_sum = 0;              ///< sum of the recent counts of all windows
     std::uint64_t rate_squares = 0;          ///< sum of their squares
-    /// Delays since the last event of the type in pairs that only() left out.
+    /// Delays since the last event of the type in pairs that only() or without() left out.
     SumOfDelays left_out{};
 
     /// Keeps the gap [ns] if it is one of the longest.
@@ -51,14 +51,6 @@ class Statistics {
     /// Longest gap [ns]; 0 if there was none.
     std::int64_t longestGap() const { return longest_gaps.empty() ? 0 : longest_gaps.front(); }
   };
-  /// What the events of a type e count about another type.
-  struct Partner {
-    EventId id = 0;             ///< of the other type
-    std::uint64_t answers = 0;  ///< gaps between two e in which the other came
-    DelayHistogram delays{};    ///< from the last event of the other to an e
-  };
-  /// Ordered by id, each once.
-  using Partners = std::vector<Partner>;
   /// What one recording said of every event type. The independent sample of what is normal is a
   /// recording, not an event: what did not vary in one may differ in the next.
   struct Recording {
@@ -83,7 +75,8 @@ class Statistics {
 
   /// Makes room for the event type and returns its id.
   EventId intern(const EventType& type);
-  /// Adds the counts of `other`; event types that are new here get the next ids.
+  /// Adds the counts of `other`; event types that are new here get the next ids. What one of them
+  /// has left out for good is left out.
   void merge(const Statistics& other);
 
   const Vocabulary& vocabulary() const { return vocabulary_; }
@@ -91,26 +84,35 @@ class Statistics {
   Type& type(EventId id) { return types_.at(id); }
   const Type& type(EventId id) const { return types_.at(id); }
   /// Delays from the last `from` to a `to`; zeros where none was counted.
-  const DelayHistogram& delays(EventId from, EventId to) const;
+  DelayHistogram delays(EventId from, EventId to) const;
   /// Number of these delays.
-  std::uint64_t total(EventId from, EventId to) const { return delays(from, to).total(); }
+  std::uint64_t total(EventId from, EventId to) const;
   /// Gaps of `from` in which a `to` came.
   std::uint64_t answers(EventId from, EventId to) const;
   const Partners& partners(EventId id) const { return partners_.at(id); }
   /// Replaces the partners of an event type.
-  /// @throw std::invalid_argument if they are not in order
+  /// @throw std::invalid_argument if one of them is no event type
   void setPartners(EventId id, Partners partners);
-  /// Makes all event types partners of this one: the index is then the id.
-  Partners& allPartners(EventId id);
+  /// Counts events of a type: Partners::count(), by bins of all event types.
+  void count(EventId id, const std::vector<std::uint8_t>& bins,
+             const std::vector<std::uint8_t>& came);
 
   /// Delays from the last event of a type to any event, by type.
   std::vector<SumOfDelays> delaysToAny() const;
   /// The counts of all event types, but only of these pairs, in both orders. delaysToAny() stays
   /// the same.
   Statistics only(const std::vector<Pair>& pairs) const;
-
+  /// The counts without these pairs, for good: merge() keeps them out. delaysToAny() stays the
+  /// same.
+  Statistics without(const PairSet& pairs) const;
   /// The counts of all event types without any pair.
   Statistics withoutPairs() const;
+
+  /// The pairs that were left out for good.
+  const PairSet& leftOut() const { return left_out_; }
+  /// Says that a pair was left out for good.
+  /// @throw std::invalid_argument if one of them is no event type, or the pair has counts
+  void leaveOut(EventId from, EventId to);
 
   /// Windows in which rates were counted, the same for all types.
   std::uint64_t rateWindows() const { return rate_windows_; }
@@ -123,63 +125,19 @@ class Statistics {
   void addDuration(std::int64_t duration) { duration_ += duration; }
 
  private:
+  /// The counts with those pairs for which keep(to, from) holds.
+  template <typename Keep>
+  Statistics filtered(Keep keep) const;
+
   Vocabulary vocabulary_;
   std::vector<Type> types_;
   std::vector<Partners> partners_;  // by id: contiguous for the current event
+  PairSet left_out_;                // for good
   std::vector<Recording> recordings_;
   std::uint64_t rate_windows_ = 0;
   std::int64_t duration_ = 0;
 };
 
 bool operator==(const Statistics& a, const Statistics& b);
-
-/// Counts one recording after the other into a Statistics, in one pass (docs/method.md, section
-/// 3.1). No delay and no window crosses from one recording into the next, or a step of the clock
-/// (stream/clock.h).
-class Trainer {
- public:
-  /// @param statistics counted into; must outlive the trainer
-  /// @param window length [ns] of the windows in which rates are counted, > 0
-  /// @throw std::invalid_argument
-  Trainer(Statistics& statistics, std::int64_t window);
-
-  /// Ends the recording: the next event belongs to a new one.
-  /// @param since when that one began [ns], if not all of it is counted
-  /// @param robot_start when the robot was started [ns]; 0: not known
-  void startRecording(std::optional<std::int64_t> since = std::nullopt,
-                      std::int64_t robot_start = 0);
-  /// Starts a new recording of the same start of the robot: the clock was set.
-  void onClockStep() { startRecording(std::nullopt, recording_.robot_start); }
-  /// An event of the recording before those that are counted: it only says when its type came
-  /// first.
-  void addBefore(const Event& event);
-  /// @param event with an id of the statistics' vocabulary; in the order of the recording.
-  void add(const Event& event);
-  /// Counts what comes next into other statistics, which must have the same event types and
-  /// outlive the trainer. The recording goes on; its end decides which ones name it.
-  void countInto(Statistics& statistics) { statistics_ = &statistics; }
-  /// Ends the last recording.
-  void finish() { startRecording(); }
-
- private:
-  struct Seen {
-    std::int64_t stamp = 0;    // [ns]
-    std::uint64_t number = 0;  // of the event in the recording, from 1; 0: never seen
-  };
-
-  void resizeRecording();
-  void closeWindows(std::int64_t now);
-
-  Statistics* statistics_;
-  std::int64_t window_;
-  Statistics::Recording recording_;         // the open one
-  std::optional<std::int64_t> since_;       // when it began [ns]; none: with its first event
-  std::vector<Seen> last_seen_;             // by id
-  std::optional<std::int64_t> last_stamp_;  // [ns]
-  std::int64_t newest_stamp_ = 0;           // [ns], once something was seen
-  std::int64_t window_end_ = 0;             // of the open window [ns], once something was seen
-  std::uint64_t number_ = 0;
-  RecentCounts counts_;
-};
 
 }  // namespace self_awareness::core::evidence

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "self_awareness/core/evidence/count/statistics.h"
+#include "self_awareness/core/stream/event.h"
+#include "self_awareness/core/stream/recent_counts.h"
+
+namespace self_awareness::core::evidence {
+
+/// Counts one recording after the other into a Statistics, in one pass (docs/method.md, section
+/// 3.1); the last delays are there when the recording has ended. No delay and no window crosses
+/// from one recording into the next, or a step of the clock (stream/clock.h).
+class Trainer {
+ public:
+  /// @param statistics counted into; must outlive the trainer
+  /// @param window length [ns] of the windows in which rates are counted, > 0
+  /// @throw std::invalid_argument
+  Trainer(Statistics& statistics, std::int64_t window);
+
+  /// Ends the recording: the next event belongs to a new one.
+  /// @param since when that one began [ns], if not all of it is counted
+  /// @param robot_start when the robot was started [ns]; 0: not known
+  void startRecording(std::optional<std::int64_t> since = std::nullopt,
+                      std::int64_t robot_start = 0);
+  /// Starts a new recording of the same start of the robot: the clock was set.
+  void onClockStep() { startRecording(std::nullopt, recording_.robot_start); }
+  /// An event of the recording before those that are counted: it only says when its type came
+  /// first.
+  void addBefore(const Event& event);
+  /// @param event with an id of the statistics' vocabulary; in the order of the recording.
+  void add(const Event& event);
+  /// Counts what comes next into other statistics, which must have the same event types and
+  /// outlive the trainer. The recording goes on; its end decides which ones name it.
+  void countInto(Statistics& statistics) {
+    countWaiting();
+    statistics_ = &statistics;
+  }
+  /// Ends the last recording.
+  void finish() { startRecording(); }
+
+ private:
+  struct Seen {
+    std::int64_t stamp = 0;    // [ns]
+    std::uint64_t number = 0;  // of the event in the recording, from 1; 0: never seen
+  };
+
+  /// Delays of events of one type that are counted together: of a thousand types, counts lie in no
+  /// cache, and are fetched once for all of them.
+  struct Waiting {
+    std::vector<std::uint8_t> bins;
+    std::vector<std::uint8_t> came;
+  };
+
+  void resizeRecording();
+  /// Makes room for the event types that are new.
+  void resize();
+  void countDelays(const Event& event);
+  void countWaiting();
+  void closeWindows(std::int64_t now);
+
+  Statistics* statistics_;
+  std::int64_t window_;
+  Statistics::Recording recording_;         // the open one
+  std::optional<std::int64_t> since_;       // when it began [ns]; none: with its first event
+  std::vector<Seen> last_seen_;             // by id
+  std::vector<Waiting> waiting_;            // by id
+  std::optional<std::int64_t> last_stamp_;  // [ns]
+  std::int64_t newest_stamp_ = 0;           // [ns], once something was seen
+  std::int64_t window_end_ = 0;             // of the open window [ns], once something was seen
+  std::uint64_t number_ = 0;
+  RecentCounts counts_;
+};
+
+}  // namespace self_awareness::core::evidence

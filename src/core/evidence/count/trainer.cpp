@@ -1,0 +1,145 @@
+#include "self_awareness/core/evidence/count/trainer.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/evidence/count/log_bins.h"
+#include "self_awareness/core/stream/clock.h"
+#include "self_awareness/core/stream/windows.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+// Events of a type whose delays are counted together.
+constexpr std::size_t kTogether = 8;
+
+}  // namespace
+
+Trainer::Trainer(Statistics& statistics, std::int64_t window)
+    : statistics_(&statistics), window_(window), counts_(0, rateWindows(window)) {}
+
+void Trainer::startRecording(std::optional<std::int64_t> since, std::int64_t robot_start) {
+  countWaiting();
+  if (last_stamp_) {
+    recording_.end = newest_stamp_;
+    for (EventId id = 0; id < last_seen_.size(); ++id) {
+      if (recording_.events[id] > 1) {
+        std::int64_t& longest = recording_.longest_gaps[id];
+        longest = std::max(longest, newest_stamp_ - kEnding - last_seen_[id].stamp);
+      }
+    }
+    statistics_->addRecording(std::move(recording_));
+  }
+  recording_ = {};
+  recording_.robot_start = robot_start;
+  since_ = since;
+  last_seen_.clear();
+  last_stamp_.reset();
+  number_ = 0;
+  counts_.restart();
+}
+
+void Trainer::resizeRecording() {
+  recording_.events.resize(statistics_->size());
+  recording_.longest_gaps.resize(statistics_->size());
+  recording_.firsts.resize(statistics_->size(), -1);
+}
+
+void Trainer::addBefore(const Event& event) {
+  resizeRecording();
+  since_ = since_.value_or(event.stamp);
+  std::int64_t& first = recording_.firsts.at(event.id);
+  if (first < 0) {
+    first = std::max<std::int64_t>(event.stamp - *since_, 0);
+  }
+}
+
+void Trainer::add(const Event& event) {
+  if (last_stamp_ && isClockStep(*last_stamp_, event.stamp)) {
+    onClockStep();
+  }
+  resize();
+  addBefore(event);
+  if (last_stamp_) {
+    closeWindows(event.stamp);
+    recording_.longest_silence = std::max(recording_.longest_silence, event.stamp - *last_stamp_);
+    statistics_->addDuration(std::max<std::int64_t>(event.stamp - newest_stamp_, 0));
+    newest_stamp_ = std::max(newest_stamp_, event.stamp);
+  } else {
+    newest_stamp_ = event.stamp;
+    recording_.start = event.stamp;
+    window_end_ = floorToGrid(event.stamp, window_) + window_;
+  }
+  last_stamp_ = event.stamp;
+
+  Statistics::Type& type = statistics_->type(event.id);
+  Seen& last = last_seen_.at(event.id);
+  ++type.events;
+  ++recording_.events[event.id];
+  counts_.add(event.id);
+  countDelays(event);
+  if (last.number > 0) {
+    const std::int64_t gap = std::max<std::int64_t>(event.stamp - last.stamp, 0);
+    ++type.gaps;
+    type.gap_sum += gap;
+    type.addGap(gap);
+    recording_.longest_gaps[event.id] = std::max(recording_.longest_gaps[event.id], gap);
+  }
+  last = Seen{event.stamp, ++number_};
+}
+
+void Trainer::resize() {
+  if (last_seen_.size() < statistics_->size()) {
+    countWaiting();
+    last_seen_.resize(statistics_->size());
+    waiting_.resize(statistics_->size());
+    counts_.resize(statistics_->size());
+  }
+}
+
+void Trainer::countDelays(const Event& event) {
+  const std::size_t types = last_seen_.size();
+  const std::uint64_t last = last_seen_[event.id].number;
+  Waiting& waiting = waiting_[event.id];
+  waiting.came.resize(types);
+  const std::size_t begin = waiting.bins.size();
+  waiting.bins.resize(begin + types);
+  for (EventId id = 0; id < types; ++id) {
+    const Seen& other = last_seen_[id];
+    waiting.bins[begin + id] =
+        other.number > 0 ? static_cast<std::uint8_t>(log_bins::bin(event.stamp - other.stamp))
+                         : Partners::kNotSeen;
+    waiting.came[id] += last > 0 && other.number > last ? 1 : 0;
+  }
+  if (waiting.bins.size() == kTogether * types) {
+    statistics_->count(event.id, waiting.bins, waiting.came);
+    waiting.bins.clear();
+    waiting.came.clear();
+  }
+}
+
+void Trainer::countWaiting() {
+  for (EventId id = 0; id < waiting_.size(); ++id) {
+    if (!waiting_[id].bins.empty()) {
+      statistics_->count(id, waiting_[id].bins, waiting_[id].came);
+    }
+  }
+  waiting_.assign(waiting_.size(), {});
+}
+
+void Trainer::closeWindows(std::int64_t now) {
+  for (; window_end_ <= now; window_end_ += window_) {
+    counts_.close();
+    if (!counts_.full()) {
+      continue;
+    }
+    statistics_->addRateWindows(1);
+    for (EventId id = 0; id < counts_.counts().size(); ++id) {
+      const std::uint64_t count = counts_.counts()[id];
+      statistics_->type(id).rate_sum += count;
+      statistics_->type(id).rate_squares += count * count;
+    }
+  }
+}
+
+}  // namespace self_awareness::core::evidence
