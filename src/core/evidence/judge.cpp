@@ -164,7 +164,7 @@ void Judge::leaveOutNew(std::int64_t now, std::vector<double>& evidence) const {
 Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects suspects) {
   Judgement judgement;
   forgetStarts(window.start);
-  std::vector<double> evidence = scorer_.closeWindow(end);
+  std::vector<double>& evidence = scorer_.closeWindow(end);
   if (!limits_) {
     return judgement;
   }
@@ -175,7 +175,8 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
   std::set<std::string> channels;
   double largest = 0;
   for (std::size_t track = 0; track < evidence.size(); ++track) {
-    const double share = evidence[track] / limits_->tracks[track];
+    // Most tracks say nothing most of the time, and a division takes its time.
+    const double share = evidence[track] > 0 ? evidence[track] / limits_->tracks[track] : 0;
     shares_[track] = std::isnan(share) ? 0 : share;
     largest = std::max(largest, shares_[track]);
     if (shares_[track] > 1) {

@@ -39,14 +39,19 @@ class BitReader {
  public:
   explicit BitReader(const std::vector<std::uint8_t>& bytes) : bytes_(bytes) {}
 
-  std::uint64_t read(int bits) {
+  /// @param bits at most 63
+  std::uint64_t read(std::size_t bits) {
+    if (bits > 8 * bytes_.size() - position_) {
+      throw std::invalid_argument("packed events are cut off");
+    }
     std::uint64_t value = 0;
-    for (int bit = 0; bit < bits; ++bit) {
-      if (position_ / 8 >= bytes_.size()) {
-        throw std::invalid_argument("packed events are cut off");
-      }
-      value = value << 1 | (bytes_[position_ / 8] >> (7 - position_ % 8) & 1U);
-      ++position_;
+    while (bits > 0) {  // what is left of a byte at once
+      const std::size_t left = 8 - position_ % 8;
+      const std::size_t taken = std::min(left, bits);
+      const unsigned byte = bytes_[position_ / 8];
+      value = value << taken | (byte >> (left - taken) & ((1U << taken) - 1));
+      position_ += taken;
+      bits -= taken;
     }
     return value;
   }

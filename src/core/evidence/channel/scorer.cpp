@@ -20,6 +20,7 @@ Scorer::Scorer(std::shared_ptr<const Model> model, std::int64_t window)
       state_of_[track] = states_.size();
     }
     states_.push_back(expectation->start());
+    closing_.push_back(states_.back().get());
     if (states_.back()->listens()) {
       listening_.push_back(states_.back().get());
     }
@@ -27,6 +28,15 @@ Scorer::Scorer(std::shared_ptr<const Model> model, std::int64_t window)
   for (EventId id = 0; id < model_->size(); ++id) {
     gone_after_.push_back(static_cast<std::int64_t>(std::min(
         model_->tuning().gone_gaps * static_cast<double>(model_->longestGap(id)), kForEver)));
+  }
+}
+
+void Scorer::leaveOut(Finding finding) {
+  closing_.clear();
+  for (std::size_t k = 0; k < states_.size(); ++k) {
+    if (model_->finding(model_->expectations()[k]->tracks().front()) != finding) {
+      closing_.push_back(states_[k].get());
+    }
   }
 }
 
@@ -56,9 +66,9 @@ void Scorer::forget(EventId id) {
   }
 }
 
-const std::vector<double>& Scorer::closeWindow(std::int64_t end) {
+std::vector<double>& Scorer::closeWindow(std::int64_t end) {
   heard_.closeWindow(end);
-  for (const auto& state : states_) {
+  for (ChannelState* const state : closing_) {
     state->closeWindow(heard_, evidence_);
   }
   return evidence_;

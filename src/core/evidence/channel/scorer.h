@@ -18,6 +18,8 @@ class Scorer {
   /// @param window length [ns] of the windows that rates are counted in
   Scorer(std::shared_ptr<const Model> model, std::int64_t window);
 
+  /// Computes no evidence of such a finding: it stays 0.
+  void leaveOut(Finding finding);
   /// Lets the channels know their limits.
   void capAt(const Limits& limits);
 
@@ -46,8 +48,8 @@ class Scorer {
   void hear(const Waiting& waiting) { heard_.hear(waiting); }
   /// Closes a window.
   /// @param end of the window [ns]
-  /// @return evidence by track; 0: none
-  const std::vector<double>& closeWindow(std::int64_t end);
+  /// @return evidence by track; 0: none. What the caller changes lasts until the next window.
+  std::vector<double>& closeWindow(std::int64_t end);
   /// Forgets what the sums say of an event type: what was unusual so far was its start.
   void forget(EventId id);
   /// Forgets what was seen: a new recording starts, or the clock was set.
@@ -71,6 +73,7 @@ class Scorer {
   Heard heard_;
   std::vector<std::unique_ptr<ChannelState>> states_;
   std::vector<ChannelState*> listening_;  // those of them that need events
+  std::vector<ChannelState*> closing_;    // those of them that are not left out
   std::vector<std::size_t> state_of_;     // index of its state, by track
   std::vector<std::int64_t> gone_after_;  // a longer gap [ns] is that of a restart, by id
   std::vector<double> evidence_;          // by track

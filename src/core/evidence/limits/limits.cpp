@@ -42,6 +42,7 @@ void LimitFinder::startRecording(std::shared_ptr<const Model> model, std::int64_
 
 void LimitFinder::startScoring() {
   scorer_ = std::make_unique<Scorer>(judging_, parameters_.window);
+  scorer_->leaveOut(Finding::kSilent);  // the longest gaps say it
   recording_ = {};
   recording_.robot_start = robot_start_;
   recording_.trained_on = judging_ != model_;
@@ -152,9 +153,7 @@ void LimitFinder::close(const Window& window, std::int64_t end) {
   ++part.windows;
   ++recording_.windows;
   for (std::size_t track = 0; track < evidence.size(); ++track) {
-    if (model_->finding(track) != Finding::kSilent) {
-      part.evidence[track] = std::max(part.evidence[track], static_cast<float>(evidence[track]));
-    }
+    part.evidence[track] = std::max(part.evidence[track], static_cast<float>(evidence[track]));
   }
 }
 
