@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # fuzz.sh [SECONDS]: lets libFuzzer look for input that crashes, hangs or bloats what reads bags,
-# event logs, models, messages and encodings. Each fuzzer runs that long (default: 60). It ends with
+# event logs, models, standing alarms, messages and encodings. Each fuzzer runs that long (default: 60). It ends with
 # an error if one finds something, and says where the input lies.
 
 source "$(dirname "${BASH_SOURCE[0]}")/prepare.sh"
@@ -33,7 +33,7 @@ export LSAN_OPTIONS=suppressions=$checkout/test/fuzz/leaks.supp:print_suppressio
 
 status=0
 # A bag of format 1.2 takes ten times as long, since rosbag reads it: it has a corpus of its own.
-for corpus in message_field message_upgrade encoding bag former_bag event_log model; do
+for corpus in message_field message_upgrade encoding bag former_bag event_log model standing_alarm; do
   say "Fuzzing: $corpus, $seconds s"
   mkdir -p "$workspace/corpus/$corpus"
   program=$programs/fuzz_${corpus#former_}

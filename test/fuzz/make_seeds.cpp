@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "bag_bytes.h"
+#include "ros/verdict/standing_alarm.h"
 #include "self_awareness/EventLogGraph.h"
 #include "self_awareness/core/training.h"
 #include "self_awareness/ros/bag/bag_reader.h"
@@ -109,6 +110,20 @@ void writeEventLogs(const std::string& folder) {
   writeAllCompressions(folder + "log", folder + "log_");
 }
 
+void writeStandingAlarm(const std::string& folder) {
+  self_awareness::StandingAlarm standing;
+  standing.alarm.level = self_awareness::SelfAwareness::ERROR;
+  standing.alarm.alarm = 1;
+  standing.alarm.kind = core::toString(core::Kind::kDied);
+  standing.alarm.suspects.resize(1);
+  standing.alarm.suspects[0].source = "/node";
+  standing.alarm.suspects[0].scope = "/topic";
+  standing.alarm.suspects[0].type = "T";
+  standing.alarm.suspects[0].kind = standing.alarm.kind;
+  ros1::writeStandingAlarm(standing, folder + "alarm");
+  writeAllCompressions(folder + "alarm", folder + "alarm_");
+}
+
 template <typename Message>
 std::string serialized(const Message& message) {
   std::string bytes(ros::serialization::serializationLength(message), '\0');
@@ -186,6 +201,7 @@ int main(int argc, char** argv) {
   const std::string models = folderOf(argv[1], "model");
   writeModel(models + "model");
   writeAllCompressions(models + "model", models + "model_");
+  writeStandingAlarm(folderOf(argv[1], "standing_alarm"));
   writeStored(folderOf(argv[1], "message_upgrade"), models + "model");
   return 0;
 }
