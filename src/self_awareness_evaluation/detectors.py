@@ -101,6 +101,12 @@ class Evidence:
         calibration = None if self._trained is None else self._trained.calibration
         return math.nan if calibration is None else calibration.false_alarms_per_hour
 
+    @property
+    def watched(self) -> Set[str]:
+        """The components whose death it would find."""
+        trained: TrainedModel = required(self._trained, self.name, 'train')
+        return {each.component for each in trained.coverage() if each.is_watched}
+
     def verdicts(self, recording: WindowedEvents, parameters: DetectorParameters) -> Verdicts:
         """Return what the detector says of a recording, suspicions included."""
         trained: TrainedModel = required(self._trained, self.name, 'train')

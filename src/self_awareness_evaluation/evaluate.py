@@ -143,7 +143,7 @@ def nodes_plan(arguments: argparse.Namespace) -> nodes_session.SessionPlan:
     """Return the plan that the arguments of `nodes` ask for."""
     from self_awareness_evaluation.nodes.session import SessionPlan
     return SessionPlan(arguments.starts, arguments.training, arguments.calibrations,
-                       arguments.calibration, arguments.minutes)
+                       arguments.calibration, arguments.minutes, arguments.burst_minutes)
 
 
 def _clean_up_when_terminated() -> None:
@@ -277,6 +277,9 @@ def _add_nodes(parser: argparse.ArgumentParser) -> None:
                         '(default: 250)')
     parser.add_argument('--minutes', type=options.minutes, default=60.0, metavar='MIN',
                         help='normal operation that is watched (default: 60)')
+    parser.add_argument('--burst-minutes', type=options.minutes, default=20.0, metavar='MIN',
+                        help='the same after that, beside short bursts of foreign load '
+                        '(default: 20)')
     _add_folder(parser)
 
 

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import List, Optional, Protocol, Sequence, TypeVar
+from typing import List, Optional, Protocol, Sequence, Set, TypeVar, runtime_checkable
 
 import numpy as np
 
@@ -100,6 +100,15 @@ class Scorer(Protocol):
         """Return the sources to blame for a window, best first; None: it cannot tell."""
 
 
+@runtime_checkable
+class Watching(Protocol):
+    """What watches components one by one, and can say which."""
+
+    @property
+    def watched(self) -> Set[str]:
+        """The sources whose death it would find, once it has learned and is calibrated."""
+
+
 class ScoringSystem:
     """A system of a scorer: threshold and persistence are those of all others.
 
@@ -114,6 +123,11 @@ class ScoringSystem:
         self._scorer = scorer
         self._own_threshold = threshold
         self._threshold = threshold
+
+    @property
+    def scorer(self) -> Scorer:
+        """The part of it that is its own."""
+        return self._scorer
 
     def train(self, recordings: Sequence[WindowedEvents]) -> None:
         """Learn from normal operation."""
@@ -141,6 +155,12 @@ class ScoringSystem:
             raised_in = int((alarm.start - start[0]) // DEFAULT_WINDOW) - 1
             alarms.append(replace(alarm, suspects=self._scorer.suspects(recording, raised_in)))
         return Judged(start, abnormal, score, unsettled, alarms, threshold)
+
+
+def watched_by(system: System) -> Optional[Set[str]]:
+    """Return the sources that a system watches; None: it judges all of them together."""
+    of = system.scorer if isinstance(system, ScoringSystem) else system
+    return of.watched if isinstance(of, Watching) else None
 
 
 def required(value: Optional[_Value], name: str, step: str) -> _Value:

@@ -14,7 +14,7 @@ from self_awareness_evaluation.families.measures import (FaultRow, NormalRow, Su
                                                          normal_row)
 from self_awareness_evaluation.families.protocol import Learning, Records, check_hours
 from self_awareness_evaluation.families.robot import Robot
-from self_awareness_evaluation.systems import System
+from self_awareness_evaluation.systems import System, watched_by
 
 WITH_GRAPH, WITHOUT_GRAPH = 'evidence', 'evidence_no_graph'
 
@@ -57,11 +57,12 @@ class Results:
 
 @dataclass(frozen=True)
 class _Learned:
-    """A system that has learned; expected: see NormalRow."""
+    """A system that has learned; expected, watched: see NormalRow."""
 
     subject: Subject
     system: System
     expected: Optional[float]
+    watched: Optional[int]
 
 
 def run(plan: Plan, jobs: int) -> Results:
@@ -87,7 +88,8 @@ def run_robot(plan: Plan, robot: Tuple[str, int]) -> Results:
     learned = list(_learned(plan, robot, records))
     results = Results()
     for recording in records.watched(plan.hours):
-        results.normal += [normal_row(each.subject, each.system.judge(recording), each.expected)
+        results.normal += [normal_row(each.subject, each.system.judge(recording), each.expected,
+                                      each.watched, len(records.robot.sources))
                            for each in learned]
     for fault in records.faults(plan.faults):
         results.faults += [fault_row(each.subject, fault, each.system.judge(fault.recording))
@@ -103,8 +105,10 @@ def _learned(plan: Plan, robot: Tuple[str, int], records: Records) -> Iterator[_
             for budget, system in _systems(name, records.robot, plan):
                 system.train(training)
                 system.calibrate(calibration)
+                watched = watched_by(system)
                 yield _Learned(Subject(*robot, str(learning), name, budget), system,
-                               _expected(system))
+                               _expected(system),
+                               None if watched is None else len(watched & records.robot.sources))
 
 
 def _systems(name: str, robot: Robot, plan: Plan) -> List[Tuple[Optional[float], System]]:

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Callable, Dict, List, Set, Tuple
+from typing import Callable, Dict, List, Optional, Set, Tuple
 
 import numpy as np
 
@@ -288,6 +288,16 @@ def _long_pauses(seed: int) -> Robot:
     return draft.robot(seed)
 
 
+def _of_one_make(seed: int, number: Optional[int] = None) -> Robot:
+    draft = Draft(np.random.default_rng(seed))
+    add_timers_and_chains(draft)
+    if number is not None:
+        own = np.random.default_rng((seed, number))
+        draft.add(f'own{number}', 'data', 'sensor_msgs/Temperature',
+                  Timer(1.0 / float(own.choice(RATES_HZ))))
+    return draft.robot(seed)
+
+
 @dataclass(frozen=True)
 class Family:
     """Robots of a kind.
@@ -298,6 +308,9 @@ class Family:
         one_start: the recordings to learn from are all of one start.
         watched_start: and so are those that are watched; else each is of another start.
         hole: in one of the recordings to train on, a component is silent for 6 s.
+        of_make: returns one of several robots of a make, by the seed and a number: each recording
+            to learn from is of another one, and all that is watched of one more; None: there is
+            one robot.
     """
 
     told: str
@@ -305,6 +318,7 @@ class Family:
     one_start: bool = False
     watched_start: bool = False
     hole: bool = False
+    of_make: Optional[Callable[[int, int], Robot]] = None
 
 
 _STALLS = Conditions(stalls_an_hour=6.0)
@@ -344,6 +358,8 @@ FAMILIES: Dict[str, Family] = {
                             one_start=True, watched_start=True),
     'hole': Family('timers; in one of the recordings to train on, a driver is silent for 6 s',
                    _timers(), hole=True),
+    'one_make': Family('timers; robots of one make with a node of their own each: learned from '
+                       'some, watching another', _of_one_make, of_make=_of_one_make),
 }
 """All families by name."""
 

@@ -46,6 +46,8 @@ class NormalRow:
         warnings: times that a suspicion or an alarm began.
         evidence: what raised each alarm, in the system's words.
         expected: false alarms an hour that the calibration told; None: it did not say.
+        watched: components of the robot that the system watches; None: it judges all together.
+        components: of the robot; None: not noted.
     """
 
     subject: Subject
@@ -55,6 +57,8 @@ class NormalRow:
     warnings: int
     evidence: Tuple[str, ...]
     expected: Optional[float]
+    watched: Optional[int] = None
+    components: Optional[int] = None
 
 
 @dataclass(frozen=True)
@@ -82,12 +86,14 @@ class FaultRow:
     among_three: Optional[bool]
 
 
-def normal_row(subject: Subject, judged: Judged, expected: Optional[float]) -> NormalRow:
+def normal_row(subject: Subject, judged: Judged, expected: Optional[float],
+               watched: Optional[int] = None, components: Optional[int] = None) -> NormalRow:
     """Measure a recording of normal operation."""
     counted = ~judged.settling
     return NormalRow(subject, _hours(counted), len(judged.alarms),
                      _hours(judged.standing & counted), beginnings(judged.noticed),
-                     tuple(alarm.evidence for alarm in judged.alarms), expected)
+                     tuple(alarm.evidence for alarm in judged.alarms), expected, watched,
+                     components)
 
 
 def fault_row(subject: Subject, record: FaultRecord, judged: Judged) -> FaultRow:

@@ -218,10 +218,20 @@ class Records:
 
     def _recorded(self, section: _Section, number: int, seconds: float, one_start: bool,
                   fault: Optional[Fault] = None) -> WindowedEvents:
+        robot = self._robot_of(section, number)
         if one_start:
-            return self.robot.start(_ONE_START, seconds, fault,
-                                    section.from_s + number * section.every_s)
-        return self.robot.start(section.first + number, seconds, fault)
+            return robot.start(_ONE_START, seconds, fault,
+                               section.from_s + number * section.every_s)
+        return robot.start(section.first + number, seconds, fault)
+
+    def _robot_of(self, section: _Section, number: int) -> Robot:
+        """Return the robot of a recording: where there are several, that which is watched is none
+        of those that are learned from."""
+        of_make = self._family.of_make
+        if of_make is None:
+            return self.robot
+        return of_make(self.robot.seed, _WATCHED.first if section in (_WATCHED, _FAULTS)
+                       else section.first + number)
 
 
 def _stamps(recording: WindowedEvents, source: str) -> np.ndarray:

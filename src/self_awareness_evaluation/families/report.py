@@ -120,6 +120,7 @@ def figures(results: Results) -> List[Dict[str, Any]]:
             'per_hour_low': quiet.interval[0], 'per_hour_high': quiet.interval[1],
             'standing': quiet.standing, 'warnings_per_hour': quiet.warnings_per_hour,
             'expected_per_hour': quiet.expected_per_hour,
+            'watched': quiet.watched, 'components': quiet.components,
             'evidence': '; '.join(f'{text} {number}' for text, number in quiet.evidence)}
         for kind in KINDS:
             row.update(_of_fault(kind, summary.found(results.faults, group, kind)))

@@ -94,6 +94,11 @@ class Robot:
     far: FrozenSet[str] = frozenset()
 
     @property
+    def sources(self) -> Set[str]:
+        """The components."""
+        return {output.source for output in self.outputs}
+
+    @property
     def graph(self) -> Set[Tuple[str, str, str]]:
         """Publisher, topic and subscriber of all that is heard by other components."""
         heard = {(output.source, output.topic, subscriber) for output in self.outputs

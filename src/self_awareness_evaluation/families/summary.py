@@ -40,6 +40,8 @@ class Quiet:
         warnings_per_hour: times that a suspicion or an alarm began.
         evidence: the alarms by what raised them, most often first.
         expected_per_hour: what the calibrations promised on average; NaN: they did not say.
+        watched, components: how many a robot has on average, and how many of them are watched;
+            NaN: not noted, or the system judges all together.
     """
 
     robots: int
@@ -51,6 +53,8 @@ class Quiet:
     warnings_per_hour: float
     evidence: Tuple[Tuple[str, int], ...]
     expected_per_hour: float
+    watched: float = math.nan
+    components: float = math.nan
 
 
 @dataclass(frozen=True)
@@ -105,7 +109,7 @@ def quiet(rows: Sequence[NormalRow]) -> Quiet:
     hours = sum(row.hours for row in rows)
     alarms = sum(row.alarms for row in rows)
     robots = _by_robot(rows)
-    expected = [of_robot[0].expected for of_robot in robots if of_robot[0].expected is not None]
+    expected = [of_robot[0].expected for of_robot in robots]
     evidence = Counter(text for row in rows for text in row.evidence if text)
     return Quiet(
         len(robots), hours, alarms, alarms / hours,
@@ -113,7 +117,8 @@ def quiet(rows: Sequence[NormalRow]) -> Quiet:
                        for of_robot in robots]),
         sum(row.standing_hours for row in rows) / hours,
         sum(row.warnings for row in rows) / hours, tuple(evidence.most_common()),
-        sum(expected) / len(expected) if expected else math.nan)
+        _mean(expected), _mean([of_robot[0].watched for of_robot in robots]),
+        _mean([of_robot[0].components for of_robot in robots]))
 
 
 def kept(rows: Sequence[NormalRow]) -> float:
@@ -157,6 +162,11 @@ def _by_robot(rows: Sequence[NormalRow]) -> List[List[NormalRow]]:
     for row in rows:
         robots.setdefault((row.subject.family, row.subject.seed), []).append(row)
     return list(robots.values())
+
+
+def _mean(values: Sequence[Optional[float]]) -> float:
+    known = [value for value in values if value is not None]
+    return sum(known) / len(known) if known else math.nan
 
 
 def _share(values: Sequence[Optional[bool]]) -> float:

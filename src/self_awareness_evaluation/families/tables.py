@@ -45,7 +45,7 @@ def families_table(plan: Plan, results: Results) -> List[str]:
     head = ['family', *(f'false alarms/h, {_started(plan, each)}' for each in plan.learnings),
             *(f'{name}, {_started(plan, learning)}' for name in others), 'alarm stands', 'WARN/h',
             'crash, within 1 / 5 / 50 s', 'half rate', 'late answers', 'deaths when asked',
-            *_MORE, 'false alarms from']
+            *_MORE, f'watched: {" / ".join([system, *others])}', 'false alarms from']
     body = []
     for family in _with_all(plan.families):
         of_family = _Row(plan, results, normal, family)
@@ -58,7 +58,7 @@ def families_table(plan: Plan, results: Results) -> List[str]:
             _crashes(of_family.found(learning, system, CRASH)), _found(half),
             _found(of_family.found(late_learning(plan), system, LATE)), _found(death),
             *(_found(of_family.found(learning, system, kind)) for kind in _MORE.values()),
-            _sources(quiet)])
+            _watched(of_family, learning, [system, *others]), _sources(quiet)])
     return table(head, body)
 
 
@@ -124,6 +124,13 @@ def _number(value: float) -> str:
     if math.isnan(value):
         return _NONE
     return f'{value:.0f}' if value >= 9.95 else f'{value:.2g}'
+
+
+def _watched(row: _Row, learning: Learning, systems: Sequence[str]) -> str:
+    """Return how many components each system watches, of how many, as means of the robots."""
+    quiet = [row.quiet(learning, system) for system in systems]
+    return (f'{" / ".join(_number(each.watched) for each in quiet)} of '
+            f'{_number(quiet[0].components)}')
 
 
 def _sources(quiet: Quiet) -> str:

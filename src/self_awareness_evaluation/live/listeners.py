@@ -72,7 +72,7 @@ class MonitorListener:
         status = Status(message.header.stamp.to_sec(), time.time(), message.level,
                         message.settling, message.evidence,
                         tuple(distinct([suspect.source for suspect in message.suspects])),
-                        message.message)
+                        message.message, message.component)
         with self._lock:
             self._statuses.append(status)
             self._heard_at = time.monotonic()

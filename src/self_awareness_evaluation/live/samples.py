@@ -27,6 +27,7 @@ class Status:
         evidence: what is abnormal.
         suspects: sources, the most likely first, each once.
         message: the same in words.
+        component: that is to blame; empty: none.
     """
 
     stamp: float
@@ -36,6 +37,7 @@ class Status:
     evidence: str = ''
     suspects: Tuple[str, ...] = ()
     message: str = ''
+    component: str = ''
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from typing import List
 
 from self_awareness import progress
 from self_awareness_evaluation.nodes import report, session
-from self_awareness_evaluation.nodes.measures import UNDISTURBED, Row
+from self_awareness_evaluation.nodes.measures import BURSTS, UNDISTURBED, Row
 from self_awareness_evaluation.nodes.session import SessionPlan
 
 
@@ -35,8 +35,9 @@ def evaluate(plan: SessionPlan, folder: Path, output: Path, command: str) -> Lis
 
 
 def _brief(row: Row) -> str:
-    if row.fault == UNDISTURBED:
-        return (f'{row.lasted_s:.0f} s: alarms: {row.alarms:g}, suspicions: {row.suspicions:g}, '
+    if row.fault in (UNDISTURBED, BURSTS):
+        return (f'{row.lasted_s:.0f} s: alarms: {row.alarms:g} ({row.named:g} name a node), '
+                f'suspicions: {row.suspicions:g}, '
                 f'an alarm stood for {row.standing_s:.1f} s; {row.said}')
     return (f'{row.node} {row.fault}: {row.void or row.latency_s}, suspicion {row.suspicion_s}, '
             f'cleared after {row.cleared_s:.1f} s, {row.suspects}; {row.said} {row.note}')

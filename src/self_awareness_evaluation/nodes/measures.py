@@ -11,6 +11,9 @@ from self_awareness_evaluation.nodes.system import Fault
 UNDISTURBED = 'undisturbed'
 """The name of normal operation in the column of faults."""
 
+BURSTS = 'undisturbed, but for short bursts of foreign load'
+"""The same while other programs take the processor for a moment now and then."""
+
 SEPARATOR = '; '
 """Between what was said of one alarm or suspicion, and of the next one."""
 
@@ -20,7 +23,7 @@ class Row:
     """A stretch of time; the columns of the CSV file.
 
     Args:
-        fault: its kind, or UNDISTURBED.
+        fault: its kind, UNDISTURBED or BURSTS.
         node: that is broken; empty: none, or the whole machine.
         lasted_s: how long the fault lasted; of normal operation: time that was judged.
         alarms: of normal operation: how often an alarm (ERROR) was raised; nan of faults.
@@ -28,6 +31,7 @@ class Row:
             become an alarm; nan of faults.
         standing_s: of normal operation: time that an alarm stood; nan of faults.
         expected: of normal operation: alarms an hour that calibrate expects; nan of faults.
+        named: of normal operation: alarms that blamed a node as they began; nan of faults.
         suspicion_s, latency_s: from the onset to the first WARN or ERROR, and to the first ERROR;
             None: there was none while the fault lasted.
         first, among_three: whether the node is the first suspect, or among the first three, of
@@ -49,6 +53,7 @@ class Row:
     suspicions: float = math.nan
     standing_s: float = math.nan
     expected: float = math.nan
+    named: float = math.nan
     suspicion_s: Optional[float] = None
     latency_s: Optional[float] = None
     first: Optional[bool] = None
@@ -73,13 +78,14 @@ def of_quiet(stretch: Stretch, expected: float, statuses: Sequence[Status]) -> R
     inside = [status for status in statuses if stretch.onset < status.stamp <= stretch.end]
     length_s = stretch.end - stretch.onset
     begun = _begun(before[-1:], inside)
-    return Row(UNDISTURBED, '', length_s * _share(inside, lambda status: not status.settling),
+    return Row(stretch.kind, '', length_s * _share(inside, lambda status: not status.settling),
                alarms=sum(status.level >= ERROR for status in begun),
+               named=sum(status.level >= ERROR and bool(status.component) for status in begun),
                suspicions=sum(status.level == WARN for status in begun),
                standing_s=length_s * _share(inside, lambda status: status.level >= ERROR),
                expected=expected,
                said=SEPARATOR.join(
-                   f'{"ERROR" if status.level >= ERROR else "WARN"}: {status.message}'
+                   f'{_level(status)}: {status.message}'
                    for status in begun),
                note=stretch.note, load=stretch.load)
 
@@ -101,6 +107,12 @@ def of_fault(fault: Fault, stretch: Stretch, recovered: float, statuses: Sequenc
                cleared_s=_cleared(recovered, statuses),
                said='' if alarm is None or sample.void else alarm.message,
                suspects=sample.suspects, void=sample.void, note=sample.note, load=sample.load)
+
+
+def _level(status: Status) -> str:
+    if status.level < ERROR:
+        return 'WARN'
+    return 'ERROR, a node is named' if status.component else 'ERROR, no node is named'
 
 
 def _begun(before: Sequence[Status], inside: Sequence[Status]) -> List[Status]:

@@ -10,9 +10,11 @@ from typing import Any, Dict, List, Optional, Sequence
 
 from self_awareness.calibration import confidence
 from self_awareness.output_files import replacing
-from self_awareness_evaluation.nodes.measures import SEPARATOR, UNDISTURBED, Row
-from self_awareness_evaluation.nodes.session import (APART_S, QUIET_AFTER_S,
-                                                     RECOVERED_WITHIN_S, SessionPlan)
+from self_awareness_evaluation.nodes.measures import (BURSTS, SEPARATOR, UNDISTURBED,
+                                                      Row)
+from self_awareness_evaluation.nodes.session import (APART_S, BETWEEN_BURSTS_S, BURST_S,
+                                                     QUIET_AFTER_S, RECOVERED_WITHIN_S,
+                                                     SessionPlan)
 from self_awareness_evaluation.nodes.system import NODES, RELAY
 from self_awareness_evaluation.pages import written_by
 from self_awareness_evaluation.simulated.tables import table
@@ -53,6 +55,15 @@ message before.
 The machine did other work on all of its cores: its load average was {low:.1f} to {high:.1f},
 that of the nodes included. Other work makes messages late, and swaps those that come at the same
 time.
+"""
+
+
+_COMPANY = """\
+Only in that session, an operator looked on: `rosbag record -a` recorded all topics, and
+`rostopic echo /diagnostics` read what all nodes say of themselves. After the quiet time, other
+programs took every core for {shortest_s:g} to {longest_s:g} s at a time, every {between_s:g} s on
+the average, as a machine does that compiles now and then. "Name a node": of the alarms of
+undisturbed operation, those that blamed one as they began.
 """
 
 
@@ -116,10 +127,14 @@ def page(plan: SessionPlan, rows: Sequence[Row], command: str) -> str:
         calibrations=plan.calibrations, calibration_s=plan.calibration_s, apart_s=APART_S,
         quiet_s=QUIET_AFTER_S, within_s=RECOVERED_WITHIN_S, low=min(row.load for row in rows),
         high=max(row.load for row in rows))]
+    quiet = {kind: [row for row in rows if row.fault == kind] for kind in (UNDISTURBED, BURSTS)}
+    if quiet[BURSTS]:
+        lines.append(_COMPANY.format(shortest_s=BURST_S[0], longest_s=BURST_S[1],
+                                     between_s=BETWEEN_BURSTS_S))
     lines += table(['', 'lasted', 'WARN', 'ERROR', 'guilty first', 'cleared',
                     'what the monitor said'],
-                   [_quiet([row for row in rows if row.fault == UNDISTURBED]),
-                    *(_fault(row) for row in rows if row.fault != UNDISTURBED)])
+                   [*(_quiet(kind, of_kind) for kind, of_kind in quiet.items() if of_kind),
+                    *(_fault(row) for row in rows if row.fault not in quiet)])
     return '\n'.join([*lines, *_remarks(rows), ''])
 
 
@@ -134,17 +149,19 @@ def _packages() -> List[str]:
     return [f'- {package}: {", ".join(of_package)}' for package, of_package in names.items()]
 
 
-def _quiet(rows: Sequence[Row]) -> List[str]:
-    """Return the line of normal operation."""
+def _quiet(kind: str, rows: Sequence[Row]) -> List[str]:
+    """Return the line of a kind of normal operation."""
     hours = sum(row.lasted_s for row in rows) / 3600.0
     alarms = sum(row.alarms for row in rows)
     suspicions = sum(row.suspicions for row in rows)
     standing_s = sum(row.standing_s for row in rows)
     low, high = confidence.poisson_rate(alarms, hours)
-    return [f'**{UNDISTURBED}**', f'{60.0 * hours:.0f} min',
+    named = sum(row.named for row in rows)  # nan of a session that did not note it
+    naming = '' if math.isnan(named) else f'; {named:.0f} name a node'
+    return [f'**{kind}**', f'{60.0 * hours:.0f} min',
             f'{suspicions:.0f} ({suspicions / hours:.1f} an hour)',
             f'{alarms:.0f} (95 %: {low:.1f} to {high:.1f} an hour; expected by calibrate: '
-            f'{rows[0].expected:.2g})', _NONE,
+            f'{rows[0].expected:.2g}){naming}', _NONE,
             f'an alarm stood for {standing_s:.0f} s ({standing_s / hours / 36.0:.2g} % of the '
             'time)', _text(_counted([said for row in rows for said in row.said.split(SEPARATOR)]))]
 

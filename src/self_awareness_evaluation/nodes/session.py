@@ -1,11 +1,14 @@
 """One session beside the nodes: recordings of several starts, model, monitor, and faults."""
 from __future__ import annotations
 
+import contextlib
+import random
 import subprocess
+import threading
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Callable, List, Optional
+from typing import Callable, Iterator, List, Optional
 
 from self_awareness import TrainedModel
 from self_awareness.training.robot_graph import graph_file
@@ -18,9 +21,11 @@ from self_awareness_evaluation.live.processes import (LiveError, Processes, awai
                                                       becomes_true)
 from self_awareness_evaluation.live.samples import Stretch
 from self_awareness_evaluation.nodes import drivers, measures
-from self_awareness_evaluation.nodes.measures import UNDISTURBED, Row
+from self_awareness_evaluation.nodes.measures import BURSTS, UNDISTURBED, Row
 from self_awareness_evaluation.nodes.running import RunningSystem
 from self_awareness_evaluation.nodes.system import FAULTS, Fault
+from self_awareness_follow_me import induction
+from self_awareness_follow_me.effects import Starvation
 
 QUIET_AFTER_S = 10.0
 """A fault is over when there has been no alarm for so long after it was undone [s]."""
@@ -33,6 +38,14 @@ APART_S = 70.0
 
 Recordings that follow each other within a minute count as one start."""
 
+BURST_S = (0.2, 1.5)
+"""A burst of foreign load on all cores lasts so long, at least and at most [s]."""
+
+BETWEEN_BURSTS_S = 20.0
+"""Between two of them, on the average [s]."""
+
+_BURST = Starvation(ramp=0.0, slowdown=1.0, workers_per_core=4)
+_BURSTS_SEED = 1
 _WARM_UP_S = 10.0  # after the start, which is no normal operation
 _PIECE_S = 600.0  # of normal operation, so that little is lost if the session fails
 
@@ -47,6 +60,7 @@ class SessionPlan:
         calibrations: further starts, each recorded to find the limits by.
         calibration_s: length of each of these recordings [s].
         minutes: of normal operation that are watched.
+        burst_minutes: the same after that, beside short bursts of foreign load.
     """
 
     starts: int
@@ -54,6 +68,7 @@ class SessionPlan:
     calibrations: int
     calibration_s: float
     minutes: float
+    burst_minutes: float
 
 
 def run(plan: SessionPlan, folder: Path, told: Callable[[Row], None]) -> None:
@@ -96,21 +111,29 @@ class _Session:
                               f'model:={model}')
         await_condition('the monitor says something', lambda: bool(self._monitor.statuses),
                         STARTED_WITHIN_S)
-        self._watch(_expected(model))
+        # An operator looks on, with tools that training did not see.
+        tools = [self._processes.start('operator', 'rosbag', 'record', '--all', '--output-name',
+                                       str(self._folder / 'operator')),
+                 self._processes.start('reader', 'rostopic', 'echo', '/diagnostics')]
+        expected = _expected(model)
+        self._watch(UNDISTURBED, self._plan.minutes, expected)
+        with _bursts():
+            self._watch(BURSTS, self._plan.burst_minutes, expected)
         for fault in FAULTS:
             self._induce(fault)
-        self._processes.end(recorder)
+        for process in [*tools, recorder]:
+            self._processes.end(process)
         self._system.end()
 
-    def _watch(self, expected: float) -> None:
+    def _watch(self, kind: str, minutes: float, expected: float) -> None:
         def over(quiet: Stretch) -> None:
             self._told(measures.of_quiet(quiet, expected, self._monitor.statuses))
 
-        left = 60.0 * self._plan.minutes
+        left = 60.0 * minutes
         while left > 0.0:
             piece = min(left, _PIECE_S)
-            with stretch(1, UNDISTURBED, (), '', time.time(), over):
-                wait(piece, 'undisturbed')
+            with stretch(1, kind, (), '', time.time(), over):
+                wait(piece, kind)
             left -= piece
 
     def _induce(self, fault: Fault) -> None:
@@ -163,6 +186,26 @@ class _Session:
 
     def _bag(self, name: str) -> Optional[Path]:
         return next(iter(sorted(self._folder.glob(f'{name}_*.bag'))), None)
+
+
+@contextlib.contextmanager
+def _bursts() -> Iterator[None]:
+    """Take all cores for a moment now and then, while the with statement lasts."""
+    over = threading.Event()
+    rng = random.Random(_BURSTS_SEED)
+
+    def run() -> None:
+        while not over.wait(rng.expovariate(1.0 / BETWEEN_BURSTS_S)):
+            with induction.starved(_BURST):
+                over.wait(rng.uniform(*BURST_S))
+
+    thread = threading.Thread(target=run)
+    thread.start()
+    try:
+        yield
+    finally:
+        over.set()
+        thread.join()
 
 
 def _expected(model: Path) -> float:

@@ -7,7 +7,7 @@ diagnostic_updater looks once a second.
 """
 from __future__ import annotations
 
-from typing import Dict, List, NamedTuple, Sequence
+from typing import Dict, List, NamedTuple, Sequence, Set
 
 import numpy as np
 
@@ -46,6 +46,11 @@ class _FrequencyMonitor(DeviationScorer):
     def bounds(self) -> Dict[str, Bounds]:
         """The bounds by topic; a topic without is not watched."""
         return self._bounds
+
+    @property
+    def watched(self) -> Set[str]:
+        """The publishers of all topics that have bounds."""
+        return {source for topic in self._bounds for source in self._sources[topic]}
 
     def train(self, recordings: Sequence[WindowedEvents]) -> None:
         """Find the periodic topics and their bounds."""

@@ -6,7 +6,7 @@ by OUTSIDE, and by more than the one event that may fall to either side of the e
 """
 from __future__ import annotations
 
-from typing import Dict, List, NamedTuple, Sequence
+from typing import Dict, List, NamedTuple, Sequence, Set
 
 import numpy as np
 
@@ -63,6 +63,11 @@ class GapScorer(DeviationScorer):
     def bounds(self) -> Dict[EventType, GapBounds]:
         """The bounds by event type; one without is not watched."""
         return self._bounds
+
+    @property
+    def watched(self) -> Set[str]:
+        """The sources of all that has bounds."""
+        return {event_type.source for event_type in self._bounds}
 
     def train(self, recordings: Sequence[WindowedEvents]) -> None:
         """Find the bounds."""

@@ -332,3 +332,17 @@ def test_wrong_faults_and_times_are_refused() -> None:
         robot.start(1, 60.0, begin_s=90_000.0)
     with pytest.raises(ValueError, match='nothing happens'):
         Robot(1, small().outputs[4:]).start(1, 0.001)
+
+
+def test_robots_of_one_make_are_the_same_but_for_a_node_of_their_own() -> None:
+    records = Records('one_make', 3)
+    learning = Learning(2, 60.0, 1, 60.0)
+    learned = [*records.training(learning), *records.calibration(learning)]
+    watched = [*records.watched(60.0 / 3600.0),
+               *(fault.recording for fault in records.faults((CRASH,), most=1))]
+    own = [{kind.source for kind in recording.event_types} - records.robot.sources
+           for recording in [*learned, *watched]]
+    assert all(len(nodes) == 1 for nodes in own)
+    assert len(set().union(*own[:3])) == 3, 'each is another robot'
+    assert own[3] == own[4] and not own[3] & set().union(*own[:3])
+    assert {kind.source for kind in learned[0].event_types} >= set(records.robot.regular)

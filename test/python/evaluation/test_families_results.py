@@ -219,7 +219,7 @@ def test_the_table_tells_what_was_found() -> None:
     assert tables.families_table(plan, results)[2:] == [
         f'| timers | 3 ({low:.2g} to {high:.0f}) | 0.25 (0.044 to 1.4) | 0.3 % | 6 '
         '| 33 / 67 / 67 %, first 50 % | 0 %, – | 100 %, 0.10 s, first 100 % | – | – | – | – | – '
-        '| answers 12 |']
+        '| – / – of – | answers 12 |']
     assert tables.budgets_table(plan, results)[2:] == [
         f'| 2 starts | 0.5 | 0.38 | 3 ({low:.2g} to {high:.0f}) | 50 % |']
 
@@ -294,3 +294,17 @@ def test_more_hours_than_a_start_lasts_are_refused(tmp_path: Path,
     assert evaluate.main(['families', '--families', 'timers', 'stalls', '--hours', '20',
                           '-o', str(tmp_path)]) == 1
     assert 'stalls can be watched for 15 hours' in capsys.readouterr().err
+
+
+def test_every_system_says_how_many_components_it_watches() -> None:
+    plan = Plan(('events_only',), (1,), (TWO,), ('evidence', 'gaps', 'markov'), (0.5,), 0.1, ())
+    rows = experiment.run_robot(plan, ('events_only', 1)).normal
+    watched = {row.subject.system: row.watched for row in rows}
+    components = len(Records('events_only', 1).robot.sources)
+    assert {row.components for row in rows} == {components}
+    assert watched['markov'] is None, 'it judges all together'
+    assert watched['evidence'] is not None and 0 < watched['evidence'] <= components
+    assert watched['gaps'] == components
+    table = '\n'.join(tables.families_table(plan, Results(rows, [])))
+    assert 'watched: evidence / gaps / markov' in table
+    assert f'| {watched["evidence"]} / {components} / – of {components} |' in table

@@ -4,6 +4,7 @@ from __future__ import annotations
 import math
 import re
 import shlex
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Dict, List, Tuple
 
@@ -13,7 +14,8 @@ import rosbag
 from self_awareness_evaluation import evaluate
 from self_awareness_evaluation.live.samples import ERROR, WARN, Status, Stretch
 from self_awareness_evaluation.nodes import drivers, report
-from self_awareness_evaluation.nodes.measures import UNDISTURBED, Row, of_fault, of_quiet
+from self_awareness_evaluation.nodes.measures import (BURSTS, UNDISTURBED, Row, of_fault,
+                                                      of_quiet)
 from self_awareness_evaluation.nodes.session import SessionPlan
 from self_awareness_evaluation.nodes.system import (CAMERAS_HZ, FAULTS, HALF_RATE, KILL, LATE,
                                                     NODES, Fault)
@@ -39,7 +41,8 @@ def statuses(*levels: Tuple[float, int], settled_after_s: float = -2.0) -> List[
         level = ([0] + [level for begin_s, level in levels if begin_s <= after_s])[-1]
         found.append(Status(ONSET + after_s, ONSET + after_s, level, after_s <= settled_after_s,
                             'overdue', ('/lidar', '/base') if level else (),
-                            f'level {level} at {after_s:g}' if level else ''))
+                            f'level {level} at {after_s:g}' if level else '',
+                            '/lidar' if level else ''))
     return found
 
 
@@ -70,7 +73,9 @@ def test_alarms_and_suspicions_of_normal_operation() -> None:
                                         (7.0, WARN), (8.0, 0), (9.0, ERROR), (9.5, 0)))
     assert (row.alarms, row.suspicions, row.expected) == (2, 1, 0.4)
     assert row.standing_s == pytest.approx(2.5)
-    assert row.said == 'WARN: level 1 at 1; ERROR: level 2 at 5; ERROR: level 2 at 9'
+    assert row.said == ('WARN: level 1 at 1; ERROR, a node is named: level 2 at 5; '
+                        'ERROR, a node is named: level 2 at 9')
+    assert row.named == 2
     assert (row.lasted_s, row.load) == (pytest.approx(10.0), 1.5)
 
 
@@ -86,7 +91,8 @@ def test_a_suspicion_between_two_alarms_is_none_of_its_own() -> None:
     row = of_quiet(QUIET, 0.4, statuses((1.0, WARN), (1.5, ERROR), (3.0, WARN), (4.0, ERROR),
                                         (5.0, WARN), (6.0, 0), (7.0, WARN)))
     assert (row.alarms, row.suspicions) == (2, 1)
-    assert row.said == 'ERROR: level 2 at 1.5; ERROR: level 2 at 4; WARN: level 1 at 7'
+    assert [text.split(':')[0] for text in row.said.split('; ')] == [
+        'ERROR, a node is named', 'ERROR, a node is named', 'WARN']
 
 
 def test_time_in_which_the_monitor_settles_is_not_judged() -> None:
@@ -114,7 +120,14 @@ def test_a_fault_under_a_standing_alarm_does_not_count() -> None:
     assert 'stood' in row.void and row.latency_s is None and row.said == ''
 
 
-PLAN = SessionPlan(3, 150.0, 1, 250.0, 60.0)
+def test_an_alarm_of_the_machine_names_no_node() -> None:
+    said = [replace(status, component='') for status in statuses((1.0, ERROR), (2.0, 0))]
+    row = of_quiet(replace(QUIET, kind=BURSTS), 0.4, said)
+    assert (row.fault, row.alarms, row.named) == (BURSTS, 1, 0)
+    assert row.said == 'ERROR, no node is named: level 2 at 1'
+
+
+PLAN = SessionPlan(3, 150.0, 1, 250.0, 60.0, 20.0)
 ROWS = [
     Row(UNDISTURBED, '', 1800.0, 1, 2, 9.0, 0.5,
         said='ERROR: this: 1 s; WARN: that: 2 s; ERROR: this: 3 s', load=2.0),
@@ -140,6 +153,15 @@ def test_page_has_a_line_for_normal_operation_and_one_for_each_fault(tmp_path: P
     assert '| none | 1.00 s | no | did not clear | a/b |' in text
     assert 'void: the alarm stood' in text and '- `late_relay` relays 60 ms late: twice' in text
     assert 'nan' not in text and 'inf' not in text.split('|')[2]
+
+
+def test_the_page_tells_which_alarms_named_a_node(tmp_path: Path) -> None:
+    quiet = [Row(UNDISTURBED, '', 3600.0, 2, 0, 0.0, 0.5, named=1), ROWS[2],
+             Row(BURSTS, '', 1200.0, 1, 3, 0.0, 0.5, named=0)]
+    text = report.write(tmp_path, PLAN, quiet, 'the command')[1].read_text(encoding='utf-8')
+    assert 'expected by calibrate: 0.5); 1 name a node |' in text
+    assert f'| **{BURSTS}** | 20 min |' in text and '); 0 name a node |' in text
+    assert 'rosbag record -a' in text and 'rostopic echo /diagnostics' in text
 
 
 def test_rows_are_read_as_they_were_written(tmp_path: Path) -> None:
