@@ -45,8 +45,9 @@ std::size_t leaveOutMost(const std::set<std::string>& model_topics,
   return wanted.size() - topics.size();
 }
 
-ros1::Listening publishersOf(const std::set<std::string>& topics, const ros1::Graph& graph,
-                             const std::set<std::string>& first) {
+// Also notes on which computers these publishers run.
+ros1::Listening publishersOf(const std::set<std::string>& topics,
+                             const std::set<std::string>& first, ros1::Graph& graph) {
   std::set<std::string> nodes;
   for (const std::string& topic : topics) {
     const auto known = graph.topics.find(topic);
@@ -55,6 +56,11 @@ ros1::Listening publishersOf(const std::set<std::string>& topics, const ros1::Gr
     }
   }
   std::map<std::string, std::string> addresses = ros1::fetchAddresses(nodes);
+  for (const auto& [node, uri] : addresses) {
+    if (const std::string host = ros1::hostIn(uri); !host.empty()) {
+      graph.hosts[node] = host;
+    }
+  }
   ros1::Listening listening;
   listening.first = first;
   for (const std::string& topic : topics) {
@@ -170,9 +176,9 @@ void Discovery::poll(const Wanted& wanted) {
   shared->state = state;
 }
 
-void Discovery::listen(const Wanted& wanted, const ros1::SystemState& known, bool master_restarted,
+void Discovery::listen(const Wanted& wanted, ros1::SystemState& known, bool master_restarted,
                        State& state) {
-  const ros1::Graph& graph = known.graph;
+  ros1::Graph& graph = known.graph;
   std::set<std::string> topics;
   if (wanted.encoder) {
     const ros1::Encoder& encoder = *wanted.encoder;
@@ -195,7 +201,7 @@ void Discovery::listen(const Wanted& wanted, const ros1::SystemState& known, boo
                       "registered again",
                       vanished);
   }
-  subscriptions_.listen(publishersOf(topics, graph, wanted.model_topics));
+  subscriptions_.listen(publishersOf(topics, wanted.model_topics, graph));
 }
 
 void Discovery::nameIllegal(const Wanted& wanted, const ros1::Graph& graph) {

@@ -85,9 +85,9 @@ class Discovery {
   /// Waits until it is time to poll; none: the thread must end.
   std::optional<Wanted> awaitPoll();
   void poll(const Wanted& wanted);
-  /// Brings what is listened to up to date, and says how much it is.
-  void listen(const Wanted& wanted, const ros1::SystemState& known, bool master_restarted,
-              State& state);
+  /// Brings what is listened to up to date, and says how much it is, and on which computers it is
+  /// sent.
+  void listen(const Wanted& wanted, ros1::SystemState& known, bool master_restarted, State& state);
   /// Closes connections of strangers that take too much; asks for a poll where the master may have
   /// told something.
   void lookAtStrangers();

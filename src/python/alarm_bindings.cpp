@@ -40,6 +40,13 @@ void bindAlarms(py::module& m) {
                     "when the alarm or the suspicion first named its component [ns]")
       .def_readonly("reason", &core::Suspect::reason);
 
+  py::class_<core::Silent>(m, "Silent", "Components that fell silent together.")
+      .def_readonly("hosts", &core::Silent::hosts,
+                    "their computers; empty: nobody was heard any more")
+      .def_readonly("components", &core::Silent::components)
+      .def_readonly("since", &core::Silent::since, "stamp of the last event of them [ns]")
+      .def("__str__", [](const core::Silent& self) { return core::describe(self); });
+
   using core::Alarm;
   py::class_<Alarm>(m, "Alarm", "A stretch of time in which the alarm stood, or a suspicion.")
       .def_readonly("id", &Alarm::id, "unique in a recording; the monitor says the same")
@@ -56,7 +63,7 @@ void bindAlarms(py::module& m) {
       .def_readonly("culprit", &Alarm::culprit,
                     "component; empty: there is none, or nobody stands out")
       .def_readonly("reason", &Alarm::reason,
-                    "why the culprit is one, in words; empty: there is no culprit")
+                    "why the culprit is one, in words; without one, who is silent, or empty")
       .def_readonly("evidence", &Alarm::evidence,
                     "what raised it, in words; empty: a suspicion that an alarm left")
       .def_readonly("lowest_score", &Alarm::lowest_score)
@@ -67,6 +74,8 @@ void bindAlarms(py::module& m) {
                              : std::nullopt;
           },
           "in words, if the machine was too busy; None: it was not")
+      .def_property_readonly("silent", copyOf<Alarm>(&Alarm::silent),
+                             "who fell silent together, of what stood longest; None: nobody")
       .def_readonly("suspects", &Alarm::suspects, "of the window that raised it, best first")
       .def_readonly("later", &Alarm::later,
                     "of components that it named later, each with its time (since)");

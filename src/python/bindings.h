@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <ctime>
 #include <functional>
+#include <map>
 #include <optional>
 #include <set>
 #include <stdexcept>
@@ -62,6 +63,9 @@ inline core::SourceGraph graphOf(const std::set<EdgeState>& edges) {
   }
   return graph;
 }
+
+/// Computers by node, or by source.
+using HostsState = std::map<std::string, std::string>;
 
 /// The time of the wall clock, in whole seconds [ns]: when something was learned.
 inline std::int64_t now() {

@@ -102,11 +102,14 @@ Verdicts judgeByEvidence(const ros1::TrainedModel& trained,
                          const Ids& ids, std::optional<std::int64_t> end,
                          const std::vector<core::EventType>& event_types,
                          ros1::ReplayedMonitor* monitor, std::vector<std::int64_t> clock_steps,
-                         const std::vector<core::Waiting>& waiting) {
+                         const std::vector<core::Waiting>& waiting, const HostsState& hosts) {
   const auto vocabulary = std::make_shared<core::Vocabulary>(event_types);
+  const auto graph = std::make_shared<core::SourceGraph>(trained.graph);
+  for (const auto& [source, host] : hosts) {
+    graph->place(source, host);
+  }
   return judge(
-      core::evidence::makeJudge(model, trained.limits(), trained.window,
-                                std::make_shared<core::SourceGraph>(trained.graph), vocabulary),
+      core::evidence::makeJudge(model, trained.limits(), trained.window, graph, vocabulary),
       trained.window, parameters, stamps, ids, end, *vocabulary, monitor, std::move(clock_steps),
       waiting);
 }
@@ -224,10 +227,11 @@ void bindVerdicts(py::module& m) {
       py::arg("parameters"), py::arg("stamps"), py::arg("ids"), py::arg("end") = py::none(),
       py::arg("event_types") = std::vector<core::EventType>(), py::arg("monitor") = nullptr,
       py::arg("clock_steps") = std::vector<std::int64_t>(),
-      py::arg("waiting") = std::vector<core::Waiting>(),
+      py::arg("waiting") = std::vector<core::Waiting>(), py::arg("hosts") = HostsState(),
       "Verdicts on a recording by the EvidenceModel of a TrainedModel, like Model.judge.\n"
       "event_types: by id, those of the model first. waiting: how the machine was, in the order\n"
-      "of time (RecordedEvents.waiting).");
+      "of time (RecordedEvents.waiting). hosts: computers of sources, where the recording knows\n"
+      "better than the model.");
   m.attr("EVIDENCE_THRESHOLD") = core::evidence::kThreshold;
   m.attr("DEFAULT_WINDOW") = core::kDefaultWindow;    // [ns]
   m.attr("SHORTEST_WINDOW") = core::kShortestWindow;  // [ns]

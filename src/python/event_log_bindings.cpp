@@ -15,8 +15,10 @@ namespace {
 
 using NodesOfTopics = std::map<std::string, std::set<std::string>>;
 
-ros1::Graph graphOf(const NodesOfTopics& publishers, const NodesOfTopics& subscribers) {
+ros1::Graph graphOf(const NodesOfTopics& publishers, const NodesOfTopics& subscribers,
+                    const HostsState& hosts) {
   ros1::Graph graph;
+  graph.hosts = hosts;
   for (const auto& [topic, nodes] : publishers) {
     graph.topics[topic].publishers = nodes;
   }
@@ -37,16 +39,18 @@ void bindEventLogs(py::module& m) {
           "add_bag",
           [](ros1::EventLogWriter& self, const std::string& path,
              const ros1::EncodingRules& encoding, const NodesOfTopics& publishers,
-             const NodesOfTopics& subscribers, const py::object& progress) {
+             const NodesOfTopics& subscribers, const HostsState& hosts,
+             const py::object& progress) {
             const ros1::BagReader bag(path);
-            ros1::addToEventLog(bag, encoding, graphOf(publishers, subscribers), self,
+            ros1::addToEventLog(bag, encoding, graphOf(publishers, subscribers, hosts), self,
                                 progressTo(progress));
             return bag.summary();
           },
           py::arg("path"), py::arg("encoding"), py::arg("publishers") = NodesOfTopics(),
-          py::arg("subscribers") = NodesOfTopics(), py::arg("progress") = py::none(),
-          "Adds a bag as a recording of its own, with the nodes of its topics where they are\n"
-          "known; returns its BagSummary. After an error the log is of no use.")
+          py::arg("subscribers") = NodesOfTopics(), py::arg("hosts") = HostsState(),
+          py::arg("progress") = py::none(),
+          "Adds a bag as a recording of its own, with the nodes of its topics and their computers\n"
+          "where they are known; returns its BagSummary. After an error the log is of no use.")
       .def("close", &ros1::EventLogWriter::close, "Ends the file; without that it has no index.");
 }
 

@@ -183,10 +183,23 @@ void bindModel(py::module& m) {
             return edges;
           },
           [](TrainedModel& self, const std::set<EdgeState>& edges) {
+            const HostsState hosts = self.graph.hosts();
             self.graph = graphOf(edges);
+            for (const auto& [source, host] : hosts) {
+              self.graph.place(source, host);
+            }
           },
           "whose messages reach whom: set of (publisher, topic, subscriber), nodes by their\n"
           "stable names; empty: not known")
+      .def_property(
+          "hosts", [](const TrainedModel& self) { return self.graph.hosts(); },
+          [](TrainedModel& self, const HostsState& hosts) {
+            for (const auto& [source, host] : hosts) {
+              self.graph.place(source, host);
+            }
+          },
+          "computers of sources, as a dict; those that are known, or '' where a source runs on\n"
+          "several. To set it keeps those of other sources.")
       .def_property_readonly("threshold", &TrainedModel::threshold, "None: not calibrated")
       .def_property_readonly(
           "bin_size", [](const TrainedModel& self) { return self.statistics.binning().bin_size; },

@@ -223,9 +223,11 @@ void bindBags(py::module& m) {
               publishers[name] = topic.publishers;
               subscribers[name] = topic.subscribers;
             }
-            return std::make_pair(publishers, subscribers);
+            return std::make_tuple(publishers, subscribers, self.graph.hosts);
           },
-          "of an event log: publishers and subscribers, each a dict of sets of nodes by topic");
+          "of an event log: publishers and subscribers, each a dict of sets of nodes by topic, "
+          "and\n"
+          "computers by node");
   m.def(
       "summarise_bag",
       [](const std::string& path, const InLog& recording) { return summaryOf(path, recording); },

@@ -1,11 +1,13 @@
 #include "self_awareness/ros/graph.h"
 
 #include <ros/master.h>
+#include <ros/network.h>
 #include <ros/this_node.h>
 #include <xmlrpcpp/XmlRpcException.h>
 #include <xmlrpcpp/XmlRpcValue.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <iterator>
 #include <vector>
 
@@ -47,7 +49,8 @@ bool operator==(const Graph& a, const Graph& b) {
            x.second.publishers == y.second.publishers &&
            x.second.subscribers == y.second.subscribers;
   };
-  return std::equal(a.topics.begin(), a.topics.end(), b.topics.begin(), b.topics.end(), same);
+  return a.hosts == b.hosts &&
+         std::equal(a.topics.begin(), a.topics.end(), b.topics.begin(), b.topics.end(), same);
 }
 
 std::optional<SystemState> fetchSystemState() {
@@ -93,6 +96,12 @@ std::map<std::string, std::string> fetchAddresses(const std::set<std::string>& n
   return addresses;
 }
 
+std::string hostIn(const std::string& uri) {
+  std::string host;
+  std::uint32_t port = 0;
+  return ros::network::splitURI(uri, host, port) ? printable(host) : "";
+}
+
 void addEdges(const Graph& graph, const std::string& own_name, core::SourceGraph& edges) {
   for (const auto& [name, topic] : graph.topics) {
     for (const std::string& publisher : topic.publishers) {
@@ -101,6 +110,15 @@ void addEdges(const Graph& graph, const std::string& own_name, core::SourceGraph
           edges.connect(stableName(publisher), name, stableName(subscriber));
         }
       }
+    }
+  }
+  std::map<std::string, std::set<std::string>> hosts;
+  for (const auto& [node, host] : graph.hosts) {
+    hosts[stableName(node)].insert(host);
+  }
+  for (const auto& [source, all] : hosts) {
+    if (edges.hosts().size() < kMostHosts) {
+      edges.place(source, all.size() == 1 ? *all.begin() : "");
     }
   }
 }

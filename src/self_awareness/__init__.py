@@ -53,6 +53,7 @@ from self_awareness._core import (  # noqa: F401
     ResultBag,
     Roc,
     RocPoint,
+    Silent,
     Suspect,
     Track,
     TrainedModel,

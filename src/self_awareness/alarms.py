@@ -41,6 +41,9 @@ def as_values(alarm: Alarm, event_types: List[EventType], origin: int) -> Dict[s
         'evidence': alarm.evidence,
         'lowest_score': _known(alarm.lowest_score),
         'busy': alarm.busy,
+        'silent': None if alarm.silent is None else {
+            'hosts': alarm.silent.hosts, 'components': alarm.silent.components,
+            'since_s': _seconds(alarm.silent.since, origin)},
         'suspects': suspects(alarm.suspects),
         'later': suspects(alarm.later),
     }

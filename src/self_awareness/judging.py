@@ -1,10 +1,12 @@
 """Judges whole recordings with either detector: both are called in the same way."""
 from __future__ import annotations
 
-from typing import Callable, Optional
+from typing import Callable, Dict, Iterable, Optional, Sequence
 
-from self_awareness import (DetectorParameters, EvidenceModel, PaperModel, TrainedModel, Verdicts,
-                            judge_by_evidence)
+import numpy as np
+
+from self_awareness import (DetectorParameters, EventType, EvidenceModel, PaperModel,
+                            ReplayedMonitor, TrainedModel, Verdicts, Waiting, judge_by_evidence)
 
 EVIDENCE = 'evidence'
 PAPER = 'paper'
@@ -14,14 +16,14 @@ BOTH = 'both'
 Judge = Callable[..., Verdicts]
 """Judges stamps and ids of a recording, and the silence up to its end [ns]. Further arguments: the
 event types by id, those of the model first (without, those of unknown events are not known), a
-ReplayedMonitor that is told of all of it, where the clock was set (clock_steps), and how the
-machine was (waiting)."""
+ReplayedMonitor that is told of all of it, where the clock was set (clock_steps), how the machine
+was (waiting), and on which computers sources ran (hosts)."""
 
 
 def paper_judge(trained: TrainedModel, model: PaperModel, threshold: Optional[float],
                 parameters: DetectorParameters) -> Judge:
     """Return what judges by the paper's score; threshold None: scores only, no alarms."""
-    return lambda stamps, ids, end, event_types=(), monitor=None, clock_steps=(), waiting=(): (
+    return lambda stamps, ids, end, event_types=(), monitor=None, clock_steps=(), **_: (
         model.judge(trained.window, threshold, parameters, stamps, ids, end, list(event_types),
                     monitor, clock_steps))
 
@@ -39,6 +41,11 @@ def evidence_judge(trained: TrainedModel, parameters: DetectorParameters,
         ValueError: the limits are not those of the model.
     """
     model = computed or EvidenceModel(trained)
-    return lambda stamps, ids, end, event_types=(), monitor=None, clock_steps=(), waiting=(): (
-        judge_by_evidence(trained, model, parameters, stamps, ids, end, list(event_types),
-                          monitor, clock_steps, list(waiting)))
+
+    def judge(stamps: np.ndarray, ids: np.ndarray, end: Optional[int] = None,
+              event_types: Iterable[EventType] = (), monitor: Optional[ReplayedMonitor] = None,
+              clock_steps: Sequence[int] = (), waiting: Iterable[Waiting] = (),
+              hosts: Optional[Dict[str, str]] = None) -> Verdicts:
+        return judge_by_evidence(trained, model, parameters, stamps, ids, end, list(event_types),
+                                 monitor, clock_steps, list(waiting), hosts or {})
+    return judge

@@ -4,9 +4,9 @@ from __future__ import annotations
 import math
 import os
 import re
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Dict, Iterable, Iterator, List, Optional, Sequence, Set, Tuple
+from typing import Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from self_awareness import (LEAST_KNOWN, LONGEST_SILENCE, BagError, EventType, M
                             find_clock_steps, progress, read_events, recordings_in_event_log,
                             summarise_bag)
 from self_awareness.stamps import SECOND_NS, nanoseconds
+from self_awareness.training.robot_graph import RobotGraph
 
 MOST_WINDOWS = 10_000_000
 """Of a recording: eleven days in windows of 0.1 s. Verdicts on them take some 100 MB."""
@@ -151,6 +152,7 @@ class RecordingEvents:
         clock_steps: stamps of the first events after the clock was set forward [ns].
         waiting: how the machine was, one stretch of time after the other; empty: not known.
         left_out: why some connections of a bag are no events, whatever the encoding.
+        hosts: computers of sources, as an event log says.
     """
 
     part: BagPart
@@ -167,6 +169,7 @@ class RecordingEvents:
     clock_steps: Sequence[int] = ()
     waiting: Sequence[Waiting] = ()
     left_out: Tuple[str, ...] = ()
+    hosts: Mapping[str, str] = field(default_factory=dict)
 
     @classmethod
     def of(cls, part: BagPart, events: RecordedEvents) -> RecordingEvents:
@@ -177,7 +180,8 @@ class RecordingEvents:
                    summary.fingerprint, summary.one_sender_a_topic, summary.copied, summary.bag,
                    summary.robot_start,
                    () if summary.clock_watched else find_clock_steps(events.stamps, events.ids),
-                   events.waiting, tuple(summary.left_out))
+                   events.waiting, tuple(summary.left_out),
+                   RobotGraph(*summary.graph).hosts_of_sources())
 
     @cached_property
     def heard(self) -> np.ndarray:

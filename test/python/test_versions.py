@@ -184,7 +184,7 @@ def test_graphs_of_any_format_are_read(folder: Path, tmp_path: Path) -> None:
     assert ('/laser', '/scan', '/slam') in graph.edges()
     graph.save(str(tmp_path / 'g.yaml'))
     assert RobotGraph.load(str(tmp_path / 'g.yaml')) == graph
-    assert yaml.safe_load((tmp_path / 'g.yaml').read_text())['version']['format'] == 2
+    assert yaml.safe_load((tmp_path / 'g.yaml').read_text())['version']['format'] == 3
 
 
 def test_a_graph_of_a_newer_format_is_read_if_it_says_so(tmp_path: Path) -> None:

@@ -9,6 +9,7 @@ import unittest
 from typing import Callable, List, Set
 
 import rosbag
+import rosgraph
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray
@@ -21,6 +22,12 @@ from monitor_case import Talker, subscribers
 from self_awareness import (EncodingRules, read_events, recordings_in_event_log,
                             summarise_bag)
 from self_awareness.training.robot_graph import RobotGraph, graph_file
+
+
+def own_host() -> str:
+    """The computer of this node, as its address says."""
+    uri = rosgraph.Master(rospy.get_name()).lookupNode(rospy.get_name())
+    return uri.split('//')[1].split(':')[0]
 
 
 class RecordTest(unittest.TestCase):
@@ -68,7 +75,9 @@ class RecordTest(unittest.TestCase):
         self.assertIn('/a', self.topics(bag))
         self.assertNotIn('/b', self.topics(bag))
         name = rospy.get_name()
-        self.assertIn((name, '/a', name), RobotGraph.load(graph_file(bag)).edges())
+        graph = RobotGraph.load(graph_file(bag))
+        self.assertIn((name, '/a', name), graph.edges())
+        self.assertEqual(graph.hosts[name], own_host())
         self.assertEqual(subscribers('/a'), [])
 
     def test_only_the_topics_that_are_named_are_recorded(self) -> None:
@@ -98,6 +107,7 @@ class RecordTest(unittest.TestCase):
         summary = summarise_bag(log, 0)
         self.assertTrue(0 < summary.robot_start <= summary.start <= events.stamps[0])
         self.assertIn((name, '/a', name), RobotGraph(*summary.graph).edges())
+        self.assertEqual(RobotGraph(*summary.graph).hosts[name], own_host())
 
     def test_files_of_one_start_say_so(self) -> None:
         with Talker('/a'), Talker('/b'):

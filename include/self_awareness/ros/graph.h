@@ -20,6 +20,7 @@ struct Graph {
     std::set<std::string> subscribers;
   };
   std::map<std::string, Topic> topics;
+  std::map<std::string, std::string> hosts;  ///< names or addresses of computers, by node
 };
 
 bool operator==(const Graph& a, const Graph& b);
@@ -37,12 +38,18 @@ std::optional<SystemState> fetchSystemState();
 /// @return by node; without those that the master does not know
 std::map<std::string, std::string> fetchAddresses(const std::set<std::string>& nodes);
 
+/// The name or the address in the URI of a node's XML-RPC server; empty: there is none.
+std::string hostIn(const std::string& uri);
+
+/// Most computers of sources that are kept.
+constexpr std::size_t kMostHosts = 20000;
+
 /// Most edges that are kept: what is new then is left out. They name roots, no more, and a robot
 /// of 300 nodes with all of tf and /rosout has some ten thousand.
 constexpr std::size_t kMostEdges = 50000;
 
-/// Adds an edge from every publisher of a topic to every subscriber, by their stable names
-/// (docs/method.md, section 6).
+/// Adds an edge from every publisher of a topic to every subscriber, by their stable names, and the
+/// computers of all (docs/method.md, section 6).
 /// @param own_name name of a node that is left out, since it listens to everything
 void addEdges(const Graph& graph, const std::string& own_name, core::SourceGraph& edges);
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -13,6 +12,7 @@
 #include "core/evidence/blame/blame.h"
 #include "core/evidence/blame/busy_machine.h"
 #include "core/evidence/blame/never_heard.h"
+#include "core/evidence/blame/silent_together.h"
 #include "core/evidence/blame/strangers.h"
 #include "core/evidence/channel/scorer.h"
 
@@ -54,9 +54,6 @@ class Judge : public core::Judge {
   void leaveOutNew(std::int64_t now, std::vector<double>& evidence) const;
   /// Whether a track beyond its limit is so beyond all doubt.
   bool isCertain() const;
-  /// Whether every component that was heard, and whose silence is judged, should have spoken by
-  /// now; at least two.
-  bool areAllSilent() const;
   /// The suspects of a window with evidence of known event types.
   /// @param silent_first whether those come before what was never heard that tracks speak against,
   /// and that does not wait for its messages
@@ -71,6 +68,7 @@ class Judge : public core::Judge {
   NeverHeard never_heard_;
   Strangers strangers_;
   BusyMachine busy_machine_;
+  SilentTogether silent_together_;
   std::int64_t settle_time_ = 0;  // [ns]
   std::vector<double> shares_;    // of its limit that each track has reached
   SharesHandler tell_shares_;
@@ -89,9 +87,10 @@ Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, s
       scorer_(model_, window),
       events_(model_->size()),
       blame_(model_, graph),
-      never_heard_(*model_, limits_.value_or(Limits{}), std::move(graph)),
+      never_heard_(*model_, limits_.value_or(Limits{}), graph),
       strangers_(*model_, std::move(heard)),
       busy_machine_(model_),
+      silent_together_(model_, std::move(graph)),
       shares_(model_->tracks().size(), 0),
       tell_shares_(std::move(shares)),
       settled_at_(model_->size(), std::numeric_limits<std::int64_t>::min()) {
@@ -199,7 +198,9 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
     channels.insert("busy");
   }
   judgement.abnormal = *judgement.score < kThreshold;
-  judgement.all_silent = judgement.abnormal && areAllSilent();
+  if (judgement.abnormal) {
+    judgement.silent = silent_together_.find(shares_, *limits_, scorer_, strangers_.silences(end));
+  }
   judgement.certain = never_heard_.share() > 1 || isCertain();
   judgement.suspicious = never_heard_.share() > 0 || judgement.busy.has_value();
   if (never_heard_.share() > 0) {
@@ -238,35 +239,6 @@ std::vector<Suspect> Judge::namedIn(const Window& window, bool silent_first) con
     }
   }
   return named;
-}
-
-bool Judge::areAllSilent() const {
-  // Who says one thing says nothing else at that moment, and is not silent.
-  std::map<std::size_t, std::int64_t> silences;  // since the last event of any type, by component
-  for (EventId id = 0; id < model_->size(); ++id) {
-    if (scorer_.heard().hasSeen(id)) {
-      const std::int64_t silence = scorer_.heard().silence(id);
-      std::int64_t& of_component =
-          silences.try_emplace(model_->componentIndex(id), silence).first->second;
-      of_component = std::min(of_component, silence);
-    }
-  }
-  std::set<std::size_t> judged;
-  std::set<std::size_t> silent;
-  const double rare = std::log(model_->tuning().rare_silence);
-  for (std::size_t track = 0; track < shares_.size(); ++track) {
-    const EventId id = model_->tracks()[track].to;
-    if (model_->finding(track) != Finding::kSilent || std::isnan(limits_->tracks[track]) ||
-        !scorer_.heard().hasSeen(id)) {
-      continue;
-    }
-    const std::size_t component = model_->componentIndex(id);
-    judged.insert(component);
-    if (model_->logSurvival(id, silences.at(component)) < rare) {
-      silent.insert(component);
-    }
-  }
-  return judged.size() > 1 && silent.size() == judged.size();
 }
 
 bool Judge::isCertain() const {

@@ -87,17 +87,28 @@ void Alarms::goOn(const Verdict& verdict, std::int64_t end, const Vocabulary& vo
     alarm.culprit = alarm.suspects.empty() ? "" : alarm.suspects.front().component;
     alarm.reason = alarm.suspects.empty() ? "" : alarm.suspects.front().reason.words;
     alarm.kind = !alarm.suspects.empty() ? alarm.suspects.front().reason.kind
-                 : verdict.all_silent    ? Kind::kAllSilent
+                 : verdict.silent        ? Kind::kAllSilent
                                          : Kind::kOutOfOrder;
   }
   if (verdict.busy && !alarm.busy) {
     alarm.busy = verdict.busy;
   }
-  if (stands && ((alarm.busy && isOfTime(alarm.kind)) ||
-                 (verdict.all_silent && alarm.kind == Kind::kDied))) {
-    alarm.kind = alarm.kind == Kind::kDied ? Kind::kAllSilent : Kind::kBusyMachine;
+  if (stands && alarm.busy && isOfTime(alarm.kind)) {
+    alarm.kind = Kind::kBusyMachine;
     alarm.culprit.clear();
     alarm.reason.clear();
+  }
+  if (stands && verdict.silent &&
+      (!alarm.silent || verdict.silent->components.size() > alarm.silent->components.size())) {
+    alarm.silent = verdict.silent;
+  }
+  // Who died before, on another computer, is still to blame.
+  if (stands && alarm.silent &&
+      (alarm.kind == Kind::kAllSilent ||
+       (alarm.kind == Kind::kDied && alarm.silent->has(alarm.culprit)))) {
+    alarm.kind = Kind::kAllSilent;
+    alarm.culprit.clear();
+    alarm.reason = describe(*alarm.silent);
   }
   alarm.end = end;
   alarm.lowest_score = std::fmin(alarm.lowest_score, verdict.score.value_or(0));

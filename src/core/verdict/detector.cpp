@@ -72,6 +72,7 @@ void Detector::clearAlarm() {
   resumed_ = false;
   awaited_.clear();
   suspicion_ = false;
+  silent_ = 0;
   named_.clear();
 }
 
@@ -141,7 +142,7 @@ void Detector::close(const Window& window, std::int64_t end) {
   } else {
     verdict.evidence = judgement.evidence;
     verdict.busy = judgement.busy;
-    verdict.all_silent = judgement.all_silent;
+    verdict.silent = std::move(judgement.silent);
     verdict.suspects = std::move(judgement.suspects);
     count(judgement, window_end);
     verdict.alarm = persistence_.raised();
@@ -155,10 +156,15 @@ void Detector::close(const Window& window, std::int64_t end) {
   verdict.changed = verdict.alarm != stood || verdict.suspicion != (was_suspicion && !stood);
   if (verdict.changed) {
     named_.clear();
+    silent_ = 0;
   }
   const std::vector<Suspect> named_first = name(verdict.suspects, verdict.changed, window_end);
   if (verdict.alarm && !verdict.changed && !named_first.empty()) {
     verdict.new_suspects = named_first;
+    verdict.changed = true;
+  }
+  if (verdict.alarm && verdict.silent && verdict.silent->components.size() > silent_) {
+    silent_ = verdict.silent->components.size();
     verdict.changed = true;
   }
   verdict.suspects.resize(std::min(verdict.suspects.size(), kMostSuspects));

@@ -11,6 +11,12 @@ void SourceGraph::connect(const std::string& publisher, const std::string& topic
   followers_[publisher].insert(subscriber);
 }
 
+const std::string& SourceGraph::hostOf(const std::string& source) const {
+  static const std::string unknown;
+  const auto known = hosts_.find(source);
+  return known == hosts_.end() ? unknown : known->second;
+}
+
 bool SourceGraph::isUpstream(const std::string& from, const std::string& to) const {
   const std::optional<std::size_t> there = distance(from, to);
   const std::optional<std::size_t> back = distance(to, from);

@@ -70,6 +70,9 @@ void add(const self_awareness::EventLogGraph& message, Graph& graph) {
     topic.publishers.insert(nodes.publishers.begin(), nodes.publishers.end());
     topic.subscribers.insert(nodes.subscribers.begin(), nodes.subscribers.end());
   }
+  for (const self_awareness::NodeHost& each : message.hosts) {
+    graph.hosts[each.node] = each.host;
+  }
 }
 
 std::vector<core::Waiting> waitingIn(const self_awareness::EventLog& part,

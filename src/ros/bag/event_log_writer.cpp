@@ -71,7 +71,15 @@ void EventLogWriter::writeGraph(const Graph& graph, std::int64_t stamp) {
       message.topics.push_back(nodesOf(name, {}));
     }
   }
-  if (!message.topics.empty()) {
+  for (const auto& [node, host] : graph.hosts) {
+    const auto before = graph_.hosts.find(node);
+    if (before == graph_.hosts.end() || before->second != host) {
+      self_awareness::NodeHost& changed = message.hosts.emplace_back();
+      changed.node = node;
+      changed.host = host;
+    }
+  }
+  if (!message.topics.empty() || !message.hosts.empty()) {
     bag_.write({kEventLogGraphTopic}, inBag(message.stamp), message);
     graph_ = graph;
   }

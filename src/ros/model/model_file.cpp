@@ -75,6 +75,7 @@ void checkEffort(const self_awareness::Model& message) {
   check(message.event_types.size() <= kMostEventTypes, "it has too many event types");
   check(message.tracks.size() <= kMostTracks, "it watches too much");
   check(message.graph.size() <= kMostEdges, "it has too many edges");
+  check(message.hosts.size() <= kMostHosts, "it has too many computers of sources");
 }
 
 /// The messages of a model file.
@@ -260,6 +261,11 @@ self_awareness::Model toMessage(const TrainedModel& model) {
   for (const core::SourceGraph::Edge& edge : model.graph.edges()) {
     message.graph.push_back(graphMessage(edge));
   }
+  for (const auto& [source, host] : model.graph.hosts()) {
+    self_awareness::NodeHost& placed = message.hosts.emplace_back();
+    placed.node = source;
+    placed.host = host;
+  }
   message.recordings = toMessages(model.recordings);
   for (const core::evidence::LimitFinder::Recording& recording : model.findings) {
     message.findings.push_back(toMessage(recording));
@@ -296,6 +302,9 @@ TrainedModel fromMessage(const self_awareness::Model& message) {
     model.graph.connect(edge.publisher, edge.topic, edge.subscriber);
   }
   check(model.graph.edges().size() == message.graph.size(), "its graph has an edge twice");
+  for (const self_awareness::NodeHost& placed : message.hosts) {
+    model.graph.place(placed.node, placed.host);
+  }
   model.recordings = fromMessages(message.recordings);
   for (const self_awareness::RecordingFindings& findings : message.findings) {
     model.findings.push_back(

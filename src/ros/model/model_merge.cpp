@@ -72,6 +72,9 @@ void merge(TrainedModel& model, const TrainedModel& other) {
   for (const auto& [publisher, topic, subscriber] : other.graph.edges()) {
     model.graph.connect(publisher, topic, subscriber);
   }
+  for (const auto& [source, host] : other.graph.hosts()) {
+    model.graph.place(source, host);
+  }
   model.recordings.insert(model.recordings.end(), other.recordings.begin(),
                           other.recordings.end());
   if (model.tuning != other.tuning) {

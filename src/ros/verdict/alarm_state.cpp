@@ -19,6 +19,14 @@ std::uint8_t levelOf(const std::optional<core::Alarm>& standing) {
                                                        : SelfAwareness::WARN;
 }
 
+std::string inWords(const core::Verdict& verdict, const std::string& load) {
+  std::string words = verdict.busy ? core::describe(*verdict.busy, load) : "";
+  if (verdict.silent) {
+    words += (words.empty() ? "" : ", ") + core::describe(*verdict.silent);
+  }
+  return words;
+}
+
 }  // namespace
 
 void AlarmState::add(const core::Verdict& verdict, const core::Vocabulary& vocabulary,
@@ -37,10 +45,10 @@ void AlarmState::add(const core::Verdict& verdict, const core::Vocabulary& vocab
   }
   if (!verdict.evidence.empty() || !stands()) {
     message_.evidence = verdict.evidence;
-    busy_ = verdict.busy ? core::describe(*verdict.busy, circumstances.load) : "";
+    shared_ = inWords(verdict, circumstances.load);
   }
   message_.message = wording(verdict, message_.evidence, message_.suspects,
-                             toMessages(verdict.new_suspects, vocabulary), busy_);
+                             toMessages(verdict.new_suspects, vocabulary), shared_);
   if (verdict.alarm && !circumstances.recording.empty()) {
     message_.message += "; events in " + circumstances.recording;
   }
@@ -77,7 +85,7 @@ bool AlarmState::standDown(const std::string& message, std::int64_t now) {
   message_.abnormal = false;
   message_.suspects.clear();
   message_.evidence.clear();
-  busy_.clear();
+  shared_.clear();
   message_.header.stamp = toRosTime(now);
   return stood;
 }

@@ -47,8 +47,9 @@ class AlarmState {
   const std::optional<core::Alarm>& standing() const { return alarms_.standing(); }
   /// Whether there is an alarm or a suspicion.
   bool stands() const { return message_.level != self_awareness::SelfAwareness::OK; }
-  /// What the machine is, in words, if it is too busy; else empty.
-  const std::string& busy() const { return busy_; }
+  /// What is wrong with what components share, in words: the machine is too busy, or all of some
+  /// computers fell silent; else empty.
+  const std::string& shared() const { return shared_; }
   /// Whether anything was said since the start, or since forgetWindow().
   bool spoken() const { return !message_.message.empty(); }
   /// End of the window with which the level changed last [ns].
@@ -64,7 +65,7 @@ class AlarmState {
 
   core::Alarms alarms_;
   self_awareness::SelfAwareness message_;
-  std::string busy_;              // of the last window that had evidence
+  std::string shared_;            // of the last window that had evidence
   std::int64_t level_since_ = 0;  // end of the window with which the level changed last [ns]
 };
 

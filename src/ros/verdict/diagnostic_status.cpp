@@ -21,7 +21,7 @@ void CommunicationState::take(const AlarmState& alarm, const HeardReport& report
                               std::int64_t now) {
   started = alarm.spoken();
   last = alarm.message();
-  busy = !alarm.busy().empty();
+  shared = !alarm.shared().empty();
   level_for = alarm.standsFor(now);
   heard = report;
 }
@@ -124,7 +124,7 @@ void tellComponent(const CommunicationState& state, const std::string& name,
   for (std::size_t i = 0; i < suspects.size() && state.last.level != DiagnosticStatus::OK; ++i) {
     if (core::componentOf(suspects[i].source, suspects[i].scope) == name) {
       // The most likely one is to blame; the others may well be its victims.
-      status.summary(i == 0 && !state.busy && state.last.level == DiagnosticStatus::ERROR
+      status.summary(i == 0 && !state.shared && state.last.level == DiagnosticStatus::ERROR
                          ? DiagnosticStatus::ERROR
                          : DiagnosticStatus::WARN,
                      describeOnScope(suspects[i]));

@@ -24,7 +24,7 @@ struct CommunicationState {
   std::vector<core::evidence::Coverage> coverage;  ///< of the components; empty: not known
   bool started = false;                            ///< something was said of a window
   self_awareness::SelfAwareness last;              ///< the verdict on the last window, if started
-  bool busy = false;                               ///< the machine is to blame, no component
+  bool shared = false;  ///< what components share is to blame, and no component
   double level_for = 0;                            ///< how long it has had its level [s]
   HeardReport heard;
   /// Who cannot be heard by the monitor, and why, in words; by component.

@@ -57,15 +57,15 @@ std::string describe(const self_awareness::Suspect& suspect) {
 std::string wording(const core::Verdict& verdict, const std::string& evidence,
                     const std::vector<self_awareness::Suspect>& suspects,
                     const std::vector<self_awareness::Suspect>& new_suspects,
-                    const std::string& busy) {
+                    const std::string& shared) {
   if (!verdict.threshold) {
     return "not calibrated: find limits with rosrun self_awareness calibrate";
   }
   if (verdict.alarm || verdict.suspicion) {
     std::string message = verdict.alarm ? "abnormal communication" : "suspicion of a fault";
     message += " (" + evidence + ")";
-    if (!busy.empty()) {
-      message += ", " + busy;
+    if (!shared.empty()) {
+      message += ", " + shared;
     }
     if (!suspects.empty()) {
       message += ", " + describe(suspects.front());

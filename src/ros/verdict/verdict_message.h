@@ -22,11 +22,11 @@ std::string describe(const self_awareness::Suspect& suspect);
 
 /// The verdict in words.
 /// @param evidence, suspects those of the last window that had any, while the level is not OK
-/// @param busy the machine of that window, in words; empty: it was not busy
+/// @param shared what is wrong with what components share, in words; empty: nothing
 /// @param new_suspects those of this window
 std::string wording(const core::Verdict& verdict, const std::string& evidence,
                     const std::vector<self_awareness::Suspect>& suspects,
                     const std::vector<self_awareness::Suspect>& new_suspects,
-                    const std::string& busy = "");
+                    const std::string& shared = "");
 
 }  // namespace self_awareness::ros1

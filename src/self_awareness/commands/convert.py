@@ -52,7 +52,8 @@ def _add(log: EventLogWriter, bag: str, encoding: Optional[EncodingRules]) -> No
     graph = RobotGraph.load(path) if os.path.exists(path) else RobotGraph()
     with progress.messages(os.path.basename(bag)) as update:
         try:
-            summary = log.add_bag(bag, rules, graph.publishers, graph.subscribers, update)
+            summary = log.add_bag(bag, rules, graph.publishers, graph.subscribers,
+                                  graph.hosts, update)
         except ValueError as error:
             raise ValueError(f'{bag}: {error}') from error
     print(f'{bag}: {summary.messages} messages')

@@ -4,6 +4,7 @@ from __future__ import annotations
 import argparse
 import json
 import shutil
+from collections import Counter
 from typing import Any, Dict, List, Optional, Sequence
 
 from self_awareness import (EventType, ModelFileError, PaperModel, ResultBag, TrainedModel,
@@ -109,7 +110,7 @@ def _print_log(summary: Dict[str, Any]) -> None:
         rate = '-' if kind['rate'] is None else rounded(kind['rate'], 3)
         print(f'  {kind["count"]:8d} {rate:>10}  {kind["source"] or "-"} {kind["scope"]} '
               f'{kind["type"]}')
-    print(f'graph        {_graph(summary["graph"])}')
+    print(f'graph        {_graph(summary)}')
 
 
 def _print(summary: Dict[str, Any]) -> None:
@@ -133,7 +134,7 @@ def _print(summary: Dict[str, Any]) -> None:
     for kind in summary['event_types']:
         print(f'  {_event_type(kind, summary["fewest_gaps"])}')
     print(f'pairs        {summary["pairs"]} of {len(summary["event_types"]) ** 2} with delays')
-    print(f'graph        {_graph(summary["graph"])}')
+    print(f'graph        {_graph(summary)}')
     if summary['evidence'] is not None:
         _print_evidence(summary['evidence'], summary['fewest_gaps'])
     if summary['detectors'] != EVIDENCE:
@@ -163,12 +164,17 @@ def _event_type(kind: Dict[str, Any], fewest_gaps: int) -> str:
             f'{kind["source"] or "-"} {kind["scope"]} {kind["type"]}{rare}')
 
 
-def _graph(graph: List[Dict[str, str]]) -> str:
+def _graph(summary: Dict[str, Any]) -> str:
+    graph = summary['graph']
     if not graph:
         return ('none: roots are told from victims by the training alone (record.launch writes '
                 'it down, or train --graph)')
     publishers = {edge['publisher'] for edge in graph}
-    return f'sources that somebody listens to: {len(publishers)}, connections: {len(graph)}'
+    nodes = Counter(summary['hosts'].values())
+    del nodes['']  # who runs on several
+    hosts = ', '.join(f'{host} ({number})' for host, number in sorted(nodes.items()))
+    return (f'sources that somebody listens to: {len(publishers)}, connections: {len(graph)}'
+            + (f'; hosts and their nodes: {hosts}' if hosts else ''))
 
 
 def _print_evidence(evidence: Dict[str, Any], fewest_gaps: int) -> None:

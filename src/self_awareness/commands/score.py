@@ -89,7 +89,8 @@ def _score(arguments: argparse.Namespace) -> None:
             recording = cli.read_recording('score', trained, part)
             verdicts = judge(recording.stamps, recording.ids, recording.end,
                              recording.event_types, replay(recording),
-                             recording.clock_steps, recording.waiting)
+                             recording.clock_steps, waiting=recording.waiting,
+                             hosts=recording.hosts)
             judged.append(Judged(by, recording, verdicts))
             _print(recording, verdicts, len(trained.event_types), threshold)
     if arguments.csv is not None:
@@ -133,6 +134,8 @@ def _lines(recording: RecordingEvents, alarm: Alarm,
            f'{alarm.evidence or "what is left of the alarm"}')
     if alarm.busy is not None:
         yield f'    {alarm.busy}'
+    if alarm.silent is not None:
+        yield f'    {alarm.silent}, since {seconds(alarm.silent.since)} s'
     if not alarm.suspects and alarm.evidence:
         yield '    no suspect stands out'
     for rank, suspect in enumerate(alarm.suspects, 1):

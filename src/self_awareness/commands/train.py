@@ -5,7 +5,7 @@ import argparse
 import os
 from contextlib import closing
 from dataclasses import replace
-from typing import Dict, List, Optional, Sequence, Set, Tuple
+from typing import Dict, List, Optional, Sequence
 
 from self_awareness import BagError, TrainedModel, encoding_file, progress
 from self_awareness.calibration import holes
@@ -20,6 +20,7 @@ from self_awareness.reporting.training_report import print_summary
 from self_awareness.stamps import SECOND_NS
 from self_awareness.training import live_graph, many_bags
 from self_awareness.training.many_bags import Counting, Trained
+from self_awareness.training.robot_graph import RobotGraph
 from self_awareness.workers import Cluster, Workers, on_this_machine
 
 _OF_THE_MODEL = ('detector', 'bin', 'window', 'horizon', 'encoding')
@@ -49,7 +50,7 @@ def _train(arguments: argparse.Namespace) -> None:
     base = None if arguments.add_to is None else TrainedModel.load(arguments.add_to)
     counting = _counting(arguments, base)
     _check_distinct(parts)
-    graph = _live_graph(base) if arguments.graph else set()  # first: counting may take hours
+    graph = _live_graph(base) if arguments.graph else RobotGraph()  # first: counting takes long
     if arguments.scheduler:  # the workers of a cluster have working directories of their own
         parts = [replace(part, path=os.path.abspath(part.path)) for part in parts]
     with closing(_workers(arguments, bags)) as workers:
@@ -63,7 +64,8 @@ def _train(arguments: argparse.Namespace) -> None:
         if counting.encoding is None and model.encoding.source == 'none':
             print('no bag names the senders of its messages: sources are not told apart '
                   '(source: none)')
-        model.graph = model.graph | graph
+        model.graph = model.graph | graph.edges()
+        model.hosts = graph.hosts_of_sources()
         try:
             limits = _limits(trained, workers)
         except (BagError, ValueError) as error:  # the counts are not lost
@@ -90,15 +92,15 @@ def _say_holes(found: Sequence[Hole], model: TrainedModel, left_out: bool) -> No
                  'after it')
 
 
-def _live_graph(base: Optional[TrainedModel]) -> Set[Tuple[str, str, str]]:
-    """Return the running robot's edges, which take the place of those that the base has."""
+def _live_graph(base: Optional[TrainedModel]) -> RobotGraph:
+    """Return the running robot's graph, whose edges take the place of those that the base has."""
     try:
-        edges = live_graph.fetch().edges()
+        graph = live_graph.fetch()
     except ValueError as error:
         raise ValueError(f'--graph: {error}') from error
     if base is not None:
         base.graph = set()
-    return edges
+    return graph
 
 
 def _limits(trained: Trained, workers: Workers) -> str:

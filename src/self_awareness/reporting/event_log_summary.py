@@ -25,7 +25,7 @@ def summarise_event_log(path: str, recordings: int) -> Dict[str, Any]:
     """
     counts: Counter = Counter()
     found: List[Dict[str, Any]] = []
-    edges = set()
+    graph = RobotGraph()
     for number in range(recordings):
         summary = summarise_bag(path, number)
         assert summary.encoding is not None, 'every recording of an event log has one'
@@ -33,7 +33,7 @@ def summarise_event_log(path: str, recordings: int) -> Dict[str, Any]:
         for kind, count in zip(events.event_types, np.bincount(
                 events.ids, minlength=len(events.event_types)).tolist()):
             counts[kind] += count
-        edges |= RobotGraph(*summary.graph).edges()
+        graph.add(RobotGraph(*summary.graph))
         found.append(_recording(summary, summary.encoding))
     duration = sum(recording['duration'] for recording in found)
     return {
@@ -47,7 +47,8 @@ def summarise_event_log(path: str, recordings: int) -> Dict[str, Any]:
                          'count': count, 'rate': count / duration if duration > 0.0 else None}
                         for kind, count in counts.items()],
         'graph': [dict(zip(('publisher', 'topic', 'subscriber'), edge))
-                  for edge in sorted(edges)],
+                  for edge in sorted(graph.edges())],
+        'hosts': graph.hosts_of_sources(),
     }
 
 

@@ -44,6 +44,7 @@ def summarise(model: TrainedModel) -> Dict[str, Any]:
         'pairs': model.pairs,
         'graph': [dict(zip(('publisher', 'topic', 'subscriber'), edge))
                   for edge in sorted(model.graph)],
+        'hosts': model.hosts,
         'evidence': None if evidence is None else _evidence(model, evidence),
         'calibration': (None if model.paper_calibration is None
                         else _paper_calibration(model.paper_calibration)),

@@ -1,12 +1,15 @@
 """Asks the running robot who listens to whom; the blame needs it to tell roots from victims."""
 from __future__ import annotations
 
-from typing import Any, Dict, Set
+import re
+from typing import Any, Dict, Iterable, Set
+from xmlrpc.client import Fault, MultiCall
 
 from self_awareness import printable
 from self_awareness.training.robot_graph import RobotGraph
 
 _CALLER_ID = '/train'
+_HOST = re.compile(r'\w+://([^:/]+)')
 
 
 def fetch() -> RobotGraph:
@@ -19,11 +22,27 @@ def fetch() -> RobotGraph:
     import rosgraph
 
     try:
-        publishers, subscribers, _ = rosgraph.Master(_CALLER_ID).getSystemState()
+        master = rosgraph.Master(_CALLER_ID)
+        publishers, subscribers, _ = master.getSystemState()
+        hosts = _hosts(master, {node for _, nodes in publishers for node in nodes})
     except (OSError, rosgraph.MasterException) as error:
         raise ValueError(f'no master at {rosgraph.get_master_uri()}: is the robot running, and is '
                          'ROS_MASTER_URI right?') from error
-    return RobotGraph(_by_topic(publishers), _by_topic(subscribers))
+    return RobotGraph(_by_topic(publishers), _by_topic(subscribers), hosts)
+
+
+def _hosts(master: Any, nodes: Iterable[str]) -> Dict[str, str]:
+    """Return the computers of nodes, those that the master knows; all of them in one call."""
+    known = sorted(nodes)
+    calls: Any = MultiCall(master.handle)
+    for node in known:
+        calls.lookupNode(_CALLER_ID, node)
+    try:
+        answers = list(calls()) if known else []
+    except Fault:  # a master that answers one call at a time
+        return {}
+    return {printable(node): printable(found[1]) for node, (code, _, uri) in zip(known, answers)
+            for found in [_HOST.match(uri) if code == 1 else None] if found is not None}
 
 
 def _by_topic(state: Any) -> Dict[str, Set[str]]:

@@ -10,7 +10,7 @@ import copy
 import os
 from contextlib import closing
 from dataclasses import dataclass, field, replace
-from typing import Callable, Dict, Iterable, List, Optional, Sequence, Set, Tuple
+from typing import Callable, Dict, Iterable, List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -285,7 +285,9 @@ def _count(how: _How, part: BagPart) -> _Sum:
         training.add_events(events.event_types, events.stamps, events.ids,
                             recording, _before(encoding, events), events.clock_steps)
         model = training.model(watch=False)
-        model.graph = _graph(part, summary)
+        graph = _graph(part, summary)
+        model.graph = graph.edges()
+        model.hosts = graph.hosts_of_sources()
     except BagError as error:
         raise _BadBag(str(error)) from error
     except ValueError as error:
@@ -319,12 +321,12 @@ def _before(encoding: EncodingRules,
     return read.stamps, read.ids
 
 
-def _graph(part: BagPart, summary: BagSummary) -> Set[Tuple[str, str, str]]:
+def _graph(part: BagPart, summary: BagSummary) -> RobotGraph:
     """Return whose messages reach whom, if an event log or a file beside the bag says so."""
     if summary.encoding is not None:
-        return RobotGraph(*summary.graph).edges()
+        return RobotGraph(*summary.graph)
     path = graph_file(part.path)
-    return RobotGraph.load(path).edges() if os.path.exists(path) else set()
+    return RobotGraph.load(path) if os.path.exists(path) else RobotGraph()
 
 
 def _read(counting: Counting, part: BagPart) -> Tuple[RecordingEvents, EncodingRules, BagSummary]:

@@ -15,20 +15,30 @@ _HEADER = """\
 _VERSION = 'version'
 """Key of what the file says of its version (docs/files.md); no topic is called so."""
 
+_HOSTS = 'hosts'
+"""Key of the computers of nodes; no topic is called so either."""
+
 _FIRST = {'format': 1, 'oldest_reader': 1}
 """Of a file that does not say: release 0.1.0 wrote it."""
 
 
 @dataclass
 class RobotGraph:
-    """Who publishes and who subscribes to what, by topic; nodes by their full names."""
+    """Who publishes and who subscribes to what, by topic; nodes by their full names.
+
+    Args:
+        publishers, subscribers: by topic.
+        hosts: computers of nodes, by their names or addresses; those that are known.
+    """
 
     publishers: _Nodes = field(default_factory=dict)
     subscribers: _Nodes = field(default_factory=dict)
+    hosts: Dict[str, str] = field(default_factory=dict)
 
     def add(self, other: RobotGraph) -> bool:
         """Add what another graph knows; return whether it is new."""
-        news = False
+        news = any(self.hosts.get(node) != host for node, host in other.hosts.items())
+        self.hosts.update(other.hosts)
         for mine, theirs in ((self.publishers, other.publishers),
                              (self.subscribers, other.subscribers)):
             for topic, nodes in theirs.items():
@@ -46,6 +56,13 @@ class RobotGraph:
                 for topic, nodes in self.publishers.items() for publisher in nodes
                 for subscriber in self.subscribers.get(topic, ())}
 
+    def hosts_of_sources(self) -> Dict[str, str]:
+        """Return the computers of nodes by their stable names, as in TrainedModel.hosts."""
+        found: Dict[str, Set[str]] = {}
+        for node, host in self.hosts.items():
+            found.setdefault(stable_name(node), set()).add(host)
+        return {source: hosts.pop() if len(hosts) == 1 else '' for source, hosts in found.items()}
+
     def save(self, path: str) -> None:
         """Write a file that load() reads."""
         import yaml
@@ -60,6 +77,8 @@ class RobotGraph:
         with replacing(path) as temporary, open(temporary, 'w', encoding='utf-8') as file:
             file.write(_HEADER)
             yaml.safe_dump(version, file, default_flow_style=None)
+            if self.hosts:
+                yaml.safe_dump({_HOSTS: self.hosts}, file, default_flow_style=False)
             if content:
                 yaml.safe_dump(content, file, default_flow_style=None, width=1000)
 
@@ -75,7 +94,7 @@ class RobotGraph:
         if not isinstance(content, dict):
             raise ValueError(f'{path}: expected topics, each with publishers and subscribers')
         newer = _format(path, content.pop(_VERSION, _FIRST)) > FileVersion.of_graph().format
-        graph = cls()
+        graph = cls(hosts=_hosts(path, content.pop(_HOSTS, {})))
         for topic, nodes in content.items():
             if newer and not str(topic).startswith('/'):
                 continue  # what this version does not know
@@ -110,6 +129,13 @@ def _format(path: str, version: Any) -> int:
     if problem:
         raise ValueError(f'{path}: {problem}')
     return number
+
+
+def _hosts(path: str, hosts: Any) -> Dict[str, str]:
+    if not isinstance(hosts, dict) or not all(
+            isinstance(name, str) for pair in hosts.items() for name in pair):
+        raise ValueError(f'{path}: {_HOSTS}: expected the computers of nodes')
+    return dict(hosts)
 
 
 def _nodes(path: str, topic: Any, nodes: Any, key: str) -> Set[str]:

@@ -130,11 +130,11 @@ TEST_F(EvidenceJudgeTest, AllAreSilentIfEverybodyShouldHaveSpoken) {
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
   judge->add({0, kA});
   const std::int64_t end = kSecond + 50 * kMillisecond;
-  EXPECT_FALSE(judgeAt(*judge, end).all_silent) << "of the other nothing is known yet";
+  EXPECT_FALSE(judgeAt(*judge, end).silent.has_value()) << "of the other nothing is known yet";
   judge->add({end, kB});
   EXPECT_TRUE(judgeAt(*judge, end + kWindow).abnormal);
-  EXPECT_FALSE(judgeAt(*judge, end + kWindow).all_silent) << "the other one speaks";
-  EXPECT_TRUE(judgeAt(*judge, end + 10 * kSecond).all_silent) << "though not yet at its limit";
+  EXPECT_FALSE(judgeAt(*judge, end + kWindow).silent.has_value()) << "the other one speaks";
+  EXPECT_TRUE(judgeAt(*judge, end + 10 * kSecond).silent.has_value()) << "though not yet at its limit";
 }
 
 TEST_F(EvidenceJudgeTest, WhoSaysAnotherThingIsNotSilent) {
@@ -156,8 +156,8 @@ TEST_F(EvidenceJudgeTest, WhoSaysAnotherThingIsNotSilent) {
   }
   const std::int64_t now = 2800 * kMillisecond;  // /x should have come 0.8 s ago
   EXPECT_TRUE(judgeAt(*judge, now).abnormal);
-  EXPECT_FALSE(judgeAt(*judge, now).all_silent);
-  EXPECT_TRUE(judgeAt(*judge, 5 * kSecond).all_silent);
+  EXPECT_FALSE(judgeAt(*judge, now).silent.has_value());
+  EXPECT_TRUE(judgeAt(*judge, 5 * kSecond).silent.has_value());
 }
 
 TEST_F(EvidenceJudgeTest, LateAnswersAreAbnormalButNotCertain) {

@@ -134,10 +134,36 @@ TEST_F(AlarmsTest, WhoWasSilentFirstIsNotToBlameWhereAllAre) {
   add(verdict(kAlarm, {suspect(1, Kind::kDied)}));
   EXPECT_EQ(alarms_.standing()->culprit, "/b");
   Verdict all = verdict(kAlarm, {suspect(1, Kind::kDied)});
-  all.all_silent = true;
+  all.silent = Silent{{}, {"/a", "/b"}, kStart};
   add(all);
   EXPECT_EQ(alarms_.standing()->kind, Kind::kAllSilent);
   EXPECT_EQ(alarms_.standing()->culprit, "");
+  EXPECT_EQ(alarms_.standing()->reason, "everything fell silent: 2 components");
+}
+
+TEST_F(AlarmsTest, ComputersThatFellSilentAreNamedAndNobodyIsToBlame) {
+  add(verdict(kAlarm, {suspect(1, Kind::kDied)}));
+  Verdict silent = verdict(kAlarm, {suspect(1, Kind::kDied)});
+  silent.silent = Silent{{"base"}, {"/a", "/b"}, kStart};
+  add(silent);
+  EXPECT_EQ(alarms_.standing()->kind, Kind::kAllSilent);
+  EXPECT_EQ(alarms_.standing()->culprit, "");
+  EXPECT_EQ(alarms_.standing()->reason, "everything on host base fell silent: 2 nodes");
+  silent.silent = Silent{{"arm", "base", "head"}, {"/a", "/b", "/c"}, kStart};
+  add(silent);
+  add(verdict(kAlarm, {suspect(1, Kind::kDied)}));
+  EXPECT_EQ(alarms_.standing()->reason,
+            "everything on hosts arm, base and head fell silent: 3 nodes");
+}
+
+TEST_F(AlarmsTest, WhoDiedOnAnotherComputerBeforeIsStillToBlame) {
+  add(verdict(kAlarm, {suspect(1, Kind::kDied)}));
+  Verdict silent = verdict(kAlarm, {suspect(1, Kind::kDied)});
+  silent.silent = Silent{{"base"}, {"/a", "/c"}, kStart};
+  add(silent);
+  EXPECT_EQ(alarms_.standing()->kind, Kind::kDied);
+  EXPECT_EQ(alarms_.standing()->culprit, "/b");
+  EXPECT_EQ(alarms_.standing()->silent->hosts, std::vector<std::string>{"base"});
 }
 
 TEST_F(AlarmsTest, NamesStrangersAndTopicsWhereSourcesAreNotKnown) {

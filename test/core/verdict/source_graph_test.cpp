@@ -17,6 +17,14 @@ TEST(SourceGraph, ReachedSourcesAreDownstream) {
   EXPECT_FALSE(graph.isUpstream("/slam", "/laser"));
 }
 
+TEST(SourceGraph, KnowsTheComputersOfSources) {
+  SourceGraph graph;
+  EXPECT_EQ(graph.hostOf("/laser"), "");
+  graph.place("/laser", "base");
+  graph.place("/laser", "head");
+  EXPECT_EQ(graph.hostOf("/laser"), "head") << "it runs there now";
+}
+
 TEST(SourceGraph, UnconnectedSourcesAreNeither) {
   SourceGraph graph;
   graph.connect("/laser", "/laser/out", "/slam");

@@ -99,13 +99,14 @@ def test_all_recordings_of_a_log_are_trained_on(long_bags: Bags, log: str, tmp_p
 def test_who_subscribes_to_what_comes_along(long_bags: Bags, tmp_path: Path) -> None:
     bag, log = str(tmp_path / 'a.bag'), str(tmp_path / 'log.bag')
     shutil.copy(long_bags[0], bag)
-    RobotGraph({'/scan': {'/laser'}}, {'/scan': {'/slam', '/recorder_1_1795206536731'}}).save(
-        graph_file(bag))
+    RobotGraph({'/scan': {'/laser'}}, {'/scan': {'/slam', '/recorder_1_1795206536731'}},
+               {'/laser': 'base'}).save(graph_file(bag))
     assert convert.main([bag, '-o', log]) == 0
     models = [str(tmp_path / name) for name in ('bag.model', 'log.model')]
     for path, model in zip((bag, log), models):
         assert train.main([path, '-o', model]) == 0
     one, other = (TrainedModel.load(model).graph for model in models)
+    assert {TrainedModel.load(model).hosts['/laser'] for model in models} == {'base'}
     assert one == other and ('/laser', '/scan', '/slam') in one
 
 

@@ -77,6 +77,8 @@ def test_json_holds_preliminary_limits_and_the_graph(long_bags, tmp_path, capsys
                                                      monkeypatch) -> None:
     monkeypatch.setattr('rosgraph.Master.getSystemState', lambda _: [
         [['/scan', ['/laser']]], [['/scan', ['/slam', '/map_saver']]], []])
+    monkeypatch.setattr('self_awareness.training.live_graph._hosts',
+                        lambda _, nodes: {node: 'base' for node in nodes})
     output = str(tmp_path / 'm')
     assert train.main([long_bags[0], '--graph', '-o', output]) == 0
     capsys.readouterr()

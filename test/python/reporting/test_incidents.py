@@ -11,12 +11,13 @@ import pytest
 from conftest import Message, jittery_robot
 from judged_recordings import judged, with_graph, without_laser
 
-from self_awareness.commands import score
+from self_awareness.commands import convert, score
 from self_awareness.reporting.report.headline import headline
 from self_awareness.reporting.report.incidents import Incident, incidents
 from self_awareness.reporting.report.intervals import (ALARM, SUSPICION, Interval, NamedSuspect,
                                                        intervals)
 from self_awareness.reporting.report.silences import Silence
+from self_awareness.training.robot_graph import RobotGraph, graph_file
 
 
 def suspect(component: str, short: str = 'fell silent', silence: Optional[Silence] = None,
@@ -28,7 +29,8 @@ def suspect(component: str, short: str = 'fell silent', silence: Optional[Silenc
 def interval(start: float, end: float, suspects: Sequence[NamedSuspect] = (), level: str = ALARM,
              cleared: bool = True, kind: str = 'died', busy: Optional[str] = None,
              silence: Optional[Silence] = None) -> Interval:
-    of: Any = SimpleNamespace(culprit=suspects[0].component if suspects else '', kind=kind)
+    of: Any = SimpleNamespace(culprit=suspects[0].component if suspects else '', kind=kind,
+                              silent=None)
     return Interval(of, level, start, end, '', cleared, None, -2.0, 'overdue', busy, silence,
                     list(suspects), [])
 
@@ -109,6 +111,34 @@ def test_where_nobody_is_to_blame_the_kind_of_the_verdict_is_told() -> None:
     assert found(silent)[0].headline == 'All nodes fell silent at 2.8 s, and came back at 7.0 s.'
     assert 'no suspect stands out' in found(interval(3.0, 9.0))[0].headline
     assert len(found(busy, interval(300.0, 310.0, kind='busy machine', busy='x'), silent)) == 2
+
+
+def test_a_computer_that_fell_silent_is_the_finding(evidence_model: str, tmp_path: Path,
+                                                    make_bag: Callable[..., str],
+                                                    capsys) -> None:
+    """An event log says on which computers nodes ran; the model need not know them."""
+    bag, values = make_bag('base.bag', without_laser(3000.0, 40.0)), tmp_path / 'v.json'
+    RobotGraph({'/scan': {'/laser'}}, {'/scan': {'/slam'}}, {
+        '/laser': 'base', '/slam': 'base', '/battery': 'laptop'}).save(graph_file(bag))
+    log, report = str(tmp_path / 'log.bag'), tmp_path / 'r.html'
+    assert convert.main([bag, '-o', log]) == 0
+    assert score.main([log, '--model', evidence_model, '--json', str(values),
+                       '--report', str(report)]) == 0
+    recording, = json.loads(values.read_text())['recordings']
+    alarm = next(each for each in recording['alarms'] if each['level'] == 'ERROR')
+    assert (alarm['kind'], alarm['culprit']) == ('all silent', None)
+    assert alarm['reason'] == 'everything on host base fell silent: 2 nodes'
+    assert alarm['silent']['hosts'] == ['base']
+    assert alarm['silent']['components'] == ['/laser', '/slam']
+    assert {each['component'] for each in alarm['suspects']} == {'/laser', '/slam'}
+    told = re.escape('Everything on host base fell silent at 12.0 s: 2 nodes; they came back at '
+                     '20.0 s.')
+    assert re.fullmatch(told, recording['incidents'][0]['headline'])
+    assert re.search(told, report.read_text())
+    assert 'everything on host base fell silent: 2 nodes, since 12.0 s' in capsys.readouterr().out
+    assert score.main([bag, '--model', evidence_model, '--json', str(values)]) == 0
+    recording, = json.loads(values.read_text())['recordings']
+    assert 'base' not in recording['incidents'][0]['headline'], 'a bag does not say it'
 
 
 def pauses(start: float) -> List[Message]:

@@ -35,15 +35,21 @@ def test_it_lies_beside_the_bag_also_while_that_is_written() -> None:
 
 def test_it_comes_back_as_it_was_saved(tmp_path: Path) -> None:
     graph = RobotGraph({'/scan': {'/laser'}, '/nobody/listens': {'/laser'}},
-                       {'/scan': {'/slam', '/log'}, '/nobody/talks': {'/slam'}})
+                       {'/scan': {'/slam', '/log'}, '/nobody/talks': {'/slam'}},
+                       {'/laser': 'base', '/log_4242_1600000000000': '10.0.0.2',
+                        '/log_4243_1600000000000': '10.0.0.3'})
     path = str(tmp_path / 'g')
     graph.save(path)
     loaded = RobotGraph.load(path)
     assert loaded.edges() == graph.edges() == {('/laser', '/scan', '/slam'),
                                                ('/laser', '/scan', '/log')}
+    assert loaded.hosts == graph.hosts
+    assert loaded.hosts_of_sources() == {'/laser': 'base', stable_name(
+        '/log_4242_1600000000000'): ''}
     assert not graph.add(loaded) and not loaded.add(graph)
     assert loaded.add(RobotGraph({}, {'/nobody/listens': {'/slam'}}))
     assert ('/laser', '/nobody/listens', '/slam') in loaded.edges()
+    assert loaded.add(RobotGraph(hosts={'/laser': 'head'})) and loaded.hosts['/laser'] == 'head'
 
 
 def test_a_model_has_the_graphs_of_all_its_bags(bags: Bags, tmp_path: Path) -> None:

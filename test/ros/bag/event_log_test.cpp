@@ -58,6 +58,7 @@ class EventLogTest : public testing::Test {
     log.start(start);
     Graph graph;
     graph.topics["/topic"] = {"std_msgs/String", {"/node0"}, {"/node1"}};
+    graph.hosts = {{"/node0", "base"}, {"/node1", "base"}};
     log.writeGraph(graph, begin);
     EventLogPacker packer([&](self_awareness::EventLog part) { log.write(std::move(part)); });
     core::Vocabulary vocabulary({{"/other", "/topic", "std_msgs/String"}});  // is never heard
@@ -67,6 +68,8 @@ class EventLogTest : public testing::Test {
     }
     packer.flush(events.back().first + 2 * kSecond);
     graph.topics["/topic"].subscribers = {"/node2"};
+    log.writeGraph(graph, begin);
+    graph.hosts["/node1"] = "head";
     log.writeGraph(graph, begin);
   }
 
@@ -140,6 +143,9 @@ TEST_F(EventLogTest, EventsComeOutAsTheyWentIn) {
   EXPECT_EQ(summary.graph.topics.at("/topic").subscribers,
             (std::set<std::string>{"/node1", "/node2"}))
       << "all who ever listened";
+  EXPECT_EQ(summary.graph.hosts,
+            (std::map<std::string, std::string>{{"/node0", "base"}, {"/node1", "head"}}))
+      << "where they ran last";
 }
 
 TEST_F(EventLogTest, HowTheMachineWasComesOutAsItWentIn) {

@@ -22,6 +22,7 @@ TEST_F(ModelFileTest, TheEvidenceItsLimitsAndTheGraphComeBackAsTheyWereSaved) {
   TrainedModel model = calibratedModel();
   model.graph.connect("/a", "/x", "/b");
   model.graph.connect("/a", "/y", "/c");
+  model.graph.place("/a", "base");
   model.tuning.least_effect = 0.003;
   model.tuning.share_of_other = 0.8;  // the first and the last one are no exceptions
   model.tuning.fewest_gaps = 31;
@@ -43,6 +44,7 @@ TEST_F(ModelFileTest, TheEvidenceItsLimitsAndTheGraphComeBackAsTheyWereSaved) {
   EXPECT_TRUE(loaded.watched.tuning == model.tuning);
   EXPECT_EQ(loaded.graph.edges().size(), 2U);
   EXPECT_TRUE(loaded.graph.edges() == model.graph.edges());
+  EXPECT_EQ(loaded.graph.hostOf("/a"), "base");
   const core::evidence::Limits limits = loaded.limits().value();
   ASSERT_EQ(limits.tracks.size(), model.calibration->limits.tracks.size());
   EXPECT_TRUE(std::isnan(limits.tracks[0]));

@@ -56,6 +56,19 @@ TEST_F(AlarmStateTest, SaysNothingBeforeTheFirstWindow) {
   EXPECT_EQ(alarm_.message().message, "normal communication");
 }
 
+TEST_F(AlarmStateTest, NamesTheComputersThatFellSilentBeforeTheSuspects) {
+  core::Verdict silent = verdict(Level::kAlarm, true, "overdue");
+  silent.silent = core::Silent{{"base"}, {"/imu", "/player"}, kStart};
+  add(silent);
+  EXPECT_EQ(alarm_.message().message,
+            "abnormal communication (overdue), everything on host base fell silent: 2 nodes, "
+            "/player on /scan: silent for 1 s");
+  EXPECT_EQ(alarm_.message().kind, SelfAwareness::ALL_SILENT);
+  EXPECT_EQ(alarm_.message().component, "");
+  EXPECT_EQ(alarm_.message().reason, "everything on host base fell silent: 2 nodes");
+  EXPECT_EQ(alarm_.shared(), alarm_.message().reason) << "nobody is to blame";
+}
+
 TEST_F(AlarmStateTest, TellsTheWindow) {
   window_.events = {{{kStart, 0}, false, {}}, {{kStart + 1, 7}, true, {}}};
   add(verdict(Level::kAlarm, true, "overdue"));

@@ -9,13 +9,14 @@
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/core/verdict/busy.h"
 #include "self_awareness/core/verdict/detector.h"
+#include "self_awareness/core/verdict/silent.h"
 #include "self_awareness/core/verdict/suspect.h"
 
 namespace self_awareness::core {
 
 /// A stretch of time in which the alarm stood, or a suspicion: when, who, and why. It keeps its id
 /// and its culprit, whoever is named later; only if the machine turns out to be busy, or everybody
-/// silent, there is no culprit any more.
+/// (on the culprit's computer) silent, there is no culprit any more.
 struct Alarm {
   /// How sure it is: WARN or ERROR in diagnostics.
   enum class Level { kSuspicion, kAlarm };
@@ -29,13 +30,15 @@ struct Alarm {
   bool over = false;        ///< false: it stands
   Kind kind = Kind::kDied;  ///< what is wrong, of the culprit or of all
   std::string culprit;      ///< component; empty: there is none, or nobody stands out
-  std::string reason;       ///< why the culprit is one, in words; empty: there is no culprit
+  /// Why the culprit is one, in words; without a culprit: who is silent, or empty.
+  std::string reason;
   /// What raised it, in words; empty: a suspicion that an alarm left, so far. That is about the
   /// same component as the alarm, until something else is abnormal.
   std::string evidence;
   /// Of its windows and the one that ended it; a window without a score counts as 0.
   double lowest_score = std::numeric_limits<double>::quiet_NaN();
-  std::optional<Busy> busy;  ///< as the first window said that does
+  std::optional<Busy> busy;      ///< as the first window said that does
+  std::optional<Silent> silent;  ///< as the window said with most components
   /// Of the window that raised it, the most likely first. Their components are known, also those
   /// of strangers.
   std::vector<Suspect> suspects;

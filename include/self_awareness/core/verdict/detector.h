@@ -13,6 +13,7 @@
 #include "self_awareness/core/verdict/busy.h"
 #include "self_awareness/core/verdict/judge.h"
 #include "self_awareness/core/verdict/persistence.h"
+#include "self_awareness/core/verdict/silent.h"
 
 namespace self_awareness::core {
 
@@ -25,11 +26,12 @@ struct Verdict {
   bool settling = false;            ///< too early to say anything; the window does not count
   bool alarm = false;               ///< the alarm stands
   bool suspicion = false;           ///< no alarm, but something was abnormal recently
-  /// The alarm or the suspicion began or ended with this window, or there are new suspects.
+  /// The alarm or the suspicion began or ended with this window, there are new suspects, or the
+  /// alarm is found to be of further computers.
   bool changed = false;
   std::string evidence;           ///< what made the window abnormal or suspicious, once settled
   std::optional<Busy> busy;       ///< of such a window: the machine, not the suspects
-  bool all_silent = false;        ///< of such a window: everybody should have been heard by now
+  std::optional<Silent> silent;   ///< of such a window: all, or all of some computers, are silent
   std::vector<Suspect> suspects;  ///< of an abnormal window that is not settling, best first
   /// Those of components that an alarm which stood before names for the first time: there may be
   /// another fault. One for each component.
@@ -121,6 +123,7 @@ class Detector : private WindowObserver {
   bool resumed_ = false;  // the alarm is that of before the start, and has to stand on
   // Its suspects that have to be heard, and when they were for the first time [ns].
   std::map<EventId, std::optional<std::int64_t>> awaited_;
+  std::size_t silent_ = 0;          // components that the alarm said are silent together
   bool suspicion_ = false;          // whether it stands
   std::int64_t suspicious_at_ = 0;  // end of the last suspicious window [ns], while it stands
   std::int64_t settled_at_ = 0;     // [ns], valid once started

@@ -8,6 +8,7 @@
 #include "self_awareness/core/stream/waiting.h"
 #include "self_awareness/core/stream/windows.h"
 #include "self_awareness/core/verdict/busy.h"
+#include "self_awareness/core/verdict/silent.h"
 #include "self_awareness/core/verdict/suspect.h"
 
 namespace self_awareness::core {
@@ -23,8 +24,9 @@ struct Judgement {
   std::string evidence;             ///< what made the window abnormal or suspicious, in words
   /// Set if many components are late at once: the suspects are hardly to blame.
   std::optional<Busy> busy;
-  bool all_silent = false;  ///< everybody should have been heard by now; not told by
-                            ///< the paper's detector
+  /// Set if everybody, or everybody on some computers, should have been heard by now; not told by
+  /// the paper's detector.
+  std::optional<Silent> silent;
   /// If they were asked for; the most likely first. After kMostSuspects, further components whose
   /// evidence alone is abnormal may follow.
   std::vector<Suspect> suspects;

@@ -10,7 +10,8 @@
 namespace self_awareness::core {
 
 /// Says whose messages reach whom, and on which topic (docs/method.md, section 6): it has an edge
-/// from every source that publishes on a topic to every source that subscribes to it.
+/// from every source that publishes on a topic to every source that subscribes to it. It also says
+/// on which computer a source runs, as far as that is known.
 class SourceGraph {
  public:
   /// Messages of one source reach another on a topic.
@@ -23,6 +24,14 @@ class SourceGraph {
   /// Adds an edge; one that is there already changes nothing.
   void connect(const std::string& publisher, const std::string& topic,
                const std::string& subscriber);
+
+  /// Says on which computer a source runs: its name or its address. What was said before is
+  /// forgotten; empty: it is not known, since the source runs on several, say.
+  void place(const std::string& source, const std::string& host) { hosts_[source] = host; }
+  /// Computers by source; those that are known, or empty.
+  const std::map<std::string, std::string>& hosts() const { return hosts_; }
+  /// The computer that a source runs on; empty: it is not known.
+  const std::string& hostOf(const std::string& source) const;
 
   /// Whether it says nothing: who hears whom is not known.
   bool empty() const { return edges_.empty(); }
@@ -43,6 +52,7 @@ class SourceGraph {
 
   std::set<Edge> edges_;
   std::map<std::string, std::set<std::string>> followers_;  // of the edges, by publisher
+  std::map<std::string, std::string> hosts_;                // by source
 };
 
 inline bool operator<(const SourceGraph::Edge& a, const SourceGraph::Edge& b) {

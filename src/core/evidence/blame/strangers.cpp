@@ -52,6 +52,17 @@ void Strangers::add(const Event& event) {
   }
 }
 
+std::map<std::string, std::int64_t> Strangers::silences(std::int64_t now) const {
+  std::map<std::string, std::int64_t> silences;
+  for (const auto& [id, last] : last_) {
+    if (heard_ && id < heard_->size()) {
+      std::int64_t& of_source = silences.try_emplace(heard_->at(id).source, now - last).first->second;
+      of_source = std::min(of_source, now - last);
+    }
+  }
+  return silences;
+}
+
 std::vector<Suspect> Strangers::suspects(const Window& window, const Scorer& scorer) const {
   std::vector<Suspect> suspects;
   for (const auto& [id, last] : last_) {

@@ -29,6 +29,9 @@ class Strangers {
   void add(const Event& event);
   /// Forgets who was heard: a new recording starts, or the clock was set.
   void restart() { last_.clear(); }
+  /// Time since somebody was heard who sends event types that the model does not know, by source
+  /// [ns], at a time [ns]; empty where these types are not known.
+  std::map<std::string, std::int64_t> silences(std::int64_t now) const;
   /// Those that were heard in the last kRateSpan.
   /// @param scorer of the same recording, at the end of the window
   std::vector<Suspect> suspects(const Window& window, const Scorer& scorer) const;

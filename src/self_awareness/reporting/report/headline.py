@@ -57,6 +57,13 @@ def _of_all(main: Interval, times: int) -> str:
     assert main.silence is not None
     back = main.silence.back
     often = f' {times} times, the longest' if times > 1 else ''
+    silent = main.of.silent
+    if silent is not None and silent.hosts:
+        hosts = (silent.hosts[0] if len(silent.hosts) == 1
+                 else _names(silent.hosts))
+        return (f'everything on host{"s" if len(silent.hosts) > 1 else ""} {hosts} fell silent'
+                f'{often} at {clock(main.silence.begin)}: {len(silent.components)} nodes'
+                + ('.' if back is None else f'; they came back at {clock(back)}.'))
     return (f'all nodes stopped sending{often} at {clock(main.silence.begin)}.' if back is None
             else f'all nodes fell silent{often} at {clock(main.silence.begin)}, and came back at '
                  f'{clock(back)}.')

@@ -125,7 +125,9 @@ def _first(episode: Sequence[Interval]) -> Interval:
 
 def _cause(interval: Interval) -> str:
     # Names of components are no kinds: they begin with a slash where nodes are known.
-    return interval.of.culprit or f'({interval.of.kind})'
+    silent = interval.of.silent
+    hosts = [] if silent is None else silent.hosts
+    return interval.of.culprit or f'({" ".join([interval.of.kind, *hosts])})'
 
 
 def _incident(judged: Judged, cause: str, intervals: List[Interval]) -> Incident:

@@ -63,7 +63,7 @@ class Interval:
         lowest: score.
         evidence: channels that speak, in words.
         busy: that the machine had too much to do, in words; None: it had not.
-        silence: of all, where nobody was heard; None: somebody was.
+        silence: of all, or of all on some computers, where nobody was heard; None: somebody was.
         suspects: best first.
         later: suspects that were named later.
     """

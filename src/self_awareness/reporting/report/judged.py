@@ -3,7 +3,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Dict, Optional
+from typing import Collection, Dict, Optional
 
 import numpy as np
 
@@ -56,6 +56,13 @@ class Judged:
     def edges_of_all(self) -> np.ndarray:
         """Return the same of all events."""
         return self._between_edges(self.recording.stamps)
+
+    def edges_of_components(self, names: Collection[str]) -> np.ndarray:
+        """Return the same of all events of some components."""
+        recording = self.recording
+        theirs = [number for number, kind in enumerate(recording.event_types)
+                  if (kind.source or kind.scope) in names]
+        return self._between_edges(recording.stamps[np.isin(recording.ids, theirs)])
 
     def _between_edges(self, stamps: np.ndarray) -> np.ndarray:
         return np.concatenate(([self.recording.origin], stamps, [self.recording.end]))

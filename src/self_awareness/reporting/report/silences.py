@@ -48,8 +48,10 @@ def silence_of(judged: Judged, alarm: Alarm, suspect: Suspect) -> Optional[Silen
 
 
 def silence_of_all(judged: Judged, alarm: Alarm) -> Silence:
-    """Return the longest time without any event while an alarm stood."""
-    return _longest(judged, judged.edges_of_all(), alarm.begin, alarm.end)
+    """Return the longest time without any event, or any of some computers, as an alarm stood."""
+    edges = (judged.edges_of_components(alarm.silent.components)
+             if alarm.silent is not None and alarm.silent.hosts else judged.edges_of_all())
+    return _longest(judged, edges, alarm.begin, alarm.end)
 
 
 def _longest(judged: Judged, edges: np.ndarray, begin: int, end: int) -> Silence:

@@ -1,0 +1,128 @@
+#include "core/evidence/blame/silent_together.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "../recordings.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+using Strings = std::vector<std::string>;
+
+// Two fast ones and a slow one on one computer, two fast ones on another.
+const std::vector<EventType> kRobot{{"/laser", "/scan", "T"},
+                                    {"/imu", "/imu/data", "T"},
+                                    {"/battery", "/charge", "T"},
+                                    {"/camera", "/image", "T"},
+                                    {"/faces", "/people", "T"}};
+constexpr EventId kBattery = 2;
+constexpr std::int64_t kEnd = 100 * kSecond;
+
+Events robot(std::int64_t start, unsigned seed) {
+  Events events;
+  for (EventId id = 0; id < kRobot.size(); ++id) {
+    const std::int64_t gap = (id == kBattery ? 1000 : 100) * kMillisecond;
+    events = together({events, irregular(id, start, start + kEnd, gap, seed + id)});
+  }
+  return events;
+}
+
+class SilentTogetherTest : public testing::Test {
+ protected:
+  SilentTogetherTest() {
+    for (const std::string source : {"/laser", "/imu", "/battery"}) {
+      graph_->place(source, "base");
+    }
+    graph_->place("/camera", "head");
+    graph_->place("/faces", "head");
+  }
+
+  /// Who is silent `after` the time when each stopped [ns].
+  std::optional<Silent> find(const std::vector<std::int64_t>& ages, double share = 2) {
+    Scorer scorer(model_, kWindow);
+    Events last;
+    for (EventId id = 0; id < kRobot.size(); ++id) {
+      last.push_back({kEnd - ages[id], id});
+    }
+    for (const Event& event : together({last})) {
+      scorer.add(event);
+    }
+    scorer.closeWindow(kEnd);
+    std::vector<double> shares(model_->tracks().size(), 0);
+    for (EventId id = 0; id < kRobot.size(); ++id) {
+      shares[indexOf(model_->tracks(), kOverdue, id, id)] = ages[id] > 0 ? share : 0;
+    }
+    const Limits limits{std::vector<double>(model_->tracks().size(), 1), {}};
+    return SilentTogether(model_, graph_).find(shares, limits, scorer, strangers_);
+  }
+
+  std::shared_ptr<SourceGraph> graph_ = std::make_shared<SourceGraph>();
+  std::map<std::string, std::int64_t> strangers_;
+  std::shared_ptr<const Model> model_ = std::make_shared<Model>(
+      watch(countsOf({robot(0, 100)}, kRobot), countsOf({robot(kStart, 200)}, kRobot)));
+};
+
+TEST_F(SilentTogetherTest, AComputerOfWhichNobodyIsHeardIsFound) {
+  const std::int64_t ago = 30 * kSecond;
+  const std::optional<Silent> silent = find({ago, ago + 1, ago + kSecond, 0, 0});
+  ASSERT_TRUE(silent);
+  EXPECT_EQ(silent->hosts, Strings{"base"});
+  EXPECT_EQ(silent->components, (Strings{"/battery", "/imu", "/laser"}));
+  EXPECT_EQ(silent->since, kEnd - ago);
+}
+
+TEST_F(SilentTogetherTest, ItIsNotFoundWhereOneOfItsNodesIsHeard) {
+  const std::int64_t ago = 30 * kSecond;
+  EXPECT_FALSE(find({ago, ago, 0, 0, 0}));
+  EXPECT_FALSE(find({ago, ago, kSecond, 0, 0})) << "the slow one may yet come";
+  strangers_["/new"] = kSecond;
+  graph_->place("/new", "base");
+  EXPECT_FALSE(find({ago, ago, ago, 0, 0}))
+      << "somebody there is heard whom the model does not know";
+}
+
+TEST_F(SilentTogetherTest, WhoFellSilentLongBeforeTheOthersDidNotDoSoWithThem) {
+  const std::int64_t ago = 30 * kSecond;
+  EXPECT_FALSE(find({2 * ago, ago, ago, 0, 0}));
+}
+
+TEST_F(SilentTogetherTest, WhoIsFarFromItsLimitProvesNothing) {
+  EXPECT_FALSE(find({30 * kSecond, 30 * kSecond, 30 * kSecond, 0, 0}, 0.5));
+}
+
+TEST_F(SilentTogetherTest, WhereNobodyIsHeardItIsAll) {
+  const std::int64_t ago = 30 * kSecond;
+  const std::optional<Silent> silent = find({ago, ago, ago, ago, ago});
+  ASSERT_TRUE(silent);
+  EXPECT_TRUE(silent->hosts.empty());
+  EXPECT_EQ(silent->components.size(), 5U);
+}
+
+TEST_F(SilentTogetherTest, WithoutComputersOnlyAllAreSilentTogether) {
+  const std::int64_t ago = 30 * kSecond;
+  for (const EventType& type : kRobot) {
+    graph_->place(type.source, "");
+  }
+  EXPECT_FALSE(find({ago, ago, ago, 0, 0}));
+  EXPECT_TRUE(find({ago, ago, ago, ago, ago}));
+  for (const EventType& type : kRobot) {
+    graph_->place(type.source, "base");
+  }
+  EXPECT_FALSE(find({ago, ago, ago, 0, 0})) << "all run on one";
+}
+
+TEST_F(SilentTogetherTest, SeveralComputersAreNamedTogether) {
+  const std::int64_t ago = 30 * kSecond;
+  graph_->place("/battery", "dock");
+  const std::optional<Silent> silent = find({ago, ago, 0, ago, ago});
+  ASSERT_TRUE(silent);
+  EXPECT_EQ(silent->hosts, (Strings{"base", "head"}));
+  EXPECT_EQ(describe(*silent), "everything on hosts base and head fell silent: 4 nodes");
+}
+
+}  // namespace
+}  // namespace self_awareness::core::evidence
