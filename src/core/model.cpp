@@ -65,6 +65,14 @@ std::size_t Model::pairs() const {
   return filled;
 }
 
+std::set<SourceGraph::Publication> Model::unheard() const {
+  std::set<SourceGraph::Publication> unheard = graph.unheard();
+  for (const EventType& type : vocabulary().types()) {
+    unheard.erase({type.source, type.scope});
+  }
+  return unheard;
+}
+
 void Model::watch() {
   if (!hasEvidence()) {
     throw std::invalid_argument("loaded without its counts");

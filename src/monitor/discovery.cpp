@@ -182,11 +182,13 @@ void Discovery::listen(const Wanted& wanted, ros1::SystemState& known, bool mast
   std::set<std::string> topics;
   if (wanted.encoder) {
     const ros1::Encoder& encoder = *wanted.encoder;
+    const ros1::Siblings siblings = ros1::siblingsIn(graph);
     topics = ros1::chooseTopics(
         graph, policy_, wanted.model_topics,
         [&](const std::string& topic) { return encoder.includesTopic(topic); },
         [&](const std::string& node) {
-          return node != ros::this_node::getName() && encoder.listens(ros1::stableName(node));
+          return node != ros::this_node::getName() && !siblings.has(node) &&
+                 encoder.listens(ros1::stableName(node));
         });
   }
   state.left_out = leaveOutMost(wanted.model_topics, topics_, topics);

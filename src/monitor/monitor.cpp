@@ -253,6 +253,7 @@ void Monitor::onReport() {
   if (session_) {
     state.communication.calibrated = session_->calibrated();
     state.communication.coverage = session_->coverage();
+    state.communication.unheard = session_->unheard();
   }
   state.communication.take(announcer_.alarm(), heard_.report(moment, live_->events().dropped()),
                            moment.ros);

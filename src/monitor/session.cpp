@@ -14,6 +14,7 @@ Session::Session(ros1::TrainedModel trained, const MonitorParameters& parameters
       calibrated_(parameters.method == MonitorParameters::Method::kPaper
                       ? trained_.paper_calibration.has_value()
                       : trained_.calibration.has_value()),
+      unheard_(trained_.unheard()),
       graph_(std::make_shared<core::SourceGraph>(trained_.graph)),
       vocabulary_(std::make_shared<core::Vocabulary>(trained_.vocabulary())),
       encoder_(std::make_shared<ros1::Encoder>(

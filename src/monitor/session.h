@@ -39,6 +39,8 @@ class Session {
   bool calibrated() const { return calibrated_; }
   /// How soon faults of the model's components are found; empty: not known of this detector.
   const std::vector<core::evidence::Coverage>& coverage() const { return coverage_; }
+  /// What was published in training, and nobody subscribed to, by source and topic.
+  const std::set<core::SourceGraph::Publication>& unheard() const { return unheard_; }
   /// Event types of the model, by their ids.
   const std::vector<core::EventType>& types() const { return trained_.vocabulary().types(); }
   /// Event types of the model, and after them the unknown ones as they appeared.
@@ -69,6 +71,7 @@ class Session {
   ros1::TrainedModel trained_;
   bool calibrated_;
   std::vector<core::evidence::Coverage> coverage_;
+  std::set<core::SourceGraph::Publication> unheard_;
   std::shared_ptr<core::SourceGraph> graph_;  // of training, and what addEdges() added
   std::shared_ptr<core::Vocabulary> vocabulary_;
   std::shared_ptr<const ros1::Encoder> encoder_;

@@ -31,6 +31,16 @@ ros1::Graph graphOf(const NodesOfTopics& publishers, const NodesOfTopics& subscr
 }  // namespace
 
 void bindEventLogs(py::module& m) {
+  m.def(
+      "unheard_publications",
+      [](const ros1::EncodingRules& encoding, const NodesOfTopics& publishers,
+         const NodesOfTopics& subscribers) {
+        return ros1::unheardIn(graphOf(publishers, subscribers, {}),
+                               ros1::Encoder(encoding, nullptr));
+      },
+      py::arg("encoding"), py::arg("publishers"), py::arg("subscribers"),
+      "What nodes publish, and the encoding includes, and no node of the robot subscribes to:\n"
+      "(source, topic). ValueError for a pattern that is no regular expression.");
   py::class_<ros1::EventLogWriter>(m, "EventLogWriter", "Writes an event log.")
       .def(py::init<const std::string&, const std::string&>(), py::arg("path"),
            py::arg("named") = "",
@@ -49,7 +59,8 @@ void bindEventLogs(py::module& m) {
           py::arg("path"), py::arg("encoding"), py::arg("publishers") = NodesOfTopics(),
           py::arg("subscribers") = NodesOfTopics(), py::arg("hosts") = HostsState(),
           py::arg("progress") = py::none(),
-          "Adds a bag as a recording of its own, with the nodes of its topics and their computers\n"
+          "Adds a bag as a recording of its own, with the nodes of its topics and their "
+          "computers\n"
           "where they are known; returns its BagSummary. After an error the log is of no use.")
       .def("close", &ros1::EventLogWriter::close, "Ends the file; without that it has no index.");
 }

@@ -183,10 +183,12 @@ void bindModel(py::module& m) {
             return edges;
           },
           [](TrainedModel& self, const std::set<EdgeState>& edges) {
-            const HostsState hosts = self.graph.hosts();
-            self.graph = graphOf(edges);
-            for (const auto& [source, host] : hosts) {
+            const core::SourceGraph before = std::exchange(self.graph, graphOf(edges));
+            for (const auto& [source, host] : before.hosts()) {
               self.graph.place(source, host);
+            }
+            for (const core::SourceGraph::Publication& publication : before.unheard()) {
+              self.graph.addUnheard(publication);
             }
           },
           "whose messages reach whom: set of (publisher, topic, subscriber), nodes by their\n"
@@ -200,6 +202,15 @@ void bindModel(py::module& m) {
           },
           "computers of sources, as a dict; those that are known, or '' where a source runs on\n"
           "several. To set it keeps those of other sources.")
+      .def_property(
+          "unheard", &TrainedModel::unheard,
+          [](TrainedModel& self, const std::set<core::SourceGraph::Publication>& unheard) {
+            for (const core::SourceGraph::Publication& publication : unheard) {
+              self.graph.addUnheard(publication);
+            }
+          },
+          "what sources published in training, and nobody subscribed to: set of (source, topic).\n"
+          "To set it adds to what is known; what the model has events of is left out.")
       .def_property_readonly("threshold", &TrainedModel::threshold, "None: not calibrated")
       .def_property_readonly(
           "bin_size", [](const TrainedModel& self) { return self.statistics.binning().bin_size; },

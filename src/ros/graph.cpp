@@ -96,6 +96,50 @@ std::map<std::string, std::string> fetchAddresses(const std::set<std::string>& n
   return addresses;
 }
 
+Siblings siblingsIn(const Graph& graph) {
+  Siblings siblings;
+  for (const auto& [name, topic] : graph.topics) {
+    for (const std::string& publisher : topic.publishers) {
+      siblings.add(publisher, topic.datatype);
+    }
+  }
+  return siblings;
+}
+
+Graph withoutSiblings(Graph graph) {
+  const Siblings siblings = siblingsIn(graph);
+  const auto strip = [&](std::set<std::string>& nodes) {
+    for (auto node = nodes.begin(); node != nodes.end();) {
+      node = siblings.has(*node) ? nodes.erase(node) : std::next(node);
+    }
+  };
+  for (auto topic = graph.topics.begin(); topic != graph.topics.end();) {
+    strip(topic->second.publishers);
+    strip(topic->second.subscribers);
+    const bool empty = topic->second.publishers.empty() && topic->second.subscribers.empty();
+    topic = empty ? graph.topics.erase(topic) : std::next(topic);
+  }
+  return graph;
+}
+
+std::set<core::SourceGraph::Publication> unheardIn(const Graph& graph, const Encoder& encoder) {
+  std::set<core::SourceGraph::Publication> unheard;
+  for (const auto& [name, topic] : graph.topics) {
+    if (!encoder.includesTopic(name) ||
+        std::any_of(topic.subscribers.begin(), topic.subscribers.end(),
+                    [&](const std::string& node) { return encoder.listens(stableName(node)); })) {
+      continue;
+    }
+    for (const std::string& publisher : topic.publishers) {
+      const std::string source = stableName(publisher);
+      if (encoder.includesSource(source)) {
+        unheard.emplace(encoder.tellsSources() ? source : "", name);
+      }
+    }
+  }
+  return unheard;
+}
+
 std::string hostIn(const std::string& uri) {
   std::string host;
   std::uint32_t port = 0;
@@ -103,7 +147,7 @@ std::string hostIn(const std::string& uri) {
 }
 
 void addEdges(const Graph& graph, const std::string& own_name, core::SourceGraph& edges) {
-  for (const auto& [name, topic] : graph.topics) {
+  for (const auto& [name, topic] : withoutSiblings(graph).topics) {
     for (const std::string& publisher : topic.publishers) {
       for (const std::string& subscriber : topic.subscribers) {
         if (publisher != own_name && subscriber != own_name && edges.edges().size() < kMostEdges) {

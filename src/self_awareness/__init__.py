@@ -73,6 +73,7 @@ from self_awareness._core import (  # noqa: F401
     recordings_in_event_log,
     stable_name,
     summarise_bag,
+    unheard_publications,
     write_problem,
 )
 

@@ -348,7 +348,16 @@ def _check(model: TrainedModel, recording: RecordingEvents, has_sources: bool) -
                          'recording: it was trained with another encoding or on another robot')
 
 
+def unknown_types(model: TrainedModel, recording: RecordingEvents) -> List[int]:
+    """Return the ids of event types that training knows in no way: nobody published them."""
+    unheard = model.unheard
+    return [index for index in recording.heard.tolist() if index >= len(model.event_types)
+            and (recording.event_types[index].source,
+                 recording.event_types[index].scope) not in unheard]
+
+
 def _known(model: TrainedModel, recording: RecordingEvents) -> Tuple[int, int]:
     """Return how many of the event types of a recording a model knows, and how many there are."""
-    heard = recording.heard
-    return int((heard < len(model.event_types)).sum()), len(heard)
+    unknown = set(unknown_types(model, recording))
+    known = int((recording.heard < len(model.event_types)).sum())
+    return known, known + len(unknown)

@@ -108,6 +108,9 @@ class RecordTest(unittest.TestCase):
         self.assertTrue(0 < summary.robot_start <= summary.start <= events.stamps[0])
         self.assertIn((name, '/a', name), RobotGraph(*summary.graph).edges())
         self.assertEqual(RobotGraph(*summary.graph).hosts[name], own_host())
+        unheard = RobotGraph(*summary.graph).unheard(EncodingRules.defaults())
+        self.assertIn((name, '/lonely'), unheard, 'it is known by name')
+        self.assertNotIn('/recorder', {source for source, _ in unheard})
 
     def test_files_of_one_start_say_so(self) -> None:
         with Talker('/a'), Talker('/b'):

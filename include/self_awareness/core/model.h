@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -82,6 +83,9 @@ struct Model {
   std::uint64_t gaps(EventId id) const;
   /// Number of ordered pairs of event types with at least one delay.
   std::size_t pairs() const;
+  /// What sources published in training, by source and scope, of which no event came, since nobody
+  /// of the robot subscribed to it.
+  std::set<SourceGraph::Publication> unheard() const;
   /// Forgets all counts but those that the evidence detector judges by.
   void dropCounts();
   /// Chooses what is watched, by all counts of the evidence detector (docs/method.md, section 3).

@@ -8,6 +8,8 @@
 #include <string>
 
 #include "self_awareness/core/verdict/source_graph.h"
+#include "self_awareness/ros/encoding.h"
+#include "self_awareness/ros/siblings.h"
 
 namespace self_awareness::ros1 {
 
@@ -38,6 +40,15 @@ std::optional<SystemState> fetchSystemState();
 /// @return by node; without those that the master does not know
 std::map<std::string, std::string> fetchAddresses(const std::set<std::string>& nodes);
 
+/// The nodes of this package that are in it, as far as it knows the types of topics.
+Siblings siblingsIn(const Graph& graph);
+/// The same without the nodes of this package: they look at the robot, and are no part of it.
+Graph withoutSiblings(Graph graph);
+
+/// What nodes publish, and the encoding includes, and no node of the robot subscribes to.
+/// @param graph without the nodes of this package
+std::set<core::SourceGraph::Publication> unheardIn(const Graph& graph, const Encoder& encoder);
+
 /// The name or the address in the URI of a node's XML-RPC server; empty: there is none.
 std::string hostIn(const std::string& uri);
 
@@ -48,9 +59,10 @@ constexpr std::size_t kMostHosts = 20000;
 /// of 300 nodes with all of tf and /rosout has some ten thousand.
 constexpr std::size_t kMostEdges = 50000;
 
-/// Adds an edge from every publisher of a topic to every subscriber, by their stable names, and the
-/// computers of all (docs/method.md, section 6).
-/// @param own_name name of a node that is left out, since it listens to everything
+/// Adds an edge from every publisher of a topic to every subscriber, by their stable names, and
+/// the computers of all (docs/method.md, section 6). Nodes of this package are left out, since
+/// they may listen to everything.
+/// @param own_name name of this node, which is one of them
 void addEdges(const Graph& graph, const std::string& own_name, core::SourceGraph& edges);
 
 /// Topics to subscribe to besides those of the model.

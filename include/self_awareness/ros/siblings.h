@@ -17,6 +17,8 @@ class Siblings {
   /// @param node full name; empty: not known, and nobody is recognised by it
   void add(const std::string& node, const std::string& datatype);
 
+  /// Whether a node, by its full name, is one of them.
+  bool has(const std::string& node) const { return nodes_.count(node) > 0; }
   /// Whether this is what every node says of itself: /rosout or /diagnostics.
   static bool mayCover(const std::string& topic);
   /// Whether it is that, of one of them.

@@ -30,13 +30,12 @@ class Judge : public core::Judge {
 
   ObservedEvent add(const Event& event) override {
     never_heard_.add(event);
-    strangers_.add(event);
-    const bool known = model_->knows(event.id);
+    const bool unknown = strangers_.add(event);
     const std::optional<std::int64_t> gap = scorer_.add(event);
-    if (known) {
+    if (model_->knows(event.id)) {
       events_.add(event, scorer_.stalled());
     }
-    return {event, !known, gap};
+    return {event, unknown, gap};
   }
   void hear(const Waiting& waiting) override { scorer_.hear(waiting); }
   void settle(const Event& first, std::int64_t settle_time) override;
@@ -88,7 +87,7 @@ Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, s
       events_(model_->size()),
       blame_(model_, graph),
       never_heard_(*model_, limits_.value_or(Limits{}), graph),
-      strangers_(*model_, std::move(heard)),
+      strangers_(*model_, std::move(heard), graph),
       busy_machine_(model_),
       silent_together_(model_, std::move(graph)),
       shares_(model_->tracks().size(), 0),

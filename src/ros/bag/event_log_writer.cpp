@@ -56,7 +56,8 @@ void EventLogWriter::write(self_awareness::EventLog part) {
   bag_.write({kEventLogTopic}, inBag(part.heard_until), part);
 }
 
-void EventLogWriter::writeGraph(const Graph& graph, std::int64_t stamp) {
+void EventLogWriter::writeGraph(const Graph& whole, std::int64_t stamp) {
+  const Graph graph = withoutSiblings(whole);
   self_awareness::EventLogGraph message;
   message.stamp = toRosTime(stamp);
   for (const auto& [name, topic] : graph.topics) {

@@ -5,12 +5,7 @@
 namespace self_awareness::ros1 {
 
 bool OwnOutput::setGraph(const Graph& graph) {
-  Siblings siblings;
-  for (const auto& [name, topic] : graph.topics) {
-    for (const std::string& publisher : topic.publishers) {
-      siblings.add(publisher, topic.datatype);
-    }
-  }
+  Siblings siblings = siblingsIn(graph);
   const bool changed = siblings != siblings_;
   siblings_ = std::move(siblings);
   return changed;

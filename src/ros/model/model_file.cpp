@@ -75,6 +75,11 @@ void checkEffort(const self_awareness::Model& message) {
   check(message.event_types.size() <= kMostEventTypes, "it has too many event types");
   check(message.tracks.size() <= kMostTracks, "it watches too much");
   check(message.graph.size() <= kMostEdges, "it has too many edges");
+  std::size_t unheard = 0;
+  for (const self_awareness::TopicNodes& topic : message.unheard) {
+    unheard += topic.publishers.size();
+  }
+  check(unheard <= kMostEdges, "it has too many topics that nobody subscribed to");
   check(message.hosts.size() <= kMostHosts, "it has too many computers of sources");
 }
 
@@ -266,6 +271,11 @@ self_awareness::Model toMessage(const TrainedModel& model) {
     placed.node = source;
     placed.host = host;
   }
+  for (const auto& [source, topic] : model.graph.unheard()) {
+    self_awareness::TopicNodes& unheard = message.unheard.emplace_back();
+    unheard.topic = topic;
+    unheard.publishers = {source};
+  }
   message.recordings = toMessages(model.recordings);
   for (const core::evidence::LimitFinder::Recording& recording : model.findings) {
     message.findings.push_back(toMessage(recording));
@@ -304,6 +314,11 @@ TrainedModel fromMessage(const self_awareness::Model& message) {
   check(model.graph.edges().size() == message.graph.size(), "its graph has an edge twice");
   for (const self_awareness::NodeHost& placed : message.hosts) {
     model.graph.place(placed.node, placed.host);
+  }
+  for (const self_awareness::TopicNodes& unheard : message.unheard) {
+    for (const std::string& source : unheard.publishers) {
+      model.graph.addUnheard({source, unheard.topic});
+    }
   }
   model.recordings = fromMessages(message.recordings);
   for (const self_awareness::RecordingFindings& findings : message.findings) {

@@ -75,6 +75,9 @@ void merge(TrainedModel& model, const TrainedModel& other) {
   for (const auto& [source, host] : other.graph.hosts()) {
     model.graph.place(source, host);
   }
+  for (const core::SourceGraph::Publication& publication : other.graph.unheard()) {
+    model.graph.addUnheard(publication);
+  }
   model.recordings.insert(model.recordings.end(), other.recordings.begin(),
                           other.recordings.end());
   if (model.tuning != other.tuning) {

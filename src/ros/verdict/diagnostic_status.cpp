@@ -69,6 +69,26 @@ void tellNotWatched(const std::vector<core::evidence::Coverage>& coverage,
   }
 }
 
+constexpr std::size_t kMostUnheard = 20;
+
+void tellUnheard(const std::set<core::SourceGraph::Publication>& unheard,
+                 DiagnosticStatusWrapper& status) {
+  std::string names;
+  std::size_t number = 0;
+  for (const auto& [source, topic] : unheard) {
+    if (number < kMostUnheard) {
+      names += (number > 0 ? ", " : "") + (source.empty() ? "" : source + " on ") + topic;
+    }
+    ++number;
+  }
+  if (number > 0) {
+    status.add("nobody subscribed in training",
+               number > kMostUnheard
+                   ? names + " and " + std::to_string(number - kMostUnheard) + " more"
+                   : names);
+  }
+}
+
 // How soon its death is found.
 std::string foundAfter(const core::evidence::Coverage& component) {
   if (component.death_found_after) {
@@ -98,6 +118,7 @@ void tellCommunication(const CommunicationState& state, DiagnosticStatusWrapper&
                               " event types that were heard: is it of this robot?");
     }
     tellNotWatched(state.coverage, status);
+    tellUnheard(state.unheard, status);
     status.add("score", number(last.score));
     status.add("threshold", number(last.threshold));
     status.add("events in the window", last.events);

@@ -5,12 +5,14 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "heard_tally.h"
 #include "self_awareness/SelfAwareness.h"
 #include "self_awareness/core/evidence/limits/coverage.h"
+#include "self_awareness/core/verdict/source_graph.h"
 
 namespace self_awareness::ros1 {
 
@@ -22,10 +24,12 @@ struct CommunicationState {
   std::string model_error;  ///< why there is none; empty: it is loaded
   bool calibrated = false;
   std::vector<core::evidence::Coverage> coverage;  ///< of the components; empty: not known
-  bool started = false;                            ///< something was said of a window
-  self_awareness::SelfAwareness last;              ///< the verdict on the last window, if started
-  bool shared = false;  ///< what components share is to blame, and no component
-  double level_for = 0;                            ///< how long it has had its level [s]
+  /// What was published in training, and nobody subscribed to, by source and topic.
+  std::set<core::SourceGraph::Publication> unheard;
+  bool started = false;                ///< something was said of a window
+  self_awareness::SelfAwareness last;  ///< the verdict on the last window, if started
+  bool shared = false;                 ///< what components share is to blame, and no component
+  double level_for = 0;                ///< how long it has had its level [s]
   HeardReport heard;
   /// Who cannot be heard by the monitor, and why, in words; by component.
   std::map<std::string, std::string> not_heard;

@@ -13,7 +13,8 @@ from self_awareness.commands import cli
 from self_awareness.judging import EVIDENCE
 from self_awareness.recordings import is_bag
 from self_awareness.reporting import histogram_text
-from self_awareness.reporting import coverage_text, relations_text, tuning_text
+from self_awareness.reporting import (coverage_text, relations_text, tuning_text,
+                                      unheard_text)
 from self_awareness.reporting.event_log_summary import summarise_event_log
 from self_awareness.reporting.evidence_report import counts
 from self_awareness.reporting.model_summary import summarise
@@ -183,6 +184,8 @@ def _print_evidence(evidence: Dict[str, Any], fewest_gaps: int) -> None:
         print(f'  not judged: {"; ".join(evidence["not_judged"])}')
     if evidence['left_out']:
         print(f'  left out: {", ".join(evidence["left_out"])}: this version does not judge them')
+    for line in unheard_text.lines(evidence['unheard']):
+        print(f'  {line}')
     calibration = evidence['calibration']
     if calibration is None:
         print('limits       not calibrated (rosrun self_awareness calibrate)')

@@ -10,13 +10,13 @@ from typing import Iterator, List, Optional, Sequence
 import numpy as np
 
 from self_awareness import (EVIDENCE_THRESHOLD, Alarm, EvidenceModel, PaperModel, Suspect,
-                            Verdicts)
+                            TrainedModel, Verdicts)
 from self_awareness import alarms
 from self_awareness.commands import cli
 from self_awareness.judging import evidence_judge, paper_judge
 from self_awareness.output_files import (PAGE, PICTURE, RESULT_BAG, TABLE, VALUES, check_outputs,
                                          replacing)
-from self_awareness.recordings import BagPart, RecordingEvents, expand
+from self_awareness.recordings import BagPart, RecordingEvents, expand, unknown_types
 from self_awareness.reporting import coverage_text, csv_text
 from self_awareness.reporting.plots import NamedAlarm, ScorePlot, save_scores
 from self_awareness.reporting.report import neighbours
@@ -92,7 +92,7 @@ def _score(arguments: argparse.Namespace) -> None:
                              recording.clock_steps, waiting=recording.waiting,
                              hosts=recording.hosts)
             judged.append(Judged(by, recording, verdicts))
-            _print(recording, verdicts, len(trained.event_types), threshold)
+            _print(recording, verdicts, trained, threshold)
     if arguments.csv is not None:
         _save_csv(arguments.csv, judged, threshold)
     if arguments.json is not None:
@@ -104,7 +104,7 @@ def _score(arguments: argparse.Namespace) -> None:
                                        for number, each in enumerate(judged, 1)])
 
 
-def _print(recording: RecordingEvents, verdicts: Verdicts, known: int,
+def _print(recording: RecordingEvents, verdicts: Verdicts, trained: TrainedModel,
            threshold: Optional[float]) -> None:
     windows = len(verdicts.start)
     start, end = recording.part.span(recording.origin, recording.end)
@@ -118,7 +118,7 @@ def _print(recording: RecordingEvents, verdicts: Verdicts, known: int,
     for alarm in alarms.in_order(verdicts):
         for text in _lines(recording, alarm, threshold):
             print(text)
-    _print_unknown(recording, known)
+    _print_unknown(recording, trained)
 
 
 def _lines(recording: RecordingEvents, alarm: Alarm,
@@ -148,13 +148,20 @@ def _words(recording: RecordingEvents, suspect: Suspect) -> str:
     return f'{recording.event_types[suspect.id]}: {suspect.reason.words}'
 
 
-def _print_unknown(recording: RecordingEvents, known: int) -> None:
+def _print_unknown(recording: RecordingEvents, trained: TrainedModel) -> None:
+    known = len(trained.event_types)
     counts = np.bincount(recording.ids, minlength=known)
-    unknown = [(int(counts[i]), str(recording.event_types[i])) for i in range(known, len(counts))]
-    if unknown:
-        print('  event types never seen in training:')
-    for count, name in sorted(unknown, key=lambda entry: (-entry[0], entry[1])):
-        print(f'    {name}: {count}')
+    new = set(unknown_types(trained, recording))
+    for said, kinds in (
+            ('never seen in training', new),
+            ('that nobody subscribed to in training: they are not judged',
+             set(range(known, len(counts))) - new)):
+        found = sorted((-int(counts[kind]), str(recording.event_types[kind])) for kind in kinds
+                       if counts[kind])
+        if found:
+            print(f'  event types {said}:')
+        for count, name in found:
+            print(f'    {name}: {-count}')
 
 
 def _save_json(path: str, judged: Sequence[Judged], missing: str) -> None:

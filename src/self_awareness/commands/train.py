@@ -15,7 +15,7 @@ from self_awareness.commands import cli
 from self_awareness.judging import BOTH, EVIDENCE, PAPER
 from self_awareness.output_files import MODEL, check_outputs
 from self_awareness.recordings import BagPart, expand
-from self_awareness.reporting import coverage_text
+from self_awareness.reporting import coverage_text, unheard_text
 from self_awareness.reporting.training_report import print_summary
 from self_awareness.stamps import SECOND_NS
 from self_awareness.training import live_graph, many_bags
@@ -66,6 +66,7 @@ def _train(arguments: argparse.Namespace) -> None:
                   '(source: none)')
         model.graph = model.graph | graph.edges()
         model.hosts = graph.hosts_of_sources()
+        model.unheard = graph.unheard(model.encoding)
         try:
             limits = _limits(trained, workers)
         except (BagError, ValueError) as error:  # the counts are not lost
@@ -76,6 +77,8 @@ def _train(arguments: argparse.Namespace) -> None:
     print(limits)
     for line in coverage_text.lines(coverage_text.summarise(model.coverage()),
                                     model.fewest_gaps):
+        print(f'  {line}')
+    for line in unheard_text.lines(unheard_text.summarise(model.unheard)):
         print(f'  {line}')
     _say_holes(found, model, arguments.leave_out_holes)
     for bad in trained.bad:

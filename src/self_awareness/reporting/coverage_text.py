@@ -1,7 +1,7 @@
 """Says by name how soon faults of each component are found, and who is not watched."""
 from __future__ import annotations
 
-from typing import Any, Dict, List, Sequence
+from typing import Any, Dict, List, Sequence, Tuple
 
 from self_awareness import Coverage
 from self_awareness.reporting.number_text import rounded
@@ -34,6 +34,20 @@ def not_watched(found: Sequence[Dict[str, Any]]) -> str:
             f'{", ".join(names[:_MOST_NAMED])}{more}')
 
 
+def table(found: Sequence[Dict[str, Any]], fewest_gaps: int) -> List[Tuple[str, ...]]:
+    """Return the rows of a table, its head first; no row where nothing is known.
+
+    Args:
+        found: what summarise() returned.
+        fewest_gaps: that an event type needs to be judged.
+    """
+    if not found:
+        return []
+    return [_COLUMNS, *((each['component'],
+                         f'{rounded(each["period"], 3)} s' if each['period'] else '-',
+                         _death(each, fewest_gaps), _late(each)) for each in found)]
+
+
 def lines(found: Sequence[Dict[str, Any]], fewest_gaps: int) -> List[str]:
     """Return the lines of a table, a component in each, and who is not watched.
 
@@ -43,11 +57,8 @@ def lines(found: Sequence[Dict[str, Any]], fewest_gaps: int) -> List[str]:
     """
     if not found:
         return []
-    rows = [_COLUMNS, *((each['component'],
-                         f'{rounded(each["period"], 3)} s' if each['period'] else '-',
-                         _death(each, fewest_gaps), _late(each)) for each in found)]
     missing = not_watched(found)
-    return aligned(rows) + ([missing] if missing else [])
+    return aligned(table(found, fewest_gaps)) + ([missing] if missing else [])
 
 
 def _death(each: Dict[str, Any], fewest_gaps: int) -> str:

@@ -9,7 +9,7 @@ from self_awareness import EvidenceModel, TrainedModel
 from self_awareness.calibration import confidence
 from self_awareness.calibration.results import FalseAlarms
 from self_awareness.calibration.runs import RECORDED, JudgedRun
-from self_awareness.reporting import coverage_text, relations_text
+from self_awareness.reporting import coverage_text, relations_text, unheard_text
 from self_awareness.reporting.number_text import rounded
 from self_awareness.reporting.text_table import aligned
 from self_awareness.stamps import SECOND_NS
@@ -47,7 +47,8 @@ def print_verdict(trained: TrainedModel, coverage: Sequence[Dict[str, Any]]) -> 
 
 def print_coverage(trained: TrainedModel, coverage: Sequence[Dict[str, Any]]) -> None:
     """Print a table of all components."""
-    for line in coverage_text.lines(coverage, trained.fewest_gaps):
+    for line in (coverage_text.lines(coverage, trained.fewest_gaps)
+                 + unheard_text.lines(unheard_text.summarise(trained.unheard))):
         print(line)
 
 

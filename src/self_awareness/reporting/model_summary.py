@@ -7,7 +7,7 @@ from typing import Any, Dict, List, Optional, Tuple
 
 from self_awareness import (USUAL_SHARES, Calibration, EvidenceModel, PaperCalibration,
                             Recording, TrainedModel, Tuning, encoding_file)
-from self_awareness.reporting import coverage_text, relations_text
+from self_awareness.reporting import coverage_text, relations_text, unheard_text
 from self_awareness.reporting.version_summary import summarise_version
 from self_awareness.judging import EVIDENCE, PAPER
 from self_awareness.stamps import SECOND_NS
@@ -60,6 +60,7 @@ def _evidence(model: TrainedModel, evidence: EvidenceModel) -> Dict[str, Any]:
                        if model.gaps(index) < model.fewest_gaps],
         'tuning': {number.name: model.tuning.get(number.name) for number in Tuning.numbers()},
         'without': model.tuning.without,
+        'unheard': unheard_text.summarise(model.unheard),
         'left_out': sorted(model.left_out),
         'calibration': None,
     }

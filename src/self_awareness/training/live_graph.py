@@ -9,11 +9,14 @@ from self_awareness import printable
 from self_awareness.training.robot_graph import RobotGraph
 
 _CALLER_ID = '/train'
+_OWN_TYPES = 'self_awareness/'
 _HOST = re.compile(r'\w+://([^:/]+)')
 
 
 def fetch() -> RobotGraph:
     """Ask the master, and nobody else: no node sees that somebody asks.
+
+    Nodes of this package look at the robot, and are left out.
 
     Raises:
         ValueError: no master answers.
@@ -23,7 +26,11 @@ def fetch() -> RobotGraph:
 
     try:
         master = rosgraph.Master(_CALLER_ID)
-        publishers, subscribers, _ = master.getSystemState()
+        state, types = master.getSystemState(), dict(master.getTopicTypes())
+        ours = {node for topic, nodes in state[0] for node in nodes
+                if types.get(topic, '').startswith(_OWN_TYPES)}
+        publishers, subscribers = (
+            [(topic, set(nodes) - ours) for topic, nodes in nodes_of] for nodes_of in state[:2])
         hosts = _hosts(master, {node for _, nodes in publishers for node in nodes})
     except (OSError, rosgraph.MasterException) as error:
         raise ValueError(f'no master at {rosgraph.get_master_uri()}: is the robot running, and is '
@@ -46,4 +53,5 @@ def _hosts(master: Any, nodes: Iterable[str]) -> Dict[str, str]:
 
 
 def _by_topic(state: Any) -> Dict[str, Set[str]]:
-    return {printable(topic): {printable(node) for node in nodes} for topic, nodes in state}
+    return {printable(topic): {printable(node) for node in nodes} for topic, nodes in state
+            if nodes}

@@ -288,6 +288,7 @@ def _count(how: _How, part: BagPart) -> _Sum:
         graph = _graph(part, summary)
         model.graph = graph.edges()
         model.hosts = graph.hosts_of_sources()
+        model.unheard = graph.unheard(encoding)
     except BagError as error:
         raise _BadBag(str(error)) from error
     except ValueError as error:

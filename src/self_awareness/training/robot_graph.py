@@ -4,7 +4,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, Dict, Set, Tuple
 
-from self_awareness import FileVersion, stable_name, yaml_file
+from self_awareness import (EncodingRules, FileVersion, stable_name, unheard_publications,
+                            yaml_file)
 from self_awareness.output_files import replacing
 
 _Nodes = Dict[str, Set[str]]
@@ -62,6 +63,10 @@ class RobotGraph:
         for node, host in self.hosts.items():
             found.setdefault(stable_name(node), set()).add(host)
         return {source: hosts.pop() if len(hosts) == 1 else '' for source, hosts in found.items()}
+
+    def unheard(self, encoding: EncodingRules) -> Set[Tuple[str, str]]:
+        """Return what no node of the robot subscribes to, as in TrainedModel.unheard."""
+        return unheard_publications(encoding, self.publishers, self.subscribers)
 
     def save(self, path: str) -> None:
         """Write a file that load() reads."""

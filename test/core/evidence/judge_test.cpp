@@ -424,6 +424,22 @@ TEST_F(EvidenceJudgeOfStrangersTest, ManyStrangersDoNotHideWhoIsToBlame) {
   EXPECT_EQ(named[6].reason.kind, Kind::kStranger);
 }
 
+TEST_F(EvidenceJudgeOfStrangersTest, WhatTrainingKnowsByNameIsNotUnknown) {
+  heard_ = std::make_shared<Vocabulary>(model_->vocabulary());
+  const EventId debug = heard_->intern({"/planner", "/debug", "T"});
+  const EventId other = heard_->intern({"/planner", "/other", "T"});
+  const EventId level = heard_->intern({"/a", "/x", "T[level=8]"});
+  const auto graph = std::make_shared<SourceGraph>();
+  graph->addUnheard({"/planner", "/debug"});
+  graph->addUnheard({"/a", "/x"});  // in one start; in another one it was heard
+  limits_.tracks[track(kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
+  const std::unique_ptr<core::Judge> judge = makeJudge(model_, limits_, kWindow, graph, heard_);
+  judge->add({0, kA});
+  EXPECT_FALSE(judge->add({1, debug}).unknown);
+  EXPECT_TRUE(judge->add({2, other}).unknown);
+  EXPECT_TRUE(judge->add({3, level}).unknown);
+}
+
 TEST_F(EvidenceJudgeOfStrangersTest, ItIsSoForAsLongAsRatesCount) {
   const std::vector<Suspect> named = suspectsAfter({"/rostopic", "/y", "T"}, kSecond);
   ASSERT_EQ(named.size(), 2U);

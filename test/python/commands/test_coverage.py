@@ -89,7 +89,9 @@ def test_no_result_is_green_where_nobody_looks(half_blind: Tuple[str, str], tmp_
                        str(results)]) == 0
     out = capsys.readouterr().out
     assert ', alarms: 0' in out and f'{model}: {MISSING}\n' in out
-    assert f'Nothing abnormal, but {MISSING}.' in page.read_text()
+    text = page.read_text()
+    assert f'Nothing abnormal, but {MISSING}.' in text
+    assert 'Who is watched' in text and '<td>/rare</td><td>20 s</td><td>not watched: ' in text
     with rosbag.Bag(str(results)) as bag:
         *_, (_, message, _) = bag.read_messages('/diagnostics')
     last, = (status for status in message.status if status.name.endswith('communication'))

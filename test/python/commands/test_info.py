@@ -76,7 +76,10 @@ def test_json_holds_the_evidence(evidence_model: str, capsys) -> None:
 def test_json_holds_preliminary_limits_and_the_graph(long_bags, tmp_path, capsys,
                                                      monkeypatch) -> None:
     monkeypatch.setattr('rosgraph.Master.getSystemState', lambda _: [
-        [['/scan', ['/laser']]], [['/scan', ['/slam', '/map_saver']]], []])
+        [['/scan', ['/laser']], ['/watch/status', ['/watch']]],
+        [['/scan', ['/slam', '/map_saver', '/watch']]], []])
+    monkeypatch.setattr('rosgraph.Master.getTopicTypes', lambda _: [
+        ['/scan', 'T'], ['/watch/status', 'self_awareness/SelfAwareness']])
     monkeypatch.setattr('self_awareness.training.live_graph._hosts',
                         lambda _, nodes: {node: 'base' for node in nodes})
     output = str(tmp_path / 'm')

@@ -6,9 +6,10 @@ from pathlib import Path
 from typing import Tuple
 
 import pytest
+from conftest import robot
 
 from self_awareness import TrainedModel, stable_name
-from self_awareness.commands import train
+from self_awareness.commands import info, score, train
 from self_awareness.training.robot_graph import RobotGraph, graph_file
 
 Bags = Tuple[str, str]
@@ -61,6 +62,28 @@ def test_a_model_has_the_graphs_of_all_its_bags(bags: Bags, tmp_path: Path) -> N
             ('/slam', '/map', '/log')}
     assert trained(tmp_path, *bags, '--jobs', '1').graph == both
     assert trained(tmp_path, *bags, '--jobs', '2').graph == both
+
+
+def test_what_nobody_subscribes_to_is_known_by_name(bags: Bags, tmp_path: Path, make_bag,
+                                                    capsys) -> None:
+    """It is listed with those that are not watched, and no suspicion when it is heard later."""
+    for bag in bags:
+        RobotGraph({'/scan': {'/laser'}, '/debug': {'/planner'}, '/view': {'/rqt_plot'}},
+                   {'/scan': {'/slam'}, '/debug': {'/rostopic_1_1600000000000'}}
+                   ).save(graph_file(bag))
+    model = trained(tmp_path, *bags)
+    assert model.unheard == {('/planner', '/debug')}
+    line = '/debug on /planner: not watched, nobody subscribed in training'
+    assert line in capsys.readouterr().out
+    path = str(tmp_path / 'm')
+    assert info.main([path]) == 0 and line in capsys.readouterr().out
+    later = [*robot(5000.0), *((5010.0 + i, '/planner', '/debug') for i in range(15)),
+             *((5010.5 + i, '/planner', '/new') for i in range(3))]
+    assert score.main([make_bag('later.bag', sorted(later)), '--model', path]) == 0
+    said = capsys.readouterr().out
+    known = said.split('that nobody subscribed to in training')
+    assert '/planner /debug std_msgs/String: 15' in known[1]
+    assert '/debug' not in known[0] and '/planner /new std_msgs/String: 3' in known[0]
 
 
 def test_the_running_robots_graph_is_added(bags: Bags, tmp_path: Path, monkeypatch) -> None:

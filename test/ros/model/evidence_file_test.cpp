@@ -23,6 +23,7 @@ TEST_F(ModelFileTest, TheEvidenceItsLimitsAndTheGraphComeBackAsTheyWereSaved) {
   model.graph.connect("/a", "/x", "/b");
   model.graph.connect("/a", "/y", "/c");
   model.graph.place("/a", "base");
+  model.graph.addUnheard({"/planner", "/debug"});
   model.tuning.least_effect = 0.003;
   model.tuning.share_of_other = 0.8;  // the first and the last one are no exceptions
   model.tuning.fewest_gaps = 31;
@@ -45,6 +46,7 @@ TEST_F(ModelFileTest, TheEvidenceItsLimitsAndTheGraphComeBackAsTheyWereSaved) {
   EXPECT_EQ(loaded.graph.edges().size(), 2U);
   EXPECT_TRUE(loaded.graph.edges() == model.graph.edges());
   EXPECT_EQ(loaded.graph.hostOf("/a"), "base");
+  EXPECT_EQ(loaded.unheard(), (std::set<core::SourceGraph::Publication>{{"/planner", "/debug"}}));
   const core::evidence::Limits limits = loaded.limits().value();
   ASSERT_EQ(limits.tracks.size(), model.calibration->limits.tracks.size());
   EXPECT_TRUE(std::isnan(limits.tracks[0]));

@@ -86,12 +86,14 @@ TEST_F(ModelMergeTest, CountsAddUpToThoseOfATrainingOnBoth) {
 TEST_F(ModelMergeTest, EdgesAreThoseOfBothAndTheStampTheLater) {
   first_.graph.connect("/a", "/x", "/b");
   second_.graph.place("/b", "base");
+  second_.graph.addUnheard({"/b", "/debug"});
   second_.graph.connect("/a", "/x", "/c");
   second_.graph.connect("/b", "/y", "/c");
   first_.stamp = 3;
   second_.stamp = 2;
   merge(first_, second_);
   EXPECT_EQ(first_.graph.hostOf("/b"), "base");
+  EXPECT_EQ(first_.graph.unheard().size(), 1U);
   EXPECT_TRUE(first_.graph.edges() ==
               (std::set<core::SourceGraph::Edge>{
                   {"/a", "/x", "/b"}, {"/a", "/x", "/c"}, {"/b", "/y", "/c"}}));

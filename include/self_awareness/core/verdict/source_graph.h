@@ -6,12 +6,14 @@
 #include <set>
 #include <string>
 #include <tuple>
+#include <utility>
 
 namespace self_awareness::core {
 
 /// Says whose messages reach whom, and on which topic (docs/method.md, section 6): it has an edge
 /// from every source that publishes on a topic to every source that subscribes to it. It also says
-/// on which computer a source runs, as far as that is known.
+/// on which computer a source runs, and what sources publish that nobody hears, as far as that is
+/// known.
 class SourceGraph {
  public:
   /// Messages of one source reach another on a topic.
@@ -20,6 +22,9 @@ class SourceGraph {
     std::string topic;       ///< name of the scope
     std::string subscriber;  ///< name of the source that hears it
   };
+
+  /// What a source publishes: its name, and that of the scope.
+  using Publication = std::pair<std::string, std::string>;
 
   /// Adds an edge; one that is there already changes nothing.
   void connect(const std::string& publisher, const std::string& topic,
@@ -32,6 +37,11 @@ class SourceGraph {
   const std::map<std::string, std::string>& hosts() const { return hosts_; }
   /// The computer that a source runs on; empty: it is not known.
   const std::string& hostOf(const std::string& source) const;
+
+  /// Says that nobody of the robot subscribed to what a source publishes.
+  void addUnheard(const Publication& publication) { unheard_.insert(publication); }
+  /// All of which that was said.
+  const std::set<Publication>& unheard() const { return unheard_; }
 
   /// Whether it says nothing: who hears whom is not known.
   bool empty() const { return edges_.empty(); }
@@ -53,6 +63,7 @@ class SourceGraph {
   std::set<Edge> edges_;
   std::map<std::string, std::set<std::string>> followers_;  // of the edges, by publisher
   std::map<std::string, std::string> hosts_;                // by source
+  std::set<Publication> unheard_;
 };
 
 inline bool operator<(const SourceGraph::Edge& a, const SourceGraph::Edge& b) {

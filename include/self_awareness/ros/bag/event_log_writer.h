@@ -35,9 +35,10 @@ class EventLogWriter {
   void start(const self_awareness::EventLogStart& start);
   /// Writes the next part of the recording, numbered.
   void write(self_awareness::EventLog part);
-  /// Writes who publishes and subscribes to what, if that has changed in this recording.
+  /// Writes who publishes and subscribes to what, if that has changed in this recording; without
+  /// the nodes of this package.
   /// @param stamp ROS time [ns]
-  void writeGraph(const Graph& graph, std::int64_t stamp);
+  void writeGraph(const Graph& whole, std::int64_t stamp);
   /// Ends the file. Without that, it has no index; `rosbag reindex` makes one.
   void close() { bag_.close(); }
 

@@ -36,27 +36,46 @@ void addUnknown(const Window& window, std::vector<Suspect>& suspects) {
   }
 }
 
-Strangers::Strangers(const Model& model, std::shared_ptr<const Vocabulary> heard)
-    : size_(model.size()), heard_(std::move(heard)) {
+Strangers::Strangers(const Model& model, std::shared_ptr<const Vocabulary> heard,
+                     std::shared_ptr<const SourceGraph> graph)
+    : size_(model.size()), heard_(std::move(heard)), graph_(std::move(graph)) {
   for (EventId id = 0; id < size_; ++id) {
     const std::string& topic = model.vocabulary().at(id).scope;
+    of_model_.emplace(model.vocabulary().at(id).source, topic);
     if (kForEverybody.count(topic) == 0) {
       known_[topic].push_back(id);
     }
   }
 }
 
-void Strangers::add(const Event& event) {
-  if (event.id >= size_) {
+bool Strangers::add(const Event& event) {
+  if (event.id < size_) {
+    return false;
+  }
+  const auto [known, is_new] = known_by_name_.try_emplace(event.id, false);
+  if (is_new) {
+    known->second = isKnownByName(event.id);
+  }
+  if (!known->second) {
     last_[event.id] = event.stamp;
   }
+  return !known->second;
+}
+
+bool Strangers::isKnownByName(EventId id) const {
+  if (!heard_ || id >= heard_->size()) {
+    return false;
+  }
+  const SourceGraph::Publication publication(heard_->at(id).source, heard_->at(id).scope);
+  return graph_->unheard().count(publication) > 0 && of_model_.count(publication) == 0;
 }
 
 std::map<std::string, std::int64_t> Strangers::silences(std::int64_t now) const {
   std::map<std::string, std::int64_t> silences;
   for (const auto& [id, last] : last_) {
     if (heard_ && id < heard_->size()) {
-      std::int64_t& of_source = silences.try_emplace(heard_->at(id).source, now - last).first->second;
+      std::int64_t& of_source =
+          silences.try_emplace(heard_->at(id).source, now - last).first->second;
       of_source = std::min(of_source, now - last);
     }
   }

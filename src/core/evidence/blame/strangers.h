@@ -3,12 +3,14 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "core/evidence/channel/scorer.h"
 #include "self_awareness/core/evidence/channel/model.h"
 #include "self_awareness/core/stream/windows.h"
+#include "self_awareness/core/verdict/source_graph.h"
 #include "self_awareness/core/verdict/suspect.h"
 
 namespace self_awareness::core::evidence {
@@ -23,10 +25,14 @@ class Strangers {
  public:
   /// @param heard event types by id, those of the model first, then those that it does not know;
   /// may grow. None: they are not known, so nobody is a stranger
-  Strangers(const Model& model, std::shared_ptr<const Vocabulary> heard);
+  /// @param graph that says what training knows by name only
+  Strangers(const Model& model, std::shared_ptr<const Vocabulary> heard,
+            std::shared_ptr<const SourceGraph> graph);
 
   /// Takes in the next event, of any id.
-  void add(const Event& event);
+  /// @return whether training does not know it, not even by its name: to hear what was published
+  /// then, and had no subscriber, is no news
+  bool add(const Event& event);
   /// Forgets who was heard: a new recording starts, or the clock was set.
   void restart() { last_.clear(); }
   /// Time since somebody was heard who sends event types that the model does not know, by source
@@ -40,11 +46,15 @@ class Strangers {
 
  private:
   bool isStranger(EventId id, const Scorer& scorer) const;
+  bool isKnownByName(EventId id) const;
 
   std::map<std::string, std::vector<EventId>> known_;  // event types of the model, by topic
   std::size_t size_;                                   // of the model
+  std::set<SourceGraph::Publication> of_model_;
   std::shared_ptr<const Vocabulary> heard_;
-  std::map<EventId, std::int64_t> last_;  // stamp of the last event of an unknown type [ns]
+  std::shared_ptr<const SourceGraph> graph_;
+  std::map<EventId, bool> known_by_name_;  // unknown types that were looked at
+  std::map<EventId, std::int64_t> last_;   // stamp of the last event of an unknown type [ns]
 };
 
 }  // namespace self_awareness::core::evidence

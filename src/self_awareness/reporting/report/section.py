@@ -6,6 +6,7 @@ from typing import Dict, List, Optional, Tuple
 
 import numpy as np
 
+from self_awareness.reporting import coverage_text, unheard_text
 from self_awareness.reporting.report import intervals
 from self_awareness.reporting.report.details import Details, details
 from self_awareness.reporting.report.headline import clock
@@ -51,6 +52,9 @@ class Section:
         details: of the first incidents, by their keys.
         not_listed: number of further alarms and suspicions.
         unjudged: what was not judged.
+        watched: how soon the death of each component is found: a table, its head first; empty: not
+            known of this detector.
+        unheard: what nobody subscribed to in training.
     """
 
     key: str
@@ -62,6 +66,8 @@ class Section:
     details: Dict[str, Details]
     not_listed: int
     unjudged: List[Unjudged]
+    watched: List[Tuple[str, ...]]
+    unheard: List[str]
 
 
 def section(judged: Judged, key: str) -> Section:
@@ -77,7 +83,15 @@ def section(judged: Judged, key: str) -> Section:
     total = len(judged.verdicts.alarms) + len(judged.verdicts.suspicions)
     return Section(key, str(judged.recording.part), _facts(judged),
                    _summary(judged, happened, shown), found, happened, shown,
-                   total - len(listed), unjudged(judged))
+                   total - len(listed), unjudged(judged), _watched(judged),
+                   unheard_text.lines(unheard_text.summarise(judged.by.trained.unheard)))
+
+
+def _watched(judged: Judged) -> List[Tuple[str, ...]]:
+    trained = judged.by.trained
+    if judged.by.evidence is None or trained.calibration is None:
+        return []
+    return coverage_text.table(coverage_text.summarise(trained.coverage()), trained.fewest_gaps)
 
 
 def _facts(judged: Judged) -> List[Tuple[str, str]]:

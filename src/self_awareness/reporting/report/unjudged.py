@@ -8,6 +8,7 @@ from typing import List, Sequence
 
 import numpy as np
 
+from self_awareness.recordings import unknown_types
 from self_awareness.reporting.report.judged import Judged
 from self_awareness.stamps import SECOND_NS
 
@@ -68,9 +69,16 @@ def _listed(what: str, why: str, names: Sequence[str]) -> List[Unjudged]:
 def _unknown(judged: Judged, counts: np.ndarray) -> List[Unjudged]:
     known = len(judged.by.trained.event_types)
     order = sorted(range(known, len(counts)), key=lambda kind: -counts[kind])
-    return _listed('that training never saw',
-                   'nothing is known of them; with each their number of events',
-                   [f'{judged.recording.event_types[kind]}: {counts[kind]}' for kind in order])
+    new = set(unknown_types(judged.by.trained, judged.recording))
+
+    def names(of_new: bool) -> List[str]:
+        return [f'{judged.recording.event_types[kind]}: {counts[kind]}' for kind in order
+                if (kind in new) is of_new and counts[kind]]
+    return (_listed('that training never saw',
+                    'nothing is known of them; with each their number of events', names(True))
+            + _listed('that nobody subscribed to in training',
+                      'they were published then, and not recorded; with each their number of '
+                      'events', names(False)))
 
 
 def _silent(judged: Judged, counts: np.ndarray) -> List[Unjudged]:
