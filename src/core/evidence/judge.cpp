@@ -222,20 +222,42 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
 std::vector<Suspect> Judge::namedIn(const Window& window, bool silent_first) const {
   std::vector<Suspect> first = blame_.suspects(shares_, scorer_, events_, window);
   std::vector<Suspect> second = never_heard_.suspects();
+  // What was never heard owes answers, too, but that is not what is wrong with it.
+  for (Suspect& suspect : first) {
+    const auto same = std::find_if(second.begin(), second.end(),
+                                   [&](const Suspect& other) { return other.id == suspect.id; });
+    if (same != second.end()) {
+      const bool abnormal = suspect.abnormal || same->abnormal;
+      suspect = *same;
+      suspect.abnormal = abnormal;
+    }
+  }
   if (!silent_first || (!first.empty() && never_heard_.isMissedBy(first.front().component))) {
     std::swap(first, second);
   }
-  // However many strangers there are, they do not hide who is to blame.
-  std::vector<Suspect> named = strangers_.suspects(window, scorer_);
-  const std::vector<Suspect> strangers = named;
-  named.resize(std::min<std::size_t>(named.size(), 1));
-  for (const std::vector<Suspect>& suspects : {first, second, strangers}) {
-    for (const Suspect& suspect : suspects) {
-      if (std::none_of(named.begin(), named.end(),
-                       [&](const Suspect& other) { return other.id == suspect.id; })) {
-        named.push_back(suspect);
-      }
+  std::vector<Suspect> named;
+  const auto add = [&](const Suspect& suspect) {
+    if (std::none_of(named.begin(), named.end(),
+                     [&](const Suspect& other) { return other.id == suspect.id; })) {
+      named.push_back(suspect);
     }
+  };
+  // A stranger explains what is unusual, but for a death. However many there are, they do not hide
+  // who is to blame.
+  const auto died = [](const Suspect& suspect) {
+    return suspect.reason.kind == Kind::kDied || suspect.reason.kind == Kind::kNeverCame;
+  };
+  if (!first.empty() && died(first.front()) &&
+      std::any_of(first.begin(), first.end(),
+                  [&](const Suspect& suspect) { return suspect.abnormal && died(suspect); })) {
+    add(first.front());
+  }
+  const std::vector<Suspect> strangers = strangers_.suspects(window, scorer_);
+  if (!strangers.empty()) {
+    add(strangers.front());
+  }
+  for (const std::vector<Suspect>& suspects : {first, second, strangers}) {
+    std::for_each(suspects.begin(), suspects.end(), add);
   }
   return named;
 }

@@ -134,7 +134,8 @@ TEST_F(EvidenceJudgeTest, AllAreSilentIfEverybodyShouldHaveSpoken) {
   judge->add({end, kB});
   EXPECT_TRUE(judgeAt(*judge, end + kWindow).abnormal);
   EXPECT_FALSE(judgeAt(*judge, end + kWindow).silent.has_value()) << "the other one speaks";
-  EXPECT_TRUE(judgeAt(*judge, end + 10 * kSecond).silent.has_value()) << "though not yet at its limit";
+  EXPECT_TRUE(judgeAt(*judge, end + 10 * kSecond).silent.has_value())
+      << "though not yet at its limit";
 }
 
 TEST_F(EvidenceJudgeTest, WhoSaysAnotherThingIsNotSilent) {
@@ -395,12 +396,33 @@ class EvidenceJudgeOfStrangersTest : public EvidenceJudgeTest {
   std::shared_ptr<Vocabulary> heard_;
 };
 
-TEST_F(EvidenceJudgeOfStrangersTest, AnUnknownSenderOnAKnownTopicIsTheFirstSuspect) {
-  const std::vector<Suspect> named = suspectsAfter({"/rostopic", "/y", "T"}, 50 * kMillisecond);
-  ASSERT_EQ(named.size(), 2U);
+TEST_F(EvidenceJudgeOfStrangersTest, AnUnknownSenderOnAKnownTopicIsTheFirstSuspectOfARate) {
+  heard_ = std::make_shared<Vocabulary>(model_->vocabulary());
+  const EventId stranger = heard_->intern({"/rostopic", "/y", "T"});
+  limits_.tracks[track(kMore, kB, kB)] = 3;
+  const std::unique_ptr<core::Judge> judge =
+      makeJudge(model_, limits_, kWindow, std::make_shared<SourceGraph>(), heard_);
+  std::vector<Suspect> named;
+  for (std::int64_t now = 0; now < 5 * kSecond; now += kWindow) {
+    Window window{now, {}};
+    for (int i = 0; i < 5; ++i) {
+      window.events.push_back(judge->add({now + i * kMillisecond, kB}));
+    }
+    window.events.push_back(judge->add({now + kWindow / 2, stranger}));
+    named = judge->judge(window, now + kWindow, NameSuspects::kIfUnusual).suspects;
+  }
+  ASSERT_GE(named.size(), 2U);
   EXPECT_EQ(heard_->at(named[0].id).source, "/rostopic");
   EXPECT_EQ(named[0].reason.words, "never seen in training, 1 in this window");
-  EXPECT_EQ(named[1].id, kA);
+  EXPECT_EQ(named[1].id, kB);
+}
+
+TEST_F(EvidenceJudgeOfStrangersTest, WhoDiedIsToBlameBeforeAnyStranger) {
+  const std::vector<Suspect> named = suspectsAfter({"/rostopic", "/y", "T"}, 50 * kMillisecond);
+  ASSERT_EQ(named.size(), 2U);
+  EXPECT_EQ(named[0].id, kA);
+  EXPECT_EQ(named[0].reason.kind, Kind::kDied);
+  EXPECT_EQ(heard_->at(named[1].id).source, "/rostopic");
 }
 
 TEST_F(EvidenceJudgeOfStrangersTest, ManyStrangersDoNotHideWhoIsToBlame) {
@@ -419,8 +441,8 @@ TEST_F(EvidenceJudgeOfStrangersTest, ManyStrangersDoNotHideWhoIsToBlame) {
   const std::vector<Suspect> named =
       judge->judge(window, 5 * kSecond, NameSuspects::kIfUnusual).suspects;
   ASSERT_EQ(named.size(), 7U);
-  EXPECT_EQ(named[0].reason.kind, Kind::kStranger);
-  EXPECT_EQ(named[1].id, kA);
+  EXPECT_EQ(named[0].id, kA);
+  EXPECT_EQ(named[1].reason.kind, Kind::kStranger);
   EXPECT_EQ(named[6].reason.kind, Kind::kStranger);
 }
 
@@ -443,7 +465,7 @@ TEST_F(EvidenceJudgeOfStrangersTest, WhatTrainingKnowsByNameIsNotUnknown) {
 TEST_F(EvidenceJudgeOfStrangersTest, ItIsSoForAsLongAsRatesCount) {
   const std::vector<Suspect> named = suspectsAfter({"/rostopic", "/y", "T"}, kSecond);
   ASSERT_EQ(named.size(), 2U);
-  EXPECT_EQ(named[0].reason.words, "never seen in training, the last one 1.0 s ago");
+  EXPECT_EQ(named[1].reason.words, "never seen in training, the last one 1.0 s ago");
   EXPECT_EQ(suspectsAfter({"/rostopic", "/y", "T"}, 3 * kSecond).size(), 1U);
 }
 

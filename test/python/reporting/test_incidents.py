@@ -5,11 +5,14 @@ import json
 import re
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any, Callable, List, Optional, Sequence
+from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
 
 import pytest
+import rosbag
+import rospy
 from conftest import Message, jittery_robot
 from judged_recordings import judged, with_graph, without_laser
+from std_msgs.msg import String
 
 from self_awareness.commands import convert, score
 from self_awareness.reporting.report.headline import headline
@@ -179,3 +182,53 @@ def test_without_a_graph_nobody_is_called_a_victim(evidence_model: str,
     of = judged(evidence_model, make_bag('dead.bag', without_laser(3000.0)))
     first = incidents(of, intervals(of), 'x')[0]
     assert first.headline == ('/slam and /laser fell silent at 12.0 s, and came back at 20.0 s.')
+
+
+def test_who_works_at_half_its_rate_did_not_fall_silent(evidence_model: str, tmp_path: Path,
+                                                        make_bag: Callable[..., str]) -> None:
+    messages = list(jittery_robot(3000.0, 40.0, 3))
+    laser = [m for m in messages if m[1] == '/laser' and m[0] > 3012.0]
+    followers = [m for m in messages if m[1] == '/slam' and m[0] > 3012.0]
+    halved = set(laser[::2]) | set(followers[::2])
+    of = judged(with_graph(evidence_model, tmp_path / 'm'), make_bag('half.bag', [
+        m for m in messages if m not in halved]))
+    first = incidents(of, intervals(of), 'x')[0]
+    assert re.match(r'/laser \(/scan\) sends too seldom from 1[12]\.\d s', first.headline)
+    named = first.main.named[0]
+    assert named.of.reason.kind == 'slow' and 'silent' not in named.why
+
+
+def write_senders(path: Path, messages: List[Message]) -> str:
+    """Write a bag in which several nodes publish on a topic, as Python's rosbag does not."""
+    connections: Dict[Tuple[str, str], Any] = {}
+    with rosbag.Bag(str(path), 'w') as bag:
+        for stamp, source, topic in messages:
+            bag._topic_connections.pop(topic, None)
+            if (source, topic) in connections:
+                bag._topic_connections[topic] = connections[source, topic]
+            header = {'topic': topic, 'type': String._type, 'md5sum': String._md5sum,
+                      'message_definition': String._full_text, 'callerid': source}
+            bag.write(topic, String('x'), rospy.Time.from_sec(stamp), connection_header=header)
+            connections[source, topic] = bag._topic_connections[topic]
+    return str(path)
+
+
+def test_a_flood_of_strangers_does_not_hide_who_died(evidence_model: str,
+                                                     tmp_path: Path) -> None:
+    flood = [(3010.0 + 0.02 * i + 0.001 * node, f'/flood{node}', '/charge')
+             for i in range(1000) for node in range(4)]
+    bag = write_senders(tmp_path / 'flood.bag', sorted(
+        [*flood, *(m for m in jittery_robot(3000.0, 30.0, 3)
+                   if not (m[0] >= 3012.0 and m[1] in ('/laser', '/slam')))]))
+    of = judged(with_graph(evidence_model, tmp_path / 'm'), bag)
+    alarm = next(each for each in incidents(of, intervals(of), 'x') if each.level == ALARM)
+    assert alarm.cause == '/laser'
+    assert alarm.headline == '/laser (/scan) stopped sending at 12.0 s.'
+
+
+def test_strangers_are_together_with_strangers_only() -> None:
+    new = [suspect(name, 'is new', kind='stranger') for name in ('/a', '/b')]
+    incident, = found(interval(10.0, 20.0, [*new, suspect('/c', silence=Silence(12.0, None))]),
+                      graph=[('/x', '/t', '/y')])
+    assert incident.together == ['/b']
+    assert incident.headline.startswith('/a and /b are new: training never heard them')

@@ -11,6 +11,12 @@
 #include "core/evidence/blame/strangers.h"
 
 namespace self_awareness::core::evidence {
+namespace {
+
+constexpr std::size_t kMostLookedAt = 4 * kMostSuspects;
+
+}  // namespace
+
 Blame::Blame(std::shared_ptr<const Model> model, std::shared_ptr<const SourceGraph> graph)
     : model_(std::move(model)),
       graph_(std::move(graph)),
@@ -21,7 +27,7 @@ Blame::Blame(std::shared_ptr<const Model> model, std::shared_ptr<const SourceGra
 std::vector<Suspect> Blame::suspects(const std::vector<double>& shares, const Scorer& scorer,
                                      const RecentEvents& events, const Window& window) const {
   const Followers::Leads leads = followers_.leads(shares);
-  std::vector<Candidate> candidates = silent(shares, scorer, leads);
+  std::vector<Candidate> candidates = silent(shares, scorer, events, leads);
   std::vector<Candidate> others = unusual(shares, scorer, events, leads);
   const auto roots = rootsOfSilence(candidates, others, scorer, leads);
   candidates.insert(candidates.begin(), others.begin(), roots);
@@ -30,16 +36,27 @@ std::vector<Suspect> Blame::suspects(const std::vector<double>& shares, const Sc
   std::vector<Suspect> suspects;
   std::set<EventId> named;
   std::set<std::string> components;
+  bool abnormal = false;  // one of them alone would be
   const auto add = [&](const Candidate& candidate) {
     Suspect suspect = suspectOf(candidate.track, scorer, events);
     suspect.component = model_->component(suspect.id);
     suspect.abnormal = shares[candidate.track] > 1;
+    if (!suspect.abnormal && isUsual(suspect) &&
+        (abnormal || suspect.reason.kind != Kind::kDied ||
+         !leadsAbnormal(suspect.component, candidates, shares, leads))) {
+      return;
+    }
+    abnormal = abnormal || suspect.abnormal;
+    named.insert(suspect.id);
     components.insert(suspect.component);
     suspects.push_back(std::move(suspect));
   };
+  std::size_t looked_at = 0;  // to say why takes time
   for (const Candidate& candidate : candidates) {
-    if (suspects.size() < kMostSuspects && named.insert(toOf(candidate)).second) {
+    if (suspects.size() < kMostSuspects && looked_at < kMostLookedAt &&
+        named.count(toOf(candidate)) == 0) {
       add(candidate);
+      ++looked_at;
     }
   }
   addUnknown(window, suspects);
@@ -52,7 +69,7 @@ std::vector<Suspect> Blame::suspects(const std::vector<double>& shares, const Sc
 }
 
 std::vector<Blame::Candidate> Blame::silent(const std::vector<double>& shares,
-                                            const Scorer& scorer,
+                                            const Scorer& scorer, const RecentEvents& events,
                                             const Followers::Leads& leads) const {
   std::set<EventId> missing;
   std::map<EventId, std::size_t> unanswered;  // tracks
@@ -68,7 +85,7 @@ std::vector<Blame::Candidate> Blame::silent(const std::vector<double>& shares,
   for (const EventId id : missing) {
     const double survival = logSurvival(id, scorer);
     if (survival < rare_silence_) {
-      candidates.push_back({trackOfSilence(id, shares), survival});
+      candidates.push_back({trackOfSilence(id, shares, scorer, events), survival});
     }
   }
   for (const auto& [id, track] : unanswered) {
@@ -205,15 +222,35 @@ double Blame::logSurvival(EventId id, const Scorer& scorer) const {
   return model_->logSurvival(id, scorer.heard().silence(id));
 }
 
+bool Blame::isUsual(const Suspect& suspect) const {
+  const Reason& reason = suspect.reason;
+  if (reason.kind == Kind::kDied) {
+    return reason.after.empty() && reason.value <= toSeconds(model_->longestGap(suspect.id));
+  }
+  return reason.usual_shortest <= reason.value && reason.value <= reason.usual_longest;
+}
+
+bool Blame::leadsAbnormal(const std::string& component, const std::vector<Candidate>& candidates,
+                          const std::vector<double>& shares, const Followers::Leads& leads) const {
+  return std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& other) {
+    const std::string& victim = model_->component(toOf(other));
+    return shares[other.track] > 1 &&
+           (graph_->isUpstream(component, victim) || leads.count({component, victim}) > 0);
+  });
+}
+
 // Its age, if that alone is abnormal; else what is nearer to its limit: at half its rate, say, its
 // age may be rare as well, but that is not what is wrong.
-std::size_t Blame::trackOfSilence(EventId id, const std::vector<double>& shares) const {
+std::size_t Blame::trackOfSilence(EventId id, const std::vector<double>& shares,
+                                  const Scorer& scorer, const RecentEvents& events) const {
   std::size_t most = 0;
   double largest = -1;
   for (std::size_t track = 0; track < shares.size(); ++track) {
     const Finding finding = model_->finding(track);
-    if (model_->tracks()[track].to != id ||
-        (finding != Finding::kSilent && finding != Finding::kFewer)) {
+    const Track& watched = model_->tracks()[track];
+    if (watched.to != id || watched.from != id || shares[track] <= 0 ||
+        (finding == Finding::kUnusual &&
+         suspectOf(track, scorer, events).reason.kind != Kind::kSlow)) {
       continue;
     }
     if (finding == Finding::kSilent && shares[track] > 1) {

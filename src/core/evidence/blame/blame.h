@@ -16,7 +16,7 @@ namespace self_awareness::core::evidence {
 /// Names the event types that may have caused abnormal evidence (docs/method.md, section 6).
 /// Silent ones come first, then those that are late or otherwise unusual. Of each kind, who is
 /// upstream of others, or followed by them as usual, comes before them; then the least probable
-/// silence, or who most of what is unusual involves.
+/// silence, or who most of what is unusual involves. Nobody is named whose numbers are usual.
 class Blame {
  public:
   /// @param graph may be empty: only what usually follows what then says who is the root
@@ -41,7 +41,7 @@ class Blame {
   std::vector<Candidate> rootFirst(std::vector<Candidate> candidates,
                                    const Followers::Leads& leads) const;
   std::vector<Candidate> silent(const std::vector<double>& shares, const Scorer& scorer,
-                                const Followers::Leads& leads) const;
+                                const RecentEvents& events, const Followers::Leads& leads) const;
   std::vector<Candidate> unusual(const std::vector<double>& shares, const Scorer& scorer,
                                  const RecentEvents& events, const Followers::Leads& leads) const;
   /// Moves to the front of `others` those whose followers are silent, although they answered the
@@ -52,7 +52,13 @@ class Blame {
                                                   const Scorer& scorer,
                                                   const Followers::Leads& leads) const;
   double logSurvival(EventId id, const Scorer& scorer) const;
-  std::size_t trackOfSilence(EventId id, const std::vector<double>& shares) const;
+  std::size_t trackOfSilence(EventId id, const std::vector<double>& shares, const Scorer& scorer,
+                             const RecentEvents& events) const;
+  /// Whether what is said of a suspect is what it usually does.
+  bool isUsual(const Suspect& suspect) const;
+  /// Whether it may be the root of a component whose evidence alone is abnormal.
+  bool leadsAbnormal(const std::string& component, const std::vector<Candidate>& candidates,
+                     const std::vector<double>& shares, const Followers::Leads& leads) const;
   EventId toOf(const Candidate& candidate) const { return model_->tracks()[candidate.track].to; }
 
   std::shared_ptr<const Model> model_;

@@ -44,7 +44,8 @@ def _what(main: Interval, together: Sequence[str], times: int) -> str:
     if first.of.reason.kind == 'never came':
         return f'{subject} {short} since the start.'
     if first.of.reason.kind == 'stranger':
-        return f'{subject} {short}: training never heard it, it was heard {_often(times, span)}.'
+        it, was = ('them', 'they were') if together else ('it', 'it was')
+        return f'{subject} {short}: training never heard {it}, {was} heard {_often(times, span)}.'
     if first.silence is None or first.of.reason.after:
         return f'{subject} {short} {_often(times, span)}.'
     begin = f'at {clock(first.silence.begin)}' if first.silence.begin > 0 else 'since the start'

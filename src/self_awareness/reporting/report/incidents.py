@@ -158,6 +158,8 @@ def _together(main: Interval, graph: Collection[Edge]) -> List[str]:
 
 
 def _at_once(first: NamedSuspect, suspect: NamedSuspect, graph_is_known: bool) -> bool:
+    if first.of.reason.kind == 'stranger':
+        return suspect.of.reason.kind == 'stranger'
     if first.silence is None:  # then, only the graph tells victims
         return graph_is_known and suspect.abnormal
     return (suspect.silence is not None

@@ -126,6 +126,34 @@ TEST_F(EvidenceBlameTest, ASilentOneIsWordedByTheTrackThatSpeaksAgainstIt) {
   EXPECT_EQ(suspects({{overdue(kA), 1.1}, {fewer, 1.4}}, end).at(0).reason.kind, Kind::kDied);
 }
 
+TEST_F(EvidenceBlameTest, LongerGapsAreSaidAsAnotherRateNotAsASilence) {
+  for (int i = 0; i < 6; ++i) {
+    add({last_ + kSecond, kA});
+  }
+  const std::int64_t end = last_ + kSecond;
+  const Track gaps = trackOf(kOwnGaps, kA, kA);
+  ASSERT_TRUE(isWatched(model_->tracks(), kOwnGaps, kA, kA));
+  const Suspect slow = suspects({{overdue(kA), 0.9}, {gaps, 1.2}}, end).at(0);
+  EXPECT_EQ(slow.reason.kind, Kind::kSlow);
+  EXPECT_EQ(slow.reason.words, "every 1 s instead of 0.14 s, 6 times in the last 6.0 s");
+  EXPECT_EQ(suspects({{overdue(kA), 1.1}, {gaps, 1.2}}, end).at(0).reason.kind, Kind::kDied);
+}
+
+TEST_F(EvidenceBlameTest, WhoDoesWhatIsUsualIsNoSuspect) {
+  // Near its limit, and its age is rare, but no longer than the longest gap of training.
+  const std::int64_t end = *scorer_.heard().lastSeen(kA) + model_->longestGap(kA);
+  ASSERT_LT(model_->logSurvival(kA, end - *scorer_.heard().lastSeen(kA)),
+            std::log(model_->tuning().rare_silence));
+  const Track abnormal = trackOf(kMore, kC, kC);
+  EXPECT_EQ(ids(suspects({{overdue(kA), 0.9}, {abnormal, 1.5}}, end)), (std::vector<EventId>{kC}));
+  EXPECT_EQ(ids(suspects({{overdue(kA), 0.9}, {abnormal, 1.5}}, end + 1)),
+            (std::vector<EventId>{kA, kC}));
+  graph_->connect("/a", "/a/out", "/c");
+  EXPECT_EQ(ids(suspects({{overdue(kA), 0.9}, {abnormal, 1.5}}, end)),
+            (std::vector<EventId>{kA, kC}))
+      << "it may be the root";
+}
+
 TEST_F(EvidenceBlameTest, LateAnswersAreWordedByWhatTheirSumSaw) {
   for (int i = 0; i < 12; ++i) {
     const std::int64_t stamp = last_ + 100 * kMillisecond;
