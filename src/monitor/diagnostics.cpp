@@ -63,7 +63,7 @@ void Diagnostics::tellMonitor(const MonitorState& state, Status& status) {
   }
   if (!state.keeper_error.empty()) {
     status.mergeSummary(DiagnosticStatus::WARN,
-                        "the alarm is not kept for another start: " + state.keeper_error);
+                        "what stands is not kept for another start: " + state.keeper_error);
   }
   tellUnheard(state.unheard, status);
   tellStrangers(state.strangers_closed, state.strangers_newly_closed, status);

@@ -33,7 +33,8 @@ struct RecorderParameters {
   std::string name;  ///< full name of the monitor
 };
 
-/// Where its files are, and that of the alarm that stands (AlarmKeeper).
+/// Where its files are, and those of the alarm that stands (AlarmKeeper) and of the last incidents
+/// (IncidentKeeper).
 RecorderFolder folderOf(const RecorderParameters& parameters);
 
 /// Keeps the events of the last minutes in memory, and writes them as an event log when there is a

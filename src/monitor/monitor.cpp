@@ -14,6 +14,7 @@
 #include "ros/now.h"
 #include "ros/text.h"
 #include "ros/verdict/standing_alarm.h"
+#include "self_awareness/Incidents.h"
 #include "self_awareness/SelfAwareness.h"
 #include "self_awareness/core/stream/event.h"
 #include "self_awareness/ros/ros_time.h"
@@ -55,12 +56,15 @@ Monitor::Monitor(ros::NodeHandle node_handle, const ros::NodeHandle& private_nod
                 [this] {
                   return FlightRecorder::Source{session_->encoding(), live_->graph()};
                 }),
-      keeper_(folderOf(parameters_.recorder), runId()) {
+      keeper_(folderOf(parameters_.recorder), runId()),
+      incidents_(folderOf(parameters_.recorder)) {
   node_handle.setCallbackQueue(&queue_);
   private_node_handle_.setCallbackQueue(&queue_);
   status_publisher_ = private_node_handle_.advertise<self_awareness::SelfAwareness>("status", 100);
   alarm_publisher_ =
       private_node_handle_.advertise<self_awareness::SelfAwareness>("alarm", 10, true);
+  incidents_publisher_ =
+      private_node_handle_.advertise<self_awareness::Incidents>("incidents", 10, true);
   services_ = {private_node_handle_.advertiseService("reset", &Monitor::onReset, this),
                private_node_handle_.advertiseService("clear", &Monitor::onClear, this),
                private_node_handle_.advertiseService("dump", &Monitor::onDump, this),
@@ -73,12 +77,12 @@ Monitor::Monitor(ros::NodeHandle node_handle, const ros::NodeHandle& private_nod
                                        std::move(service_names), *this);
   try {
     load(parameters_.model);
-    resumeAlarm();
   } catch (const ros1::ModelFileError& error) {
     // Not fatal: the operator sees it in the diagnostics, and ~reload tries again.
     model_error_ = error.what();
     ROS_ERROR("%s", error.what());
   }
+  resume();
   live_->start();
 }
 
@@ -90,6 +94,7 @@ void Monitor::finish() {
   live_->stop();  // first: what it serves uses the recorder
   recorder_.finish(announcer_.alarm().message().level == self_awareness::SelfAwareness::ERROR);
   keeper_.finish();
+  incidents_.finish();
 }
 
 void Monitor::load(const std::string& path) {
@@ -185,6 +190,7 @@ void Monitor::onTick(std::int64_t now) {
     session_->detector().advance(now - kGrace);
   }
   recorder_.advance(now - kGrace, steadyNow());
+  incidents_.advance(steadyNow());
 }
 
 void Monitor::restart() {
@@ -195,9 +201,12 @@ void Monitor::restart() {
   standDown(ros1::kClockWasSet);
 }
 
-void Monitor::resumeAlarm() {
+void Monitor::resume() {
   const std::optional<self_awareness::StandingAlarm> standing = keeper_.read();
-  if (!standing || !session_->calibrated()) {
+  const bool stands = standing && session_ && session_->calibrated();
+  incidents_.restore(stands ? std::optional(standing->alarm.alarm) : std::nullopt);
+  incidents_publisher_.publish(incidents_.incidents());
+  if (!stands) {
     return;
   }
   session_->detector().resume(
@@ -241,6 +250,17 @@ void Monitor::publishAlarm(const self_awareness::SelfAwareness& alarm) {
   }
   alarm_publisher_.publish(alarm);
   keeper_.keep(alarm, announcer_.alarm().since(), alarm_file_);
+  publishIncidents();
+}
+
+void Monitor::publishIncidents() {
+  const ros1::AlarmState& state = announcer_.alarm();
+  for (const std::optional<core::Alarm>* alarm : {&state.ended(), &state.standing()}) {
+    if (*alarm) {
+      incidents_.add(**alarm, session_->graph(), alarm_file_, parameters_.model);
+    }
+  }
+  incidents_publisher_.publish(incidents_.incidents());
 }
 
 void Monitor::onReport() {
@@ -273,7 +293,7 @@ void Monitor::onReport() {
   state.clock_rivals = live_->clockRivals();
   not_heard_.set(state.unheard);
   state.communication.not_heard = not_heard_.components();
-  state.keeper_error = keeper_.error();
+  state.keeper_error = keeper_.error().empty() ? incidents_.error() : keeper_.error();
   if (recorder_.enabled()) {
     state.recorder = recorder_.report();
   }

@@ -14,6 +14,7 @@
 #include "alarm_keeper.h"
 #include "diagnostics.h"
 #include "flight_recorder.h"
+#include "incident_keeper.h"
 #include "live_source.h"
 #include "not_heard.h"
 #include "operator_calls.h"
@@ -83,11 +84,13 @@ namespace self_awareness {
 /// **Published topics**
 /// - `~status` (self_awareness/SelfAwareness): the verdict on each window.
 /// - `~alarm` (self_awareness/SelfAwareness): latched; each change of the level.
+/// - `~incidents` (self_awareness/Incidents): latched; the last incidents, whenever one is opened,
+///   has grown, or is over.
 /// - `/diagnostics` (diagnostic_msgs/DiagnosticArray): one status for the whole, one for every
 ///   source, one for the monitor itself.
 ///
-/// **Files**: those of the flight recorder, and the alarm that stands (AlarmKeeper): a monitor
-/// that is started again goes on with it.
+/// **Files**: those of the flight recorder; the alarm that stands (AlarmKeeper) and the last
+/// incidents (IncidentKeeper): a monitor that is started again goes on with them.
 ///
 /// **Services**
 ///
@@ -140,8 +143,8 @@ class Monitor : public NodeProgram, public LiveSource::Listener {
   void onTick(std::int64_t now) override;
   void onReport() override;
 
-  /// Goes on with an alarm that stood when the monitor ended.
-  void resumeAlarm();
+  /// Goes on with the incidents, and with an alarm that stood when the monitor ended.
+  void resume();
   void onVerdict(const core::Verdict& verdict);
   /// Whether a call is not one too many; else it is answered.
   bool mayServe(const std::string& service, Call& call);
@@ -156,12 +159,15 @@ class Monitor : public NodeProgram, public LiveSource::Listener {
   /// The same, because somebody called a service; keeps on record who.
   void standDownFor(const Call& call, const std::string& service, const std::string& message);
   void publishAlarm(const self_awareness::SelfAwareness& alarm);
+  /// Says what has become of the incidents by the last change of the alarm.
+  void publishIncidents();
 
   ros::CallbackQueue queue_;
   ros::NodeHandle private_node_handle_;
   MonitorParameters parameters_;
   ros::Publisher status_publisher_;
   ros::Publisher alarm_publisher_;
+  ros::Publisher incidents_publisher_;
   std::vector<ros::ServiceServer> services_;
   Diagnostics diagnostics_;
 
@@ -175,6 +181,7 @@ class Monitor : public NodeProgram, public LiveSource::Listener {
   ros1::HeardTally heard_;
   FlightRecorder recorder_;
   AlarmKeeper keeper_;
+  IncidentKeeper incidents_;
   std::string alarm_file_;            // of the alarm that was raised last
   std::unique_ptr<LiveSource> live_;  // last: its listener uses all of the above
 };

@@ -29,6 +29,8 @@ class RecorderFolder {
   /// Path of the file that says what the alarm is. It has the monitor's name: others may have the
   /// same folder.
   std::string pathOfStandingAlarm() const { return path_ + "/" + name_ + ".alarm"; }
+  /// Path of the file with the last incidents, named like that.
+  std::string pathOfIncidents() const { return path_ + "/" + name_ + ".incidents"; }
   /// Creates the folder if it is not there.
   /// @throw std::runtime_error if it cannot be created
   void create() const;

@@ -49,6 +49,8 @@ class Session {
   const ros1::EncodingRules& encoding() const { return trained_.encoding; }
   const std::shared_ptr<const ros1::Encoder>& encoder() const { return encoder_; }
   core::Detector& detector() { return detector_; }
+  /// Whose messages reach whom: in training, and as addEdges() was told.
+  const core::SourceGraph& graph() const { return *graph_; }
 
   /// Whether there were more unknown types than are told apart.
   bool full() const { return vocabulary_->size() > types().size() + kMostUnknownTypes; }

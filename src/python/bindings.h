@@ -178,6 +178,7 @@ void bindTuning(py::module& module);
 void bindCounts(py::module& module);
 /// Binds alarms and their suspects (alarm_bindings.cpp).
 void bindAlarms(py::module& module);
+void bindIncidents(py::module& module);
 /// Binds the learning of limits, and of whole models (calibration_bindings.cpp).
 void bindCalibration(py::module& module);
 /// Binds evidence and its limits (evidence_bindings.cpp).

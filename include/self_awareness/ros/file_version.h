@@ -24,6 +24,7 @@ inline constexpr FileKind kModelFile{"model", 3, 3, kMethod};
 inline constexpr FileKind kEventLogFile{"event log", 3, 2, 0};
 inline constexpr FileKind kResultBag{"result bag", 2, 1, kMethod};
 inline constexpr FileKind kStandingAlarmFile{"standing alarm", 1, 1, 0};
+inline constexpr FileKind kIncidentsFile{"incidents", 1, 1, 0};
 inline constexpr FileKind kGraphFile{"graph", 3, 2, 0};  ///< beside bags, in YAML
 
 /// Of this package, as in package.xml: "0.1.0".

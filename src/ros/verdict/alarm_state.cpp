@@ -33,8 +33,8 @@ void AlarmState::add(const core::Verdict& verdict, const core::Vocabulary& vocab
                      std::int64_t window, const Circumstances& circumstances) {
   const std::int64_t end = verdict.window->start + window;
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  const std::optional<core::Alarm> ended = alarms_.add(verdict, window, vocabulary);
-  tell(alarms_.standing() ? alarms_.standing() : ended);
+  ended_ = alarms_.add(verdict, window, vocabulary);
+  tell(alarms_.standing() ? alarms_.standing() : ended_);
   const std::uint8_t level = levelOf(alarms_.standing());
   if (level != message_.level) {
     level_since_ = end;
@@ -79,7 +79,8 @@ void AlarmState::resume(const self_awareness::SelfAwareness& alarm, std::int64_t
 
 bool AlarmState::standDown(const std::string& message, std::int64_t now) {
   const bool stood = stands();
-  tell(alarms_.end(now));
+  ended_ = alarms_.end(now);
+  tell(ended_);
   message_.level = self_awareness::SelfAwareness::OK;
   message_.message = message;
   message_.abnormal = false;

@@ -45,6 +45,8 @@ class AlarmState {
 
   /// The alarm or the suspicion that stands, as a value; none: nothing does.
   const std::optional<core::Alarm>& standing() const { return alarms_.standing(); }
+  /// The alarm or the suspicion that ended with the last add() or standDown(); none: nothing did.
+  const std::optional<core::Alarm>& ended() const { return ended_; }
   /// Whether there is an alarm or a suspicion.
   bool stands() const { return message_.level != self_awareness::SelfAwareness::OK; }
   /// What is wrong with what components share, in words: the machine is too busy, or all of some
@@ -64,6 +66,7 @@ class AlarmState {
   void tell(const std::optional<core::Alarm>& alarm);
 
   core::Alarms alarms_;
+  std::optional<core::Alarm> ended_;
   self_awareness::SelfAwareness message_;
   std::string shared_;            // of the last window that had evidence
   std::int64_t level_since_ = 0;  // end of the window with which the level changed last [ns]

@@ -7,8 +7,7 @@ import xml.etree.ElementTree as ElementTree
 import pytest
 
 from self_awareness.reporting.report.neighbours import (MOST_NODES, OTHER, ROOT, VICTIM,
-                                                        check_installed, downstream, draw,
-                                                        neighbourhood)
+                                                        check_installed, draw, neighbourhood)
 
 
 def test_the_root_has_its_publishers_and_subscribers() -> None:
@@ -51,12 +50,6 @@ def test_suspects_that_are_not_in_the_graph_are_left_out() -> None:
     assert neighbourhood([('/a', '/x', '/b')], ['/c']).roles == {}
     found = neighbourhood([('/a', '/x', '/b')], ['/c', '/b'])
     assert found.roles == {'/b': VICTIM, '/a': OTHER}
-
-
-def test_who_needs_a_node() -> None:
-    edges = [('/a', '/x', '/b'), ('/b', '/y', '/c'), ('/c', '/z', '/b'), ('/b', '/rosout', '/d')]
-    assert downstream(edges, '/b') == {'/b', '/c'}
-    assert downstream(edges, '/d') == set()
 
 
 def test_names_are_shown_as_they_are() -> None:

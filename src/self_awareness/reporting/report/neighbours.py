@@ -83,21 +83,6 @@ def neighbourhood(edges: Iterable[Edge], suspects: Sequence[str]) -> Neighbourho
                          len(beside) - len(kept) if kept else 0, sorted(listeners))
 
 
-def downstream(edges: Iterable[Edge], node: str) -> Set[str]:
-    """Return who needs a node's messages, directly or through others."""
-    followers: Dict[str, Set[str]] = defaultdict(set)
-    for publisher, topic, subscriber in edges:
-        if topic not in _LOG_TOPICS:
-            followers[publisher].add(subscriber)
-    reached: Set[str] = set()
-    ways = [node]
-    while ways:
-        new = followers[ways.pop()] - reached
-        reached |= new
-        ways += new
-    return reached
-
-
 def draw(shown: Neighbourhood) -> str:
     """Return a neighbourhood as an element of a page (SVG); its style is in page.css.
 

@@ -1,0 +1,84 @@
+#include "incident_keeper.h"
+
+#include <ros/console.h>
+
+#include <exception>
+#include <utility>
+#include <vector>
+
+#include "ros/verdict/incidents_file.h"
+#include "self_awareness/ros/ros_time.h"
+
+namespace self_awareness {
+namespace {
+
+constexpr double kPause = 5;  // between two attempts to write the file [s]
+
+}  // namespace
+
+IncidentKeeper::IncidentKeeper(RecorderFolder folder)
+    : folder_(std::move(folder)),
+      path_(folder_.pathOfIncidents()),
+      folded_(kRepeatsWithin, ros1::kMostIncidents),
+      writer_(kPause) {}
+
+void IncidentKeeper::restore(std::optional<std::uint64_t> standing) {
+  try {
+    incidents_ = ros1::readIncidents(path_).value_or(self_awareness::Incidents());
+  } catch (const std::exception& error) {
+    ROS_ERROR("%s; the incidents before this start are not known", error.what());
+  }
+  std::vector<core::Incident> known;
+  for (self_awareness::Incident& each : incidents_.incidents) {
+    each.over = each.over != 0U || each.last != standing;
+    sources_[each.id] = {each.recording, each.model};
+    known.push_back(ros1::fromMessage(each));
+  }
+  folded_.restore(std::move(known), standing);
+}
+
+void IncidentKeeper::add(const core::Alarm& alarm, const core::SourceGraph& graph,
+                         const std::string& recording, const std::string& model) {
+  folded_.add(core::occurrenceOf(alarm), graph);
+  const bool is_alarm = alarm.level == core::Alarm::Level::kAlarm;
+  incidents_.header.stamp = ros1::toRosTime(alarm.end);
+  incidents_.incidents.clear();
+  sources_.try_emplace(alarm.id, Source{is_alarm ? recording : "", model});
+  std::map<std::uint64_t, Source> sources{{alarm.id, sources_[alarm.id]}};
+  for (const core::Incident& incident : folded_.list(graph)) {
+    self_awareness::Incident& message =
+        incidents_.incidents.emplace_back(ros1::toMessage(incident));
+    const Source& source = sources[incident.id] = sources_[incident.id];
+    message.recording = source.recording;
+    message.model = source.model;
+  }
+  sources_ = std::move(sources);
+  written_ = false;
+  if (is_alarm) {
+    write();
+  }
+}
+
+void IncidentKeeper::advance(std::int64_t now) {
+  if (!written_ && now - written_at_ >= kNearMissesEvery) {
+    written_at_ = now;
+    write();
+  }
+}
+
+void IncidentKeeper::finish() {
+  if (!written_) {
+    write();
+  }
+  writer_.finish();
+}
+
+void IncidentKeeper::write() {
+  written_ = true;
+  writer_.add({path_, 0, [folder = folder_, incidents = incidents_](const std::string& path) {
+                 folder.create();
+                 ros1::writeIncidents(incidents, path);
+               }});
+}
+
+}  // namespace self_awareness

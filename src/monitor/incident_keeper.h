@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "file_writer.h"
+#include "recorder_folder.h"
+#include "self_awareness/Incidents.h"
+#include "self_awareness/core/verdict/alarm.h"
+#include "self_awareness/core/verdict/incident.h"
+#include "self_awareness/core/verdict/source_graph.h"
+
+namespace self_awareness {
+
+/// Folds alarms and suspicions into incidents, and keeps the last ones in a file, for a year and
+/// other starts of the monitor. The file is in the folder of the flight recorder, also where
+/// nothing is recorded.
+///
+/// Belongs to the thread that judges; a thread of its own waits for the disk.
+class IncidentKeeper {
+ public:
+  /// An alarm of the same cause so long after the last one is a repetition of it [ns].
+  static constexpr std::int64_t kRepeatsWithin = 600'000'000'000;
+  /// Near misses reach the file so long after each other at least [ns of steady time]: alarms do
+  /// at once.
+  static constexpr std::int64_t kNearMissesEvery = 60'000'000'000;
+
+  explicit IncidentKeeper(RecorderFolder folder);
+
+  /// Reads the file: to be called first. One that is damaged is named in the log, and is written
+  /// anew with the next incident.
+  /// @param standing id of the alarm that stands since before the start; none: none does
+  void restore(std::optional<std::uint64_t> standing);
+  /// An alarm or a suspicion began, has changed, or is over.
+  /// @param graph whose messages reach whom
+  /// @param recording path of the file with its events; empty: there is none
+  /// @param model path of the model that judges
+  void add(const core::Alarm& alarm, const core::SourceGraph& graph, const std::string& recording,
+           const std::string& model);
+  /// Time has passed. @param now steady time [ns]
+  void advance(std::int64_t now);
+  /// Writes what is not written yet, and waits for the disk; nothing is kept after it.
+  void finish();
+
+  /// The last incidents.
+  const self_awareness::Incidents& incidents() const { return incidents_; }
+  /// Why the file could not be written; empty: it could.
+  std::string error() const { return writer_.report().error; }
+
+ private:
+  struct Source {
+    std::string recording;
+    std::string model;
+  };
+
+  void write();
+
+  const RecorderFolder folder_;
+  const std::string path_;
+  core::Incidents folded_;
+  std::map<std::uint64_t, Source> sources_;  // by id of the incident
+  self_awareness::Incidents incidents_;
+  bool written_ = true;
+  std::int64_t written_at_ = 0;  // [ns of steady time]
+  FileWriter writer_;
+};
+
+}  // namespace self_awareness

@@ -1,0 +1,142 @@
+"""`rosrun self_awareness incidents`: shows the last incidents of the monitors of this machine."""
+from __future__ import annotations
+
+import argparse
+import fnmatch
+import glob
+import json
+import os
+import re
+import time
+from datetime import datetime, timezone
+from typing import List, Optional, Sequence
+
+from self_awareness import KeptIncident, read_incidents
+from self_awareness.commands import cli
+from self_awareness.reporting import incidents_text
+from self_awareness.stamps import SECOND_NS, nanoseconds
+
+_EPILOG = """\
+A monitor keeps its last 100 incidents in NAME.incidents beside the flight recorder's files, also
+while it does not run. Near misses are suspicions that became no alarm.
+TIME is a time in UTC, as 2026-11-23 or 2026-11-23T04:30, or how long ago it was: 90s, 30min, 12h,
+7d.
+"""
+
+_UNITS = {'s': 1, 'min': 60, 'h': 3600, 'd': 86400}
+_DATES = ('%Y-%m-%d', '%Y-%m-%dT%H:%M', '%Y-%m-%dT%H:%M:%S')
+
+
+def main(argv: Optional[Sequence[str]] = None) -> int:
+    """Run the program; return its exit code (see cli.run)."""
+    return cli.run(_parser(), _incidents, argv)
+
+
+def _incidents(arguments: argparse.Namespace) -> None:
+    read = [(path, _read(path)) for path in arguments.file or _files()]
+    if arguments.id is not None:
+        read = [(path, _one(kept, arguments.id)) for path, kept in read]
+        if not any(kept for _, kept in read):
+            raise ValueError(f'no incident {arguments.id} in '
+                             f'{", ".join(path for path, _ in read)}')
+    else:
+        read = [(path, [each for each in kept if _is_asked_for(each, arguments)])
+                for path, kept in read]
+    if arguments.json:
+        values = [{'file': path, **incidents_text.as_values(each)}
+                  for path, kept in read for each in kept]
+        print(json.dumps(values, indent=2, allow_nan=False))
+    elif arguments.id is not None:
+        for _, kept in read:
+            for each in kept:
+                print('\n'.join(incidents_text.details(each)))
+    else:
+        for path, kept in read:
+            _print_list(path, kept, arguments.near_misses)
+
+
+def _print_list(path: str, kept: List[KeptIncident], near_misses: bool) -> None:
+    shown = [each for each in kept if near_misses or each.level == 'ERROR']
+    is_open = sum(not each.over for each in shown)
+    print(f'{path}: incidents: {len(shown)}, open: {is_open}')
+    if shown:
+        print('\n'.join(f'  {line}' for line in incidents_text.table(shown)))
+    if len(shown) < len(kept):
+        print(f'  besides, components with near misses only: {len(kept) - len(shown)} '
+              '(--near-misses)')
+
+
+def _files() -> List[str]:
+    """Return the files of all monitors, where they are by default.
+
+    Raises:
+        ValueError: there is none.
+    """
+    home = os.environ.get('ROS_HOME') or os.path.expanduser('~/.ros')
+    pattern = os.path.join(glob.escape(home), 'self_awareness', '*', '*.incidents')
+    found = sorted(glob.glob(pattern))
+    if not found:
+        raise ValueError(f'no monitor of this machine has had an incident ({pattern}); if '
+                         '~recorder/directory is set, name its file by --file')
+    return found
+
+
+def _read(path: str) -> List[KeptIncident]:
+    kept = read_incidents(path)
+    if kept is None:
+        raise ValueError(f'{path}: there is no such file; a monitor writes it with its first '
+                         'incident')
+    return kept
+
+
+def _one(kept: Sequence[KeptIncident], number: int) -> List[KeptIncident]:
+    return [each for each in kept if each.id == number]
+
+
+def _is_asked_for(incident: KeptIncident, arguments: argparse.Namespace) -> bool:
+    since, until = arguments.since, arguments.until
+    return ((arguments.over is None or incident.over == arguments.over)
+            and (since is None or not incident.over or incident.ended >= since)
+            and (until is None or incident.opened <= until)
+            and (arguments.component is None
+                 or bool(fnmatch.filter(incidents_text.named(incident), arguments.component))))
+
+
+def _stamp(text: str) -> int:
+    """Argument type: a time [ns]."""
+    ago = re.fullmatch(r'(\d{1,9})(s|min|h|d)', text)
+    if ago:
+        return nanoseconds(time.time()) - int(ago[1]) * _UNITS[ago[2]] * SECOND_NS
+    for form in _DATES:
+        try:
+            return nanoseconds(datetime.strptime(text, form).replace(
+                tzinfo=timezone.utc).timestamp())
+        except ValueError:
+            continue
+    raise argparse.ArgumentTypeError(
+        f'expected a time in UTC, as 2026-11-23T04:30, or one ago, as 12h, not {text!r}')
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog='incidents', description=(__doc__ or '').split(': ', 1)[1].strip(), epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('id', type=int, nargs='?', metavar='ID',
+                        help='show all of this one, and how to make its report')
+    parser.add_argument('--file', action='append', metavar='FILE',
+                        help='of a monitor; may be given several times (default: of all monitors, '
+                             'in ROS_HOME)')
+    parser.add_argument('--component', metavar='PATTERN',
+                        help="that name such a component, as /player or '/camera*'")
+    parser.add_argument('--since', type=_stamp, metavar='TIME', help='that ended after it')
+    parser.add_argument('--until', type=_stamp, metavar='TIME', help='that were opened before it')
+    state = parser.add_mutually_exclusive_group()
+    state.add_argument('--open', dest='over', action='store_false', default=None,
+                       help='that are open')
+    state.add_argument('--over', dest='over', action='store_true', default=None,
+                       help='that are over')
+    parser.add_argument('--near-misses', action='store_true',
+                        help='list also components with near misses only')
+    parser.add_argument('--json', action='store_true',
+                        help='print all of them as JSON, with near misses')
+    return parser

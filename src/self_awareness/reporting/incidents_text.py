@@ -1,0 +1,96 @@
+"""The incidents that a monitor has kept: as lines, and as plain values."""
+from __future__ import annotations
+
+import os
+import shlex
+from typing import Any, Dict, List, Sequence
+
+from self_awareness import KeptIncident
+from self_awareness.reporting.text_table import aligned
+from self_awareness.stamps import SECOND_NS, moment, utc
+
+_MOST_NAMED = 3
+
+
+def table(incidents: Sequence[KeptIncident]) -> List[str]:
+    """Return a line for each incident, below those of a head."""
+    head = ['opened (UTC)', 'lasted', 'what', 'raised', 'near misses', 'named besides', 'id']
+    return aligned([head, *([utc(each.opened)[:19], _lasted(each), what(each), str(each.alarms),
+                             str(each.near_misses), _besides(each), str(each.id)]
+                            for each in incidents)])
+
+
+def details(incident: KeptIncident) -> List[str]:
+    """Return all that is known of an incident, and how to see more."""
+    rows = [('what', f'{what(incident)}: {incident.reason}' if incident.reason
+             else what(incident)),
+            ('opened', moment(incident.opened)),
+            ('grown', moment(incident.grown)),
+            ('over' if incident.over else 'open', moment(incident.ended) if incident.over
+             else f'at {moment(incident.ended)}'),
+            ('raised', f'{incident.alarms} times, and {incident.near_misses} near misses')]
+    rows += [(title, ', '.join(names)) for title, names in (
+        ('failed with it', incident.together), ('victims', incident.victims),
+        ('named besides', incident.others)) if names]
+    return [f'incident {incident.id}',
+            *aligned([(f'  {title}', text) for title, text in [*rows, *_ways_on(incident)]])]
+
+
+def as_values(incident: KeptIncident) -> Dict[str, Any]:
+    """Return an incident as plain values; None where something is not known."""
+    return {
+        'id': incident.id,
+        'level': incident.level,
+        'kind': incident.kind,
+        'component': incident.component or None,
+        'reason': incident.reason or None,
+        'together': incident.together,
+        'victims': incident.victims,
+        'others': incident.others,
+        'opened_ns': incident.opened,
+        'grown_ns': incident.grown,
+        'ended_ns': incident.ended,
+        'over': incident.over,
+        'alarms': incident.alarms,
+        'near_misses': incident.near_misses,
+        'recording': incident.recording or None,
+        'model': incident.model or None,
+    }
+
+
+def named(incident: KeptIncident) -> List[str]:
+    """Return all components that an incident names, the one to blame first."""
+    return [*filter(None, [incident.component]), *incident.together, *incident.victims,
+            *incident.others]
+
+
+def what(incident: KeptIncident) -> str:
+    """Return what is wrong, and whose fault it is: '/player died'."""
+    return f'{incident.component} {incident.kind}' if incident.component else incident.kind
+
+
+def _lasted(incident: KeptIncident) -> str:
+    if not incident.over:
+        return 'open'
+    seconds = (incident.ended - incident.opened) / SECOND_NS
+    if seconds < 100.0:
+        return f'{seconds:.1f} s'
+    minutes = seconds / 60
+    return f'{minutes:.0f} min' if minutes < 100.0 else f'{minutes / 60:.1f} h'
+
+
+def _besides(incident: KeptIncident) -> str:
+    names = [name for name in named(incident) if name != incident.component]
+    more = len(names) - _MOST_NAMED
+    return ', '.join(names[:_MOST_NAMED]) + (f' and {more} more' if more > 0 else '')
+
+
+def _ways_on(incident: KeptIncident) -> List[Sequence[str]]:
+    if not incident.recording:
+        return [('events', 'none were recorded')]
+    if not os.path.exists(incident.recording):
+        return [('events', f'{incident.recording} (not there: it was not written yet, or made '
+                 'room for newer ones)')]
+    command = ('rosrun', 'self_awareness', 'score', incident.recording, '--model', incident.model,
+               '--report', f'incident_{incident.id}.html')
+    return [('events', incident.recording), ('its report', ' '.join(map(shlex.quote, command)))]

@@ -1,0 +1,125 @@
+"""The program that shows what a monitor has kept of its incidents."""
+from __future__ import annotations
+
+import json
+import time
+from pathlib import Path
+from typing import Any, Callable, List
+
+import genpy
+import pytest
+import rosbag
+
+from self_awareness.commands import incidents
+from self_awareness.msg import FileVersion, Incident, Incidents, SelfAwareness
+
+HOUR_S = 3600
+NOON_S = 1_790_000_000  # 2026-09-21 14:13:20 UTC
+
+
+def incident(number: int, component: str, opened_s: float, **fields: Any) -> Incident:
+    opened = genpy.Time.from_sec(opened_s)
+    return Incident(**{**dict(
+        id=number, last=number, level=SelfAwareness.ERROR, kind='died', component=component,
+        reason='silent for 2.3 s', opened=opened, grown=opened, over=True, alarms=1,
+        ended=opened + genpy.Duration(20)), **fields})
+
+
+KEPT = [
+    incident(1, '/player', NOON_S, alarms=7, near_misses=2, victims=['/slam', '/navigation'],
+             others=['/camera', '/microphone'], model='/robot.model',
+             recording='/gone/alarm.bag'),
+    incident(2, '', NOON_S + HOUR_S, kind='busy machine', reason=''),
+    incident(3, '/camera', NOON_S + 2 * HOUR_S, over=False),
+    incident(4, '/quiet', NOON_S + 3 * HOUR_S, level=SelfAwareness.WARN, alarms=0, near_misses=5),
+]
+
+
+def write(path: Path, kept: List[Incident]) -> str:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    version = FileVersion(kind='incidents', format=1, oldest_reader=1, package='0.1.0')
+    with rosbag.Bag(str(path), 'w') as bag:
+        bag.write('/version', version, genpy.Time(1))
+        bag.write('/incidents', Incidents(incidents=kept), genpy.Time(1))
+    return str(path)
+
+
+@pytest.fixture()
+def run(tmp_path: Path, capsys: Any) -> Callable[..., str]:
+    """Run the program with the file of one monitor."""
+    file = write(tmp_path / 'watch.incidents', KEPT)
+
+    def of(*options: str, code: int = 0) -> str:
+        assert incidents.main(['--file', file, *options]) == code
+        said = capsys.readouterr()
+        return said.out if code == 0 else said.err
+    return of
+
+
+def ids(run: Callable[..., str], *options: str) -> List[int]:
+    return [each['id'] for each in json.loads(run('--json', *options))]
+
+
+def test_one_line_for_an_incident(run: Callable[..., str]) -> None:
+    head, columns, player, busy, camera, near = run().splitlines()
+    assert head.endswith('watch.incidents: incidents: 3, open: 1')
+    assert columns.split()[0] == 'opened'
+    assert player.split() == ['2026-09-21', '14:13:20', '20.0', 's', '/player', 'died', '7', '2',
+                              '/slam,', '/navigation,', '/camera', 'and', '1', 'more', '1']
+    assert 'busy machine' in busy and ' open ' in camera
+    assert near.strip().startswith('besides, components with near misses only: 1')
+    assert '/quiet' in run('--near-misses')
+
+
+def test_filters(run: Callable[..., str]) -> None:
+    assert ids(run) == [1, 2, 3, 4]
+    assert ids(run, '--open') == [3]
+    assert ids(run, '--over') == [1, 2, 4]
+    assert ids(run, '--component', '/camera') == [1, 3], 'also where it is named besides'
+    assert ids(run, '--component', '/*a*') == [1, 3]
+    assert ids(run, '--since', '2026-09-21T15:00') == [2, 3, 4]
+    assert ids(run, '--until', '2026-09-21T15:00') == [1]
+    assert ids(run, '--since', '2026-09-21', '--until', '2026-09-21T16:30') == [1, 2, 3]
+    assert ids(run, '--since', '2026-09-22') == [3], 'it is open'
+    days = int((time.time() - NOON_S) / 86400) + 1
+    assert days < 1 or ids(run, '--since', f'{days}d') == [1, 2, 3, 4]
+
+
+def test_one_is_shown_with_its_record_and_the_way_to_its_report(
+        run: Callable[..., str], tmp_path: Path, capsys: Any) -> None:
+    shown = run('1')
+    assert '/player died: silent for 2.3 s' in shown
+    assert '7 times, and 2 near misses' in shown
+    assert '/slam, /navigation' in shown and '/camera, /microphone' in shown
+    assert '/gone/alarm.bag (not there' in shown and '--report' not in shown
+    assert 'none were recorded' in run('2')
+    recording = tmp_path / 'an alarm.bag'
+    recording.touch()
+    file = write(tmp_path / 'other.incidents', [incident(
+        7, '/player', NOON_S, recording=str(recording), model='/robot.model')])
+    assert incidents.main(['--file', file, '7']) == 0
+    assert (f"rosrun self_awareness score '{recording}' --model /robot.model "
+            '--report incident_7.html') in capsys.readouterr().out
+
+
+def test_all_monitors_are_found_in_ros_home(tmp_path: Path, capsys: Any,
+                                            monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv('ROS_HOME', str(tmp_path))
+    assert incidents.main([]) == 1
+    assert 'no monitor of this machine has had an incident' in capsys.readouterr().err
+    for name in ('first', 'second'):
+        write(tmp_path / 'self_awareness' / name / f'{name}.incidents', KEPT[:1])
+    assert incidents.main([]) == 0
+    said = capsys.readouterr().out
+    assert 'first.incidents: incidents: 1' in said and 'second.incidents: incidents: 1' in said
+
+
+def test_errors_name_what_is_wrong(run: Callable[..., str], tmp_path: Path, capsys: Any) -> None:
+    assert 'no incident 99 in ' in run('99', code=1)
+    assert 'expected a time in UTC' in run('--since', 'yesterday', code=2)
+    damaged = tmp_path / 'damaged.incidents'
+    damaged.write_bytes(b'no bag')
+    assert incidents.main(['--file', str(damaged)]) == 1
+    assert f'{damaged}: the incidents in it are damaged' in capsys.readouterr().err
+    assert incidents.main(['--file', str(tmp_path / 'none')]) == 1
+    assert 'there is no such file' in capsys.readouterr().err

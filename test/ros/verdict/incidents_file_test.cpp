@@ -1,0 +1,128 @@
+#include "ros/verdict/incidents_file.h"
+
+#include <gtest/gtest.h>
+
+#include <boost/filesystem.hpp>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <string>
+
+#include "ros/verdict/standing_alarm.h"
+#include "self_awareness/SelfAwareness.h"
+#include "self_awareness/ros/bag/bag_reader.h"
+
+namespace self_awareness::ros1 {
+namespace {
+
+namespace fs = boost::filesystem;
+
+class IncidentsFileTest : public testing::Test {
+ protected:
+  IncidentsFileTest() {
+    fs::create_directory(folder_);
+    core::Incident incident;
+    incident.id = incident.main = 1600000000000000000;
+    incident.last = 1600000001000000000;
+    incident.level = core::Alarm::Level::kAlarm;
+    incident.kind = core::Kind::kSlow;
+    incident.cause = "/driver";
+    incident.reason = "too seldom";
+    incident.together = {"/a"};
+    incident.victims = {"/b"};
+    incident.others = {"/c", "/d"};
+    incident.opened = 1600000000000000000;
+    incident.grown = incident.opened + 5;
+    incident.end = incident.main_duration = incident.opened + 9;
+    incident.main_duration = 9;
+    incident.over = true;
+    incident.alarms = 7;
+    incident.near_misses = 3;
+    incidents_.incidents = {toMessage(incident)};
+    incidents_.incidents[0].recording = "/files/alarm.bag";
+    incidents_.incidents[0].model = "/files/robot.model";
+  }
+  ~IncidentsFileTest() override { fs::remove_all(folder_); }
+  IncidentsFileTest(const IncidentsFileTest&) = delete;
+  IncidentsFileTest& operator=(const IncidentsFileTest&) = delete;
+
+  std::string written() {
+    writeIncidents(incidents_, path_);
+    std::ifstream file(path_, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+  /// Why a file with these bytes is refused; empty: it is not.
+  std::string errorOf(const std::string& bytes) {
+    std::ofstream(path_, std::ios::binary) << bytes;
+    try {
+      readIncidents(path_);
+      return "";
+    } catch (const BagError& error) {
+      return error.what();
+    }
+  }
+  void expectRefused(const std::string& why,
+                     const std::function<void(self_awareness::Incidents&)>& change) {
+    const self_awareness::Incidents before = incidents_;
+    change(incidents_);
+    EXPECT_EQ(errorOf(written()), path_ + ": the incidents in it are damaged (" + why + ")");
+    incidents_ = before;
+  }
+
+  const fs::path folder_ = fs::temp_directory_path() / fs::unique_path();
+  const std::string path_ = (folder_ / "monitor.incidents").string();
+  self_awareness::Incidents incidents_;
+};
+
+TEST_F(IncidentsFileTest, IsReadAsItWasWritten) {
+  EXPECT_FALSE(readIncidents(path_)) << "there is no file";
+  written();
+  const auto read = readIncidents(path_);
+  ASSERT_TRUE(read);
+  EXPECT_EQ(*read, incidents_);
+}
+
+TEST_F(IncidentsFileTest, TheCoreHasOfItWhatTheMessageSays) {
+  self_awareness::Incident message = incidents_.incidents[0];
+  message.recording.clear();
+  message.model.clear();
+  EXPECT_EQ(toMessage(fromMessage(message)), message);
+}
+
+TEST_F(IncidentsFileTest, ADamagedFileIsRefusedByName) {
+  const std::string good = written();
+  ASSERT_EQ(errorOf(good), "");
+  for (std::size_t size = 0; size < good.size(); size += 41) {
+    EXPECT_EQ(errorOf(good.substr(0, size)).rfind(path_ + ": ", 0), 0U) << size;
+  }
+  for (std::size_t place = 0; place < good.size(); place += 13) {
+    std::string bad = good;
+    bad[place] = static_cast<char>(bad[place] ^ 0xff);
+    errorOf(bad);  // whatever it is, it is said or read
+  }
+}
+
+TEST_F(IncidentsFileTest, WhatCannotBeIsRefused) {
+  using self_awareness::Incidents;
+  expectRefused("there are too many",
+                [](Incidents& of) { of.incidents.resize(kMostIncidents + 1, of.incidents[0]); });
+  expectRefused("the level of one is none", [](Incidents& of) { of.incidents[0].level = 0; });
+  expectRefused("the id of one is none", [](Incidents& of) { of.incidents[0].id = 0; });
+  expectRefused("the id of one is none", [](Incidents& of) { of.incidents[0].last = ~0ULL; });
+  expectRefused("the kind of one is none", [](Incidents& of) { of.incidents[0].kind = "odd"; });
+  expectRefused("it has too many components", [](Incidents& of) {
+    of.incidents[0].victims.resize(core::Incident::kMostNamed + 1, "/a");
+  });
+  expectRefused("the name of a component is too long",
+                [](Incidents& of) { of.incidents[0].others = {std::string(1001, 'a')}; });
+  incidents_.incidents[0].component = "/\x1b[2J";
+  EXPECT_NE(errorOf(written()), "") << "its texts are printable";
+}
+
+TEST_F(IncidentsFileTest, AFileOfAnotherKindIsNone) {
+  writeStandingAlarm({}, path_);
+  EXPECT_THROW(readIncidents(path_), BagError);
+}
+
+}  // namespace
+}  // namespace self_awareness::ros1
