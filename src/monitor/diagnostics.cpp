@@ -76,6 +76,9 @@ void Diagnostics::tellMonitor(const MonitorState& state, Status& status) {
   if (!state.taken_back.empty()) {
     status.add("alarm taken back", state.taken_back);
   }
+  for (std::size_t i = 0; i < state.mutes.size(); ++i) {
+    status.add("mute " + std::to_string(i + 1), state.mutes[i]);
+  }
   status.add("times the clock was set", heard.clock_steps);
   if (state.recorder) {
     tellRecorder(*state.recorder, status);

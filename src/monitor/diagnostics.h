@@ -31,6 +31,7 @@ struct MonitorState {
   std::int64_t clock_stands_still_for = 0;  ///< [ns of steady time]
   std::string clock_rivals;                 ///< who publishes /clock, if several do
   std::string taken_back;                   ///< who took an alarm back last; empty: nobody
+  std::vector<std::string> mutes;           ///< in words
   std::string keeper_error;                 ///< why alarm or incidents are not in their files
   double longest_pause = 0;  ///< for which this program stood still, since the last report [s]
   std::optional<FlightRecorder::Report> recorder;  ///< none: there is no recorder

@@ -46,6 +46,7 @@ Monitor::Monitor(ros::NodeHandle node_handle, const ros::NodeHandle& private_nod
     : private_node_handle_(private_node_handle),
       parameters_(MonitorParameters::load(private_node_handle)),
       diagnostics_(node_handle, name, parameters_.hardware_id, parameters_.source_diagnostics),
+      mutes_(calls_, [this] { onMutes(); }),
       announcer_({[this](const self_awareness::SelfAwareness& status) {
                     status_publisher_.publish(status);
                   },
@@ -69,6 +70,9 @@ Monitor::Monitor(ros::NodeHandle node_handle, const ros::NodeHandle& private_nod
                private_node_handle_.advertiseService("clear", &Monitor::onClear, this),
                private_node_handle_.advertiseService("dump", &Monitor::onDump, this),
                private_node_handle_.advertiseService("reload", &Monitor::onReload, this)};
+  for (ros::ServiceServer& service : mutes_.advertise(private_node_handle_)) {
+    services_.push_back(std::move(service));
+  }
   std::vector<std::string> service_names;
   for (const ros::ServiceServer& service : services_) {
     service_names.push_back(service.getService());
@@ -191,6 +195,7 @@ void Monitor::onTick(std::int64_t now) {
   }
   recorder_.advance(now - kGrace, steadyNow());
   incidents_.advance(steadyNow());
+  mutes_.advance(steadyNow());
 }
 
 void Monitor::restart() {
@@ -241,13 +246,8 @@ void Monitor::standDown(const std::string& message) {
 }
 
 void Monitor::publishAlarm(const self_awareness::SelfAwareness& alarm) {
-  if (alarm.level == self_awareness::SelfAwareness::ERROR) {
-    ROS_ERROR("%s", alarm.message.c_str());
-  } else if (alarm.level == self_awareness::SelfAwareness::WARN) {
-    ROS_WARN("%s", alarm.message.c_str());
-  } else {
-    ROS_INFO("%s", alarm.message.c_str());
-  }
+  mutes_.onStanding(announcer_.alarm().standing(), *session_);
+  mutes_.log(alarm);
   alarm_publisher_.publish(alarm);
   keeper_.keep(alarm, announcer_.alarm().since(), alarm_file_);
   publishIncidents();
@@ -261,6 +261,15 @@ void Monitor::publishIncidents() {
     }
   }
   incidents_publisher_.publish(incidents_.incidents());
+}
+
+void Monitor::onMutes() {
+  if (session_) {
+    if (mutes_.onStanding(announcer_.alarm().standing(), *session_)) {
+      mutes_.log(announcer_.alarm().message());
+    }
+    live_->report();
+  }
 }
 
 void Monitor::onReport() {
@@ -290,6 +299,8 @@ void Monitor::onReport() {
   state.strangers_newly_closed =
       discovered.strangers_closed - std::exchange(strangers_closed_, discovered.strangers_closed);
   state.taken_back = calls_.onRecord();
+  state.mutes = mutes_.inWords();
+  state.communication.muted = mutes_.ofWhatStands();
   state.clock_rivals = live_->clockRivals();
   not_heard_.set(state.unheard);
   state.communication.not_heard = not_heard_.components();

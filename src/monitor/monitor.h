@@ -16,6 +16,7 @@
 #include "flight_recorder.h"
 #include "incident_keeper.h"
 #include "live_source.h"
+#include "mute_calls.h"
 #include "not_heard.h"
 #include "operator_calls.h"
 #include "parameters.h"
@@ -104,6 +105,12 @@ namespace self_awareness {
 /// - `~reload` (std_srvs/Trigger): reads the parameter `~model` and its file again, and keeps the
 ///   old model where that fails.
 ///
+/// What somebody mutes goes on ~status, ~alarm and ~incidents as ever, but is OK on /diagnostics,
+/// and no more than INFO in the log. The mute has an end, at which the log says what it muted
+/// (MuteCalls).
+/// - `~mute` (self_awareness/Mute): a component, a topic or a kind is not told for a time.
+/// - `~maintenance` (self_awareness/Maintenance): nothing is told for a time.
+///
 /// **Threads**: one thread (LiveSource) serves messages, windows, services and diagnostics through
 /// a queue of its own. What may block on the network is done by the thread of Discovery, what
 /// waits for the disk by those of FileWriter. They share what has arrived (Arrivals), what the
@@ -161,6 +168,8 @@ class Monitor : public NodeProgram, public LiveSource::Listener {
   void publishAlarm(const self_awareness::SelfAwareness& alarm);
   /// Says what has become of the incidents by the last change of the alarm.
   void publishIncidents();
+  /// There is a mute more or less.
+  void onMutes();
 
   ros::CallbackQueue queue_;
   ros::NodeHandle private_node_handle_;
@@ -175,6 +184,7 @@ class Monitor : public NodeProgram, public LiveSource::Listener {
   std::unique_ptr<Session> session_;  // none: no model
   NotHeard not_heard_;
   OperatorCalls calls_;
+  MuteCalls mutes_;
   std::size_t strangers_closed_ = 0;  // that were reported
   std::int64_t longest_pause_ = 0;    // of this program, since the last report [ns of steady time]
   ros1::Announcer announcer_;

@@ -5,15 +5,17 @@ import json
 import os
 import signal
 import subprocess
-from typing import Any, Dict, List
+from typing import Any, Dict, List, Tuple
 
 import rospy
 import rostest
+from diagnostic_msgs.msg import DiagnosticStatus
 
 from live_system import (MonitorListener, Process, again_if_clock_was_set, await_condition,
                          operation, write_bag)
 from monitor_case import MonitorCase
 from self_awareness.msg import Incident, Incidents, SelfAwareness
+from self_awareness.srv import Maintenance, Mute, MuteResponse
 
 NODE, NODELET = '/self_awareness', '/watch'
 
@@ -141,6 +143,81 @@ class IncidentsTest(MonitorCase):
             self.assertTrue(of_nodelet.recording.startswith(self.path('other')))
             await_condition('its file', lambda: os.path.exists(
                 self.path('other/watch.incidents')), 20)
+
+    # What an operator mutes
+
+    def mute(self, name: str = NODE, **what: Any) -> MuteResponse:
+        rospy.wait_for_service(name + '/mute', 20)
+        return rospy.ServiceProxy(name + '/mute', Mute)(**what)
+
+    def await_level(self, listener: MonitorListener, level: int, words: str) -> None:
+        """Waits for a status of the whole, from now on."""
+        seen = len(listener.diagnostics('communication'))
+        await_condition('{} with {}'.format(level, words), lambda: any(
+            each.level == level and words in each.message
+            for each in listener.diagnostics('communication')[seen:]), 20)
+
+    @again_if_clock_was_set
+    def test_what_is_muted_is_judged_and_told_when_the_mute_ends(self) -> None:
+        with talker('base', '/odom', 10), self.trained_monitor() as monitor, \
+                MonitorListener() as listener, driver() as victim:
+            self.await_heard(listener)
+            said = self.mute(component='/driv*', duration=15.0)
+            self.assertTrue(said.success, said.message)
+            self.assertRegex(said.message, r'not told until \d+-.* UTC: /driv\*')
+            victim.send(signal.SIGKILL)
+            alarm = listener.await_alarm()
+            self.assertEqual(alarm.component, '/driver', 'it is judged, and for programs, told')
+            self.await_incident('it is counted', over=False)
+            self.await_level(listener, DiagnosticStatus.OK, 'muted (/driv* until')
+            self.assertEqual(listener.diagnostics('/driver')[-1].level, DiagnosticStatus.OK)
+            self.assertIn('by ' + rospy.get_name(), listener.value('monitor', 'mute 1') or '')
+            self.assertNotIn('[ERROR]', monitor.output)
+            self.await_level(listener, DiagnosticStatus.ERROR, 'abnormal communication')
+            self.assertIsNone(listener.value('monitor', 'mute 1'))
+            await_condition('it is told', lambda: '[ERROR]' in monitor.output, 20)
+            self.assertIn('told again, since its time is over: /driv*; 1 alarms and',
+                          monitor.output)
+
+    @again_if_clock_was_set
+    def test_a_mute_ends_with_what_it_mutes_or_is_taken_back(self) -> None:
+        with talker('base', '/odom', 10), self.trained_monitor() as monitor, \
+                MonitorListener() as listener:
+            with driver() as victim:
+                self.await_heard(listener)
+                self.assertTrue(self.mute(topic='/scan', duration=600.0, until_over=True).success)
+                victim.send(signal.SIGKILL)
+                listener.await_alarm()
+                self.await_level(listener, DiagnosticStatus.OK, 'muted (/scan until')
+            with driver() as victim:
+                await_condition('it is over', lambda: (
+                    'told again, since it is over: /scan; ' in monitor.output), 80)
+                self.await_heard(listener)
+                maintenance = rospy.ServiceProxy(NODE + '/maintenance', Maintenance)
+                self.assertTrue(maintenance(duration=600.0).success)
+                victim.send(signal.SIGKILL)
+                listener.await_alarm()
+                self.await_level(listener, DiagnosticStatus.OK, 'muted (maintenance until')
+                said = maintenance(duration=0.0)
+                self.assertTrue(said.success, said.message)
+                self.await_level(listener, DiagnosticStatus.ERROR, 'abnormal communication')
+                self.assertFalse(maintenance(duration=0.0).success, 'there is none')
+
+    @again_if_clock_was_set
+    def test_a_mute_of_nothing_or_for_ever_is_refused(self) -> None:
+        with self.nodelet():
+            refused: List[Tuple[Dict[str, Any], str]] = [
+                ({'duration': 5.0}, 'name a component, a topic or a kind'),
+                ({'component': '/a'}, '/a is not muted'),
+                ({'component': '/a', 'duration': 1e9}, 'from 1 to 86400 s'),
+                ({'component': '/a', 'duration': float('nan')}, 'from 1 to'),
+                ({'kind': 'odd', 'duration': 5.0}, 'kind: odd is none')]
+            for what, why in refused:
+                said = self.mute(NODELET, **what)
+                self.assertFalse(said.success)
+                self.assertIn(why, said.message)
+            said = self.mute(NODELET, component='/a', duration=5.0)
+            self.assertIn('too many calls', said.message)
 
 
 if __name__ == '__main__':

@@ -89,6 +89,10 @@ void tellUnheard(const std::set<core::SourceGraph::Publication>& unheard,
   }
 }
 
+bool isMuted(const CommunicationState& state) {
+  return !state.muted.empty() && state.last.level != DiagnosticStatus::OK;
+}
+
 // How soon its death is found.
 std::string foundAfter(const core::evidence::Coverage& component) {
   if (component.death_found_after) {
@@ -109,6 +113,9 @@ void tellCommunication(const CommunicationState& state, DiagnosticStatusWrapper&
     // Not an alarm, but an operator who relies on one must know that none can come.
     const std::uint8_t uncalibrated = DiagnosticStatus::WARN;
     status.summary(state.calibrated ? last.level : uncalibrated, last.message);
+    if (isMuted(state) && state.calibrated) {
+      status.summary(DiagnosticStatus::OK, "muted (" + state.muted + "): " + last.message);
+    }
     const std::size_t heard = state.heard.known_types + state.heard.unknown_types;
     if (!last.settling && static_cast<double>(state.heard.known_types) <
                               core::kLeastKnown * static_cast<double>(heard)) {
@@ -145,10 +152,15 @@ void tellComponent(const CommunicationState& state, const std::string& name,
   for (std::size_t i = 0; i < suspects.size() && state.last.level != DiagnosticStatus::OK; ++i) {
     if (core::componentOf(suspects[i].source, suspects[i].scope) == name) {
       // The most likely one is to blame; the others may well be its victims.
-      status.summary(i == 0 && !state.shared && state.last.level == DiagnosticStatus::ERROR
-                         ? DiagnosticStatus::ERROR
-                         : DiagnosticStatus::WARN,
-                     describeOnScope(suspects[i]));
+      const std::string words = describeOnScope(suspects[i]);
+      if (isMuted(state)) {
+        status.summary(DiagnosticStatus::OK, "muted: " + words);
+      } else {
+        status.summary(i == 0 && !state.shared && state.last.level == DiagnosticStatus::ERROR
+                           ? DiagnosticStatus::ERROR
+                           : DiagnosticStatus::WARN,
+                       words);
+      }
       break;
     }
   }

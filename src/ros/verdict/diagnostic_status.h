@@ -31,6 +31,8 @@ struct CommunicationState {
   bool shared = false;                 ///< what components share is to blame, and no component
   double level_for = 0;                ///< how long it has had its level [s]
   HeardReport heard;
+  /// Who muted what stands, and until when, in words; empty: nobody did. What is muted is OK.
+  std::string muted;
   /// Who cannot be heard by the monitor, and why, in words; by component.
   std::map<std::string, std::string> not_heard;
 

@@ -1,0 +1,114 @@
+#include "self_awareness/core/verdict/mute.h"
+
+#include <algorithm>
+#include <iterator>
+#include <set>
+#include <utility>
+
+#include "self_awareness/core/verdict/dependents.h"
+
+namespace self_awareness::core {
+namespace {
+
+/// @param pattern a name, or its begin and a `*`; empty: any
+bool matches(const std::string& pattern, const std::string& name) {
+  if (pattern.empty() || pattern.back() != '*') {
+    return pattern.empty() || pattern == name;
+  }
+  return name.compare(0, pattern.size() - 1, pattern, 0, pattern.size() - 1) == 0;
+}
+
+}  // namespace
+
+bool Mutes::add(const Mute& mute) {
+  end(mute);
+  if (mutes_.size() >= kMost) {
+    return false;
+  }
+  mutes_.push_back(mute);
+  return true;
+}
+
+std::optional<Mute> Mutes::end(const Mute& like) {
+  const auto found = std::find_if(mutes_.begin(), mutes_.end(),
+                                  [&](const Mute& mute) { return mute.isLike(like); });
+  if (found == mutes_.end()) {
+    return std::nullopt;
+  }
+  Mute ended = std::move(*found);
+  mutes_.erase(found);
+  active_.reset();
+  return ended;
+}
+
+std::vector<Mute> Mutes::advance(std::int64_t now) {
+  std::vector<Mute> over;
+  for (const Mute& mute : std::vector<Mute>(mutes_)) {
+    if (mute.until <= now) {
+      over.push_back(*end(mute));
+    }
+  }
+  return over;
+}
+
+std::vector<Mute> Mutes::onStanding(const std::optional<Alarm>& standing,
+                                    const Vocabulary& vocabulary, const SourceGraph& graph) {
+  const bool was_muted = active_.has_value();
+  if (!standing) {
+    active_.reset();
+  } else if (!(was_muted && standing->suspects.empty() && standing->culprit == culprit_)) {
+    active_ = muteOf(*standing, vocabulary, graph);
+  }  // else it is what is left of the one before
+  culprit_ = standing ? standing->culprit : "";
+  std::vector<Mute> over;
+  if (active_ && std::exchange(counted_, standing->id) != standing->id) {
+    Mute& mute = mutes_[*active_];
+    ++(standing->level == Alarm::Level::kAlarm ? mute.alarms : mute.suspicions);
+  }
+  for (const Mute& mute : std::vector<Mute>(mutes_)) {
+    if (!standing && mute.until_over && mute.alarms + mute.suspicions > 0) {
+      over.push_back(*end(mute));
+    }
+  }
+  return over;
+}
+
+const Mute* Mutes::active() const {
+  return active_ ? &mutes_[*active_] : nullptr;
+}
+
+std::optional<std::size_t> Mutes::muteOf(const std::string& component, const std::string& topic,
+                                         Kind kind) const {
+  const auto found = std::find_if(mutes_.begin(), mutes_.end(), [&](const Mute& mute) {
+    return matches(mute.component, component) && matches(mute.topic, topic) &&
+           mute.kind.value_or(kind) == kind;
+  });
+  return found == mutes_.end() ? std::nullopt : std::optional<std::size_t>(found - mutes_.begin());
+}
+
+std::optional<std::size_t> Mutes::muteOf(const Alarm& alarm, const Vocabulary& vocabulary,
+                                         const SourceGraph& graph) const {
+  std::vector<Suspect> suspects = alarm.suspects;
+  suspects.insert(suspects.end(), alarm.later.begin(), alarm.later.end());
+  const auto muteOfSuspect = [&](const Suspect& suspect) {
+    return muteOf(suspect.component,
+                  suspect.id < vocabulary.size() ? vocabulary.at(suspect.id).scope : "",
+                  suspect.reason.kind);
+  };
+  const auto culprit = std::find_if(suspects.begin(), suspects.end(), [&](const Suspect& suspect) {
+    return !alarm.culprit.empty() && suspect.component == alarm.culprit;
+  });
+  if (culprit == suspects.end()) {
+    // Of an alarm of before the start, the suspects are not known.
+    return muteOf(alarm.culprit, "", alarm.kind);
+  }
+  const std::optional<std::size_t> muted = muteOfSuspect(*culprit);
+  const std::set<std::string> dependent = dependentsOf(graph, alarm.culprit);
+  const bool all = std::all_of(suspects.begin(), suspects.end(), [&](const Suspect& suspect) {
+    return !suspect.abnormal || suspect.component == alarm.culprit ||
+           dependent.count(suspect.component) > 0 || muteOfSuspect(suspect);
+  });
+  return all ? muted : std::nullopt;
+}
+
+}  // namespace self_awareness::core

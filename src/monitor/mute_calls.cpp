@@ -1,0 +1,185 @@
+#include "mute_calls.h"
+
+#include <ros/console.h>
+
+#include <cmath>
+#include <ctime>
+#include <stdexcept>
+#include <utility>
+
+#include "ros/now.h"
+#include "ros/text.h"
+#include "ros/verdict/diagnostic_status.h"
+#include "self_awareness/core/stream/event.h"
+#include "self_awareness/ros/encoding.h"
+
+namespace self_awareness {
+namespace {
+
+std::string what(const core::Mute& mute) {
+  if (mute.mutesAll()) {
+    return "maintenance";
+  }
+  std::string words = mute.component;
+  if (!mute.topic.empty()) {
+    words += (words.empty() ? "" : " on ") + mute.topic;
+  }
+  if (mute.kind) {
+    words += (words.empty() ? "" : " ") + ("(" + core::toString(*mute.kind) + ")");
+  }
+  return words;
+}
+
+/// When it ends, by the clock on the wall.
+std::string until(const core::Mute& mute) {
+  const std::time_t seconds = (wallNow() + mute.until - steadyNow()) / core::kNanosecondsPerSecond;
+  std::tm utc{};
+  gmtime_r(&seconds, &utc);
+  char time[32];
+  std::strftime(time, sizeof time, "%Y-%m-%d %H:%M:%S UTC", &utc);
+  return std::string("until ") + time + (mute.until_over ? " or it is over" : "");
+}
+
+std::string counts(const core::Mute& mute) {
+  return std::to_string(mute.alarms) + " alarms and " + std::to_string(mute.suspicions) +
+         " suspicions were muted";
+}
+
+std::string pattern(const std::string& name, const char* field) {
+  if (name.size() > ros1::kLongestName || !ros1::isPrintable(name)) {
+    throw std::invalid_argument(std::string(field) + ": it is no name");
+  }
+  return name;
+}
+
+/// @throw std::invalid_argument says what is wrong
+core::Mute muteOf(const Mute::Request& request) {
+  core::Mute mute;
+  mute.component = pattern(request.component, "component");
+  mute.topic = pattern(request.topic, "topic");
+  if (!request.kind.empty()) {
+    mute.kind = core::kindOf(request.kind);
+    if (!mute.kind) {
+      throw std::invalid_argument("kind: " + ros1::printable(request.kind, ros1::kLongestName) +
+                                  " is none; ~alarm tells the kind of what stands");
+    }
+  }
+  if (mute.mutesAll()) {
+    throw std::invalid_argument(
+        "name a component, a topic or a kind; ~maintenance mutes everything");
+  }
+  mute.until_over = request.until_over != 0U;
+  return mute;
+}
+
+}  // namespace
+
+MuteCalls::MuteCalls(OperatorCalls& calls, std::function<void()> on_change)
+    : calls_(calls), on_change_(std::move(on_change)) {}
+
+std::vector<ros::ServiceServer> MuteCalls::advertise(ros::NodeHandle& private_node_handle) {
+  return {private_node_handle.advertiseService("mute", &MuteCalls::onMute, this),
+          private_node_handle.advertiseService("maintenance", &MuteCalls::onMaintenance, this)};
+}
+
+void MuteCalls::advance(std::int64_t now) {
+  const std::vector<core::Mute> over = mutes_.advance(now);
+  for (const core::Mute& mute : over) {
+    ROS_WARN("told again, since its time is over: %s; %s", what(mute).c_str(),
+             counts(mute).c_str());
+  }
+  if (!over.empty()) {
+    on_change_();
+  }
+}
+
+bool MuteCalls::onStanding(const std::optional<core::Alarm>& standing, const Session& session) {
+  for (const core::Mute& mute :
+       mutes_.onStanding(standing, session.vocabulary(), session.graph())) {
+    ROS_WARN("told again, since it is over: %s; %s", what(mute).c_str(), counts(mute).c_str());
+  }
+  const bool was_muted = std::exchange(muted_, mutes_.active() != nullptr);
+  return standing && was_muted && !muted_;
+}
+
+void MuteCalls::log(const self_awareness::SelfAwareness& alarm) const {
+  const std::string muted = ofWhatStands();
+  if (!muted.empty()) {
+    ROS_INFO("muted (%s): %s", muted.c_str(), alarm.message.c_str());
+  } else if (alarm.level == self_awareness::SelfAwareness::ERROR) {
+    ROS_ERROR("%s", alarm.message.c_str());
+  } else if (alarm.level == self_awareness::SelfAwareness::WARN) {
+    ROS_WARN("%s", alarm.message.c_str());
+  } else {
+    ROS_INFO("%s", alarm.message.c_str());
+  }
+}
+
+std::string MuteCalls::ofWhatStands() const {
+  const core::Mute* mute = mutes_.active();
+  return mute == nullptr ? "" : what(*mute) + " " + until(*mute) + ", by " + mute->by;
+}
+
+std::vector<std::string> MuteCalls::inWords() const {
+  std::vector<std::string> words;
+  for (const core::Mute& mute : mutes_.list()) {
+    words.push_back(what(mute) + " " + until(mute) + ", by " + mute.by + "; " + counts(mute));
+  }
+  return words;
+}
+
+bool MuteCalls::onMute(Call& call) {
+  Mute::Response& response = call.getResponse();
+  response.success = 0U;
+  if (!calls_.admit("mute", call.getCallerName(), steadyNow())) {
+    response.message = OperatorCalls::refusal("mute");
+    return true;
+  }
+  try {
+    core::Mute mute = muteOf(call.getRequest());
+    mute.by = ros1::printable(call.getCallerName(), ros1::kLongestName);
+    answer(mute, call.getRequest().duration, response);
+  } catch (const std::invalid_argument& error) {
+    response.message = error.what();
+  }
+  return true;
+}
+
+bool MuteCalls::onMaintenance(MaintenanceCall& call) {
+  Maintenance::Response& response = call.getResponse();
+  response.success = 0U;
+  if (!calls_.admit("maintenance", call.getCallerName(), steadyNow())) {
+    response.message = OperatorCalls::refusal("maintenance");
+    return true;
+  }
+  core::Mute all;
+  all.by = ros1::printable(call.getCallerName(), ros1::kLongestName);
+  answer(all, call.getRequest().duration, response);
+  return true;
+}
+
+template <typename Response>
+void MuteCalls::answer(const core::Mute& mute, double duration, Response& response) {
+  if (duration == 0) {
+    const std::optional<core::Mute> ended = mutes_.end(mute);
+    response.success = ended.has_value();
+    response.message = ended ? "told again: " + what(*ended) + "; " + counts(*ended)
+                             : what(mute) + " is not muted";
+  } else if (!(duration >= 1 && duration <= kLongest)) {
+    response.message = "duration: " + ros1::number(duration) + "; it must be from 1 to " +
+                       std::to_string(static_cast<int>(kLongest)) + " s, or 0 to take a mute back";
+  } else {
+    core::Mute timed = mute;
+    timed.until = steadyNow() + std::llround(duration * 1e9);
+    response.success = mutes_.add(timed);
+    response.message = response.success
+                           ? "not told " + until(timed) + ": " + what(timed)
+                           : std::to_string(core::Mutes::kMost) +
+                                 " mutes are there, which is the most; take one back, or name "
+                                 "several by a *";
+  }
+  ROS_INFO("%s", response.message.c_str());
+  on_change_();
+}
+
+}  // namespace self_awareness
