@@ -1,0 +1,121 @@
+"""`rosrun self_awareness top`: shows in a terminal what a monitor says, as it says it."""
+from __future__ import annotations
+
+import argparse
+import copy
+import sys
+import threading
+from typing import Any, Callable, Dict, Optional, Sequence
+
+import rosgraph
+import rospy
+from diagnostic_msgs.msg import DiagnosticArray
+from std_srvs.srv import Trigger
+
+from self_awareness.commands import cli
+from self_awareness.live_view.said import Said
+from self_awareness.msg import Incidents, SelfAwareness
+from self_awareness.srv import Mute
+
+_EPILOG = """\
+Keys: q quit, s sort by another column, f filter by a part of the name, p pause, m mute the
+selected component for 10 minutes, c clear the alarm, d write the flight recorder's file. 80
+columns are enough. It ends when the master is gone.
+"""
+
+_MASTER_EVERY_S = 1.0
+
+
+def main(argv: Optional[Sequence[str]] = None) -> int:
+    """Run the program; return its exit code (see cli.run)."""
+    return cli.run(_parser(), _top, rospy.myargv(sys.argv if argv is None else ['', *argv])[1:])
+
+
+def _top(arguments: argparse.Namespace) -> None:
+    try:
+        from self_awareness.live_view.screen import Screen
+    except ImportError as error:
+        raise ValueError('needs urwid, which is not installed: apt install python3-urwid'
+                         ) from error
+    if not sys.stdout.isatty() or not sys.stdin.isatty():
+        raise ValueError('needs a terminal; for programs there are ~status and ~incidents')
+    if not rosgraph.is_master_online():
+        raise ValueError(f'no master answers at {rosgraph.get_master_uri()}')
+    # rospy writes into the terminal otherwise, and takes Ctrl-C for itself.
+    rospy.init_node('self_awareness_top', anonymous=True, disable_rosout=True,
+                    disable_signals=True)
+    monitor = rospy.resolve_name(arguments.monitor)
+    listener = _Listener(monitor)
+    screen = Screen(listener.said, listener.is_over, _calls(monitor))
+    try:
+        screen.run()
+    finally:
+        rospy.signal_shutdown('')
+    if screen.why:
+        raise ValueError(screen.why)
+
+
+class _Listener:
+    """Keeps what a monitor says, and looks whether the master is there."""
+
+    def __init__(self, monitor: str) -> None:
+        self._lock = threading.Lock()
+        self._said = Said(monitor)
+        self._why = ''
+        for topic, kind, take in (
+                (f'{monitor}/status', SelfAwareness, self._said.on_status),
+                (f'{monitor}/incidents', Incidents, self._said.on_incidents),
+                ('/diagnostics', DiagnosticArray, self._said.on_diagnostics)):
+            rospy.Subscriber(topic, kind, self._locked(take))
+        threading.Thread(target=self._watch, daemon=True).start()
+
+    def said(self) -> Said:
+        """Return a copy of what was said so far."""
+        with self._lock:
+            return copy.deepcopy(self._said)
+
+    def is_over(self) -> str:
+        """Return why nothing more will come; empty: it goes on."""
+        return self._why
+
+    def _locked(self, take: Callable[[Any], None]) -> Callable[[Any], None]:
+        def on_message(message: Any) -> None:
+            with self._lock:
+                take(message)
+        return on_message
+
+    def _watch(self) -> None:
+        wait = threading.Event()
+        while not wait.wait(_MASTER_EVERY_S):
+            if not rosgraph.is_master_online():
+                self._why = 'the master is gone'
+                return
+
+
+def _calls(monitor: str) -> Dict[str, Callable[..., str]]:
+    def trigger(service: str) -> str:
+        return str(rospy.ServiceProxy(f'{monitor}/{service}', Trigger)().message)
+
+    def mute(component: str, duration: float) -> str:
+        return str(rospy.ServiceProxy(f'{monitor}/mute', Mute)(
+            component=component, duration=duration).message)
+
+    def answered(call: Callable[..., str]) -> Callable[..., str]:
+        def answer(*arguments: Any) -> str:
+            try:
+                return call(*arguments)
+            except (rospy.ServiceException, rospy.ROSException) as error:
+                return f'not done: {error}'
+        return answer
+
+    return {'c': answered(lambda: trigger('clear')), 'd': answered(lambda: trigger('dump')),
+            'm': answered(mute)}
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog='top', description=(__doc__ or '').split(': ', 1)[1].strip(), epilog=_EPILOG,
+        formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('monitor', nargs='?', default='/self_awareness', metavar='MONITOR',
+                        help='name of the monitor (default: /self_awareness)')
+    return parser

@@ -1,0 +1,1 @@
+"""What a monitor says, in a terminal: `top`."""

@@ -1,0 +1,79 @@
+"""What `top` shows, as lines of a width, each with a style."""
+from __future__ import annotations
+
+from typing import Any, List, Optional, Tuple
+
+from self_awareness import printable
+from self_awareness.live_view.said import LEVELS, Component, Said
+
+Line = Tuple[str, str]
+"""A style (one of LEVELS, head, faint, or none) and a text."""
+
+_MOST_INCIDENTS = 5
+_NAME = 28
+
+
+def head(said: Said, width: int, paused: bool) -> List[Line]:
+    """Return what is said of the whole."""
+    if not said.heard:
+        return [('head', 'waiting for the monitor ...')]
+    verdict = said.verdict
+    level = LEVELS[said.level]
+    lines = [(level, cut(f'{level}  {said.message}', width))]
+    if verdict is not None:
+        state = 'paused' if paused else 'settling' if verdict.settling else ''
+        lines.append(('', cut(f'score {said.score:5.2f} of its limit  '
+                              f'{said.curve(max(width - 40, 10))}  {state}', width)))
+    if said.itself:
+        lines.append(('faint', cut(f'monitor: {said.itself}', width)))
+    if said.not_watched:
+        lines.append(('faint', cut(f'not watched: {said.not_watched}', width)))
+    lines += [('WARN', cut(f'muted: {mute}', width)) for mute in said.mutes]
+    return lines
+
+
+def incidents(said: Said, width: int) -> List[Line]:
+    """Return the last incidents, the newest first; near misses are left out."""
+    shown = [each for each in reversed(said.incidents) if each.alarms][:_MOST_INCIDENTS]
+    lines = [('head', 'incidents' if shown else 'no incident')]
+    return lines + [_incident(each, width) for each in shown]
+
+
+def component_head(sort: str, pattern: str, width: int) -> Line:
+    """Return the head of the table of components."""
+    filtered = f', {printable(pattern)}' if pattern else ''
+    name = f'component (by {sort}{filtered})'
+    return 'head', cut(f'{name:<{_NAME}} {"events/s":>9} {"age":>8} {"found in":>9}  state', width)
+
+
+def component(of: Component, width: int) -> Line:
+    """Return the line of a component."""
+    name = of.name if len(of.name) <= _NAME else f'{of.name[:_NAME - 1]}…'
+    return (LEVELS[of.level] if of.level else '',
+            cut(f'{name:<{_NAME}} {_shown(of.rate):>9} {_shown(of.age, " s"):>8} '
+                f'{_found(of.found_after):>9}  {of.message}', width))
+
+
+def cut(text: str, width: int) -> str:
+    """Return a text that fits, without what controls a terminal: names come from strangers."""
+    text = printable(text)
+    return text if len(text) <= width else f'{text[:width - 1]}…'
+
+
+def _incident(each: Any, width: int) -> Line:
+    more = [*each.together, *each.victims, *each.others]
+    besides = f'; and {", ".join(more[:2])}' + (' ...' if len(more) > 2 else '') if more else ''
+    text = (f'{"over" if each.over else "open"}  {each.component or "nobody"} {each.kind}, '
+            f'raised {each.alarms} times{besides}  ({each.id})')
+    return 'faint' if each.over else 'ERROR', cut(f'  {text}', width)
+
+
+def _shown(value: Optional[float], unit: str = '') -> str:
+    return '-' if value is None else f'{value:.1f}{unit}'
+
+
+def _found(text: str) -> str:
+    try:
+        return f'{float(text):.1f} s'
+    except ValueError:
+        return text[:9] or '-'

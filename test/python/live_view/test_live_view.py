@@ -1,0 +1,107 @@
+"""What `top` shows, without a robot and a terminal."""
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+from typing import Any, List
+
+import pytest
+
+from self_awareness.live_view import lines
+from self_awareness.live_view.said import SORTS, Said
+
+
+def status(name: str, level: int = 0, message: str = 'heard', **values: str) -> Any:
+    return SimpleNamespace(name=name, level=level, message=message, values=[
+        SimpleNamespace(key=key, value=value) for key, value in values.items()])
+
+
+def of_component(name: str, level: int, rate: str, age: str) -> Any:
+    return status(f'watch: {name}', level, 'heard' if level == 0 else '/t: silent for 1.2 s', **{
+        'events a second': rate, 'last heard [s ago]': age, 'death found after [s]': '0.4'})
+
+
+def verdict(score: float, threshold: float = -1.0, settling: bool = False) -> Any:
+    return SimpleNamespace(score=score, threshold=threshold, settling=settling)
+
+
+def incident(component: str, alarms: int = 1, over: bool = False, **lists: List[str]) -> Any:
+    return SimpleNamespace(**{**dict(
+        id=7, component=component, kind='died', alarms=alarms, over=over, together=[],
+        victims=[], others=[]), **lists})
+
+
+@pytest.fixture()
+def said() -> Said:
+    of = Said('/watch')
+    of.on_status(verdict(-0.5))
+    of.on_diagnostics(SimpleNamespace(status=[
+        status('watch: communication', 2, 'abnormal communication', **{'not watched': '/rare'}),
+        status('watch: monitor', 0, 'listening', **{
+            'events a second': '120', 'share of a core spent': '0.02',
+            'mute 1': '/noisy until 2026-11-23 15:00:00 UTC, by /rqt'}),
+        of_component('/base', 0, '10.02', '0.05'), of_component('/player', 2, '0', '3.1'),
+        of_component('/camera', 1, '29.5', '0.4'),
+        status('another: /laser', 2, 'of another monitor')]))
+    of.on_incidents(SimpleNamespace(incidents=[
+        incident('/old', over=True), incident('/quiet', alarms=0),
+        incident('/player', 7, victims=['/slam', '/navigation', '/speech'])]))
+    return of
+
+
+def test_components_are_sorted_and_filtered(said: Said) -> None:
+    def names(sort: str, pattern: str = '') -> List[str]:
+        return [each.name for each in said.components(sort, pattern)]
+
+    assert names('level') == ['/player', '/camera', '/base'], 'the worst first'
+    assert names('name') == ['/base', '/camera', '/player']
+    assert names('rate') == ['/camera', '/base', '/player']
+    assert names('age') == ['/player', '/camera', '/base']
+    assert names('name', 'a*r') == [] and names('name', '/c*a') == ['/camera']
+    assert names('name', 'as') == ['/base']
+    assert {each for sort in SORTS for each in names(sort)} == {'/base', '/camera', '/player'}
+
+
+def test_who_was_never_heard_comes_first_by_age() -> None:
+    of = Said('/watch')
+    of.on_diagnostics(SimpleNamespace(status=[of_component('/a', 0, '1', '9'),
+                                              status('watch: /b', message='not heard yet')]))
+    first, second = of.components('age', '')
+    assert (first.name, first.age, second.age) == ('/b', None, 9.0)
+
+
+def test_the_curve_is_in_units_of_the_limit(said: Said) -> None:
+    of = Said('/watch')
+    for score in (0.0, -0.5, -1.0, -7.0, math.nan):
+        of.on_status(verdict(score))
+    of.on_status(verdict(math.nan, math.nan))
+    assert of.curve(10) == '▁▄██▁▁' and of.curve(2) == '▁▁'
+    assert said.score == pytest.approx(0.5)
+
+
+def test_all_is_in_80_columns(said: Said) -> None:
+    shown = [*lines.head(said, 80, False), *lines.incidents(said, 80),
+             lines.component_head('level', '', 80),
+             *(lines.component(each, 80) for each in said.components('level', ''))]
+    texts = [text for _, text in shown]
+    assert max(map(len, texts)) <= 80
+    page = '\n'.join(texts)
+    for text in ('ERROR  abnormal communication', 'not watched: /rare', 'muted: /noisy until',
+                 'open  /player died, raised 7 times; and /slam, /navigation ...',
+                 'over  /old died', 'listening; 120 events/s, 0.02 cores'):
+        assert text in page
+    assert '/quiet' not in page and '/laser' not in page
+    assert ('ERROR', 'WARN') == tuple(style for style, text in shown
+                                      if text.startswith(('/player ', '/camera ')))
+
+
+def test_names_do_not_control_the_terminal(said: Said) -> None:
+    said.on_diagnostics(SimpleNamespace(status=[of_component('/\x1b[2J', 0, '1', '1')]))
+    assert not [each for each in said.components('name', '')
+                if '\x1b' in lines.component(each, 80)[1]]
+
+
+def test_before_the_first_word() -> None:
+    (style, text), = lines.head(Said('/watch'), 80, False)
+    assert text.startswith('waiting for the monitor')
+    assert lines.incidents(Said('/watch'), 80) == [('head', 'no incident')]
