@@ -260,7 +260,9 @@ TEST(Model, WhatWasLearnedJudgesAnotherRecording) {
     detector.add(event);
   }
   detector.finish();
-  ASSERT_EQ(found.size(), 1U);
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_EQ(found[1].id, found[0].id);
+  EXPECT_EQ(found[1].kind, Kind::kAllSilent) << "who answers it falls silent, too";
   EXPECT_EQ(found[0].culprit, "/a");
   EXPECT_EQ(found[0].kind, Kind::kDied);
   EXPECT_GT(found[0].begin, death);
