@@ -18,12 +18,13 @@
 namespace self_awareness::python {
 namespace {
 
-/// A component, whether it alone would be abnormal, and since when it was silent [ns].
-using NamedState = std::tuple<std::string, bool, std::optional<std::int64_t>>;
+/// A component, whether it alone would be abnormal, since when it was silent [ns], and whether it
+/// is a stranger.
+using NamedState = std::tuple<std::string, bool, std::optional<std::int64_t>, bool>;
 
 core::Occurrence occurrenceOf(std::uint64_t id, bool is_alarm, std::int64_t begin,
                               std::int64_t end, const std::string& kind, std::string culprit,
-                              std::vector<NamedState> named) {
+                              std::vector<NamedState> named, std::vector<std::string> hosts) {
   const std::optional<core::Kind> known = core::kindOf(kind);
   if (!known) {
     throw std::invalid_argument(kind + " is no kind of an alarm");
@@ -36,8 +37,9 @@ core::Occurrence occurrenceOf(std::uint64_t id, bool is_alarm, std::int64_t begi
   occurrence.over = true;
   occurrence.kind = *known;
   occurrence.culprit = std::move(culprit);
-  for (auto& [component, abnormal, silent_since] : named) {
-    occurrence.named.push_back({std::move(component), abnormal, begin, silent_since});
+  occurrence.hosts = std::move(hosts);
+  for (auto& [component, abnormal, silent_since, stranger] : named) {
+    occurrence.named.push_back({std::move(component), abnormal, begin, silent_since, stranger});
   }
   return occurrence;
 }
@@ -79,6 +81,7 @@ void bindKept(py::module& m) {
       .def_readonly("together", &Kept::together, "as Incident.together")
       .def_readonly("victims", &Kept::victims, "as Incident.victims")
       .def_readonly("others", &Kept::others, "as Incident.others")
+      .def_readonly("hosts", &Kept::hosts, "computers that fell silent as a whole")
       .def_property_readonly("opened", stampOf(&Kept::opened), "[ns]")
       .def_property_readonly("grown", stampOf(&Kept::grown), "[ns]")
       .def_property_readonly("ended", stampOf(&Kept::ended), "[ns]; so far if it is open")
@@ -101,10 +104,11 @@ void bindIncidents(py::module& m) {
   py::class_<core::Occurrence>(
       m, "Occurrence", "An alarm or a suspicion of a recording, as incidents are made of them.")
       .def(py::init(&occurrenceOf), py::arg("id"), py::arg("is_alarm"), py::arg("begin"),
-           py::arg("end"), py::arg("kind"), py::arg("culprit"), py::arg("named"),
+           py::arg("end"), py::arg("kind"), py::arg("culprit"), py::arg("named"), py::arg("hosts"),
            "Times in ns; named: of each suspect the component, whether it alone would be\n"
-           "abnormal, and since when it was silent; None: it was not. ValueError: there is no\n"
-           "such kind.");
+           "abnormal, since when it was silent (None: it was not), and whether training never\n"
+           "heard it; hosts: computers that fell silent as a whole. ValueError: there is no such\n"
+           "kind.");
   py::class_<Incident>(m, "Incident", "All that one cause has done.")
       .def_readonly("main", &Incident::main,
                     "id of the longest one that blames the cause, alarms first")

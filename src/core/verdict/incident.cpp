@@ -17,11 +17,12 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-/// Whether two are about the same: the kind tells, where nobody is to blame.
+/// Whether two are about the same: kind and computers tell, where nobody is to blame.
 template <typename First, typename Second>
 bool sameCause(const First& first, const std::string& first_cause, const Second& second,
                const std::string& second_cause) {
-  return first_cause == second_cause && (!first_cause.empty() || first.kind == second.kind);
+  return first_cause == second_cause &&
+         (!first_cause.empty() || (first.kind == second.kind && first.hosts == second.hosts));
 }
 
 std::optional<std::int64_t> silentSince(const Suspect& suspect) {
@@ -34,6 +35,9 @@ std::optional<std::int64_t> silentSince(const Suspect& suspect) {
 }
 
 bool atOnce(const Occurrence::Named& first, const Occurrence::Named& other, bool graph_is_known) {
+  if (first.stranger) {
+    return other.stranger;
+  }
   if (!first.silent_since) {  // then, only the graph tells victims
     return graph_is_known && other.abnormal;
   }
@@ -104,6 +108,7 @@ Incident begin(const Occurrence& occurrence) {
   incident.level = occurrence.level;
   incident.kind = occurrence.kind;
   incident.cause = occurrence.culprit;
+  incident.hosts = occurrence.hosts;
   incident.reason = occurrence.reason;
   incident.opened = incident.grown = occurrence.begin;
   incident.main_duration = occurrence.end - occurrence.begin;
@@ -167,10 +172,13 @@ Occurrence occurrenceOf(const Alarm& alarm) {
   occurrence.kind = alarm.kind;
   occurrence.culprit = alarm.culprit;
   occurrence.reason = alarm.reason;
+  if (alarm.silent) {
+    occurrence.hosts = alarm.silent->hosts;
+  }
   for (const std::vector<Suspect>* suspects : {&alarm.suspects, &alarm.later}) {
     for (const Suspect& suspect : *suspects) {
-      occurrence.named.push_back(
-          {suspect.component, suspect.abnormal, suspect.since, silentSince(suspect)});
+      occurrence.named.push_back({suspect.component, suspect.abnormal, suspect.since,
+                                  silentSince(suspect), suspect.reason.kind == Kind::kStranger});
     }
   }
   return occurrence;

@@ -40,6 +40,7 @@ void checkContent(const self_awareness::Incidents& incidents) {
     checkNames(each.together);
     checkNames(each.victims);
     checkNames(each.others);
+    checkNames(each.hosts);
   }
 }
 
@@ -57,6 +58,7 @@ self_awareness::Incident toMessage(const core::Incident& incident) {
   message.together = incident.together;
   message.victims = incident.victims;
   message.others = incident.others;
+  message.hosts = incident.hosts;
   message.opened = toRosTime(incident.opened);
   message.grown = toRosTime(incident.grown);
   message.ended = toRosTime(incident.end);
@@ -78,6 +80,7 @@ core::Incident fromMessage(const self_awareness::Incident& message) {
   incident.together = message.together;
   incident.victims = message.victims;
   incident.others = message.others;
+  incident.hosts = message.hosts;
   incident.opened = fromRosTime(message.opened);
   incident.grown = fromRosTime(message.grown);
   incident.end = fromRosTime(message.ended);

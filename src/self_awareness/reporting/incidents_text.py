@@ -47,6 +47,7 @@ def as_values(incident: KeptIncident) -> Dict[str, Any]:
         'together': incident.together,
         'victims': incident.victims,
         'others': incident.others,
+        'hosts': incident.hosts,
         'opened_ns': incident.opened,
         'grown_ns': incident.grown,
         'ended_ns': incident.ended,

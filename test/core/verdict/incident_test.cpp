@@ -72,6 +72,29 @@ TEST_F(IncidentsTest, AnAlarmOpensAnIncidentThatGrowsAndIsOver) {
   EXPECT_EQ(one().alarms, 1U);
 }
 
+TEST_F(IncidentsTest, ComputersThatFallSilentAreCausesOfTheirOwn) {
+  for (const auto& [begin, host] :
+       {std::pair(10, "base"), std::pair(40, "arm"), std::pair(70, "base")}) {
+    Occurrence silent = alarm(begin, begin + 5, {});
+    silent.kind = Kind::kAllSilent;
+    silent.hosts = {host};
+    add(silent);
+  }
+  ASSERT_EQ(list().size(), 2U);
+  EXPECT_EQ(list().front().hosts, Names{"base"});
+  EXPECT_EQ(list().front().alarms, 2U);
+  EXPECT_EQ(list().back().hosts, Names{"arm"});
+}
+
+TEST_F(IncidentsTest, StrangersComeTogetherWithStrangersOnly) {
+  graph_.connect("/player", "/scan", "/slam");
+  Occurrence flood = alarm(10, 15, {"/new", "/newer", "/camera"});
+  flood.named[0].stranger = flood.named[1].stranger = true;
+  add(flood);
+  EXPECT_EQ(one().together, Names{"/newer"});
+  EXPECT_EQ(one().others, Names{"/camera"});
+}
+
 TEST_F(IncidentsTest, SevenRestartsInTenMinutesAreOne) {
   for (int i = 0; i < 7; ++i) {
     add(alarm(80 * i, 80 * i + 5, {"/player"}));

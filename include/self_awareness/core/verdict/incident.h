@@ -22,6 +22,7 @@ struct Occurrence {
     bool abnormal = false;                     ///< it alone would be abnormal
     std::int64_t since = 0;                    ///< when it was named [ns]
     std::optional<std::int64_t> silent_since;  ///< [ns]; none: it was not silent, or not known
+    bool stranger = false;                     ///< training never heard it
   };
 
   std::uint64_t id = 0;
@@ -33,6 +34,7 @@ struct Occurrence {
   std::string culprit;  ///< component; empty: there is none
   std::string reason;   ///< why it is one, in words
   std::vector<Named> named;
+  std::vector<std::string> hosts;  ///< computers that fell silent as a whole
 };
 
 /// An alarm as its own reasons tell it.
@@ -55,6 +57,7 @@ struct Incident {
   std::vector<std::string> together;  ///< failed at once with it, and do not need its messages
   std::vector<std::string> victims;   ///< are named, and need messages of these, by the graph
   std::vector<std::string> others;    ///< are named besides
+  std::vector<std::string> hosts;     ///< that fell silent as a whole: they are the cause
   std::int64_t opened = 0;            ///< begin of the one that `id` is of [ns]
   std::int64_t grown = 0;  ///< when it was raised last, or named a further component [ns]
   std::int64_t end = 0;    ///< of the last one, so far if it is not over [ns]

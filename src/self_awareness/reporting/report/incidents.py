@@ -101,12 +101,15 @@ def as_values(incident: Incident) -> Dict[str, Any]:
 
 def _occurrence(number: int, interval: Interval) -> Occurrence:
     """Return an interval as the core folds it; what the recording shows of silences is known."""
+    silent = interval.of.silent
     return Occurrence(
         number, interval.level == ALARM, nanoseconds(interval.start), nanoseconds(interval.end),
         interval.of.kind, interval.of.culprit,
         [(each.component, each.abnormal,
-          None if each.silence is None else nanoseconds(each.silence.begin))
-         for each in interval.named])
+          None if each.silence is None else nanoseconds(each.silence.begin),
+          each.of.reason.kind == 'stranger')
+         for each in interval.named],
+        [] if silent is None else silent.hosts)
 
 
 def _incident(intervals: List[Interval], main: Interval, together: List[str],
