@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import math
 from statistics import median
-from typing import Any, Dict, List, Optional, Sequence, Tuple
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
 from self_awareness import EvidenceModel, TrainedModel
 from self_awareness.calibration import confidence
@@ -52,7 +52,7 @@ def print_coverage(trained: TrainedModel, coverage: Sequence[Dict[str, Any]]) ->
         print(line)
 
 
-def print_budgets(by_budget: Dict[float, Sequence[Dict[str, Any]]], chosen: float) -> None:
+def print_budgets(by_budget: Mapping[float, Sequence[Dict[str, Any]]], chosen: float) -> None:
     """Print whose death is found how soon with a smaller budget, and with a larger one.
 
     Args:

@@ -6,7 +6,7 @@ import math
 import os
 import re
 from pathlib import Path
-from typing import Callable, List, Tuple
+from typing import Any, Callable, Dict, List, Tuple
 
 import pytest
 from conftest import jittery_robot
@@ -83,10 +83,11 @@ def test_what_another_budget_buys_is_told(trained: str, long_bags: Bags, run) ->
 
 
 def test_whose_death_another_budget_finds_sooner_is_a_table(capsys) -> None:
-    found = {budget: [{'component': '/joy', 'death_found_after': after},
-                      {'component': '/imu', 'death_found_after': 0.5},
-                      {'component': '/new', 'death_found_after': None}]
-             for budget, after in ((0.05, 900.0), (0.5, 450.0), (5.0, 225.0))}
+    def coverage(of_joy: float) -> List[Dict[str, Any]]:
+        return [{'component': component, 'death_found_after': after}
+                for component, after in (('/joy', of_joy), ('/imu', 0.5), ('/new', None))]
+
+    found = {0.05: coverage(900.0), 0.5: coverage(450.0), 5.0: coverage(225.0)}
     evidence_report.print_budgets(found, 0.5)
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].startswith('--budget: deaths found with 0.05, 0.5, 5 false alarms an hour')

@@ -8,7 +8,7 @@ import subprocess
 import sys
 import threading
 from pathlib import Path
-from typing import Callable, List, Tuple
+from typing import Any, Callable, List, Tuple
 from xmlrpc.server import SimpleXMLRPCServer
 
 import pytest
@@ -187,9 +187,12 @@ def test_only_the_master_is_asked_for_the_graph(robot_bags: Bags, tmp_path, monk
     class Master:
         """Answers all calls, and remembers them."""
 
-        def _dispatch(self, method: str, _: Tuple) -> Tuple:
+        def _dispatch(self, method: str, arguments: Tuple) -> Any:
             asked.append(method)
-            return (1, '', [[['/scan', ['/laser']]], [['/scan', ['/slam']]], []])
+            if method == 'system.multicall':  # looks up nodes
+                return [[(1, '', 'http://base:1234/')] for _ in arguments[0]]
+            state = [[['/scan', ['/laser']]], [['/scan', ['/slam']]], []]
+            return (1, '', {'getSystemState': state, 'getTopicTypes': []}[method])
 
     with SimpleXMLRPCServer(('127.0.0.1', 0), logRequests=False) as server:
         server.register_instance(Master())
@@ -197,7 +200,9 @@ def test_only_the_master_is_asked_for_the_graph(robot_bags: Bags, tmp_path, monk
         monkeypatch.setenv('ROS_MASTER_URI', f'http://127.0.0.1:{server.server_address[1]}')
         assert train.main([robot_bags[0], '--graph', '-o', str(tmp_path / 'm')]) == 0
         server.shutdown()
-    assert asked == ['getSystemState']  # neither registered, nor asked any node
+    # It neither registered, nor asked any node.
+    assert asked == ['getSystemState', 'getTopicTypes', 'system.multicall']
+    assert TrainedModel.load(str(tmp_path / 'm')).hosts == {'/laser': 'base'}
 
 
 @pytest.mark.parametrize('program', [['train'], ['calibrate', '--model', 'm', '--normal']])
@@ -219,6 +224,8 @@ def test_the_graph_is_who_subscribes_to_whom(robot_bags: Bags, tmp_path, monkeyp
     state = [[['/scan', ['/laser']], ['/map', ['/slam_4242_1600000000000']], ['/charge', ['/b']]],
              [['/scan', ['/slam_4242_1600000000000', '/log']], ['/map', ['/log']]], []]
     monkeypatch.setattr('rosgraph.Master.getSystemState', lambda _: state)
+    monkeypatch.setattr('rosgraph.Master.getTopicTypes', lambda _: [])
+    monkeypatch.setattr('self_awareness.training.live_graph._hosts', lambda *_: {})
     output = str(tmp_path / 'm')
     assert train.main([robot_bags[0], '--graph', '-o', output]) == 0
     slam = stable_name('/slam_4242_1600000000000')
