@@ -258,21 +258,29 @@ class ReferenceLimits:
 
     def _longest_gaps(self, kind: str) -> List[float]:
         """Return the longest gaps of the recordings of the training, and of parts of others."""
-        pause = 0 if self._is_mostly_silent(kind) else START_TIME
+        silent = self._is_mostly_silent(kind)
+        pause = 0 if silent else START_TIME
+        fastest = 0 if silent else self._fastest_first(kind)
         longest: List[float] = []
         for seen in self._training():
-            first = seen.firsts[kind] if seen.events[kind] else seen.end - seen.start
+            first = (seen.firsts[kind] if seen.events[kind] else seen.end - seen.start) - fastest
             longest.append(float(max(seen.longest_gaps[kind] if seen.events[kind] else 0,
                                      first if first > pause else 0)))
         for number, recording in enumerate(self._recordings):
             if not recording.trained_on:
                 of_parts = self._longest_gaps_of_parts(number, kind)
-                begin = recording.events[0][0]
+                begin = recording.events[0][0] + fastest
                 end = next((t for t, other in recording.events if other == kind),
                            recording.events[-1][0])
                 of_parts[0] = max(of_parts[0], end - begin if end - begin > pause else 0)
                 longest += of_parts
         return [gap + self._window if gap else 0.0 for gap in longest]
+
+    def _fastest_first(self, kind: str) -> int:
+        return min([seen.firsts[kind] for seen in self._training() if seen.events[kind]]
+                   + [t - recording.events[0][0] for recording in self._recordings
+                      for t, other in recording.events
+                      if other == kind and not recording.trained_on])
 
     def _is_mostly_silent(self, kind: str) -> bool:
         both = self._model.both

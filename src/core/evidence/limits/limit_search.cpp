@@ -150,9 +150,12 @@ bool LimitSearch::isMostlySilent(EventId id) const {
 
 std::vector<double> LimitSearch::gapsOf(EventId id, bool mostly_silent) const {
   std::vector<double> longest;
+  // Who always comes as late only takes so long to start.
+  const std::int64_t fastest = mostly_silent ? 0 : fastestFirst(id);
   const std::int64_t pause = mostly_silent ? 0 : toNanoseconds(tuning_.start_time);
-  const auto longestOf = [pause](std::int64_t gap, std::int64_t first) {
-    return static_cast<double>(first > pause ? std::max(gap, first) : gap);
+  const auto longestOf = [=](std::int64_t gap, std::int64_t first) {
+    const std::int64_t late = first - fastest;
+    return static_cast<double>(late > pause ? std::max(gap, late) : gap);
   };
   for (const Statistics::Recording& recording : model_.statistics().recordings()) {
     const bool heard = id < recording.events.size() && recording.events[id] > 0;
@@ -171,6 +174,21 @@ std::vector<double> LimitSearch::gapsOf(EventId id, bool mostly_silent) const {
     gap += gap > 0 ? window() : 0;
   }
   return longest;
+}
+
+std::int64_t LimitSearch::fastestFirst(EventId id) const {
+  std::int64_t fastest = kLongestAge;
+  for (const Statistics::Recording& recording : model_.statistics().recordings()) {
+    if (id < recording.events.size() && recording.events[id] > 0) {
+      fastest = std::min(fastest, recording.firsts[id]);
+    }
+  }
+  for (const GapPart& part : gap_parts_) {
+    if (!part.of->firsts.empty() && part.of->firsts[id] >= 0) {
+      fastest = std::min(fastest, part.of->firsts[id]);
+    }
+  }
+  return fastest;
 }
 
 LimitSearch::Kind LimitSearch::kindOfGaps(const Seen& seen) const {

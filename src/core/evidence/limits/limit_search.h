@@ -54,9 +54,12 @@ class LimitSearch {
   /// Whether it is silent for more than half of the time of the recordings that it is heard in:
   /// when it does not begin at once, that is a pause, and no start-up.
   bool isMostlySilent(EventId id) const;
-  /// Longest gaps by part [ns], as long as windows can tell them. Also the times to its first
-  /// events where these are no start-up, of recordings that never heard it all of their time.
+  /// Longest gaps by part [ns], as long as windows can tell them. Also by how much later than in
+  /// the fastest recording its first event came, where that is no start-up; of recordings that
+  /// never heard it, it is their end.
   std::vector<double> gapsOf(EventId id, bool mostly_silent) const;
+  /// Shortest time to the first event of a type, of all recordings that heard it [ns].
+  std::int64_t fastestFirst(EventId id) const;
   Kind kindOfGaps(const Seen& seen) const;
   /// Finds the limits of a pool.
   /// @param share of the budget

@@ -186,6 +186,10 @@ TEST_F(LimitFinderTest, WhoStaysAwayInARecordingOrComesAMinuteLatePauses) {
     EXPECT_GT(found, model_->overdue(kA, least * kSecond)) << from;
     EXPECT_LT(found, model_->overdue(kA, most * kSecond)) << from;
   }
+  // Who always comes so late only takes long to start.
+  model_ = modelOf(driven(70 * kSecond), later(driven(75 * kSecond)));
+  EXPECT_LT(limit(limitsOf(model_, later(driven(80 * kSecond), 2 * kStart)), kOverdue, kA, kA),
+            model_->overdue(kA, kSecond));
   model_ = modelOf(driven(0), later(driven(200 * kSecond)));
   EXPECT_GT(limit(limitsOf(model_, later(driven(0), 2 * kStart)), kOverdue, kA, kA),
             model_->overdue(kA, 199 * kSecond));
