@@ -132,8 +132,12 @@ class LearnTest(unittest.TestCase):
 
     def test_4_parameters_that_its_monitor_cannot_use_are_told_once(self) -> None:
         with open(self.model, 'w') as file:
-            file.write('no model')
-        self.check_told_once('not a model', 'respawn:=true')
+            file.write('')  # there is a model: this is the monitor at once
+        config = self.model + '.yaml'
+        with open(config, 'w') as file:
+            file.write('alarm_windows: 9\nalarm_of: 5\n')
+        self.check_told_once('it must be a whole number from 1 to 5', 'respawn:=true',
+                             'config:=' + config)
 
 
 if __name__ == '__main__':

@@ -240,7 +240,8 @@ class MasterTest(unittest.TestCase):
         for hangs in (True, False):
             master = self.start_master()
             nodes = [self.start_monitor(), self.start_recorder()]
-            learner = self.start('rosrun', 'self_awareness', 'learn', '__name:=learner',
+            learner = self.start('rosrun', 'self_awareness', 'learn', '--subscribe', 'all',
+                                 '__name:=learner',
                                  '_model:=' + os.path.join(self.folder, 'learned'))
             listener = self.start_listener()
             self.start_component('/talker')
