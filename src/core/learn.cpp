@@ -4,6 +4,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "self_awareness/core/evidence/watch/machine_stalls.h"
+
 namespace self_awareness::core {
 namespace {
 
@@ -24,8 +26,18 @@ RecordingInfo infoOf(const Recording& recording) {
   info.end = recording.events.back().stamp;
   info.events = recording.events.size();
   info.robot_start = recording.robot_start;
+  info.robot = recording.robot;
   info.fingerprint = *recording.fingerprint;
   return info;
+}
+
+std::vector<evidence::MachineStall> stallsOf(const std::vector<Event>& events,
+                                             const evidence::Tuning& tuning) {
+  evidence::MachineStalls stalls(tuning);
+  for (const Event& event : events) {
+    stalls.add(event.stamp);
+  }
+  return stalls.find();
 }
 
 /// Index of the first event that is not before a time [ns]; their number if all are.
@@ -73,7 +85,7 @@ std::unique_ptr<Calibrator> Calibrator::part() const {
 
 void Calibrator::judge(const Recording& recording, std::size_t begin, std::size_t end,
                        std::optional<std::size_t> half) {
-  finder_.startRecording(models_->judging(half), recording.robot_start);
+  finder_.startRecording(models_->judging(half), recording.robot_start, recording.robot);
   forEachEvent(
       recording, begin, end, [this](const Event& event) { finder_.add(event); },
       [this] { finder_.restart(); });
@@ -129,8 +141,9 @@ void Learner::add(Recording recording) {
   if (!recording.fingerprint) {
     recording.fingerprint = recordings_.size();
   }
-  training_.startRecording(
-      {*recording.fingerprint, middleOf(recording.events), std::nullopt, recording.robot_start});
+  training_.startRecording({*recording.fingerprint, middleOf(recording.events), std::nullopt,
+                            recording.robot_start, recording.robot,
+                            stallsOf(recording.events, parameters_.tuning)});
   forEachEvent(
       recording, 0, recording.events.size(), [this](const Event& event) { training_.add(event); },
       [this] { training_.onClockStep(); });

@@ -3,10 +3,17 @@
 #include <stdexcept>
 #include <utility>
 
+#include "core/evidence/count/starts.h"
 #include "core/evidence/watch/silent_pairs.h"
 #include "self_awareness/core/evidence/judge.h"
 
 namespace self_awareness::core {
+namespace {
+
+// What all recordings of one start have, somebody may have started by hand.
+constexpr std::size_t kFewestStarts = 2;
+
+}  // namespace
 
 void Model::requireDelays() const {
   if (!hasDelays()) {
@@ -71,6 +78,27 @@ std::set<SourceGraph::Publication> Model::unheard() const {
     unheard.erase({type.source, type.scope});
   }
   return unheard;
+}
+
+std::set<SourceGraph::Subscription> Model::expectedSubscriptions() const {
+  std::vector<evidence::Span> spans;
+  for (const RecordingInfo& recording : recordings) {
+    spans.push_back({recording.start, recording.end, recording.robot_start});
+  }
+  std::set<SourceGraph::Subscription> expected;
+  if (evidence::numberOfStarts(spans, toNanoseconds(tuning.start_time)) < kFewestStarts) {
+    return expected;
+  }
+  std::set<std::string> components;
+  for (const EventType& type : vocabulary().types()) {
+    components.insert(type.source);
+  }
+  for (const auto& [subscription, in_recordings] : graph.lasting()) {
+    if (in_recordings == recordings.size() && components.count(subscription.first) > 0) {
+      expected.insert(subscription);
+    }
+  }
+  return expected;
 }
 
 void Model::watch() {

@@ -48,7 +48,8 @@ EventId Training::intern(const EventType& type) {
 void Training::startRecording(const Recording& recording) {
   requireOpen();
   trainers_->paper.startRecording();
-  trainers_->evidence.startRecording(recording.since, recording.robot_start);
+  trainers_->evidence.startRecording(
+      {recording.since, recording.robot_start, recording.robot, recording.stalls});
   const std::size_t half = evidence::halfOf(recording.fingerprint);
   if (!started_) {
     counts_.only_half = half;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "name_patterns.h"
+#include "name_renames.h"
 #include "self_awareness/ros/siblings.h"
 #include "self_awareness/ros/stable_name.h"
 #include "text.h"
@@ -54,6 +55,7 @@ EncodingRules EncodingRules::defaults() {
 }
 
 void EncodingRules::validate() const {
+  NameRenames{renames};
   for (const auto* patterns :
        {&include_topics, &exclude_topics, &include_sources, &exclude_sources}) {
     NamePatterns{*patterns};
@@ -67,9 +69,13 @@ void EncodingRules::validate() const {
   }
 }
 
+bool operator==(const Rename& a, const Rename& b) {
+  return a.pattern == b.pattern && a.name == b.name;
+}
+
 bool operator==(const EncodingRules& a, const EncodingRules& b) {
   const auto fields = [](const EncodingRules& rules) {
-    return std::tie(rules.source, rules.include_topics, rules.exclude_topics,
+    return std::tie(rules.source, rules.renames, rules.include_topics, rules.exclude_topics,
                     rules.include_sources, rules.exclude_sources, rules.type_fields);
   };
   return fields(a) == fields(b);
@@ -163,26 +169,47 @@ core::EventId ConnectionEncoder::id(const std::uint8_t* data, std::size_t size) 
 Encoder::Encoder(const EncodingRules& rules, EventIds ids)
     : rules_(rules),
       ids_(std::move(ids)),
+      renames_(std::make_shared<const NameRenames>(rules.renames)),
       include_topics_(std::make_shared<const NamePatterns>(rules.include_topics)),
       exclude_topics_(std::make_shared<const NamePatterns>(rules.exclude_topics)),
       include_sources_(std::make_shared<const NamePatterns>(rules.include_sources)),
       exclude_sources_(std::make_shared<const NamePatterns>(rules.exclude_sources)) {}
 
+std::string Encoder::sourceOf(const std::string& node) const {
+  return renames_->apply(stableName(node));
+}
+
+std::string Encoder::scopeOf(const std::string& topic) const {
+  return renames_->apply(topic);
+}
+
+std::optional<core::EventType> Encoder::renamed(const core::EventType& type) const {
+  if (!includesTopic(type.scope) || !includesSource(type.source)) {
+    return std::nullopt;
+  }
+  return core::EventType{tellsSources() ? renames_->apply(type.source) : type.source,
+                         scopeOf(type.scope), type.type};
+}
+
 bool Encoder::includesTopic(const std::string& topic) const {
-  return isLegalTopic(topic) && (include_topics_->empty() || include_topics_->match(topic)) &&
-         !exclude_topics_->match(topic);
+  const std::string scope = scopeOf(topic);
+  return isLegalTopic(topic) && isLegalTopic(scope) &&
+         (include_topics_->empty() || include_topics_->match(scope)) &&
+         !exclude_topics_->match(scope);
 }
 
 bool Encoder::includesSource(const std::string& source) const {
   if (rules_.source == EncodingRules::Source::kNone) {
     return true;
   }
-  return (include_sources_->empty() || include_sources_->match(source)) &&
-         !exclude_sources_->match(source);
+  const std::string name = renames_->apply(source);
+  return (include_sources_->empty() || include_sources_->match(name)) &&
+         !exclude_sources_->match(name);
 }
 
 bool Encoder::listens(const std::string& source) const {
-  return !exclude_sources_->match(source) && !isRostopic(source);
+  const std::string name = renames_->apply(source);
+  return !exclude_sources_->match(name) && !isRostopic(name);
 }
 
 std::optional<ConnectionEncoder> Encoder::connect(const Connection& connection) const {
@@ -193,11 +220,11 @@ std::optional<ConnectionEncoder> Encoder::connect(const Connection& connection) 
   }
   ConnectionEncoder encoder;
   encoder.ids_ = ids_;
-  encoder.type_.scope = connection.topic;
+  encoder.type_.scope = scopeOf(connection.topic);
   encoder.type_.type = connection.datatype;
   encoder.skip_next_ = connection.latching && !isRostopic(source);
   if (rules_.source == EncodingRules::Source::kCallerId) {
-    encoder.type_.source = source;
+    encoder.type_.source = renames_->apply(source);
   }
   const auto field = rules_.type_fields.find(connection.datatype);
   if (field != rules_.type_fields.end()) {

@@ -9,6 +9,11 @@ self_awareness::Encoding toMessage(const EncodingRules& rules) {
   message.source = rules.source == EncodingRules::Source::kNone
                        ? self_awareness::Encoding::SOURCE_NONE
                        : self_awareness::Encoding::SOURCE_CALLERID;
+  for (const Rename& rename : rules.renames) {
+    self_awareness::Rename& rule = message.renames.emplace_back();
+    rule.pattern = rename.pattern;
+    rule.name = rename.name;
+  }
   message.include_topics = rules.include_topics;
   message.exclude_topics = rules.exclude_topics;
   message.include_sources = rules.include_sources;
@@ -29,6 +34,9 @@ EncodingRules fromMessage(const self_awareness::Encoding& message) {
     throw std::invalid_argument("its encoding has the unknown source '" + message.source + "'");
   }
   rules.source = none ? EncodingRules::Source::kNone : EncodingRules::Source::kCallerId;
+  for (const self_awareness::Rename& rule : message.renames) {
+    rules.renames.push_back({rule.pattern, rule.name});
+  }
   rules.include_topics = message.include_topics;
   rules.exclude_topics = message.exclude_topics;
   rules.include_sources = message.include_sources;

@@ -49,8 +49,19 @@ bool operator==(const Graph& a, const Graph& b) {
            x.second.publishers == y.second.publishers &&
            x.second.subscribers == y.second.subscribers;
   };
-  return a.hosts == b.hosts &&
+  return a.hosts == b.hosts && a.addresses == b.addresses &&
          std::equal(a.topics.begin(), a.topics.end(), b.topics.begin(), b.topics.end(), same);
+}
+
+void forEachGraph(const std::vector<GraphChange>& changes,
+                  const std::function<void(std::int64_t, const Graph&)>& handler) {
+  Graph graph;
+  for (const GraphChange& change : changes) {
+    for (const auto& [name, topic] : change.topics) {
+      graph.topics[name] = topic;
+    }
+    handler(change.stamp, graph);
+  }
 }
 
 std::optional<SystemState> fetchSystemState() {
@@ -131,13 +142,49 @@ std::set<core::SourceGraph::Publication> unheardIn(const Graph& graph, const Enc
       continue;
     }
     for (const std::string& publisher : topic.publishers) {
-      const std::string source = stableName(publisher);
-      if (encoder.includesSource(source)) {
-        unheard.emplace(encoder.tellsSources() ? source : "", name);
+      if (encoder.includesSource(stableName(publisher))) {
+        unheard.emplace(encoder.tellsSources() ? encoder.sourceOf(publisher) : "",
+                        encoder.scopeOf(name));
       }
     }
   }
   return unheard;
+}
+
+std::set<core::SourceGraph::Subscription> subscriptionsIn(const Graph& graph,
+                                                          const Encoder& encoder) {
+  std::set<core::SourceGraph::Subscription> subscriptions;
+  for (const auto& [name, topic] : withoutSiblings(graph).topics) {
+    for (const std::string& node : topic.subscribers) {
+      if (encoder.includesTopic(name) && encoder.listens(stableName(node))) {
+        subscriptions.emplace(encoder.sourceOf(node), encoder.scopeOf(name));
+      }
+    }
+  }
+  return subscriptions;
+}
+
+std::set<core::SourceGraph::Subscription> missingIn(
+    const Graph& graph, const Encoder& encoder,
+    const std::set<core::SourceGraph::Subscription>& expected) {
+  std::set<core::SourceGraph::Subscription> missing;
+  if (expected.empty()) {
+    return missing;
+  }
+  std::set<std::string> sources;
+  for (const auto& [name, topic] : graph.topics) {
+    for (const std::set<std::string>* nodes : {&topic.publishers, &topic.subscribers}) {
+      for (const std::string& node : *nodes) {
+        sources.insert(encoder.sourceOf(node));
+      }
+    }
+  }
+  const std::set<core::SourceGraph::Subscription> present = subscriptionsIn(graph, encoder);
+  std::copy_if(expected.begin(), expected.end(), std::inserter(missing, missing.end()),
+               [&](const core::SourceGraph::Subscription& each) {
+                 return sources.count(each.first) > 0 && present.count(each) == 0;
+               });
+  return missing;
 }
 
 std::string hostIn(const std::string& uri) {
@@ -146,19 +193,21 @@ std::string hostIn(const std::string& uri) {
   return ros::network::splitURI(uri, host, port) ? printable(host) : "";
 }
 
-void addEdges(const Graph& graph, const std::string& own_name, core::SourceGraph& edges) {
+void addEdges(const Graph& graph, const std::string& own_name, const Encoder& encoder,
+              core::SourceGraph& edges) {
   for (const auto& [name, topic] : withoutSiblings(graph).topics) {
     for (const std::string& publisher : topic.publishers) {
       for (const std::string& subscriber : topic.subscribers) {
         if (publisher != own_name && subscriber != own_name && edges.edges().size() < kMostEdges) {
-          edges.connect(stableName(publisher), name, stableName(subscriber));
+          edges.connect(encoder.sourceOf(publisher), encoder.scopeOf(name),
+                        encoder.sourceOf(subscriber));
         }
       }
     }
   }
   std::map<std::string, std::set<std::string>> hosts;
   for (const auto& [node, host] : graph.hosts) {
-    hosts[stableName(node)].insert(host);
+    hosts[encoder.sourceOf(node)].insert(host);
   }
   for (const auto& [source, all] : hosts) {
     if (edges.hosts().size() < kMostHosts) {

@@ -36,9 +36,11 @@ NamePatterns::NamePatterns(const std::vector<std::string>& patterns) {
   }
 }
 
-bool NamePatterns::match(const std::string& name) const {
-  return std::any_of(patterns_.begin(), patterns_.end(),
-                     [&](const auto& pattern) { return re2::RE2::FullMatch(name, *pattern); });
+std::size_t NamePatterns::firstThatMatches(const std::string& name) const {
+  const auto first = std::find_if(patterns_.begin(), patterns_.end(), [&](const auto& pattern) {
+    return re2::RE2::FullMatch(name, *pattern);
+  });
+  return static_cast<std::size_t>(first - patterns_.begin());
 }
 
 }  // namespace self_awareness::ros1

@@ -2,6 +2,7 @@
 
 #include <re2/re2.h>
 
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <vector>
@@ -23,7 +24,10 @@ class NamePatterns {
 
   bool empty() const { return patterns_.empty(); }
   /// Whether one of them matches the whole name.
-  bool match(const std::string& name) const;
+  bool match(const std::string& name) const { return firstThatMatches(name) != all().size(); }
+  /// Index of the first one that matches the whole name; their number if none does.
+  std::size_t firstThatMatches(const std::string& name) const;
+  const std::vector<std::unique_ptr<const re2::RE2>>& all() const { return patterns_; }
 
  private:
   std::vector<std::unique_ptr<const re2::RE2>> patterns_;

@@ -1,6 +1,9 @@
 #include "text.h"
 
 #include <algorithm>
+#include <ctime>
+
+#include "self_awareness/core/stream/event.h"
 
 namespace self_awareness::ros1 {
 namespace {
@@ -117,6 +120,15 @@ std::string printable(std::string_view bytes, std::size_t most) {
     text += shown ? bytes.substr(0, length) : kReplacement;
     bytes.remove_prefix(length);
   }
+  return text;
+}
+
+std::string utc(std::int64_t time) {
+  const std::time_t seconds = time / core::kNanosecondsPerSecond;
+  std::tm parts{};
+  gmtime_r(&seconds, &parts);
+  char text[32];
+  std::strftime(text, sizeof text, "%Y-%m-%d %H:%M:%S UTC", &parts);
   return text;
 }
 

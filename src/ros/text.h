@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -13,5 +14,8 @@ bool isPrintable(std::string_view bytes);
 /// Bytes of a stranger as such a text: what does not belong in it becomes U+FFFD.
 /// @param most so many bytes are read; a character that this cuts is left out
 std::string printable(std::string_view bytes, std::size_t most = std::string_view::npos);
+
+/// Date and time in UTC of a time since 1970 [ns].
+std::string utc(std::int64_t time);
 
 }  // namespace self_awareness::ros1

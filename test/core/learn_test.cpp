@@ -13,6 +13,7 @@
 
 #include "evidence/recordings.h"
 #include "self_awareness/core/evidence/channel/watched.h"
+#include "self_awareness/core/evidence/watch/machine_stalls.h"
 #include "self_awareness/core/verdict/alarm.h"
 
 namespace self_awareness::core {
@@ -90,7 +91,12 @@ TEST(Learner, IsTheSameAsItsStepsOneByOne) {
   }
   for (const std::uint64_t fingerprint : fingerprints) {
     const Recording recording = robot(static_cast<unsigned>(fingerprint));
-    training.startRecording({fingerprint, middleOf(recording.events), std::nullopt, 0});
+    evidence::MachineStalls stalls(evidence::Tuning{});
+    for (const Event& event : recording.events) {
+      stalls.add(event.stamp);
+    }
+    training.startRecording(
+        {fingerprint, middleOf(recording.events), std::nullopt, 0, "", stalls.find()});
     for (const Event& event : recording.events) {
       training.add(event);
     }

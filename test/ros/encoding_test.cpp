@@ -200,6 +200,61 @@ TEST_F(EncoderTest, SourcesMayBeLeftOut) {
   EXPECT_FALSE(makeEncoder(EncodingRules::defaults()).includesSource("/play"));
 }
 
+TEST_F(EncoderTest, NamesMayBeReplacedAndAllRulesSeeTheNewOnes) {
+  EncodingRules rules;
+  rules.renames = {{"/r[0-9]+/lidar", "/scan"}, {"/r[0-9]+/(.*)", "/\\1"}, {"/scan", "/never"}};
+  rules.exclude_topics = {"/debug"};
+  rules.exclude_sources = {"/tool"};
+  const Encoder encoder = makeEncoder(rules);
+  EXPECT_EQ(encoder.scopeOf("/r12/pose"), "/pose");
+  EXPECT_EQ(encoder.scopeOf("/r12/lidar"), "/scan") << "by the first rule, and by no further one";
+  EXPECT_EQ(encoder.scopeOf("/map/r12/pose"), "/map/r12/pose") << "must match the whole name";
+  EXPECT_EQ(encoder.sourceOf("/r12/slam_4242_1600000000000"), "/slam");
+  EXPECT_FALSE(encoder.includesTopic("/r3/debug"));
+  EXPECT_FALSE(encoder.includesSource("/r3/tool"));
+  EXPECT_FALSE(encoder.listens("/r3/tool"));
+  for (const char* robot : {"/r1", "/r2"}) {
+    Connection connection = scan();
+    connection.callerid = robot + connection.callerid;
+    connection.topic = robot + connection.topic;
+    auto connected = encoder.connect(connection);
+    ASSERT_TRUE(connected);
+    EXPECT_EQ(core::toString(vocabulary_.at(connected->id())),
+              "/player /scan sensor_msgs/LaserScan");
+  }
+  EXPECT_EQ(vocabulary_.size(), 1U);
+}
+
+TEST(Rename, AWholeNameIsReplacedWhateverTheShortestMatch) {
+  EncodingRules rules;
+  rules.renames = {{"/(r|r1)/scan|/r", "/\\1x"}};
+  const Encoder encoder(rules, nullptr);
+  EXPECT_EQ(encoder.scopeOf("/r1/scan"), "/r1x");
+  EXPECT_EQ(encoder.scopeOf("/r"), "/x") << "a group that matches nothing is empty";
+}
+
+TEST(Rename, WhatCannotBeDoneIsNamed) {
+  const auto problem = [](const std::string& pattern, const std::string& name) {
+    EncodingRules rules;
+    rules.renames = {{pattern, name}};
+    try {
+      rules.validate();
+    } catch (const std::invalid_argument& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const auto says = [&](const std::string& pattern, const std::string& name,
+                        const std::string& text) {
+    return problem(pattern, name).find(text) != std::string::npos;
+  };
+  EXPECT_EQ(problem("/r[0-9]+/(.*)", "/\\1"), "");
+  EXPECT_TRUE(says("/r(", "/x", "'/r(' is not a regular expression"));
+  EXPECT_TRUE(says("/r", "/\\1", "'/\\1' that takes the place of '/r' does not fit"));
+  EXPECT_TRUE(says("/r/(.*)", "\\1", "must begin with a slash"));
+  EXPECT_TRUE(says("/r", "/" + std::string(kLongestName, 'x'), "too long"));
+}
+
 TEST_F(EncoderTest, ToolsOfPeopleWhoWatchUseNoTopic) {
   const Encoder encoder = makeEncoder(EncodingRules::defaults());
   EXPECT_TRUE(encoder.listens("/slam"));

@@ -4,6 +4,8 @@
 
 #include <set>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace self_awareness::ros1 {
 namespace {
@@ -27,7 +29,7 @@ TEST(GraphOfTheRobot, NodesOfThisPackageAreNoPartOfItWhateverTheirNames) {
   EXPECT_TRUE(graph.topics.at("/markers").subscribers.empty());
   EXPECT_TRUE(graph.topics.at("/watch/status").publishers.empty());
   core::SourceGraph edges;
-  addEdges(robot(), "/self_awareness", edges);
+  addEdges(robot(), "/self_awareness", Encoder({}, nullptr), edges);
   EXPECT_TRUE(edges.hears("/slam", "/laser", "/scan"));
   EXPECT_FALSE(edges.hears("/watch", "/laser", "/scan"));
   EXPECT_FALSE(edges.hears("/panel", "/watch", "/watch/status"));
@@ -45,6 +47,30 @@ TEST(GraphOfTheRobot, WhatOnlyToolsSubscribeToIsUnheard) {
             (Publications{{"", "/debug"}, {"", "/rqt/out"}}));
 }
 
+TEST(GraphOfTheRobot, WhoRunsAndDoesNotSubscribeIsMissing) {
+  using Subscriptions = std::set<core::SourceGraph::Subscription>;
+  const Encoder encoder(EncodingRules::defaults(), nullptr);
+  EXPECT_EQ(subscriptionsIn(robot(), encoder),
+            (Subscriptions{{"/slam", "/scan"}, {"/panel", "/watch/status"}}));
+  const Subscriptions expected{{"/slam", "/scan"}, {"/planner", "/scan"}, {"/gone", "/scan"}};
+  EXPECT_EQ(missingIn(robot(), encoder, expected), (Subscriptions{{"/planner", "/scan"}}))
+      << "who is not there at all is another finding";
+  Graph repaired = robot();
+  repaired.topics["/scan"].subscribers.insert("/planner");
+  EXPECT_TRUE(missingIn(repaired, encoder, expected).empty());
+}
+
+TEST(GraphOfTheRobot, IsKnownFromEachChangeOn) {
+  std::vector<std::pair<std::int64_t, std::size_t>> seen;
+  forEachGraph({{1, {{"/a", {"", {"/x"}, {}}}, {"/b", {"", {"/x"}, {"/y"}}}}},
+                {5, {{"/b", {"", {"/x"}, {}}}}}},
+               [&](std::int64_t stamp, const Graph& graph) {
+                 EXPECT_EQ(graph.topics.size(), 2U);
+                 seen.emplace_back(stamp, graph.topics.at("/b").subscribers.size());
+               });
+  EXPECT_EQ(seen, (std::vector<std::pair<std::int64_t, std::size_t>>{{1, 1}, {5, 0}}));
+}
+
 TEST(GraphOfTheRobot, KnowsOnWhichComputersSourcesRun) {
   EXPECT_EQ(hostIn("http://base:4242/"), "base");
   EXPECT_EQ(hostIn("http://10.0.0.2:1/"), "10.0.0.2");
@@ -53,9 +79,24 @@ TEST(GraphOfTheRobot, KnowsOnWhichComputersSourcesRun) {
   graph.hosts = {
       {"/laser", "base"}, {"/view_1_1600000000000", "base"}, {"/view_2_1600000000000", "desk"}};
   core::SourceGraph edges;
-  addEdges(graph, "/self_awareness", edges);
+  addEdges(graph, "/self_awareness", Encoder({}, nullptr), edges);
   EXPECT_EQ(edges.hostOf("/laser"), "base");
   EXPECT_EQ(edges.hostOf("/view"), "") << "it runs on two";
+}
+
+TEST(GraphOfTheRobot, IsOfTheNamesThatTheEncodingGives) {
+  EncodingRules rules;
+  rules.renames = {{"/r[0-9]+/(.*)", "/\\1"}};
+  const Encoder encoder(rules, nullptr);
+  Graph graph;
+  graph.topics["/r7/scan"] = {"T", {"/r7/laser"}, {"/r7/slam_4242_1600000000000"}};
+  graph.topics["/r7/debug"] = {"T", {"/r7/laser"}, {}};
+  graph.hosts = {{"/r7/laser", "base"}};
+  core::SourceGraph edges;
+  addEdges(graph, "/self_awareness", encoder, edges);
+  EXPECT_TRUE(edges.hears("/slam", "/laser", "/scan"));
+  EXPECT_EQ(edges.hostOf("/laser"), "base");
+  EXPECT_EQ(unheardIn(graph, encoder), (Publications{{"/laser", "/debug"}}));
 }
 
 }  // namespace

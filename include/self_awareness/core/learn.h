@@ -23,6 +23,7 @@ struct Recording {
   /// belongs to, and whether it is the same as another. None: its place among the others.
   std::optional<std::uint64_t> fingerprint{};
   std::int64_t robot_start = 0;  ///< when the robot was started [ns]; 0: not known
+  std::string robot{};           ///< its name; empty: not known
   /// With which the clock was set forward, which the stamps do not say by themselves.
   ClockSteps clock_steps{};
 };

@@ -86,6 +86,10 @@ struct Model {
   /// What sources published in training, by source and scope, of which no event came, since nobody
   /// of the robot subscribed to it.
   std::set<SourceGraph::Publication> unheard() const;
+  /// What components subscribed to in every recording of the training, from when the start had had
+  /// its time to the end (docs/connections.md). Empty: that is not known of all recordings, or
+  /// they are of one start.
+  std::set<SourceGraph::Subscription> expectedSubscriptions() const;
   /// Forgets all counts but those that the evidence detector judges by.
   void dropCounts();
   /// Chooses what is watched, by all counts of the evidence detector (docs/method.md, section 3).

@@ -4,9 +4,12 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "self_awareness/core/evidence/count/halves.h"
 #include "self_awareness/core/evidence/count/statistics.h"
+#include "self_awareness/core/evidence/count/trainer.h"
 #include "self_awareness/core/paper/binning.h"
 #include "self_awareness/core/paper/delay_statistics.h"
 #include "self_awareness/core/stream/event.h"
@@ -58,6 +61,8 @@ class Training {
     /// When the recording began [ns], if not all of it is trained on.
     std::optional<std::int64_t> since;
     std::int64_t robot_start = 0;  ///< when the robot was started [ns]; 0: not known
+    std::string robot{};           ///< its name; empty: not known
+    std::vector<evidence::MachineStall> stalls{};  ///< of its machine, in their order
   };
 
   /// Starts a recording: the next events belong to it.

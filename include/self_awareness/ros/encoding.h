@@ -18,6 +18,14 @@
 
 namespace self_awareness::ros1 {
 
+/// A rule by which names of nodes (without anonymous numbers) and topics are replaced.
+struct Rename {
+  std::string pattern;
+  std::string name;  ///< \1 to \9 stand for what the groups of the pattern match
+};
+
+bool operator==(const Rename& a, const Rename& b);
+
 /// How messages become events: the rules of the function f (paper, section IV-C; docs/method.md,
 /// section 1.1). The model holds them, so training and the monitor cannot disagree. Patterns are
 /// regular expressions of RE2 (github.com/google/re2/wiki/Syntax) that must match the whole name.
@@ -28,6 +36,7 @@ struct EncodingRules {
   };
 
   Source source = Source::kCallerId;
+  std::vector<Rename> renames;  ///< the first that matches counts; all that follows sees new names
   std::vector<std::string> include_topics;  ///< empty: all
   std::vector<std::string> exclude_topics;
   std::vector<std::string> include_sources;  ///< empty: all; no effect for Source::kNone
@@ -37,8 +46,8 @@ struct EncodingRules {
   /// Rules that suit most robots: everything but the monitor's own output, clocks, aggregated
   /// logs, bonds and tools that only look on.
   static EncodingRules defaults();
-  /// @throw std::invalid_argument names the pattern that is no regular expression, or what has
-  /// control characters; or the patterns are too large together
+  /// @throw std::invalid_argument names the pattern that is no regular expression, the new name
+  /// that does not fit one, or what has control characters; or the patterns are too large together
   void validate() const;
 };
 
@@ -89,6 +98,7 @@ Connection connectionFrom(const ros::M_string& header, const std::string& topic)
 using EventIds = std::function<core::EventId(const core::EventType&)>;
 
 class NamePatterns;
+class NameRenames;
 
 /// Turns the messages of one connection into event ids.
 class ConnectionEncoder {
@@ -125,6 +135,13 @@ class Encoder {
 
   /// Whether sources are told apart.
   bool tellsSources() const { return rules_.source == EncodingRules::Source::kCallerId; }
+  /// What events call a node: without anonymous numbers, and renamed.
+  /// @param node its full or its stable name
+  std::string sourceOf(const std::string& node) const;
+  /// What events call a topic: renamed.
+  std::string scopeOf(const std::string& topic) const;
+  /// An event type of a recording that nothing was renamed in; none if the rules leave it out.
+  std::optional<core::EventType> renamed(const core::EventType& type) const;
   /// Whether any message of the topic can be an event: by the rules, and by its name (whyLeftOut).
   bool includesTopic(const std::string& topic) const;
   /// Whether the rules let any message of the source be an event.
@@ -141,6 +158,7 @@ class Encoder {
  private:
   EncodingRules rules_;
   EventIds ids_;
+  std::shared_ptr<const NameRenames> renames_;
   std::shared_ptr<const NamePatterns> include_topics_;
   std::shared_ptr<const NamePatterns> exclude_topics_;
   std::shared_ptr<const NamePatterns> include_sources_;

@@ -20,11 +20,12 @@ struct FileKind {
   std::uint32_t oldest_reader;  ///< the oldest format whose readers understand what is written
   std::uint32_t method;         ///< that what is in it was made by; 0: by none
 };
-inline constexpr FileKind kModelFile{"model", 3, 3, kMethod};
-inline constexpr FileKind kEventLogFile{"event log", 3, 2, 0};
+inline constexpr FileKind kModelFile{"model", 4, 4, kMethod};
+inline constexpr FileKind kEventLogFile{"event log", 4, 4, 0};
 inline constexpr FileKind kResultBag{"result bag", 2, 1, kMethod};
 inline constexpr FileKind kStandingAlarmFile{"standing alarm", 1, 1, 0};
 inline constexpr FileKind kIncidentsFile{"incidents", 1, 1, 0};
+inline constexpr FileKind kAcceptedFile{"accepted", 1, 1, 0};
 inline constexpr FileKind kGraphFile{"graph", 3, 2, 0};  ///< beside bags, in YAML
 
 /// Of this package, as in package.xml: "0.1.0".

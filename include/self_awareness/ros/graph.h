@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <optional>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "self_awareness/core/verdict/source_graph.h"
 #include "self_awareness/ros/encoding.h"
@@ -22,10 +24,22 @@ struct Graph {
     std::set<std::string> subscribers;
   };
   std::map<std::string, Topic> topics;
+  /// URIs of the XML-RPC servers of those that are listened to, by node.
+  std::map<std::string, std::string> addresses;
   std::map<std::string, std::string> hosts;  ///< names or addresses of computers, by node
 };
 
 bool operator==(const Graph& a, const Graph& b);
+
+/// What changed in a graph at a time; at first, all of it.
+struct GraphChange {
+  std::int64_t stamp = 0;                      ///< [ns]
+  std::map<std::string, Graph::Topic> topics;  ///< as they are from then on
+};
+
+/// Calls the handler with the graph from each change on, and its time [ns].
+void forEachGraph(const std::vector<GraphChange>& changes,
+                  const std::function<void(std::int64_t, const Graph&)>& handler);
 
 /// What the master knows.
 struct SystemState {
@@ -49,6 +63,16 @@ Graph withoutSiblings(Graph graph);
 /// @param graph without the nodes of this package
 std::set<core::SourceGraph::Publication> unheardIn(const Graph& graph, const Encoder& encoder);
 
+/// Who of the robot subscribes to what, by stable names, of the topics that the encoding includes.
+std::set<core::SourceGraph::Subscription> subscriptionsIn(const Graph& graph,
+                                                          const Encoder& encoder);
+
+/// Which subscriptions are missing, although the node that should have them is in the graph. Who
+/// is not there at all is silent, too; and one that was killed keeps its subscriptions.
+std::set<core::SourceGraph::Subscription> missingIn(
+    const Graph& graph, const Encoder& encoder,
+    const std::set<core::SourceGraph::Subscription>& expected);
+
 /// The name or the address in the URI of a node's XML-RPC server; empty: there is none.
 std::string hostIn(const std::string& uri);
 
@@ -59,11 +83,12 @@ constexpr std::size_t kMostHosts = 20000;
 /// of 300 nodes with all of tf and /rosout has some ten thousand.
 constexpr std::size_t kMostEdges = 50000;
 
-/// Adds an edge from every publisher of a topic to every subscriber, by their stable names, and
-/// the computers of all (docs/method.md, section 6). Nodes of this package are left out, since
-/// they may listen to everything.
+/// Adds an edge from every publisher of a topic to every subscriber, by the names that events give
+/// them, and the computers of all (docs/method.md, section 6). Nodes of this package are left out,
+/// since they may listen to everything.
 /// @param own_name name of this node, which is one of them
-void addEdges(const Graph& graph, const std::string& own_name, core::SourceGraph& edges);
+void addEdges(const Graph& graph, const std::string& own_name, const Encoder& encoder,
+              core::SourceGraph& edges);
 
 /// Topics to subscribe to besides those of the model.
 enum class SubscribePolicy {

@@ -1,6 +1,7 @@
 #include "self_awareness/core/evidence/judge.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <set>
@@ -11,9 +12,12 @@
 
 #include "core/evidence/blame/blame.h"
 #include "core/evidence/blame/busy_machine.h"
+#include "core/evidence/blame/excused.h"
 #include "core/evidence/blame/never_heard.h"
+#include "core/evidence/blame/new_mode.h"
 #include "core/evidence/blame/silent_together.h"
 #include "core/evidence/blame/strangers.h"
+#include "core/evidence/blame/unsubscribed.h"
 #include "core/evidence/channel/scorer.h"
 
 namespace self_awareness::core::evidence {
@@ -21,6 +25,10 @@ namespace {
 
 // The score of a busy machine whose evidence is within all limits: just abnormal.
 constexpr double kStillBusy = 1.01 * kThreshold;
+
+double largestOf(const std::vector<double>& shares) {
+  return shares.empty() ? 0 : *std::max_element(shares.begin(), shares.end());
+}
 
 class Judge : public core::Judge {
  public:
@@ -30,14 +38,28 @@ class Judge : public core::Judge {
 
   ObservedEvent add(const Event& event) override {
     never_heard_.add(event);
-    const bool unknown = strangers_.add(event);
+    const bool unknown = strangers_.add(event, excused_);
     const std::optional<std::int64_t> gap = scorer_.add(event);
     if (model_->knows(event.id)) {
       events_.add(event, scorer_.stalled());
+      if (gap && excused_.isBack(event.id, *gap)) {
+        leaveOut({event.id}, event.stamp + settle_time_);
+      }
     }
     return {event, unknown, gap};
   }
   void hear(const Waiting& waiting) override { scorer_.hear(waiting); }
+  void accept(const Acceptances& accepted) override {
+    excused_.accept(accepted);
+    never_heard_.excuse(excused_.mayBeSilent());
+  }
+  void setOptional(const std::vector<std::string>& patterns) override {
+    excused_.setOptional(patterns);
+    never_heard_.excuse(excused_.mayBeSilent());
+  }
+  void setMissing(const std::set<SourceGraph::Subscription>& missing) override {
+    unsubscribed_.set(missing);
+  }
   void settle(const Event& first, std::int64_t settle_time) override;
   void leaveOut(const std::vector<EventId>& ids, std::int64_t until) override;
   Judgement judge(const Window& window, std::int64_t end, NameSuspects suspects) override;
@@ -66,8 +88,11 @@ class Judge : public core::Judge {
   Blame blame_;
   NeverHeard never_heard_;
   Strangers strangers_;
+  Excused excused_;
+  Unsubscribed unsubscribed_;
   BusyMachine busy_machine_;
   SilentTogether silent_together_;
+  NewMode new_mode_;
   std::int64_t settle_time_ = 0;  // [ns]
   std::vector<double> shares_;    // of its limit that each track has reached
   SharesHandler tell_shares_;
@@ -87,9 +112,12 @@ Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, s
       events_(model_->size()),
       blame_(model_, graph),
       never_heard_(*model_, limits_.value_or(Limits{}), graph),
-      strangers_(*model_, std::move(heard), graph),
+      strangers_(*model_, heard, graph),
+      excused_(model_, std::move(heard)),
+      unsubscribed_(*model_),
       busy_machine_(model_),
-      silent_together_(model_, std::move(graph)),
+      silent_together_(model_, graph),
+      new_mode_(model_, std::move(graph)),
       shares_(model_->tracks().size(), 0),
       tell_shares_(std::move(shares)),
       settled_at_(model_->size(), std::numeric_limits<std::int64_t>::min()) {
@@ -121,7 +149,9 @@ void Judge::restart() {
   events_.restart();
   never_heard_.restart();
   strangers_.restart();
+  unsubscribed_.restart();
   busy_machine_.restart();
+  new_mode_.restart();
   settling_ = false;
   last_window_ = 0;
   std::fill(settled_at_.begin(), settled_at_.end(), std::numeric_limits<std::int64_t>::min());
@@ -170,20 +200,30 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
     leaveOutFewer(evidence);
   }
   leaveOutNew(window.start, evidence);
-  std::set<std::string> channels;
-  double largest = 0;
+  excused_.leaveOut(scorer_.heard(), evidence);
   for (std::size_t track = 0; track < evidence.size(); ++track) {
     // Most tracks say nothing most of the time, and a division takes its time.
     const double share = evidence[track] > 0 ? evidence[track] / limits_->tracks[track] : 0;
     shares_[track] = std::isnan(share) ? 0 : share;
-    largest = std::max(largest, shares_[track]);
+  }
+  never_heard_.closeWindow(end, settle_time_);
+  unsubscribed_.closeWindow(end);
+  if (tell_shares_) {
+    tell_shares_(window, {shares_, never_heard_.shares()});
+  }
+  std::set<std::string> channels;
+  double largest = largestOf(shares_);
+  if (largest > 1) {
+    judgement.silent = silent_together_.find(shares_, *limits_, scorer_, strangers_.silences(end));
+    if (!judgement.silent) {
+      judgement.silent = new_mode_.excuse(shares_, *limits_, scorer_);
+      largest = largestOf(shares_);
+    }
+  }
+  for (std::size_t track = 0; track < shares_.size() && largest > 1; ++track) {
     if (shares_[track] > 1) {
       channels.insert(channelLabel(model_->tracks()[track]));
     }
-  }
-  never_heard_.closeWindow(end, settle_time_);
-  if (tell_shares_) {
-    tell_shares_(window, {shares_, never_heard_.shares()});
   }
   judgement.score = -std::max(largest, never_heard_.share());
   judgement.threshold = kThreshold;
@@ -197,25 +237,31 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
     channels.insert("busy");
   }
   judgement.abnormal = *judgement.score < kThreshold;
-  if (judgement.abnormal) {
-    judgement.silent = silent_together_.find(shares_, *limits_, scorer_, strangers_.silences(end));
-  }
   judgement.certain = never_heard_.share() > 1 || isCertain();
-  judgement.suspicious = never_heard_.share() > 0 || judgement.busy.has_value();
+  const bool new_mode = judgement.silent && judgement.silent->others_go_on;
+  judgement.suspicious =
+      never_heard_.share() > 0 || unsubscribed_.any() || judgement.busy.has_value() || new_mode;
+  if (new_mode) {
+    channels.insert("new mode");
+  }
   if (never_heard_.share() > 0) {
     channels.insert("never heard");
+  }
+  if (unsubscribed_.any()) {
+    channels.insert("connections");
   }
   for (const std::string& channel : channels) {
     judgement.evidence += (judgement.evidence.empty() ? "" : ", ") + channel;
   }
-  const bool somebody =
-      largest > 1 || never_heard_.share() > 0 || (judgement.busy && judgement.busy->late > 0);
+  const bool somebody = largest > 1 || never_heard_.share() > 0 || unsubscribed_.any() ||
+                        (judgement.busy && judgement.busy->late > 0);
   if (suspects != NameSuspects::kNever && somebody) {
     judgement.suspects = namedIn(window, largest > 1);
   } else if (suspects == NameSuspects::kAlways) {
     // Who is within his own range is no suspect because somebody else is unknown.
     judgement.suspects = strangers_.unknown(window, scorer_);
   }
+  excused_.leaveOut(judgement.suspects);
   return judgement;
 }
 
@@ -256,8 +302,13 @@ std::vector<Suspect> Judge::namedIn(const Window& window, bool silent_first) con
   if (!strangers.empty()) {
     add(strangers.front());
   }
-  for (const std::vector<Suspect>& suspects : {first, second, strangers}) {
-    std::for_each(suspects.begin(), suspects.end(), add);
+  // Who does not subscribe says what it always says: that explains nothing beyond a limit.
+  const std::vector<Suspect>& deaf = unsubscribed_.suspects();
+  using Order = std::array<const std::vector<Suspect>*, 4>;
+  const Order order = silent_first ? Order{&first, &second, &strangers, &deaf}
+                                   : Order{&first, &deaf, &second, &strangers};
+  for (const std::vector<Suspect>* suspects : order) {
+    std::for_each(suspects->begin(), suspects->end(), add);
   }
   return named;
 }

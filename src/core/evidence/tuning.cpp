@@ -167,6 +167,21 @@ const std::vector<TuningNumber>& tuningNumbers() {
        "The most that one track says of who is involved.", std::nullopt},
       {"share_of_other", &Tuning::share_of_other, 0, 1, "",
        "Share of it for the other one of a pair.", std::nullopt},
+      {"least_age", &Tuning::least_age, 1e-3, 1e6, "s",
+       "Least limit of how much older than usual stamps may be.", std::nullopt},
+      {"usual_losses", &Tuning::usual_losses, 1e-6, 1, "",
+       "Share of the messages that may be lost where training lost fewer.", std::nullopt},
+      {"least_losses", &Tuning::least_losses, 0.1, 1e6, "losses",
+       "Least limit of losses beyond the usual ones.", std::nullopt},
+      {"least_size", &Tuning::least_size, 0.01, 100, "octaves",
+       "Least limit of how far sizes may lie beyond all in training.", std::nullopt},
+      {"least_repeat", &Tuning::least_repeat, 0.01, 1e6, "s",
+       "Least limit of the time with the same content.", std::nullopt},
+      {"longest_repeat", &Tuning::longest_repeat, 0, 1e9, "s",
+       "Who had the same content for longer in training may have it for ever.", 0},
+      {"share_of_attribute", &Tuning::share_of_attribute, 1e-9, 1, "",
+       "Share of the budget of false alarms that each kind of attribute has besides the others.",
+       std::nullopt},
   };
   return numbers;
 }

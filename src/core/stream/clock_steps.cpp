@@ -85,7 +85,8 @@ std::vector<Type> typesOf(const std::vector<Event>& events, const std::vector<Si
   std::vector<Type> types;
   std::vector<std::optional<std::int64_t>> last;  // stamps [ns]
   for (std::size_t i = 0; i < events.size(); ++i) {
-    const auto& [stamp, id] = events[i];
+    const std::int64_t stamp = events[i].stamp;
+    const EventId id = events[i].id;
     if (id >= types.size()) {
       types.resize(id + 1);
       last.resize(id + 1);

@@ -20,6 +20,10 @@ bool isOfTime(Kind kind) {
          kind == Kind::kEarly || kind == Kind::kOutOfOrder;
 }
 
+Kind kindOf(const Silent& silent) {
+  return silent.others_go_on ? Kind::kNewMode : Kind::kAllSilent;
+}
+
 std::vector<Suspect> withComponents(std::vector<Suspect> suspects, const Vocabulary& vocabulary) {
   for (Suspect& suspect : suspects) {
     if (suspect.component.empty() && suspect.id < vocabulary.size()) {
@@ -87,7 +91,7 @@ void Alarms::goOn(const Verdict& verdict, std::int64_t end, const Vocabulary& vo
     alarm.culprit = alarm.suspects.empty() ? "" : alarm.suspects.front().component;
     alarm.reason = alarm.suspects.empty() ? "" : alarm.suspects.front().reason.words;
     alarm.kind = !alarm.suspects.empty() ? alarm.suspects.front().reason.kind
-                 : verdict.silent        ? Kind::kAllSilent
+                 : verdict.silent        ? kindOf(*verdict.silent)
                                          : Kind::kOutOfOrder;
   }
   if (verdict.busy && !alarm.busy) {
@@ -104,9 +108,9 @@ void Alarms::goOn(const Verdict& verdict, std::int64_t end, const Vocabulary& vo
   }
   // Who died before, on another computer, is still to blame.
   if (stands && alarm.silent &&
-      (alarm.kind == Kind::kAllSilent ||
+      (alarm.kind == Kind::kAllSilent || alarm.kind == Kind::kNewMode ||
        (alarm.kind == Kind::kDied && alarm.silent->has(alarm.culprit)))) {
-    alarm.kind = Kind::kAllSilent;
+    alarm.kind = kindOf(*alarm.silent);
     alarm.culprit.clear();
     alarm.reason = describe(*alarm.silent);
   }

@@ -64,6 +64,7 @@ void Detector::restart() {
 void Detector::onClockStep() {
   judge_->restart();
   heard_.clear();
+  unknown_.clear();
   clearAlarm();
 }
 
@@ -107,13 +108,42 @@ ObservedEvent Detector::observe(const Event& event) {
       awaited->second = event.stamp;
     }
   }
-  return judge_->add(event);
+  const ObservedEvent observed = judge_->add(event);
+  if (observed.unknown) {
+    ++unknown_[event.id].events;
+  }
+  return observed;
+}
+
+std::map<EventId, std::uint64_t> Detector::unknown() const {
+  std::map<EventId, std::uint64_t> events;
+  for (const auto& [id, unknown] : unknown_) {
+    events[id] = unknown.events;
+  }
+  return events;
+}
+
+bool Detector::isNews(const Window& window) const {
+  if (parameters_.unknown != UnknownEvents::kWarn || window.unknown() == 0) {
+    return parameters_.unknown == UnknownEvents::kError && window.unknown() > 0;
+  }
+  return std::any_of(window.events.begin(), window.events.end(), [&](const ObservedEvent& each) {
+    return each.unknown && !unknown_.at(each.event.id).told;
+  });
+}
+
+void Detector::tellOnce(const Window& window) {
+  for (const ObservedEvent& each : window.events) {
+    if (each.unknown) {
+      unknown_.at(each.event.id).told = true;
+    }
+  }
 }
 
 void Detector::close(const Window& window, std::int64_t end) {
   const std::int64_t window_end = window.start + windows_.length();
   const bool starting = window.start < settled_at_;
-  const bool unknown = window.unknown() > 0 && parameters_.unknown != UnknownEvents::kIgnore;
+  const bool unknown = isNews(window);
   Judgement judgement = judge_->judge(window, end,
                                       starting  ? NameSuspects::kNever
                                       : unknown ? NameSuspects::kAlways
@@ -146,6 +176,7 @@ void Detector::close(const Window& window, std::int64_t end) {
     verdict.suspects = std::move(judgement.suspects);
     count(judgement, window_end);
     verdict.alarm = persistence_.raised();
+    tellOnce(window);
   }
   resumed_ = resumed_ && (starting || awaitsSuspects(window_end));
   if (resumed_) {
@@ -159,7 +190,9 @@ void Detector::close(const Window& window, std::int64_t end) {
     silent_ = 0;
   }
   const std::vector<Suspect> named_first = name(verdict.suspects, verdict.changed, window_end);
-  if (verdict.alarm && !verdict.changed && !named_first.empty()) {
+  // Who is new is told once only: not even a suspicion that stands may swallow it.
+  if ((verdict.alarm || (verdict.suspicion && unknown)) && !verdict.changed &&
+      !named_first.empty()) {
     verdict.new_suspects = named_first;
     verdict.changed = true;
   }

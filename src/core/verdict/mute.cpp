@@ -6,19 +6,9 @@
 #include <utility>
 
 #include "self_awareness/core/verdict/dependents.h"
+#include "self_awareness/core/verdict/name_pattern.h"
 
 namespace self_awareness::core {
-namespace {
-
-/// @param pattern a name, or its begin and a `*`; empty: any
-bool matches(const std::string& pattern, const std::string& name) {
-  if (pattern.empty() || pattern.back() != '*') {
-    return pattern.empty() || pattern == name;
-  }
-  return name.compare(0, pattern.size() - 1, pattern, 0, pattern.size() - 1) == 0;
-}
-
-}  // namespace
 
 bool Mutes::add(const Mute& mute) {
   end(mute);
@@ -80,7 +70,7 @@ const Mute* Mutes::active() const {
 std::optional<std::size_t> Mutes::muteOf(const std::string& component, const std::string& topic,
                                          Kind kind) const {
   const auto found = std::find_if(mutes_.begin(), mutes_.end(), [&](const Mute& mute) {
-    return matches(mute.component, component) && matches(mute.topic, topic) &&
+    return matchesPattern(mute.component, component) && matchesPattern(mute.topic, topic) &&
            mute.kind.value_or(kind) == kind;
   });
   return found == mutes_.end() ? std::nullopt : std::optional<std::size_t>(found - mutes_.begin());

@@ -23,16 +23,28 @@ std::string toString(Kind kind) {
       return "never came";
     case Kind::kStranger:
       return "stranger";
+    case Kind::kUnsubscribed:
+      return "not subscribed";
+    case Kind::kStale:
+      return "stale";
+    case Kind::kLossy:
+      return "lossy";
+    case Kind::kOtherSize:
+      return "other size";
+    case Kind::kStuck:
+      return "stuck";
     case Kind::kBusyMachine:
       return "busy machine";
     case Kind::kAllSilent:
       return "all silent";
+    case Kind::kNewMode:
+      return "new mode";
   }
   throw std::invalid_argument("a kind without a name");
 }
 
 std::optional<Kind> kindOf(const std::string& name) {
-  for (int kind = 0; kind <= static_cast<int>(Kind::kAllSilent); ++kind) {
+  for (int kind = 0; kind <= static_cast<int>(Kind::kNewMode); ++kind) {
     if (toString(static_cast<Kind>(kind)) == name) {
       return static_cast<Kind>(kind);
     }

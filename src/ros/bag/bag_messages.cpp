@@ -3,7 +3,7 @@
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 
-#include <optional>
+#include <memory>
 #include <utility>
 
 #include "chunk_records.h"
@@ -20,22 +20,52 @@ class MessagesOfChunks : public BagMessages {
       : file_(path), numbers_(std::move(numbers)), largest_(largest) {}
 
   void read(const BagIndexEntry& entry, std::vector<std::uint8_t>& content) override {
+    const std::string_view bytes = records(entry).data(head(entry));
+    content.assign(bytes.begin(), bytes.end());
+  }
+
+  void pass(const BagIndexEntry& entry, AttributeReader& reader) override {
+    const PiecesOfFile::Head message = head(entry);
+    const std::uint64_t size = message.end - message.data;
+    reader.begin(size);
+    for (AttributeReader::Part part = reader.next(); part.begin < part.end; part = reader.next()) {
+      // A message that is not much longer is read at once.
+      part.end = size <= kAtOnce ? size : part.end;
+      PiecesOfFile::Head piece = message;
+      piece.data = message.data + part.begin;
+      piece.end = message.data + part.end;
+      const std::string_view bytes = records_->data(piece, size <= kAtOnce ? kAhead : 0);
+      reader.skipTo(part.begin);
+      reader.add(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+    }
+  }
+
+ private:
+  static constexpr std::uint64_t kAtOnce = 8192;  // [bytes]
+  // After a small message, more small ones follow: one call of the system reads many.
+  static constexpr std::uint64_t kAhead = 8192;  // [bytes]
+
+  /// The records of the chunk that a message is in.
+  ChunkRecords& records(const BagIndexEntry& entry) {
     if (!records_ || chunk_position_ != entry.chunk) {
       const Chunk chunk(file_, entry.chunk);
       if (chunk.isPacked() && chunk.unpacked_bytes > largest_) {
         throw FormatError("a chunk that announces too much");
       }
       records_.reset();  // the memory holds one
-      records_.emplace(file_, chunk);
+      records_ = std::make_unique<ChunkRecords>(file_, chunk);
       chunk_position_ = entry.chunk;
     }
-    const PiecesOfFile::Head head = records_->message(entry.offset);
-    check(head.header, entry);
-    const std::string_view bytes = records_->data(head);
-    content.assign(bytes.begin(), bytes.end());
+    return *records_;
   }
 
- private:
+  /// Where a message lies.
+  PiecesOfFile::Head head(const BagIndexEntry& entry) {
+    const PiecesOfFile::Head found = records(entry).message(entry.offset);
+    check(found.header, entry);
+    return found;
+  }
+
   /// The message must be the one that the index says.
   void check(std::string_view header, const BagIndexEntry& entry) const {
     const MessageHeader message = messageHeader(header);
@@ -45,9 +75,9 @@ class MessagesOfChunks : public BagMessages {
   }
 
   PiecesOfFile file_;
-  std::vector<std::uint32_t> numbers_;   // of the connections, in the file
-  std::uint64_t largest_;                // that a chunk may be when it is unpacked [bytes]
-  std::optional<ChunkRecords> records_;  // of the chunk that was read last
+  std::vector<std::uint32_t> numbers_;     // of the connections, in the file
+  std::uint64_t largest_;                  // that a chunk may be when it is unpacked [bytes]
+  std::unique_ptr<ChunkRecords> records_;  // of the chunk that was read last
   std::uint64_t chunk_position_ = 0;
 };
 
@@ -68,8 +98,15 @@ class MessagesOfRosbag : public BagMessages, private rosbag::View {
     message->write(stream);
   }
 
+  void pass(const BagIndexEntry& entry, AttributeReader& reader) override {
+    read(entry, content_);
+    reader.begin(content_.size());
+    reader.add(content_.data(), content_.size());
+  }
+
  private:
   rosbag::Bag bag_;
+  std::vector<std::uint8_t> content_;
 };
 
 }  // namespace

@@ -7,6 +7,7 @@
 
 #include "bag_index.h"
 #include "bag_records.h"
+#include "self_awareness/ros/attribute_reader.h"
 
 namespace self_awareness::ros1 {
 
@@ -19,6 +20,10 @@ class BagMessages {
 
   /// @throw rosbag::BagException if it cannot be read, or is not the one that the index says
   virtual void read(const BagIndexEntry& entry, std::vector<std::uint8_t>& content) = 0;
+  /// Passes a message by a reader of attributes, whose begin() it calls, but not its end(); where
+  /// the message is not compressed, only the bytes that matter are read.
+  /// @throw rosbag::BagException as read()
+  virtual void pass(const BagIndexEntry& entry, AttributeReader& reader) = 0;
 
   /// The messages of the bag that the index was read from.
   /// @param largest that a compressed chunk may be when it is unpacked [bytes]

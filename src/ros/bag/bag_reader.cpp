@@ -12,6 +12,7 @@
 #include "bag_messages.h"
 #include "event_log_file.h"
 #include "open_bag.h"
+#include "self_awareness/ros/attribute_reader.h"
 #include "self_awareness/ros/siblings.h"
 
 namespace self_awareness::ros1 {
@@ -131,11 +132,14 @@ void BagReader::read(const Encoder& encoder, const TimeRange& range, const Handl
   const auto [from, to] = limitsIn(summary_, range);
   std::vector<std::optional<ConnectionEncoder>> encoders;
   encoders.reserve(index_->connections.size());
+  std::vector<AttributeReader> attributes;
+  attributes.reserve(index_->connections.size());
   const Siblings siblings = encoder.tellsSources() ? siblingsIn(*index_) : Siblings();
   for (const Connection& connection : index_->connections) {
     encoders.push_back(siblings.cover(connection.callerid, connection.topic)
                            ? std::nullopt
                            : encoder.connect(connection));
+    attributes.emplace_back(connection.definition, connection.datatype);
   }
   std::vector<std::uint8_t> content;
   std::uint64_t done = 0;
@@ -147,15 +151,24 @@ void BagReader::read(const Encoder& encoder, const TimeRange& range, const Handl
       }
       ++done;
       std::optional<ConnectionEncoder>& connection_encoder = encoders[entry.connection];
-      if (!connection_encoder || !connection_encoder->accept() || entry.stamp < from ||
-          entry.stamp > to) {
+      if (!connection_encoder) {
+        continue;
+      }
+      const bool accepted = connection_encoder->accept();
+      if (entry.stamp < from || entry.stamp > to) {
+        continue;
+      }
+      AttributeReader& reader = attributes[entry.connection];
+      messages->pass(entry, reader);
+      const core::Attributes found = reader.end(entry.stamp);
+      if (!accepted) {
         continue;
       }
       if (connection_encoder->needsContent()) {
         messages->read(entry, content);
-        handler({entry.stamp, connection_encoder->id(content.data(), content.size())});
+        handler({entry.stamp, connection_encoder->id(content.data(), content.size()), found});
       } else {
-        handler({entry.stamp, connection_encoder->id()});
+        handler({entry.stamp, connection_encoder->id(), found});
       }
     }
   } catch (const rosbag::BagException& error) {

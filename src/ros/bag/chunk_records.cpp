@@ -66,10 +66,10 @@ PiecesOfFile::Head ChunkRecords::head(std::uint64_t place) const {
   return head;
 }
 
-std::string_view ChunkRecords::data(const PiecesOfFile::Head& head) const {
+std::string_view ChunkRecords::data(const PiecesOfFile::Head& head, std::uint64_t ahead) const {
   const std::uint64_t size = head.end - head.data;
   std::string_view bytes = unpacked_ ? std::string_view(unpacked_.get() + head.data, size)
-                                     : file_->at(begin_ + head.data, size);
+                                     : file_->at(begin_ + head.data, size, ahead);
   return take(bytes, size);
 }
 

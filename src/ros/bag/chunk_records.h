@@ -21,7 +21,9 @@ class ChunkRecords {
   /// @throw bag_records::FormatError if it is cut off
   bag_records::PiecesOfFile::Head head(std::uint64_t place) const;
   /// The data of a record; valid until the next call of the file.
-  std::string_view data(const bag_records::PiecesOfFile::Head& head) const;
+  /// @param ahead so much more may be read for what follows [bytes]
+  std::string_view data(const bag_records::PiecesOfFile::Head& head,
+                        std::uint64_t ahead = 0) const;
   /// The beginning of a message, or of the one after a connection: an index may point there, too.
   bag_records::PiecesOfFile::Head message(std::uint64_t place) const;
 

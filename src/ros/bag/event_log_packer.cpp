@@ -27,7 +27,7 @@ void EventLogPacker::add(const core::Event& event, const core::Vocabulary& vocab
     message.type = type.type;
     new_types_.push_back(message);
   }
-  events_.push_back({event.stamp, *id});
+  events_.push_back({event.stamp, *id, event.attributes});
 }
 
 void EventLogPacker::advance(std::int64_t now) {
@@ -49,6 +49,7 @@ void EventLogPacker::flush(std::int64_t now) {
   part.delay_bits = packed.delay_bits;
   part.id_bits = packed.id_bits;
   part.packed = std::move(packed.bytes);
+  part.attributes = std::move(packed.attributes);
   for (const core::Waiting& waiting : waiting_) {
     part.waiting_from.push_back(waiting.from);
     part.waiting_to.push_back(waiting.to);

@@ -4,6 +4,7 @@
 #include <rosbag/exceptions.h>
 
 #include <algorithm>
+#include <iterator>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
@@ -17,6 +18,7 @@
 #include "self_awareness/EventLog.h"
 #include "self_awareness/EventLogGraph.h"
 #include "self_awareness/EventLogStart.h"
+#include "self_awareness/core/evidence/tuning.h"
 #include "self_awareness/ros/bag/event_log_packer.h"
 #include "self_awareness/ros/encoding_message.h"
 #include "stored_messages.h"
@@ -64,14 +66,19 @@ void sortByPosition(std::vector<BagIndexEntry>& entries) {
   });
 }
 
-void add(const self_awareness::EventLogGraph& message, Graph& graph) {
+void add(const self_awareness::EventLogGraph& message, BagSummary& summary) {
+  GraphChange& change = summary.graph_changes.emplace_back();
+  change.stamp = nanoseconds(message.stamp);
   for (const self_awareness::TopicNodes& nodes : message.topics) {
-    Graph::Topic& topic = graph.topics[nodes.topic];
+    Graph::Topic& topic = summary.graph.topics[nodes.topic];
     topic.publishers.insert(nodes.publishers.begin(), nodes.publishers.end());
     topic.subscribers.insert(nodes.subscribers.begin(), nodes.subscribers.end());
+    change.topics[nodes.topic] = {"",
+                                  {nodes.publishers.begin(), nodes.publishers.end()},
+                                  {nodes.subscribers.begin(), nodes.subscribers.end()}};
   }
   for (const self_awareness::NodeHost& each : message.hosts) {
-    graph.hosts[each.node] = each.host;
+    summary.graph.hosts[each.node] = each.host;
   }
 }
 
@@ -180,11 +187,12 @@ EventLogReader::EventLogReader(std::shared_ptr<const EventLogFile> file, std::si
       summary_.end = summary_.start;
       summary_.fingerprint = start.fingerprint;
       summary_.robot_start = nanoseconds(start.robot_start);
+      summary_.robot = printable(start.robot);
       summary_.has_sources = start.has_sources;
       summary_.one_sender_a_topic = start.one_sender_a_topic;
       summary_.copied = start.copied;
     } else if (holds<self_awareness::EventLogGraph>(connection)) {
-      add(messages.read<self_awareness::EventLogGraph>(entry), summary_.graph);
+      add(messages.read<self_awareness::EventLogGraph>(entry), summary_);
     } else if (holds<self_awareness::EventLog>(connection)) {
       parts_.push_back(&entry);
     }
@@ -199,18 +207,49 @@ EventLogReader::EventLogReader(std::shared_ptr<const EventLogFile> file, std::si
 
 EventLogReader::~EventLogReader() = default;
 
+std::set<core::SourceGraph::Subscription> lastingSubscriptions(const BagSummary& summary,
+                                                               const EncodingRules& rules) {
+  if (!summary.clock_watched) {
+    return {};
+  }
+  const std::int64_t start_time = core::toNanoseconds(core::evidence::Tuning().start_time);
+  const std::int64_t from =
+      summary.start + std::min(start_time, (summary.end - summary.start) / 2);
+  const Encoder encoder(rules, nullptr);
+  std::set<core::SourceGraph::Subscription> lasting;
+  bool began = false;
+  forEachGraph(summary.graph_changes, [&](std::int64_t stamp, const Graph& graph) {
+    const std::set<core::SourceGraph::Subscription> now = subscriptionsIn(graph, encoder);
+    if (stamp <= from || !began) {
+      lasting = now;
+    } else {
+      std::set<core::SourceGraph::Subscription> both;
+      std::set_intersection(lasting.begin(), lasting.end(), now.begin(), now.end(),
+                            std::inserter(both, both.end()));
+      lasting = std::move(both);
+    }
+    began = true;
+  });
+  return lasting;
+}
+
 void EventLogReader::read(const EncodingRules& rules, const EventIds& ids, const TimeRange& range,
                           const BagReader::Handler& handler, const BagReader::Progress& progress,
                           const WaitingHandler& waiting) const {
-  if (!(rules == *summary_.encoding)) {
+  // What was recorded under the robot's own names may be renamed now.
+  EncodingRules recorded = *summary_.encoding;
+  const bool rename = recorded.renames.empty() && !rules.renames.empty();
+  recorded.renames = rename ? rules.renames : recorded.renames;
+  if (!(rules == recorded)) {
     throw BagError(summary_.path +
                    ": the event log was recorded by another encoding than the one "
                    "that is wanted; use its own, or convert or record it again by the wanted one");
   }
   const auto [from, to] = limitsIn(summary_, range);
+  const Encoder encoder(rules, ids);
   LogMessages messages(summary_.path, file_->content_->index);
-  std::vector<core::EventType> types;
-  std::vector<std::optional<core::EventId>> known;  // by id in the log
+  std::vector<std::optional<core::EventType>> types;  // by id in the log; none: left out
+  std::vector<std::optional<core::EventId>> known;    // the same
   std::uint64_t done = 0;
   for (std::size_t number = 0; number < parts_.size(); ++number) {
     if (progress) {
@@ -221,7 +260,8 @@ void EventLogReader::read(const EncodingRules& rules, const EventIds& ids, const
       messages.fail("a part is missing after " + std::to_string(number) + " parts");
     }
     for (const self_awareness::EventType& type : part.new_types) {
-      types.push_back({type.source, type.scope, type.type});
+      const core::EventType as_recorded{type.source, type.scope, type.type};
+      types.push_back(rename ? encoder.renamed(as_recorded) : as_recorded);
     }
     known.resize(types.size());
     PackedEvents packed;
@@ -230,6 +270,7 @@ void EventLogReader::read(const EncodingRules& rules, const EventIds& ids, const
     packed.delay_bits = part.delay_bits;
     packed.id_bits = part.id_bits;
     packed.bytes = std::move(part.packed);
+    packed.attributes = std::move(part.attributes);
     if (part.events > EventLogPacker::kMostEvents) {
       messages.fail("a part of too many events");
     }
@@ -253,14 +294,14 @@ void EventLogReader::read(const EncodingRules& rules, const EventIds& ids, const
       if (event.id >= known.size()) {
         messages.fail("an event of a type that it does not name");
       }
-      if (event.stamp < from || event.stamp > to) {
+      if (event.stamp < from || event.stamp > to || !types[event.id]) {
         continue;
       }
       std::optional<core::EventId>& id = known[event.id];
       if (!id) {
-        id = ids(types[event.id]);
+        id = ids(*types[event.id]);
       }
-      handler({event.stamp, *id});
+      handler({event.stamp, *id, event.attributes});
     }
     done += part.events;
   }

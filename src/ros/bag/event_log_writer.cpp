@@ -28,12 +28,14 @@ self_awareness::TopicNodes nodesOf(const std::string& name, const Graph::Topic& 
 }  // namespace
 
 self_awareness::EventLogStart startOfRecording(const EncodingRules& encoding, std::int64_t begin,
-                                               std::int64_t robot_start) {
+                                               std::int64_t robot_start,
+                                               const std::string& robot) {
   std::random_device random;
   self_awareness::EventLogStart start;
   start.encoding = toMessage(encoding);
   start.begin = toRosTime(begin);
   start.robot_start = toRosTime(robot_start);
+  start.robot = robot;
   start.fingerprint = static_cast<std::uint64_t>(random()) << 32U | random();
   start.has_sources = true;
   return start;

@@ -7,49 +7,17 @@
 #include <memory>
 #include <new>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "../message_cursor.h"
-#include "../text.h"
+#include "../log_line.h"
 #include "bag_messages.h"
 #include "open_bag.h"
 #include "self_awareness/ros/bag/bag_reader.h"
-#include "self_awareness/ros/stable_name.h"
 
 namespace self_awareness::ros1 {
 namespace {
-
-/// Of rosgraph_msgs/Log, whose layout NamedLine knows.
-constexpr char kMd5OfLog[] = "acffd30cd6b6de30f120938c17c593fb";
-
-struct NamedLine {
-  std::string node;
-  LogLine line;
-};
-
-/// None: the message is shorter than it says.
-std::optional<NamedLine> parse(std::int64_t stamp, const std::vector<std::uint8_t>& content) {
-  try {
-    MessageCursor cursor(content.data(), content.size());
-    for (int i = 0; i < 3; ++i) {
-      cursor.number<std::uint32_t>();  // sequence number and stamp of the header
-    }
-    cursor.string();  // frame
-    NamedLine named;
-    named.line.stamp = stamp;
-    named.line.level = cursor.number<std::uint8_t>();
-    named.node = stableName(std::string(cursor.string().substr(0, kLongestName)));
-    std::string text(cursor.string().substr(0, kLongestLine));
-    std::replace(text.begin(), text.end(), '\n', ' ');
-    named.line.text = printable(text);
-    return named;
-  } catch (const std::out_of_range&) {
-    return std::nullopt;
-  }
-}
 
 /// Where the lines are, in the order of the recording. /rosout_agg repeats /rosout.
 std::vector<BagIndexEntry> linesIn(const BagIndex& index) {
@@ -68,7 +36,7 @@ std::vector<BagIndexEntry> linesIn(const BagIndex& index) {
 }
 
 std::vector<LogLine> lastLines(const LogQuery& query, const std::vector<BagIndexEntry>& places,
-                               BagMessages& messages, std::size_t most) {
+                               const Encoder& encoder, BagMessages& messages, std::size_t most) {
   const auto after = std::upper_bound(
       places.begin(), places.end(), query.until,
       [](std::int64_t until, const BagIndexEntry& entry) { return until < entry.stamp; });
@@ -79,9 +47,9 @@ std::vector<LogLine> lastLines(const LogQuery& query, const std::vector<BagIndex
        ++read) {
     --place;
     messages.read(*place, content);
-    std::optional<NamedLine> named = parse(place->stamp, content);
-    if (named && named->node == query.node) {
-      lines.push_back(std::move(named->line));
+    std::optional<SaidLine> said = readLogLine(content.data(), content.size());
+    if (said && encoder.sourceOf(said->node) == query.node) {
+      lines.push_back({place->stamp, said->level, std::move(said->text)});
     }
   }
   std::reverse(lines.begin(), lines.end());
@@ -90,7 +58,7 @@ std::vector<LogLine> lastLines(const LogQuery& query, const std::vector<BagIndex
 
 }  // namespace
 
-std::vector<std::vector<LogLine>> lastLogLines(const std::string& path,
+std::vector<std::vector<LogLine>> lastLogLines(const std::string& path, const Encoder& encoder,
                                                const std::vector<LogQuery>& queries,
                                                std::size_t most) {
   const BagIndex index = openBag(path);
@@ -99,7 +67,7 @@ std::vector<std::vector<LogLine>> lastLogLines(const std::string& path,
   try {
     const std::unique_ptr<BagMessages> messages = BagMessages::open(path, index);
     for (const LogQuery& query : queries) {
-      found.push_back(lastLines(query, places, *messages, most));
+      found.push_back(lastLines(query, places, encoder, *messages, most));
     }
   } catch (const rosbag::BagException& error) {
     throw BagError(path + ": a message cannot be read (" + error.what() + ")" + reindexHint(path));

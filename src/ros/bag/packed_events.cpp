@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <stdexcept>
+#include <unordered_map>
 
 namespace self_awareness::ros1 {
 namespace {
@@ -69,6 +70,63 @@ std::uint64_t bitsOf(std::uint64_t delay, int delay_bits) {
                           : kMostOnes + kWholeBits;
 }
 
+constexpr int kClassBits = 8;  // of an age, and of a size
+constexpr int kStepBits = 3;
+
+/// The attributes of the last event of each type: what is new of the next one is stored.
+using LastAttributes = std::unordered_map<core::EventId, core::Attributes>;
+
+std::vector<std::uint8_t> packAttributes(const std::vector<core::Event>& events) {
+  std::vector<std::uint8_t> bytes;
+  if (std::none_of(events.begin(), events.end(),
+                   [](const core::Event& event) { return event.attributes.isKnown(); })) {
+    return bytes;
+  }
+  BitWriter writer(bytes);
+  LastAttributes last;
+  for (const core::Event& event : events) {
+    const core::Attributes& now = event.attributes;
+    core::Attributes& before = last[event.id];
+    const bool as_last =
+        now.size == before.size && now.step == before.step && now.same == before.same;
+    writer.write(as_last ? 1 : 0, 1);
+    if (!as_last) {
+      writer.write(now.size, kClassBits);
+      writer.write(static_cast<std::uint64_t>(now.step), kStepBits);
+      writer.write(now.same ? 1 : 0, 1);
+    }
+    writer.write(now.age == before.age ? 1 : 0, 1);
+    if (now.age != before.age) {
+      writer.write(now.age, kClassBits);
+    }
+    before = now;
+  }
+  return bytes;
+}
+
+void unpackAttributes(const std::vector<std::uint8_t>& bytes, std::vector<core::Event>& events) {
+  if (bytes.empty()) {
+    return;
+  }
+  BitReader reader(bytes);
+  LastAttributes last;
+  for (core::Event& event : events) {
+    core::Attributes& attributes = last[event.id];
+    if (reader.read(1) == 0) {
+      attributes.size = static_cast<std::uint8_t>(reader.read(kClassBits));
+      attributes.step = static_cast<core::Attributes::Step>(reader.read(kStepBits));
+      attributes.same = reader.read(1) == 1;
+    }
+    if (reader.read(1) == 0) {
+      attributes.age = static_cast<std::uint8_t>(reader.read(kClassBits));
+    }
+    event.attributes = attributes;
+  }
+  if (reader.bytes() != bytes.size()) {
+    throw std::invalid_argument("packed attributes are followed by other bytes");
+  }
+}
+
 int shortestDelayBits(const std::vector<std::uint64_t>& delays) {
   int shortest = 0;
   std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
@@ -127,6 +185,7 @@ PackedEvents PackedEvents::pack(const std::vector<core::Event>& events) {
     }
     writer.write(events[k].id, id_bits);
   }
+  packed.attributes = packAttributes(events);
   return packed;
 }
 
@@ -156,6 +215,7 @@ std::vector<core::Event> PackedEvents::unpack() const {
   if (reader.bytes() != bytes.size()) {
     throw std::invalid_argument("packed events are followed by other bytes");
   }
+  unpackAttributes(attributes, unpacked);
   return unpacked;
 }
 

@@ -18,6 +18,7 @@ struct PackedEvents {
   std::uint8_t delay_bits = 0;  ///< 0 to 62
   std::uint8_t id_bits = 0;     ///< 0 to 32
   std::vector<std::uint8_t> bytes;
+  std::vector<std::uint8_t> attributes;  ///< of the messages; empty: nothing is known of any
 
   /// Packs events whose stamps do not go back.
   /// @throw std::invalid_argument if one does, or there are more than 2^32 - 1 events

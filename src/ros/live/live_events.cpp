@@ -115,7 +115,7 @@ void LiveEvents::onArrival(const Arrival& arrival) {
     return;
   }
   core::Event event{handlers_.time ? handlers_.time(arrival.stamp, arrival.steady) : arrival.stamp,
-                    0};
+                    0, arrival.attributes};
   if (!encoder->needsContent()) {
     event.id = encoder->id();
   } else if (!arrival.content) {  // it came before its content was wanted, or is too long
@@ -125,6 +125,9 @@ void LiveEvents::onArrival(const Arrival& arrival) {
   } else {
     try {
       event.id = encoder->id(arrival.content->data(), arrival.content->size());
+      if (handlers_.on_content) {
+        handlers_.on_content(event.id, *arrival.content);
+      }
     } catch (const std::out_of_range& error) {
       ROS_ERROR_THROTTLE(10, "%s: %s; the message is left out", arrival.topic->name.c_str(),
                          printable(error.what(), kLongestName).c_str());
@@ -148,7 +151,7 @@ bool LiveEvents::hold(LiveConnection& live, const core::Event& event, std::int64
   if (steady_time >= *live.held_until) {
     return false;
   }
-  live.held.push_back(event.id);
+  live.held.push_back(event);
   if (live.held.size() == kMostHeld) {
     live.held_until = steady_time;
   }
@@ -166,8 +169,8 @@ void LiveEvents::release() {
   holds_ = false;
   for (auto& [key, live] : connections_) {
     if (!live.held.empty() && steady_now >= *live.held_until) {
-      for (const core::EventId id : std::exchange(live.held, {})) {
-        handlers_.on_event({now, id});
+      for (const core::Event& event : std::exchange(live.held, {})) {
+        handlers_.on_event({now, event.id, event.attributes});
       }
     }
     holds_ = holds_ || !live.held.empty();

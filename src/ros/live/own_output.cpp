@@ -1,7 +1,5 @@
 #include "self_awareness/ros/live/own_output.h"
 
-#include "self_awareness/ros/stable_name.h"
-
 namespace self_awareness::ros1 {
 
 bool OwnOutput::setGraph(const Graph& graph) {
@@ -25,7 +23,7 @@ bool OwnOutput::mayCover(const std::string& node, const std::string& topic) cons
 }
 
 bool OwnOutput::knows(const std::string& node, const std::string& topic) const {
-  return known_.count({stableName(node), topic}) > 0;
+  return encoder_ && known_.count({encoder_->sourceOf(node), encoder_->scopeOf(topic)}) > 0;
 }
 
 }  // namespace self_awareness::ros1

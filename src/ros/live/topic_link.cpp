@@ -15,6 +15,7 @@
 #include "../now.h"
 #include "../text.h"
 #include "self_awareness/core/stream/event.h"
+#include "self_awareness/ros/encoding.h"
 
 namespace self_awareness::ros1 {
 namespace {
@@ -117,6 +118,8 @@ void TopicLink::onHeader(const Bytes& bytes, std::uint32_t size) {
     lose("refuses: " + printable(error, kMostWords));
   } else {
     header_ = header.getValues();
+    const Connection connection = connectionFrom(*header_, topic_->name);
+    attributes_.emplace(connection.definition, connection.datatype);
     answered_ = true;
     read(sizeof(std::uint32_t), &TopicLink::onLength);
   }
@@ -128,6 +131,7 @@ void TopicLink::onLength(const Bytes& bytes, std::uint32_t /*size*/) {
     lose("announces a message of " + inMegabytes(left_));
     return;
   }
+  attributes_->begin(left_);
   if (topic_->content_wanted && left_ <= limits_.message) {
     content_ = std::make_shared<Content>();
   } else if (topic_->content_wanted) {
@@ -148,6 +152,7 @@ void TopicLink::readOn() {
 
 void TopicLink::onPart(const Bytes& bytes, std::uint32_t size) {
   left_ -= size;
+  attributes_->add(bytes.get(), size);
   if (content_) {
     *in_flight_ += size;
     if (content_->capacity() <
@@ -170,9 +175,10 @@ void TopicLink::handOn() {
   dropContent();
   const std::int64_t now = rosNow();
   const std::int64_t steady = steadyNow();
+  const core::Attributes attributes = attributes_->end(now);
   const auto shared = shared_.lock();
   if (!shared->closed) {
-    arrivals_.add({topic_, header_, now, steady, std::move(content)});
+    arrivals_.add({topic_, header_, now, steady, std::move(content), attributes});
   }
 }
 

@@ -7,8 +7,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
+#include "self_awareness/ros/attribute_reader.h"
 #include "self_awareness/ros/live/arrivals.h"
 #include "self_awareness/ros/live/guarded.h"
 #include "self_awareness/ros/live/read_limits.h"
@@ -76,8 +78,9 @@ class TopicLink : public std::enable_shared_from_this<TopicLink> {
   const std::shared_ptr<std::atomic<std::size_t>> in_flight_;
   ros::ConnectionPtr connection_;
   boost::shared_ptr<ros::M_string> header_;
-  std::uint32_t left_ = 0;            // bytes of the message
-  std::shared_ptr<Content> content_;  // of the message, so far; none: it is not read
+  std::optional<AttributeReader> attributes_;  // of messages; none before the header has come
+  std::uint32_t left_ = 0;                     // bytes of the message
+  std::shared_ptr<Content> content_;           // of the message, so far; none: it is not read
   std::atomic<bool> answered_{false};
   std::atomic<bool> lost_{false};
   Guarded<Shared> shared_;

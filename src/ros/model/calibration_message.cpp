@@ -34,6 +34,7 @@ std::vector<self_awareness::Recording> toMessages(
     message.end = toRosTime(std::max(recording.start, recording.end));
     message.events = recording.events;
     message.robot_start = toRosTime(recording.robot_start);
+    message.robot = recording.robot;
     message.fingerprint = recording.fingerprint;
   }
   return messages;
@@ -45,7 +46,8 @@ std::vector<core::RecordingInfo> fromMessages(
   for (const self_awareness::Recording& message : messages) {
     check(message.start <= message.end, "a recording of it ends before it starts");
     recordings.push_back({message.bag, fromRosTime(message.start), fromRosTime(message.end),
-                          message.events, fromRosTime(message.robot_start), message.fingerprint});
+                          message.events, fromRosTime(message.robot_start), message.fingerprint,
+                          message.robot});
   }
   return recordings;
 }

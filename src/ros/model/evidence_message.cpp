@@ -7,6 +7,7 @@
 #include <string>
 #include <utility>
 
+#include "attributes_message.h"
 #include "check.h"
 #include "self_awareness/ros/ros_time.h"
 
@@ -33,6 +34,7 @@ void appendType(const evidence::Statistics::Type& type, self_awareness::Evidence
   message.longest_offsets.push_back(message.longest_gaps.size());
   message.rate_sums.push_back(type.rate_sum);
   message.rate_squares.push_back(type.rate_squares);
+  message.attributes.push_back(toMessage(type.attributes));
   message.left_out.insert(message.left_out.end(), type.left_out.begin(), type.left_out.end());
 }
 
@@ -45,6 +47,8 @@ void checkSizes(const self_awareness::Evidence& message, std::size_t n) {
   check(areOffsets(message.longest_offsets, n, message.longest_gaps.size()) &&
             message.left_out.size() == n * evidence::kDelayBins,
         "its evidence does not fit its event types");
+  check(message.attributes.empty() || message.attributes.size() == n,
+        "its attributes do not fit its event types");
   check(message.duration >= 0, "its evidence has a negative duration");
   check(message.duration < kLargestSum, "its evidence has a duration that cannot be");
 }
@@ -64,6 +68,10 @@ evidence::Statistics::Type typeOf(const self_awareness::Evidence& message, std::
   check(std::max({type.events, type.gaps, type.rate_sum, type.rate_squares}) <
             static_cast<std::uint64_t>(kLargestSum),
         "its evidence has counts that cannot be");
+  if (!message.attributes.empty()) {
+    type.attributes = fromMessage(message.attributes[id]);
+    check(type.attributes.known() <= type.events, "its evidence knows more messages than events");
+  }
   check(type.gaps <= type.events, "its evidence has more gaps than events");
   check(type.gap_sum >= 0 && type.gap_sum < kLargestSum &&
             (type.gaps > 0) == !type.longest_gaps.empty() && areTimes(type.longest_gaps, 0),
@@ -82,7 +90,9 @@ self_awareness::Evidence toMessage(const evidence::Statistics& statistics) {
     counts.start = toRosTime(recording.start);
     counts.end = toRosTime(std::max(recording.start, recording.end));
     counts.robot_start = toRosTime(recording.robot_start);
+    counts.robot = recording.robot;
     counts.longest_silence = recording.longest_silence;
+    counts.longest_stall = recording.longest_stall;
     counts.events = recording.events;
     counts.longest_gaps = recording.longest_gaps;
     counts.firsts = recording.firsts;
@@ -134,12 +144,13 @@ evidence::Statistics fromMessage(const self_awareness::Evidence& message,
               counts.events.size() == counts.firsts.size(),
           "its recordings do not fit its event types");
     check(counts.start <= counts.end, "a recording of it ends before it starts");
-    check(areTimes({counts.longest_silence}, 0) && areTimes(counts.longest_gaps, 0) &&
-              areTimes(counts.firsts, -1),
+    check(areTimes({counts.longest_silence, counts.longest_stall}, 0) &&
+              areTimes(counts.longest_gaps, 0) && areTimes(counts.firsts, -1),
           "its recordings have times that cannot be");
     statistics.addRecording({fromRosTime(counts.start), fromRosTime(counts.end),
-                             counts.longest_silence, counts.events, counts.longest_gaps,
-                             counts.firsts, fromRosTime(counts.robot_start)});
+                             counts.longest_silence, counts.longest_stall, counts.events,
+                             counts.longest_gaps, counts.firsts, fromRosTime(counts.robot_start),
+                             counts.robot});
   }
   for (core::EventId id = 0; id < n; ++id) {
     statistics.type(id) = typeOf(message, id);
@@ -189,6 +200,7 @@ self_awareness::RecordingFindings toMessage(const evidence::LimitFinder::Recordi
   message.start = toRosTime(recording.start);
   message.end = toRosTime(std::max(recording.start, recording.end));
   message.robot_start = toRosTime(recording.robot_start);
+  message.robot = recording.robot;
   message.windows = recording.windows;
   for (const evidence::LimitFinder::Recording::Part& part : recording.parts) {
     message.part_windows.push_back(part.windows);
@@ -228,6 +240,7 @@ evidence::LimitFinder::Recording fromMessage(const self_awareness::RecordingFind
   recording.start = fromRosTime(message.start);
   recording.end = fromRosTime(message.end);
   recording.robot_start = fromRosTime(message.robot_start);
+  recording.robot = message.robot;
   recording.trained_on = true;
   recording.windows = message.windows;
   for (std::size_t k = 0; k < parts; ++k) {

@@ -80,6 +80,7 @@ void checkEffort(const self_awareness::Model& message) {
     unheard += topic.publishers.size();
   }
   check(unheard <= kMostEdges, "it has too many topics that nobody subscribed to");
+  check(message.subscriptions.size() <= kMostEdges, "it has too many subscriptions");
   check(message.hosts.size() <= kMostHosts, "it has too many computers of sources");
 }
 
@@ -271,6 +272,12 @@ self_awareness::Model toMessage(const TrainedModel& model) {
     placed.node = source;
     placed.host = host;
   }
+  for (const auto& [subscription, recordings] : model.graph.lasting()) {
+    self_awareness::Subscription& lasting = message.subscriptions.emplace_back();
+    lasting.node = subscription.first;
+    lasting.topic = subscription.second;
+    lasting.recordings = static_cast<std::uint32_t>(recordings);
+  }
   for (const auto& [source, topic] : model.graph.unheard()) {
     self_awareness::TopicNodes& unheard = message.unheard.emplace_back();
     unheard.topic = topic;
@@ -314,6 +321,9 @@ TrainedModel fromMessage(const self_awareness::Model& message) {
   check(model.graph.edges().size() == message.graph.size(), "its graph has an edge twice");
   for (const self_awareness::NodeHost& placed : message.hosts) {
     model.graph.place(placed.node, placed.host);
+  }
+  for (const self_awareness::Subscription& lasting : message.subscriptions) {
+    model.graph.addLasting({lasting.node, lasting.topic}, lasting.recordings);
   }
   for (const self_awareness::TopicNodes& unheard : message.unheard) {
     for (const std::string& source : unheard.publishers) {

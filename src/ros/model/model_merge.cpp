@@ -36,6 +36,7 @@ void requireSameEncoding(const EncodingRules& one, const EncodingRules& other) {
     }
   };
   require("source", one.source == other.source);
+  require("rename", one.renames == other.renames);
   require("include_topics", one.include_topics == other.include_topics);
   require("exclude_topics", one.exclude_topics == other.exclude_topics);
   require("include_sources", one.include_sources == other.include_sources);
@@ -77,6 +78,9 @@ void merge(TrainedModel& model, const TrainedModel& other) {
   }
   for (const core::SourceGraph::Publication& publication : other.graph.unheard()) {
     model.graph.addUnheard(publication);
+  }
+  for (const auto& [subscription, recordings] : other.graph.lasting()) {
+    model.graph.addLasting(subscription, recordings);
   }
   model.recordings.insert(model.recordings.end(), other.recordings.begin(),
                           other.recordings.end());

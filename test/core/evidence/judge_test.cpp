@@ -6,7 +6,9 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <set>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "recordings.h"
@@ -22,6 +24,14 @@ Statistics followed(unsigned seed) {
   const Events asked = irregular(kA, 0, 100 * kSecond, kPeriod, seed);
   return countsOf({later(together({asked, answers(kB, asked, 20 * kMillisecond)}), seed * kStart)},
                   2);
+}
+
+Acceptance accepted(const std::string& component, const std::string& topic, Kind kind) {
+  Acceptance acceptance;
+  acceptance.component = component;
+  acceptance.topic = topic;
+  acceptance.kind = kind;
+  return acceptance;
 }
 
 class EvidenceJudgeTest : public testing::Test {
@@ -233,6 +243,73 @@ TEST_F(EvidenceJudgeTest, KnowsUnknownEvents) {
   EXPECT_TRUE(judge->add({0, kC}).unknown);
 }
 
+TEST_F(EvidenceJudgeTest, WhatIsAcceptedIsNoEvidenceAndAllElseIs) {
+  limits_.tracks[track(kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
+  limits_.tracks[track(kOverdue, kB, kB)] = model_->overdue(kB, kSecond);
+  limits_.tracks[track(kFewer, kB, kB)] = 2;
+  const auto judgedWith = [&](const std::vector<Acceptance>& all) {
+    Acceptances together;
+    for (const Acceptance& each : all) {
+      together.add(each);
+    }
+    const std::unique_ptr<core::Judge> judge = newJudge(limits_);
+    for (int i = 0; i < 40; ++i) {
+      judge->add({i * kPeriod, kA});
+      judge->add({i * kPeriod + 20 * kMillisecond, kB});
+      judgeAt(*judge, i * kPeriod + kWindow);
+    }
+    judge->accept(together);
+    return judgeAt(*judge, 40 * kPeriod + 3 * kSecond, NameSuspects::kIfUnusual);
+  };
+  const auto named = [](const Judgement& judgement) {
+    std::set<EventId> ids;
+    for (const Suspect& suspect : judgement.suspects) {
+      ids.insert(suspect.id);
+    }
+    return ids;
+  };
+  EXPECT_EQ(named(judgedWith({})), (std::set<EventId>{kA, kB}));
+  Acceptance of_b = accepted("/b", "", Kind::kSlow);
+  const Judgement still_silent = judgedWith({of_b});
+  EXPECT_EQ(still_silent.evidence, "overdue") << "its rate is accepted, its silence is not";
+  EXPECT_EQ(named(still_silent), (std::set<EventId>{kA, kB}));
+  of_b.kind.reset();
+  const Judgement of_a = judgedWith({of_b});
+  EXPECT_TRUE(of_a.abnormal) << "another one is silent, too";
+  EXPECT_EQ(named(of_a), (std::set<EventId>{kA}));
+  const Judgement normal = judgedWith({of_b, accepted("/a*", "/x", Kind::kDied)});
+  EXPECT_EQ(normal.score.value(), 0);
+  EXPECT_FALSE(normal.abnormal);
+}
+
+TEST_F(EvidenceJudgeTest, WhoIsOptionalMayBeAbsentAndIsJudgedWhileThere) {
+  limits_.tracks[track(kOverdue, kB, kB)] = model_->overdue(kB, kSecond);
+  limits_.tracks[track(kFewer, kB, kB)] = 2.5;
+  const std::unique_ptr<core::Judge> judge = newJudge(limits_);
+  judge->setOptional({"/b"});
+  const auto play = [&](int from, int to, int every) {  // B answers every so many times
+    double worst = 0;
+    for (int i = from; i < to; ++i) {
+      judge->add({i * kPeriod, kA});
+      if (every > 0 && i % every == 0) {
+        judge->add({i * kPeriod + 20 * kMillisecond, kB});
+      }
+      for (int window = 1; window <= 2; ++window) {
+        const std::int64_t end = i * kPeriod + window * kWindow;
+        worst = std::min(
+            worst, judge->judge({end - kWindow, {}}, end, NameSuspects::kNever).score.value());
+      }
+    }
+    return worst;
+  };
+  judge->settle({0, kB}, kSecond);
+  EXPECT_GT(play(0, 40, 1), -1) << "it is there";
+  const std::int64_t gone = model_->longestGap(kB) / kPeriod;
+  EXPECT_GT(play(40, 120, 0), -1) << "absent, for longer than " << gone << " periods";
+  EXPECT_GT(play(120, 160, 1), -1) << "back";
+  EXPECT_LT(play(160, 200, 5), -1) << "there, and slow";
+}
+
 TEST_F(EvidenceJudgeTest, WhatSettlesIsNotJudgedAndAllElseIs) {
   limits_.tracks[track(kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
   limits_.tracks[track(kPairs, kB, kA)] = 1;
@@ -354,6 +431,28 @@ TEST_F(EvidenceJudgeTest, ADeathIsFoundWhileAnotherComponentStarts) {
   EXPECT_LT(*alarm, 12 * kSecond);
 }
 
+TEST_F(EvidenceJudgeTest, WhoDoesNotSubscribeIsASuspicionAndHidesNobody) {
+  limits_.tracks[track(kOverdue, kA, kA)] = model_->overdue(kA, 100 * kSecond);
+  const std::unique_ptr<core::Judge> judge = newJudge(limits_);
+  judge->add({0, kA});
+  judge->add({0, kB});
+  judge->setMissing({{"/b", "/x"}});
+  EXPECT_FALSE(judgeAt(*judge, kSecond).suspicious);
+  const Judgement missing = judgeAt(*judge, 62 * kSecond, NameSuspects::kIfUnusual);
+  EXPECT_TRUE(missing.suspicious);
+  EXPECT_FALSE(missing.abnormal);
+  EXPECT_EQ(missing.evidence, "connections");
+  ASSERT_EQ(missing.suspects.size(), 2U);
+  EXPECT_EQ(missing.suspects[0].id, kB) << "kA is near its limit, and no more";
+  const Judgement death = judgeAt(*judge, 101 * kSecond, NameSuspects::kIfUnusual);
+  EXPECT_TRUE(death.abnormal);
+  ASSERT_EQ(death.suspects.size(), 2U);
+  EXPECT_EQ(death.suspects[0].id, kA);
+  EXPECT_EQ(death.suspects[1].reason.kind, Kind::kUnsubscribed);
+  judge->setMissing({});
+  EXPECT_FALSE(judgeAt(*judge, 102 * kSecond).suspicious);
+}
+
 TEST_F(EvidenceJudgeTest, ARestartForgetsWhatWasSeen) {
   limits_.tracks[track(kOverdue, kA, kA)] = 1;
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
@@ -460,6 +559,38 @@ TEST_F(EvidenceJudgeOfStrangersTest, WhatTrainingKnowsByNameIsNotUnknown) {
   EXPECT_FALSE(judge->add({1, debug}).unknown);
   EXPECT_TRUE(judge->add({2, other}).unknown);
   EXPECT_TRUE(judge->add({3, level}).unknown);
+}
+
+TEST_F(EvidenceJudgeOfStrangersTest, WhoIsAcceptedIsNotUnknownUntilThatIsTakenBack) {
+  heard_ = std::make_shared<Vocabulary>(model_->vocabulary());
+  const EventId id = heard_->intern({"/rostopic", "/y", "T"});
+  const EventId other = heard_->intern({"/joystick", "/y", "T"});
+  const std::unique_ptr<core::Judge> judge =
+      makeJudge(model_, limits_, kWindow, std::make_shared<SourceGraph>(), heard_);
+  EXPECT_TRUE(judge->add({0, id}).unknown);
+  Acceptances all;
+  all.add(accepted("/rostopic", "/y", Kind::kStranger));
+  judge->accept(all);
+  EXPECT_FALSE(judge->add({1, id}).unknown);
+  EXPECT_TRUE(judge->add({1, other}).unknown);
+  judge->accept({});
+  EXPECT_TRUE(judge->add({2, id}).unknown);
+}
+
+TEST_F(EvidenceJudgeOfStrangersTest, OfNodesThatLogAnewOnlyErrorsAreNews) {
+  heard_ = std::make_shared<Vocabulary>(model_->vocabulary());
+  const std::unique_ptr<core::Judge> judge =
+      makeJudge(model_, limits_, kWindow, std::make_shared<SourceGraph>(), heard_);
+  const auto isNews = [&](const std::string& source, const std::string& type) {
+    return judge->add({kSecond, heard_->intern({source, "/rosout", type})}).unknown;
+  };
+  for (const std::string level : {"1", "2", "4"}) {
+    EXPECT_FALSE(isNews("/a", "rosgraph_msgs/Log[level=" + level + "]")) << level;
+    EXPECT_TRUE(isNews("/new", "rosgraph_msgs/Log[level=" + level + "]")) << "who is it?";
+  }
+  EXPECT_TRUE(isNews("/a", "rosgraph_msgs/Log[level=8]"));
+  EXPECT_TRUE(isNews("/a", "rosgraph_msgs/Log[level=16]"));
+  EXPECT_TRUE(isNews("/a", "rosgraph_msgs/Log")) << "by an encoding that tells no levels";
 }
 
 TEST_F(EvidenceJudgeOfStrangersTest, ItIsSoForAsLongAsRatesCount) {

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "attributed.h"
 #include "recordings.h"
 #include "self_awareness/core/evidence/channel/model.h"
 #include "self_awareness/core/evidence/channel/watched.h"
@@ -131,7 +132,10 @@ TEST(EvidenceTuning, ALeastEffectIsTheLargerOfTimeAndShare) {
 
 TEST(EvidenceTuning, AChannelThatIsSwitchedOffIsNotWatched) {
   const auto start = [](unsigned seed) {
-    const Events asked = irregular(kA, 0, 100 * kSecond, 200 * kMillisecond, seed);
+    Events asked = irregular(kA, 0, 100 * kSecond, 200 * kMillisecond, seed);
+    for (Event& each : asked) {
+      each.attributes = messages(kA, 0, 1, Source{}).front().attributes;
+    }
     return countsOf(
         {later(together({asked, answers(kB, asked, 20 * kMillisecond)}), seed * kStart)}, 2);
   };

@@ -141,6 +141,21 @@ TEST_F(AlarmsTest, WhoWasSilentFirstIsNotToBlameWhereAllAre) {
   EXPECT_EQ(alarms_.standing()->reason, "everything fell silent: 2 components");
 }
 
+TEST_F(AlarmsTest, WhereSomeStoppedTogetherItIsANewModeAndNobodyIsToBlame) {
+  add(verdict(kAlarm, {suspect(1, Kind::kDied)}));
+  Verdict mode = verdict(kSuspicion);
+  mode.evidence = "new mode";
+  mode.silent = Silent{{}, {"/a", "/b", "/c", "/d", "/e"}, kStart, true};
+  add(mode);
+  EXPECT_EQ(alarms_.standing()->kind, Kind::kNewMode);
+  EXPECT_EQ(alarms_.standing()->culprit, "");
+  EXPECT_EQ(alarms_.standing()->reason,
+            "/a, /b, /c and 2 more stopped together, and others go on: a mode that training did "
+            "not show, or something that they share");
+  add(verdict(kAlarm, {suspect(1, Kind::kSlow)}));
+  EXPECT_EQ(alarms_.standing()->culprit, "/b") << "another one meanwhile";
+}
+
 TEST_F(AlarmsTest, ComputersThatFellSilentAreNamedAndNobodyIsToBlame) {
   add(verdict(kAlarm, {suspect(1, Kind::kDied)}));
   Verdict silent = verdict(kAlarm, {suspect(1, Kind::kDied)});

@@ -24,6 +24,8 @@ TEST(Suspect, AStrangerIsToldByWhatCameOfIt) {
 TEST(Suspect, AKindIsFoundByItsName) {
   EXPECT_EQ(kindOf("died"), Kind::kDied);
   EXPECT_EQ(kindOf("all silent"), Kind::kAllSilent);
+  EXPECT_EQ(kindOf("new mode"), Kind::kNewMode);
+  EXPECT_EQ(kindOf("not subscribed"), Kind::kUnsubscribed);
   EXPECT_EQ(kindOf("none of them"), std::nullopt);
   EXPECT_TRUE(isMissing(Kind::kNeverCame));
   EXPECT_FALSE(isMissing(Kind::kFast));

@@ -265,7 +265,8 @@ TEST_F(BagReaderTest, EveryTruncatedBagIsRefusedWithTheRepair) {
   const std::string bag = writeBag("a.bag");
   const auto size = fs::file_size(bag);
   for (const double share : {0.02, 0.1, 0.3, 0.5, 0.7, 0.9, 0.97, 0.999}) {
-    fs::copy_file(bag, path("cut.bag"), fs::copy_option::overwrite_if_exists);
+    fs::remove(path("cut.bag"));
+    fs::copy_file(bag, path("cut.bag"));
     fs::resize_file(path("cut.bag"),
                     static_cast<std::uintmax_t>(share * static_cast<double>(size)));
     const std::string error = bagError(path("cut.bag"));

@@ -148,6 +148,37 @@ TEST_F(EventLogTest, EventsComeOutAsTheyWentIn) {
       << "where they ran last";
 }
 
+TEST_F(EventLogTest, WhoSubscribedAtTheEndDidSoAllTheTime) {
+  using Subscriptions = std::set<core::SourceGraph::Subscription>;
+  EXPECT_EQ(lastingSubscriptions(EventLogReader(writeLog("log.bag"), 0).summary(), rules_),
+            (Subscriptions{{"/node2", "/topic"}}))
+      << "/node1 left while it started";
+  const std::set<std::string> nobody;
+  BagSummary summary;
+  summary.clock_watched = true;
+  summary.end = 1000 * kSecond;
+  const auto change = [&](std::int64_t stamp, const std::set<std::string>& subscribers) {
+    summary.graph_changes.push_back({stamp, {{"/topic", {"", nobody, subscribers}}}});
+  };
+  change(10 * kSecond, {});
+  change(50 * kSecond, {"/slow", "/always", "/lazy", "/rqt_plot"});
+  change(500 * kSecond, {"/slow", "/always", "/later"});
+  change(501 * kSecond, {"/slow", "/always", "/later", "/lazy"});
+  EXPECT_EQ(lastingSubscriptions(summary, rules_),
+            (Subscriptions{{"/always", "/topic"}, {"/slow", "/topic"}}))
+      << "neither who left for a moment, who came later, nor a tool";
+  summary.end = 80 * kSecond;
+  EXPECT_EQ(lastingSubscriptions(summary, rules_), Subscriptions{})
+      << "within 40 s of a short recording";
+  summary.end = 1000 * kSecond;
+  rules_.exclude_topics.emplace_back("/topic");
+  EXPECT_EQ(lastingSubscriptions(summary, rules_), Subscriptions{});
+  rules_ = EncodingRules::defaults();
+  summary.clock_watched = false;
+  EXPECT_EQ(lastingSubscriptions(summary, rules_), Subscriptions{})
+      << "made of a bag, whose graph does not say who left";
+}
+
 TEST_F(EventLogTest, HowTheMachineWasComesOutAsItWentIn) {
   const std::string log = writeLog("log.bag");
   const auto stretches = waiting(EventLogReader(log, 0));

@@ -20,7 +20,7 @@ using core::Event;
 bool same(const std::vector<Event>& a, const std::vector<Event>& b) {
   return a.size() == b.size() &&
          std::equal(a.begin(), a.end(), b.begin(), [](const Event& x, const Event& y) {
-           return x.stamp == y.stamp && x.id == y.id;
+           return x.stamp == y.stamp && x.id == y.id && x.attributes == y.attributes;
          });
 }
 
@@ -50,6 +50,53 @@ TEST(PackedEvents, OfAnyRobotComeOutAsTheyWentIn) {
       events.push_back({stamp, id(random)});
     }
     ASSERT_TRUE(same(PackedEvents::pack(events).unpack(), events)) << "robot " << robot;
+  }
+}
+
+/// Messages of a type whose ages scatter by a share, with or without a header.
+std::vector<Event> withAttributes(double scatter, double size_scatter, bool header) {
+  std::mt19937_64 random(3);
+  std::normal_distribution<> normal;
+  std::vector<Event> events;
+  for (int k = 0; k < 20000; ++k) {
+    const double size = 2000 * std::exp(size_scatter * normal(random));
+    Event event{1000000000000 + k * std::int64_t{6000000}, static_cast<core::EventId>(k % 30)};
+    event.attributes.size = core::sizeClass(static_cast<std::uint64_t>(size));
+    if (header) {
+      event.attributes.step = core::Attributes::Step::kNext;
+      event.attributes.age =
+          core::ageClass(core::toNanoseconds(0.02 * std::exp(scatter * normal(random))));
+    }
+    events.push_back(event);
+  }
+  return events;
+}
+
+double bytesOfAttributes(const std::vector<Event>& events) {
+  return static_cast<double>(PackedEvents::pack(events).attributes.size()) /
+         static_cast<double>(events.size());
+}
+
+TEST(PackedEvents, KeepAttributes) {
+  for (const double scatter : {0.0, 0.3, 3.0}) {
+    const std::vector<Event> events = withAttributes(scatter, scatter, true);
+    EXPECT_TRUE(same(PackedEvents::pack(events).unpack(), events));
+  }
+}
+
+TEST(PackedEvents, AttributesNeedTwoBytesAtMost) {
+  EXPECT_EQ(bytesOfAttributes({{1, 0}, {2, 0}}), 0) << "nothing is known";
+  EXPECT_LT(bytesOfAttributes(withAttributes(0, 0, false)), 0.3);
+  EXPECT_LT(bytesOfAttributes(withAttributes(0.2, 0, true)), 1.3);
+  EXPECT_LT(bytesOfAttributes(withAttributes(3, 0.01, true)), 2);
+}
+
+TEST(PackedEvents, RefuseDamagedAttributes) {
+  const PackedEvents packed = PackedEvents::pack(withAttributes(0.2, 0.2, true));
+  for (const bool longer : {true, false}) {
+    PackedEvents damaged = packed;
+    damaged.attributes.resize(packed.attributes.size() + (longer ? 1 : -1));
+    EXPECT_THROW(damaged.unpack(), std::invalid_argument);
   }
 }
 

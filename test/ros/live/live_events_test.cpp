@@ -73,11 +73,10 @@ class LiveEventsTest : public testing::Test {
   }
   /// Encodes as a monitor does that keeps back for so long [ns] what may be a sibling's.
   void encodeHolding(std::int64_t hold, OwnOutput::Known known = {}) {
-    live_events_->setEncoder(std::make_shared<Encoder>(EncodingRules(),
-                                                       [this](const core::EventType& type) {
-                                                         return vocabulary_.intern(type);
-                                                       }),
-                             OwnOutput("/watch", std::move(known)), kWindow, hold);
+    const auto encoder = std::make_shared<Encoder>(
+        EncodingRules(), [this](const core::EventType& type) { return vocabulary_.intern(type); });
+    live_events_->setEncoder(encoder, OwnOutput("/watch", std::move(known), encoder), kWindow,
+                             hold);
   }
   /// This process as the publisher of a topic.
   static Listening ownTopic(const std::string& topic) {

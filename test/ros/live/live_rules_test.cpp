@@ -61,8 +61,12 @@ TEST(ChooseTopics, LeavesOutWhatRoscppCannotSubscribeTo) {
             (Topics{"/a_1/B", longest, "/scan"}));
 }
 
+std::shared_ptr<const Encoder> plain() {
+  return std::make_shared<const Encoder>(EncodingRules(), nullptr);
+}
+
 TEST(OwnOutput, LeavesOutWhatOtherNodesOfThePackageSayOfThemselves) {
-  OwnOutput own("/watch", {{"/base", "/rosout"}});
+  OwnOutput own("/watch", {{"/base", "/rosout"}}, plain());
   Graph graph;
   graph.topics["/second/status"] = {"self_awareness/SelfAwareness", {"/second", "/base"}, {}};
   graph.topics["/scan"] = {"sensor_msgs/LaserScan", {"/player"}, {}};
@@ -92,7 +96,7 @@ TEST(NamedOnce, NamesEachOnceAndNotTooMany) {
 }
 
 TEST(OwnOutput, IsWhatTheModelDoesNotKnowFromTheProcess) {
-  const OwnOutput own("/manager", {{"/manager", "/scan"}, {"/manager", "/rosout"}});
+  const OwnOutput own("/manager", {{"/manager", "/scan"}, {"/manager", "/rosout"}}, plain());
   EXPECT_TRUE(own.covers("/manager", "/watch/status"));
   EXPECT_TRUE(own.covers("/manager", "/rosout"));
   EXPECT_FALSE(own.covers("/manager", "/scan"));

@@ -24,6 +24,7 @@ TEST_F(ModelFileTest, TheEvidenceItsLimitsAndTheGraphComeBackAsTheyWereSaved) {
   model.graph.connect("/a", "/y", "/c");
   model.graph.place("/a", "base");
   model.graph.addUnheard({"/planner", "/debug"});
+  model.graph.addLasting({"/b", "/x"}, 3);
   model.tuning.least_effect = 0.003;
   model.tuning.share_of_other = 0.8;  // the first and the last one are no exceptions
   model.tuning.fewest_gaps = 31;
@@ -47,6 +48,7 @@ TEST_F(ModelFileTest, TheEvidenceItsLimitsAndTheGraphComeBackAsTheyWereSaved) {
   EXPECT_TRUE(loaded.graph.edges() == model.graph.edges());
   EXPECT_EQ(loaded.graph.hostOf("/a"), "base");
   EXPECT_EQ(loaded.unheard(), (std::set<core::SourceGraph::Publication>{{"/planner", "/debug"}}));
+  EXPECT_EQ(loaded.graph.lasting(), model.graph.lasting());
   const core::evidence::Limits limits = loaded.limits().value();
   ASSERT_EQ(limits.tracks.size(), model.calibration->limits.tracks.size());
   EXPECT_TRUE(std::isnan(limits.tracks[0]));
@@ -60,6 +62,20 @@ TEST_F(ModelFileTest, TheEvidenceItsLimitsAndTheGraphComeBackAsTheyWereSaved) {
                  return path("bare");
                }())
                    .limits());
+}
+
+TEST_F(ModelFileTest, HowLongTheMachineStoodStillComesBack) {
+  TrainedModel model = someModel();
+  core::evidence::Statistics::Recording recording = model.evidence[0].recordings().at(0);
+  ++recording.start;
+  recording.longest_stall = 1200000000;
+  model.evidence[0].addRecording(recording);
+  model.watched.halves[0].addRecording(recording);
+  saveModel(model, path("m"));
+  const TrainedModel loaded = loadModel(path("m"));
+  EXPECT_TRUE(loaded.evidence[0] == model.evidence[0]);
+  EXPECT_EQ(loaded.evidence[0].recordings().at(0).longest_stall, 0);
+  EXPECT_EQ(loaded.evidence[0].recordings().at(1).longest_stall, 1200000000);
 }
 
 TEST_F(ModelFileTest, PairsThatWereLeftOutForGoodComeBackAsSuch) {

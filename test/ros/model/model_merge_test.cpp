@@ -87,6 +87,8 @@ TEST_F(ModelMergeTest, EdgesAreThoseOfBothAndTheStampTheLater) {
   first_.graph.connect("/a", "/x", "/b");
   second_.graph.place("/b", "base");
   second_.graph.addUnheard({"/b", "/debug"});
+  first_.graph.addLasting({"/b", "/x"}, 2);
+  second_.graph.addLasting({"/b", "/x"}, 1);
   second_.graph.connect("/a", "/x", "/c");
   second_.graph.connect("/b", "/y", "/c");
   first_.stamp = 3;
@@ -94,6 +96,7 @@ TEST_F(ModelMergeTest, EdgesAreThoseOfBothAndTheStampTheLater) {
   merge(first_, second_);
   EXPECT_EQ(first_.graph.hostOf("/b"), "base");
   EXPECT_EQ(first_.graph.unheard().size(), 1U);
+  EXPECT_EQ(first_.graph.lasting().at({"/b", "/x"}), 3U) << "recordings that had it";
   EXPECT_TRUE(first_.graph.edges() ==
               (std::set<core::SourceGraph::Edge>{
                   {"/a", "/x", "/b"}, {"/a", "/x", "/c"}, {"/b", "/y", "/c"}}));

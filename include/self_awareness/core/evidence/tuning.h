@@ -103,6 +103,15 @@ struct Tuning {
   double most_share = 2;
   double share_of_other = 0.9;
 
+  // The attributes of messages.
+  double least_age = 0.5;
+  double usual_losses = 0.003;
+  double least_losses = 1.5;
+  double least_size = 0.5;
+  double least_repeat = 2;
+  double longest_repeat = 30;
+  double share_of_attribute = 0.02;
+
   /// Channels that are switched off, by their names (channelNames()).
   std::set<std::string> without;
 

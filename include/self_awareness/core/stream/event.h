@@ -5,6 +5,8 @@
 #include <string>
 #include <tuple>
 
+#include "self_awareness/core/stream/attributes.h"
+
 namespace self_awareness::core {
 
 /// What happened, without the time: e = (source, scope, type) (paper, section IV-C;
@@ -38,8 +40,9 @@ using EventId = std::uint32_t;
 
 /// One occurrence of an event type.
 struct Event {
-  std::int64_t stamp = 0;  ///< [ns]
-  EventId id = 0;          ///< of its type
+  std::int64_t stamp = 0;   ///< [ns]
+  EventId id = 0;           ///< of its type
+  Attributes attributes{};  ///< of the message; of events of older logs, nothing is known
 };
 
 constexpr std::int64_t kNanosecondsPerSecond = 1000000000;

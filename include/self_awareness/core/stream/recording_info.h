@@ -15,6 +15,7 @@ struct RecordingInfo {
   /// Over the whole recording: it is the same under another name, and says which half of a
   /// training the recording belongs to (evidence::halfOf()).
   std::uint64_t fingerprint = 0;
+  std::string robot{};  ///< its name; empty: not known
 };
 
 }  // namespace self_awareness::core

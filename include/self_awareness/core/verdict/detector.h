@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "self_awareness/core/verdict/judge.h"
 #include "self_awareness/core/verdict/persistence.h"
 #include "self_awareness/core/verdict/silent.h"
+#include "self_awareness/core/verdict/source_graph.h"
 
 namespace self_awareness::core {
 
@@ -39,7 +41,7 @@ struct Verdict {
 };
 
 /// What an event type means that training never saw (docs/method.md, section 4.5): somebody may
-/// have plugged in a joystick.
+/// have plugged in a joystick. kWarn: it is told once, and then counted.
 enum class UnknownEvents { kIgnore, kWarn, kError };
 
 /// Turns events into alarms, in the same way live and from a bag: window, judgement, persistence
@@ -72,6 +74,15 @@ class Detector : private WindowObserver {
   /// Takes note of how the machine was in a stretch of time, one after the other; at the latest
   /// before a window is judged that ends after it.
   void hear(const Waiting& waiting) { judge_->hear(waiting); }
+  /// Takes note of who may be absent. What is unusual of them while they are there is judged.
+  /// @param patterns names of components or topics, or their begins and a `*`
+  void setOptional(const std::vector<std::string>& patterns) { judge_->setOptional(patterns); }
+  /// Takes what is accepted as normal from now on, in place of what was before.
+  void accept(const Acceptances& accepted) { judge_->accept(accepted); }
+  /// Takes note which subscriptions are missing from now on; as Judge::setMissing().
+  void setMissing(const std::set<SourceGraph::Subscription>& missing) {
+    judge_->setMissing(missing);
+  }
   /// Takes note that this program was too slow, and has missed events of these types up to the
   /// time `now` [ns]: they settle as if they were new, for 3 s at least.
   void onMissed(const std::vector<EventId>& ids, std::int64_t now);
@@ -96,8 +107,17 @@ class Detector : private WindowObserver {
 
   /// Whether an event has come since the start.
   bool started() const { return windows_.lastStamp().has_value(); }
+  /// Events since the start that training never saw, by id; without those that were accepted when
+  /// they came.
+  std::map<EventId, std::uint64_t> unknown() const;
 
  private:
+  /// An event type that training never saw.
+  struct Unknown {
+    std::uint64_t events = 0;
+    bool told = false;
+  };
+
   ObservedEvent observe(const Event& event) override;
   void close(const Window& window, std::int64_t end) override;
   void onClockStep() override;
@@ -110,6 +130,11 @@ class Detector : private WindowObserver {
   /// @param end of the window [ns]
   /// @return the first of each component that was not named before
   std::vector<Suspect> name(std::vector<Suspect>& suspects, bool begins, std::int64_t end);
+
+  /// Whether unknown events of a window have to be told.
+  bool isNews(const Window& window) const;
+  /// They were told.
+  void tellOnce(const Window& window);
 
   /// Whether the alarm of before the start has to stand on.
   /// @param end of the window [ns]
@@ -128,6 +153,7 @@ class Detector : private WindowObserver {
   std::int64_t suspicious_at_ = 0;  // end of the last suspicious window [ns], while it stands
   std::int64_t settled_at_ = 0;     // [ns], valid once started
   std::vector<bool> heard_;         // since the start, by id
+  std::map<EventId, Unknown> unknown_;
   // When the alarm or the suspicion that stands named a component, or an event type whose
   // component is not known: end of the window [ns].
   std::map<std::pair<std::string, EventId>, std::int64_t> named_;

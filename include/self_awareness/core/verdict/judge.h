@@ -2,13 +2,16 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "self_awareness/core/stream/waiting.h"
 #include "self_awareness/core/stream/windows.h"
+#include "self_awareness/core/verdict/acceptance.h"
 #include "self_awareness/core/verdict/busy.h"
 #include "self_awareness/core/verdict/silent.h"
+#include "self_awareness/core/verdict/source_graph.h"
 #include "self_awareness/core/verdict/suspect.h"
 
 namespace self_awareness::core {
@@ -57,6 +60,16 @@ class Judge {
   /// Takes note of how the machine was in a stretch of time, one after the other. Who does not
   /// judge by time has no use for it.
   virtual void hear(const Waiting& /*waiting*/) {}
+  /// Takes what is accepted as normal from now on, in place of what was before. Who knows no event
+  /// type of its own has no use for it.
+  virtual void accept(const Acceptances& /*accepted*/) {}
+  /// Takes note of who may be absent: names of components or topics, or their begins and a `*`.
+  /// What is unusual of them while they are there is judged.
+  virtual void setOptional(const std::vector<std::string>& /*patterns*/) {}
+  /// Takes note of all subscriptions that every start of the training had and that are missing
+  /// from now on, although the source is known to the master. Who judges by events alone has no
+  /// use for it.
+  virtual void setMissing(const std::set<SourceGraph::Subscription>& /*missing*/) {}
   /// Judges a window that is over. Its events are all those taken in since the window before it.
   /// Without calibration, the judge names no suspects.
   /// @param end up to where the window is known [ns], as for WindowObserver::close()

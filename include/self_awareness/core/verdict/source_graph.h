@@ -12,8 +12,8 @@ namespace self_awareness::core {
 
 /// Says whose messages reach whom, and on which topic (docs/method.md, section 6): it has an edge
 /// from every source that publishes on a topic to every source that subscribes to it. It also says
-/// on which computer a source runs, and what sources publish that nobody hears, as far as that is
-/// known.
+/// on which computer a source runs, what sources publish that nobody hears, and to what they
+/// always subscribe, as far as that is known.
 class SourceGraph {
  public:
   /// Messages of one source reach another on a topic.
@@ -43,6 +43,16 @@ class SourceGraph {
   /// All of which that was said.
   const std::set<Publication>& unheard() const { return unheard_; }
 
+  /// A source that subscribes, and the scope.
+  using Subscription = std::pair<std::string, std::string>;
+  /// Says that a subscription lasted, from when the start had had its time to the end, in so many
+  /// further recordings.
+  void addLasting(const Subscription& subscription, std::size_t recordings = 1) {
+    lasting_[subscription] += recordings;
+  }
+  /// In how many recordings each did.
+  const std::map<Subscription, std::size_t>& lasting() const { return lasting_; }
+
   /// Whether it says nothing: who hears whom is not known.
   bool empty() const { return edges_.empty(); }
   /// All edges, each once.
@@ -64,6 +74,7 @@ class SourceGraph {
   std::map<std::string, std::set<std::string>> followers_;  // of the edges, by publisher
   std::map<std::string, std::string> hosts_;                // by source
   std::set<Publication> unheard_;
+  std::map<Subscription, std::size_t> lasting_;
 };
 
 inline bool operator<(const SourceGraph::Edge& a, const SourceGraph::Edge& b) {

@@ -26,20 +26,27 @@ constexpr std::size_t kMostSuspects = 5;
 
 /// What is wrong with a component, or with all of them (docs/alarm.md).
 enum class Kind {
-  kDied,         ///< has not come, although it should have by now, of itself or as an answer
-  kSlow,         ///< comes less often than it should
-  kFast,         ///< comes more often than it should
-  kLate,         ///< comes later than it should: after what it answers to, or after its own last
-  kEarly,        ///< comes sooner after another event type than it should
-  kOutOfOrder,   ///< comes sometimes too early, sometimes too late
-  kNeverCame,    ///< has not come since the start, although it always does
-  kStranger,     ///< was never seen in training
-  kBusyMachine,  ///< of an alarm: many are late at once, and none of them is to blame
-  kAllSilent,    ///< of an alarm: nobody is heard any more
+  kDied,          ///< has not come, although it should have by now, of itself or as an answer
+  kSlow,          ///< comes less often than it should
+  kFast,          ///< comes more often than it should
+  kLate,          ///< comes later than it should: after what it answers to, or after its own last
+  kEarly,         ///< comes sooner after another event type than it should
+  kOutOfOrder,    ///< comes sometimes too early, sometimes too late
+  kNeverCame,     ///< has not come since the start, although it always does
+  kStranger,      ///< was never seen in training
+  kUnsubscribed,  ///< runs, and does not subscribe to what it did in every start of the training
+  kStale,         ///< its stamps are older than they should be
+  kLossy,         ///< messages of it are missing
+  kOtherSize,     ///< its messages are smaller or larger than they should be
+  kStuck,         ///< its messages have the same content again and again
+  kBusyMachine,   ///< of an alarm: many are late at once, and none of them is to blame
+  kAllSilent,     ///< of an alarm: nobody is heard any more
+  kNewMode,       ///< of a suspicion: some that do not hear each other stopped, and others go on
 };
 
-/// "died", "slow", "fast", "late", "early", "out of order", "never came", "stranger", "busy
-/// machine" or "all silent".
+/// "died", "slow", "fast", "late", "early", "out of order", "never came", "stranger", "not
+/// subscribed", "stale", "lossy", "other size", "stuck", "busy machine", "all silent" or "new
+/// mode".
 std::string toString(Kind kind);
 /// The kind of this name; none: there is no such kind.
 std::optional<Kind> kindOf(const std::string& name);

@@ -55,9 +55,11 @@ struct BagSummary {
   // Of event logs only:
   std::optional<EncodingRules> encoding;  ///< by which messages became events
   std::int64_t robot_start = 0;  ///< recordings that share it are of one start [ns]; 0: not known
+  std::string robot;             ///< its name; empty: not known
   bool clock_watched = false;  ///< it was heard live: a new recording began when ROS time was set
   Graph graph;                 ///< all who ever published or subscribed
-  std::uint64_t dropped = 0;   ///< messages that came too fast to be written
+  std::vector<GraphChange> graph_changes;  ///< in their order
+  std::uint64_t dropped = 0;               ///< messages that came too fast to be written
 };
 
 /// First and last stamp [ns] of a range of a recording.
@@ -67,8 +69,7 @@ std::pair<std::int64_t, std::int64_t> limitsIn(const BagSummary& summary, const 
 struct BagIndex;
 
 /// Reads a bag as a stream of events. Time, topic, type and callerid come from the index, which is
-/// read once and kept (24 bytes a message). A message itself is read only if the encoding needs
-/// its content.
+/// read once and kept (24 bytes a message). Messages themselves are read for their attributes.
 class BagReader {
  public:
   using Handler = std::function<void(const core::Event&)>;

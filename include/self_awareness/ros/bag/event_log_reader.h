@@ -4,10 +4,12 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "self_awareness/core/stream/waiting.h"
+#include "self_awareness/core/verdict/source_graph.h"
 #include "self_awareness/ros/bag/bag_reader.h"
 #include "self_awareness/ros/encoding.h"
 
@@ -34,6 +36,14 @@ class EventLogFile {
   std::string path_;
   std::unique_ptr<const Content> content_;
 };
+
+/// What nodes subscribed to in a recording, from when its start had had its time (a minute, at
+/// most half of it) to its end. Empty of what was not heard live: the graph beside a bag does not
+/// say who left, and who records all topics has others subscribe to what nobody else listens to.
+/// @param rules of the encoding
+/// @throw std::invalid_argument names a pattern of them that is no regular expression
+std::set<core::SourceGraph::Subscription> lastingSubscriptions(const BagSummary& summary,
+                                                               const EncodingRules& rules);
 
 /// Reads one recording of an event log as a stream of events, like BagReader.
 class EventLogReader {

@@ -20,8 +20,10 @@ constexpr char kEventLogGraphTopic[] = "/event_log/graph";  ///< EventLogGraph
 /// The start of a recording that is heard live, with a fingerprint drawn at random.
 /// @param begin when listening began [ns], 0 or more
 /// @param robot_start when the robot was started [ns]; 0: not known
+/// @param robot its name; empty: not known
 self_awareness::EventLogStart startOfRecording(const EncodingRules& encoding, std::int64_t begin,
-                                               std::int64_t robot_start = 0);
+                                               std::int64_t robot_start = 0,
+                                               const std::string& robot = {});
 
 class EventLogWriter {
  public:

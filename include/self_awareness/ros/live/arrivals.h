@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "self_awareness/core/stream/attributes.h"
 #include "self_awareness/core/stream/windows.h"
 #include "self_awareness/ros/live/guarded.h"
 
@@ -38,6 +39,7 @@ struct Arrival {
   std::int64_t stamp = 0;                   ///< ROS time of its receipt [ns]
   std::int64_t steady = 0;                  ///< the same by the steady clock [ns]
   std::shared_ptr<const Content> content;   ///< none: it was not read
+  core::Attributes attributes{};
 };
 
 /// Keeps what arrives, in any thread, for the one thread that takes it, many messages at a time.

@@ -37,6 +37,8 @@ class LiveEvents {
 
   struct Handlers {
     std::function<void(const core::Event&)> on_event;
+    /// The content of a message that is read for its event type, before the event. May be empty.
+    std::function<void(core::EventId, const Content&)> on_content;
     /// The time that an event is stamped with, by ROS time and the steady clock when its message
     /// came [ns]. May be empty: ROS time.
     std::function<std::int64_t(std::int64_t, std::int64_t)> time;
@@ -89,7 +91,7 @@ class LiveEvents {
     // While it may be left out by a graph to come: until when, from its first message on [ns of
     // steady time], and what it said.
     std::optional<std::int64_t> held_until;
-    std::vector<core::EventId> held;
+    std::vector<core::Event> held;
   };
 
   /// Chooses anew what is left out, of connections that were heard.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <set>
 #include <string>
 #include <utility>
@@ -20,7 +21,9 @@ class OwnOutput {
   OwnOutput() = default;  ///< nothing
   /// @param node full name of the monitor's process
   /// @param known what is communication of the robot
-  OwnOutput(std::string node, Known known) : node_(std::move(node)), known_(std::move(known)) {}
+  /// @param encoder that its names come from; null: none are known
+  OwnOutput(std::string node, Known known, std::shared_ptr<const Encoder> encoder = nullptr)
+      : node_(std::move(node)), known_(std::move(known)), encoder_(std::move(encoder)) {}
 
   /// Takes in who publishes what now. To be called where the encoding tells sources apart, as a
   /// replay has one name for all.
@@ -37,6 +40,7 @@ class OwnOutput {
 
   std::string node_;
   Known known_;
+  std::shared_ptr<const Encoder> encoder_;
   Siblings siblings_;
 };
 

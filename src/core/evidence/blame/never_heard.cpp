@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -25,7 +26,8 @@ NeverHeard::NeverHeard(const Model& model, const Limits& limits,
       alarm_later_(toNanoseconds(model.tuning().start_time)),
       accept_after_(model.tuning().accept_after * 1e9),
       graph_(std::move(graph)),
-      heard_(model.components().size(), false) {
+      heard_(model.components().size(), false),
+      may_be_silent_(model.size(), false) {
   const Statistics& statistics = model.statistics();
   const double due_times = model.tuning().due_times;
   std::vector<std::int64_t> silent;
@@ -107,8 +109,17 @@ void NeverHeard::closeWindow(std::int64_t end, std::int64_t settle_time) {
         static_cast<double>(passed) > alarm + accept_after_) {
       expected.share = std::min(expected.share, 1.0);
     }
-    share_ = std::max(share_, expected.share);
+    if (!may_be_silent_[expected.id]) {
+      share_ = std::max(share_, expected.share);
+    }
   }
+}
+
+std::vector<NeverHeard::Expected> NeverHeard::missing() const {
+  std::vector<Expected> missing;
+  std::copy_if(missing_.begin(), missing_.end(), std::back_inserter(missing),
+               [this](const Expected& expected) { return !may_be_silent_[expected.id]; });
+  return missing;
 }
 
 std::vector<NeverHeard::Expected> NeverHeard::rootFirst(std::vector<Expected> missing) const {
@@ -129,7 +140,7 @@ std::vector<NeverHeard::Expected> NeverHeard::rootFirst(std::vector<Expected> mi
 
 std::vector<std::pair<EventId, double>> NeverHeard::shares() const {
   std::vector<std::pair<EventId, double>> shares;
-  for (const Expected& expected : missing_) {
+  for (const Expected& expected : missing()) {
     shares.emplace_back(expected.id, expected.share);
   }
   return shares;
@@ -152,7 +163,7 @@ Reason NeverHeard::reasonOf(const Expected& expected) const {
 
 std::vector<Suspect> NeverHeard::suspects() const {
   std::vector<Suspect> suspects;
-  for (const Expected& expected : missing_) {
+  for (const Expected& expected : missing()) {
     Suspect suspect;
     suspect.id = expected.id;
     suspect.component = component(expected.id);
@@ -164,7 +175,8 @@ std::vector<Suspect> NeverHeard::suspects() const {
 }
 
 bool NeverHeard::isMissedBy(const std::string& other) const {
-  return std::any_of(missing_.begin(), missing_.end(), [&](const Expected& expected) {
+  const std::vector<Expected> all = missing();
+  return std::any_of(all.begin(), all.end(), [&](const Expected& expected) {
     return graph_->isUpstream(component(expected.id), other);
   });
 }

@@ -24,6 +24,9 @@ class NeverHeard {
 
   /// Takes in the next event, of any id. The first one is the start.
   void add(const Event& event);
+  /// Excuses event types that need not come, and nobody else.
+  /// @param may_be_silent by id of the model
+  void excuse(std::vector<bool> may_be_silent) { may_be_silent_ = std::move(may_be_silent); }
   /// Forgets what was heard: the next event is the start.
   void restart();
   /// Looks at what is missing at the end of a window.
@@ -61,6 +64,8 @@ class NeverHeard {
     }
   };
 
+  /// Those that are due and have to come.
+  std::vector<Expected> missing() const;
   const std::string& component(EventId id) const;
   Reason reasonOf(const Expected& expected) const;
   std::vector<Expected> rootFirst(std::vector<Expected> missing) const;
@@ -75,6 +80,7 @@ class NeverHeard {
   std::vector<bool> heard_;                // by component
   std::vector<Expected> waiting_;          // of all, those that have not come and are not due
   std::vector<Expected> missing_;          // those that are due, sources upstream of others first
+  std::vector<bool> may_be_silent_;        // by id
   std::optional<std::int64_t> start_;
   std::int64_t end_ = 0;  // of the last window [ns]
   double share_ = 0;

@@ -9,6 +9,10 @@
 namespace self_awareness::core::evidence {
 namespace {
 
+const std::string kLog = "/rosout";
+// As the default encoding tells lines apart: DEBUG, INFO, WARN.
+const std::set<std::string> kBelowError{"[level=1]", "[level=2]", "[level=4]"};
+
 // Every new node may send here: that it does explains nothing.
 const std::set<std::string> kForEverybody{"/rosout", "/diagnostics", "/tf", "/tf_static"};
 
@@ -41,6 +45,7 @@ Strangers::Strangers(const Model& model, std::shared_ptr<const Vocabulary> heard
     : size_(model.size()), heard_(std::move(heard)), graph_(std::move(graph)) {
   for (EventId id = 0; id < size_; ++id) {
     const std::string& topic = model.vocabulary().at(id).scope;
+    sources_.insert(model.vocabulary().at(id).source);
     of_model_.emplace(model.vocabulary().at(id).source, topic);
     if (kForEverybody.count(topic) == 0) {
       known_[topic].push_back(id);
@@ -48,13 +53,17 @@ Strangers::Strangers(const Model& model, std::shared_ptr<const Vocabulary> heard
   }
 }
 
-bool Strangers::add(const Event& event) {
+bool Strangers::add(const Event& event, Excused& excused) {
   if (event.id < size_) {
+    return false;
+  }
+  if (excused.isAcceptedStranger(event.id)) {
+    last_.erase(event.id);
     return false;
   }
   const auto [known, is_new] = known_by_name_.try_emplace(event.id, false);
   if (is_new) {
-    known->second = isKnownByName(event.id);
+    known->second = isKnownByName(event.id) || isUsualLine(event.id);
   }
   if (!known->second) {
     last_[event.id] = event.stamp;
@@ -68,6 +77,16 @@ bool Strangers::isKnownByName(EventId id) const {
   }
   const SourceGraph::Publication publication(heard_->at(id).source, heard_->at(id).scope);
   return graph_->unheard().count(publication) > 0 && of_model_.count(publication) == 0;
+}
+
+bool Strangers::isUsualLine(EventId id) const {
+  if (!heard_ || id >= heard_->size()) {
+    return false;
+  }
+  const EventType& type = heard_->at(id);
+  const std::size_t level = type.type.find('[');
+  return type.scope == kLog && level != std::string::npos &&
+         kBelowError.count(type.type.substr(level)) > 0 && sources_.count(type.source) > 0;
 }
 
 std::map<std::string, std::int64_t> Strangers::silences(std::int64_t now) const {

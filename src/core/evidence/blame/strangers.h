@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/evidence/blame/excused.h"
 #include "core/evidence/channel/scorer.h"
 #include "self_awareness/core/evidence/channel/model.h"
 #include "self_awareness/core/stream/windows.h"
@@ -30,9 +31,11 @@ class Strangers {
             std::shared_ptr<const SourceGraph> graph);
 
   /// Takes in the next event, of any id.
+  /// @param excused knows who is accepted
   /// @return whether training does not know it, not even by its name: to hear what was published
-  /// then, and had no subscriber, is no news
-  bool add(const Event& event);
+  /// then, and had no subscriber, is no news; nor is who is accepted, nor a line below ERROR on
+  /// /rosout of who was there
+  bool add(const Event& event, Excused& excused);
   /// Forgets who was heard: a new recording starts, or the clock was set.
   void restart() { last_.clear(); }
   /// Time since somebody was heard who sends event types that the model does not know, by source
@@ -47,9 +50,11 @@ class Strangers {
  private:
   bool isStranger(EventId id, const Scorer& scorer) const;
   bool isKnownByName(EventId id) const;
+  bool isUsualLine(EventId id) const;
 
   std::map<std::string, std::vector<EventId>> known_;  // event types of the model, by topic
   std::size_t size_;                                   // of the model
+  std::set<std::string> sources_;                      // of the model
   std::set<SourceGraph::Publication> of_model_;
   std::shared_ptr<const Vocabulary> heard_;
   std::shared_ptr<const SourceGraph> graph_;

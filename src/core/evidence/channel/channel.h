@@ -114,6 +114,9 @@ class Channel {
   /// As people read it; channels of one label share what recordings show of their limits.
   virtual std::string label() const { return name(); }
   virtual Finding finding() const = 0;
+  /// Whether it looks at attributes of messages: such a channel has a small share of the false
+  /// alarms by itself, so that the limits of others do not depend on it (docs/attributes.md).
+  virtual bool isOfAttributes() const { return false; }
   /// What it watches, given the counts of the training and the graph.
   virtual std::vector<Track> watch(const Choice& choice) const = 0;
   /// What it expects of its tracks.

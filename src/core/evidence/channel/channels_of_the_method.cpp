@@ -1,11 +1,15 @@
 #include <algorithm>
 
+#include "core/evidence/channel/age.h"
 #include "core/evidence/channel/channels.h"
+#include "core/evidence/channel/frozen.h"
+#include "core/evidence/channel/lost.h"
 #include "core/evidence/channel/owed.h"
 #include "core/evidence/channel/own_gaps.h"
 #include "core/evidence/channel/pairs.h"
 #include "core/evidence/channel/rate.h"
 #include "core/evidence/channel/silence.h"
+#include "core/evidence/channel/size.h"
 
 namespace self_awareness::core::evidence {
 
@@ -16,7 +20,11 @@ std::vector<const Channel*> channelsOfTheMethod() {
   static const OwnGaps own_gaps;
   static const Pairs pairs;
   static const Owed owed;
-  return {&silence, &fewer, &more, &own_gaps, &pairs, &owed};
+  static const Age age;
+  static const Lost lost;
+  static const Size size;
+  static const Frozen frozen;
+  return {&silence, &fewer, &more, &own_gaps, &pairs, &owed, &age, &lost, &size, &frozen};
 }
 
 std::string channelName(const Track& track) {

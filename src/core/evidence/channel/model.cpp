@@ -96,6 +96,14 @@ std::int64_t Model::longestSilence() const {
   return longest;
 }
 
+std::int64_t Model::longestStall() const {
+  std::int64_t longest = 0;
+  for (const Statistics::Recording& recording : statistics_.recordings()) {
+    longest = std::max(longest, recording.longest_stall);
+  }
+  return longest;
+}
+
 double Model::usualDelay(EventId from, EventId to, double share) const {
   const DelayHistogram& delays = learned().delays(from, to);
   // How long the longest delay between two types was is not known: the last bin ends where it

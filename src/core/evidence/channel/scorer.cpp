@@ -12,7 +12,9 @@ constexpr double kForEver = 9e18;  // [ns]
 
 Scorer::Scorer(std::shared_ptr<const Model> model, std::int64_t window)
     : model_(std::move(model)),
-      heard_(model_->size(), window, model_->longestSilence(), model_->tuning()),
+      heard_(model_->size(), window,
+             Stalls(model_->longestSilence(), model_->longestStall(), model_->tuning()),
+             model_->tuning()),
       state_of_(model_->tracks().size()),
       evidence_(model_->tracks().size(), 0) {
   for (const auto& expectation : model_->expectations()) {

@@ -47,8 +47,9 @@ bool isSame(const Statistics::Recording& a, const Statistics::Recording& b, std:
   const auto first = [](const Statistics::Recording& recording, EventId id) {
     return id < recording.firsts.size() ? recording.firsts[id] : -1;
   };
-  bool same = std::tie(a.start, a.end, a.longest_silence, a.robot_start) ==
-              std::tie(b.start, b.end, b.longest_silence, b.robot_start);
+  bool same =
+      std::tie(a.start, a.end, a.longest_silence, a.longest_stall, a.robot_start, a.robot) ==
+      std::tie(b.start, b.end, b.longest_silence, b.longest_stall, b.robot_start, b.robot);
   for (EventId id = 0; same && id < types; ++id) {
     same = at(a.events, id) == at(b.events, id) &&
            at(a.longest_gaps, id) == at(b.longest_gaps, id) && first(a, id) == first(b, id);
@@ -109,6 +110,7 @@ void Statistics::merge(const Statistics& other) {
     ours.rate_sum += theirs.rate_sum;
     ours.rate_squares += theirs.rate_squares;
     addCounts(theirs.left_out, ours.left_out);
+    ours.attributes.merge(theirs.attributes);
     for (const std::int64_t gap : theirs.longest_gaps) {
       ours.addGap(gap);
     }
@@ -120,10 +122,12 @@ void Statistics::merge(const Statistics& other) {
     Recording ours{theirs.start,
                    theirs.end,
                    theirs.longest_silence,
+                   theirs.longest_stall,
                    std::vector<std::uint64_t>(size(), 0),
                    std::vector<std::int64_t>(size(), 0),
                    std::vector<std::int64_t>(size(), -1),
-                   theirs.robot_start};
+                   theirs.robot_start,
+                   theirs.robot};
     for (EventId id = 0; id < theirs.events.size(); ++id) {
       ours.events[here[id]] = theirs.events[id];
       ours.longest_gaps[here[id]] = theirs.longest_gaps[id];
@@ -272,8 +276,9 @@ bool operator==(const Statistics& a, const Statistics& b) {
     const Statistics::Type& x = a.type(id);
     const Statistics::Type& y = b.type(id);
     if (std::tie(x.events, x.gaps, x.gap_sum, x.longest_gaps, x.rate_sum, x.rate_squares,
-                 x.left_out) != std::tie(y.events, y.gaps, y.gap_sum, y.longest_gaps, y.rate_sum,
-                                         y.rate_squares, y.left_out) ||
+                 x.left_out, x.attributes) != std::tie(y.events, y.gaps, y.gap_sum, y.longest_gaps,
+                                                       y.rate_sum, y.rate_squares, y.left_out,
+                                                       y.attributes) ||
         !(counted(a.partners(id)) == counted(b.partners(id)))) {
       return false;
     }

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/evidence/count/age_level.h"
 #include "core/evidence/count/log_bins.h"
+#include "core/evidence/count/repeats.h"
 #include "self_awareness/core/stream/clock.h"
 #include "self_awareness/core/stream/windows.h"
 
@@ -15,28 +17,55 @@ constexpr std::size_t kTogether = 8;
 
 }  // namespace
 
+struct Trainer::OfMessages {
+  AgeLevel level;
+  Repeats repeats;
+};
+
 Trainer::Trainer(Statistics& statistics, std::int64_t window)
     : statistics_(&statistics), window_(window), counts_(0, rateWindows(window)) {}
 
-void Trainer::startRecording(std::optional<std::int64_t> since, std::int64_t robot_start) {
+Trainer::~Trainer() = default;
+
+void Trainer::startRecording(Start start) {
+  endRecording();
+  recording_.robot_start = start.robot_start;
+  recording_.robot = std::move(start.robot);
+  since_ = start.since;
+  stalls_ = std::move(start.stalls);
+  next_stall_ = 0;
+  next_event_ = 0;
+}
+
+void Trainer::onClockStep() {
+  const std::int64_t robot_start = recording_.robot_start;
+  std::string robot = recording_.robot;
+  endRecording();
+  recording_.robot_start = robot_start;
+  recording_.robot = std::move(robot);
+}
+
+void Trainer::endRecording() {
   countWaiting();
   if (last_stamp_) {
     recording_.end = newest_stamp_;
     for (EventId id = 0; id < last_seen_.size(); ++id) {
       if (recording_.events[id] > 1) {
         std::int64_t& longest = recording_.longest_gaps[id];
-        longest = std::max(longest, newest_stamp_ - kEnding - last_seen_[id].stamp);
+        longest = std::max(longest, newest_stamp_ - stood_still_ - kEnding - last_seen_[id].stamp);
       }
     }
     statistics_->addRecording(std::move(recording_));
   }
   recording_ = {};
-  recording_.robot_start = robot_start;
-  since_ = since;
+  since_.reset();
   last_seen_.clear();
+  messages_.clear();
   last_stamp_.reset();
   number_ = 0;
   counts_.restart();
+  stood_still_ = 0;
+  waited_until_.reset();
 }
 
 void Trainer::resizeRecording() {
@@ -60,32 +89,49 @@ void Trainer::add(const Event& event) {
   }
   resize();
   addBefore(event);
+  const std::int64_t stall = stallBeforeNext();
+  const Event ran{event.stamp - stood_still_, event.id, event.attributes};
   if (last_stamp_) {
-    closeWindows(event.stamp);
-    recording_.longest_silence = std::max(recording_.longest_silence, event.stamp - *last_stamp_);
+    closeWindows(ran.stamp);
+    recording_.longest_silence =
+        std::max(recording_.longest_silence, event.stamp - *last_stamp_ - stall);
+    recording_.longest_stall = std::max(recording_.longest_stall, stall);
     statistics_->addDuration(std::max<std::int64_t>(event.stamp - newest_stamp_, 0));
     newest_stamp_ = std::max(newest_stamp_, event.stamp);
   } else {
     newest_stamp_ = event.stamp;
     recording_.start = event.stamp;
-    window_end_ = floorToGrid(event.stamp, window_) + window_;
+    window_end_ = floorToGrid(ran.stamp, window_) + window_;
   }
   last_stamp_ = event.stamp;
 
-  Statistics::Type& type = statistics_->type(event.id);
-  Seen& last = last_seen_.at(event.id);
+  Statistics::Type& type = statistics_->type(ran.id);
+  Seen& last = last_seen_.at(ran.id);
   ++type.events;
-  ++recording_.events[event.id];
-  counts_.add(event.id);
-  countDelays(event);
+  ++recording_.events[ran.id];
+  counts_.add(ran.id);
+  countDelays(ran);
+  countAttributes(ran);
   if (last.number > 0) {
-    const std::int64_t gap = std::max<std::int64_t>(event.stamp - last.stamp, 0);
+    const std::int64_t gap = std::max<std::int64_t>(ran.stamp - last.stamp, 0);
     ++type.gaps;
     type.gap_sum += gap;
     type.addGap(gap);
-    recording_.longest_gaps[event.id] = std::max(recording_.longest_gaps[event.id], gap);
+    recording_.longest_gaps[ran.id] = std::max(recording_.longest_gaps[ran.id], gap);
   }
-  last = Seen{event.stamp, ++number_};
+  last = Seen{ran.stamp, ++number_};
+}
+
+std::int64_t Trainer::stallBeforeNext() {
+  const bool stood_still =
+      next_stall_ < stalls_.size() && stalls_[next_stall_].event == next_event_++;
+  const std::int64_t length = stood_still ? stalls_[next_stall_++].length : 0;
+  if (!last_stamp_ || length == 0) {
+    return 0;
+  }
+  stood_still_ += length;
+  waited_until_ = *last_stamp_ - stood_still_ + 2 * length;
+  return length;
 }
 
 void Trainer::resize() {
@@ -118,6 +164,30 @@ void Trainer::countDelays(const Event& event) {
   }
 }
 
+void Trainer::countAttributes(const Event& event) {
+  const Attributes& attributes = event.attributes;
+  if (!attributes.isKnown()) {
+    return;
+  }
+  if (event.id >= messages_.size()) {
+    messages_.resize(statistics_->size());
+  }
+  OfMessages& messages = messages_[event.id];
+  AttributeCounts& counts = statistics_->type(event.id).attributes;
+  ++counts.sizes[attributes.size];
+  ++counts.steps[static_cast<std::size_t>(attributes.step)];
+  counts.repeats += attributes.same ? 1 : 0;
+  counts.longest_repeat =
+      std::max(counts.longest_repeat, messages.repeats.add(event.stamp, attributes));
+  if (attributes.age != Attributes::kNoAge) {
+    ++counts.ages[attributes.age];
+  }
+  if (attributes.hasAge()) {
+    const double rise = messages.level.add(event.stamp, ageOf(attributes.age));
+    ++counts.rises[ageClass(toNanoseconds(rise))];
+  }
+}
+
 void Trainer::countWaiting() {
   for (EventId id = 0; id < waiting_.size(); ++id) {
     if (!waiting_[id].bins.empty()) {
@@ -130,6 +200,9 @@ void Trainer::countWaiting() {
 void Trainer::closeWindows(std::int64_t now) {
   for (; window_end_ <= now; window_end_ += window_) {
     counts_.close();
+    if (waited_until_ && window_end_ - window_ < *waited_until_) {
+      counts_.restart();  // what waited came at once
+    }
     if (!counts_.full()) {
       continue;
     }

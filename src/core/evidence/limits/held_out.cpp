@@ -7,13 +7,13 @@
 namespace self_awareness::core::evidence {
 HeldOut::HeldOut(const std::vector<Part>& parts, double scale, const Tuning& tuning)
     : prior_scale_(scale), tuning_(tuning) {
-  std::vector<std::size_t> by_start;
+  std::vector<std::size_t> by_sample;
   std::vector<std::size_t> by_part;
   for (const Part& part : parts) {
     by_part.push_back(by_part.size());
-    by_start.push_back(part.start);
+    by_sample.push_back(part.sample);
   }
-  levels_.push_back(levelOf(parts, std::move(by_start)));
+  levels_.push_back(levelOf(parts, std::move(by_sample)));
   levels_.push_back(levelOf(parts, std::move(by_part)));
 }
 

@@ -9,14 +9,14 @@ namespace self_awareness::core::evidence {
 
 /// A part of a recording.
 struct Part {
-  std::size_t start = 0;  ///< number of the robot's start that it belongs to, from 0
+  std::size_t sample = 0;  ///< number of the start, or of the robot, that it is of (samplesOf())
   double hours = 0;
 };
 
 /// By how much a limit must lie above the largest value that was ever seen, so that a new
 /// recording exceeds it as seldom as is asked for (docs/method.md, section 5.2). It learns this by
-/// leaving out starts, and parts, in turn: the values that one shows beyond the others are a
-/// sample of what comes next. Tracks of one kind share what they show.
+/// leaving out samples (robots, or starts of one), and parts, in turn: the values that one shows
+/// beyond the others are a sample of what comes next. Tracks of one kind share what they show.
 class HeldOut {
  public:
   /// @param parts all that was looked at; none may be empty
@@ -34,8 +34,8 @@ class HeldOut {
   /// @param rate exceedances an hour that are allowed to all tracks together
   /// @param least margin
   double margin(double rate, double least) const;
-  /// By how much the largest value of a track exceeded those of all other starts; 1 if it did not,
-  /// or if there is nothing to compare it with.
+  /// By how much the largest value of a track exceeded those of all other samples; 1 if it did
+  /// not, or if there is nothing to compare it with.
   double excess(const std::vector<double>& largest, double least) const;
 
  private:
@@ -57,7 +57,7 @@ class HeldOut {
   double prior_scale_;
   const Tuning& tuning_;
   std::size_t tracks_ = 0;
-  std::vector<Level> levels_;  // by start first
+  std::vector<Level> levels_;  // by sample first
 };
 
 }  // namespace self_awareness::core::evidence

@@ -4,26 +4,22 @@
 #include <cmath>
 #include <map>
 
+#include "self_awareness/core/evidence/limits/limits.h"
+
 namespace self_awareness::core::evidence {
-namespace {
-
-/// What is known of robots says as much as so many hours of one.
-constexpr double kHoursOfRobots = 0.5;
-
-}  // namespace
 
 LeftOut::LeftOut(const std::vector<Part>& parts, const Tuning& tuning)
     : parts_(parts), share_of_least_(tuning.share_of_least), exceeded_(parts.size(), false) {
   double all = 0;
-  std::map<std::size_t, double> of_start;
+  std::map<std::size_t, double> of_sample;
   for (const Part& part : parts_) {
     all += part.hours;
-    of_start[part.start] += part.hours;
+    of_sample[part.sample] += part.hours;
   }
   for (const Part& part : parts_) {
-    left_out_by_.push_back(of_start[part.start] <= all / 2 ? By::kStart
-                           : part.hours <= all / 2         ? By::kPart
-                                                           : By::kNothing);
+    left_out_by_.push_back(of_sample[part.sample] <= all / 2 ? By::kSample
+                           : part.hours <= all / 2           ? By::kPart
+                                                             : By::kNothing);
   }
 }
 
@@ -38,18 +34,19 @@ void LeftOut::Others::add(double value, std::size_t its_group) {
 }
 
 void LeftOut::add(const std::vector<double>& largest, double least, double margin) {
-  Others by_start;
+  Others by_sample;
   Others by_part;
   for (std::size_t part = 0; part < parts_.size(); ++part) {
-    by_start.add(largest[part], parts_[part].start);
+    by_sample.add(largest[part], parts_[part].sample);
     by_part.add(largest[part], part);
   }
   for (std::size_t part = 0; part < parts_.size(); ++part) {
     if (left_out_by_[part] == By::kNothing) {
       continue;
     }
-    const double others = left_out_by_[part] == By::kStart ? by_start.without(parts_[part].start)
-                                                           : by_part.without(part);
+    const double others = left_out_by_[part] == By::kSample
+                              ? by_sample.without(parts_[part].sample)
+                              : by_part.without(part);
     const double limit = std::max(least, margin * std::max(others, share_of_least_ * least));
     // Where the others know nothing of it, there would be no limit.
     exceeded_[part] = exceeded_[part] || (limit > 0 && largest[part] > limit);
@@ -82,7 +79,7 @@ double highestRate(std::size_t exceeded, double hours) {
       exceeded == 0
           ? kQuietest
           : shape * std::pow(1 - 1 / (9 * shape) + kQuantile / (3 * std::sqrt(shape)), 3);
-  return alarms / (kHoursOfRobots + hours);
+  return alarms / (LimitFinder::kHoursOfRobots + hours);
 }
 
 }  // namespace self_awareness::core::evidence

@@ -8,9 +8,9 @@
 
 namespace self_awareness::core::evidence {
 
-/// How often normal operation would have exceeded limits that it was not known to: every start is
-/// judged by the others (docs/method.md, section 5.5). Where one start is more than half of all,
-/// so is every part of it by the other parts.
+/// How often normal operation would have exceeded limits that it was not known to: every sample (a
+/// robot, or a start of one) is judged by the others (docs/method.md, section 5.5). Where one is
+/// more than half of all, so is every part of it by the other parts.
 class LeftOut {
  public:
   /// @param parts all that was looked at; none may be empty
@@ -36,7 +36,7 @@ class LeftOut {
     void add(double value, std::size_t its_group);
     double without(std::size_t left_out) const { return left_out == group ? second : largest; }
   };
-  enum class By { kStart, kPart, kNothing };
+  enum class By { kSample, kPart, kNothing };
 
   std::vector<Part> parts_;
   double share_of_least_;

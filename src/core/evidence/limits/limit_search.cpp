@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <map>
 #include <set>
@@ -29,6 +30,19 @@ double sumOf(const std::vector<Part>& parts) {
   return hours;
 }
 
+bool heardIn(const Statistics::Recording& recording, EventId id) {
+  return id < recording.events.size() && recording.events[id] > 0;
+}
+
+/// 0: there are fewer than two.
+double secondLargest(std::vector<double> values) {
+  if (values.size() < 2) {
+    return 0;
+  }
+  std::nth_element(values.begin(), values.begin() + 1, values.end(), std::greater<>());
+  return values[1];
+}
+
 /// False alarms an hour that limits are made for. By the training alone, they promise one in so
 /// many times the time that was seen at best.
 double budgetOf(const LimitFinder::Findings& findings, std::int64_t window, double budget,
@@ -43,12 +57,26 @@ double budgetOf(const LimitFinder::Findings& findings, std::int64_t window, doub
   return std::max(budget, 1 / (most_of_training * hoursOf(windows, window)));
 }
 
-/// Number of pools that share the budget: silences have three, others one for each label.
+/// Adds what came in a recording that was not trained on.
+void addTo(Robots& robots, const LimitFinder::Recording& recording) {
+  if (recording.firsts.empty()) {
+    return;  // it does not say
+  }
+  robots.add(recording.robot);
+  for (EventId id = 0; id < recording.firsts.size(); ++id) {
+    if (recording.firsts[id] >= 0) {
+      robots.add(recording.robot, id);
+    }
+  }
+}
+
+/// Number of pools that share the budget: silences have three, others one for each label, and
+/// those of attributes have a share of their own.
 double numberOfPools(const Tuning& tuning) {
   std::set<std::string> labels;
   double of_silences = 0;
   for (const Channel* channel : channels()) {
-    if (!tuning.isOn(channel->name())) {
+    if (!tuning.isOn(channel->name()) || channel->isOfAttributes()) {
       continue;
     }
     if (channel->finding() == Finding::kSilent) {
@@ -70,6 +98,7 @@ LimitSearch::LimitSearch(const Model& model, const LimitFinder::Findings& findin
       window_(window),
       silent_for_(model.size(), 0),
       limits_(model.tracks().size(), kNone) {
+  robots_.add(model.statistics());
   gatherParts(findings);
   LeftOut gaps(with_gaps_, tuning_);
   LeftOut evidence(judged_, tuning_);
@@ -80,9 +109,11 @@ LimitSearch::LimitSearch(const Model& model, const LimitFinder::Findings& findin
       pools[pool].push_back(std::move(seen));
     }
   }
-  const double share =
-      budgetOf(findings, window, budget, tuning_.most_of_training) / numberOfPools(tuning_);
+  const double all = budgetOf(findings, window, budget, tuning_.most_of_training);
   for (const auto& [pool, tracks] : pools) {
+    const Track& any = model_.tracks()[tracks.front().track];
+    const double share = any.channel->isOfAttributes() ? tuning_.share_of_attribute * all
+                                                       : all / numberOfPools(tuning_);
     search(pool.first, tracks, share, pool.first == Kind::kEvidence ? evidence : gaps);
   }
   rate_ =
@@ -94,22 +125,23 @@ void LimitSearch::gatherParts(const LimitFinder::Findings& findings) {
   std::vector<Span> spans;
   spans.reserve(training.size() + findings.size());
   for (const Statistics::Recording& recording : training) {
-    spans.push_back({recording.start, recording.end, recording.robot_start});
+    spans.push_back({recording.start, recording.end, recording.robot_start, recording.robot});
   }
   for (const LimitFinder::Recording& recording : findings) {
-    spans.push_back({recording.start, recording.end, recording.robot_start});
+    spans.push_back({recording.start, recording.end, recording.robot_start, recording.robot});
+    addTo(robots_, recording);
   }
-  const std::vector<std::size_t> starts = startsOf(spans, toNanoseconds(tuning_.start_time));
+  const std::vector<std::size_t> samples = samplesOf(spans, toNanoseconds(tuning_.start_time));
   for (std::size_t k = 0; k < training.size(); ++k) {
     const auto length = static_cast<double>(training[k].end - training[k].start);
-    with_gaps_.push_back({starts[k], length / kHour});
+    with_gaps_.push_back({samples[k], length / kHour});
     longest_recording_ = std::max(longest_recording_, length);
   }
   for (std::size_t k = 0; k < findings.size(); ++k) {
     const double hours = hoursOf(findings[k].windows, window_);
     longest_recording_ = std::max(longest_recording_, hours * kHour);
     for (const LimitFinder::Recording::Part& part : findings[k].parts) {
-      const Part its{starts[training.size() + k], hoursOf(part.windows, window_)};
+      const Part its{samples[training.size() + k], hoursOf(part.windows, window_)};
       judged_.push_back(its);
       judged_parts_.push_back(&part);
       if (!findings[k].trained_on) {
@@ -136,8 +168,7 @@ std::pair<LimitSearch::Pool, LimitSearch::Seen> LimitSearch::seenBy(std::size_t 
 bool LimitSearch::isMostlySilent(EventId id) const {
   double heard_in = 0;  // length of the recordings [ns]
   for (const Statistics::Recording& recording : model_.statistics().recordings()) {
-    const bool heard = id < recording.events.size() && recording.events[id] > 0;
-    heard_in += heard ? static_cast<double>(recording.end - recording.start) : 0;
+    heard_in += heardIn(recording, id) ? static_cast<double>(recording.end - recording.start) : 0;
   }
   const Statistics::Type& type = model_.statistics().type(id);
   auto talks = static_cast<double>(type.gap_sum);
@@ -158,14 +189,16 @@ std::vector<double> LimitSearch::gapsOf(EventId id, bool mostly_silent) const {
     return static_cast<double>(late > pause ? std::max(gap, late) : gap);
   };
   for (const Statistics::Recording& recording : model_.statistics().recordings()) {
-    const bool heard = id < recording.events.size() && recording.events[id] > 0;
-    longest.push_back(heard ? longestOf(recording.longest_gaps[id], recording.firsts[id])
-                            : longestOf(0, recording.end - recording.start));
+    longest.push_back(
+        heardIn(recording, id) ? longestOf(recording.longest_gaps[id], recording.firsts[id])
+        : robots_.lacks(recording.robot, id) ? 0
+                                             : longestOf(0, recording.end - recording.start));
   }
   for (const GapPart& part : gap_parts_) {
     const std::vector<std::int64_t>& firsts = part.of->firsts;
     const bool begins = part.said == &part.of->parts.front() && !firsts.empty();
-    const std::int64_t never = part.of->end - part.of->start;
+    const std::int64_t never =
+        robots_.lacks(part.of->robot, id) ? 0 : part.of->end - part.of->start;
     const std::int64_t first = !begins ? 0 : firsts[id] < 0 ? never : firsts[id];
     longest.push_back(longestOf(part.said->longest_gaps[id], first));
   }
@@ -179,7 +212,7 @@ std::vector<double> LimitSearch::gapsOf(EventId id, bool mostly_silent) const {
 std::int64_t LimitSearch::fastestFirst(EventId id) const {
   std::int64_t fastest = kLongestAge;
   for (const Statistics::Recording& recording : model_.statistics().recordings()) {
-    if (id < recording.events.size() && recording.events[id] > 0) {
+    if (heardIn(recording, id)) {
       fastest = std::min(fastest, recording.firsts[id]);
     }
   }
@@ -193,10 +226,10 @@ std::int64_t LimitSearch::fastestFirst(EventId id) const {
 
 LimitSearch::Kind LimitSearch::kindOfGaps(const Seen& seen) const {
   const double mean_gap = model_.meanGap(model_.tracks()[seen.track].to);
-  std::vector<double> sorted = seen.largest;
-  std::sort(sorted.rbegin(), sorted.rend());
-  const double second = sorted.size() > 1 && sorted[1] > 0 ? sorted[1] : sorted[0];
-  if (second - window() >= tuning_.regular * mean_gap) {
+  const double again = secondLargest(seen.largest);
+  const double gap =
+      again > 0 ? again : *std::max_element(seen.largest.begin(), seen.largest.end());
+  if (gap - window() >= tuning_.regular * mean_gap) {
     return Kind::kOthers;
   }
   return mean_gap < tuning_.fast * window() ? Kind::kFastTimers : Kind::kTimers;
@@ -209,16 +242,20 @@ void LimitSearch::search(Kind kind, const std::vector<Seen>& tracks, double shar
   HeldOut held_out(gaps ? with_gaps_ : judged_, timers ? tuning_.scale_of_timers : tuning_.scale,
                    tuning_);
   for (const Seen& seen : tracks) {
-    held_out.add(seen.largest, seen.least);
+    if (!isOfOneRobot(seen.track)) {
+      held_out.add(seen.largest, seen.least);
+    }
   }
   const Margins margins = model_.tracks()[tracks.front().track].channel->margins(tuning_);
   const double margin = std::min(held_out.margin(share, margins.least), margins.most);
   for (const Seen& seen : tracks) {
     // A track that would have raised an alarm had its worst start been left out gets a wider
     // limit.
-    const double own = gaps ? margin
-                            : std::max(margin, std::min(held_out.excess(seen.largest, seen.least),
-                                                        tuning_.most_own_margin));
+    const bool of_one = isOfOneRobot(seen.track);  // what the others say of it is nothing
+    const double own = gaps || of_one
+                           ? margin
+                           : std::max(margin, std::min(held_out.excess(seen.largest, seen.least),
+                                                       tuning_.most_own_margin));
     const double largest = *std::max_element(seen.largest.begin(), seen.largest.end());
     const Expectation& expected = model_.expectation(seen.track);
     double& silent_for = silent_for_[model_.tracks()[seen.track].to];
@@ -231,15 +268,21 @@ void LimitSearch::search(Kind kind, const std::vector<Seen>& tracks, double shar
     silent_for = gaps ? most : silent_for;
     double& limit = limits_[seen.track];
     limit = expected.limit(seen.track, largest, most);
-    if (!std::isnan(limit)) {
+    if (!std::isnan(limit) && !of_one) {
       left_out.add(seen.largest, seen.least, gaps ? (most + window()) / largest : margin);
     }
   }
 }
 
+bool LimitSearch::isOfOneRobot(std::size_t track) const {
+  const Track& watched = model_.tracks()[track];
+  return robots_.areSeveral() &&
+         (robots_.numberWith(watched.to) == 1 || robots_.numberWith(watched.from) == 1);
+}
+
 double LimitSearch::longestAge(Kind kind, const Seen& seen, double largest, double age,
                                double rate) const {
-  const double starts = startsThatHeard(seen);
+  const double starts = samplesThatHeard(seen);
   const Statistics::Type gaps = gapsWithParts(model_.tracks()[seen.track].to);
   const double rare = tailOf(gaps, seen.track, starts).age(rate);
   if (kind == Kind::kOthers) {
@@ -249,10 +292,8 @@ double LimitSearch::longestAge(Kind kind, const Seen& seen, double largest, doub
   }
   const double told = longest_recording_ / tuning_.pauses_in_recording;
   const double mean_gap = model_.meanGap(model_.tracks()[seen.track].to);
-  std::vector<double> longest = seen.largest;
-  std::sort(longest.rbegin(), longest.rend());
   const double again =
-      std::max(longest.size() > 1 ? longest[1] - window() : 0,
+      std::max(secondLargest(seen.largest) - window(),
                gaps.longest_gaps.size() > 1 ? static_cast<double>(gaps.longest_gaps[1]) : 0);
   if (again > std::max(told, tuning_.most_mean_gaps * mean_gap)) {
     // What comes when something happens may stay away for as long as nothing does. Recordings
@@ -263,14 +304,14 @@ double LimitSearch::longestAge(Kind kind, const Seen& seen, double largest, doub
   return age;
 }
 
-double LimitSearch::startsThatHeard(const Seen& seen) const {
-  std::set<std::size_t> starts;
+double LimitSearch::samplesThatHeard(const Seen& seen) const {
+  std::set<std::size_t> samples;
   for (std::size_t part = 0; part < with_gaps_.size(); ++part) {
     if (seen.largest[part] > 0) {
-      starts.insert(with_gaps_[part].start);
+      samples.insert(with_gaps_[part].sample);
     }
   }
-  return static_cast<double>(starts.size());
+  return static_cast<double>(samples.size());
 }
 
 Statistics::Type LimitSearch::gapsWithParts(EventId id) const {

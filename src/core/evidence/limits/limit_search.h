@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/evidence/count/robots.h"
 #include "core/evidence/limits/gap_tail.h"
 #include "core/evidence/limits/held_out.h"
 #include "core/evidence/limits/left_out.h"
@@ -56,7 +57,7 @@ class LimitSearch {
   bool isMostlySilent(EventId id) const;
   /// Longest gaps by part [ns], as long as windows can tell them. Also by how much later than in
   /// the fastest recording its first event came, where that is no start-up; of recordings that
-  /// never heard it, it is their end.
+  /// never heard it, it is their end; of robots that lack it, there is none.
   std::vector<double> gapsOf(EventId id, bool mostly_silent) const;
   /// Shortest time to the first event of a type, of all recordings that heard it [ns].
   std::int64_t fastestFirst(EventId id) const;
@@ -70,8 +71,10 @@ class LimitSearch {
   /// @param age by that, and its margin [ns]
   /// @param rate of longer ones an hour, where pauses are long or irregular
   double longestAge(Kind kind, const Seen& seen, double largest, double age, double rate) const;
-  /// Number of starts with a gap of an event type whose silence is judged.
-  double startsThatHeard(const Seen& seen) const;
+  /// Number of samples with a gap of an event type whose silence is judged.
+  double samplesThatHeard(const Seen& seen) const;
+  /// Whether only one of several robots has what a track watches: no other one tells about it.
+  bool isOfOneRobot(std::size_t track) const;
   /// Gaps of the training, and the longest ones of parts.
   Statistics::Type gapsWithParts(EventId id) const;
   /// @param gaps of gapsWithParts()
@@ -82,6 +85,7 @@ class LimitSearch {
   const Model& model_;
   const Tuning& tuning_;
   std::int64_t window_;
+  Robots robots_;  // of all recordings
   // Of the training, the gaps of each recording are known; the other evidence only where its
   // recordings were judged by each other.
   std::vector<Part> judged_;

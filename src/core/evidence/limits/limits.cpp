@@ -32,10 +32,12 @@ LimitFinder::LimitFinder(std::shared_ptr<const Model> model, const Parameters& p
 
 LimitFinder::~LimitFinder() = default;
 
-void LimitFinder::startRecording(std::shared_ptr<const Model> model, std::int64_t robot_start) {
+void LimitFinder::startRecording(std::shared_ptr<const Model> model, std::int64_t robot_start,
+                                 std::string robot) {
   finish();
   judging_ = std::move(model);
   robot_start_ = robot_start;
+  robot_ = std::move(robot);
   firsts_.assign(judging_ == model_ ? model_->size() : 0, -1);
   startScoring();
 }
@@ -45,6 +47,7 @@ void LimitFinder::startScoring() {
   scorer_->leaveOut(Finding::kSilent);  // the longest gaps say it
   recording_ = {};
   recording_.robot_start = robot_start_;
+  recording_.robot = robot_;
   recording_.trained_on = judging_ != model_;
   part_windows_ = static_cast<std::uint64_t>(std::max<std::int64_t>(
       toNanoseconds(model_->tuning().shortest_part) / parameters_.window, 1));
@@ -239,7 +242,8 @@ std::vector<Relation> LimitFinder::findRelations() const {
     bool misleads = false;
     for (const Recording& recording : findings_) {
       if (!recording.trained_on && recording.said[track] == Said::kAsUsual) {
-        as_usual.push_back({recording.start, recording.end, recording.robot_start});
+        as_usual.push_back(
+            {recording.start, recording.end, recording.robot_start, recording.robot});
       }
       misleads = misleads || (may_mislead && recording.said[track] == Said::kMisleading);
     }

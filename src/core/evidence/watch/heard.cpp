@@ -2,11 +2,10 @@
 
 namespace self_awareness::core::evidence {
 
-Heard::Heard(std::size_t types, std::int64_t window, std::int64_t longest_silence,
-             const Tuning& tuning)
+Heard::Heard(std::size_t types, std::int64_t window, Stalls stalls, const Tuning& tuning)
     : window_(window),
       counts_(types, rateWindows(window)),
-      stalls_(longest_silence, tuning),
+      stalls_(stalls),
       starvation_(tuning),
       longest_stall_(toNanoseconds(tuning.longest_stall)),
       stamps_(types, 0),

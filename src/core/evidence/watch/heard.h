@@ -21,9 +21,8 @@ class Heard {
  public:
   /// @param types number of event types
   /// @param window length [ns] of the windows that rates are counted in
-  /// @param longest_silence that is usual: the longest time without any event in training [ns]
-  Heard(std::size_t types, std::int64_t window, std::int64_t longest_silence,
-        const Tuning& tuning);
+  /// @param stalls of the robot's machine, and what are none
+  Heard(std::size_t types, std::int64_t window, Stalls stalls, const Tuning& tuning);
 
   /// The event that is taken in: what it is to those before.
   struct Arrival {
@@ -33,6 +32,7 @@ class Heard {
     std::int64_t last_stamp = 0;  ///< of that one [ns]; its own if there was none
     bool stalled = false;         ///< it may have waited while the whole robot stood still, or
                                   ///< the machine had no time
+    Attributes attributes{};
   };
   /// Takes in how the machine was in the stretch of time after the one before.
   void hear(const Waiting& waiting) {
@@ -46,8 +46,12 @@ class Heard {
     start_ = number_ == 0 ? event.stamp : start_;
     stalls_.add(event.stamp, number_ > 0);
     const std::uint64_t last = numbers_[event.id];
-    return {event.stamp, event.id, last, last > 0 ? stamps_[event.id] : event.stamp,
-            stalls_.holdsBack(event.stamp) || starvation_.holdsBack(event.stamp)};
+    return {event.stamp,
+            event.id,
+            last,
+            last > 0 ? stamps_[event.id] : event.stamp,
+            stalls_.holdsBack(event.stamp) || starvation_.holdsBack(event.stamp),
+            event.attributes};
   }
   void end(const Arrival& arrival) {
     if (arrival.last == 0) {

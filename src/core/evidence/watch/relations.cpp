@@ -167,7 +167,7 @@ Relation Relations::delays(EventId from, EventId to, const std::vector<Span>& mo
     const double share = static_cast<double>(events(to)) / total;
     if (static_cast<double>(std::min(events(from), events(to))) >= tuning_.fewest_gaps) {
       least_share = std::min(least_share, share);
-      spans.push_back({recording.start, recording.end, recording.robot_start});
+      spans.push_back({recording.start, recording.end, recording.robot_start, recording.robot});
     }
   }
   relation.starts = numberOfStarts(spans, toNanoseconds(tuning_.start_time));

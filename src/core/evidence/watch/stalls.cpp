@@ -6,10 +6,12 @@
 
 namespace self_awareness::core::evidence {
 
-Stalls::Stalls(std::int64_t longest_silence, const Tuning& tuning)
+Stalls::Stalls(std::int64_t longest_silence, std::int64_t longest_stall, const Tuning& tuning)
     : usual_(std::max(toNanoseconds(tuning.least_margin * toSeconds(longest_silence)),
                       toNanoseconds(tuning.shortest_stall))),
-      longest_(toNanoseconds(tuning.longest_stall)),
+      longest_(std::max(
+          toNanoseconds(tuning.longest_stall),
+          std::min(toNanoseconds(tuning.least_margin * toSeconds(longest_stall)), kRateSpan))),
       between_(toNanoseconds(tuning.between_stalls)) {}
 
 void Stalls::restart() {

@@ -11,8 +11,9 @@ namespace self_awareness::core::evidence {
 /// component is to blame (docs/method.md, section 3.7).
 class Stalls {
  public:
-  /// @param longest_silence that is usual: the longest time without any event in training [ns]
-  Stalls(std::int64_t longest_silence, const Tuning& tuning);
+  /// @param longest_silence the longest time without any event in training that was no stall [ns]
+  /// @param longest_stall of the machine in training [ns]; 0: there was none
+  Stalls(std::int64_t longest_silence, std::int64_t longest_stall, const Tuning& tuning);
 
   /// Takes in an event.
   /// @param stamp [ns]

@@ -64,6 +64,22 @@ class NeverHeardTest : public testing::Test {
   std::shared_ptr<SourceGraph> graph_ = std::make_shared<SourceGraph>();
 };
 
+TEST_F(NeverHeardTest, WhatIsExcusedNeedNotCome) {
+  train({start(14400 * kMillisecond, 1)}, {start(14600 * kMillisecond, 7)});
+  NeverHeard never_heard = neverHeard();
+  never_heard.add({0, kA});
+  never_heard.add({50 * kMillisecond, kB});
+  std::vector<bool> may_be_silent(model_->size(), false);
+  may_be_silent[kC] = true;
+  never_heard.excuse(may_be_silent);
+  EXPECT_EQ(shareAt(never_heard, 117 * kSecond), 0);
+  EXPECT_TRUE(never_heard.suspects().empty());
+  EXPECT_TRUE(never_heard.shares().empty());
+  may_be_silent[kC] = false;
+  never_heard.excuse(may_be_silent);
+  EXPECT_GT(shareAt(never_heard, 117 * kSecond), 1) << "once that is taken back";
+}
+
 TEST_F(NeverHeardTest, WhatComesLateAsAlwaysIsNormalAndWhatDoesNotComeIsNot) {
   train({start(14400 * kMillisecond, 1)}, {start(14600 * kMillisecond, 7)});
   NeverHeard never_heard = neverHeard();

@@ -29,7 +29,7 @@ class Rates {
       : model_({{trackOf(kMore, kA, kA), trackOf(kFewer, kA, kA)}, {first, second}, {}}) {}
 
   double of(int number) const {
-    Heard heard(1, kWindow, 100 * kSecond, model_.tuning());
+    Heard heard(1, kWindow, Stalls(100 * kSecond, 0, model_.tuning()), model_.tuning());
     const auto add = [&](std::int64_t stamp) { heard.end(heard.begin({stamp, kA})); };
     add(0);
     std::int64_t end = 0;

@@ -166,6 +166,59 @@ TEST(EvidenceTrainer, WhoFallsSilentLongBeforeTheEndPaused) {
   EXPECT_EQ(counts.type(kB).longestGap(), kSecond);
 }
 
+// The same recording with a stall of the machine: all that came later comes later.
+class StalledRecording : public testing::Test {
+ protected:
+  StalledRecording() {
+    Statistics quiet = countsOf({}, 2);
+    Statistics stalled = countsOf({}, 2);
+    Trainer usual(quiet, kWindow);
+    Trainer trainer(stalled, kWindow);
+    const Events events = together({timer(kA, 0, 60 * kSecond, 100 * kMillisecond),
+                                    timer(kB, 30 * kMillisecond, 60 * kSecond, kSecond)});
+    const auto next = std::find_if(events.begin(), events.end(),
+                                   [](const Event& event) { return event.stamp >= kAt; });
+    trainer.startRecording(
+        {std::nullopt, 0, "", {{static_cast<std::size_t>(next - events.begin()), 0, kLength}}});
+    for (const Event& event : events) {
+      usual.add(event);
+      trainer.add({event.stamp + (event.stamp < kAt ? 0 : kLength), event.id});
+    }
+    usual.finish();
+    trainer.finish();
+    quiet_ = quiet;
+    stalled_ = stalled;
+  }
+  static constexpr std::int64_t kAt = 30 * kSecond;
+  static constexpr std::int64_t kLength = 1300 * kMillisecond;
+  Statistics quiet_;
+  Statistics stalled_;
+};
+
+TEST_F(StalledRecording, NoDelayAndNoGapHasThatTime) {
+  for (const EventId id : {kA, kB}) {
+    EXPECT_EQ(stalled_.type(id).longest_gaps, quiet_.type(id).longest_gaps);
+    EXPECT_EQ(stalled_.type(id).gap_sum, quiet_.type(id).gap_sum);
+    EXPECT_EQ(stalled_.delays(kA, id), quiet_.delays(kA, id));
+    EXPECT_EQ(stalled_.delays(kB, id), quiet_.delays(kB, id));
+  }
+}
+
+TEST_F(StalledRecording, SaysHowLongItStoodStill) {
+  const Statistics::Recording& recording = stalled_.recordings().at(0);
+  EXPECT_EQ(recording.longest_stall, kLength);
+  EXPECT_EQ(recording.longest_silence, quiet_.recordings()[0].longest_silence);
+  EXPECT_EQ(recording.longest_gaps, quiet_.recordings()[0].longest_gaps);
+  EXPECT_EQ(recording.end, quiet_.recordings()[0].end + kLength);
+  EXPECT_EQ(stalled_.duration(), quiet_.duration() + kLength);
+  EXPECT_EQ(quiet_.recordings()[0].longest_stall, 0);
+}
+
+TEST_F(StalledRecording, HasNoRatesUntilWhatWaitedHasCome) {
+  const auto without = static_cast<std::uint64_t>((kLength + kRateSpan) / kWindow);
+  EXPECT_EQ(stalled_.rateWindows(), quiet_.rateWindows() - without + 1);
+}
+
 TEST(EvidenceTrainer, TheLastRecordingCountsOnceItHasEnded) {
   Statistics counts = countsOf({}, 1);
   Trainer trainer(counts, kWindow);
@@ -194,7 +247,7 @@ TEST(EvidenceTrainer, TellsWhenEachTypeCameFirst) {
 TEST(EvidenceTrainer, WhatCameBeforeOnlyTellsWhenItCameFirst) {
   Statistics counts = countsOf({});
   Trainer trainer(counts, kWindow);
-  trainer.startRecording(kSecond);
+  trainer.startRecording({kSecond});
   trainer.addBefore({3 * kSecond, kB});
   trainer.addBefore({4 * kSecond, kB});
   for (const Event& event : timer(kA, 20 * kSecond, 30 * kSecond, kSecond)) {
@@ -224,7 +277,7 @@ TEST(EvidenceStatistics, FirstTimesMeetTheirTypes) {
   Statistics other;
   other.intern(kTypes[kC]);
   other.intern(kTypes[kA]);
-  other.addRecording({7, 9, 0, {1, 1}, {0, 0}, {5, 3}});
+  other.addRecording({7, 9, 0, 0, {1, 1}, {0, 0}, {5, 3}});
   Statistics counts = countsOf({inMilliseconds({{1000, kB}})});
   counts.merge(other);
   ASSERT_EQ(counts.recordings().size(), 2U);
@@ -286,6 +339,7 @@ TEST(EvidenceStatistics, MergingKeepsTheRecordingsOfBothByTheirIds) {
   EXPECT_EQ(counts.recordings()[0].longest_gaps,
             (std::vector<std::int64_t>{0, 0, 300 * kMillisecond}));
   EXPECT_EQ(counts.recordings()[0].longest_silence, 300 * kMillisecond);
+  EXPECT_EQ(counts.recordings()[0].longest_stall, 0);
   EXPECT_EQ(counts.recordings()[1].events, (std::vector<std::uint64_t>{2, 1}));
   EXPECT_EQ(counts.only({}).recordings().size(), 2U);
 }

@@ -195,6 +195,46 @@ TEST_F(LimitFinderTest, WhoStaysAwayInARecordingOrComesAMinuteLatePauses) {
             model_->overdue(kA, 199 * kSecond));
 }
 
+TEST_F(LimitFinderTest, WhoIsOnOneRobotOnlyIsNotTakenForOneThatStaysAway) {
+  const auto counts = [](bool named, unsigned first) {
+    Statistics statistics;
+    for (const EventType& type : kTypes) {
+      statistics.intern(type);
+    }
+    Trainer trainer(statistics, kWindow);
+    for (unsigned robot = first; robot < first + 2; ++robot) {
+      trainer.startRecording({std::nullopt, 0, named ? "r" + std::to_string(robot) : ""});
+      const std::int64_t begin = robot * kStart;
+      Events events = irregular(kA, begin, begin + 400 * kSecond, kPeriod, robot);
+      if (robot == 0) {  // only it has C
+        events = together({events, timer(kC, begin, begin + 400 * kSecond, kSecond)});
+      }
+      for (const Event& event : events) {
+        trainer.add(event);
+      }
+    }
+    trainer.finish();
+    return statistics;
+  };
+  const auto limit_of = [&](bool named) {
+    const auto model = std::make_shared<Model>(watch(counts(named, 0), counts(named, 2)));
+    LimitFinder finder(model, {kWindow, 5 * kSecond});
+    for (unsigned robot = 1; robot < 3; ++robot) {
+      finder.startRecording(model, 0, named ? "r" + std::to_string(robot) : "");
+      for (const Event& event :
+           later(irregular(kA, 0, 200 * kSecond, kPeriod, robot), (10 + robot) * kStart)) {
+        finder.add(event);
+      }
+      finder.finish();
+    }
+    const std::size_t track = indexOf(model->tracks(), kOverdue, kC, kC);
+    EXPECT_LT(track, model->tracks().size());
+    return model->ageBeyond(kC, finder.find().limits.tracks.at(track));
+  };
+  EXPECT_GT(limit_of(false), 400 * kSecond) << "it may stay away for a whole recording";
+  EXPECT_LT(limit_of(true), 20 * kSecond);
+}
+
 TEST_F(LimitFinderTest, OneHoleOfOneRecordingIsNoLongPause) {
   const auto with_hole = [](std::int64_t lasts) {
     return together({timer(kA, 0, 100 * kSecond, kPeriod),

@@ -91,6 +91,22 @@ TEST(NumberOfStarts, WhenTheRobotWasStartedTellsStartsApart) {
       << "of the others it is not known";
 }
 
+TEST(NumberOfStarts, AStartIsOfOneRobot) {
+  const std::vector<Span> spans{
+      {0, 10, 5, "r1"}, {0, 10, 5, "r2"}, {2, 10, 0, "r1"}, {2, 10, 0, "r2"}, {3, 10, 0, "r2"}};
+  EXPECT_EQ(startsOf(spans, kSameStart), (std::vector<std::size_t>{0, 1, 2, 3, 3}));
+}
+
+TEST(Samples, AreRobotsWhereTheyAreSeveralElseStarts) {
+  EXPECT_EQ(samplesOf({{0, 10, 1, "r1"}, {0, 10, 2, "r1"}, {0, 10, 2, "r2"}}, kSameStart),
+            (std::vector<std::size_t>{0, 0, 1}));
+  EXPECT_EQ(samplesOf({{0, 10, 1, "r1"}, {0, 10, 2, "r1"}}, kSameStart),
+            (std::vector<std::size_t>{0, 1}));
+  EXPECT_EQ(samplesOf({{0, 10, 1, ""}, {0, 10, 2, "r1"}}, kSameStart),
+            (std::vector<std::size_t>{0, 1}))
+      << "who has no name is another one";
+}
+
 TEST(Relations, TheOwnHistoryNeedsNoReason) {
   const Statistics counts = timers({20 * kMillisecond});
   EXPECT_TRUE(Relations(counts, kNoGraph, kTuning).delays(kA, kA).watched);

@@ -23,7 +23,7 @@ class StallsTest : public testing::Test {
     stalls_.add(from + length, true);
     return from + length;
   }
-  Stalls stalls_{40 * kMillisecond, Tuning{}};
+  Stalls stalls_{40 * kMillisecond, 0, Tuning{}};
 };
 
 TEST_F(StallsTest, ASilenceOfAllThatIsLongerThanUsualIsOne) {
@@ -42,6 +42,18 @@ TEST_F(StallsTest, ALongSilenceIsNone) {
   stalls_.restart();
   stalls_.add(kStart, false);
   EXPECT_FALSE(stalls_.holdsBack(stall(701 * kMillisecond))) << "the robot is dead";
+}
+
+TEST_F(StallsTest, OneAsLongAsInTrainingIsForgiven) {
+  stalls_ = Stalls(40 * kMillisecond, kSecond, Tuning{});
+  stalls_.add(kStart, false);
+  EXPECT_TRUE(stalls_.holdsBack(stall(1250 * kMillisecond)));
+  stalls_.restart();
+  stalls_.add(kStart, false);
+  EXPECT_FALSE(stalls_.holdsBack(stall(1251 * kMillisecond)));
+  stalls_ = Stalls(40 * kMillisecond, kRateSpan, Tuning{});
+  stalls_.add(kStart, false);
+  EXPECT_FALSE(stalls_.holdsBack(stall(kRateSpan + 1))) << "longer ones are judged";
 }
 
 TEST_F(StallsTest, OneIsForgivenInSoLongATime) {

@@ -83,8 +83,10 @@ class Model {
   double logSurvival(EventId id, std::int64_t age) const;
   /// Longest gap between two events of the type in training [ns]; 0 if there was none.
   std::int64_t longestGap(EventId id) const { return statistics_.type(id).longestGap(); }
-  /// Longest time without any event in training [ns].
+  /// Longest time without any event in training that was no stall of the machine [ns].
   std::int64_t longestSilence() const;
+  /// Longest stall of the machine in training [ns]; 0: there was none.
+  std::int64_t longestStall() const;
   /// Mean gap between two events of the type in training [ns]; 0 if there was none.
   double meanGap(EventId id) const { return statistics_.type(id).meanGap(); }
   /// Delay from `from` to `to` [ns] that a share (0 to 1) of the delays in training did not

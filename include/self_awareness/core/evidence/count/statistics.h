@@ -2,8 +2,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
+#include "self_awareness/core/evidence/count/attribute_counts.h"
 #include "self_awareness/core/evidence/count/delay_histogram.h"
 #include "self_awareness/core/evidence/count/pair_set.h"
 #include "self_awareness/core/evidence/count/partners.h"
@@ -41,6 +43,7 @@ class Statistics {
     std::uint64_t rate_squares = 0;          ///< sum of their squares
     /// Delays since the last event of the type in pairs that only() or without() left out.
     SumOfDelays left_out{};
+    AttributeCounts attributes;
 
     /// Keeps the gap [ns] if it is one of the longest.
     void addGap(std::int64_t gap);
@@ -54,9 +57,11 @@ class Statistics {
   /// What one recording said of every event type. The independent sample of what is normal is a
   /// recording, not an event: what did not vary in one may differ in the next.
   struct Recording {
-    std::int64_t start = 0;            ///< stamp of the first event [ns]
-    std::int64_t end = 0;              ///< latest stamp [ns]
-    std::int64_t longest_silence = 0;  ///< between two events in a row, of any types [ns]
+    std::int64_t start = 0;  ///< stamp of the first event [ns]
+    std::int64_t end = 0;    ///< latest stamp [ns]
+    /// Between two events in a row, of any types, that was no stall of the machine [ns].
+    std::int64_t longest_silence = 0;
+    std::int64_t longest_stall = 0;  ///< of the machine [ns]; 0: there was none
     /// By id; 0 for ids beyond. addRecording() leaves out what never came at the end.
     std::vector<std::uint64_t> events;
     /// Longest time without an event [ns] by id, as long as events; 0: there were no two. Also the
@@ -66,6 +71,7 @@ class Statistics {
     /// it did not come.
     std::vector<std::int64_t> firsts;
     std::int64_t robot_start = 0;  ///< when the robot was started [ns]; 0: not known
+    std::string robot{};           ///< its name; empty: not known
   };
   /// An ordered pair of event types, `from` before `to`.
   struct Pair {

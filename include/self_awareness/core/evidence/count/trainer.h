@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "self_awareness/core/evidence/count/statistics.h"
@@ -10,6 +11,13 @@
 #include "self_awareness/core/stream/recent_counts.h"
 
 namespace self_awareness::core::evidence {
+
+/// A time in which the whole robot stood still, since its machine was busy.
+struct MachineStall {
+  std::size_t event = 0;    ///< number of the first event after it in the recording, from 0
+  std::int64_t end = 0;     ///< stamp of that one [ns]
+  std::int64_t length = 0;  ///< [ns]
+};
 
 /// Counts one recording after the other into a Statistics, in one pass (docs/method.md, section
 /// 3.1); the last delays are there when the recording has ended. No delay and no window crosses
@@ -20,14 +28,23 @@ class Trainer {
   /// @param window length [ns] of the windows in which rates are counted, > 0
   /// @throw std::invalid_argument
   Trainer(Statistics& statistics, std::int64_t window);
+  ~Trainer();
+  Trainer(const Trainer&) = delete;
+  Trainer& operator=(const Trainer&) = delete;
 
+  /// What is known of a recording before its events.
+  struct Start {
+    std::optional<std::int64_t> since;  ///< when it began [ns], if not all of it is counted
+    std::int64_t robot_start = 0;       ///< when the robot was started [ns]; 0: not known
+    std::string robot{};                ///< its name; empty: not known
+    /// When its machine stood still, in their order: that time is taken out of delays and gaps.
+    std::vector<MachineStall> stalls{};
+  };
   /// Ends the recording: the next event belongs to a new one.
-  /// @param since when that one began [ns], if not all of it is counted
-  /// @param robot_start when the robot was started [ns]; 0: not known
-  void startRecording(std::optional<std::int64_t> since = std::nullopt,
-                      std::int64_t robot_start = 0);
+  void startRecording() { startRecording(Start{}); }
+  void startRecording(Start start);
   /// Starts a new recording of the same start of the robot: the clock was set.
-  void onClockStep() { startRecording(std::nullopt, recording_.robot_start); }
+  void onClockStep();
   /// An event of the recording before those that are counted: it only says when its type came
   /// first.
   void addBefore(const Event& event);
@@ -55,12 +72,18 @@ class Trainer {
     std::vector<std::uint8_t> came;
   };
 
+  struct OfMessages;  // what is remembered of the attributes of a type's messages
+
   void resizeRecording();
   /// Makes room for the event types that are new.
   void resize();
   void countDelays(const Event& event);
   void countWaiting();
+  void countAttributes(const Event& event);
   void closeWindows(std::int64_t now);
+  void endRecording();
+  /// How long the machine stood still before the next event of the recording [ns].
+  std::int64_t stallBeforeNext();
 
   Statistics* statistics_;
   std::int64_t window_;
@@ -73,6 +96,13 @@ class Trainer {
   std::int64_t window_end_ = 0;             // of the open window [ns], once something was seen
   std::uint64_t number_ = 0;
   RecentCounts counts_;
+  std::vector<OfMessages> messages_;  // by id
+  std::vector<MachineStall> stalls_;  // of the recording
+  std::size_t next_stall_ = 0;
+  std::size_t next_event_ = 0;    // of the recording
+  std::int64_t stood_still_ = 0;  // since the recording's start or the last step of its clock [ns]
+  // What waited in the last stall has come by then, without stalls [ns]; none: there was none.
+  std::optional<std::int64_t> waited_until_;
 };
 
 }  // namespace self_awareness::core::evidence

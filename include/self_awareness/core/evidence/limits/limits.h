@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "self_awareness/core/evidence/channel/model.h"
@@ -30,6 +31,8 @@ class LimitFinder : private WindowObserver {
 
   /// False alarms an hour that limits allow by default.
   static constexpr double kBudget = 0.5;
+  /// What is known of robots says as much of one's false alarms as so many hours of it.
+  static constexpr double kHoursOfRobots = 0.5;
 
   /// What one recording says. It is cut into at most kMostParts parts of one length.
   struct Recording {
@@ -50,6 +53,7 @@ class LimitFinder : private WindowObserver {
     /// first event of a type [ns], by id; -1: it did not come. Empty where the clock was set
     /// afterwards: what follows says it.
     std::vector<std::int64_t> firsts{};
+    std::string robot{};  ///< its name; empty: not known
   };
   /// What recordings say. Findings of some add up to those of all, in any order.
   using Findings = std::vector<Recording>;
@@ -63,7 +67,9 @@ class LimitFinder : private WindowObserver {
   /// @param model that judges it: that of the constructor, or one with the same tracks that was
   /// learned from the other half of the training (CrossFit)
   /// @param robot_start when the robot was started [ns]; 0: not known
-  void startRecording(std::shared_ptr<const Model> model, std::int64_t robot_start = 0);
+  /// @param robot its name; empty: not known
+  void startRecording(std::shared_ptr<const Model> model, std::int64_t robot_start = 0,
+                      std::string robot = {});
   /// Takes in the next event of the recording.
   void add(const Event& event);
   /// The clock was set, which the stamps do not say by themselves (stream/clock_steps.h).
@@ -122,6 +128,7 @@ class LimitFinder : private WindowObserver {
   std::unique_ptr<Scorer> scorer_;
   Windows windows_;
   std::int64_t robot_start_ = 0;             // of the recording [ns]; 0: not known
+  std::string robot_;                        // of the recording; empty: not known
   std::optional<std::int64_t> first_stamp_;  // of the recording, or since a step of the clock [ns]
   std::vector<std::int64_t> firsts_;         // of the recording, as in Recording
   Recording recording_;                      // the open one

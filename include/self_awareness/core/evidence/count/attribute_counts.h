@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <map>
+
+#include "self_awareness/core/stream/attributes.h"
+
+namespace self_awareness::core::evidence {
+
+/// Numbers of messages by class; classes without any are left out.
+using ClassCounts = std::map<std::uint8_t, std::uint64_t>;
+
+/// Number of all messages.
+std::uint64_t total(const ClassCounts& counts);
+/// The class that a share (0 to 1) of the messages does not exceed; 0 without messages.
+std::uint8_t quantile(const ClassCounts& counts, double share);
+
+/// What training counts of the attributes of an event type's messages (docs/attributes.md). The
+/// counts of two trainings add up.
+struct AttributeCounts {
+  ClassCounts ages;   ///< of messages with a header: Attributes::age
+  ClassCounts rises;  ///< ageClass() of how much older they were than of late (AgeLevel)
+  ClassCounts sizes;  ///< Attributes::size, of all messages of which anything is known
+  std::array<std::uint64_t, Attributes::kSteps> steps{};  ///< by Attributes::Step
+  std::uint64_t repeats = 0;        ///< messages with the bytes of the one before
+  std::int64_t longest_repeat = 0;  ///< the longest time with the same bytes [ns]
+
+  void merge(const AttributeCounts& other);
+  /// Messages of which anything is known.
+  std::uint64_t known() const { return total(sizes); }
+  /// Messages with a number that follows another one.
+  std::uint64_t numbered() const;
+  /// Those of them before which messages are missing.
+  std::uint64_t losses() const;
+};
+
+bool operator==(const AttributeCounts& a, const AttributeCounts& b);
+
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "self_awareness/core/verdict/suspect.h"
+
+namespace self_awareness::core {
+
+/// What somebody takes as normal from now on (docs/accept.md): it is no evidence any more.
+struct Acceptance {
+  /// How much of what it names is accepted.
+  enum class Extent {
+    kStranger,  ///< that it is there, although training never saw it
+    kTime,      ///< when and how often it comes; that it falls silent is still judged
+    kAll        ///< whatever it does
+  };
+
+  std::string component;     ///< a name, or its begin and a `*`; empty: all
+  std::string topic;         ///< likewise
+  std::optional<Kind> kind;  ///< none: all that it does
+  std::int64_t at = 0;       ///< when it was accepted [ns of ROS time]
+  std::string by;            ///< who did
+
+  /// A fault seldom comes alone: who is slow is late, too.
+  Extent extent() const;
+  /// Whether it is about an event type.
+  bool isAbout(const std::string& of_component, const std::string& of_topic) const;
+  /// Whether it is about the same as another one.
+  bool isLike(const Acceptance& other) const {
+    return component == other.component && topic == other.topic && kind == other.kind;
+  }
+};
+
+/// What is accepted: each is there once.
+class Acceptances {
+ public:
+  /// At most so many.
+  static constexpr std::size_t kMost = 1000;
+
+  /// Adds one, or replaces the one that is like it.
+  /// @return whether there is room for it
+  bool add(const Acceptance& acceptance);
+  /// Takes one back. @return whether there is one like it
+  bool remove(const Acceptance& like);
+
+  /// Whether something that an event type does is accepted.
+  bool covers(const std::string& component, const std::string& topic, Kind kind) const;
+  const std::vector<Acceptance>& list() const { return list_; }
+
+ private:
+  std::vector<Acceptance> list_;
+};
+
+}  // namespace self_awareness::core

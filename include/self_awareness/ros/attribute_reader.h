@@ -1,0 +1,71 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "self_awareness/core/stream/attributes.h"
+
+namespace self_awareness::ros1 {
+
+/// Reads the attributes of the messages of one connection, in their order, while their bytes pass:
+/// nothing of them is kept but a sample (docs/attributes.md).
+class AttributeReader {
+ public:
+  /// Whether bytes are those of the last message is known by so many blocks of so many bytes at
+  /// most, spread over the message behind its header.
+  static constexpr std::uint64_t kBlocks = 8;
+  static constexpr std::uint64_t kBlock = 512;  ///< [bytes]
+
+  /// @param definition of the messages, as in bags and in the headers of connections; one that
+  /// does not begin with a std_msgs/Header is one without
+  AttributeReader(const std::string& definition, const std::string& datatype);
+
+  /// Begins a message.
+  /// @param size of the whole message [bytes]
+  void begin(std::uint64_t size);
+  /// Takes in the next bytes of the message.
+  void add(const std::uint8_t* data, std::size_t size);
+  /// A part of the message [bytes from its begin].
+  struct Part {
+    std::uint64_t begin = 0;
+    std::uint64_t end = 0;
+  };
+  /// The next bytes that matter; empty at the end. What lies before them may be skipped.
+  Part next() const;
+  /// Goes on with the bytes of a place, which lies before the end of next().
+  void skipTo(std::uint64_t place) { position_ = place; }
+  /// Ends the message.
+  /// @param now when it came, by the clock that stamps are of [ns]
+  core::Attributes end(std::int64_t now);
+
+  bool hasHeader() const { return has_header_; }
+
+ private:
+  static constexpr std::size_t kHeader =
+      16;  // header.seq, header.stamp and the length of frame_id
+
+  /// Calls the function with each part of the message that is compared with that of the one
+  /// before.
+  template <typename Function>
+  void forEachSample(Function function) const;
+  void sample(const std::uint8_t* data, std::uint64_t size);
+  std::uint32_t numberAt(std::size_t place) const;
+  void readHeader(std::int64_t now, core::Attributes& attributes);
+
+  bool has_header_ = false;
+  std::uint64_t size_ = 0;      // of the message [bytes]
+  std::uint64_t position_ = 0;  // in it [bytes]
+  std::uint64_t content_ = 0;   // where its header has ended [bytes]
+  std::array<std::uint8_t, kHeader> header_{};
+  std::vector<std::uint8_t> sample_;
+  // Of the message before:
+  std::optional<std::uint64_t> last_content_;  // behind its header [bytes]; none: there was none
+  std::vector<std::uint8_t> last_sample_;
+  std::optional<std::uint32_t> last_number_;
+};
+
+}  // namespace self_awareness::ros1

@@ -1,0 +1,94 @@
+#include "core/evidence/blame/excused.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "self_awareness/core/verdict/name_pattern.h"
+
+namespace self_awareness::core::evidence {
+
+Excused::Excused(std::shared_ptr<const Model> model, std::shared_ptr<const Vocabulary> heard)
+    : model_(std::move(model)),
+      vocabulary_(std::move(heard)),
+      is_optional_(model_->size(), false),
+      may_be_silent_(model_->size(), false) {}
+
+void Excused::accept(const Acceptances& accepted) {
+  accepted_ = accepted;
+  is_accepted_.clear();
+  update();
+}
+
+void Excused::setOptional(const std::vector<std::string>& patterns) {
+  for (EventId id = 0; id < model_->size(); ++id) {
+    is_optional_[id] = isOneOf(patterns, model_->component(id), model_->vocabulary().at(id).scope);
+  }
+  update();
+}
+
+void Excused::update() {
+  tracks_.clear();
+  optional_.clear();
+  for (std::size_t track = 0; track < model_->tracks().size(); ++track) {
+    const Track& watched = model_->tracks()[track];
+    const Finding finding = model_->finding(track);
+    const bool is_absence = finding == Finding::kSilent || finding == Finding::kUnanswered;
+    if (covers(watched, finding) || (is_optional_[watched.to] && is_absence)) {
+      tracks_.push_back(track);
+    } else if (is_optional_[watched.to] || is_optional_[watched.from]) {
+      optional_.push_back(track);
+    }
+  }
+  for (EventId id = 0; id < model_->size(); ++id) {
+    may_be_silent_[id] = is_optional_[id] || covers(id, Kind::kDied);
+  }
+}
+
+bool Excused::isAcceptedStranger(EventId id) {
+  const auto [known, is_new] = is_accepted_.try_emplace(id, false);
+  if (is_new) {
+    known->second = covers(id, Kind::kStranger);
+  }
+  return known->second;
+}
+
+bool Excused::isAbsent(EventId id, const Heard& heard) const {
+  return is_optional_[id] && (!heard.hasSeen(id) || heard.silence(id) > model_->longestGap(id));
+}
+
+void Excused::leaveOut(const Heard& heard, std::vector<double>& evidence) const {
+  for (const std::size_t track : tracks_) {
+    evidence[track] = 0;
+  }
+  for (const std::size_t track : optional_) {
+    const Track& watched = model_->tracks()[track];
+    if (isAbsent(watched.to, heard) || isAbsent(watched.from, heard)) {
+      evidence[track] = 0;
+    }
+  }
+}
+
+void Excused::leaveOut(std::vector<Suspect>& suspects) const {
+  const auto isExcused = [this](const Suspect& suspect) {
+    const Kind kind = suspect.reason.kind;
+    return covers(suspect.id, kind) || (model_->knows(suspect.id) && is_optional_[suspect.id] &&
+                                        (kind == Kind::kDied || kind == Kind::kNeverCame));
+  };
+  suspects.erase(std::remove_if(suspects.begin(), suspects.end(), isExcused), suspects.end());
+}
+
+bool Excused::covers(EventId id, Kind kind) const {
+  if (accepted_.list().empty() ||
+      (!model_->knows(id) && (!vocabulary_ || id >= vocabulary_->size()))) {
+    return false;
+  }
+  const EventType& type = model_->knows(id) ? model_->vocabulary().at(id) : vocabulary_->at(id);
+  return accepted_.covers(componentOf(type.source, type.scope), type.scope, kind);
+}
+
+bool Excused::covers(const Track& track, Finding finding) const {
+  const Kind kind = finding == Finding::kSilent ? Kind::kDied : Kind::kLate;
+  return covers(track.to, kind) || (finding == Finding::kBetween && covers(track.from, kind));
+}
+
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "core/evidence/channel/scorer.h"
+#include "self_awareness/core/evidence/channel/model.h"
+#include "self_awareness/core/verdict/silent.h"
+#include "self_awareness/core/verdict/source_graph.h"
+
+namespace self_awareness::core::evidence {
+
+/// Notices that components which do not hear each other stop at one moment, while others go on:
+/// the robot is in a mode that training never saw, and nobody is to blame (docs/method.md, section
+/// 6). Who depends on whom must be known: the victims of one that died stop at one moment, too.
+class NewMode {
+ public:
+  /// @param graph who hears whom; may grow
+  NewMode(std::shared_ptr<const Model> model, std::shared_ptr<const SourceGraph> graph);
+
+  /// Takes back the evidence against who stopped in that way, and against who hears them.
+  /// @param shares of their limits that the tracks of the model have reached
+  /// @param limits of the model's tracks
+  /// @param scorer that has closed the window
+  /// @return who stopped; none: nobody has in that way
+  std::optional<Silent> excuse(std::vector<double>& shares, const Limits& limits,
+                               const Scorer& scorer);
+  void restart();
+
+ private:
+  /// Event types that should have come by now.
+  std::vector<EventId> silent(const Limits& limits, const Scorer& scorer) const;
+  /// Those of them that stopped when this one did.
+  std::vector<EventId> stoppedWith(EventId id, const std::vector<EventId>& silent,
+                                   const Scorer& scorer) const;
+  /// Whether they are of enough components that are victims of none of the others.
+  bool areUnrelated(const std::vector<EventId>& ids) const;
+  /// Whether somebody was heard for most of the time since then: or all are silent.
+  bool othersGoOn(const std::vector<EventId>& stopped, const Heard& heard) const;
+
+  std::shared_ptr<const Model> model_;
+  std::shared_ptr<const SourceGraph> graph_;
+  std::vector<std::int64_t> excused_until_;  // [ns], by id
+};
+
+}  // namespace self_awareness::core::evidence

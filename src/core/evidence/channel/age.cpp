@@ -1,0 +1,99 @@
+#include "core/evidence/channel/age.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "core/evidence/channel/messages.h"
+#include "core/evidence/count/age_level.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+// Of messages whose stamps are as old as they are, this share may be older than that once more.
+constexpr double kMostRises = 0.01;
+constexpr double kUsualRise = 1;  // [s]
+// Two classes of ages, and of stamps in the future: to tell them apart takes that much.
+constexpr double kTwoClasses = 0.19;
+constexpr double kTwoClassesAhead = 0.42;
+// A stamp that is missing is as bad as one that is so old [s].
+constexpr double kWithoutStamp = 60;
+
+struct AgeOfMessages {
+  struct Usual {
+    double least_limit = 0;
+    bool is_supported = true;
+    double shortest = 0;  // [s]
+    double middle = 0;
+    double longest = 0;
+  };
+
+  void add(const Heard::Arrival& arrival, const Usual& usual, double /*most*/) {
+    if (arrival.stalled) {
+      return;  // it may have waited for that reason
+    }
+    before = last;
+    if (arrival.attributes.hasAge()) {
+      age = ageOf(arrival.attributes.age);
+      last = level.add(arrival.stamp, age, usual.shortest);
+    } else {
+      age = Reason::kNone;
+      last = kWithoutStamp;
+    }
+  }
+  double evidence() const { return std::min(last, before); }
+  void explain(const Usual& usual, Reason& reason) const {
+    reason.kind = Kind::kStale;
+    reason.unit = unit::kSeconds;
+    reason.value = age;
+    reason.usual = usual.middle;
+    reason.usual_shortest = usual.shortest;
+    reason.usual_longest = usual.longest;
+    char text[100];
+    if (std::isnan(age)) {
+      std::snprintf(text, sizeof text, "without a stamp, usually %.3f s old", usual.middle);
+    } else if (age < 0) {
+      std::snprintf(text, sizeof text, "stamps %.2f s in the future, usually %.3f s old", -age,
+                    usual.middle);
+    } else {
+      std::snprintf(text, sizeof text, "stamps %.2f s old, usually %.3f s", age, usual.middle);
+    }
+    reason.words = text;
+  }
+
+  AgeLevel level;
+  double age = 0;     // of the last message [s]
+  double last = 0;    // by how much it is older than usual [s]
+  double before = 0;  // the same of the message before
+};
+
+}  // namespace
+
+std::vector<Track> Age::watch(const Choice& choice) const {
+  return tracksOfMessages(*this, choice, [](const AttributeCounts& counts) {
+    const auto zero = counts.ages.find(Attributes::kZeroStamp);
+    const std::uint64_t large =
+        total({counts.rises.upper_bound(ageClass(toNanoseconds(kUsualRise))), counts.rises.end()});
+    const auto rises = static_cast<double>(total(counts.rises));
+    return zero == counts.ages.end() && total(counts.rises) == counts.known() &&
+           static_cast<double>(large) <= kMostRises * rises;
+  });
+}
+
+std::unique_ptr<const Expectation> Age::expect(const Model& model, const Halves& /*halves*/,
+                                               std::vector<std::size_t> tracks) const {
+  return std::make_unique<ExpectedMessages<AgeOfMessages>>(
+      model, std::move(tracks), [&](EventId id) {
+        const ClassCounts& ages = model.statistics().type(id).attributes.ages;
+        AgeOfMessages::Usual usual;
+        usual.shortest = ageOf(quantile(ages, kUsualFrom));
+        usual.middle = ageOf(quantile(ages, 0.5));
+        usual.longest = ageOf(quantile(ages, kUsualTo));
+        usual.least_limit =
+            std::max(model.tuning().least_age,
+                     (usual.middle < 0 ? kTwoClassesAhead : kTwoClasses) * std::abs(usual.middle));
+        return usual;
+      });
+}
+
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,86 @@
+#include "core/evidence/channel/frozen.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "core/evidence/channel/messages.h"
+#include "core/evidence/count/repeats.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+// Fewer messages do not say whether the source repeats itself at times.
+constexpr double kFewestMessages = 300;
+// Who repeats itself more often, as a share of its messages, may do so for ever.
+constexpr double kMostRepeats = 0.5;
+// Fewer repetitions, in mean gaps, may be a message that was sent twice.
+constexpr double kFewestGaps = 2.5;
+// So many repetitions in a row come by chance after so small a share of the messages.
+constexpr double kByChance = 1e-7;
+
+/// Mean gaps with the same content that are more than chance.
+double gapsBeyondChance(const AttributeCounts& counts) {
+  const double repeats =
+      (static_cast<double>(counts.repeats) + 1) / (static_cast<double>(counts.known()) + 2);
+  return std::max(kFewestGaps, std::log(kByChance) / std::log(repeats));
+}
+
+struct ContentOfMessages {
+  struct Usual {
+    double least_limit = 0;
+    bool is_supported = true;
+    double longest = 0;         // [s]
+    std::int64_t mean_gap = 0;  // [ns]
+  };
+
+  void add(const Heard::Arrival& arrival, const Usual& usual, double /*most*/) {
+    lasted = repeats.add(arrival.stamp, arrival.attributes, usual.mean_gap);
+  }
+  double evidence() const { return toSeconds(lasted); }
+  void explain(const Usual& usual, Reason& reason) const {
+    reason.kind = Kind::kStuck;
+    reason.unit = unit::kSeconds;
+    reason.value = toSeconds(lasted);
+    reason.usual = usual.longest;
+    reason.usual_shortest = 0;
+    reason.usual_longest = usual.longest;
+    reason.lasted = reason.value;
+    char text[100];
+    std::snprintf(text, sizeof text, "the same content for %.1f s, usually %.2f s at most",
+                  reason.value, usual.longest);
+    reason.words = text;
+  }
+
+  Repeats repeats;
+  std::int64_t lasted = 0;  // the same content [ns]
+};
+
+}  // namespace
+
+std::vector<Track> Frozen::watch(const Choice& choice) const {
+  return tracksOfMessages(*this, choice, [&](const AttributeCounts& counts) {
+    const auto known = static_cast<double>(counts.known());
+    return known >= kFewestMessages &&
+           static_cast<double>(counts.repeats) <= kMostRepeats * known &&
+           toSeconds(counts.longest_repeat) <= choice.tuning.longest_repeat;
+  });
+}
+
+std::unique_ptr<const Expectation> Frozen::expect(const Model& model, const Halves& /*halves*/,
+                                                  std::vector<std::size_t> tracks) const {
+  return std::make_unique<ExpectedMessages<ContentOfMessages>>(
+      model, std::move(tracks), [&](EventId id) {
+        const Tuning& tuning = model.tuning();
+        ContentOfMessages::Usual usual;
+        const AttributeCounts& counts = model.statistics().type(id).attributes;
+        usual.longest = toSeconds(counts.longest_repeat);
+        usual.mean_gap = static_cast<std::int64_t>(model.meanGap(id));
+        usual.least_limit =
+            std::max({tuning.least_repeat, gapsBeyondChance(counts) * 1e-9 * model.meanGap(id),
+                      tuning.least_margin * usual.longest});
+        return usual;
+      });
+}
+
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+namespace self_awareness::core::evidence {
+
+/// By how much the messages of one event type are older than they have been of late
+/// (docs/attributes.md). The clocks of two computers may differ, and drift apart: so only what
+/// changes within a minute or two counts.
+class AgeLevel {
+ public:
+  /// What is remembered of ages: those of the last span, and of the one before [ns].
+  static constexpr std::int64_t kSpan = 60000000000;
+  /// A stamp that is further ahead of the clock than before, by more than this [s], is wrong.
+  static constexpr double kAhead = 0.5;
+
+  /// Takes in a message.
+  /// @param now when it came [ns]
+  /// @param age since its stamp [s]; negative: it is of the future
+  /// @param usual youngest age in training [s]: who comes back to it is not ahead
+  /// @return how much older it is than the youngest of late, or how much further ahead [s]
+  double add(std::int64_t now, double age, double usual = 0);
+
+ private:
+  static constexpr double kNone = std::numeric_limits<double>::infinity();
+
+  std::int64_t begin_ = 0;  // of the span [ns]
+  bool begun_ = false;
+  double youngest_ = kNone;  // age in the span [s]
+  double before_ = kNone;    // the same of the span before
+};
+
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,406 @@
+// The channels of attributes, from the events to the alarm (docs/attributes.md).
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "../attributed.h"
+#include "self_awareness/core/evidence/judge.h"
+#include "self_awareness/core/learn.h"
+#include "self_awareness/core/verdict/detector.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+constexpr char kAge[] = "age";
+constexpr char kLost[] = "lost";
+constexpr char kSize[] = "size";
+constexpr char kFrozen[] = "frozen";
+constexpr std::int64_t kLength = 200 * kSecond;
+constexpr std::int64_t kFault = 60 * kSecond;  // after the start of a recording
+
+/// Two sources, the second of which is always healthy.
+Events robot(const Source& source, unsigned seed, std::int64_t length = kLength) {
+  const std::int64_t start = (seed + 1) * kStart;
+  return together({messages(kA, start, start + length, source, seed),
+                   messages(kB, start + 7 * kMillisecond, start + length, {}, seed + 100)});
+}
+
+/// A model of recordings, each of a start of its own.
+std::shared_ptr<const core::Model> learned(const std::vector<Events>& recordings) {
+  Learner learner;
+  learner.intern(kTypes[kA]);
+  learner.intern(kTypes[kB]);
+  for (const Events& events : recordings) {
+    learner.add({events, ""});
+  }
+  auto model = std::make_shared<core::Model>(learner.learn());
+  EXPECT_TRUE(model->calibration) << learner.why();
+  return model;
+}
+
+std::shared_ptr<const core::Model> learned(const Source& source) {
+  std::vector<Events> recordings;
+  for (unsigned seed = 0; seed < 4; ++seed) {
+    recordings.push_back(robot(source, seed));
+  }
+  return learned(recordings);
+}
+
+bool watches(const core::Model& model, const std::string& channel, EventId id = kA) {
+  const std::size_t track = indexOf(model.watched.tracks, channel, id, id);
+  return track < model.watched.tracks.size() && !std::isnan(model.limits()->tracks[track]);
+}
+
+/// The begin of an alarm.
+struct Begun {
+  std::int64_t time = 0;  // end of the window [ns]
+  std::string evidence;
+  std::vector<Suspect> suspects;
+};
+
+/// Judges a recording; tells the handler of every verdict.
+template <typename OnVerdict>
+void judge(const core::Model& model, const Events& events, OnVerdict onVerdict) {
+  Detector detector(makeJudge(std::make_shared<Model>(model.watched), model.limits(), model.window,
+                              std::make_shared<SourceGraph>()),
+                    model.window, {}, onVerdict);
+  for (const Event& event : events) {
+    detector.add(event);
+  }
+  detector.finish();
+}
+
+/// The first alarm of a recording.
+std::optional<Begun> alarmIn(const core::Model& model, const Events& events) {
+  std::optional<Begun> alarm;
+  judge(model, events, [&](const Verdict& verdict) {
+    if (!alarm && verdict.alarm) {
+      alarm = {verdict.window->start + model.window, verdict.evidence, verdict.suspects};
+    }
+  });
+  return alarm;
+}
+
+/// For how long alarms stand in a recording [s].
+double lengthOfAlarms(const core::Model& model, const Events& events) {
+  int windows = 0;
+  judge(model, events, [&](const Verdict& verdict) { windows += verdict.alarm ? 1 : 0; });
+  return windows * toSeconds(model.window);
+}
+
+/// Seconds from the fault to the alarm.
+double latency(const Begun& alarm, const Events& events) {
+  return toSeconds(alarm.time - events.front().stamp - kFault);
+}
+
+/// Changes what the first source says from the fault on.
+template <typename Change>
+Events faulty(Events events, Change change) {
+  const std::int64_t onset = events.front().stamp + kFault;
+  for (Event& event : events) {
+    if (event.id == kA && event.stamp >= onset) {
+      change(event, event.stamp - onset);
+    }
+  }
+  return events;
+}
+
+void expectNamed(const Begun& alarm, const std::string& channel, Kind kind) {
+  EXPECT_EQ(alarm.evidence, channel);
+  ASSERT_FALSE(alarm.suspects.empty());
+  EXPECT_EQ(alarm.suspects[0].component, "/a");
+  EXPECT_EQ(toString(alarm.suspects[0].reason.kind), toString(kind));
+}
+
+class AttributesTest : public testing::TestWithParam<std::int64_t> {};
+
+TEST_P(AttributesTest, AStampThatStandsStillIsFoundWithinTwoPeriodsAndASecond) {
+  Source source;
+  source.period = GetParam();
+  const auto model = learned(source);
+  const Events events = faulty(robot(source, 10), [](Event& event, std::int64_t since) {
+    event.attributes.age = ageClass(toNanoseconds(0.02) + since);
+  });
+  const auto alarm = alarmIn(*model, events);
+  ASSERT_TRUE(alarm);
+  expectNamed(*alarm, kAge, Kind::kStale);
+  EXPECT_GT(latency(*alarm, events), 0);
+  EXPECT_LE(latency(*alarm, events), 2 * toSeconds(source.period) + 1 + 0.3);
+  EXPECT_EQ(alarm->suspects[0].reason.words.rfind("stamps ", 0), 0U)
+      << alarm->suspects[0].reason.words;
+}
+
+TEST_P(AttributesTest, EmptyMessagesAreFoundWithinFiveSeconds) {
+  Source source;
+  source.period = GetParam();
+  source.size = 80000;
+  source.spread = 0.5;
+  const auto model = learned(source);
+  const Events events = faulty(robot(source, 10), [](Event& event, std::int64_t) {
+    event.attributes.size = sizeClass(100);
+  });
+  const auto alarm = alarmIn(*model, events);
+  ASSERT_TRUE(alarm);
+  expectNamed(*alarm, kSize, Kind::kOtherSize);
+  EXPECT_GT(latency(*alarm, events), 0);
+  EXPECT_LE(latency(*alarm, events), 5);
+}
+
+TEST_P(AttributesTest, TheSameContentAgainAndAgainIsFoundWithinFiveSeconds) {
+  Source source;
+  source.period = GetParam();
+  const auto model = learned(source);
+  const Events events =
+      faulty(robot(source, 10), [](Event& event, std::int64_t) { event.attributes.same = true; });
+  const auto alarm = alarmIn(*model, events);
+  ASSERT_TRUE(alarm);
+  expectNamed(*alarm, kFrozen, Kind::kStuck);
+  EXPECT_GT(latency(*alarm, events), 0);
+  EXPECT_LE(latency(*alarm, events), 5);
+}
+
+INSTANTIATE_TEST_SUITE_P(Periods, AttributesTest,
+                         testing::Values(33 * kMillisecond, 100 * kMillisecond, kSecond));
+
+TEST(Lost, OnePercentIsMostlyFoundWithinHalfAMinute) {
+  Source source;
+  source.period = 50 * kMillisecond;
+  const auto model = learned(source);
+  int found = 0;
+  for (unsigned seed = 10; seed < 30; ++seed) {
+    std::mt19937 random(seed);
+    std::bernoulli_distribution lost(0.01);
+    const Events events = faulty(robot(source, seed), [&](Event& event, std::int64_t) {
+      if (lost(random)) {
+        event.attributes.step = Attributes::Step::kLostOne;
+      }
+    });
+    const auto alarm = alarmIn(*model, events);
+    ASSERT_TRUE(alarm);
+    expectNamed(*alarm, kLost, Kind::kLossy);
+    EXPECT_GT(latency(*alarm, events), 0);
+    found += latency(*alarm, events) <= 30 ? 1 : 0;
+  }
+  EXPECT_GE(found, 15);
+}
+
+TEST(Attributes, NormalOperationIsQuiet) {
+  Source source;
+  source.spread = 1;
+  source.period = 50 * kMillisecond;
+  const auto model = learned(source);
+  for (const char* channel : {kAge, kLost, kSize, kFrozen}) {
+    EXPECT_TRUE(watches(*model, channel)) << channel;
+  }
+  for (unsigned seed = 10; seed < 20; ++seed) {
+    EXPECT_FALSE(alarmIn(*model, robot(source, seed))) << seed;
+  }
+  EXPECT_FALSE(alarmIn(*model, robot(source, 20, 3600 * kSecond)));
+}
+
+TEST(Attributes, OneMessageThatIsOddIsNoAlarm) {
+  const auto model = learned(Source{});
+  bool first = true;
+  const Events events = faulty(robot({}, 10), [&](Event& event, std::int64_t) {
+    if (first) {
+      event.attributes = {ageClass(5 * kSecond), sizeClass(1), Attributes::Step::kLostMany, true};
+    }
+    first = false;
+  });
+  EXPECT_FALSE(alarmIn(*model, events));
+}
+
+TEST(Attributes, AreOffWhereTrainingKnowsNothingOfThem) {
+  std::vector<Events> recordings;
+  for (unsigned seed = 0; seed < 4; ++seed) {
+    recordings.push_back(robot({}, seed));
+    for (Event& event : recordings.back()) {
+      event.attributes = {};
+    }
+  }
+  const auto model = learned(recordings);
+  for (const char* channel : {kAge, kLost, kSize, kFrozen}) {
+    EXPECT_FALSE(watches(*model, channel)) << channel;
+  }
+  EXPECT_FALSE(alarmIn(*model, robot({}, 10))) << "what is known now says nothing";
+}
+
+TEST(Attributes, OfOlderRecordingsAreNotMissed) {
+  const auto model = learned(Source{});
+  EXPECT_FALSE(alarmIn(
+      *model, faulty(robot({}, 10), [](Event& event, std::int64_t) { event.attributes = {}; })));
+}
+
+TEST(Attributes, DoNotChangeTheLimitsOfOthers) {
+  std::vector<Events> plain;
+  std::vector<Events> with;
+  for (unsigned seed = 0; seed < 4; ++seed) {
+    with.push_back(robot({}, seed));
+    plain.push_back(with.back());
+    for (Event& event : plain.back()) {
+      event.attributes = {};
+    }
+  }
+  const auto one = learned(plain);
+  const auto other = learned(with);
+  ASSERT_LT(one->watched.tracks.size(), other->watched.tracks.size());
+  for (std::size_t track = 0; track < one->watched.tracks.size(); ++track) {
+    const double limit = one->limits()->tracks[track];
+    const double same = other->limits()->tracks[track];
+    EXPECT_TRUE(limit == same || (std::isnan(limit) && std::isnan(same))) << track;
+  }
+}
+
+/// Changes what all messages of the first source say.
+template <typename Change>
+std::vector<Events> recordingsWhere(Change change) {
+  std::vector<Events> recordings;
+  for (unsigned seed = 0; seed < 4; ++seed) {
+    recordings.push_back(robot({}, seed));
+    std::size_t number = 0;
+    for (Event& event : recordings.back()) {
+      if (event.id == kA) {
+        change(event, number++);
+      }
+    }
+  }
+  return recordings;
+}
+
+TEST(Age, IsOffWithoutStamps) {
+  for (const std::uint8_t age : {Attributes::kNoAge, Attributes::kZeroStamp}) {
+    const auto model =
+        learned(recordingsWhere([&](Event& event, std::size_t) { event.attributes.age = age; }));
+    EXPECT_FALSE(watches(*model, kAge));
+    EXPECT_TRUE(watches(*model, kAge, kB));
+  }
+}
+
+TEST(Age, IsOffWhereStampsAreThoseOfSomethingOld) {
+  const auto model = learned(recordingsWhere([](Event& event, std::size_t number) {
+    event.attributes.age = ageClass(static_cast<std::int64_t>(number % 100) * kSecond / 10);
+  }));
+  EXPECT_FALSE(watches(*model, kAge));
+}
+
+TEST(Age, AStampThatIsMissingIsFound) {
+  const auto model = learned(Source{});
+  const Events events = faulty(robot({}, 10), [](Event& event, std::int64_t) {
+    event.attributes.age = Attributes::kZeroStamp;
+  });
+  const auto alarm = alarmIn(*model, events);
+  ASSERT_TRUE(alarm);
+  expectNamed(*alarm, kAge, Kind::kStale);
+  EXPECT_EQ(alarm->suspects[0].reason.words.rfind("without a stamp", 0), 0U);
+}
+
+TEST(Age, AClockThatIsWrongByHoursOrDriftsIsNoFault) {
+  const auto model = learned(Source{});
+  for (const double offset : {-30.0, 5.0, 900.0}) {
+    const Events events = robot({}, 10, 1000 * kSecond);
+    const std::int64_t start = events.front().stamp;
+    Events shifted = events;
+    for (Event& event : shifted) {
+      if (event.id == kA) {
+        event.attributes.age =
+            ageClass(toNanoseconds(0.02 + offset) + (event.stamp - start) / 10000);  // 100 ppm
+      }
+    }
+    EXPECT_FALSE(alarmIn(*model, shifted)) << offset;
+  }
+}
+
+TEST(Lost, IsOffWhereNumbersDoNotCount) {
+  for (const auto step : {Attributes::Step::kSame, Attributes::Step::kLostFew}) {
+    const auto model =
+        learned(recordingsWhere([&](Event& event, std::size_t) { event.attributes.step = step; }));
+    EXPECT_FALSE(watches(*model, kLost));
+    EXPECT_TRUE(watches(*model, kLost, kB));
+  }
+}
+
+TEST(Lost, WhoWasLuckyIsExpectedToLoseWhatOthersDo) {
+  const auto recording = [](double lost, double of_other, unsigned seed, std::int64_t length) {
+    Source source;
+    source.period = 50 * kMillisecond;
+    source.lost = lost;
+    Source other;
+    other.lost = of_other;
+    const std::int64_t start = (seed + 1) * kStart;
+    return together({messages(kA, start, start + length, source, seed),
+                     messages(kB, start, start + length, other, seed + 100)});
+  };
+  for (const double of_other : {0.0, 0.009}) {
+    std::vector<Events> recordings;
+    for (unsigned seed = 0; seed < 4; ++seed) {
+      recordings.push_back(recording(0, of_other, seed, kLength));
+    }
+    const auto model = learned(recordings);
+    EXPECT_TRUE(watches(*model, kLost));
+    EXPECT_EQ(alarmIn(*model, recording(0.005, 0, 10, 1000 * kSecond)).has_value(), of_other == 0);
+  }
+}
+
+TEST(Lost, TheAlarmEndsSoonAfterTheLosses) {
+  Source source;
+  source.period = 50 * kMillisecond;
+  const auto model = learned(source);
+  const Events events = faulty(robot(source, 10), [](Event& event, std::int64_t since) {
+    if (since < 20 * kSecond && since / (50 * kMillisecond) % 2 == 0) {
+      event.attributes.step = Attributes::Step::kLostOne;
+    }
+  });
+  EXPECT_GT(lengthOfAlarms(*model, events), 20);
+  EXPECT_LT(lengthOfAlarms(*model, events), 60);
+}
+
+TEST(Lost, ARestartIsNoLoss) {
+  const auto model = learned(Source{});
+  EXPECT_FALSE(alarmIn(*model, faulty(robot({}, 10), [](Event& event, std::int64_t since) {
+    if (since / (100 * kMillisecond) % 20 == 0) {
+      event.attributes.step = Attributes::Step::kRestart;
+    }
+  })));
+}
+
+TEST(Size, IsOffWhereHalvesOfTheTrainingDiffer) {
+  std::vector<Events> recordings;
+  for (unsigned seed = 0; seed < 4; ++seed) {
+    Source source;
+    source.size = seed % 2 == 0 ? 1000 : 100000;
+    recordings.push_back(robot(source, seed));
+  }
+  const auto model = learned(recordings);
+  EXPECT_FALSE(watches(*model, kSize));
+  EXPECT_TRUE(watches(*model, kSize, kB));
+}
+
+TEST(Frozen, IsOffWhereTrainingRepeatsItself) {
+  Source source;
+  source.repeats = true;
+  const auto model = learned(source);
+  EXPECT_FALSE(watches(*model, kFrozen));
+  EXPECT_TRUE(watches(*model, kFrozen, kB));
+}
+
+TEST(Frozen, WhatTrainingRepeatedForAWhileMayBeRepeatedForAsLong) {
+  // The same for 5 s, then something new at every message for 20 s.
+  const auto change = [](Event& event, std::size_t number) {
+    event.attributes.same = number % 250 < 50;
+  };
+  const auto model = learned(recordingsWhere(change));
+  ASSERT_TRUE(watches(*model, kFrozen));
+  EXPECT_FALSE(alarmIn(*model, recordingsWhere(change)[0]));
+  const std::size_t track = indexOf(model->watched.tracks, kFrozen, kA, kA);
+  EXPECT_GE(model->limits()->tracks[track], 1.25 * 5);
+  EXPECT_LE(model->limits()->tracks[track], 4 * 5);
+}
+
+}  // namespace
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,119 @@
+#include "self_awareness/core/evidence/count/attribute_counts.h"
+
+#include <gtest/gtest.h>
+
+#include "../attributed.h"
+#include "core/evidence/count/age_level.h"
+#include "core/evidence/count/repeats.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+using Step = Attributes::Step;
+
+TEST(AgeLevel, WhatIsOlderThanOfLateIsARise) {
+  AgeLevel level;
+  EXPECT_EQ(level.add(0, 5), 0);  // clocks of two computers may differ
+  EXPECT_EQ(level.add(kSecond, 5.5), 0.5);
+  EXPECT_EQ(level.add(2 * kSecond, 4.5), 0);
+  EXPECT_EQ(level.add(3 * kSecond, 5), 0.5);
+}
+
+TEST(AgeLevel, AStampThatStandsStillIsEverOlder) {
+  AgeLevel level;
+  level.add(0, 0.02);
+  for (int second = 1; second < 600; ++second) {
+    EXPECT_GT(level.add(second * kSecond, 0.02 + second), std::min(second, 60) - 0.1) << second;
+  }
+}
+
+TEST(AgeLevel, ClocksMayDriftApart) {
+  AgeLevel level;
+  for (int second = 0; second < 3600; ++second) {
+    EXPECT_LT(level.add(second * kSecond, 3 - second * 0.001), 0.2) << second;
+  }
+  for (int second = 3600; second < 7200; ++second) {
+    EXPECT_LT(level.add(second * kSecond, second * 0.001 - 4.2), 0.2) << second;
+  }
+}
+
+TEST(AgeLevel, AStampOfTheFutureIsOneUntilAllAreSo) {
+  AgeLevel level;
+  level.add(0, 0.02);
+  EXPECT_NEAR(level.add(kSecond, -2), 2.02, 1e-9);
+  EXPECT_EQ(level.add(2 * kSecond, 0.02), 0);  // the one that was wrong says nothing of others
+  for (int second = 3; second < 200; ++second) {
+    level.add(second * kSecond, -2);
+  }
+  EXPECT_EQ(level.add(200 * kSecond, -2), 0);
+}
+
+TEST(AgeLevel, WhoWasLateAndComesBackToWhatIsUsualIsNotAhead) {
+  AgeLevel level;
+  level.add(0, -12.5, -15);  // its clock is 15 s ahead, and the message had waited
+  EXPECT_EQ(level.add(kSecond, -15, -15), 0);
+  EXPECT_EQ(level.add(2 * kSecond, -18, -15), 3);
+}
+
+TEST(AttributeCounts, CountsWhatMessagesAre) {
+  const Statistics counts = countsOf({messages(kA, kStart, kStart + 100 * kSecond, {})}, 1);
+  const AttributeCounts& found = counts.type(kA).attributes;
+  EXPECT_EQ(found.known(), 1000U);
+  EXPECT_EQ(found.numbered(), 1000U);
+  EXPECT_EQ(found.losses(), 0U);
+  EXPECT_EQ(found.repeats, 0U);
+  EXPECT_EQ(total(found.rises), 1000U);
+  EXPECT_NEAR(ageOf(quantile(found.ages, 0.5)), 0.02, 0.002);
+  EXPECT_EQ(quantile(found.sizes, 0), sizeClass(800));
+  EXPECT_EQ(quantile(found.sizes, 1), sizeClass(800));
+}
+
+TEST(AttributeCounts, CountsLossesAndRepetitions) {
+  Source source;
+  source.lost = 0.1;
+  source.repeats = true;
+  const Statistics counts = countsOf({messages(kA, kStart, kStart + 100 * kSecond, source)}, 1);
+  const AttributeCounts& found = counts.type(kA).attributes;
+  EXPECT_NEAR(static_cast<double>(found.losses()), 100, 40);
+  EXPECT_EQ(found.repeats, 1000U);
+  EXPECT_NEAR(toSeconds(found.longest_repeat), 100, 0.2);
+}
+
+TEST(Repeats, APauseCountsNoMoreThanIsSaid) {
+  Repeats repeats;
+  Attributes same;
+  same.same = true;
+  repeats.add(kSecond, {}, kSecond);
+  EXPECT_EQ(repeats.add(2 * kSecond, same, kSecond), kSecond);
+  EXPECT_EQ(repeats.add(60 * kSecond, same, kSecond), 2 * kSecond);
+  EXPECT_EQ(repeats.add(61 * kSecond, {}, kSecond), 0);
+}
+
+TEST(AttributeCounts, OfUnknownMessagesThereAreNone) {
+  const Statistics counts = countsOf({timer(kA, kStart, kStart + 100 * kSecond, kSecond)}, 1);
+  EXPECT_EQ(counts.type(kA).attributes, AttributeCounts{});
+}
+
+TEST(AttributeCounts, AddUp) {
+  Source source;
+  source.spread = 1;
+  const Events one = messages(kA, kStart, kStart + 100 * kSecond, source, 1);
+  const Events other = later(messages(kA, kStart, kStart + 50 * kSecond, source, 2));
+  Statistics sum = countsOf({one}, 1);
+  sum.merge(countsOf({other}, 1));
+  EXPECT_EQ(sum.type(kA).attributes, countsOf({one, other}, 1).type(kA).attributes);
+  EXPECT_TRUE(sum == countsOf({one, other}, 1));
+  EXPECT_FALSE(sum == countsOf({one, one}, 1));
+}
+
+TEST(ClassCounts, QuantilesAreClasses) {
+  const ClassCounts counts{{3, 1}, {7, 98}, {9, 1}};
+  EXPECT_EQ(total(counts), 100U);
+  EXPECT_EQ(quantile(counts, 0), 3);
+  EXPECT_EQ(quantile(counts, 0.5), 7);
+  EXPECT_EQ(quantile(counts, 1), 9);
+  EXPECT_EQ(quantile({}, 0.5), 0);
+}
+
+}  // namespace
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,70 @@
+#include "self_awareness/core/verdict/acceptance.h"
+
+#include <gtest/gtest.h>
+
+#include <optional>
+#include <string>
+
+namespace self_awareness::core {
+namespace {
+
+Acceptance accepted(const std::string& component, const std::string& topic,
+                    std::optional<Kind> kind = std::nullopt) {
+  Acceptance acceptance;
+  acceptance.component = component;
+  acceptance.topic = topic;
+  acceptance.kind = kind;
+  return acceptance;
+}
+
+TEST(Acceptances, WhatIsNamedMustAllFit) {
+  Acceptances accepted_now;
+  accepted_now.add(accepted("/rostopic*", "/cmd_vel", Kind::kStranger));
+  EXPECT_TRUE(accepted_now.covers("/rostopic_12", "/cmd_vel", Kind::kStranger));
+  EXPECT_FALSE(accepted_now.covers("/rostopic_12", "/scan", Kind::kStranger));
+  EXPECT_FALSE(accepted_now.covers("/joystick", "/cmd_vel", Kind::kStranger));
+  EXPECT_FALSE(accepted_now.covers("/rostopic_12", "/cmd_vel", Kind::kSlow)) << "once known";
+}
+
+TEST(Acceptances, WhoIsSlowMayBeLateAndMayNotBeSilent) {
+  Acceptances accepted_now;
+  accepted_now.add(accepted("/camera", "", Kind::kSlow));
+  for (const Kind kind :
+       {Kind::kSlow, Kind::kFast, Kind::kLate, Kind::kEarly, Kind::kOutOfOrder}) {
+    EXPECT_TRUE(accepted_now.covers("/camera", "/image", kind)) << toString(kind);
+  }
+  EXPECT_FALSE(accepted_now.covers("/camera", "/image", Kind::kDied));
+  EXPECT_FALSE(accepted_now.covers("/camera", "/image", Kind::kNeverCame));
+}
+
+TEST(Acceptances, WhoMayBeSilentMayDoAnything) {
+  for (const std::optional<Kind>& kind : {std::optional<Kind>(), {Kind::kDied}}) {
+    Acceptances accepted_now;
+    accepted_now.add(accepted("", "/image", kind));
+    EXPECT_TRUE(accepted_now.covers("/camera", "/image", Kind::kDied));
+    EXPECT_TRUE(accepted_now.covers("/camera", "/image", Kind::kSlow));
+    EXPECT_FALSE(accepted_now.covers("/camera", "/info", Kind::kSlow));
+  }
+}
+
+TEST(Acceptances, EachIsThereOnceAndTakenBack) {
+  Acceptances accepted_now;
+  EXPECT_TRUE(accepted_now.add(accepted("/camera", "")));
+  EXPECT_TRUE(accepted_now.add(accepted("/camera", "")));
+  EXPECT_EQ(accepted_now.list().size(), 1U);
+  EXPECT_FALSE(accepted_now.remove(accepted("/camera", "/image")));
+  EXPECT_TRUE(accepted_now.remove(accepted("/camera", "")));
+  EXPECT_FALSE(accepted_now.covers("/camera", "/image", Kind::kDied));
+}
+
+TEST(Acceptances, ThereIsAMost) {
+  Acceptances accepted_now;
+  for (std::size_t i = 0; i < Acceptances::kMost; ++i) {
+    EXPECT_TRUE(accepted_now.add(accepted("/node" + std::to_string(i), "")));
+  }
+  EXPECT_FALSE(accepted_now.add(accepted("/one_more", "")));
+  EXPECT_EQ(accepted_now.list().size(), Acceptances::kMost);
+}
+
+}  // namespace
+}  // namespace self_awareness::core

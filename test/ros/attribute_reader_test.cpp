@@ -1,0 +1,121 @@
+#include "self_awareness/ros/attribute_reader.h"
+
+#include <gtest/gtest.h>
+#include <ros/message_traits.h>
+#include <ros/serialization.h>
+#include <sensor_msgs/Image.h>
+#include <std_msgs/String.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "self_awareness/core/stream/event.h"
+
+namespace self_awareness::ros1 {
+namespace {
+
+using core::Attributes;
+constexpr std::int64_t kNow = 1700000000000000000;
+
+template <typename Message>
+AttributeReader readerOf() {
+  namespace traits = ros::message_traits;
+  return {traits::definition<Message>(), traits::datatype<Message>()};
+}
+
+template <typename Message>
+std::vector<std::uint8_t> bytesOf(const Message& message) {
+  std::vector<std::uint8_t> bytes(ros::serialization::serializationLength(message));
+  ros::serialization::OStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+  ros::serialization::serialize(stream, message);
+  return bytes;
+}
+
+/// Reads a message in pieces.
+Attributes read(AttributeReader& reader, const std::vector<std::uint8_t>& bytes,
+                std::size_t piece = 1000000) {
+  reader.begin(bytes.size());
+  for (std::size_t place = 0; place < bytes.size(); place += piece) {
+    reader.add(bytes.data() + place, std::min(piece, bytes.size() - place));
+  }
+  return reader.end(kNow);
+}
+
+sensor_msgs::Image image(std::uint32_t number, double age, std::size_t size = 100000) {
+  sensor_msgs::Image message;
+  message.header.seq = number;
+  message.header.stamp.fromNSec(static_cast<std::uint64_t>(kNow - core::toNanoseconds(age)));
+  message.header.frame_id = "camera";
+  message.data.resize(size, 7);
+  return message;
+}
+
+TEST(AttributeReader, KnowsAHeaderByTheDefinition) {
+  EXPECT_TRUE(readerOf<sensor_msgs::Image>().hasHeader());
+  EXPECT_FALSE(readerOf<std_msgs::String>().hasHeader());
+  EXPECT_FALSE(AttributeReader("", "*").hasHeader());
+  EXPECT_FALSE(AttributeReader("Header header\n", "a/B").hasHeader()) << "it is not defined";
+  const std::string header =
+      "====\nMSG: std_msgs/Header\nuint32 seq\ntime stamp\nstring frame_id\n";
+  EXPECT_TRUE(AttributeReader("# of it\nHeader header\nint8 x\n" + header, "a/B").hasHeader());
+  EXPECT_TRUE(AttributeReader("std_msgs/Header h\n" + header, "a/B").hasHeader());
+  EXPECT_FALSE(AttributeReader("int8 x\nHeader header\n" + header, "a/B").hasHeader());
+  EXPECT_FALSE(AttributeReader("Header[] headers\n" + header, "a/B").hasHeader());
+  EXPECT_FALSE(AttributeReader("Header header\n====\nMSG: std_msgs/Header\nuint8 other\n", "a/B")
+                   .hasHeader());
+}
+
+TEST(AttributeReader, ReadsAgeNumberSizeAndContent) {
+  for (const std::size_t piece : {1, 7, 4096, 1000000}) {
+    AttributeReader reader = readerOf<sensor_msgs::Image>();
+    const Attributes first = read(reader, bytesOf(image(5, 0.2)), piece);
+    EXPECT_EQ(first.age, core::ageClass(core::toNanoseconds(0.2)));
+    EXPECT_EQ(first.size, core::sizeClass(bytesOf(image(5, 0.2)).size()));
+    EXPECT_EQ(first.step, Attributes::Step::kNotKnown);
+    EXPECT_FALSE(first.same);
+    const Attributes second = read(reader, bytesOf(image(6, 0.1)), piece);
+    EXPECT_EQ(second.step, Attributes::Step::kNext);
+    EXPECT_TRUE(second.same) << "the header is no content";
+    sensor_msgs::Image other = image(8, -3);
+    other.data[0] = 8;
+    const Attributes third = read(reader, bytesOf(other), piece);
+    EXPECT_EQ(third.step, Attributes::Step::kLostOne);
+    EXPECT_LT(core::ageOf(third.age), -2);
+    EXPECT_FALSE(third.same);
+    EXPECT_FALSE(read(reader, bytesOf(image(9, 0, 99999)), piece).same);
+  }
+}
+
+TEST(AttributeReader, AStampOfZeroIsNone) {
+  AttributeReader reader = readerOf<sensor_msgs::Image>();
+  sensor_msgs::Image message = image(1, 0);
+  message.header.stamp = ros::Time();
+  EXPECT_EQ(read(reader, bytesOf(message)).age, Attributes::kZeroStamp);
+}
+
+TEST(AttributeReader, WithoutAHeaderThereIsSizeAndContent) {
+  AttributeReader reader = readerOf<std_msgs::String>();
+  std_msgs::String message;
+  message.data = "on";
+  read(reader, bytesOf(message));
+  const Attributes again = read(reader, bytesOf(message));
+  EXPECT_EQ(again.age, Attributes::kNoAge);
+  EXPECT_EQ(again.step, Attributes::Step::kNotKnown);
+  EXPECT_TRUE(again.same);
+  message.data = "of";
+  EXPECT_FALSE(read(reader, bytesOf(message)).same);
+  EXPECT_EQ(read(reader, {}).size, core::sizeClass(0));
+}
+
+TEST(AttributeReader, AHeaderThatIsCutOffIsNone) {
+  AttributeReader reader = readerOf<sensor_msgs::Image>();
+  EXPECT_EQ(read(reader, std::vector<std::uint8_t>(15)).age, Attributes::kNoAge);
+  std::vector<std::uint8_t> bytes(16, 0xff);  // a frame_id longer than any message
+  const Attributes found = read(reader, bytes);
+  EXPECT_NE(found.age, Attributes::kNoAge);
+  EXPECT_FALSE(found.same);
+}
+
+}  // namespace
+}  // namespace self_awareness::ros1
