@@ -1,6 +1,10 @@
 #include "diagnostics.h"
 
+#include <utility>
+
 #include "clock_status.h"
+#include "ros/now.h"
+#include "self_awareness/core/stream/event.h"
 #include "session.h"
 
 namespace self_awareness {
@@ -9,13 +13,16 @@ using diagnostic_msgs::DiagnosticStatus;
 using ros1::number;
 
 Diagnostics::Diagnostics(ros::NodeHandle node_handle, const std::string& name,
-                         const std::string& hardware_id, bool component_statuses)
+                         const std::string& hardware_id, bool component_statuses,
+                         std::size_t bytes_per_second)
     : name_(name),
       hardware_id_(hardware_id),
       component_statuses_(component_statuses),
+      round_(bytes_per_second),
+      published_at_(steadyNow()),
       publisher_(node_handle.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 1)) {}
 
-void Diagnostics::publish(const MonitorState& state) const {
+void Diagnostics::publish(const MonitorState& state) {
   ros1::DiagnosticStatuses statuses(name_, hardware_id_, state.ros_now);
   Status communication;
   ros1::tellCommunication(state.communication, communication);
@@ -28,7 +35,11 @@ void Diagnostics::publish(const MonitorState& state) const {
   tellMonitor(state, monitor);
   statuses.add("monitor", monitor);
   if (component_statuses_) {
-    ros1::addComponents(state.communication, statuses);
+    ros1::DiagnosticStatuses of_components(name_, hardware_id_, state.ros_now);
+    ros1::addComponents(state.communication, of_components);
+    const std::int64_t now = steadyNow();
+    ros1::addChosen(of_components, round_,
+                    core::toSeconds(now - std::exchange(published_at_, now)), statuses);
   }
   publisher_.publish(statuses.message());
 }
@@ -64,6 +75,10 @@ void Diagnostics::tellMonitor(const MonitorState& state, Status& status) {
   if (!state.keeper_error.empty()) {
     status.mergeSummary(DiagnosticStatus::WARN,
                         "what stands is not kept for another start: " + state.keeper_error);
+  }
+  if (!state.accept_error.empty()) {
+    status.mergeSummary(DiagnosticStatus::WARN,
+                        "what is accepted is not kept: " + state.accept_error);
   }
   tellUnheard(state.unheard, status);
   tellStrangers(state.strangers_closed, state.strangers_newly_closed, status);

@@ -32,6 +32,7 @@ struct MonitorState {
   std::string clock_rivals;                 ///< who publishes /clock, if several do
   std::string taken_back;                   ///< who took an alarm back last; empty: nobody
   std::vector<std::string> mutes;           ///< in words
+  std::string accept_error;                 ///< why what is accepted is not in its file
   std::string keeper_error;                 ///< why alarm or incidents are not in their files
   double longest_pause = 0;  ///< for which this program stood still, since the last report [s]
   std::optional<FlightRecorder::Report> recorder;  ///< none: there is no recorder
@@ -43,11 +44,13 @@ class Diagnostics {
  public:
   /// @param name of the monitor, which the statuses' names begin with
   /// @param component_statuses whether every component has a status of its own
+  /// @param bytes_per_second of all statuses: beyond it, components that do not change are said
+  /// one after the other
   Diagnostics(ros::NodeHandle node_handle, const std::string& name, const std::string& hardware_id,
-              bool component_statuses);
+              bool component_statuses, std::size_t bytes_per_second);
 
   /// Publishes the state now.
-  void publish(const MonitorState& state) const;
+  void publish(const MonitorState& state);
 
  private:
   using Status = diagnostic_updater::DiagnosticStatusWrapper;
@@ -58,6 +61,8 @@ class Diagnostics {
   std::string name_;
   std::string hardware_id_;
   bool component_statuses_;
+  ros1::StatusRound round_;
+  std::int64_t published_at_;  // [ns of steady time]
   ros::Publisher publisher_;
 };
 

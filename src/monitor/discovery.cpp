@@ -45,6 +45,18 @@ std::size_t leaveOutMost(const std::set<std::string>& model_topics,
   return wanted.size() - topics.size();
 }
 
+// The topics of the model as this robot calls them: those that are published, and those that
+// nobody has published yet, under the name that the model has for them.
+std::set<std::string> topicsOfModel(const Discovery::Wanted& wanted, const ros1::Graph& graph) {
+  std::set<std::string> topics = wanted.model_topics;
+  for (const auto& [topic, nodes] : graph.topics) {
+    if (wanted.encoder && wanted.model_topics.count(wanted.encoder->scopeOf(topic)) > 0) {
+      topics.insert(topic);
+    }
+  }
+  return topics;
+}
+
 // Also notes on which computers these publishers run.
 ros1::Listening publishersOf(const std::set<std::string>& topics,
                              const std::set<std::string>& first, ros1::Graph& graph) {
@@ -61,6 +73,7 @@ ros1::Listening publishersOf(const std::set<std::string>& topics,
       graph.hosts[node] = host;
     }
   }
+  graph.addresses = addresses;
   ros1::Listening listening;
   listening.first = first;
   for (const std::string& topic : topics) {
@@ -179,19 +192,20 @@ void Discovery::poll(const Wanted& wanted) {
 void Discovery::listen(const Wanted& wanted, ros1::SystemState& known, bool master_restarted,
                        State& state) {
   ros1::Graph& graph = known.graph;
+  const std::set<std::string> of_model = topicsOfModel(wanted, graph);
   std::set<std::string> topics;
   if (wanted.encoder) {
     const ros1::Encoder& encoder = *wanted.encoder;
     const ros1::Siblings siblings = ros1::siblingsIn(graph);
     topics = ros1::chooseTopics(
-        graph, policy_, wanted.model_topics,
+        graph, policy_, of_model,
         [&](const std::string& topic) { return encoder.includesTopic(topic); },
         [&](const std::string& node) {
           return node != ros::this_node::getName() && !siblings.has(node) &&
                  encoder.listens(ros1::stableName(node));
         });
   }
-  state.left_out = leaveOutMost(wanted.model_topics, topics_, topics);
+  state.left_out = leaveOutMost(of_model, topics_, topics);
   topics_ = topics;
   state.subscriptions = topics.size();
   const std::size_t vanished = registration_.keep(known, topics);
@@ -203,7 +217,7 @@ void Discovery::listen(const Wanted& wanted, ros1::SystemState& known, bool mast
                       "registered again",
                       vanished);
   }
-  subscriptions_.listen(publishersOf(topics, wanted.model_topics, graph));
+  subscriptions_.listen(publishersOf(topics, of_model, graph));
 }
 
 void Discovery::nameIllegal(const Wanted& wanted, const ros1::Graph& graph) {

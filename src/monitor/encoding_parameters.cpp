@@ -33,6 +33,24 @@ std::vector<std::string> textsOf(const std::string& name, XmlRpcValue& value) {
   return texts;
 }
 
+std::vector<ros1::Rename> renamesOf(const std::string& name, XmlRpcValue& value) {
+  constexpr char kForm[] = "a list of pairs: a regular expression, and the name in its place";
+  std::vector<ros1::Rename> renames;
+  if (value.getType() != XmlRpcValue::TypeArray) {
+    fail(name, kForm);
+  }
+  for (int i = 0; i < value.size(); ++i) {
+    if (value[i].getType() != XmlRpcValue::TypeArray || value[i].size() != 2 ||
+        value[i][0].getType() != XmlRpcValue::TypeString ||
+        value[i][1].getType() != XmlRpcValue::TypeString) {
+      fail(name, kForm);
+    }
+    renames.push_back(
+        {static_cast<std::string>(value[i][0]), static_cast<std::string>(value[i][1])});
+  }
+  return renames;
+}
+
 /// The datatypes have slashes, which part the names of parameters: package and type may have come
 /// as two levels.
 void addFields(const std::string& name, const std::string& prefix, XmlRpcValue& value,
@@ -86,6 +104,8 @@ ros1::EncodingRules loadEncoding(const ros::NodeHandle& private_node_handle) {
       *list->second = textsOf(name, value);
     } else if (key == "source") {
       rules.source = sourceOf(name, value);
+    } else if (key == "rename") {
+      rules.renames = renamesOf(name, value);
     } else if (key == "type_fields") {
       rules.type_fields.clear();
       addFields(name, "", value, rules.type_fields);

@@ -41,6 +41,7 @@ EventRecorder::Parameters EventRecorder::Parameters::load(
   parameters.min_space = reader.number("min_space", parameters.min_space, {0, 1e15}, "MB");
   parameters.robot_start =
       reader.seconds("robot_start", ros::WallTime::now().toSec(), {0, kLatestTime});
+  parameters.robot = reader.text("robot", parameters.robot);
   parameters.live.subscribe = reader.choice<SubscribePolicy>(
       "subscribe", "used", {{"used", SubscribePolicy::kUsed}, {"all", SubscribePolicy::kAll}});
   parameters.live.poll_interval =
@@ -167,7 +168,7 @@ void EventRecorder::begin(std::int64_t now) {
     graph_.reset();
     packer_.emplace([this](self_awareness::EventLog part) { file_->log.write(std::move(part)); });
     const self_awareness::EventLogStart start =
-        ros1::startOfRecording(parameters_.encoding, now, robot_start_);
+        ros1::startOfRecording(parameters_.encoding, now, robot_start_, parameters_.robot);
     file_->log.start(start);
     start_publisher_.publish(start);
     began_ = steadyNow();

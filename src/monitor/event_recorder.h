@@ -38,6 +38,8 @@ namespace self_awareness {
 ///   nothing is recorded.
 /// - `~robot_start` (double, seconds since 1970; default: now; 0 to 4294967295): when the robot
 ///   was started, for who starts the recorder more than once in a start of the robot.
+/// - `~robot` (string; default: empty): the robot's name, for a model that is learned from several
+///   robots (docs/fleet.md). Empty: the recordings do not say it.
 /// - `~diagnostics` (string; default: /diagnostics): topic of its status. If /diagnostics were
 ///   remapped, the recorder would not hear what the robot says there.
 /// - `~poll_interval`, `~queue_size`, `~max_message`, `~max_unfinished`, `~diagnostic_period`: as
@@ -72,6 +74,7 @@ class EventRecorder : public NodeProgram, public LiveSource::Listener {
     ros1::EncodingRules encoding;
     double min_space = 1000;  // [MB]
     double robot_start = 0;   // wall time [s]
+    std::string robot;        // its name; empty: not said
     LiveParameters live;
     std::string diagnostics = "/diagnostics";
 

@@ -31,6 +31,9 @@ ros1::LiveEvents::Handlers LiveSource::handlers() {
       listener_.onEvent(event);
     }
   };
+  handlers.on_content = [this](core::EventId id, const ros1::Content& content) {
+    listener_.onContent(id, content);
+  };
   handlers.time = [this](std::int64_t ros_time, std::int64_t steady_time) {
     return contest_.timeOf(ros_time, steady_time);
   };

@@ -49,6 +49,8 @@ class LiveSource {
    public:
     /// Was received, and not before ROS time was set last.
     virtual void onEvent(const core::Event& event) = 0;
+    /// The content of a message that was read for its event type, before the event.
+    virtual void onContent(core::EventId /*id*/, const ros1::Content& /*content*/) {}
     /// ROS time was set; events that come from now on were received after that.
     /// @param now ROS time [ns]
     virtual void onClockSet(std::int64_t now) = 0;

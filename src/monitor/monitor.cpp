@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <stdexcept>
 #include <utility>
 
@@ -27,12 +26,6 @@ constexpr int kTicksPerWindow = 4;
 // publishes; so long that may take, besides the time until the master is asked [s].
 constexpr double kToBeKnown = 4;
 
-ros1::HeardTally::Moment momentNow() {
-  timespec cpu{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
-  return {rosNow(), steadyNow(), cpu.tv_sec * core::kNanosecondsPerSecond + cpu.tv_nsec};
-}
-
 std::string runId() {
   std::string run_id;
   ros::param::get("/run_id", run_id);
@@ -45,8 +38,11 @@ Monitor::Monitor(ros::NodeHandle node_handle, const ros::NodeHandle& private_nod
                  const std::string& name)
     : private_node_handle_(private_node_handle),
       parameters_(MonitorParameters::load(private_node_handle)),
-      diagnostics_(node_handle, name, parameters_.hardware_id, parameters_.source_diagnostics),
+      diagnostics_(node_handle, name, parameters_.hardware_id, parameters_.source_diagnostics,
+                   parameters_.diagnostic_bytes),
       mutes_(calls_, [this] { onMutes(); }),
+      accepts_(calls_, {[this] { return standing(); },
+                        [this](const std::string& caller) { onAccepted(caller); }}),
       announcer_({[this](const self_awareness::SelfAwareness& status) {
                     status_publisher_.publish(status);
                   },
@@ -58,7 +54,8 @@ Monitor::Monitor(ros::NodeHandle node_handle, const ros::NodeHandle& private_nod
                   return FlightRecorder::Source{session_->encoding(), live_->graph()};
                 }),
       keeper_(folderOf(parameters_.recorder), runId()),
-      incidents_(folderOf(parameters_.recorder)) {
+      incidents_(folderOf(parameters_.recorder)),
+      restarts_(parameters_.detector.settle_time) {
   node_handle.setCallbackQueue(&queue_);
   private_node_handle_.setCallbackQueue(&queue_);
   status_publisher_ = private_node_handle_.advertise<self_awareness::SelfAwareness>("status", 100);
@@ -73,6 +70,7 @@ Monitor::Monitor(ros::NodeHandle node_handle, const ros::NodeHandle& private_nod
   for (ros::ServiceServer& service : mutes_.advertise(private_node_handle_)) {
     services_.push_back(std::move(service));
   }
+  services_.push_back(accepts_.advertise(private_node_handle_));
   std::vector<std::string> service_names;
   for (const ros::ServiceServer& service : services_) {
     service_names.push_back(service.getService());
@@ -99,6 +97,7 @@ void Monitor::finish() {
   recorder_.finish(announcer_.alarm().message().level == self_awareness::SelfAwareness::ERROR);
   keeper_.finish();
   incidents_.finish();
+  accepts_.finish();
 }
 
 void Monitor::load(const std::string& path) {
@@ -133,9 +132,12 @@ std::string Monitor::modelPath() const {
 void Monitor::startSession(std::unique_ptr<Session> session) {
   recorder_.restart();  // the events to come are those of another model
   session_ = std::move(session);
+  quotes_.clear();
   model_error_.clear();
   announcer_.forgetWindow();
   heard_.setTypes(session_->types());
+  accepts_.read(parameters_.model);
+  session_->detector().accept(accepts_.accepted());
   LiveSource::Wanted wanted;
   wanted.encoder = session_->encoder();
   wanted.model_topics = session_->topics();
@@ -151,11 +153,20 @@ void Monitor::startSession(std::unique_ptr<Session> session) {
 
 void Monitor::onEvent(const core::Event& event) {
   heard_.add(event);
+  if (session_->isFirstOfRestarted(event.id)) {
+    onFirstOfRestarted(event);
+  }
   if (!session_->detector().add(event)) {
     restart();
     session_->detector().add(event);
   }
   recorder_.add(event, session_->vocabulary());
+}
+
+void Monitor::onContent(core::EventId id, const ros1::Content& content) {
+  if (id >= session_->types().size()) {
+    quotes_.add(id, session_->vocabulary().at(id), content);
+  }
 }
 
 void Monitor::onClockSet(std::int64_t /*now*/) {
@@ -184,16 +195,13 @@ void Monitor::onDropped(const ros1::Publication& publication) {
   }
 }
 
-void Monitor::onGraph(const ros1::Graph& graph) {
-  session_->addEdges(graph, ros::this_node::getName());
-}
-
 void Monitor::onTick(std::int64_t now) {
   live_->deliver();
   if (session_) {
     session_->detector().advance(now - kGrace);
   }
   recorder_.advance(now - kGrace, steadyNow());
+  followRestarts(now);
   incidents_.advance(steadyNow());
   mutes_.advance(steadyNow());
 }
@@ -202,6 +210,7 @@ void Monitor::restart() {
   ROS_WARN("ROS time was set: delays and windows start afresh");
   session_->detector().restart();
   heard_.onClockStep();
+  restarts_.onClockSet();
   recorder_.restart();
   standDown(ros1::kClockWasSet);
 }
@@ -232,9 +241,11 @@ void Monitor::onVerdict(const core::Verdict& verdict) {
   }
   core::Verdict said = verdict;
   if (!said.suspects.empty()) {
-    not_heard_.set(live_->discovery().unheard());
+    not_heard_.set(live_->discovery().unheard(), *session_->encoder());
     not_heard_.explain(said.suspects, session_->vocabulary());
     not_heard_.explain(said.new_suspects, session_->vocabulary());
+    quotes_.explain(said.suspects);
+    quotes_.explain(said.new_suspects);
   }
   announcer_.add(said, session_->vocabulary(), session_->window(),
                  {verdict.busy ? loadInWords() : "", alarm_file_});
@@ -272,52 +283,23 @@ void Monitor::onMutes() {
   }
 }
 
-void Monitor::onReport() {
-  const Discovery::State discovered = live_->discovery().state();
-  ros1::HeardTally::Moment moment = momentNow();
-  moment.ros = live_->now();
-  MonitorState state;
-  state.communication.model = parameters_.model;
-  state.communication.model_error = model_error_;
-  if (session_) {
-    state.communication.calibrated = session_->calibrated();
-    state.communication.coverage = session_->coverage();
-    state.communication.unheard = session_->unheard();
+std::optional<AcceptCalls::Standing> Monitor::standing() const {
+  if (!session_ || parameters_.method != MonitorParameters::Method::kEvidence) {
+    return std::nullopt;
   }
-  state.communication.take(announcer_.alarm(), heard_.report(moment, live_->events().dropped()),
-                           moment.ros);
-  state.subscriptions = discovered.subscriptions;
-  state.connections = live_->events().connections();
-  state.left_out_topics = discovered.left_out;
-  state.full_of_unknown = session_ && session_->full();
-  state.ros_now = moment.ros;
-  state.clock_stands_still_for = live_->clock().standsStillFor();
-  state.longest_pause = core::toSeconds(std::exchange(longest_pause_, 0));
-  state.master_answers = discovered.master_answers;
-  state.unheard = live_->discovery().unheard();
-  state.strangers_closed = discovered.strangers_closed;
-  state.strangers_newly_closed =
-      discovered.strangers_closed - std::exchange(strangers_closed_, discovered.strangers_closed);
-  state.taken_back = calls_.onRecord();
-  state.mutes = mutes_.inWords();
-  state.communication.muted = mutes_.ofWhatStands();
-  state.clock_rivals = live_->clockRivals();
-  not_heard_.set(state.unheard);
-  state.communication.not_heard = not_heard_.components();
-  state.keeper_error = keeper_.error().empty() ? incidents_.error() : keeper_.error();
-  if (recorder_.enabled()) {
-    state.recorder = recorder_.report();
-  }
-  diagnostics_.publish(state);
+  return AcceptCalls::Standing{announcer_.alarm().standing(), incidents_.incidents(),
+                               session_->vocabulary(), live_->now()};
 }
 
-bool Monitor::mayServe(const std::string& service, Call& call) {
-  if (calls_.admit(service, call.getCallerName(), steadyNow())) {
-    return true;
+void Monitor::onAccepted(const std::string& caller) {
+  session_->detector().accept(accepts_.accepted());
+  const std::optional<core::Alarm>& stands = announcer_.alarm().standing();
+  if (stands && accepts_.covers(*stands, session_->vocabulary())) {
+    calls_.record("accept", caller, wallNow());
+    session_->detector().clearAlarm();
+    standDown("accepted, by " + caller);
   }
-  call.getResponse().success = 0U;
-  call.getResponse().message = OperatorCalls::refusal(service);
-  return false;
+  live_->report();
 }
 
 void Monitor::standDownFor(const Call& call, const std::string& service,
@@ -329,7 +311,7 @@ void Monitor::standDownFor(const Call& call, const std::string& service,
 }
 
 bool Monitor::onReset(Call& call) {
-  if (mayServe("reset", call)) {
+  if (calls_.mayServe("reset", call, steadyNow())) {
     call.getResponse().success = session_ != nullptr;
     call.getResponse().message =
         session_ ? "delays, windows and the alarm start afresh" : model_error_;
@@ -342,7 +324,7 @@ bool Monitor::onReset(Call& call) {
 }
 
 bool Monitor::onClear(Call& call) {
-  if (mayServe("clear", call)) {
+  if (calls_.mayServe("clear", call, steadyNow())) {
     const bool stood = announcer_.alarm().stands();
     call.getResponse().success = 1U;
     call.getResponse().message = stood ? "the alarm is cleared" : "there is no alarm";
@@ -372,7 +354,7 @@ bool Monitor::onDump(std_srvs::Trigger::Request& /*request*/,
 }
 
 bool Monitor::onReload(Call& call) {
-  if (!mayServe("reload", call)) {
+  if (!calls_.mayServe("reload", call, steadyNow())) {
     return true;
   }
   std_srvs::Trigger::Response& response = call.getResponse();

@@ -8,18 +8,22 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "accept_calls.h"
 #include "alarm_keeper.h"
 #include "diagnostics.h"
 #include "flight_recorder.h"
 #include "incident_keeper.h"
 #include "live_source.h"
+#include "log_quotes.h"
 #include "mute_calls.h"
 #include "not_heard.h"
 #include "operator_calls.h"
 #include "parameters.h"
+#include "restarts.h"
 #include "ros/verdict/announcer.h"
 #include "ros/verdict/heard_tally.h"
 #include "run_node.h"
@@ -40,7 +44,8 @@ namespace self_awareness {
 /// - `~detector` (string; default: evidence; evidence or paper): what judges the windows: overdue
 ///   events, rates, delays and answers, each with a limit of its own; or the score of the paper.
 /// - `~unknown` (string; default: warn; ignore, warn or error): what events are that training
-///   never saw: nothing, a suspicion, or an alarm at once.
+///   never saw: nothing, a suspicion that tells of each once and counts it from then on, or an
+///   alarm at once.
 /// - `~settle_time` (double, s; default: 5.0; 0 to 3600): time without alarms after the first
 ///   message since the start, `~reset` or `~reload`, and after ROS time was set. What is heard
 ///   later for the first time has as long before it is judged; everything else is judged on.
@@ -51,6 +56,9 @@ namespace self_awareness {
 ///   which an alarm or a suspicion ends.
 /// - `~silence` (string; default: abnormal; abnormal or ignored): with `~detector` paper, what a
 ///   window without events is.
+/// - `~optional` (list; default: []): nodes or topics that may be absent: names, or their begins
+///   and a `*`. That they are silent, or never come, is no evidence; what is unusual of them while
+///   they are there still is. With `~detector` evidence.
 /// - `~subscribe` (string; default: used; used, all or model): topics to listen to besides those
 ///   of the model: what a node of the robot listens to, what is published, or none. To listen may
 ///   wake publishers that work only while somebody listens.
@@ -79,6 +87,9 @@ namespace self_awareness {
 ///   oldest are forgotten. Files that the disk does not take keep as much each, three at most.
 /// - `~diagnostic_period` (double, s; default: 1.0; 0.1 to 3600): time between two
 ///   reports on /diagnostics (steady time); a change of the level is reported at once.
+/// - `~diagnostic_bytes` (int, bytes a second; default: 2000; 100 to 10000000): most on
+/// /diagnostics.
+///   What changes goes out at once; sources that do not take turns where all do not fit.
 ///
 /// **Subscribed topics**: those of the model and others by `~subscribe`, of any type.
 ///
@@ -91,7 +102,8 @@ namespace self_awareness {
 ///   source, one for the monitor itself.
 ///
 /// **Files**: those of the flight recorder; the alarm that stands (AlarmKeeper) and the last
-/// incidents (IncidentKeeper): a monitor that is started again goes on with them.
+/// incidents (IncidentKeeper): a monitor that is started again goes on with them. MODEL.accepted,
+/// beside the model: what is accepted.
 ///
 /// **Services**
 ///
@@ -110,6 +122,10 @@ namespace self_awareness {
 /// (MuteCalls).
 /// - `~mute` (self_awareness/Mute): a component, a topic or a kind is not told for a time.
 /// - `~maintenance` (self_awareness/Maintenance): nothing is told for a time.
+///
+/// What somebody accepts is normal from now on, and kept beside the model (AcceptCalls).
+/// - `~accept` (self_awareness/Accept): a new node or topic, or what stands against components, is
+///   no evidence any more, until the call is undone or the model is trained with it.
 ///
 /// **Threads**: one thread (LiveSource) serves messages, windows, services and diagnostics through
 /// a queue of its own. What may block on the network is done by the thread of Discovery, what
@@ -142,6 +158,7 @@ class Monitor : public NodeProgram, public LiveSource::Listener {
   void startSession(std::unique_ptr<Session> session);
 
   void onEvent(const core::Event& event) override;
+  void onContent(core::EventId id, const ros1::Content& content) override;
   void onClockSet(std::int64_t now) override;
   void onPause(std::int64_t now, std::int64_t pause) override;
   void onWaiting(const core::Waiting& waiting) override;
@@ -153,13 +170,13 @@ class Monitor : public NodeProgram, public LiveSource::Listener {
   /// Goes on with the incidents, and with an alarm that stood when the monitor ended.
   void resume();
   void onVerdict(const core::Verdict& verdict);
-  /// Whether a call is not one too many; else it is answered.
-  bool mayServe(const std::string& service, Call& call);
   bool onReset(Call& call);
   bool onClear(Call& call);
   bool onDump(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
   bool onReload(Call& call);
 
+  /// What the clocks say now.
+  static ros1::HeardTally::Moment momentNow();
   void restart();
   /// Says that what stood is over, although no window brought that about.
   void standDown(const std::string& message);
@@ -170,6 +187,15 @@ class Monitor : public NodeProgram, public LiveSource::Listener {
   void publishIncidents();
   /// There is a mute more or less.
   void onMutes();
+  /// What ~accept may refer to; none: there is no model, or it is the paper's detector that
+  /// judges.
+  std::optional<AcceptCalls::Standing> standing() const;
+  /// The first event of a type has come since its node was started again.
+  void onFirstOfRestarted(const core::Event& event);
+  /// Says who was started again, and is back.
+  void followRestarts(std::int64_t now);
+  /// Something more is accepted, or less.
+  void onAccepted(const std::string& caller);
 
   ros::CallbackQueue queue_;
   ros::NodeHandle private_node_handle_;
@@ -183,8 +209,10 @@ class Monitor : public NodeProgram, public LiveSource::Listener {
   std::string model_error_;
   std::unique_ptr<Session> session_;  // none: no model
   NotHeard not_heard_;
+  LogQuotes quotes_;
   OperatorCalls calls_;
   MuteCalls mutes_;
+  AcceptCalls accepts_;
   std::size_t strangers_closed_ = 0;  // that were reported
   std::int64_t longest_pause_ = 0;    // of this program, since the last report [ns of steady time]
   ros1::Announcer announcer_;
@@ -192,6 +220,7 @@ class Monitor : public NodeProgram, public LiveSource::Listener {
   FlightRecorder recorder_;
   AlarmKeeper keeper_;
   IncidentKeeper incidents_;
+  Restarts restarts_;
   std::string alarm_file_;            // of the alarm that was raised last
   std::unique_ptr<LiveSource> live_;  // last: its listener uses all of the above
 };

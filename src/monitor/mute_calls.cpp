@@ -3,7 +3,6 @@
 #include <ros/console.h>
 
 #include <cmath>
-#include <ctime>
 #include <stdexcept>
 #include <utility>
 
@@ -32,12 +31,8 @@ std::string what(const core::Mute& mute) {
 
 /// When it ends, by the clock on the wall.
 std::string until(const core::Mute& mute) {
-  const std::time_t seconds = (wallNow() + mute.until - steadyNow()) / core::kNanosecondsPerSecond;
-  std::tm utc{};
-  gmtime_r(&seconds, &utc);
-  char time[32];
-  std::strftime(time, sizeof time, "%Y-%m-%d %H:%M:%S UTC", &utc);
-  return std::string("until ") + time + (mute.until_over ? " or it is over" : "");
+  return "until " + ros1::utc(wallNow() + mute.until - steadyNow()) +
+         (mute.until_over ? " or it is over" : "");
 }
 
 std::string counts(const core::Mute& mute) {
@@ -129,32 +124,27 @@ std::vector<std::string> MuteCalls::inWords() const {
 }
 
 bool MuteCalls::onMute(Call& call) {
-  Mute::Response& response = call.getResponse();
-  response.success = 0U;
-  if (!calls_.admit("mute", call.getCallerName(), steadyNow())) {
-    response.message = OperatorCalls::refusal("mute");
+  if (!calls_.mayServe("mute", call, steadyNow())) {
     return true;
   }
+  Mute::Response& response = call.getResponse();
   try {
     core::Mute mute = muteOf(call.getRequest());
     mute.by = ros1::printable(call.getCallerName(), ros1::kLongestName);
     answer(mute, call.getRequest().duration, response);
   } catch (const std::invalid_argument& error) {
+    response.success = 0U;
     response.message = error.what();
   }
   return true;
 }
 
 bool MuteCalls::onMaintenance(MaintenanceCall& call) {
-  Maintenance::Response& response = call.getResponse();
-  response.success = 0U;
-  if (!calls_.admit("maintenance", call.getCallerName(), steadyNow())) {
-    response.message = OperatorCalls::refusal("maintenance");
-    return true;
+  if (calls_.mayServe("maintenance", call, steadyNow())) {
+    core::Mute all;
+    all.by = ros1::printable(call.getCallerName(), ros1::kLongestName);
+    answer(all, call.getRequest().duration, call.getResponse());
   }
-  core::Mute all;
-  all.by = ros1::printable(call.getCallerName(), ros1::kLongestName);
-  answer(all, call.getRequest().duration, response);
   return true;
 }
 

@@ -6,6 +6,7 @@
 
 #include "ros/text.h"
 #include "self_awareness/core/stream/event.h"
+#include "self_awareness/core/verdict/name_pattern.h"
 #include "self_awareness/ros/encoding.h"
 #include "self_awareness/ros/stable_name.h"
 
@@ -28,6 +29,15 @@ std::string inWords(const std::string& why) {
 }
 
 }  // namespace
+
+std::vector<ros1::Unheard> withoutOptional(std::vector<ros1::Unheard> unheard,
+                                           const std::vector<std::string>& optional) {
+  const auto may_be_absent = [&](const ros1::Unheard& each) {
+    return core::isOneOf(optional, ros1::stableName(each.node), each.topic);
+  };
+  unheard.erase(std::remove_if(unheard.begin(), unheard.end(), may_be_absent), unheard.end());
+  return unheard;
+}
 
 void tellUnheard(const std::vector<ros1::Unheard>& unheard,
                  diagnostic_updater::DiagnosticStatusWrapper& status) {
@@ -58,11 +68,11 @@ void tellStrangers(std::size_t closed, std::size_t newly,
   status.add("connections of strangers closed", closed);
 }
 
-void NotHeard::set(const std::vector<ros1::Unheard>& unheard) {
+void NotHeard::set(const std::vector<ros1::Unheard>& unheard, const ros1::Encoder& encoder) {
   why_.clear();
   for (const ros1::Unheard& each : unheard) {
     if (!each.dead && !each.node.empty()) {
-      why_[{ros1::stableName(each.node), each.topic}] = each.why;
+      why_[{encoder.sourceOf(each.node), encoder.scopeOf(each.topic)}] = each.why;
     }
   }
 }

@@ -10,9 +10,15 @@
 
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/core/verdict/detector.h"
+#include "self_awareness/ros/encoding.h"
 #include "self_awareness/ros/live/subscriptions.h"
 
 namespace self_awareness {
+
+/// Those that are not expected to be heard all the time are left out.
+/// @param optional patterns of nodes or topics that may be absent
+std::vector<ros1::Unheard> withoutOptional(std::vector<ros1::Unheard> unheard,
+                                           const std::vector<std::string>& optional);
 
 /// Adds to the status of a node who it does not hear, though the master names them: a warning.
 void tellUnheard(const std::vector<ros1::Unheard>& unheard,
@@ -31,7 +37,8 @@ void tellStrangers(std::size_t closed, std::size_t newly,
 class NotHeard {
  public:
   /// Takes over who is not heard now.
-  void set(const std::vector<ros1::Unheard>& unheard);
+  /// @param encoder gives them the names that events have
+  void set(const std::vector<ros1::Unheard>& unheard, const ros1::Encoder& encoder);
   /// Says so of suspects that do not come, or come late.
   void explain(std::vector<core::Suspect>& suspects, const core::Vocabulary& vocabulary) const;
   /// In words, by component (core::componentOf()).

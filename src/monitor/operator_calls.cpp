@@ -3,7 +3,6 @@
 #include <ros/console.h>
 
 #include <algorithm>
-#include <ctime>
 
 #include "ros/text.h"
 #include "self_awareness/core/stream/event.h"
@@ -44,12 +43,7 @@ std::string OperatorCalls::refusal(const std::string& service) {
 
 void OperatorCalls::record(const std::string& service, const std::string& caller,
                            std::int64_t at) {
-  const std::time_t seconds = at / core::kNanosecondsPerSecond;
-  std::tm utc{};
-  gmtime_r(&seconds, &utc);
-  char time[32];
-  std::strftime(time, sizeof time, "%Y-%m-%d %H:%M:%S UTC", &utc);
-  on_record_ = "~" + service + " by " + named(caller) + " at " + time;
+  on_record_ = "~" + service + " by " + named(caller) + " at " + ros1::utc(at);
 }
 
 }  // namespace self_awareness

@@ -20,8 +20,16 @@ class OperatorCalls {
   /// more than one in kPause of the others.
   /// @param caller full name of the node
   bool admit(const std::string& service, const std::string& caller, std::int64_t now);
-  /// Why it may not, as an answer.
-  static std::string refusal(const std::string& service);
+  /// The same of a call with an answer of `success` and `message`, which says why it may not.
+  template <typename Call>
+  bool mayServe(const std::string& service, Call& call, std::int64_t now) {
+    const bool may = admit(service, call.getCallerName(), now);
+    if (!may) {
+      call.getResponse().success = 0U;
+      call.getResponse().message = refusal(service);
+    }
+    return may;
+  }
 
   /// Who took back an alarm last, and when, in words; empty: nobody did.
   const std::string& onRecord() const { return on_record_; }
@@ -29,6 +37,8 @@ class OperatorCalls {
   void record(const std::string& service, const std::string& caller, std::int64_t at);
 
  private:
+  static std::string refusal(const std::string& service);
+
   struct Service {
     double calls = kAtOnce;  // that are answered now
     std::int64_t counted_at = 0;

@@ -58,6 +58,33 @@ bool ParameterReader::flag(const std::string& name, bool otherwise) {
   return flag;
 }
 
+std::vector<std::string> ParameterReader::names(const std::string& name) {
+  constexpr char kMustBe[] =
+      "a list of names of nodes or topics, each with its first / and, at its end only, a *";
+  known_.insert(name);
+  std::vector<std::string> names;
+  XmlRpcValue value;
+  if (node_handle_.getParam(name, value)) {
+    if (value.getType() != XmlRpcValue::TypeArray) {
+      fail(name, value, kMustBe);
+    }
+    for (int i = 0; i < value.size(); ++i) {
+      const bool is_text = value[i].getType() == XmlRpcValue::TypeString;
+      const std::string text = is_text ? static_cast<std::string>(value[i]) : "";
+      if (text.empty() || text[0] != '/' || text.find('*') < text.size() - 1) {
+        fail(name, value, kMustBe);
+      }
+      names.push_back(text);
+    }
+  }
+  std::string all;
+  for (const std::string& each : names) {
+    all += (all.empty() ? "" : ", ") + each;
+  }
+  log(name, "[" + all + "]");
+  return names;
+}
+
 double ParameterReader::number(const std::string& name, double otherwise, const Range& range,
                                const std::string& unit) {
   const std::string must_be = "a number of " + unit + " " + inWords(range);

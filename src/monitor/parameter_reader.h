@@ -34,6 +34,9 @@ class ParameterReader {
   }
   int wholeNumber(const std::string& name, int otherwise, const Range& range);
 
+  /// A list of names, each of a node or a topic, or the begin of one and a `*`; none by default.
+  std::vector<std::string> names(const std::string& name);
+
   template <typename T>
   T choice(const std::string& name, const std::string& otherwise,
            const std::vector<std::pair<std::string, T>>& choices) {

@@ -53,6 +53,7 @@ MonitorParameters MonitorParameters::load(const ros::NodeHandle& private_node_ha
   persistence.hold_time =
       nanoseconds(reader.seconds("hold_time", inSeconds(persistence.hold_time), {0, kHour}));
   detector.validate();
+  parameters.optional = reader.names("optional");
   parameters.live.poll_interval =
       reader.seconds("poll_interval", defaults.live.poll_interval, {0.01, kHour});
   parameters.live.queue_size = static_cast<std::uint32_t>(
@@ -70,6 +71,8 @@ MonitorParameters MonitorParameters::load(const ros::NodeHandle& private_node_ha
   recorder.memory = reader.wholeNumber("recorder/memory", recorder.memory, {1, 10000});
   parameters.live.diagnostic_period =
       reader.seconds("diagnostic_period", defaults.live.diagnostic_period, {0.1, kHour});
+  parameters.diagnostic_bytes = static_cast<std::size_t>(reader.wholeNumber(
+      "diagnostic_bytes", static_cast<int>(defaults.diagnostic_bytes), {100, 10000000}));
   reader.warnOfUnknown();
   return parameters;
 }

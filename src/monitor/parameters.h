@@ -2,7 +2,9 @@
 
 #include <ros/node_handle.h>
 
+#include <cstddef>
 #include <string>
+#include <vector>
 
 #include "flight_recorder.h"
 #include "live_source.h"
@@ -19,8 +21,10 @@ struct MonitorParameters {
   Method method = Method::kEvidence;    ///< ~detector
   core::Detector::Parameters detector;  ///< ~settle_time, ~alarm_windows, ~alarm_of,
                                         ///< ~hold_time, ~silence, ~unknown
+  std::vector<std::string> optional;    ///< ~optional: patterns of who may be absent
   LiveParameters live;
   bool source_diagnostics = true;               ///< ~source_diagnostics: one status per source
+  std::size_t diagnostic_bytes = 2000;          ///< ~diagnostic_bytes: a second, on /diagnostics
   std::string hardware_id = ros1::kNoHardware;  ///< ~hardware_id: of the diagnostics
   RecorderParameters recorder;                  ///< ~recorder/...
 

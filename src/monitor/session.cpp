@@ -4,7 +4,7 @@
 
 #include "self_awareness/core/evidence/judge.h"
 #include "self_awareness/core/paper/judge.h"
-#include "self_awareness/ros/stable_name.h"
+#include "self_awareness/core/verdict/name_pattern.h"
 
 namespace self_awareness {
 
@@ -15,6 +15,7 @@ Session::Session(ros1::TrainedModel trained, const MonitorParameters& parameters
                       ? trained_.paper_calibration.has_value()
                       : trained_.calibration.has_value()),
       unheard_(trained_.unheard()),
+      subscriptions_(trained_.expectedSubscriptions()),
       graph_(std::make_shared<core::SourceGraph>(trained_.graph)),
       vocabulary_(std::make_shared<core::Vocabulary>(trained_.vocabulary())),
       encoder_(std::make_shared<ros1::Encoder>(
@@ -22,6 +23,14 @@ Session::Session(ros1::TrainedModel trained, const MonitorParameters& parameters
       detector_(makeJudge(parameters), trained_.window, parameters.detector, std::move(handler)) {
   if (parameters.method == MonitorParameters::Method::kEvidence) {
     coverage_ = trained_.coverage();
+    expectRates();
+  }
+  detector_.setOptional(parameters.optional);
+  for (const core::EventType& type : types()) {
+    const std::string& component = core::componentOf(type.source, type.scope);
+    if (core::isOneOf(parameters.optional, component, type.scope)) {
+      optional_.insert(component);
+    }
   }
   // The judge has made of them what it needs.
   trained_.dropCounts();
@@ -39,8 +48,52 @@ std::unique_ptr<core::Judge> Session::makeJudge(const MonitorParameters& paramet
                                    trained_.limits(), trained_.window, graph_, vocabulary_);
 }
 
+void Session::expectRates() {
+  for (core::EventId id = 0; id < types().size(); ++id) {
+    double seconds = 0;
+    std::uint64_t gaps = 0;
+    for (const core::evidence::Statistics& half : trained_.watched.halves) {
+      if (id < half.size()) {
+        seconds += core::toSeconds(half.type(id).gap_sum);
+        gaps += half.type(id).gaps;
+      }
+    }
+    const core::EventType& type = types()[id];
+    if (seconds > 0) {
+      expected_[core::componentOf(type.source, type.scope)][type.scope] +=
+          static_cast<double>(gaps) / seconds;
+    }
+  }
+}
+
 core::EventId Session::intern(const core::EventType& type) {
   return ros1::internUpTo(trained_.vocabulary().size() + kMostUnknownTypes, type, *vocabulary_);
+}
+
+void Session::onRestarted(const std::string& node) {
+  const std::string source = encoder_->sourceOf(node);
+  restarted_.resize(types().size(), false);
+  for (core::EventId id = 0; id < types().size(); ++id) {
+    restarted_[id] = restarted_[id] || types()[id].source == source;
+  }
+}
+
+bool Session::isFirstOfRestarted(core::EventId id) {
+  const bool first = id < restarted_.size() && restarted_[id];
+  if (first) {
+    restarted_[id] = false;
+  }
+  return first;
+}
+
+std::vector<std::string> Session::strangers() const {
+  std::vector<std::string> words;
+  for (const auto& [id, events] : detector_.unknown()) {
+    const core::EventType& type = vocabulary_->at(id);
+    words.push_back((type.source.empty() ? "" : type.source + " on ") + type.scope + ": " +
+                    std::to_string(events));
+  }
+  return words;
 }
 
 std::set<std::string> Session::topics() const {
@@ -53,10 +106,11 @@ std::set<std::string> Session::topics() const {
 
 std::vector<core::EventId> Session::typesOf(const ros1::Publication& publication) const {
   const std::string source =
-      encoder_->tellsSources() ? ros1::stableName(publication.node) : std::string();
+      encoder_->tellsSources() ? encoder_->sourceOf(publication.node) : std::string();
+  const std::string scope = encoder_->scopeOf(publication.topic);
   std::vector<core::EventId> ids;
   for (core::EventId id = 0; id < types().size(); ++id) {
-    if (types()[id].source == source && types()[id].scope == publication.topic) {
+    if (types()[id].source == source && types()[id].scope == scope) {
       ids.push_back(id);
     }
   }
@@ -68,11 +122,12 @@ ros1::OwnOutput Session::ownOutput(const std::string& node) const {
   for (const core::EventType& type : types()) {
     known.insert({type.source, type.scope});
   }
-  return {node, std::move(known)};
+  return {node, std::move(known), encoder_};
 }
 
 void Session::addEdges(const ros1::Graph& graph, const std::string& node) {
-  ros1::addEdges(graph, node, *graph_);
+  ros1::addEdges(graph, node, *encoder_, *graph_);
+  detector_.setMissing(ros1::missingIn(graph, *encoder_, subscriptions_));
 }
 
 }  // namespace self_awareness

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <set>
 #include <string>
@@ -39,6 +40,13 @@ class Session {
   bool calibrated() const { return calibrated_; }
   /// How soon faults of the model's components are found; empty: not known of this detector.
   const std::vector<core::evidence::Coverage>& coverage() const { return coverage_; }
+  /// How often messages came in training [Hz], by component and topic; empty: not known of this
+  /// detector.
+  const std::map<std::string, std::map<std::string, double>>& expected() const {
+    return expected_;
+  }
+  /// Components that may be absent, or some topics of which may.
+  const std::set<std::string>& optional() const { return optional_; }
   /// What was published in training, and nobody subscribed to, by source and topic.
   const std::set<core::SourceGraph::Publication>& unheard() const { return unheard_; }
   /// Event types of the model, by their ids.
@@ -57,26 +65,41 @@ class Session {
   /// Event types of the model that this publisher sends.
   std::vector<core::EventId> typesOf(const ros1::Publication& publication) const;
 
+  /// Who sends what training never saw, where, and how often since the start, in words; without
+  /// what is accepted.
+  std::vector<std::string> strangers() const;
+
+  /// Takes note that a node, by its full name, was started again.
+  void onRestarted(const std::string& node);
+  /// Whether an event is the first of its type since its node was started again.
+  bool isFirstOfRestarted(core::EventId id);
+
   /// The topics of the model's events.
   std::set<std::string> topics() const;
   /// What the process `node` (full name) publishes and the model does not know.
   ros1::OwnOutput ownOutput(const std::string& node) const;
   /// Takes in who listens to whom now. Who was killed, or has gone since, is still upstream of its
-  /// victims: edges are added only.
+  /// victims: edges are added only. The detector learns who does not subscribe as in training.
   /// @param node full name of the monitor's process, which is left out
   void addEdges(const ros1::Graph& graph, const std::string& node);
 
  private:
+  /// Finds out how often messages came in training.
+  void expectRates();
   core::EventId intern(const core::EventType& type);
   std::unique_ptr<core::Judge> makeJudge(const MonitorParameters& parameters) const;
 
   ros1::TrainedModel trained_;
   bool calibrated_;
   std::vector<core::evidence::Coverage> coverage_;
+  std::map<std::string, std::map<std::string, double>> expected_;
+  std::set<std::string> optional_;
   std::set<core::SourceGraph::Publication> unheard_;
+  std::set<core::SourceGraph::Subscription> subscriptions_;  // that are expected
   std::shared_ptr<core::SourceGraph> graph_;  // of training, and what addEdges() added
   std::shared_ptr<core::Vocabulary> vocabulary_;
   std::shared_ptr<const ros1::Encoder> encoder_;
+  std::vector<bool> restarted_;  // by id of the model: its node was, and it has not come since
   core::Detector detector_;
 };
 

@@ -44,6 +44,8 @@ void bindAlarms(py::module& m) {
       .def_readonly("hosts", &core::Silent::hosts,
                     "their computers; empty: nobody was heard any more")
       .def_readonly("components", &core::Silent::components)
+      .def_readonly("others_go_on", &core::Silent::others_go_on,
+                    "others are heard: they stopped for another reason than a computer")
       .def_readonly("since", &core::Silent::since, "stamp of the last event of them [ns]")
       .def("__str__", [](const core::Silent& self) { return core::describe(self); });
 
@@ -59,7 +61,7 @@ void bindAlarms(py::module& m) {
       .def_readonly("over", &Alarm::over, "False: it stood until the end of the recording")
       .def_property_readonly(
           "kind", [](const Alarm& self) { return core::toString(self.kind); },
-          "of the culprit's reason, or: busy machine, all silent")
+          "of the culprit's reason, or: busy machine, all silent, new mode")
       .def_readonly("culprit", &Alarm::culprit,
                     "component; empty: there is none, or nobody stands out")
       .def_readonly("reason", &Alarm::reason,

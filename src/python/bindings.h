@@ -21,6 +21,7 @@
 #include "self_awareness/core/stream/clock.h"
 #include "self_awareness/core/stream/clock_steps.h"
 #include "self_awareness/core/stream/event.h"
+#include "self_awareness/core/verdict/acceptance.h"
 #include "self_awareness/core/verdict/detector.h"
 #include "self_awareness/core/verdict/source_graph.h"
 #include "self_awareness/ros/bag/bag_reader.h"
@@ -72,26 +73,42 @@ inline std::int64_t now() {
   return static_cast<std::int64_t>(std::time(nullptr)) * core::kNanosecondsPerSecond;
 }
 
-/// Calls the handler with every event of two arrays: stamps [ns] and ids.
-/// @throw std::invalid_argument if the arrays are not of one dimension and the same length
+/// Attributes of messages (core::packed()), one for each event; none: nothing is known of them.
+using MessageAttributes = std::optional<Ids>;
+
+/// Calls the handler with every event of arrays: stamps [ns], ids and attributes.
+/// @throw std::invalid_argument if the arrays are not of one dimension and the same length, or a
+/// number is no attributes
 template <typename Handler>
-void forEachEvent(const Stamps& stamps, const Ids& ids, Handler handler) {
-  if (stamps.ndim() != 1 || ids.ndim() != 1 || stamps.size() != ids.size()) {
-    throw std::invalid_argument("stamps and ids must be two arrays of one dimension and length");
+void forEachEvent(const Stamps& stamps, const Ids& ids, const MessageAttributes& attributes,
+                  Handler handler) {
+  if (stamps.ndim() != 1 || ids.ndim() != 1 || stamps.size() != ids.size() ||
+      (attributes && (attributes->ndim() != 1 || attributes->size() != ids.size()))) {
+    throw std::invalid_argument(
+        "stamps, ids and attributes must be arrays of one dimension and length");
   }
   const auto stamp = stamps.unchecked<1>();
   const auto id = ids.unchecked<1>();
+  const std::uint32_t* const packed = attributes ? attributes->data() : nullptr;
   for (py::ssize_t i = 0; i < stamps.size(); ++i) {
-    handler(core::Event{stamp(i), id(i)});
+    handler(
+        core::Event{stamp(i), id(i),
+                    packed != nullptr ? core::unpackedAttributes(packed[i]) : core::Attributes{}});
   }
+}
+
+/// The same where attributes do not matter.
+template <typename Handler>
+void forEachEvent(const Stamps& stamps, const Ids& ids, Handler handler) {
+  forEachEvent(stamps, ids, MessageAttributes(), handler);
 }
 
 /// The same, and calls onStep() before each event with which the clock was set forward.
 template <typename Handler, typename OnStep>
-void forEachEvent(const Stamps& stamps, const Ids& ids, const core::ClockSteps& steps,
-                  Handler handler, OnStep onStep) {
+void forEachEvent(const Stamps& stamps, const Ids& ids, const MessageAttributes& attributes,
+                  const core::ClockSteps& steps, Handler handler, OnStep onStep) {
   std::optional<std::int64_t> last;
-  forEachEvent(stamps, ids, [&](const core::Event& event) {
+  forEachEvent(stamps, ids, attributes, [&](const core::Event& event) {
     if (last && steps.between(*last, event.stamp)) {
       onStep();
     }
@@ -112,21 +129,32 @@ inline ros1::BagReader::Progress progressTo(const py::object& callback) {
   };
 }
 
+/// Which subscriptions are missing from a time [ns] on.
+using MissingStates =
+    std::vector<std::pair<std::int64_t, std::set<core::SourceGraph::Subscription>>>;
+
 /// Lets a detector judge a recording.
 /// @param steps with which the clock was set forward
 /// @param end the recording goes on in silence until then [ns]; none: it ends with the last event
 /// @param waiting how the machine was, in the order of time
+/// @param missing subscriptions, from a time [ns] on each, in the order of time
 /// @param heard called after each event; whether it belongs to the same clock as those before
 inline void judgeRecording(core::Detector& detector, const Stamps& stamps, const Ids& ids,
-                           const core::ClockSteps& steps, std::optional<std::int64_t> end,
+                           const MessageAttributes& attributes, const core::ClockSteps& steps,
+                           std::optional<std::int64_t> end,
                            const std::vector<core::Waiting>& waiting = {},
+                           const MissingStates& missing = {},
                            const std::function<void(const core::Event&, bool)>& heard = nullptr) {
   std::optional<std::int64_t> last;
   bool set_forward = false;
   auto next = waiting.begin();
+  auto next_missing = missing.begin();
   const auto wait = [&](std::int64_t until) {
     for (; next != waiting.end() && next->to <= until; ++next) {
       detector.hear(*next);
+    }
+    for (; next_missing != missing.end() && next_missing->first <= until; ++next_missing) {
+      detector.setMissing(next_missing->second);
     }
   };
   const auto add = [&](const core::Event& event) {
@@ -138,7 +166,7 @@ inline void judgeRecording(core::Detector& detector, const Stamps& stamps, const
       heard(event, same_clock);
     }
   };
-  forEachEvent(stamps, ids, steps, add, [&] {
+  forEachEvent(stamps, ids, attributes, steps, add, [&] {
     detector.restart();
     set_forward = true;
   });
@@ -179,6 +207,10 @@ void bindCounts(py::module& module);
 /// Binds alarms and their suspects (alarm_bindings.cpp).
 void bindAlarms(py::module& module);
 void bindIncidents(py::module& module);
+/// Binds what is accepted as normal, and its file (accepted_bindings.cpp).
+void bindAccepted(py::module& module);
+/// @throw std::invalid_argument if there are too many
+core::Acceptances acceptancesOf(const std::vector<core::Acceptance>& list);
 /// Binds the learning of limits, and of whole models (calibration_bindings.cpp).
 void bindCalibration(py::module& module);
 /// Binds evidence and its limits (evidence_bindings.cpp).

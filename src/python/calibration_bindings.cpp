@@ -16,9 +16,9 @@ namespace evidence = core::evidence;
 
 using Findings = evidence::LimitFinder::Findings;
 using PartState = std::tuple<std::uint64_t, std::vector<float>, std::vector<std::int64_t>>;
-using RecordingState =
-    std::tuple<std::int64_t, std::int64_t, std::int64_t, bool, std::uint64_t,
-               std::vector<PartState>, std::vector<std::uint8_t>, std::vector<std::int64_t>>;
+using RecordingState = std::tuple<std::int64_t, std::int64_t, std::int64_t, bool, std::uint64_t,
+                                  std::vector<PartState>, std::vector<std::uint8_t>,
+                                  std::vector<std::int64_t>, std::string>;
 using FindingsState = std::vector<RecordingState>;
 
 FindingsState stateOf(const Findings& findings) {
@@ -33,14 +33,15 @@ FindingsState stateOf(const Findings& findings) {
       said.push_back(static_cast<std::uint8_t>(each));
     }
     state.emplace_back(recording.start, recording.end, recording.robot_start, recording.trained_on,
-                       recording.windows, parts, said, recording.firsts);
+                       recording.windows, parts, said, recording.firsts, recording.robot);
   }
   return state;
 }
 
 Findings fromState(const FindingsState& state) {
   Findings findings;
-  for (const auto& [start, end, robot_start, trained_on, windows, parts, said, firsts] : state) {
+  for (const auto& [start, end, robot_start, trained_on, windows, parts, said, firsts, robot] :
+       state) {
     evidence::LimitFinder::Recording& recording = findings.emplace_back();
     recording.start = start;
     recording.end = end;
@@ -48,6 +49,7 @@ Findings fromState(const FindingsState& state) {
     recording.trained_on = trained_on;
     recording.windows = windows;
     recording.firsts = firsts;
+    recording.robot = robot;
     for (const auto& [part_windows, evidence, gaps] : parts) {
       recording.parts.push_back({part_windows, evidence, gaps});
     }
@@ -59,12 +61,15 @@ Findings fromState(const FindingsState& state) {
 }
 
 core::Recording recordingOf(const Stamps& stamps, const Ids& ids, std::int64_t robot_start,
-                            std::vector<std::int64_t> clock_steps) {
+                            std::vector<std::int64_t> clock_steps, std::string robot,
+                            const MessageAttributes& attributes) {
   core::Recording recording;
   recording.events.reserve(static_cast<std::size_t>(stamps.size()));
-  forEachEvent(stamps, ids, [&](const core::Event& event) { recording.events.push_back(event); });
+  forEachEvent(stamps, ids, attributes,
+               [&](const core::Event& event) { recording.events.push_back(event); });
   recording.robot_start = robot_start;
   recording.clock_steps = core::ClockSteps(std::move(clock_steps));
+  recording.robot = std::move(robot);
   return recording;
 }
 
@@ -76,6 +81,8 @@ void bindCalibration(py::module& m) {
       .def(py::init<>(), "Of no recording.")
       .def(py::pickle([](const Findings& self) { return stateOf(self); },
                       [](const FindingsState& state) { return fromState(state); }));
+
+  m.attr("HOURS_OF_ROBOTS") = evidence::LimitFinder::kHoursOfRobots;
 
   using core::Calibrator;
   py::class_<Calibrator>(m, "Calibrator",
@@ -89,30 +96,35 @@ void bindCalibration(py::module& m) {
       .def(
           "add_trained_on",
           [](Calibrator& self, const Stamps& stamps, const Ids& ids, std::uint64_t fingerprint,
-             std::int64_t robot_start, std::vector<std::int64_t> clock_steps) {
-            core::Recording recording =
-                recordingOf(stamps, ids, robot_start, std::move(clock_steps));
+             std::int64_t robot_start, std::vector<std::int64_t> clock_steps, std::string robot,
+             const MessageAttributes& attributes) {
+            core::Recording recording = recordingOf(
+                stamps, ids, robot_start, std::move(clock_steps), std::move(robot), attributes);
             recording.fingerprint = fingerprint;
             const py::gil_scoped_release release;
             self.addTrainedOn(recording);
           },
           py::arg("stamps"), py::arg("ids"), py::arg("fingerprint"), py::arg("robot_start") = 0,
-          py::arg("clock_steps") = std::vector<std::int64_t>(),
+          py::arg("clock_steps") = std::vector<std::int64_t>(), py::arg("robot") = "",
+          py::arg("attributes") = py::none(),
           "Takes in a recording of the training: it is judged by what the other half says.\n"
           "fingerprint: that the training knows it by; robot_start: of the robot [ns], 0: not\n"
-          "known; clock_steps: with which the clock was set forward (find_clock_steps).")
+          "known; clock_steps: with which the clock was set forward (find_clock_steps); robot:\n"
+          "its name, empty: not known; attributes: of the messages\n"
+          "(RecordedEvents.attributes), None: not known.")
       .def(
           "add_held_out",
           [](Calibrator& self, const Stamps& stamps, const Ids& ids, std::int64_t robot_start,
-             std::vector<std::int64_t> clock_steps) {
-            const core::Recording recording =
-                recordingOf(stamps, ids, robot_start, std::move(clock_steps));
+             std::vector<std::int64_t> clock_steps, std::string robot,
+             const MessageAttributes& attributes) {
+            const core::Recording recording = recordingOf(
+                stamps, ids, robot_start, std::move(clock_steps), std::move(robot), attributes);
             const py::gil_scoped_release release;
             self.addHeldOut(recording);
           },
           py::arg("stamps"), py::arg("ids"), py::arg("robot_start") = 0,
-          py::arg("clock_steps") = std::vector<std::int64_t>(),
-          "Takes in a recording that was not trained on.")
+          py::arg("clock_steps") = std::vector<std::int64_t>(), py::arg("robot") = "",
+          py::arg("attributes") = py::none(), "Takes in a recording that was not trained on.")
       .def("part", &Calibrator::part, "A calibrator without findings, for the same model.")
       .def("findings", &Calibrator::findings, "LimitFindings of what was added.")
       .def("merge", &Calibrator::merge, py::arg("findings"))
@@ -142,9 +154,10 @@ void bindCalibration(py::module& m) {
           "add",
           [](Learner& self, const std::vector<core::EventType>& types, const Stamps& stamps,
              const Ids& ids, std::uint64_t fingerprint, std::int64_t robot_start,
-             std::vector<std::int64_t> clock_steps) {
-            core::Recording recording =
-                recordingOf(stamps, ids, robot_start, std::move(clock_steps));
+             std::vector<std::int64_t> clock_steps, std::string robot,
+             const MessageAttributes& attributes) {
+            core::Recording recording = recordingOf(
+                stamps, ids, robot_start, std::move(clock_steps), std::move(robot), attributes);
             recording.fingerprint = fingerprint;
             for (core::Event& event : recording.events) {
               event.id = self.intern(types.at(event.id));
@@ -153,6 +166,7 @@ void bindCalibration(py::module& m) {
           },
           py::arg("event_types"), py::arg("stamps"), py::arg("ids"), py::arg("fingerprint"),
           py::arg("robot_start") = 0, py::arg("clock_steps") = std::vector<std::int64_t>(),
+          py::arg("robot") = "", py::arg("attributes") = py::none(),
           "Learns from a recording given as arrays; ids are indices of event_types.")
       .def(
           "learn",

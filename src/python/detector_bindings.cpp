@@ -56,7 +56,8 @@ Verdicts judge(std::unique_ptr<core::Judge> judge, std::int64_t window,
                const core::Detector::Parameters& parameters, const Stamps& stamps, const Ids& ids,
                std::optional<std::int64_t> end, const core::Vocabulary& vocabulary,
                ros1::ReplayedMonitor* monitor, std::vector<std::int64_t> clock_steps,
-               const std::vector<core::Waiting>& waiting) {
+               const std::vector<core::Waiting>& waiting, const MissingStates& missing = {},
+               const MessageAttributes& attributes = {}) {
   Verdicts verdicts;
   core::Alarms alarms;
   std::int64_t last_end = 0;  // of a window [ns]
@@ -70,8 +71,8 @@ Verdicts judge(std::unique_ptr<core::Judge> judge, std::int64_t window,
       monitor->onVerdict(verdict);
     }
   });
-  judgeRecording(detector, stamps, ids, core::ClockSteps(std::move(clock_steps)), end, waiting,
-                 [&](const core::Event& event, bool same_clock) {
+  judgeRecording(detector, stamps, ids, attributes, core::ClockSteps(std::move(clock_steps)), end,
+                 waiting, missing, [&](const core::Event& event, bool same_clock) {
                    if (const auto ended = same_clock ? std::nullopt : alarms.end(last_end)) {
                      record(*ended, verdicts);
                    }
@@ -102,16 +103,19 @@ Verdicts judgeByEvidence(const ros1::TrainedModel& trained,
                          const Ids& ids, std::optional<std::int64_t> end,
                          const std::vector<core::EventType>& event_types,
                          ros1::ReplayedMonitor* monitor, std::vector<std::int64_t> clock_steps,
-                         const std::vector<core::Waiting>& waiting, const HostsState& hosts) {
+                         const std::vector<core::Waiting>& waiting, const HostsState& hosts,
+                         const std::vector<core::Acceptance>& accepted,
+                         const MissingStates& missing, const MessageAttributes& attributes) {
   const auto vocabulary = std::make_shared<core::Vocabulary>(event_types);
   const auto graph = std::make_shared<core::SourceGraph>(trained.graph);
   for (const auto& [source, host] : hosts) {
     graph->place(source, host);
   }
-  return judge(
-      core::evidence::makeJudge(model, trained.limits(), trained.window, graph, vocabulary),
-      trained.window, parameters, stamps, ids, end, *vocabulary, monitor, std::move(clock_steps),
-      waiting);
+  std::unique_ptr<core::Judge> judge_of_it =
+      core::evidence::makeJudge(model, trained.limits(), trained.window, graph, vocabulary);
+  judge_of_it->accept(acceptancesOf(accepted));
+  return judge(std::move(judge_of_it), trained.window, parameters, stamps, ids, end, *vocabulary,
+               monitor, std::move(clock_steps), waiting, missing, attributes);
 }
 
 std::vector<double> scoreEvents(const std::shared_ptr<core::paper::Model>& model,
@@ -228,10 +232,14 @@ void bindVerdicts(py::module& m) {
       py::arg("event_types") = std::vector<core::EventType>(), py::arg("monitor") = nullptr,
       py::arg("clock_steps") = std::vector<std::int64_t>(),
       py::arg("waiting") = std::vector<core::Waiting>(), py::arg("hosts") = HostsState(),
+      py::arg("accepted") = std::vector<core::Acceptance>(), py::arg("missing") = MissingStates(),
+      py::arg("attributes") = py::none(),
       "Verdicts on a recording by the EvidenceModel of a TrainedModel, like Model.judge.\n"
       "event_types: by id, those of the model first. waiting: how the machine was, in the order\n"
       "of time (RecordedEvents.waiting). hosts: computers of sources, where the recording knows\n"
-      "better than the model.");
+      "better than the model. accepted: what is normal besides. missing: which\n"
+      "subscriptions are, from a time on each (missing_subscriptions). attributes: of the\n"
+      "messages (RecordedEvents.attributes); None: not known.");
   m.attr("EVIDENCE_THRESHOLD") = core::evidence::kThreshold;
   m.attr("DEFAULT_WINDOW") = core::kDefaultWindow;    // [ns]
   m.attr("SHORTEST_WINDOW") = core::kShortestWindow;  // [ns]

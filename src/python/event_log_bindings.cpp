@@ -9,6 +9,8 @@
 #include "self_awareness/ros/bag/bag_reader.h"
 #include "self_awareness/ros/bag/bag_to_event_log.h"
 #include "self_awareness/ros/bag/event_log_writer.h"
+#include "self_awareness/ros/graph.h"
+#include "self_awareness/ros/siblings.h"
 
 namespace self_awareness::python {
 namespace {
@@ -41,6 +43,12 @@ void bindEventLogs(py::module& m) {
       py::arg("encoding"), py::arg("publishers"), py::arg("subscribers"),
       "What nodes publish, and the encoding includes, and no node of the robot subscribes to:\n"
       "(source, topic). ValueError for a pattern that is no regular expression.");
+  m.def(
+      "host_in", &ros1::hostIn, py::arg("uri"),
+      "The name or the address in the URI of a node's XML-RPC server, printable; empty: there is "
+      "none.");
+  m.def("is_own_type", &ros1::isOwnType, py::arg("datatype"),
+        "Whether messages of this type come from a node of this package.");
   py::class_<ros1::EventLogWriter>(m, "EventLogWriter", "Writes an event log.")
       .def(py::init<const std::string&, const std::string&>(), py::arg("path"),
            py::arg("named") = "",

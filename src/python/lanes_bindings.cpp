@@ -46,7 +46,7 @@ Lanes lanesOf(const ros1::TrainedModel& trained, const std::shared_ptr<evidence:
               const core::Detector::Parameters& parameters, const Stamps& stamps, const Ids& ids,
               std::optional<std::int64_t> end, const std::vector<core::EventType>& event_types,
               std::vector<std::int64_t> starts, std::vector<std::int64_t> clock_steps,
-              const std::vector<core::Waiting>& waiting) {
+              const std::vector<core::Waiting>& waiting, const MessageAttributes& attributes) {
   evidence::Lanes lanes(model, std::move(starts));
   core::Detector detector(
       evidence::makeJudge(model, trained.limits(), trained.window,
@@ -56,7 +56,8 @@ Lanes lanesOf(const ros1::TrainedModel& trained, const std::shared_ptr<evidence:
                             lanes.add(window, shares);
                           }),
       trained.window, parameters, [](const core::Verdict&) {});
-  judgeRecording(detector, stamps, ids, core::ClockSteps(std::move(clock_steps)), end, waiting);
+  judgeRecording(detector, stamps, ids, attributes, core::ClockSteps(std::move(clock_steps)), end,
+                 waiting);
   return {model->components(), lanes.columns()};
 }
 
@@ -89,7 +90,7 @@ void bindLanes(py::module& m) {
   m.def("evidence_lanes", &lanesOf, py::arg("trained"), py::arg("model"), py::arg("parameters"),
         py::arg("stamps"), py::arg("ids"), py::arg("end"), py::arg("event_types"),
         py::arg("starts"), py::arg("clock_steps") = std::vector<std::int64_t>(),
-        py::arg("waiting") = std::vector<core::Waiting>(),
+        py::arg("waiting") = std::vector<core::Waiting>(), py::arg("attributes") = py::none(),
         "EvidenceLanes of a recording, judged as by judge_by_evidence. starts: of the stretches\n"
         "[ns], in order; ValueError if they are not.");
 }

@@ -34,6 +34,22 @@ std::vector<std::pair<std::int64_t, std::uint64_t>> sumOfDelays(const ros1::Trai
   return delays;
 }
 
+std::map<std::string, std::set<std::string>> robotsOf(const ros1::TrainedModel& model) {
+  std::map<std::string, std::set<std::string>> robots;
+  for (const core::evidence::Statistics& half : model.watched.halves) {
+    for (const core::evidence::Statistics::Recording& recording : half.recordings()) {
+      std::set<std::string>& components = robots[recording.robot];
+      for (core::EventId id = 0; id < recording.events.size(); ++id) {
+        if (recording.events[id] > 0) {
+          const core::EventType& type = half.vocabulary().at(id);
+          components.insert(core::componentOf(type.source, type.scope));
+        }
+      }
+    }
+  }
+  return robots.size() > 1 ? robots : std::map<std::string, std::set<std::string>>();
+}
+
 /// Gaps that an event type needs to be judged; the evidence detector's number can be set.
 std::uint64_t fewestGaps(const ros1::TrainedModel& model) {
   return model.detectors() == "paper"
@@ -53,6 +69,7 @@ void bindModel(py::module& m) {
       .def_readwrite("start", &RecordingInfo::start, "[ns]")
       .def_readwrite("end", &RecordingInfo::end, "[ns]")
       .def_readwrite("robot_start", &RecordingInfo::robot_start, "[ns]; 0: not known")
+      .def_readwrite("robot", &RecordingInfo::robot, "its name; empty: not known")
       .def_readwrite("events", &RecordingInfo::events)
       .def_readwrite("fingerprint", &RecordingInfo::fingerprint, "of the whole recording");
 
@@ -190,6 +207,9 @@ void bindModel(py::module& m) {
             for (const core::SourceGraph::Publication& publication : before.unheard()) {
               self.graph.addUnheard(publication);
             }
+            for (const auto& [subscription, recordings] : before.lasting()) {
+              self.graph.addLasting(subscription, recordings);
+            }
           },
           "whose messages reach whom: set of (publisher, topic, subscriber), nodes by their\n"
           "stable names; empty: not known")
@@ -211,6 +231,23 @@ void bindModel(py::module& m) {
           },
           "what sources published in training, and nobody subscribed to: set of (source, topic).\n"
           "To set it adds to what is known; what the model has events of is left out.")
+      .def(
+          "add_subscriptions",
+          [](TrainedModel& self, const std::set<core::SourceGraph::Subscription>& lasting) {
+            for (const core::SourceGraph::Subscription& subscription : lasting) {
+              self.graph.addLasting(subscription);
+            }
+          },
+          py::arg("lasting"),
+          "Adds what nodes subscribed to all the time in one further recording: (node, topic).")
+      .def_property_readonly(
+          "subscriptions", &TrainedModel::expectedSubscriptions,
+          "what components subscribed to in every start of the training: set of (node, topic);\n"
+          "empty: it is not known of all recordings, or there was one start")
+      .def_property_readonly(
+          "robots", &robotsOf,
+          "components that came on each robot in training, by its name: a dict of sets; empty\n"
+          "unless several are known")
       .def_property_readonly("threshold", &TrainedModel::threshold, "None: not calibrated")
       .def_property_readonly(
           "bin_size", [](const TrainedModel& self) { return self.statistics.binning().bin_size; },

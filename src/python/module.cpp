@@ -18,6 +18,7 @@ PYBIND11_MODULE(_core, m) {
   self_awareness::python::bindResults(m);
   self_awareness::python::bindAlarms(m);
   self_awareness::python::bindIncidents(m);
+  self_awareness::python::bindAccepted(m);
   self_awareness::python::bindDetector(m);
   self_awareness::python::bindLanes(m);
 }

@@ -1,6 +1,7 @@
 #include <pybind11/stl.h>
 #include <sys/stat.h>
 
+#include <cmath>
 #include <map>
 #include <memory>
 #include <optional>
@@ -32,6 +33,7 @@ struct RecordedEvents {
   std::vector<core::EventType> event_types;  // the known ones first, then the new ones
   std::vector<std::int64_t> stamps;          // [ns]
   std::vector<std::uint32_t> ids;
+  std::vector<std::uint32_t> attributes;  // core::packed(); 0: not known
   std::vector<core::Waiting> waiting;
 };
 
@@ -41,6 +43,32 @@ py::array_t<T> viewOf(const std::vector<T>& values, const py::object& owner) {
   py::array_t<T> view(static_cast<py::ssize_t>(values.size()), values.data(), owner);
   view.attr("setflags")(py::arg("write") = false);
   return view;
+}
+
+py::array_t<std::uint32_t> packAttributes(const py::array_t<double>& ages,
+                                          const py::array_t<std::uint64_t>& sizes,
+                                          const py::array_t<std::int64_t>& steps,
+                                          const py::array_t<bool>& same) {
+  const auto age = ages.unchecked<1>();
+  const auto size = sizes.unchecked<1>();
+  const auto step = steps.unchecked<1>();
+  const auto is_same = same.unchecked<1>();
+  if (size.size() != age.size() || step.size() != age.size() || is_same.size() != age.size()) {
+    throw std::invalid_argument("attributes must be arrays of one length");
+  }
+  std::vector<std::uint32_t> packed;
+  for (py::ssize_t i = 0; i < age.size(); ++i) {
+    core::Attributes attributes;
+    attributes.age = std::isnan(age(i))   ? core::Attributes::kNoAge
+                     : std::isinf(age(i)) ? core::Attributes::kZeroStamp
+                                          : core::ageClass(core::toNanoseconds(age(i)));
+    attributes.size = core::sizeClass(size(i));
+    attributes.step = step(i) < 0 ? core::Attributes::Step::kNotKnown
+                                  : core::stepOf(0, static_cast<std::uint32_t>(step(i)));
+    attributes.same = is_same(i);
+    packed.push_back(core::packed(attributes));
+  }
+  return toArray(packed);
 }
 
 /// Which recording of a file: none of a bag, which is one; its number, from 0, of an event log.
@@ -84,6 +112,7 @@ RecordedEvents readEvents(const std::string& path, const InLog& recording,
   const auto handler = [&](const core::Event& event) {
     events.stamps.push_back(event.stamp);
     events.ids.push_back(event.id);
+    events.attributes.push_back(core::packed(event.attributes));
   };
   if (recording) {
     const ros1::EventLogReader reader(openLog(path), *recording);
@@ -95,6 +124,7 @@ RecordedEvents readEvents(const std::string& path, const InLog& recording,
     events.summary = reader.summary();
     events.stamps.reserve(events.summary.messages);
     events.ids.reserve(events.summary.messages);
+    events.attributes.reserve(events.summary.messages);
     reader.read(ros1::Encoder(rules, ids), range, handler, progressTo(progress));
   }
   events.event_types = vocabulary.types();
@@ -102,12 +132,40 @@ RecordedEvents readEvents(const std::string& path, const InLog& recording,
 }
 
 using EventTypeState = std::tuple<std::string, std::string, std::string>;
-using EncodingState =
-    std::tuple<bool, std::vector<std::string>, std::vector<std::string>, std::vector<std::string>,
-               std::vector<std::string>, std::map<std::string, std::string>>;
+using RenameState = std::pair<std::string, std::string>;
+using EncodingState = std::tuple<bool, std::vector<RenameState>, std::vector<std::string>,
+                                 std::vector<std::string>, std::vector<std::string>,
+                                 std::vector<std::string>, std::map<std::string, std::string>>;
+
+std::vector<RenameState> renamesOf(const ros1::EncodingRules& rules) {
+  std::vector<RenameState> renames;
+  for (const ros1::Rename& rename : rules.renames) {
+    renames.emplace_back(rename.pattern, rename.name);
+  }
+  return renames;
+}
+
+void setRenames(ros1::EncodingRules& rules, const std::vector<RenameState>& renames) {
+  rules.renames.clear();
+  for (const auto& [pattern, name] : renames) {
+    rules.renames.push_back({pattern, name});
+  }
+}
+
+using Names = std::set<std::string>;
+
+template <typename Rename>
+std::map<std::string, std::string> namesBy(const Names& names, Rename rename) {
+  std::map<std::string, std::string> by;
+  for (const std::string& name : names) {
+    by[name] = rename(name);
+  }
+  return by;
+}
 
 EncodingState stateOf(const ros1::EncodingRules& rules) {
   return {rules.source == ros1::EncodingRules::Source::kNone,
+          renamesOf(rules),
           rules.include_topics,
           rules.exclude_topics,
           rules.include_sources,
@@ -118,8 +176,10 @@ EncodingState stateOf(const ros1::EncodingRules& rules) {
 ros1::EncodingRules fromState(const EncodingState& state) {
   ros1::EncodingRules rules;
   bool none = false;
-  std::tie(none, rules.include_topics, rules.exclude_topics, rules.include_sources,
+  std::vector<RenameState> renames;
+  std::tie(none, renames, rules.include_topics, rules.exclude_topics, rules.include_sources,
            rules.exclude_sources, rules.type_fields) = state;
+  setRenames(rules, renames);
   rules.source =
       none ? ros1::EncodingRules::Source::kNone : ros1::EncodingRules::Source::kCallerId;
   return rules;
@@ -169,13 +229,30 @@ void bindEncoding(py::module& m) {
                                            : ros1::EncodingRules::Source::kCallerId;
           },
           "'callerid' or 'none'")
+      .def_property("rename", &renamesOf, &setRenames,
+                    "rules by which names are replaced, as pairs: pattern, and new name")
       .def_readwrite("include_topics", &ros1::EncodingRules::include_topics)
       .def_readwrite("exclude_topics", &ros1::EncodingRules::exclude_topics)
       .def_readwrite("include_sources", &ros1::EncodingRules::include_sources)
       .def_readwrite("exclude_sources", &ros1::EncodingRules::exclude_sources)
       .def_readwrite("type_fields", &ros1::EncodingRules::type_fields)
       .def("validate", &ros1::EncodingRules::validate,
-           "ValueError if a pattern is no regular expression.")
+           "ValueError if a pattern is no regular expression, or a new name does not fit one.")
+      .def(
+          "sources_of",
+          [](const ros1::EncodingRules& self, const Names& nodes) {
+            const ros1::Encoder encoder(self, nullptr);
+            return namesBy(nodes, [&](const std::string& node) { return encoder.sourceOf(node); });
+          },
+          py::arg("nodes"), "What events call nodes, by their names.")
+      .def(
+          "scopes_of",
+          [](const ros1::EncodingRules& self, const Names& topics) {
+            const ros1::Encoder encoder(self, nullptr);
+            return namesBy(topics,
+                           [&](const std::string& topic) { return encoder.scopeOf(topic); });
+          },
+          py::arg("topics"), "What events call topics, by their names.")
       .def(
           "includes_source",
           [](const ros1::EncodingRules& self, const std::string& source) {
@@ -212,6 +289,7 @@ void bindBags(py::module& m) {
       .def_property_readonly("encoding", copyOf<ros1::BagSummary>(&ros1::BagSummary::encoding),
                              "a copy of that of an event log; None: a bag")
       .def_readonly("robot_start", &ros1::BagSummary::robot_start, "[ns]; 0: not known")
+      .def_readonly("robot", &ros1::BagSummary::robot, "its name; empty: not known")
       .def_readonly("dropped", &ros1::BagSummary::dropped,
                     "messages that came too fast for an event log")
       .def_property_readonly(
@@ -229,6 +307,27 @@ void bindBags(py::module& m) {
           "and\n"
           "computers by node");
   m.def(
+      "lasting_subscriptions", &ros1::lastingSubscriptions, py::arg("summary"),
+      py::arg("encoding"),
+      "What nodes subscribed to all the time after the start, by the BagSummary of an event log:\n"
+      "set of (node, topic); empty of what was not heard live.");
+  m.def(
+      "missing_subscriptions",
+      [](const ros1::BagSummary& summary, const ros1::EncodingRules& encoding,
+         const std::set<core::SourceGraph::Subscription>& expected) {
+        const ros1::Encoder encoder(encoding, nullptr);
+        MissingStates missing;
+        ros1::forEachGraph(
+            summary.graph_changes, [&](std::int64_t stamp, const ros1::Graph& graph) {
+              missing.emplace_back(stamp, ros1::missingIn(graph, encoder, expected));
+            });
+        return missing;
+      },
+      py::arg("summary"), py::arg("encoding"), py::arg("expected"),
+      "Which of these (TrainedModel.subscriptions) are missing from a time [ns] on each, "
+      "although\n"
+      "the node runs, by the BagSummary of an event log; empty of a bag.");
+  m.def(
       "summarise_bag",
       [](const std::string& path, const InLog& recording) { return summaryOf(path, recording); },
       py::arg("path"), py::arg("recording") = py::none(),
@@ -238,14 +337,15 @@ void bindBags(py::module& m) {
         "Number of recordings in an event log; None: it is none, or cannot be read.");
   m.def(
       "last_log_lines",
-      [](const std::string& path, const std::vector<std::pair<std::string, std::int64_t>>& nodes,
-         std::size_t most) {
+      [](const std::string& path, const ros1::EncodingRules& encoding,
+         const std::vector<std::pair<std::string, std::int64_t>>& nodes, std::size_t most) {
         std::vector<ros1::LogQuery> queries;
         for (const auto& [node, until] : nodes) {
           queries.push_back({node, until});
         }
         std::vector<std::vector<std::tuple<std::int64_t, int, std::string>>> found;
-        for (const std::vector<ros1::LogLine>& lines : ros1::lastLogLines(path, queries, most)) {
+        for (const std::vector<ros1::LogLine>& lines :
+             ros1::lastLogLines(path, ros1::Encoder(encoding, nullptr), queries, most)) {
           found.emplace_back();
           for (const ros1::LogLine& line : lines) {
             found.back().emplace_back(line.stamp, line.level, line.text);
@@ -253,9 +353,11 @@ void bindBags(py::module& m) {
         }
         return found;
       },
-      py::arg("path"), py::arg("nodes"), py::arg("most"),
-      "The last lines that nodes wrote to /rosout, of each pair of a node and a time [ns] up to\n"
-      "that time: (stamp [ns], level as in rosgraph_msgs/Log, text). Raises BagError.");
+      py::arg("path"), py::arg("encoding"), py::arg("nodes"), py::arg("most"),
+      "The last lines that nodes wrote to /rosout, of each pair of a node, as events call it, "
+      "and\n"
+      "a time [ns] up to that time: (stamp [ns], level as in rosgraph_msgs/Log, text). Raises "
+      "BagError.");
 
   py::class_<core::Waiting>(
       m, "Waiting",
@@ -290,6 +392,12 @@ void bindBags(py::module& m) {
             return viewOf(self.cast<const RecordedEvents&>().ids, self);
           },
           "uint32, read-only")
+      .def_property_readonly(
+          "attributes",
+          [](const py::object& self) {
+            return viewOf(self.cast<const RecordedEvents&>().attributes, self);
+          },
+          "of the messages, uint32, read-only: pack_attributes(); 0: not known")
       .def_readonly("waiting", &RecordedEvents::waiting,
                     "how the machine was: a Waiting for each stretch of time; empty: not known");
   m.def(
@@ -322,6 +430,13 @@ void bindRecordings(py::module& m) {
       },
       py::arg("stamps"), py::arg("ids"),
       "Where the clock was set forward: stamps of the first event after each step [ns].");
+  m.def("pack_attributes", &packAttributes, py::arg("ages"), py::arg("sizes"), py::arg("steps"),
+        py::arg("same"),
+        "The attributes of messages, each as one number, uint32 (docs/attributes.md).\n"
+        "ages: since their stamps [s], NaN: there is no header, inf: the stamp is 0; sizes: "
+        "[bytes];\n"
+        "steps: of their numbers (header.seq) since the message before, -1: not known; same: the\n"
+        "bytes behind the header are those of the message before.");
   bindEncoding(m);
   bindBags(m);
 }

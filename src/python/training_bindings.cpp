@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bindings.h"
+#include "self_awareness/core/evidence/watch/machine_stalls.h"
 #include "self_awareness/core/learn.h"
 #include "self_awareness/core/training.h"
 #include "self_awareness/ros/encoding.h"
@@ -38,7 +39,7 @@ class Training {
   void addEvents(const std::vector<core::EventType>& types, const Stamps& stamps, const Ids& ids,
                  const std::optional<core::RecordingInfo>& recording,
                  const std::optional<std::pair<Stamps, Ids>>& before,
-                 std::vector<std::int64_t> clock_steps) {
+                 std::vector<std::int64_t> clock_steps, const MessageAttributes& attributes) {
     checkNotEnded();
     core::Training::Recording start;
     start.middle = middleOf(stamps);
@@ -48,7 +49,9 @@ class Training {
     if (recording) {
       start.fingerprint = recording->fingerprint;
       start.robot_start = recording->robot_start;
+      start.robot = recording->robot;
     }
+    start.stalls = stallsOf(stamps);
     training_.startRecording(start);
     if (before) {
       addBefore(types, *before);
@@ -61,9 +64,9 @@ class Training {
       if (!id) {
         id = intern(types[event.id]);
       }
-      training_.add({event.stamp, *id});
+      training_.add({event.stamp, *id, event.attributes});
     };
-    forEachEvent(stamps, ids, steps, add, [&] { training_.onClockStep(); });
+    forEachEvent(stamps, ids, attributes, steps, add, [&] { training_.onClockStep(); });
     if (recording) {
       recordings_.push_back(*recording);
     }
@@ -97,6 +100,14 @@ class Training {
         training_.addBefore({event.stamp, intern(types[event.id])});
       }
     });
+  }
+
+  std::vector<core::evidence::MachineStall> stallsOf(const Stamps& stamps) const {
+    core::evidence::MachineStalls stalls(tuning_);
+    for (py::ssize_t k = 0; k < stamps.size(); ++k) {
+      stalls.add(stamps.at(k));
+    }
+    return stalls.find();
   }
 
   void checkNotEnded() const {
@@ -148,12 +159,14 @@ void bindTraining(py::module& m) {
       .def("add_events", &Training::addEvents, py::arg("event_types"), py::arg("stamps"),
            py::arg("ids"), py::arg("recording") = py::none(), py::arg("before") = py::none(),
            py::arg("clock_steps") = std::vector<std::int64_t>(),
+           py::arg("attributes") = py::none(),
            "Trains on one recording given as arrays; ids are indices of event_types.\n"
            "recording: what the model says about it; its fingerprint says which half of the\n"
            "training it belongs to (half_of); None: the first one.\n"
            "before: stamps and ids of the events of the recording before these, which only say\n"
            "when event types came first; ids from len(event_types) on are of no type of these.\n"
            "clock_steps: with which the clock was set forward (find_clock_steps).\n"
+           "attributes: of the messages (RecordedEvents.attributes), None: not known.\n"
            "After a ValueError the training is incomplete: do not use it any more.")
       .def(
           "model", &Training::model, py::arg("watch") = true,

@@ -1,11 +1,11 @@
 """Judges whole recordings with either detector: both are called in the same way."""
 from __future__ import annotations
 
-from typing import Callable, Dict, Iterable, Optional, Sequence
+from typing import Callable, Dict, Iterable, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
-from self_awareness import (DetectorParameters, EventType, EvidenceModel, PaperModel,
+from self_awareness import (Acceptance, DetectorParameters, EventType, EvidenceModel, PaperModel,
                             ReplayedMonitor, TrainedModel, Verdicts, Waiting, judge_by_evidence)
 
 EVIDENCE = 'evidence'
@@ -17,7 +17,8 @@ Judge = Callable[..., Verdicts]
 """Judges stamps and ids of a recording, and the silence up to its end [ns]. Further arguments: the
 event types by id, those of the model first (without, those of unknown events are not known), a
 ReplayedMonitor that is told of all of it, where the clock was set (clock_steps), how the machine
-was (waiting), and on which computers sources ran (hosts)."""
+was (waiting), on which computers sources ran (hosts), which subscriptions were missing, and the
+attributes of the messages (attributes)."""
 
 
 def paper_judge(trained: TrainedModel, model: PaperModel, threshold: Optional[float],
@@ -29,13 +30,15 @@ def paper_judge(trained: TrainedModel, model: PaperModel, threshold: Optional[fl
 
 
 def evidence_judge(trained: TrainedModel, parameters: DetectorParameters,
-                   computed: Optional[EvidenceModel] = None) -> Judge:
+                   computed: Optional[EvidenceModel] = None,
+                   accepted: Sequence[Acceptance] = ()) -> Judge:
     """Return what judges by evidence and the model's limits.
 
     Args:
         trained: the model.
         parameters: of the detector.
         computed: from the model, if the caller has it already.
+        accepted: what is normal besides (accepted_file).
 
     Raises:
         ValueError: the limits are not those of the model.
@@ -45,7 +48,10 @@ def evidence_judge(trained: TrainedModel, parameters: DetectorParameters,
     def judge(stamps: np.ndarray, ids: np.ndarray, end: Optional[int] = None,
               event_types: Iterable[EventType] = (), monitor: Optional[ReplayedMonitor] = None,
               clock_steps: Sequence[int] = (), waiting: Iterable[Waiting] = (),
-              hosts: Optional[Dict[str, str]] = None) -> Verdicts:
+              hosts: Optional[Dict[str, str]] = None,
+              missing: Iterable[Tuple[int, Set[Tuple[str, str]]]] = (),
+              attributes: Optional[np.ndarray] = None) -> Verdicts:
         return judge_by_evidence(trained, model, parameters, stamps, ids, end, list(event_types),
-                                 monitor, clock_steps, list(waiting), hosts or {})
+                                 monitor, clock_steps, list(waiting), hosts or {}, list(accepted),
+                                 list(missing), attributes)
     return judge

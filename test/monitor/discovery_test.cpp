@@ -130,6 +130,18 @@ class DiscoveryTest : public testing::Test {
   Discovery::Wanted wanted_;
 };
 
+TEST_F(DiscoveryTest, TopicsOfTheModelAreHeardUnderTheNamesThatThisRobotHasForThem) {
+  ros1::EncodingRules rules;
+  rules.renames = {{"/r[0-9]+/(.*)", "/\\1"}};
+  wanted_.encoder =
+      std::make_shared<ros1::Encoder>(rules, [](const core::EventType& /*type*/) { return 0; });
+  const ros::Publisher of_model = publish("/r7/a");
+  const ros::Publisher other = publish("/r7/c");
+  const auto discovery = discover();
+  EXPECT_TRUE(hears(of_model));
+  EXPECT_EQ(other.getNumSubscribers(), 0U);
+}
+
 TEST_F(DiscoveryTest, KeepsTheNewestGraph) {
   const auto discovery = discover(0.05);
   const ros::Publisher first = publish("/a");

@@ -50,6 +50,19 @@ TEST(Session, KnowsTheModelsTopicsAndWhatItsOwnProcessPublishes) {
   EXPECT_FALSE(own.covers("/slam", "/watch/status"));
 }
 
+TEST(Session, KnowsTheModelsNamesOfAnotherRobotsNodesAndTopics) {
+  ros1::TrainedModel trained = model();
+  trained.encoding.renames = {{"/r[0-9]+/(.*)", "/\\1"}};
+  Session session(trained, byPaper(), [](const core::Verdict&) {});
+  EXPECT_EQ(session.typesOf({"/r7/slam_4242_1600000000000", "/r7/pose"}),
+            (std::vector<core::EventId>{1}));
+  EXPECT_FALSE(session.ownOutput("/r7/manager").covers("/r7/manager", "/r7/pose"));
+  ros1::Graph graph;
+  graph.topics["/r7/scan"] = {"T", {"/r7/player"}, {"/r7/slam"}};
+  session.addEdges(graph, "/r7/self_awareness");
+  EXPECT_TRUE(session.graph().hears("/slam", "/player", "/scan"));
+}
+
 TEST(Session, IsCalibratedForTheDetectorThatWasChosen) {
   ros1::TrainedModel trained = model();
   EXPECT_FALSE(Session(trained, byPaper(), [](const core::Verdict&) {}).calibrated());

@@ -1,5 +1,7 @@
 #include "diagnostic_status.h"
 
+#include <ros/serialization.h>
+
 #include <cmath>
 #include <cstddef>
 #include <cstdio>
@@ -49,43 +51,73 @@ std::string number(double value) {
 
 namespace {
 
-// Where nobody looks, it is not quiet.
-void tellNotWatched(const std::vector<core::evidence::Coverage>& coverage,
-                    DiagnosticStatusWrapper& status) {
-  std::size_t number = 0;
-  std::string names;
-  for (const core::evidence::Coverage& each : coverage) {
-    if (!each.isWatched()) {
-      names += (number++ > 0 ? ", " : "") + each.component;
-    }
+constexpr std::size_t kMostListed = 20;
+
+// One after the other, as a value of the diagnostics.
+void tellList(const std::string& key, const std::vector<std::string>& list,
+              DiagnosticStatusWrapper& status) {
+  std::string words;
+  for (std::size_t i = 0; i < list.size() && i < kMostListed; ++i) {
+    words += (i > 0 ? ", " : "") + list[i];
   }
-  if (number > 0) {
-    if (status.level == DiagnosticStatus::OK) {
-      status.summary(DiagnosticStatus::OK, status.message + "; " + std::to_string(number) +
-                                               " of " + std::to_string(coverage.size()) +
-                                               " components are not watched");
-    }
-    status.add("not watched", names);
+  if (!list.empty()) {
+    status.add(key, list.size() > kMostListed
+                        ? words + " and " + std::to_string(list.size() - kMostListed) + " more"
+                        : words);
   }
 }
 
-constexpr std::size_t kMostUnheard = 20;
+// Where nobody looks, it is not quiet.
+void tellNotWatched(const std::vector<core::evidence::Coverage>& coverage,
+                    DiagnosticStatusWrapper& status) {
+  std::vector<std::string> names;
+  for (const core::evidence::Coverage& each : coverage) {
+    if (!each.isWatched()) {
+      names.push_back(each.component);
+    }
+  }
+  if (!names.empty() && status.level == DiagnosticStatus::OK) {
+    status.summary(DiagnosticStatus::OK, status.message + "; " + std::to_string(names.size()) +
+                                             " of " + std::to_string(coverage.size()) +
+                                             " components are not watched");
+  }
+  tellList("not watched", names, status);
+}
 
 void tellUnheard(const std::set<core::SourceGraph::Publication>& unheard,
                  DiagnosticStatusWrapper& status) {
-  std::string names;
-  std::size_t number = 0;
+  std::vector<std::string> names;
   for (const auto& [source, topic] : unheard) {
-    if (number < kMostUnheard) {
-      names += (number > 0 ? ", " : "") + (source.empty() ? "" : source + " on ") + topic;
-    }
-    ++number;
+    names.push_back((source.empty() ? "" : source + " on ") + topic);
   }
-  if (number > 0) {
-    status.add("nobody subscribed in training",
-               number > kMostUnheard
-                   ? names + " and " + std::to_string(number - kMostUnheard) + " more"
-                   : names);
+  tellList("nobody subscribed in training", names, status);
+}
+
+// Whether one that may be absent is: its death would have been found.
+bool isAbsent(const HeardReport::Component& component, const core::evidence::Coverage* coverage) {
+  return !component.last_heard || (coverage != nullptr && coverage->death_found_after &&
+                                   *component.last_heard > *coverage->death_found_after);
+}
+
+// As users of hz_monitor are used to: how often messages come, and should.
+void tellRates(const CommunicationState& state, const std::string& name,
+               const HeardReport::Component& component, DiagnosticStatusWrapper& status) {
+  const auto expected = state.expected.find(name);
+  if (expected == state.expected.end()) {
+    return;
+  }
+  std::size_t told = 0;
+  for (const auto& [topic, rate] : expected->second) {
+    if (told++ < kMostListed) {
+      const auto actual = component.rates.find(topic);
+      char text[48];
+      std::snprintf(text, sizeof text, "%.3g of %.3g Hz",
+                    actual == component.rates.end() ? 0.0 : actual->second, rate);
+      status.add(topic, text);
+    }
+  }
+  if (told > kMostListed) {
+    status.add("further topics", told - kMostListed);
   }
 }
 
@@ -126,6 +158,8 @@ void tellCommunication(const CommunicationState& state, DiagnosticStatusWrapper&
     }
     tellNotWatched(state.coverage, status);
     tellUnheard(state.unheard, status);
+    tellList("not accepted, events so far", state.strangers, status);
+    tellList("accepted", state.accepted, status);
     status.add("score", number(last.score));
     status.add("threshold", number(last.threshold));
     status.add("events in the window", last.events);
@@ -164,14 +198,31 @@ void tellComponent(const CommunicationState& state, const std::string& name,
       break;
     }
   }
+  const auto restarts = state.restarts.find(name);
+  if (restarts != state.restarts.end()) {
+    const auto& [words, too_often] = restarts->second;
+    status.add("restarts", words);
+    if (too_often && status.level == DiagnosticStatus::OK) {
+      status.summary(DiagnosticStatus::WARN, words);
+    }
+  }
+  const bool absent = state.optional.count(name) > 0 && isAbsent(component, coverage);
+  if (absent && status.level == DiagnosticStatus::OK) {
+    status.summary(DiagnosticStatus::OK, "optional (absent)");
+  }
   const auto not_heard = state.not_heard.find(name);
-  if (status.level == DiagnosticStatus::OK && not_heard != state.not_heard.end()) {
+  if (!absent && status.level == DiagnosticStatus::OK && not_heard != state.not_heard.end()) {
     status.summary(DiagnosticStatus::WARN, not_heard->second);
   }
   if (component.last_heard) {
     status.add("last heard [s ago]", number(*component.last_heard));
   }
   status.add("events a second", number(component.rate));
+  tellRates(state, name, component, status);
+  const auto accepted = state.accepted_of.find(name);
+  if (accepted != state.accepted_of.end()) {
+    status.add("not watched: accepted", accepted->second);
+  }
   if (coverage != nullptr) {
     status.add("death found after [s]", foundAfter(*coverage));
   }
@@ -187,6 +238,15 @@ void addComponents(const CommunicationState& state, DiagnosticStatuses& statuses
     DiagnosticStatusWrapper status;
     tellComponent(state, name, known == coverage.end() ? nullptr : known->second, status);
     statuses.add(name, status);
+  }
+}
+
+void addChosen(const DiagnosticStatuses& of_components, StatusRound& round, double elapsed,
+               DiagnosticStatuses& statuses) {
+  const std::size_t others = ros::serialization::serializationLength(statuses.message());
+  for (const DiagnosticStatus& status :
+       round.next(of_components.message().status, others, elapsed)) {
+    statuses.add(status);
   }
 }
 

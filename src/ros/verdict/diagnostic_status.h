@@ -7,12 +7,14 @@
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "heard_tally.h"
 #include "self_awareness/SelfAwareness.h"
 #include "self_awareness/core/evidence/limits/coverage.h"
 #include "self_awareness/core/verdict/source_graph.h"
+#include "status_round.h"
 
 namespace self_awareness::ros1 {
 
@@ -33,6 +35,17 @@ struct CommunicationState {
   HeardReport heard;
   /// Who muted what stands, and until when, in words; empty: nobody did. What is muted is OK.
   std::string muted;
+  /// What is heard that training never saw, and is not accepted, with how often it came, in words.
+  std::vector<std::string> strangers;
+  std::vector<std::string> accepted;  ///< as normal, in words
+  /// What is accepted of components that the model knows, and not watched, in words.
+  std::map<std::string, std::string> accepted_of;
+  /// How often messages came in training [Hz], by component and topic; empty: not known.
+  std::map<std::string, std::map<std::string, double>> expected;
+  /// Components that were started again lately: how often, in words, and whether that is too
+  /// often.
+  std::map<std::string, std::pair<std::string, bool>> restarts;
+  std::set<std::string> optional;  ///< components that may be absent
   /// Who cannot be heard by the monitor, and why, in words; by component.
   std::map<std::string, std::string> not_heard;
 
@@ -56,6 +69,9 @@ class DiagnosticStatuses {
   /// @param status its name and hardware id are filled in
   void add(const std::string& name, const diagnostic_updater::DiagnosticStatusWrapper& status);
 
+  /// Adds a status of another one of the same node.
+  void add(const diagnostic_msgs::DiagnosticStatus& status) { message_.status.push_back(status); }
+
   const diagnostic_msgs::DiagnosticArray& message() const { return message_; }
 
  private:
@@ -77,6 +93,11 @@ void tellComponent(const CommunicationState& state, const std::string& name,
                    diagnostic_updater::DiagnosticStatusWrapper& status);
 /// Adds the status of every component.
 void addComponents(const CommunicationState& state, DiagnosticStatuses& statuses);
+/// Keeps of the statuses of components those that `round` chooses; what was added before is kept.
+/// @param of_components statuses of components, as addComponents() adds them
+/// @param elapsed since the last message [s]
+void addChosen(const DiagnosticStatuses& of_components, StatusRound& round, double elapsed,
+               DiagnosticStatuses& statuses);
 /// The statuses of the whole and of every component, as a node publishes them on /diagnostics.
 /// @param node its name, which the names of the statuses begin with
 /// @param now ROS time [ns]

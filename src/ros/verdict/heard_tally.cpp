@@ -1,21 +1,28 @@
 #include "heard_tally.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace self_awareness::ros1 {
 namespace {
 
 // Two reports may come one right after the other, when the level changes.
 constexpr double kShortestPeriod = 1e-3;  // [s]
+// Rates of topics are of so long at least, and of twice as long at most [ns].
+constexpr std::int64_t kOfRates = 10 * core::kNanosecondsPerSecond;
 
 }  // namespace
 
 void HeardTally::setTypes(const std::vector<core::EventType>& types) {
   components_.clear();
   component_of_.clear();
+  topics_.clear();
+  topic_of_.clear();
+  before_ = since_ = reported_at_.steady;
   heard_types_.clear();
   known_types_ = unknown_types_ = 0;
   std::map<std::string, std::size_t> indices;
+  std::map<std::pair<std::size_t, std::string>, std::size_t> topics;
   for (const core::EventType& type : types) {
     const std::string name = core::componentOf(type.source, type.scope);
     const auto [index, is_new] = indices.try_emplace(name, components_.size());
@@ -23,6 +30,11 @@ void HeardTally::setTypes(const std::vector<core::EventType>& types) {
       components_.push_back({name, std::nullopt, 0});
     }
     component_of_.push_back(index->second);
+    const auto [topic, is_first] = topics.try_emplace({index->second, type.scope}, topics_.size());
+    if (is_first) {
+      topics_.push_back({type.scope, index->second, 0, 0});
+    }
+    topic_of_.push_back(topic->second);
   }
 }
 
@@ -40,6 +52,7 @@ void HeardTally::add(const core::Event& event) {
     Component& component = components_[component_of_[event.id]];
     component.last_heard = event.stamp;
     ++component.events;
+    ++topics_[topic_of_[event.id]].events;
   }
 }
 
@@ -64,6 +77,18 @@ HeardReport HeardTally::report(const Moment& now, std::uint64_t dropped) {
     }
     reported.rate = static_cast<double>(component.events) / period;
     component.events = 0;
+  }
+  const double of_rates = std::max(core::toSeconds(now.steady - before_), kShortestPeriod);
+  const bool next = now.steady - since_ >= kOfRates;
+  for (Topic& topic : topics_) {
+    report.components[components_[topic.component].name].rates[topic.name] =
+        static_cast<double>(topic.before + topic.events) / of_rates;
+    if (next) {
+      topic.before = std::exchange(topic.events, 0);
+    }
+  }
+  if (next) {
+    before_ = std::exchange(since_, now.steady);
   }
   report.rate = static_cast<double>(events_) / period;
   report.cpu_share = core::toSeconds(now.cpu - reported_at_.cpu) / period;

@@ -14,8 +14,9 @@ namespace self_awareness::ros1 {
 /// What was heard since the last report, and from whom.
 struct HeardReport {
   struct Component {
-    std::optional<double> last_heard;  ///< seconds ago; none: not since the start
-    double rate = 0;                   ///< events a second, since the last report
+    std::optional<double> last_heard;     ///< seconds ago; none: not since the start
+    double rate = 0;                      ///< events a second, since the last report
+    std::map<std::string, double> rates;  ///< by topic [Hz], in the last 10 to 20 s
   };
 
   std::map<std::string, Component> components;  ///< of the model, by core::componentOf()
@@ -38,7 +39,8 @@ class HeardTally {
     std::int64_t cpu = 0;  ///< of all threads of the process: CLOCK_PROCESS_CPUTIME_ID
   };
 
-  explicit HeardTally(const Moment& now) : reported_at_(now) {}
+  explicit HeardTally(const Moment& now)
+      : before_(now.steady), since_(now.steady), reported_at_(now) {}
 
   /// From now on events are those of another model: nothing was heard of its components yet.
   /// @param types of the model, by their ids
@@ -63,7 +65,18 @@ class HeardTally {
     std::uint64_t events = 0;                // since the last report
   };
 
+  struct Topic {
+    std::string name;
+    std::size_t component = 0;  // index
+    std::uint64_t before = 0;   // events, from before_ to since_
+    std::uint64_t events = 0;   // from since_ on
+  };
+
   std::vector<Component> components_;
+  std::vector<Topic> topics_;
+  std::vector<std::size_t> topic_of_;  // index of the topic, by event id of the model
+  std::int64_t before_ = 0;            // steady time [ns]
+  std::int64_t since_ = 0;
   std::vector<std::size_t> component_of_;  // index of the component, by event id of the model
   std::vector<bool> heard_types_;          // by event id
   std::size_t known_types_ = 0;

@@ -74,7 +74,9 @@ std::string wording(const core::Verdict& verdict, const std::string& evidence,
       message += " (and " + std::to_string(suspects.size() - 1) + " more)";
     }
     for (const self_awareness::Suspect& suspect : new_suspects) {
-      message += "; now also " + describe(suspect);
+      if (suspects.empty() || describe(suspect) != describe(suspects.front())) {
+        message += "; now also " + describe(suspect);
+      }
     }
     return message;
   }

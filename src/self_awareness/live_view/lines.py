@@ -28,6 +28,9 @@ def head(said: Said, width: int, paused: bool) -> List[Line]:
         lines.append(('faint', cut(f'monitor: {said.itself}', width)))
     if said.not_watched:
         lines.append(('faint', cut(f'not watched: {said.not_watched}', width)))
+    if said.strangers:
+        new = ', '.join(f'{source} on {topic}' for source, topic in said.strangers)
+        lines.append(('', cut(f'new, not accepted: {new}', width)))
     lines += [('WARN', cut(f'muted: {mute}', width)) for mute in said.mutes]
     return lines
 

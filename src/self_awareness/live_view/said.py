@@ -4,7 +4,7 @@ from __future__ import annotations
 import fnmatch
 from collections import deque
 from dataclasses import dataclass
-from typing import Any, Deque, Dict, List, Mapping, Optional
+from typing import Any, Deque, Dict, List, Mapping, Optional, Tuple
 
 LEVELS = ('OK', 'WARN', 'ERROR', 'STALE')
 """As of diagnostic_msgs/DiagnosticStatus."""
@@ -99,6 +99,13 @@ class Said:
     def not_watched(self) -> str:
         """Who is not watched; empty: everybody is, or it is not known."""
         return self._value(_WHOLE, 'not watched')
+
+    @property
+    def strangers(self) -> List[Tuple[str, str]]:
+        """Who is heard, and where, whom training never saw and nobody has accepted."""
+        told = self._value(_WHOLE, 'not accepted, events so far')
+        pairs = [each.rpartition(': ')[0].rpartition(' on ') for each in told.split(', ') if each]
+        return [(source, topic) for source, _, topic in pairs]
 
     @property
     def mutes(self) -> List[str]:

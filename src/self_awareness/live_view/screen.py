@@ -8,7 +8,7 @@ import urwid
 from self_awareness.live_view import lines
 from self_awareness.live_view.said import SORTS, Said
 
-KEYS = 'q quit  s sort  f filter  p pause  m mute 10 min  c clear  d dump'
+KEYS = 'q quit  s sort  f filter  p pause  m mute 10 min  a accept  c clear  d dump'
 """The last line."""
 
 _EVERY_S = 0.5
@@ -28,8 +28,9 @@ class Screen:
         Args:
             said: what is shown now.
             is_over: why nothing more will come; empty: it goes on.
-            calls: by key c and d, what it does, and by m, what mutes a component for some
-                seconds; they return what came of it.
+            calls: by key c and d, what it does, by m, what mutes a component for some seconds,
+                and by a, what accepts senders and their topics, or, without any, what stands;
+                they return what came of it.
         """
         self._said, self._is_over, self._calls = said, is_over, calls
         self._shown = said()
@@ -92,6 +93,8 @@ class Screen:
             self._frame.footer, self._frame.focus_position = self._asked, 'footer'
         elif key == 'm' and self._focus():
             self._say(self._calls['m'](self._focus(), _MUTE_S))
+        elif key == 'a':
+            self._say(self._calls['a']([] if self._shown.level else self._shown.strangers))
         elif key in ('c', 'd'):
             self._say(self._calls[key]())
         self._draw()

@@ -110,5 +110,23 @@ TEST_F(HeardTallyTest, AnotherModelHasOtherComponents) {
   EXPECT_DOUBLE_EQ(heard.rate, 1) << "of the monitor as a whole";
 }
 
+TEST_F(HeardTallyTest, RatesOfTopicsAreOfTheLastTenToTwentySeconds) {
+  for (int second = 1; second <= 25; ++second) {
+    for (int i = 0; i < (second <= 10 ? 4 : 2); ++i) {
+      tally_.add({kRos, 0});
+    }
+    tally_.add({kRos, 2});
+    const HeardReport heard = report(second);
+    EXPECT_DOUBLE_EQ(heard.components.at("/player").rates.at("/odom"), 1) << second;
+    if (second <= 10) {
+      EXPECT_DOUBLE_EQ(heard.components.at("/player").rates.at("/scan"), 4) << second;
+    }
+    if (second > 20) {
+      EXPECT_DOUBLE_EQ(heard.components.at("/player").rates.at("/scan"), 2) << second;
+    }
+    EXPECT_DOUBLE_EQ(heard.components.at("/slam").rates.at("/pose"), 0);
+  }
+}
+
 }  // namespace
 }  // namespace self_awareness::ros1

@@ -113,8 +113,10 @@ TEST(Kinds, AreThoseOfTheMessage) {
   EXPECT_EQ(core::toString(Kind::kOutOfOrder), Message::OUT_OF_ORDER);
   EXPECT_EQ(core::toString(Kind::kNeverCame), Message::NEVER_CAME);
   EXPECT_EQ(core::toString(Kind::kStranger), Message::STRANGER);
+  EXPECT_EQ(core::toString(Kind::kUnsubscribed), Message::NOT_SUBSCRIBED);
   EXPECT_EQ(core::toString(Kind::kBusyMachine), Message::BUSY_MACHINE);
   EXPECT_EQ(core::toString(Kind::kAllSilent), Message::ALL_SILENT);
+  EXPECT_EQ(core::toString(Kind::kNewMode), Message::NEW_MODE);
 }
 
 }  // namespace

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "self_awareness/core/stream/event.h"
+#include "self_awareness/core/verdict/suspect.h"
+#include "self_awareness/ros/live/arrivals.h"
+
+namespace self_awareness {
+
+/// Remembers the last line on /rosout of each event type that training never saw, so that a node
+/// that logs an error for the first time is named with what it said.
+class LogQuotes {
+ public:
+  /// Longest quote [bytes].
+  static constexpr std::size_t kLongest = 200;
+
+  /// Takes in a message of an event type that the model does not know.
+  void add(core::EventId id, const core::EventType& type, const ros1::Content& content);
+  /// Forgets all: ids mean something else from now on.
+  void clear() { words_.clear(); }
+  /// Gives suspects of these event types the words.
+  void explain(std::vector<core::Suspect>& suspects) const;
+
+ private:
+  std::map<core::EventId, std::string> words_;
+};
+
+}  // namespace self_awareness

@@ -1,0 +1,70 @@
+#include <ctime>
+#include <utility>
+
+#include "monitor.h"
+#include "not_heard.h"
+#include "ros/now.h"
+#include "self_awareness/core/stream/event.h"
+
+namespace self_awareness {
+
+ros1::HeardTally::Moment Monitor::momentNow() {
+  timespec cpu{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &cpu);
+  return {rosNow(), steadyNow(), cpu.tv_sec * core::kNanosecondsPerSecond + cpu.tv_nsec};
+}
+
+void Monitor::onReport() {
+  const Discovery::State discovered = live_->discovery().state();
+  ros1::HeardTally::Moment moment = momentNow();
+  moment.ros = live_->now();
+  MonitorState state;
+  state.communication.model = parameters_.model;
+  state.communication.model_error = model_error_;
+  if (session_) {
+    state.communication.calibrated = session_->calibrated();
+    state.communication.coverage = session_->coverage();
+    state.communication.unheard = session_->unheard();
+    state.communication.expected = session_->expected();
+    for (const core::evidence::Coverage& each : session_->coverage()) {
+      if (restarts_.count(each.component, moment.ros) > 0) {
+        state.communication.restarts[each.component] = {
+            restarts_.inWords(each.component, moment.ros),
+            restarts_.count(each.component, moment.ros) >= Restarts::kMany};
+      }
+    }
+    state.communication.optional = session_->optional();
+    state.communication.strangers = session_->strangers();
+    accepts_.tell(session_->types(), state.communication);
+  }
+  state.communication.take(announcer_.alarm(), heard_.report(moment, live_->events().dropped()),
+                           moment.ros);
+  state.subscriptions = discovered.subscriptions;
+  state.connections = live_->events().connections();
+  state.left_out_topics = discovered.left_out;
+  state.full_of_unknown = session_ && session_->full();
+  state.ros_now = moment.ros;
+  state.clock_stands_still_for = live_->clock().standsStillFor();
+  state.longest_pause = core::toSeconds(std::exchange(longest_pause_, 0));
+  state.master_answers = discovered.master_answers;
+  state.unheard = withoutOptional(live_->discovery().unheard(), parameters_.optional);
+  state.strangers_closed = discovered.strangers_closed;
+  state.strangers_newly_closed =
+      discovered.strangers_closed - std::exchange(strangers_closed_, discovered.strangers_closed);
+  state.taken_back = calls_.onRecord();
+  state.mutes = mutes_.inWords();
+  state.communication.muted = mutes_.ofWhatStands();
+  state.clock_rivals = live_->clockRivals();
+  if (session_) {
+    not_heard_.set(state.unheard, *session_->encoder());
+    state.communication.not_heard = not_heard_.components();
+  }
+  state.keeper_error = keeper_.error().empty() ? incidents_.error() : keeper_.error();
+  state.accept_error = accepts_.error();
+  if (recorder_.enabled()) {
+    state.recorder = recorder_.report();
+  }
+  diagnostics_.publish(state);
+}
+
+}  // namespace self_awareness

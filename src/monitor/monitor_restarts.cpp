@@ -1,0 +1,56 @@
+#include <ros/console.h>
+#include <ros/this_node.h>
+
+#include <set>
+#include <string>
+
+#include "monitor.h"
+#include "ros/now.h"
+#include "ros/text.h"
+#include "self_awareness/core/verdict/alarm.h"
+
+namespace self_awareness {
+
+void Monitor::onGraph(const ros1::Graph& graph) {
+  session_->addEdges(graph, ros::this_node::getName());
+  const std::int64_t now = live_->now();
+  for (const std::string& node : restarts_.see(graph.addresses, now, ros1::utc(wallNow()))) {
+    session_->onRestarted(node);
+    if (restarts_.count(node, now) == Restarts::kMany) {
+      ROS_WARN("%s %s", node.c_str(), restarts_.inWords(node, now).c_str());
+    }
+    if (restarts_.count(node, now) >= Restarts::kMany && !announcer_.alarm().standing()) {
+      core::Alarm near_miss;
+      near_miss.id = static_cast<std::uint64_t>(now);
+      near_miss.begin = near_miss.end = now;
+      near_miss.over = true;
+      near_miss.culprit = node;
+      near_miss.reason = restarts_.inWords(node, now);
+      incidents_.add(near_miss, session_->graph(), "", parameters_.model);
+      incidents_publisher_.publish(incidents_.incidents());
+    }
+  }
+}
+
+void Monitor::onFirstOfRestarted(const core::Event& event) {
+  const std::string& node = session_->types()[event.id].source;
+  restarts_.onHeard(node, event.stamp);
+  // Who is started again and again is not excused; and by the paper's score, which is that of all,
+  // one node that starts would excuse the whole robot.
+  if (parameters_.method == MonitorParameters::Method::kEvidence &&
+      restarts_.count(node, event.stamp) <= Restarts::kMany) {
+    session_->detector().onMissed({event.id}, event.stamp);
+  }
+}
+
+void Monitor::followRestarts(std::int64_t now) {
+  std::set<std::string> abnormal;
+  for (const self_awareness::Suspect& suspect : announcer_.alarm().message().suspects) {
+    abnormal.insert(suspect.component);
+  }
+  for (const std::string& line : restarts_.advance(now, abnormal)) {
+    ROS_INFO("%s", line.c_str());
+  }
+}
+
+}  // namespace self_awareness

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace self_awareness {
+
+/// Follows nodes that are started again, by roslaunch's respawn or by hand: the same name comes
+/// with another address.
+///
+/// Times are ROS time [ns].
+class Restarts {
+ public:
+  /// So many restarts within kSpan are a fault, and no excuse for what is unusual after the next.
+  static constexpr std::size_t kMany = 3;
+  static constexpr std::int64_t kSpan = 600'000'000'000;
+  /// Nodes that are followed, at most so many: the first.
+  static constexpr std::size_t kMostNodes = 5000;
+
+  /// @param settle_time so long after it is heard again, a node may be judged
+  explicit Restarts(std::int64_t settle_time) : settle_time_(settle_time) {}
+
+  /// Takes in where nodes are.
+  /// @param addresses URIs, by node
+  /// @param when in words
+  /// @return those that were started again
+  std::vector<std::string> see(const std::map<std::string, std::string>& addresses,
+                               std::int64_t now, const std::string& when);
+  /// A node that was started again is heard.
+  void onHeard(const std::string& node, std::int64_t now);
+  /// Time has passed.
+  /// @param abnormal who is named by what stands
+  /// @return lines for those that are back as usual
+  std::vector<std::string> advance(std::int64_t now, const std::set<std::string>& abnormal);
+  /// ROS time was set.
+  void onClockSet();
+
+  /// How often a node was started again in the last kSpan.
+  std::size_t count(const std::string& node, std::int64_t now) const;
+  /// That in words: "restarted 7 times in 10 min"; empty: it was not.
+  std::string inWords(const std::string& node, std::int64_t now) const;
+
+ private:
+  struct Node {
+    std::string address;
+    std::deque<std::int64_t> restarts;  // of the last kSpan, the newest kMostCounted
+    std::string when;                   // the last one was, in words
+    bool waits = false;                 // for it to be as usual
+    std::optional<std::int64_t> heard;  // first, since the last one
+  };
+
+  std::int64_t settle_time_;
+  std::map<std::string, Node> nodes_;
+};
+
+}  // namespace self_awareness

@@ -1,0 +1,68 @@
+#include "accepted_file.h"
+
+#include <algorithm>
+#include <cstdint>
+
+#include "one_message_file.h"
+#include "self_awareness/Acceptances.h"
+#include "self_awareness/ros/encoding.h"
+#include "self_awareness/ros/ros_time.h"
+
+namespace self_awareness::ros1 {
+namespace {
+
+constexpr OneMessageFile kFile{kAcceptedFile, "/accepted", "what is accepted in it is damaged",
+                               4 << 20};
+
+void checkContent(const self_awareness::Acceptances& accepted) {
+  requireOfFile(accepted.accepted.size() <= core::Acceptances::kMost, "there are too many");
+  for (const self_awareness::Acceptance& each : accepted.accepted) {
+    requireOfFile(!each.component.empty() || !each.topic.empty(), "one names nobody");
+    requireOfFile(
+        std::max({each.component.size(), each.topic.size(), each.by.size()}) <= kLongestName,
+        "a name is too long");
+    requireOfFile(each.kind.empty() || core::kindOf(each.kind).has_value(),
+                  "the kind of one is none");
+  }
+}
+
+}  // namespace
+
+std::string pathOfAccepted(const std::string& model) {
+  return model + ".accepted";
+}
+
+void writeAccepted(const core::Acceptances& accepted, const std::string& path) {
+  self_awareness::Acceptances message;
+  std::int64_t latest = 0;
+  for (const core::Acceptance& each : accepted.list()) {
+    self_awareness::Acceptance& one = message.accepted.emplace_back();
+    one.component = each.component;
+    one.topic = each.topic;
+    one.kind = each.kind ? core::toString(*each.kind) : "";
+    one.at = toRosTime(each.at);
+    one.by = each.by;
+    latest = std::max(latest, each.at);
+  }
+  writeOneMessage(kFile, message, toRosTime(latest), path);
+}
+
+std::optional<core::Acceptances> readAccepted(const std::string& path) {
+  const auto message = readOneMessage<self_awareness::Acceptances>(kFile, path, checkContent);
+  if (!message) {
+    return std::nullopt;
+  }
+  core::Acceptances accepted;
+  for (const self_awareness::Acceptance& one : message->accepted) {
+    core::Acceptance each;
+    each.component = one.component;
+    each.topic = one.topic;
+    each.kind = core::kindOf(one.kind);
+    each.at = fromRosTime(one.at);
+    each.by = one.by;
+    accepted.add(each);
+  }
+  return accepted;
+}
+
+}  // namespace self_awareness::ros1

@@ -1,0 +1,59 @@
+#include "status_round.h"
+
+#include <ros/serialization.h>
+
+#include <algorithm>
+#include <set>
+
+namespace self_awareness::ros1 {
+namespace {
+
+using diagnostic_msgs::DiagnosticStatus;
+
+// What a quiet time saves, and what many changes at once take in advance [s].
+constexpr double kSaved = 1;
+constexpr double kAdvance = 30;
+
+}  // namespace
+
+std::size_t bytesOf(const DiagnosticStatus& status) {
+  return ros::serialization::serializationLength(status);
+}
+
+std::vector<DiagnosticStatus> StatusRound::next(const std::vector<DiagnosticStatus>& all,
+                                                std::size_t others, double elapsed) {
+  left_ = std::min(left_ + bytes_per_second_ * elapsed, kSaved * bytes_per_second_) -
+          static_cast<double>(others);
+  std::vector<DiagnosticStatus> chosen;
+  std::set<std::string> names;
+  const auto send = [&](const DiagnosticStatus& status) {
+    if (names.insert(status.name).second) {
+      left_ -= static_cast<double>(bytesOf(status));
+      said_[status.name] = {status.level, status.message};
+      chosen.push_back(status);
+    }
+  };
+  for (const DiagnosticStatus& status : all) {
+    const auto said = said_.find(status.name);
+    if (said == said_.end() || said->second.level != status.level ||
+        said->second.message != status.message) {
+      send(status);
+    }
+  }
+  std::size_t at = 0;
+  while (at < all.size() && all[at].name != last_) {
+    ++at;
+  }
+  for (std::size_t i = 1; i <= all.size(); ++i) {
+    const DiagnosticStatus& status = all[(at + i) % all.size()];
+    if (i > 1 && left_ <= 0) {  // one in any case: nobody waits for ever
+      break;
+    }
+    send(status);
+    last_ = status.name;
+  }
+  left_ = std::max(left_, -kAdvance * bytes_per_second_);
+  return chosen;
+}
+
+}  // namespace self_awareness::ros1

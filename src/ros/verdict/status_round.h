@@ -1,0 +1,44 @@
+#pragma once
+
+#include <diagnostic_msgs/DiagnosticStatus.h>
+
+#include <cstddef>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace self_awareness::ros1 {
+
+/// Chooses which statuses of components go out with a report: what has changed at once, all else
+/// one after the other, as many as a number of bytes allows. /diagnostics is heard by everybody,
+/// also over a radio link.
+class StatusRound {
+ public:
+  /// @param bytes_per_second that everything together may take
+  explicit StatusRound(std::size_t bytes_per_second)
+      : bytes_per_second_(static_cast<double>(bytes_per_second)) {}
+
+  /// @param all statuses of components; names are unique
+  /// @param others bytes of what goes out besides
+  /// @param elapsed since the last report [s]
+  /// @return those of them that go out now
+  std::vector<diagnostic_msgs::DiagnosticStatus> next(
+      const std::vector<diagnostic_msgs::DiagnosticStatus>& all, std::size_t others,
+      double elapsed);
+
+ private:
+  struct Said {
+    int level = 0;
+    std::string message;
+  };
+
+  double bytes_per_second_;
+  double left_ = 0;                   // bytes that may be sent; below 0: what changed took more
+  std::map<std::string, Said> said_;  // by name, as it was sent last
+  std::string last_;                  // of the round: who is next comes after it
+};
+
+/// Bytes that a status takes in its message.
+std::size_t bytesOf(const diagnostic_msgs::DiagnosticStatus& status);
+
+}  // namespace self_awareness::ros1

@@ -1,0 +1,70 @@
+#include "monitor/log_quotes.h"
+
+#include <gtest/gtest.h>
+#include <ros/serialization.h>
+#include <rosgraph_msgs/Log.h>
+
+#include <string>
+#include <vector>
+
+namespace self_awareness {
+namespace {
+
+const core::EventType kError{"/laser", "/rosout", "rosgraph_msgs/Log[level=8]"};
+
+ros1::Content line(std::uint8_t level, const std::string& text) {
+  rosgraph_msgs::Log log;
+  log.header.frame_id = "somewhere";
+  log.level = level;
+  log.name = "/laser";
+  log.msg = text;
+  ros1::Content content(ros::serialization::serializationLength(log));
+  ros::serialization::OStream stream(content.data(), static_cast<std::uint32_t>(content.size()));
+  ros::serialization::serialize(stream, log);
+  return content;
+}
+
+std::string wordsOf(const LogQuotes& quotes, core::EventId id) {
+  core::Suspect suspect;
+  suspect.id = id;
+  suspect.reason = core::strangerIn(1);
+  std::vector<core::Suspect> suspects{suspect};
+  quotes.explain(suspects);
+  return suspects.front().reason.words;
+}
+
+TEST(LogQuotes, ANodeThatLogsAnewIsNamedWithWhatItSaid) {
+  LogQuotes quotes;
+  quotes.add(7, kError, line(8, "lost the laser\n\033[31mred"));
+  EXPECT_EQ(
+      wordsOf(quotes, 7),
+      "logged ERROR \"lost the laser \uFFFD[31mred\", and nothing of that level in training");
+  EXPECT_EQ(wordsOf(quotes, 8), "never seen in training, 1 in this window");
+  quotes.add(7, kError, line(8, "again"));
+  EXPECT_NE(wordsOf(quotes, 7).find("\"again\""), std::string::npos) << "the last one";
+  quotes.clear();
+  EXPECT_EQ(wordsOf(quotes, 7), "never seen in training, 1 in this window");
+}
+
+TEST(LogQuotes, LongLinesAreCut) {
+  LogQuotes quotes;
+  quotes.add(1, kError, line(16, std::string(LogQuotes::kLongest, 'a')));
+  quotes.add(2, kError, line(16, std::string(10 * LogQuotes::kLongest, 'b')));
+  EXPECT_NE(wordsOf(quotes, 1).find("aaa\", and"), std::string::npos);
+  EXPECT_NE(wordsOf(quotes, 2).find("bbb...\", and"), std::string::npos);
+  EXPECT_LT(wordsOf(quotes, 2).size(), LogQuotes::kLongest + 100);
+}
+
+TEST(LogQuotes, OtherMessagesAndBrokenOnesAreNotQuoted) {
+  LogQuotes quotes;
+  quotes.add(1, {"/laser", "/scan", "sensor_msgs/LaserScan"}, line(8, "text"));
+  ros1::Content broken = line(8, "text");
+  broken.resize(30);
+  quotes.add(2, kError, broken);
+  for (const core::EventId id : {1U, 2U}) {
+    EXPECT_EQ(wordsOf(quotes, id), "never seen in training, 1 in this window");
+  }
+}
+
+}  // namespace
+}  // namespace self_awareness

@@ -1,0 +1,105 @@
+#include "ros/verdict/accepted_file.h"
+
+#include <gtest/gtest.h>
+
+#include <boost/filesystem.hpp>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include "ros/verdict/incidents_file.h"
+#include "ros/verdict/one_message_file.h"
+#include "self_awareness/Acceptances.h"
+#include "self_awareness/ros/bag/bag_reader.h"
+
+namespace self_awareness::ros1 {
+namespace {
+
+namespace fs = boost::filesystem;
+
+class AcceptedFileTest : public testing::Test {
+ protected:
+  AcceptedFileTest() {
+    fs::create_directory(folder_);
+    core::Acceptance acceptance;
+    acceptance.component = "/rostopic";
+    acceptance.topic = "/cmd_vel";
+    acceptance.at = 1600000000000000001;
+    acceptance.by = "/rqt";
+    accepted_.add(acceptance);
+    acceptance.kind = core::Kind::kSlow;
+    acceptance.topic.clear();
+    accepted_.add(acceptance);
+  }
+  ~AcceptedFileTest() override { fs::remove_all(folder_); }
+  AcceptedFileTest(const AcceptedFileTest&) = delete;
+  AcceptedFileTest& operator=(const AcceptedFileTest&) = delete;
+
+  std::string written() {
+    writeAccepted(accepted_, path_);
+    std::ifstream file(path_, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+  }
+  /// Why a file is refused; empty: it is not.
+  std::string error() const {
+    try {
+      readAccepted(path_);
+      return "";
+    } catch (const BagError& error) {
+      return error.what();
+    }
+  }
+  /// The same of a file with one such entry.
+  std::string errorOf(const self_awareness::Acceptance& entry, std::size_t entries = 1) const {
+    self_awareness::Acceptances message;
+    message.accepted.assign(entries, entry);
+    writeOneMessage({kAcceptedFile, "/accepted", "", 1 << 20}, message, ros::TIME_MIN, path_);
+    return error();
+  }
+
+  const fs::path folder_ = fs::temp_directory_path() / fs::unique_path();
+  const std::string path_ = pathOfAccepted((folder_ / "robot.model").string());
+  core::Acceptances accepted_;
+};
+
+TEST_F(AcceptedFileTest, IsReadAsItWasWritten) {
+  EXPECT_FALSE(readAccepted(path_)) << "there is no file";
+  written();
+  const auto read = readAccepted(path_);
+  ASSERT_TRUE(read);
+  ASSERT_EQ(read->list().size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_TRUE(read->list()[i].isLike(accepted_.list()[i]));
+    EXPECT_EQ(read->list()[i].at, accepted_.list()[i].at);
+    EXPECT_EQ(read->list()[i].by, "/rqt");
+  }
+}
+
+TEST_F(AcceptedFileTest, ADamagedFileIsRefusedByName) {
+  const std::string good = written();
+  for (std::size_t size = 0; size < good.size(); size += 41) {
+    std::ofstream(path_, std::ios::binary) << good.substr(0, size);
+    EXPECT_EQ(error().rfind(path_ + ": ", 0), 0U) << size;
+  }
+}
+
+TEST_F(AcceptedFileTest, WhatCannotBeIsRefused) {
+  self_awareness::Acceptance entry;
+  EXPECT_NE(errorOf(entry).find("(one names nobody)"), std::string::npos);
+  entry.component = "/a";
+  EXPECT_EQ(errorOf(entry), "");
+  EXPECT_NE(errorOf(entry, 1001).find("(there are too many)"), std::string::npos);
+  entry.kind = "odd";
+  EXPECT_NE(errorOf(entry).find("(the kind of one is none)"), std::string::npos);
+  entry.kind.clear();
+  entry.by = std::string(1001, 'a');
+  EXPECT_NE(errorOf(entry).find("(a name is too long)"), std::string::npos);
+}
+
+TEST_F(AcceptedFileTest, AFileOfAnotherKindIsNone) {
+  writeIncidents({}, path_);
+  EXPECT_THROW(readAccepted(path_), BagError);
+}
+
+}  // namespace
+}  // namespace self_awareness::ros1

@@ -1,0 +1,171 @@
+#!/usr/bin/python3
+"""What an operator accepts is normal from now on, for other starts and for training, too."""
+
+import os
+import subprocess
+from typing import Any, Dict, Tuple
+
+import rospy
+import rostest
+from diagnostic_msgs.msg import DiagnosticStatus
+
+import self_awareness
+from live_system import (MonitorListener, Process, again_if_clock_was_set, await_condition,
+                         operation, write_bag)
+from monitor_case import MonitorCase
+from self_awareness.msg import SelfAwareness
+from self_awareness.srv import Accept, AcceptResponse
+
+NODE = '/self_awareness'
+
+
+def talker(name: str, topic: str, rate: float) -> Process:
+    """A node whose periods vary as those of operation()."""
+    return Process('rosrun', 'self_awareness', 'talker.py', '__name:=' + name, '_output:=' + topic,
+                   '_rate:={}'.format(rate), '_variation:=0.3')
+
+
+def accept(**what: Any) -> AcceptResponse:
+    rospy.wait_for_service(NODE + '/accept', 20)
+    return rospy.ServiceProxy(NODE + '/accept', Accept)(**what)
+
+
+class TrainedCase(MonitorCase):
+    """With a model of /driver and /base."""
+
+    def setUp(self) -> None:
+        super().setUp()
+        self.bags = [write_bag(self.path('{}.bag'.format(seed)), operation(
+            [('/driver', '/scan', 0.08), ('/base', '/odom', 0.1)], 120, seed))
+            for seed in (1, 2)]
+        self.train()
+
+    def train(self) -> str:
+        done = subprocess.run(['rosrun', 'self_awareness', 'train', *self.bags, '-o',
+                               self.path('model')], stdout=subprocess.PIPE,
+                              stderr=subprocess.PIPE, text=True)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        return done.stdout
+
+    def trained_monitor(self, **options: Any) -> Process:
+        return self.monitor(self.path('model'), **{'detector': 'evidence', 'unknown': 'warn',
+                                                   'subscribe': 'all', **options})
+
+    def await_heard(self, listener: MonitorListener, *nodes: str) -> None:
+        for node in nodes:
+            await_condition(node + ' is heard', lambda: (
+                float(listener.value(node, 'events a second') or 0) > 1), 30)
+        listener.await_settled()
+
+    def await_value(self, listener: MonitorListener, key: str, words: str) -> None:
+        await_condition('{}: {}'.format(key, words), lambda: (
+            words in (listener.value('communication', key) or '')), 20)
+
+    def await_normal(self, listener: MonitorListener) -> None:
+        """Of what the robot says: that the machine is busy is no matter here."""
+        def is_normal() -> bool:
+            status = listener.diagnostics('communication')[-1]
+            return (status.level != DiagnosticStatus.ERROR
+                    and 'unknown events' not in status.message)
+        await_condition('normal', is_normal, 20)
+
+
+class AcceptTest(TrainedCase):
+
+    @again_if_clock_was_set
+    def test_a_new_node_is_told_once_and_accepted_for_other_starts(self) -> None:
+        file = self.path('model.accepted')
+        with talker('base', '/odom', 10), talker('driver', '/scan', 12.5):
+            with self.trained_monitor() as monitor, MonitorListener() as listener:
+                self.await_heard(listener, '/driver', '/base')
+                with talker('joystick', '/joy', 10):
+                    await_condition('it is told', lambda: any(
+                        alarm.level == SelfAwareness.WARN and '/joystick' in alarm.message
+                        for alarm in listener.alarms), 20)
+                    self.await_normal(listener)
+                    self.await_value(listener, 'not accepted, events so far', '/joystick on /joy')
+                    said = accept(component='/joystick', topic='/joy', kind='stranger')
+                    self.assertTrue(said.success, said.message)
+                    self.assertIn('normal from now on: /joystick on /joy (stranger)',
+                                  said.message)
+                    self.await_value(listener, 'accepted', '/joystick on /joy (stranger), by '
+                                     + rospy.get_name())
+                    self.assertEqual(1, sum('unknown events' in alarm.message
+                                            and '/joystick' in alarm.message
+                                            for alarm in listener.alarms), 'it was told once')
+                    await_condition('its file', lambda: os.path.exists(file), 20)
+                monitor.stop()
+            with self.trained_monitor() as monitor, MonitorListener() as listener:
+                with talker('joystick', '/joy', 10):
+                    self.await_heard(listener, '/driver', '/base')
+                    await_condition('its connection', lambda: '/joy' in subprocess.run(
+                        ['rosnode', 'info', NODE], stdout=subprocess.PIPE, text=True).stdout, 20)
+                    with talker('another', '/new', 10):  # as long as it takes to tell of it
+                        await_condition('another is told', lambda: any(
+                            '/another' in alarm.message for alarm in listener.alarms), 20)
+                    self.assertFalse([alarm for alarm in listener.alarms
+                                      if '/joystick' in alarm.message])
+                    said = accept(component='/joystick', topic='/joy', kind='stranger',
+                                  undo=True)
+                    self.assertTrue(said.success, said.message)
+                    await_condition('it is told again', lambda: any(
+                        '/joystick' in alarm.message for alarm in listener.alarms), 20)
+
+    @again_if_clock_was_set
+    def test_what_stands_is_accepted_until_it_is_trained(self) -> None:
+        with self.trained_monitor(), MonitorListener() as listener, talker('base', '/odom', 10):
+            with talker('driver', '/scan', 12.5):
+                self.await_heard(listener, '/driver', '/base')
+            alarm = listener.await_alarm()
+            self.assertEqual(alarm.component, '/driver')
+            said = accept()
+            self.assertTrue(said.success, said.message)
+            self.assertIn('/driver on /scan (died)', said.message)
+            self.await_normal(listener)
+            await_condition('it is not watched', lambda: (
+                '(died)' in (listener.value('/driver', 'not watched: accepted') or '')), 20)
+            seen = len(listener.statuses)
+            await_condition('windows after it', lambda: len(listener.statuses) > seen + 50, 20)
+            self.assertFalse([status.message for status in listener.statuses[seen:]
+                              if any(each.component == '/driver' for each in status.suspects)])
+            said = accept(component='/driver', topic='/scan', kind='died', undo=True)
+            self.assertTrue(said.success, said.message)
+            self.assertIn('judged again', said.message)
+            await_condition('it is an alarm again', lambda: (
+                listener.alarms[-1].level == SelfAwareness.ERROR), 20)
+            self.assertFalse(accept(component='/driver', undo=True).success, 'it is not accepted')
+
+    def test_training_learns_what_is_accepted(self) -> None:
+        ended = max(each.end for each in
+                    self_awareness.TrainedModel.load(self.path('model')).recordings)
+        entries = [self_awareness.Acceptance('/driver', '/scan', 'slow', ended - 1, '/rqt'),
+                   self_awareness.Acceptance('/base', '', '', ended + 1, '/rqt'),
+                   self_awareness.Acceptance('/joystick', '/joy', 'stranger', 1, '/rqt'),
+                   self_awareness.Acceptance('/dri*', '', '', 1, '/rqt')]
+        self_awareness.write_accepted(entries, self.path('model.accepted'))
+        said = self.train()
+        self.assertIn('learned now, so it is judged again: /driver on /scan (slow)', said)
+        self.assertIn('accepted, and not learned: /base\n', said)
+        self.assertEqual(self_awareness.read_accepted(self.path('model.accepted')), entries[1:])
+
+    @again_if_clock_was_set
+    def test_what_cannot_be_accepted_is_refused(self) -> None:
+        with self.trained_monitor(), MonitorListener() as listener, talker('base', '/odom', 10):
+            self.await_heard(listener, '/base')
+            refused: Tuple[Tuple[Dict[str, Any], str], ...] = (
+                ({'kind': 'slow'}, 'name a component or a topic'),
+                ({'component': '/a', 'kind': 'odd'}, 'kind: odd is none'),
+                ({'incident': 7}, 'there is none of the id 7'),
+                ({'component': '/a', 'incident': 7}, 'name it alone'),
+                ({'component': '/a', 'undo': True}, '/a is not accepted'))
+            for what, why in refused:
+                said = accept(**what)
+                self.assertFalse(said.success)
+                self.assertIn(why, said.message)
+            self.assertIn('too many calls', accept(component='/a').message)
+            self.assertFalse(os.path.exists(self.path('model.accepted')))
+
+
+if __name__ == '__main__':
+    rospy.init_node('accept_test')
+    rostest.rosrun('self_awareness', 'accept', AcceptTest)

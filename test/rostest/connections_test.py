@@ -1,0 +1,95 @@
+#!/usr/bin/python3
+"""A node does not subscribe as it did, or logs its first error: the monitor says so."""
+
+import signal
+
+import rospy
+import rostest
+from std_msgs.msg import String
+
+from live_system import (MonitorListener, Process, again_if_clock_was_set, await_condition,
+                         operation, write_bag)
+from monitor_case import MonitorCase, Talker
+from self_awareness import Tuning
+from self_awareness.msg import SelfAwareness, Suspect
+from self_awareness.recordings import BagPart
+from self_awareness.training import many_bags
+from self_awareness.workers import InProcess
+
+NODE = '/connections'
+NODES = (('/camera', '/image', 0.1), (NODE, '/people', 0.05))
+START_TIME_S = 3.0
+HOUR_S = 3600.0
+LINE = 'the lens is gone'
+SAID = 'does not subscribe to /image, as it did in all 2 starts'
+
+
+def ignore(_: String) -> None:
+    pass
+
+
+class ConnectionsTest(MonitorCase):
+
+    def trained(self) -> str:
+        """A model that learned from two starts, in which this node subscribed to /image."""
+        tuning = Tuning()
+        tuning.set('start_time', START_TIME_S)
+        parts = [BagPart(write_bag(self.path('{}.bag'.format(seed)), (
+            (stamp + HOUR_S * seed, source, topic)
+            for stamp, source, topic in operation(NODES, 120, seed)))) for seed in (1, 2)]
+        trained = many_bags.train(parts, many_bags.Counting(tuning=tuning))
+        for _ in parts:
+            trained.model.add_subscriptions({(NODE, '/image')})
+        self.assertEqual(trained.model.subscriptions, {(NODE, '/image')})
+        many_bags.preliminary_limits(trained, InProcess())
+        trained.model.save(self.path('model'))
+        return self.path('model')
+
+    @again_if_clock_was_set
+    def test_who_does_not_subscribe_or_logs_an_error_is_named(self) -> None:
+        model = self.trained()
+        camera = Process('rosrun', 'self_awareness', 'talker.py', '__name:=camera',
+                         '_output:=/image', '_rate:=10', '_variation:=0.3')
+        self.addCleanup(camera.stop)
+        subscriber = rospy.Subscriber('/image', String, ignore)
+        with Talker('/people'), \
+                self.monitor(model, detector='evidence', unknown='warn', settle_time=1.0,
+                             subscribe='all'), MonitorListener() as listener:
+            listener.await_settled()
+            # Who is away for less than a start takes is only restarting.
+            subscriber.unregister()
+            rospy.sleep(START_TIME_S / 3)
+            subscriber = rospy.Subscriber('/image', String, ignore)
+            rospy.sleep(1.5 * START_TIME_S)
+            self.assertFalse(self.said_of(listener, SAID))
+            subscriber.unregister()
+            said = await_condition('who does not subscribe is named',
+                                   lambda: self.said_of(listener, SAID), 30)
+            self.assertEqual((said.kind, said.component), (SelfAwareness.NOT_SUBSCRIBED, NODE))
+            subscriber = rospy.Subscriber('/image', String, ignore)
+            await_condition('it is over', lambda: (
+                'connections' not in listener.statuses[-1].evidence), 30)
+            rospy.loginfo('all is well')  # rospy latches: the first line may be an old one
+            rospy.sleep(1)
+            rospy.logerr(LINE)
+            said = await_condition('the line is quoted',
+                                   lambda: self.said_of(listener, LINE), 15)
+            self.assertEqual((said.kind, said.component), (SelfAwareness.STRANGER, NODE))
+            self.assertIn('logged ERROR "{}"'.format(LINE), said.reason)
+            # One that is dead keeps its subscriptions: it is one finding.
+            camera.send(signal.SIGKILL)
+            await_condition('the dead one is named', lambda: any(
+                status.level == SelfAwareness.ERROR and status.suspects
+                and status.suspects[0].component == '/camera'
+                for status in listener.statuses[-50:]), 30)
+
+    @staticmethod
+    def said_of(listener: MonitorListener, words: str) -> Suspect:
+        """A suspect with these words. Beside it, the machine may be busy with other work."""
+        return next((suspect for status in listener.statuses for suspect in status.suspects
+                     if words in suspect.reason), None)
+
+
+if __name__ == '__main__':
+    rospy.init_node(NODE[1:])  # as rostest calls it, too
+    rostest.rosrun('self_awareness', NODE[1:], ConnectionsTest)
