@@ -6,14 +6,24 @@
 
 node=
 # The first signal is handed on to the node alone; roslaunch sends it to both.
-trap 'ending=1; [ -z "$node" ] || kill -INT "$node" 2> /dev/null' INT
-trap 'ending=1; [ -z "$node" ] || kill -TERM "$node" 2> /dev/null' TERM
+hand_on() {
+  ending=$1
+  if [ -n "$node" ]; then
+    handed_on=1
+    kill "-$1" "$node" 2> /dev/null
+  fi
+}
+trap 'hand_on INT' INT
+trap 'hand_on TERM' TERM
 
 (
   trap - INT TERM  # in the background, it would be deaf to SIGINT
   exec "$@"
 ) &
 node=$!
+if [ -n "$ending" ] && [ -z "$handed_on" ]; then  # it came before the node was known
+  kill "-$ending" "$node" 2> /dev/null
+fi
 wait "$node"
 code=$?
 while [ -n "$ending" ] && kill -0 "$node" 2> /dev/null; do  # the signal ended only the wait
@@ -25,4 +35,6 @@ if [ -n "$ending" ] || { [ "$code" -ne 1 ] && [ "$code" -ne 2 ]; }; then
   exit "$code"
 fi
 echo "${1##*/}: waiting for the end: launch it again with other arguments or parameters" >&2
-exec sleep infinity
+# Not by a program: a signal that comes while bash gives its place to one would be lost.
+exec {nothing}<> <(:)
+read -r -u "$nothing"

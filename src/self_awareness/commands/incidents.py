@@ -13,6 +13,8 @@ from typing import List, Optional, Sequence
 
 from self_awareness import KeptIncident, read_incidents
 from self_awareness.commands import cli
+from self_awareness.recovery import history
+from self_awareness.recovery.history import Action
 from self_awareness.reporting import incidents_text
 from self_awareness.stamps import SECOND_NS, nanoseconds
 
@@ -34,6 +36,7 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 def _incidents(arguments: argparse.Namespace) -> None:
     read = [(path, _read(path)) for path in arguments.file or _files()]
+    actions = {path: _actions(path) for path, _ in read}
     if arguments.id is not None:
         read = [(path, _one(kept, arguments.id)) for path, kept in read]
         if not any(kept for _, kept in read):
@@ -43,24 +46,25 @@ def _incidents(arguments: argparse.Namespace) -> None:
         read = [(path, [each for each in kept if _is_asked_for(each, arguments)])
                 for path, kept in read]
     if arguments.json:
-        values = [{'file': path, **incidents_text.as_values(each)}
+        values = [{'file': path, **incidents_text.as_values(each, actions[path])}
                   for path, kept in read for each in kept]
         print(json.dumps(values, indent=2, allow_nan=False))
     elif arguments.id is not None:
-        for _, kept in read:
+        for path, kept in read:
             for each in kept:
-                print('\n'.join(incidents_text.details(each)))
+                print('\n'.join(incidents_text.details(each, actions[path])))
     else:
         for path, kept in read:
-            _print_list(path, kept, arguments.near_misses)
+            _print_list(path, kept, actions[path], arguments.near_misses)
 
 
-def _print_list(path: str, kept: List[KeptIncident], near_misses: bool) -> None:
+def _print_list(path: str, kept: List[KeptIncident], actions: Sequence[Action],
+                near_misses: bool) -> None:
     shown = [each for each in kept if near_misses or each.level == 'ERROR']
     is_open = sum(not each.over for each in shown)
     print(f'{path}: incidents: {len(shown)}, open: {is_open}')
     if shown:
-        print('\n'.join(f'  {line}' for line in incidents_text.table(shown)))
+        print('\n'.join(f'  {line}' for line in incidents_text.table(shown, actions)))
     if len(shown) < len(kept):
         print(f'  besides, components with near misses only: {len(kept) - len(shown)} '
               '(--near-misses)')
@@ -87,6 +91,16 @@ def _read(path: str) -> List[KeptIncident]:
         raise ValueError(f'{path}: there is no such file; a monitor writes it with its first '
                          'incident')
     return kept
+
+
+def _actions(incidents: str) -> Sequence[Action]:
+    """Return what a recovery has done about the incidents of a file."""
+    path = os.path.splitext(incidents)[0] + history.ENDING
+    try:
+        return history.load(path).actions
+    except (OSError, ValueError) as error:
+        cli.warn('incidents', f'what the recovery has done is not shown: {error}')
+        return ()
 
 
 def _one(kept: Sequence[KeptIncident], number: int) -> List[KeptIncident]:

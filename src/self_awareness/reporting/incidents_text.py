@@ -3,25 +3,39 @@ from __future__ import annotations
 
 import os
 import shlex
+from dataclasses import asdict
 from typing import Any, Dict, List, Sequence
 
 from self_awareness import KeptIncident
+from self_awareness.recovery import words
+from self_awareness.recovery.history import Action
 from self_awareness.reporting.text_table import aligned
 from self_awareness.stamps import SECOND_NS, moment, utc
 
 _MOST_NAMED = 3
 
 
-def table(incidents: Sequence[KeptIncident]) -> List[str]:
-    """Return a line for each incident, below those of a head."""
+def table(incidents: Sequence[KeptIncident], actions: Sequence[Action]) -> List[str]:
+    """Return a line for each incident, below those of a head.
+
+    Args:
+        incidents: to be listed.
+        actions: of the recovery, about these and others.
+    """
     head = ['opened (UTC)', 'lasted', 'what', 'raised', 'near misses', 'named besides', 'id']
-    return aligned([head, *([utc(each.opened)[:19], _lasted(each), what(each), str(each.alarms),
+    return aligned([head, *([utc(each.opened)[:19], _lasted(each),
+                             what(each) + _number(of_incident(each, actions)), str(each.alarms),
                              str(each.near_misses), _besides(each), str(each.id)]
                             for each in incidents)])
 
 
-def details(incident: KeptIncident) -> List[str]:
-    """Return all that is known of an incident, and how to see more."""
+def details(incident: KeptIncident, actions: Sequence[Action]) -> List[str]:
+    """Return all that is known of an incident, and how to see more.
+
+    Args:
+        incident: to be shown.
+        actions: of the recovery, about this and others.
+    """
     rows = [('what', f'{what(incident)}: {incident.reason}' if incident.reason
              else what(incident)),
             ('opened', moment(incident.opened)),
@@ -32,12 +46,19 @@ def details(incident: KeptIncident) -> List[str]:
     rows += [(title, ', '.join(names)) for title, names in (
         ('failed with it', incident.together), ('victims', incident.victims),
         ('named besides', incident.others)) if names]
+    rows += [('recovery', f'{utc(each.begin)[:19]} UTC, {words.what(each)}')
+             for each in of_incident(incident, actions)]
     return [f'incident {incident.id}',
             *aligned([(f'  {title}', text) for title, text in [*rows, *_ways_on(incident)]])]
 
 
-def as_values(incident: KeptIncident) -> Dict[str, Any]:
-    """Return an incident as plain values; None where something is not known."""
+def as_values(incident: KeptIncident, actions: Sequence[Action]) -> Dict[str, Any]:
+    """Return an incident as plain values; None where something is not known.
+
+    Args:
+        incident: to be shown.
+        actions: of the recovery, about this and others.
+    """
     return {
         'id': incident.id,
         'level': incident.level,
@@ -56,7 +77,13 @@ def as_values(incident: KeptIncident) -> Dict[str, Any]:
         'near_misses': incident.near_misses,
         'recording': incident.recording or None,
         'model': incident.model or None,
+        'actions': [asdict(each) for each in of_incident(incident, actions)],
     }
+
+
+def of_incident(incident: KeptIncident, actions: Sequence[Action]) -> List[Action]:
+    """Return the actions about an incident."""
+    return [each for each in actions if each.incident == incident.id]
 
 
 def named(incident: KeptIncident) -> List[str]:
@@ -68,6 +95,10 @@ def named(incident: KeptIncident) -> List[str]:
 def what(incident: KeptIncident) -> str:
     """Return what is wrong, and whose fault it is: '/player died'."""
     return f'{incident.component} {incident.kind}' if incident.component else incident.kind
+
+
+def _number(actions: Sequence[Action]) -> str:
+    return f' (recovery: {len(actions)})' if actions else ''
 
 
 def _lasted(incident: KeptIncident) -> str:

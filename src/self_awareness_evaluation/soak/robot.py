@@ -23,8 +23,8 @@ _WARM_UP_S = 10.0  # after the robot's start, which is no normal operation
 class Robot:
     """The follow-me robot at some speed; `rospy.init_node` has been called."""
 
-    def __init__(self, scenario: Scenario, speed: float, folder: Path, processes: Processes
-                 ) -> None:
+    def __init__(self, scenario: Scenario, speed: float, folder: Path, processes: Processes,
+                 respawn: bool = False) -> None:
         """Start nothing yet.
 
         Args:
@@ -32,7 +32,9 @@ class Robot:
             speed: times as fast.
             folder: exists; for recordings.
             processes: to be started among.
+            respawn: roslaunch starts nodes again that end.
         """
+        self._respawn = respawn
         self._regular = regular(scenario)
         self._speed = speed
         self._folder = folder
@@ -44,7 +46,8 @@ class Robot:
         with self._heard(list(self._regular)):
             self._running = self._processes.start(
                 'robot', 'roslaunch', '--wait', 'self_awareness', 'follow_me.launch',
-                f'seed:={seed}', f'speed:={self._speed:g}')
+                f'seed:={seed}', f'speed:={self._speed:g}',
+                f'respawn:={str(self._respawn).lower()}')
         wait(_WARM_UP_S, 'warming up')
 
     def end(self) -> None:
@@ -86,17 +89,19 @@ class Robot:
             induction.crash(Crash(fault.component))
             yield time.time()
             with self._heard([fault.component]):
-                self._processes.start(
-                    fault.component, 'rosrun', 'self_awareness', 'component', fault.component,
-                    '--seed', str(seed), '--speed', f'{self._speed:g}',
-                    f'__name:={fault.component}')
+                if not self._respawn:
+                    self._processes.start(
+                        fault.component, 'rosrun', 'self_awareness', 'component',
+                        fault.component, '--seed', str(seed), '--speed', f'{self._speed:g}',
+                        f'__name:={fault.component}')
         elif fault.kind == HANG:
             pid = induction.process_id(f'/{fault.component}')
             os.kill(pid, signal.SIGSTOP)
             try:
                 yield time.time()
             finally:
-                os.kill(pid, signal.SIGCONT)
+                with contextlib.suppress(ProcessLookupError):  # it was killed, as it hung
+                    os.kill(pid, signal.SIGCONT)
         else:
             with induction.disturbed(fault.name):
                 yield time.time()

@@ -1,0 +1,224 @@
+"""Which step of which rule is due, and when: knows neither ROS nor the clock."""
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass
+from typing import Deque, Dict, Iterable, List, Optional, Sequence
+
+from self_awareness.recovery.rules import Rule, Rules, Step, Stop
+
+HOUR_S = 3600.0
+SHORTEST_HEALING_S = 5.0
+"""What is gone for less than this is not healed [s]: a node that dies again and again is there for
+moments."""
+_MOST_DOUBLINGS = 16
+
+
+@dataclass(frozen=True)
+class Fault:
+    """An open incident that a component is to blame for.
+
+    Args:
+        incident: its id.
+        component: that is to blame.
+        kind: what is wrong with it.
+        stands: it is abnormal at this moment; false: the alarm is only held, or waits.
+    """
+
+    incident: int
+    component: str
+    kind: str
+    stands: bool
+
+
+@dataclass(frozen=True)
+class Order:
+    """A step that is to be done now.
+
+    Args:
+        rule: whose step it is.
+        number: of the step, 1 the first.
+        step: itself.
+        fault: why.
+    """
+
+    rule: Rule
+    number: int
+    step: Step
+    fault: Fault
+
+
+@dataclass
+class _Climb:
+    """How far a rule is with what it mends.
+
+    Args:
+        next_at: when a step may come [s].
+        tried: steps so far.
+        gone_since: when the fault was gone; None: it is there.
+        gave_up: why nothing more will be done; empty: more will.
+    """
+
+    next_at: float
+    tried: int = 0
+    gone_since: Optional[float] = None
+    gave_up: str = ''
+
+
+@dataclass(frozen=True)
+class Standing:
+    """How a rule is that has something to mend.
+
+    Args:
+        rule: itself.
+        tried: steps so far.
+        gave_up: why nothing more will be done; empty: more will.
+        due_in: time to the next step, if the fault stands then [s].
+    """
+
+    rule: Rule
+    tried: int
+    gave_up: str
+    due_in: float
+
+
+class _Hour:
+    """The times of the steps of the last hour [s]."""
+
+    def __init__(self) -> None:
+        self._times: Deque[float] = deque()
+
+    def add(self, at: float) -> None:
+        self._times.append(at)
+
+    def count(self, now: float) -> int:
+        while self._times and self._times[0] <= now - HOUR_S:
+            self._times.popleft()
+        return len(self._times)
+
+
+class Ladder:
+    """Decides on one step after the other; times are steady [s], and never go back.
+
+    A fault has to stand for `delay` before the first step. A step that did not help in time is
+    followed by the next one, the last one by itself; each has twice the time of the one before. A
+    rule that has done its steps of an hour gives up, until the fault is healed: gone for `delay`,
+    and for SHORTEST_HEALING_S at least, without interruption.
+
+    Args:
+        rules: what may be done.
+    """
+
+    def __init__(self, rules: Rules) -> None:
+        self._rules = rules
+        self._healing = max(rules.delay, SHORTEST_HEALING_S)
+        self._climbs: Dict[Rule, _Climb] = {}
+        self._steps_of = {rule: _Hour() for rule in rules.rules}
+        self._steps_of_all = _Hour()
+        self._busy: Optional[Order] = None
+        self._restarting: Dict[str, float] = {}  # node that a step has stopped: until when
+        self._held_until = float('-inf')
+
+    def restore(self, component: str, at: float) -> None:
+        """Count a step of before the start; to be called in the order of time.
+
+        Args:
+            component: of the rule that did it.
+            at: when [s], at most now.
+        """
+        self._steps_of_all.add(at)
+        for rule, steps in self._steps_of.items():
+            if rule.component == component:
+                steps.add(at)
+
+    def hold(self, until: float) -> None:
+        """Order nothing before a time [s]; one in the past ends the hold."""
+        self._held_until = until
+
+    def advance(self, now: float, faults: Optional[Sequence[Fault]]) -> Optional[Order]:
+        """Return what is to be done now; then done() has to follow.
+
+        Args:
+            now: [s].
+            faults: all that are open; None: nothing is known, so that nothing is done, and nothing
+                is taken for healed.
+        """
+        if faults is None:
+            for climb in self._climbs.values():
+                climb.gone_since = None
+            self._wait_anew(now)
+            return None
+        for rule in self._rules.rules:
+            self._look(now, rule, faults)
+        if now < self._held_until:
+            self._wait_anew(now)
+            return None
+        if self._busy is not None:
+            return None
+        for rule, climb in sorted(self._climbs.items(), key=lambda item: item[1].next_at):
+            fault = _fault_of(rule, faults)
+            if fault is not None and fault.stands and climb.next_at <= now and not climb.gave_up:
+                climb.gave_up = self._limit_of(now, rule)
+                if not climb.gave_up:
+                    return self._order(now, rule, climb, fault)
+        return None
+
+    def done(self, now: float) -> None:
+        """The step that was ordered is done, or has failed."""
+        assert self._busy is not None
+        rule, self._busy = self._busy.rule, None
+        climb = self._climbs[rule]
+        climb.next_at = now + self._rules.wait * 2.0 ** min(climb.tried - 1, _MOST_DOUBLINGS)
+
+    def standings(self, now: float) -> List[Standing]:
+        """Return how the rules are that have something to mend."""
+        return [Standing(rule, climb.tried, climb.gave_up, max(0.0, climb.next_at - now))
+                for rule, climb in self._climbs.items()]
+
+    def _look(self, now: float, rule: Rule, faults: Sequence[Fault]) -> None:
+        """Take in whether there is something to mend for a rule."""
+        climb = self._climbs.get(rule)
+        if climb is None:
+            # Who is silent because the step of another rule has stopped it is no new fault.
+            if _fault_of(rule, faults) and self._restarting.get(rule.component, now) <= now:
+                self._climbs[rule] = _Climb(now + self._rules.delay)
+        elif any(fault.component == rule.component for fault in faults):
+            if climb.gone_since is not None:
+                climb.gone_since = None
+                climb.next_at = max(climb.next_at, now + self._rules.delay)
+        elif self._busy is None or self._busy.rule is not rule:
+            if climb.gone_since is None:
+                climb.gone_since = now
+            if climb.tried == 0 or now - climb.gone_since >= self._healing:
+                del self._climbs[rule]
+
+    def _wait_anew(self, now: float) -> None:
+        for climb in self._climbs.values():
+            climb.next_at = max(climb.next_at, now + self._rules.delay)
+
+    def _limit_of(self, now: float, rule: Rule) -> str:
+        """Return why a rule may do nothing more; empty: it may."""
+        for steps, limit, whose in ((self._steps_of[rule], self._rules.limit, ''),
+                                    (self._steps_of_all, self._rules.limit_of_all,
+                                     ' of all rules')):
+            number = steps.count(now)
+            if number >= limit:
+                return f'{number} actions{whose} in an hour, which is the limit'
+        return ''
+
+    def _order(self, now: float, rule: Rule, climb: _Climb, fault: Fault) -> Order:
+        at = min(climb.tried, len(rule.steps) - 1)
+        step = rule.steps[at]
+        climb.tried += 1
+        self._steps_of[rule].add(now)
+        self._steps_of_all.add(now)
+        if isinstance(step, Stop):
+            self._restarting.update((node, now + self._rules.wait) for node in step.nodes
+                                    if node != rule.component)
+        self._busy = Order(rule, at + 1, step, fault)
+        return self._busy
+
+
+def _fault_of(rule: Rule, faults: Iterable[Fault]) -> Optional[Fault]:
+    return next((fault for fault in faults if fault.component == rule.component
+                 and fault.kind in rule.kinds), None)

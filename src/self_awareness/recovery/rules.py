@@ -1,0 +1,198 @@
+"""Reads the rules of a recovery: config/recovery.yaml is an example (docs/recovery.md)."""
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import List, Mapping, Set, Tuple, Union
+
+from self_awareness import yaml_file
+from self_awareness.yaml_section import Section, shown
+
+KINDS = ('died', 'slow', 'fast', 'late', 'early', 'out of order', 'never came',
+         'stale', 'lossy', 'other size', 'stuck')
+"""Of incidents that blame a component of the robot, as SelfAwareness.msg has them."""
+
+MOST_RULES = 100
+MOST_STEPS = 10
+MOST_STOPPED = 5
+"""Nodes that a step may stop: it mends a part of the robot."""
+
+_WITHOUT_CULPRIT = ('busy machine', 'all silent')
+_MOST_ACTIONS = 1000
+_DAY_S = 86400.0
+_LONGEST_GRACE_S = 60.0
+_NAME = re.compile(r'(/[A-Za-z][A-Za-z0-9_]*)+')
+_LONGEST_NAME = 1000
+_OF_ROS = {'/rosout': "it is ROS's own", '/master': 'it is the master',
+           '/roscore': 'it is the master', '/rosapi': 'others talk to the robot by it'}
+
+
+@dataclass(frozen=True)
+class Call:
+    """A step: a service of type std_srvs/Trigger is called."""
+
+    service: str
+
+    def __str__(self) -> str:
+        return f'call {self.service}'
+
+
+@dataclass(frozen=True)
+class Stop:
+    """A step: nodes are stopped, one after the other, so that roslaunch starts them again."""
+
+    nodes: Tuple[str, ...]
+
+    def __str__(self) -> str:
+        return f'stop {", ".join(self.nodes)}'
+
+
+Step = Union[Call, Stop]
+
+
+@dataclass(frozen=True)
+class Rule:
+    """What is done about some kinds of incidents of one component.
+
+    Args:
+        component: that is to blame, by its full name.
+        kinds: of KINDS, at least one.
+        steps: one after the other, until one has helped.
+    """
+
+    component: str
+    kinds: Tuple[str, ...]
+    steps: Tuple[Step, ...]
+
+
+@dataclass(frozen=True)
+class Rules:
+    """All that a recovery may do.
+
+    Args:
+        rules: no two fit the same incident.
+        delay: an alarm stands for so long before the first step; what is gone for as long is
+            healed [s].
+        wait: a first step has so long to help; each further one of the incident twice as long as
+            the one before [s].
+        grace: a node has so long to end, before the next way to stop it [s].
+        limit: most steps in an hour, for each rule.
+        limit_of_all: most steps in an hour, of all rules together.
+        dry_run: nothing is done, but said.
+    """
+
+    rules: Tuple[Rule, ...]
+    delay: float = 5.0
+    wait: float = 20.0
+    grace: float = 3.0
+    limit: int = 3
+    limit_of_all: int = 6
+    dry_run: bool = False
+
+    @property
+    def nodes(self) -> Tuple[str, ...]:
+        """All nodes that may be stopped, each once."""
+        return tuple(dict.fromkeys(node for rule in self.rules for step in rule.steps
+                                   if isinstance(step, Stop) for node in step.nodes))
+
+
+def load(path: str, monitor: str, recovery: str) -> Rules:
+    """Return the rules of a file.
+
+    Args:
+        path: of the file.
+        monitor: full name of the monitor, which may not be stopped.
+        recovery: that of the recovery itself, likewise.
+
+    Raises:
+        OSError: the file cannot be read.
+        SectionError: it cannot be used; the message names the file, the key and the way out.
+        ValueError: it is no YAML.
+    """
+    data = yaml_file.load(path)
+    untouchable = {**_OF_ROS, monitor: 'it is the monitor',
+                   f'{monitor}_manager': "it is the monitor's nodelet manager",
+                   recovery: 'it is the recovery itself'}
+    default = Rules(())
+    with Section({} if data is None else data, path) as section:
+        delay = section.number('delay', 0.0, _DAY_S, default.delay)
+        wait = section.number('wait', 1.0, _DAY_S, default.wait)
+        grace = section.number('grace', 0.1, _LONGEST_GRACE_S, default.grace)
+        limit = _limit(section, 'limit', default.limit)
+        limit_of_all = _limit(section, 'limit_of_all', default.limit_of_all)
+        dry_run = section.boolean('dry_run', default.dry_run)
+        found = [_rule(each, untouchable) for each in section.sections('rules')]
+        if len(found) > MOST_RULES:
+            section.fail('rules', f'{len(found)} of them; at most {MOST_RULES} are allowed: leave '
+                         'the least important ones to people')
+        _check_ambiguous(section, found)
+    return Rules(tuple(found), float(delay), float(wait), float(grace), limit, limit_of_all,
+                 dry_run)
+
+
+def _limit(section: Section, key: str, default: int) -> int:
+    limit = section.integer(key, 1, default)
+    if limit > _MOST_ACTIONS:
+        section.fail(key, f'expected an integer from 1 to {_MOST_ACTIONS}, found {limit}')
+    return int(limit)
+
+
+def _rule(section: Section, untouchable: Mapping[str, str]) -> Rule:
+    with section:
+        component = _name(section, 'component', section.text('component'))
+        kinds = section.texts('kinds')
+        for kind in kinds:
+            if kind in _WITHOUT_CULPRIT:
+                section.fail('kinds', f'{kind!r} blames no component, so that there is nothing to '
+                             'mend; remove it')
+            if kind not in KINDS:
+                section.fail('kinds', f'{shown(kind)} is none; choose among {", ".join(KINDS)}')
+        steps = tuple(_step(each, untouchable) for each in section.sections('steps'))
+        if len(steps) > MOST_STEPS:
+            section.fail('steps', f'{len(steps)} of them; at most {MOST_STEPS} are allowed')
+        return Rule(component, tuple(dict.fromkeys(kinds)), steps)
+
+
+def _step(section: Section, untouchable: Mapping[str, str]) -> Step:
+    with section:
+        if ('call' in section) == ('stop' in section):
+            section.fail('call', 'a step either calls a service or stops nodes: give call or stop')
+        if 'call' in section:
+            return Call(_service(section, untouchable))
+        nodes = section.texts('stop')
+        for node in nodes:
+            _name(section, 'stop', node)
+            if node in untouchable:
+                section.fail('stop', f'{node} may not be stopped: {untouchable[node]}; remove it')
+        if len(set(nodes)) < len(nodes):
+            section.fail('stop', 'a node is there twice; name each once')
+        if len(nodes) > MOST_STOPPED:
+            section.fail('stop', f'{len(nodes)} nodes; a step may stop at most {MOST_STOPPED}: it '
+                         'is to mend a part of the robot, never all of it')
+        return Stop(tuple(nodes))
+
+
+def _service(section: Section, untouchable: Mapping[str, str]) -> str:
+    service = _name(section, 'call', section.text('call'))
+    for node, why in untouchable.items():
+        if service.startswith(f'{node}/'):
+            section.fail('call', f'{service} may not be called: {why}; remove it')
+    return service
+
+
+def _name(section: Section, key: str, name: str) -> str:
+    if '*' in name or '(' in name:
+        section.fail(key, f'{shown(name)}: patterns are not allowed; give each full name')
+    if not _NAME.fullmatch(name) or len(name) > _LONGEST_NAME:
+        section.fail(key, f'{shown(name)} is no full name; it begins with /, as /player')
+    return name
+
+
+def _check_ambiguous(section: Section, rules: List[Rule]) -> None:
+    taken: Set[Tuple[str, str]] = set()
+    for rule in rules:
+        for kind in rule.kinds:
+            if (rule.component, kind) in taken:
+                section.fail('rules', f'two rules for {rule.component} {kind}; give their steps '
+                             'in one rule')
+            taken.add((rule.component, kind))

@@ -1,0 +1,63 @@
+"""What a recovery says of itself on /diagnostics."""
+from __future__ import annotations
+
+from typing import Dict, List, Sequence, Tuple
+
+from self_awareness.recovery.history import Action
+from self_awareness.recovery.ladder import Standing
+from self_awareness.stamps import utc
+
+OK, WARN, ERROR = 0, 1, 2
+"""Levels of diagnostic_msgs/DiagnosticStatus."""
+
+_MOST_SHOWN = 10
+
+
+def status(watched: int, standings: Sequence[Standing], actions: Sequence[Action], blind: str,
+           held: str) -> Tuple[int, str]:
+    """Return level and message.
+
+    Args:
+        watched: components that there are rules for.
+        standings: of the rules that have something to mend.
+        actions: the last ones.
+        blind: why nothing is known; empty: it is known.
+        held: until when nothing is done; empty: not held.
+    """
+    doing = [what(each) for each in actions[-1:] if not each.over]
+    given_up = [f'gave up on {each.rule.component}: {each.gave_up}' for each in standings
+                if each.gave_up]
+    waiting = [_waiting(each) for each in standings if not each.gave_up]
+    if blind:
+        waiting = [f'does nothing: {blind}']
+    if held:
+        waiting = [f'does nothing {held}']
+    told = [*given_up, *(doing or waiting)]
+    if not told:
+        return OK, f'watches {watched} components; {len(actions)} actions so far'
+    return ERROR if given_up else WARN, '; '.join(told)
+
+
+def values(actions: Sequence[Action], refused: Sequence[str], dry_run: bool) -> Dict[str, str]:
+    """Return what a status has besides: the last actions, the newest first."""
+    shown = {'dry run': str(dry_run).lower()}
+    shown.update((f'cannot stop {number}', why) for number, why in enumerate(refused, 1))
+    newest: List[Action] = [*reversed(actions)][:_MOST_SHOWN]
+    shown.update((f'action {number}', f'{utc(each.begin)[:19]} UTC, {what(each)}')
+                 for number, each in enumerate(newest, 1))
+    return shown
+
+
+def what(action: Action) -> str:
+    """Return an action in words: 'stop /player (step 1 of 2), since /player died: done: ...'."""
+    text = (f'{action.action} (step {action.step} of {action.steps}), since {action.component}: '
+            f'{action.kind}')
+    if not action.over:
+        return text
+    return f'{text}: {"done" if action.success else "not done"}: {action.result}'
+
+
+def _waiting(standing: Standing) -> str:
+    number = min(standing.tried + 1, len(standing.rule.steps))
+    return (f'{standing.rule.component} is to be mended by step {number} of '
+            f'{len(standing.rule.steps)} in {standing.due_in:.0f} s, if it does not recover')

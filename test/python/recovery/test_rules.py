@@ -1,0 +1,158 @@
+"""The rules of a recovery, and the example among the configurations."""
+from __future__ import annotations
+
+import json
+import re
+from pathlib import Path
+from typing import Any, Dict
+
+import pytest
+import yaml
+from hypothesis import given, settings, strategies
+
+from self_awareness.msg import SelfAwareness
+from self_awareness.recovery import rules
+from self_awareness.recovery.rules import KINDS, Call, Rule, Rules, Stop
+
+ROOT = Path(__file__).resolve().parents[3]
+EXAMPLE = ROOT / 'config' / 'recovery.yaml'
+MONITOR, RECOVERY = '/self_awareness', '/self_awareness_recovery'
+GOOD: Dict[str, Any] = {'component': '/player', 'kinds': ['died'],
+                        'steps': [{'stop': ['/player']}]}
+
+
+def load(folder: Path, data: Any) -> Rules:
+    path = folder / 'r.yaml'
+    path.write_text(data if isinstance(data, str) else json.dumps(data))
+    return rules.load(str(path), MONITOR, RECOVERY)
+
+
+def rule(**changed: Any) -> Dict[str, Any]:
+    return {'rules': [{**GOOD, **changed}]}
+
+
+def step(**keys: Any) -> Dict[str, Any]:
+    return rule(steps=[keys])
+
+
+def test_the_example_has_the_defaults_and_shows_every_key() -> None:
+    read = rules.load(str(EXAMPLE), MONITOR, RECOVERY)
+    assert read == Rules(read.rules)
+    assert set(yaml.safe_load(EXAMPLE.read_text())) == {
+        'delay', 'wait', 'grace', 'limit', 'limit_of_all', 'dry_run', 'rules'}
+    assert re.findall(r'What is wrong with it:\n +# (.*)\.\n', EXAMPLE.read_text()) == [
+        ', '.join(KINDS)]
+
+
+def test_all_is_read(tmp_path: Path) -> None:
+    read = load(tmp_path, {
+        'delay': 1, 'wait': 2, 'grace': 0.5, 'limit': 4, 'limit_of_all': 5, 'dry_run': True,
+        'rules': [{'component': '/a/b', 'kinds': ['died', 'slow', 'died'],
+                   'steps': [{'call': '/a/reset'}, {'stop': ['/c', '/a/b']}]}, GOOD]})
+    assert read == Rules(
+        (Rule('/a/b', ('died', 'slow'), (Call('/a/reset'), Stop(('/c', '/a/b')))),
+         Rule('/player', ('died',), (Stop(('/player',)),))), 1.0, 2.0, 0.5, 4, 5, True)
+    assert read.nodes == ('/c', '/a/b', '/player')
+
+
+def test_the_kinds_are_those_of_the_monitor_that_blame_somebody() -> None:
+    of_monitor = {value for name, value in vars(SelfAwareness).items()
+                  if name.isupper() and isinstance(value, str)}
+    assert of_monitor - set(KINDS) == {'stranger', 'not subscribed', 'busy machine', 'all silent',
+                                       'new mode'}
+    assert set(KINDS) < of_monitor
+
+
+@pytest.mark.parametrize('data, key, told', [
+    ({}, 'rules', 'missing'),
+    ('# nothing\n', 'rules', 'missing'),
+    ({'rules': []}, 'rules', 'at least one'),
+    ({'rules': GOOD}, 'rules', 'expected a list'),
+    ({'rules': ['/player']}, 'rules[0]', 'expected keys'),
+    ({**rule(), 'delays': 1}, 'delays', 'unknown key; allowed are: delay, dry_run'),
+    ({**rule(), 'delay': -1}, 'delay', 'from 0 to 86400'),
+    ({**rule(), 'delay': float('nan')}, 'delay', 'finite number'),
+    ({**rule(), 'delay': 'long'}, 'delay', 'finite number'),
+    ({**rule(), 'wait': 0}, 'wait', 'from 1 to 86400'),
+    ({**rule(), 'grace': 0}, 'grace', 'from 0.1 to 60'),
+    ({**rule(), 'grace': 61}, 'grace', 'from 0.1 to 60'),
+    ({**rule(), 'limit': 0}, 'limit', 'at least 1'),
+    ({**rule(), 'limit': 1.5}, 'limit', 'an integer'),
+    ({**rule(), 'limit': 1001}, 'limit', 'from 1 to 1000'),
+    ({**rule(), 'limit_of_all': True}, 'limit_of_all', 'number'),
+    ({**rule(), 'dry_run': 'yes please'}, 'dry_run', 'true or false'),
+    ({'rules': [{'kinds': ['died'], 'steps': GOOD['steps']}]}, 'rules[0].component', 'missing'),
+    (rule(component='player'), 'rules[0].component', 'no full name'),
+    (rule(component='/*'), 'rules[0].component', 'patterns are not allowed'),
+    (rule(component='/(.*)'), 'rules[0].component', 'patterns are not allowed'),
+    (rule(component=['/player']), 'rules[0].component', 'expected a text'),
+    (rule(component='/' + 'a' * 1000), 'rules[0].component', 'no full name'),
+    (rule(kinds='died'), 'rules[0].kinds', 'expected a list'),
+    (rule(kinds=[]), 'rules[0].kinds', 'at least one'),
+    (rule(kinds=[1]), 'rules[0].kinds', 'expected texts'),
+    (rule(kinds=['dead']), 'rules[0].kinds', 'choose among died, slow'),
+    (rule(kinds=['stranger']), 'rules[0].kinds', 'choose among'),
+    (rule(kinds=['all silent']), 'rules[0].kinds', 'blames no component'),
+    (rule(kinds=['busy machine']), 'rules[0].kinds', 'blames no component'),
+    (rule(steps=[]), 'rules[0].steps', 'at least one'),
+    (rule(steps=['stop']), 'rules[0].steps[0]', 'expected keys'),
+    (rule(steps=[{'call': '/a'}] * 11), 'rules[0].steps', 'at most 10'),
+    (rule(step=[]), 'rules[0].step', 'unknown key'),
+    (step(), 'rules[0].steps[0].call', 'give call or stop'),
+    (step(call='/a', stop=['/b']), 'rules[0].steps[0].call', 'give call or stop'),
+    (step(call='/a', wait=3), 'rules[0].steps[0].wait', 'unknown key'),
+    (step(call='reset'), 'rules[0].steps[0].call', 'no full name'),
+    (step(call='/self_awareness/clear'), 'rules[0].steps[0].call', 'it is the monitor'),
+    (step(call='/self_awareness_recovery/hold'), 'rules[0].steps[0].call', 'recovery itself'),
+    (step(stop='/player'), 'rules[0].steps[0].stop', 'expected a list'),
+    (step(stop=[]), 'rules[0].steps[0].stop', 'at least one'),
+    (step(stop=['/player', '/player']), 'rules[0].steps[0].stop', 'twice'),
+    (step(stop=['/.*']), 'rules[0].steps[0].stop', 'patterns are not allowed'),
+    (step(stop=['/']), 'rules[0].steps[0].stop', 'no full name'),
+    (step(stop=['/self_awareness']), 'rules[0].steps[0].stop', 'it is the monitor'),
+    (step(stop=['/self_awareness_manager']), 'rules[0].steps[0].stop', "monitor's nodelet"),
+    (step(stop=['/self_awareness_recovery']), 'rules[0].steps[0].stop', 'recovery itself'),
+    (step(stop=['/rosout']), 'rules[0].steps[0].stop', "ROS's own"),
+    (step(stop=['/roscore']), 'rules[0].steps[0].stop', 'the master'),
+    (step(stop=[f'/n{i}' for i in range(6)]), 'rules[0].steps[0].stop', 'never all of it'),
+    ({'rules': [GOOD, {**GOOD, 'kinds': ['slow', 'died']}]}, 'rules', 'two rules for /player'),
+    ({'rules': [{**GOOD, 'component': f'/n{i}'} for i in range(101)]}, 'rules', 'at most 100'),
+])
+def test_an_error_names_the_file_the_key_and_the_way_out(tmp_path: Path, data: Any, key: str,
+                                                         told: str) -> None:
+    with pytest.raises(ValueError, match=re.escape(f'r.yaml: {key}: ')) as caught:
+        load(tmp_path, data)
+    assert told in str(caught.value)
+    assert '\n' not in str(caught.value)
+
+
+@pytest.mark.parametrize('text', ['[a', '- a\n', 'text', 'a: !!python/name:os.system',
+                                  'rules: &a [*a]', 'delay: 1\ndelay: 2\n'])
+def test_what_is_no_such_file_is_refused_by_its_name(tmp_path: Path, text: str) -> None:
+    with pytest.raises(ValueError, match='r.yaml: '):
+        load(tmp_path, text)
+
+
+def test_a_file_that_is_not_there_is_named(tmp_path: Path) -> None:
+    with pytest.raises(OSError, match='gone.yaml'):
+        rules.load(str(tmp_path / 'gone.yaml'), MONITOR, RECOVERY)
+
+
+_VALUES = strategies.recursive(
+    strategies.none() | strategies.booleans() | strategies.integers() | strategies.floats()
+    | strategies.sampled_from(['/player', '/*', 'died', '/rosout', ' ', '']),
+    lambda inner: strategies.lists(inner, max_size=3) | strategies.dictionaries(
+        strategies.sampled_from(['rules', 'component', 'kinds', 'steps', 'stop', 'call', 'delay']),
+        inner, max_size=4), max_leaves=12)
+
+
+@settings(deadline=None, derandomize=True, database=None)
+@given(data=_VALUES)
+def test_any_values_are_rules_or_an_error_with_the_name_of_the_file(
+        data: Any, tmp_path_factory: pytest.TempPathFactory) -> None:
+    try:
+        read = load(tmp_path_factory.getbasetemp(), data)
+    except ValueError as error:
+        assert 'r.yaml: ' in str(error)
+    else:
+        assert read.rules and '/rosout' not in read.nodes

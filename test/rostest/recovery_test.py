@@ -1,0 +1,252 @@
+#!/usr/bin/python3
+"""The recovery beside a robot whose laser driver hangs."""
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import tempfile
+import time
+from contextlib import contextmanager
+from typing import Any, Dict, Iterator, List, Optional
+
+import rospy
+import rostest
+import yaml
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from std_srvs.srv import Trigger, TriggerRequest, TriggerResponse
+
+from live_system import MonitorListener, Process, again_if_clock_was_set, await_condition, pid_of
+from monitor_case import MonitorCase
+from self_awareness.msg import RecoveryAction, RecoveryActions
+from self_awareness.srv import Maintenance, MaintenanceResponse
+from self_awareness_follow_me.scenario import load_scenario
+
+PLAYER, RECOVERY = '/player', '/self_awareness_recovery'
+BACK_WITHIN_S = 5.0
+"""From the alarm, besides the delay of the rules."""
+STOP = {'stop': [PLAYER]}
+
+
+class Heard:
+    """When /player was last heard [s of time.monotonic()]."""
+
+    def __init__(self) -> None:
+        self.at = 0.0
+        rospy.Subscriber('/scan', rospy.AnyMsg, self._on_scan)
+
+    def _on_scan(self, _: rospy.AnyMsg) -> None:
+        self.at = time.monotonic()
+
+
+class RecoveryListener:
+    """Keeps what the recovery says."""
+
+    def __init__(self) -> None:
+        self.actions: List[RecoveryAction] = []
+        self.statuses: List[DiagnosticStatus] = []
+        self._subscribers = [
+            rospy.Subscriber(RECOVERY + '/actions', RecoveryActions, self._on_actions),
+            rospy.Subscriber('/diagnostics', DiagnosticArray, self._on_diagnostics)]
+
+    def close(self) -> None:
+        for subscriber in self._subscribers:
+            subscriber.unregister()
+
+    def await_status(self, level: int, words: str, within_s: float = 40) -> DiagnosticStatus:
+        """Waits for a status from now on."""
+        seen = len(self.statuses)
+        return await_condition('{} with {}'.format(level, words), lambda: next(
+            (each for each in self.statuses[seen:]
+             if each.level == level and words in each.message), None), within_s)
+
+    def _on_actions(self, message: RecoveryActions) -> None:
+        self.actions = message.actions
+
+    def _on_diagnostics(self, array: DiagnosticArray) -> None:
+        self.statuses += [each for each in array.status if each.name == RECOVERY[1:]
+                          + ': recovery']
+
+
+class RecoveryTest(MonitorCase):
+
+    bags: str
+    trained: str
+    heard: Heard
+    robot: Process
+
+    @classmethod
+    def setUpClass(cls) -> None:
+        cls.bags = tempfile.mkdtemp()
+        cls.trained = os.path.join(cls.bags, 'robot.model')
+        for command in (('simulate', '-o', cls.bags, '--duration', '120', '--runs', '2'),
+                        ('train', os.path.join(cls.bags, 'normal_1.bag'),
+                         os.path.join(cls.bags, 'normal_2.bag'), '-o', cls.trained)):
+            done = subprocess.run(('rosrun', 'self_awareness', *command), text=True,
+                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+            assert done.returncode == 0, done.stdout
+        cls.heard = Heard()
+        cls.robot = Process('roslaunch', '--wait', 'self_awareness', 'follow_me.launch',
+                            'respawn:=true')
+
+    @classmethod
+    def tearDownClass(cls) -> None:
+        cls.robot.stop()
+        shutil.rmtree(cls.bags)
+
+    def rules(self, *steps: Dict[str, Any], **changed: Any) -> str:
+        values = {'delay': 0.5, 'wait': 30.0, 'grace': 1.0, **changed, 'rules': [
+            {'component': PLAYER, 'kinds': ['died'], 'steps': list(steps)}]}
+        with open(self.path('rules.yaml'), 'w') as file:
+            yaml.safe_dump(values, file)
+        return file.name
+
+    def recovery(self, rules: str) -> Process:
+        """Needs a monitor: where that keeps its incidents is read once."""
+        await_condition('the monitor', lambda: rospy.has_param(
+            '/self_awareness/recorder/directory'), 20)
+        return Process('rosrun', 'self_awareness', 'recovery.py', rules)
+
+    def await_player(self) -> None:
+        begin = time.monotonic()
+        await_condition('/player is heard', lambda: self.heard.at > begin, 60)
+
+    @contextmanager
+    def recovering(self, rules: str) -> Iterator[RecoveryListener]:
+        """Monitor and recovery; when the block begins, all is well and known."""
+        self.await_player()
+        with self.monitor(self.trained, detector='evidence', settle_time=3), \
+                MonitorListener() as monitor, self.recovery(rules):
+            self.said = monitor
+            listener = RecoveryListener()
+            try:
+                monitor.await_settled()
+                listener.await_status(DiagnosticStatus.OK, 'watches 1 components')
+                yield listener
+            finally:
+                listener.close()
+
+    @contextmanager
+    def hung(self) -> Iterator[int]:
+        """The process of /player, stopped; it goes on if it is still there at the end."""
+        pid = pid_of(PLAYER)
+        os.kill(pid, signal.SIGSTOP)
+        try:
+            yield pid
+        finally:
+            try:
+                os.kill(pid, signal.SIGCONT)
+            except ProcessLookupError:
+                pass
+
+    def hold(self, duration: float) -> MaintenanceResponse:
+        return rospy.ServiceProxy(RECOVERY + '/hold', Maintenance)(duration)
+
+    def test_it_is_not_started_with_rules_that_it_cannot_use(self) -> None:
+        done = subprocess.run(
+            ('rosrun', 'self_awareness', 'recovery.py', self.rules({'stop': ['/.*']})),
+            stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, timeout=60)
+        self.assertEqual(done.returncode, 1)
+        self.assertIn('rules.yaml: rules[0].steps[0].stop: ', done.stderr)
+        self.assertIn('patterns are not allowed; give each full name', done.stderr)
+
+    @again_if_clock_was_set
+    def test_who_hangs_is_back_within_5_s_of_the_alarm_and_nobody_else_is_touched(self) -> None:
+        others = ['/' + spec.name for spec in load_scenario().components
+                  if '/' + spec.name != PLAYER]
+        with self.recovering(self.rules(STOP)) as recovery:
+            before = {node: pid_of(node) for node in others}
+            with self.hung():
+                onset = time.monotonic()
+                alarm = self.said.await_alarm()
+                raised = time.monotonic()
+                back = await_condition('/player is back', lambda: (
+                    self.heard.at if self.heard.at > raised else None), 40)
+            rospy.loginfo('alarm after %.2f s, back %.2f s later', raised - onset, back - raised)
+            self.assertEqual(alarm.component, PLAYER)
+            self.assertLess(back - raised, 0.5 + BACK_WITHIN_S)
+            action: Optional[RecoveryAction] = await_condition('the action is over', lambda: next(
+                (each for each in recovery.actions if each.over), None), 20)
+            self.assertTrue(action.success, action.result)
+            self.assertEqual((action.incident, action.component, action.kind, action.step,
+                              action.action, action.result),
+                             (alarm.alarm, PLAYER, 'died', 1, 'stop /player',
+                              '/player ended by SIGKILL, since it hangs'))
+            status = recovery.await_status(DiagnosticStatus.OK, '1 actions so far')
+            self.assertIn('stop /player', {each.key: each.value for each in status.values}[
+                'action 1'])
+            self.assertEqual({node: pid_of(node) for node in others}, before)
+            shown = json.loads(subprocess.run(
+                ('rosrun', 'self_awareness', 'incidents', '--json', '--file',
+                 self.path('recorder/self_awareness.incidents')), text=True, check=True,
+                stdout=subprocess.PIPE).stdout)
+            self.assertEqual([[did['action'] for did in each['actions']] for each in shown
+                              if each['id'] == alarm.alarm], [['stop /player']])
+
+    @again_if_clock_was_set
+    def test_what_does_not_help_stops_at_its_limit_and_says_so(self) -> None:
+        calls: List[float] = []
+
+        def on_call(_: TriggerRequest) -> TriggerResponse:
+            calls.append(time.monotonic())
+            return TriggerResponse(True, 'no change')
+
+        service = rospy.Service('/does_not_help', Trigger, on_call)
+        self.addCleanup(service.shutdown)
+        rules = self.rules({'call': '/does_not_help'}, limit=2, wait=1.0)
+        with self.recovering(rules) as recovery:
+            with self.hung() as pid:
+                status = recovery.await_status(DiagnosticStatus.ERROR, 'gave up on /player', 60)
+                self.assertIn('2 actions in an hour, which is the limit', status.message)
+                self.assertEqual([each.result for each in recovery.actions],
+                                 ['/does_not_help says: no change'] * 2)
+                recovery.await_status(DiagnosticStatus.ERROR, 'gave up on /player')
+                self.assertEqual(state_of(pid), 'T', 'nobody touched it')
+            self.assertEqual(len(calls), 2)
+            recovery.await_status(DiagnosticStatus.OK, '2 actions so far', 60)
+
+    @again_if_clock_was_set
+    def test_nothing_is_done_while_it_is_held_also_by_another_start_of_it(self) -> None:
+        rules = self.rules(STOP)
+        with self.recovering(rules):
+            self.assertIn('from 1 to 86400 s', self.hold(1e9).message)
+            self.assertIn('does nothing until', self.hold(600.0).message)
+            await_condition('it is kept', lambda: os.path.exists(
+                self.path('recorder/self_awareness.actions')), 20)
+        with self.monitor(self.trained, detector='evidence', settle_time=3), \
+                MonitorListener() as monitor, self.recovery(rules):
+            recovery = RecoveryListener()
+            self.addCleanup(recovery.close)
+            monitor.await_settled()
+            recovery.await_status(DiagnosticStatus.WARN, 'does nothing until')
+            with self.hung() as pid:
+                monitor.await_alarm()
+                recovery.await_status(DiagnosticStatus.WARN, 'does nothing until')
+                self.assertEqual((recovery.actions, state_of(pid)), ([], 'T'))
+                self.assertEqual(self.hold(0.0).message, 'goes on')
+                await_condition('then it is done', lambda: any(
+                    each.success for each in recovery.actions), 40)
+
+    @again_if_clock_was_set
+    def test_a_dry_run_says_what_it_would_do(self) -> None:
+        with self.recovering(self.rules(STOP, dry_run=True)) as recovery:
+            with self.hung() as pid:
+                await_condition('it is told', lambda: any(
+                    each.over for each in recovery.actions), 40)
+                action = recovery.actions[0]
+                self.assertEqual((action.dry_run, action.action, action.result),
+                                 (True, 'stop /player', 'nothing, since this is a dry run'))
+                self.assertEqual(state_of(pid), 'T')
+
+
+def state_of(pid: int) -> str:
+    """The state of a process: T, it is stopped."""
+    with open('/proc/{}/stat'.format(pid)) as file:
+        return file.read().rsplit(') ', 1)[1].split()[0]
+
+
+if __name__ == '__main__':
+    rospy.init_node('recovery_test')
+    rostest.rosrun('self_awareness', 'recovery', RecoveryTest)
