@@ -43,6 +43,7 @@ def as_values(alarm: Alarm, event_types: List[EventType], origin: int) -> Dict[s
         'busy': alarm.busy,
         'silent': None if alarm.silent is None else {
             'hosts': alarm.silent.hosts, 'components': alarm.silent.components,
+            'others_go_on': alarm.silent.others_go_on,
             'since_s': _seconds(alarm.silent.since, origin)},
         'suspects': suspects(alarm.suspects),
         'later': suspects(alarm.later),

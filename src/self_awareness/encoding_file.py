@@ -1,7 +1,7 @@
 """Reads an encoding file: how messages become events (config/encoding.yaml is an example)."""
 from __future__ import annotations
 
-from typing import Any, Dict
+from typing import Any, Dict, List, Tuple
 
 from self_awareness import EncodingRules, yaml_file
 from self_awareness.yaml_section import Section, shown
@@ -23,6 +23,8 @@ def load(path: str) -> EncodingRules:
     with Section({} if data is None else data, path) as section:
         if 'source' in section:
             rules.source = section.text('source', 'callerid|none')
+        if 'rename' in section:
+            rules.rename = _renames(section, data['rename'])
         for key in _LISTS:
             if key in section:
                 setattr(rules, key, _patterns(section, key, data[key]))
@@ -33,8 +35,24 @@ def load(path: str) -> EncodingRules:
 
 def values(rules: EncodingRules) -> Dict[str, Any]:
     """Return rules by their keys in an encoding file."""
-    return {'source': rules.source, **{key: list(getattr(rules, key)) for key in _LISTS},
+    return {'source': rules.source, 'rename': [list(rename) for rename in rules.rename],
+            **{key: list(getattr(rules, key)) for key in _LISTS},
             'type_fields': dict(rules.type_fields)}
+
+
+def _renames(section: Section, value: Any) -> List[Tuple[str, str]]:
+    if not isinstance(value, list) or not all(
+            isinstance(rule, list) and len(rule) == 2 and
+            all(isinstance(text, str) for text in rule) for rule in value):
+        section.fail('rename', 'expected a list of pairs, each of a regular expression and the '
+                               f'name that takes its place, found {shown(value)}')
+    probe = EncodingRules()
+    probe.rename = [(pattern, name) for pattern, name in value]
+    try:
+        probe.validate()
+    except ValueError as error:
+        section.fail('rename', str(error))
+    return probe.rename
 
 
 def _patterns(section: Section, key: str, value: Any) -> Any:

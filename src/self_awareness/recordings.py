@@ -10,10 +10,10 @@ from typing import Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, 
 
 import numpy as np
 
-from self_awareness import (LEAST_KNOWN, LONGEST_SILENCE, BagError, EventType, ModelFileError,
-                            RecordedEvents, Recording, ResultBag, TrainedModel, Waiting,
-                            find_clock_steps, progress, read_events, recordings_in_event_log,
-                            summarise_bag)
+from self_awareness import (LEAST_KNOWN, LONGEST_SILENCE, BagError, EncodingRules, EventType,
+                            ModelFileError, RecordedEvents, Recording, ResultBag, TrainedModel,
+                            Waiting, find_clock_steps, missing_subscriptions, progress,
+                            read_events, recordings_in_event_log, summarise_bag)
 from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness.training.robot_graph import RobotGraph
 
@@ -34,6 +34,7 @@ class BagPart:
         recording: its number in an event log, from 0; None: the file is a bag, or expand() has not
             looked at it yet.
         alone: it is the only recording of its file.
+        robot: of which it is a recording, where the file does not say it; empty: not known.
     """
 
     path: str
@@ -41,6 +42,7 @@ class BagPart:
     end: Optional[float] = None
     recording: Optional[int] = None
     alone: bool = True
+    robot: str = ''
 
     @classmethod
     def parse(cls, text: str) -> BagPart:
@@ -96,6 +98,12 @@ def expand(parts: Iterable[BagPart]) -> List[BagPart]:
             for recording in _recordings_of(replace(part, path=path))]
 
 
+def by_folder(parts: Iterable[BagPart]) -> List[BagPart]:
+    """Return recordings as those of the robots that their folders are called after."""
+    return [replace(part, robot=os.path.basename(os.path.dirname(os.path.abspath(part.path))))
+            for part in parts]
+
+
 def files(path: str) -> List[str]:
     """Return the bags of a folder, by name, or the path of a file as it is.
 
@@ -149,10 +157,15 @@ class RecordingEvents:
         copied: so it is, and it is a copy of a recording.
         bag: what the file is called, or the bag that an event log was made of.
         robot_start: when the robot was started [ns]; 0: not known.
+        robot: its name; empty: not known.
         clock_steps: stamps of the first events after the clock was set forward [ns].
         waiting: how the machine was, one stretch of time after the other; empty: not known.
         left_out: why some connections of a bag are no events, whatever the encoding.
         hosts: computers of sources, as an event log says.
+        missing: which of the subscriptions that the model expects, from a time [ns] on each, as
+            an event log says.
+        attributes: of the messages, uint32, one for each stamp (docs/attributes.md); None: not
+            known.
     """
 
     part: BagPart
@@ -166,22 +179,27 @@ class RecordingEvents:
     copied: bool = False
     bag: str = ''
     robot_start: int = 0
+    robot: str = ''
     clock_steps: Sequence[int] = ()
     waiting: Sequence[Waiting] = ()
     left_out: Tuple[str, ...] = ()
     hosts: Mapping[str, str] = field(default_factory=dict)
+    missing: Sequence[Tuple[int, Set[Tuple[str, str]]]] = ()
+    attributes: Optional[np.ndarray] = None
 
     @classmethod
-    def of(cls, part: BagPart, events: RecordedEvents) -> RecordingEvents:
-        """Return the events that were read for a part."""
+    def of(cls, part: BagPart, events: RecordedEvents,
+           encoding: EncodingRules) -> RecordingEvents:
+        """Return the events that were read for a part, by an encoding."""
         summary = events.summary
         _, end = part.span(summary.start, summary.end)
         return cls(part, events.event_types, events.stamps, events.ids, summary.start, end,
                    summary.fingerprint, summary.one_sender_a_topic, summary.copied, summary.bag,
-                   summary.robot_start,
+                   summary.robot_start, summary.robot or part.robot,
                    () if summary.clock_watched else find_clock_steps(events.stamps, events.ids),
                    events.waiting, tuple(summary.left_out),
-                   RobotGraph(*summary.graph).hosts_of_sources())
+                   RobotGraph(*summary.graph).hosts_of_sources(encoding),
+                   attributes=events.attributes)
 
     @cached_property
     def heard(self) -> np.ndarray:
@@ -199,6 +217,7 @@ class RecordingEvents:
         recording.events = int(((self.stamps >= start) & (self.stamps <= end)).sum())
         recording.fingerprint = self.fingerprint
         recording.robot_start = self.robot_start
+        recording.robot = self.robot
         return recording
 
 
@@ -216,7 +235,9 @@ def read(model: TrainedModel, part: BagPart) -> RecordingEvents:
                                  part.end, update, part.recording)
         except ValueError as error:
             raise ValueError(f'{part}: {error}') from error
-    recording = RecordingEvents.of(part, events)
+    recording = replace(
+        RecordingEvents.of(part, events, model.encoding), missing=missing_subscriptions(
+            events.summary, model.encoding, model.subscriptions))
     _check(model, recording, events.summary.has_sources)
     try:
         check_windows(events.stamps, model.window)

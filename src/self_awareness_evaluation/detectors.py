@@ -77,7 +77,8 @@ class Evidence:
         learner = Learner(self._tuning, self._graph)
         for recording in recordings:
             learner.add(recording.event_types, recording.stamps, recording.ids,
-                        recording.fingerprint)
+                        recording.fingerprint, robot=recording.robot,
+                        attributes=recording.attributes)
         self._trained = learner.learn()
         self._model = EvidenceModel(self._trained)
 
@@ -87,7 +88,9 @@ class Evidence:
         encoded = [recording.encoded(trained.event_types) for recording in recordings]
         trained.calibration, = limits.find(
             trained, DetectorParameters().settle_time, [self._budget],
-            [HeldOut(recording.stamps, recording.ids) for recording in encoded])
+            [HeldOut(recording.stamps, recording.ids, robot=recording.robot,
+                     attributes=recording.attributes)
+             for recording in encoded])
 
     def judge(self, recording: WindowedEvents) -> Judged:
         """Judge a recording."""
@@ -114,7 +117,8 @@ class Evidence:
         # - 1, because the window in which the recording ends is the last one.
         model: EvidenceModel = required(self._model, self.name, 'train')
         return judge_by_evidence(trained, model, parameters, encoded.stamps,
-                                 encoded.ids, encoded.end - 1, encoded.event_types)
+                                 encoded.ids, encoded.end - 1, encoded.event_types,
+                                 attributes=encoded.attributes)
 
 
 def _counted(recordings: Sequence[WindowedEvents]) -> TrainedModel:

@@ -19,8 +19,10 @@ from self_awareness_evaluation.compare import report as compare
 from self_awareness_evaluation.families import experiment as families, report as families_report
 from self_awareness_evaluation.families.kinds import FAMILIES
 from self_awareness_evaluation.families.protocol import KINDS, Learning
+from self_awareness_evaluation.fleet import command as fleet
 from self_awareness_evaluation.page_section import write_section
 from self_awareness_evaluation.recordings import outages, report as recordings_report
+from self_awareness_evaluation.recovery import arguments as recovery_arguments
 from self_awareness_evaluation.simulated import experiment, report
 from self_awareness_evaluation.simulated.experiment import Plan
 from self_awareness_evaluation.simulated.records import default_faults
@@ -128,6 +130,20 @@ def _soak(arguments: argparse.Namespace, command: str) -> None:
         print(f'written: {path}')
 
 
+def _recovery(arguments: argparse.Namespace, command: str) -> None:
+    from self_awareness_evaluation.recovery import report as recovery_report
+    from self_awareness_evaluation.recovery import session
+    _clean_up_when_terminated()
+    plan = session.RecoveryPlan(arguments.times, arguments.minutes, arguments.seed,
+                                arguments.speed, arguments.training)
+    with _folder(arguments.recordings) as folder:
+        recovered = session.run(plan, folder)
+    print(f'written: {recovery_report.write(arguments.output, plan, recovered, command)}')
+    failures = recovery_report.failures(recovered)
+    if failures:
+        raise ValueError('; '.join(failures))
+
+
 def _pages(arguments: argparse.Namespace, command: str) -> None:
     del command
     print('\n'.join(pages.check(arguments.docs)))
@@ -187,6 +203,11 @@ def parser() -> argparse.ArgumentParser:
         description='Leaves out channel after channel, switches off rule after rule, halves and '
         'doubles number after number, and judges the same robots and recordings each time. What '
         'is done is kept: the same command goes on where it was interrupted.'))
+    fleet.add(parts.add_parser(
+        'fleet', help='robots of one make: learned on some, watching another',
+        description='Two models of a robot that is watched for hours and whose components crash '
+        'in turn: one is learned on other robots of its make, one on as many recordings of its '
+        'own.'))
     compare.add(parts.add_parser(
         'compare', help='two versions side by side, by what the same commands measured',
         description='Writes a page about two folders that families, simulated or recordings wrote '
@@ -208,6 +229,14 @@ def parser() -> argparse.ArgumentParser:
         'the monitor, and lets faults drawn by the seed hit the robot. It fails if one is missed, '
         'if an alarm comes without one, or if the memory of the monitor grows. scripts/soak.sh '
         'runs this.'))
+    recovery = parts.add_parser(
+        'recovery', help='the same robot with a recovery: what hangs, and what is restarted',
+        description='Lets the laser driver hang again and again, then faults at random hit the '
+        'robot. It fails if the driver is not back in time, or if a healthy node is restarted. '
+        'scripts/recovery.sh runs this.')
+    recovery.set_defaults(work=_recovery)
+    recovery_arguments.add(recovery)
+    _add_folder(recovery)
     _add_pages(parts.add_parser(
         'pages', help='which pages were measured with an older method',
         description='Lists the pages that a measurement wrote, with the version of the method, '

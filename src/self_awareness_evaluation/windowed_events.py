@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import zlib
 from dataclasses import dataclass
-from typing import Callable, Dict, Hashable, List, Sequence, TypeVar
+from typing import Callable, Dict, Hashable, List, Optional, Sequence, TypeVar
 
 import numpy as np
 
@@ -24,12 +24,16 @@ class WindowedEvents:
         stamps: int64 [ns], at least one.
         ids: uint32, one for each stamp.
         end: the recording lasts until then [ns], exclusive, whether something comes or not.
+        robot: its name; empty: there is one only.
+        attributes: of the messages, uint32, one for each stamp; None: not known.
     """
 
     event_types: Sequence[EventType]
     stamps: np.ndarray
     ids: np.ndarray
     end: int
+    robot: str = ''
+    attributes: Optional[np.ndarray] = None
 
     def encoded(self, vocabulary: Sequence[EventType]) -> WindowedEvents:
         """Return the same recording with the types of a vocabulary first, as the bag reader does.
@@ -39,7 +43,8 @@ class WindowedEvents:
         ids = {event_type: index for index, event_type in enumerate(vocabulary)}
         translation = np.array([ids.setdefault(event_type, len(ids))
                                 for event_type in self.event_types], dtype=np.uint32)
-        return WindowedEvents(list(ids), self.stamps, translation[self.ids], self.end)
+        return WindowedEvents(list(ids), self.stamps, translation[self.ids], self.end,
+                              self.robot, self.attributes)
 
     @property
     def fingerprint(self) -> int:
@@ -60,7 +65,9 @@ class WindowedEvents:
         first = int(self.stamps[0])
         end = first + round((self.end - first) * share)
         inside = self.stamps < end
-        return WindowedEvents(self.event_types, self.stamps[inside], self.ids[inside], end)
+        attributes = None if self.attributes is None else self.attributes[inside]
+        return WindowedEvents(self.event_types, self.stamps[inside], self.ids[inside], end,
+                              self.robot, attributes)
 
 
 def vocabulary(recordings: Sequence[WindowedEvents]) -> List[EventType]:

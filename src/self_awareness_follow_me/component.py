@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import random
 from collections import defaultdict, deque
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Callable, Deque, Dict, List, Optional, Union
 
 from self_awareness.stamps import nanoseconds
@@ -18,19 +18,29 @@ from self_awareness_follow_me.component_spec import (ComponentSpec, Hypothesis, 
 
 @dataclass(frozen=True)
 class Message:
-    """What is exchanged; `stamp` is the header stamp (ns, by the clock of the host it is from)."""
+    """What is exchanged.
+
+    Args:
+        topic: where.
+        stamp: of the header (ns, by the clock of the host it is from).
+        value: what it says, as far as the scenario cares.
+        content: when it was made (ns): what the scenario does not care for follows from it. The
+            same: the same bytes. None: it is empty.
+    """
 
     topic: str
     stamp: int
     value: Optional[Value] = None
+    content: Optional[int] = 0
 
 
 @dataclass(frozen=True)
 class Publish:
-    """Request: publish the message `delay` ns from now."""
+    """Request: publish the message `delay` ns from now; if it is `lost`, only count it."""
 
     message: Message
     delay: int = 0
+    lost: bool = False
 
 
 @dataclass(frozen=True)
@@ -86,6 +96,7 @@ class Component:
         self._received_at: Dict[str, int] = {}
         self._counts: Dict[int, int] = defaultdict(int)
         self._ticks: Dict[int, int] = {}
+        self._published: Dict[str, Message] = {}
         self._views = {i: _View(task.in_view, rng) for i, task in enumerate(spec.tasks)
                        if task.in_view}
         self._tracks = {i: _Track(task.hypothesis) for i, task in enumerate(spec.tasks)
@@ -132,8 +143,9 @@ class Component:
         """Handle the end of the work that was asked for last."""
         requests = self._adapt(now)
         step = self._steps.popleft()
-        message = Message(step.output.topic, step.stamp, self._value(step))
-        requests += [Publish(message, nanoseconds(self._spec.delay))] * step.output.copies
+        message = self._message(step, now)
+        requests += [Publish(message, nanoseconds(self._spec.delay), self._is_lost())
+                     for _ in range(step.output.copies)]
         return requests + (self._work() if self._steps else self._next(now))
 
     def _adapt(self, now: int) -> List[Request]:
@@ -189,6 +201,20 @@ class Component:
         if need.stamps_within is not None:
             return abs(newest.stamp - stamp) <= nanoseconds(need.stamps_within)
         return newest.value in (need.one_of or ())
+
+    def _message(self, step: _Step, now: int) -> Message:
+        message = Message(step.output.topic, step.stamp, self._value(step),
+                          None if self._spec.empty else now)
+        before = self._published.get(message.topic, message)
+        if self._spec.stale:
+            message = replace(message, stamp=before.stamp)
+        if self._spec.frozen:
+            message = replace(message, value=before.value, content=before.content)
+        self._published[message.topic] = message
+        return message
+
+    def _is_lost(self) -> bool:
+        return self._spec.lost > 0.0 and self._rng.random() < self._spec.lost
 
     def _value(self, step: _Step) -> Optional[Value]:
         if step.action is not None:

@@ -124,7 +124,9 @@ class Task:
 class ComponentSpec:
     """One component: a ROS node of that name on one of the hosts.
 
-    What it publishes leaves it `delay` seconds late, which is 0 unless there is a fault.
+    Faults set the rest: what it publishes leaves it `delay` seconds late; a share of it, `lost`,
+    never does, but is counted. Messages that are `stale` have the stamp of the one before, those
+    that are `frozen` all else of it, and those that are `empty` have nothing but a header.
     """
 
     name: str
@@ -132,6 +134,10 @@ class ComponentSpec:
     tasks: Tuple[Task, ...]
     hears: Tuple[str, ...] = ()
     delay: float = 0.0
+    lost: float = 0.0
+    stale: bool = False
+    frozen: bool = False
+    empty: bool = False
 
     def inputs(self) -> Tuple[str, ...]:
         """Return the topics that the component subscribes to, each once."""

@@ -144,6 +144,44 @@ class Disorder(Change):
         return replace(spec, tasks=tuple(_reversed(task) for task in spec.tasks))
 
 
+class Staleness(Change):
+    """The stamps stop; the messages come as always."""
+
+    def _changed(self, spec: ComponentSpec) -> ComponentSpec:
+        return replace(spec, stale=True)
+
+
+class Freeze(Change):
+    """Every message says what the one before said; the stamps go on."""
+
+    def _changed(self, spec: ComponentSpec) -> ComponentSpec:
+        return replace(spec, frozen=True)
+
+
+class Emptiness(Change):
+    """The lists in the messages have no elements: a scan without ranges, an image without data."""
+
+    def _changed(self, spec: ComponentSpec) -> ComponentSpec:
+        return replace(spec, empty=True)
+
+
+@dataclass(frozen=True)
+class Loss(Change):
+    """A share of the messages gets lost on the way out, after it was counted."""
+
+    share: float
+
+    def _changed(self, spec: ComponentSpec) -> ComponentSpec:
+        return replace(spec, lost=self.share)
+
+
+class Deafness(Change):
+    """A component does not subscribe to the first topic of those that it only `hears`."""
+
+    def _changed(self, spec: ComponentSpec) -> ComponentSpec:
+        return replace(spec, hears=spec.hears[1:])
+
+
 @dataclass(frozen=True)
 class Novelty(Change):
     """A component publishes what it always does, and messages that were never seen before."""
@@ -166,6 +204,7 @@ class Faults:
     extra: Intruder
     order: Disorder
     unknown: Novelty
+    lossy: Loss
 
 
 def _halved(task: Task) -> Task:

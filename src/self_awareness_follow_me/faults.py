@@ -9,7 +9,9 @@ from dataclasses import dataclass, replace
 from typing import Callable, Dict, Optional, Tuple
 
 from self_awareness_follow_me.component_spec import ComponentSpec
-from self_awareness_follow_me.effects import Crash, DoubleRate, Effect, HalfRate, Silence
+from self_awareness_follow_me.effects import (Crash, Deafness, DoubleRate, Effect, Emptiness,
+                                              Freeze, HalfRate, Silence, Staleness)
+from self_awareness_follow_me.messages import MessageType
 from self_awareness_follow_me.scenario import Scenario
 
 INDUCED_FAULT = 'induced_fault'
@@ -47,7 +49,7 @@ def in_short(kind: str) -> str:
 
 def described() -> str:
     """Return the table of all faults, a line each, for the help of a program."""
-    return '\n'.join(f'  {form:19}{kind.text}' for form, kind in zip(forms(), _KINDS.values()))
+    return '\n'.join(f'  {form:23}{kind.text}' for form, kind in zip(forms(), _KINDS.values()))
 
 
 def forms() -> Tuple[str, ...]:
@@ -93,6 +95,26 @@ def _double_rate(_: Scenario, spec: ComponentSpec) -> DoubleRate:
     return DoubleRate((spec.name,))
 
 
+def _staleness(_: Scenario, spec: ComponentSpec) -> Staleness:
+    if not any(MessageType(output.datatype).has_stamp for output in spec.outputs().values()):
+        raise ValueError(f'no message of {spec.name!r} has a stamp; choose another component')
+    return Staleness((spec.name,))
+
+
+def _emptiness(_: Scenario, spec: ComponentSpec) -> Emptiness:
+    if not any(MessageType(output.datatype).has_list for output in spec.outputs().values()):
+        raise ValueError(f'no message of {spec.name!r} has a list that can be empty; choose '
+                         'another component')
+    return Emptiness((spec.name,))
+
+
+def _deafness(_: Scenario, spec: ComponentSpec) -> Deafness:
+    if not spec.hears:
+        raise ValueError(f'{spec.name!r} hears nothing that it could miss and go on; choose '
+                         'another component')
+    return Deafness((spec.name,))
+
+
 _KINDS: Dict[str, _Kind] = {
     'cc1': _Kind("the laser's driver dies (paper)", lambda robot: robot.faults.cc1),
     'cc2': _Kind('slam dies (paper)', lambda robot: robot.faults.cc2),
@@ -109,6 +131,13 @@ _KINDS: Dict[str, _Kind] = {
     'order': _Kind('a component publishes in reversed order', lambda robot: robot.faults.order),
     'unknown': _Kind('a component publishes what was never seen before',
                      lambda robot: robot.faults.unknown),
+    'stale': _Kind('a component repeats a stamp for ever, at an unchanged rate', of=_staleness),
+    'lossy': _Kind('a share of what a component publishes gets lost',
+                   of=lambda robot, spec: replace(robot.faults.lossy, components=(spec.name,))),
+    'empty': _Kind('scans, images and lists of a component are empty', of=_emptiness),
+    'freeze': _Kind('a component says the same for ever, with new stamps',
+                    of=lambda _, spec: Freeze((spec.name,))),
+    'unsubscribed': _Kind('a component does not subscribe to one of its topics', of=_deafness),
 }
 
 

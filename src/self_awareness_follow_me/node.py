@@ -14,7 +14,7 @@ import queue
 import random
 import time
 from functools import partial
-from typing import Any, Callable, List, NamedTuple, Optional, Tuple
+from typing import Any, Callable, Dict, List, NamedTuple, Optional, Tuple
 
 import rospy
 
@@ -58,15 +58,15 @@ class ComponentNode:
             topic: rospy.Publisher(topic, self._types[topic].message_class, latch=output.latch,
                                    queue_size=_QUEUE_SIZE, tcp_nodelay=True)
             for topic, output in spec.outputs().items()}
-        self._subscribers = [
-            rospy.Subscriber(topic, self._types[topic].message_class, self._received, topic,
-                             queue_size=_QUEUE_SIZE, tcp_nodelay=True)
-            for topic in spec.inputs()]
+        self._spec: Optional[ComponentSpec] = None
+        self._subscribers: Dict[str, rospy.Subscriber] = {}
+        self._subscribe(spec)
 
     def spin(self) -> None:
         """Run until ROS shuts down."""
         self._handle(self._component.start(self._now()))
         while not rospy.is_shutdown():
+            self._subscribe(self._fault.spec_at(self._now()))
             wait_s = _PATIENCE_S
             if self._due:
                 wait_s = min(wait_s, (self._due[0][0] - self._now()) / SECOND_NS)
@@ -79,6 +79,20 @@ class ComponentNode:
             except queue.Empty:
                 continue
             self._handle(self._component.receive(self._now(), message))
+
+    def _subscribe(self, spec: ComponentSpec) -> None:
+        """Subscribe to the topics that a component which does this needs, and to no others."""
+        if spec is self._spec:
+            return
+        self._spec = spec
+        topics = spec.inputs()
+        for topic in set(self._subscribers) - set(topics):
+            self._subscribers.pop(topic).unregister()
+        for topic in topics:
+            if topic not in self._subscribers:
+                self._subscribers[topic] = rospy.Subscriber(
+                    topic, self._types[topic].message_class, self._received, topic,
+                    queue_size=_QUEUE_SIZE, tcp_nodelay=True)
 
     def _handle(self, requests: List[Request]) -> None:
         for request in requests:
@@ -100,13 +114,19 @@ class ComponentNode:
     def _publish(self, request: Publish) -> None:
         if request.delay > 0:
             self._push(self._now() + request.delay,
-                       partial(self._send, message=request.message))
+                       partial(self._send, request=request))
         else:
-            self._send(self._now(), request.message)
+            self._send(self._now(), request)
 
-    def _send(self, _: int, message: Message) -> List[Request]:
+    def _send(self, _: int, request: Publish) -> List[Request]:
+        message = request.message
+        publisher = self._publishers[message.topic]
+        if request.lost:
+            # As where a queue is full: the header's number goes on.
+            publisher.impl.seq += 1
+            return []
         try:
-            self._publishers[message.topic].publish(self._types[message.topic].to_ros(message))
+            publisher.publish(self._types[message.topic].to_ros(message))
         except rospy.ROSException:
             # The publishers close first when ROS shuts down.
             if not rospy.is_shutdown():

@@ -19,7 +19,7 @@ from self_awareness.yaml_section import Section, SectionError
 from self_awareness_follow_me.component_spec import (ComponentSpec, Duration, Hypothesis, InView,
                                                      Need, Output, Task)
 from self_awareness_follow_me.effects import (ClockDrift, Crash, Disorder, Faults, Intruder,
-                                              Latency, Novelty, Starvation)
+                                              Latency, Loss, Novelty, Starvation)
 
 
 @dataclass(frozen=True)
@@ -205,8 +205,10 @@ def _faults(section: Section, components: Tuple[ComponentSpec, ...],
             _check_topics(unknown, replace(changed, tasks=(task,)), datatypes)
             for topic in [o.topic for o in task.publish if o.topic not in changed.outputs()]:
                 unknown.fail('task', f'{changed.name!r} does not publish {topic!r} otherwise')
+        with section.section('lossy') as lossy:
+            loss = Loss((), lossy.number('share', low=1e-6, high=1.0))
     return Faults(crashes[0], crashes[1], starvation, drift, latency, Intruder(intruder),
-                  Disorder((disordered.name,)), Novelty((changed.name,), task))
+                  Disorder((disordered.name,)), Novelty((changed.name,), task), loss)
 
 
 def _known(section: Section, key: str, name: str,

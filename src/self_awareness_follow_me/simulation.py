@@ -296,7 +296,7 @@ class _Robot:
         component = self._components[name]
         slowdown = self._effects.slowdown(now)
         if isinstance(request, Publish):
-            self._transmit(name, request.message, now + request.delay)
+            self._transmit(name, request, now + request.delay)
         elif isinstance(request, Wake):
             late = round(self._scenario.lateness.draw(self._rng) * slowdown)
             self._push(request.at + late,
@@ -305,9 +305,12 @@ class _Robot:
             done = now + round(request.takes * slowdown) + request.waits
             self._push(done, _Act(name, component.work_done))
 
-    def _transmit(self, name: str, message: Message, now: int) -> None:
+    def _transmit(self, name: str, request: Publish, now: int) -> None:
+        message = request.message
         topic = message.topic
         self._sequences[name, topic] += 1
+        if request.lost:
+            return
         arrival = self._arrival(name, topic, '', now)
         self._push(arrival, (arrival, '/' + name, message, self._sequences[name, topic]))
         for subscriber in self._subscribers[topic]:

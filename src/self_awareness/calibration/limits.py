@@ -27,16 +27,21 @@ class HeldOut:
     Args:
         robot_start: when the robot was started [ns]; 0: not known.
         clock_steps: where the clock was set forward [ns].
+        robot: its name; empty: not known.
+        attributes: of the messages; None: not known.
     """
 
     stamps: np.ndarray
     ids: np.ndarray
     robot_start: int = 0
     clock_steps: Sequence[int] = ()
+    robot: str = ''
+    attributes: Optional[np.ndarray] = None
 
     def judge(self, _: TrainedModel, calibrator: Calibrator) -> None:
         """Let it be judged."""
-        calibrator.add_held_out(self.stamps, self.ids, self.robot_start, list(self.clock_steps))
+        calibrator.add_held_out(self.stamps, self.ids, self.robot_start, list(self.clock_steps),
+                                self.robot, self.attributes)
 
 
 @dataclass(frozen=True)
@@ -69,7 +74,8 @@ class TrainedOn:
             known = {kind: index for index, kind in enumerate(trained.event_types)}
             ids = np.array([known[kind] for kind in events.event_types], np.uint32)[events.ids]
         calibrator.add_trained_on(events.stamps, ids, self.fingerprint, events.robot_start,
-                                  list(events.clock_steps))
+                                  list(events.clock_steps), events.robot,
+                                  events.attributes)
 
 
 def held_out(trained: TrainedModel, found_in: Iterable[RecordingEvents], settle_time: int,
@@ -88,7 +94,7 @@ def held_out(trained: TrainedModel, found_in: Iterable[RecordingEvents], settle_
     found_in = list(found_in)
     found = find(trained, settle_time, budgets,
                  [HeldOut(recording.stamps, recording.ids, recording.robot_start,
-                          recording.clock_steps)
+                          recording.clock_steps, recording.robot, recording.attributes)
                   for recording in found_in])
     for calibration in found:
         calibration.recordings = [recording.recording for recording in found_in]

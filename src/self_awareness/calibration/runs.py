@@ -134,8 +134,9 @@ def judge_runs(judge: Judge, window: int, runs: Sequence[Run]) -> List[JudgedRun
     """Let a detector judge runs in windows of a length [ns]."""
     judged = []
     for run in progress.each(runs, 'scoring'):
-        verdicts = judge(*run.events(), run.source.end,
-                         clock_steps=run.source.clock_steps)
+        # Nobody knows which attributes messages would have that a fault makes late or seldom.
+        verdicts = judge(*run.events(), run.source.end, clock_steps=run.source.clock_steps,
+                         attributes=None if run.injected else run.source.attributes)
         judged.append(JudgedRun(run, verdicts, np.nan_to_num(verdicts.score),
                                 _labels(run, verdicts, window)))
     return judged

@@ -11,7 +11,7 @@ from typing import Any, Dict, List, NamedTuple, Optional, Sequence, Tuple
 import numpy as np
 
 from self_awareness import (EVIDENCE_THRESHOLD, DetectorParameters, PaperCalibration, PaperModel,
-                            Roc, RocPoint, TrainedModel)
+                            Roc, RocPoint, TrainedModel, accepted_file)
 from self_awareness.calibration import confidence, holes, limits
 from self_awareness.calibration.fault_injection import (FORMS, InjectedFault, of_each_source,
                                                         of_known_source)
@@ -24,7 +24,7 @@ from self_awareness.calibration.threshold_rule import ThresholdRule
 from self_awareness.commands import cli
 from self_awareness.judging import evidence_judge, paper_judge
 from self_awareness.output_files import MODEL, PICTURE, TABLE, check_outputs, replacing
-from self_awareness.recordings import BagPart, RecordingEvents, expand
+from self_awareness.recordings import BagPart, RecordingEvents, by_folder, expand
 from self_awareness.reporting import coverage_text, csv_text, evidence_report
 from self_awareness.reporting.number_text import rounded
 from self_awareness.reporting.plots import save_roc
@@ -66,6 +66,8 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 def _calibrate(arguments: argparse.Namespace) -> None:
     parts = {option: expand(getattr(arguments, option)) for option in ('normal', 'faulty')}
+    if arguments.robots_by_folder:
+        parts = {option: by_folder(named) for option, named in parts.items()}
     bags = [part.path for part in parts['normal'] + parts['faulty']]
     check_outputs([(arguments.roc, PICTURE), (arguments.csv, TABLE)],
                   bags + [arguments.model, arguments.output])
@@ -93,7 +95,7 @@ def _calibrate(arguments: argparse.Namespace) -> None:
         evidence_report.print_verdict(trained, coverage)
         _say_holes(trained, normal)
         evidence_report.print_coverage(trained, coverage)
-        evidence_report.print_budgets(measured.by_budget, arguments.budget)
+        evidence_report.print_budgets(measured.by_budget)
         evidence_report.print_measured(measured.normal, measured.false_alarms)
         evidence_report.print_faults(measured.faulty)
         evidence_report.print_not_tried(silent)
@@ -110,6 +112,7 @@ def _calibrate(arguments: argparse.Namespace) -> None:
         save_roc(arguments.roc, f'ROC of windows of {trained.window / SECOND_NS:g} s',
                  [(result.fault, result.roc) for result in measured.faults], measured.point)
     trained.save(arguments.output)
+    accepted_file.keep(accepted_file.beside(arguments.model), arguments.output)
     print(f'written: {arguments.output}')
 
 
@@ -171,7 +174,8 @@ def _find_limits(arguments: argparse.Namespace, trained: TrainedModel,
     for calibration in found:  # the last one stays
         trained.calibration = calibration
         by_budget[calibration.budget] = coverage_text.summarise(trained.coverage())
-    judged = judge_runs(evidence_judge(trained, parameters), trained.window,
+    accepted = accepted_file.beside(arguments.model)
+    judged = judge_runs(evidence_judge(trained, parameters, accepted=accepted), trained.window,
                         [*normal_runs, *faulty_runs])
     normal, faulty = judged[:len(normal_runs)], judged[len(normal_runs):]
     normal_scores = _normal_scores(normal, faulty, parameters)
@@ -321,6 +325,7 @@ def _parser() -> argparse.ArgumentParser:
                              'found; see below')
     parser.add_argument('-o', '--output', required=True, metavar='MODEL',
                         help='file to write; may be the same model')
+    cli.add_robots_by_folder(parser)
     cli.add_detector_argument(parser)
     parser.add_argument('--budget', type=cli.budget, metavar='N', help='evidence: how many false '
                         f'alarms an hour you allow (default: {limits.BUDGET:g})')

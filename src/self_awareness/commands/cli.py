@@ -171,6 +171,13 @@ def add_detector_argument(parser: argparse.ArgumentParser) -> None:
                              'the score of Golombek et al. (default: evidence)')
 
 
+def add_robots_by_folder(parser: argparse.ArgumentParser) -> None:
+    """Add the option that says of which robot recordings are."""
+    parser.add_argument('--robots-by-folder', action='store_true',
+                        help='the recordings are of several robots, each called as the folder '
+                             'that it lies in; for those that do not name it themselves')
+
+
 def load_model(path: str, detector: str, watched_only: bool = False) -> TrainedModel:
     """Return the model of a file, which a detector is to judge by.
 

@@ -13,7 +13,7 @@ from self_awareness.commands import cli
 from self_awareness.judging import EVIDENCE
 from self_awareness.recordings import is_bag
 from self_awareness.reporting import histogram_text
-from self_awareness.reporting import (coverage_text, relations_text, tuning_text,
+from self_awareness.reporting import (coverage_text, relations_text, robots_text, tuning_text,
                                       unheard_text)
 from self_awareness.reporting.event_log_summary import summarise_event_log
 from self_awareness.reporting.evidence_report import counts
@@ -97,6 +97,7 @@ def _print_log(summary: Dict[str, Any]) -> None:
         start = recording['robot_start_ns']
         print(f'    #{number} {recording["bag"]}: {recording["duration"]:.1f} s, '
               f'{recording["events"]} events, from {moment(recording["start_ns"])}'
+              + ('' if recording['robot'] is None else f', of {recording["robot"]}')
               + ('' if start is None else f', robot started {moment(start)}')
               + (f', {recording["dropped"]} messages were dropped' if recording['dropped']
                  else ''))
@@ -145,6 +146,8 @@ def _print(summary: Dict[str, Any]) -> None:
 def _print_encoding(encoding: Dict[str, Any]) -> None:
     print('encoding')
     for key, value in encoding.items():
+        if key == 'rename':
+            value = [f'{pattern} to {name}' for pattern, name in value]
         if isinstance(value, dict):
             value = [f'{datatype}: {field}' for datatype, field in value.items()]
         print(f'  {key:<16}{", ".join(value) if isinstance(value, list) else value}'.rstrip())
@@ -184,7 +187,7 @@ def _print_evidence(evidence: Dict[str, Any], fewest_gaps: int) -> None:
         print(f'  not judged: {"; ".join(evidence["not_judged"])}')
     if evidence['left_out']:
         print(f'  left out: {", ".join(evidence["left_out"])}: this version does not judge them')
-    for line in unheard_text.lines(evidence['unheard']):
+    for line in [*unheard_text.lines(evidence['unheard']), *robots_text.lines(evidence)]:
         print(f'  {line}')
     calibration = evidence['calibration']
     if calibration is None:
@@ -227,7 +230,8 @@ def _print_calibration(calibration: Optional[Dict[str, Any]]) -> None:
 def _print_recordings(recordings: Sequence[Dict[str, Any]]) -> None:
     for recording in recordings:
         print(f'    {recording["bag"]}: {recording["duration"]:.1f} s, '
-              f'{recording["events"]} events, from {moment(recording["start_ns"])}')
+              f'{recording["events"]} events, from {moment(recording["start_ns"])}'
+              + ('' if recording['robot'] is None else f', of {recording["robot"]}'))
 
 
 def _or_none(value: Optional[float]) -> str:

@@ -11,7 +11,7 @@ import numpy as np
 
 from self_awareness import (EVIDENCE_THRESHOLD, Alarm, EvidenceModel, PaperModel, Suspect,
                             TrainedModel, Verdicts)
-from self_awareness import alarms
+from self_awareness import accepted_file, alarms
 from self_awareness.commands import cli
 from self_awareness.judging import evidence_judge, paper_judge
 from self_awareness.output_files import (PAGE, PICTURE, RESULT_BAG, TABLE, VALUES, check_outputs,
@@ -72,7 +72,10 @@ def _score(arguments: argparse.Namespace) -> None:
         judge = paper_judge(trained, PaperModel(trained), trained.threshold, parameters)
         threshold = trained.threshold
     else:
-        judge = evidence_judge(trained, parameters, evidence)
+        accepted = accepted_file.beside(arguments.model)
+        judge = evidence_judge(trained, parameters, evidence, accepted)
+        for each in accepted:
+            print(f'{arguments.model}: accepted, so not judged: {accepted_file.in_words(each)}')
         threshold = None if trained.calibration is None else EVIDENCE_THRESHOLD
     if threshold is None:
         print(f'{arguments.model}: not calibrated: windows are scored, none is called abnormal '
@@ -90,7 +93,8 @@ def _score(arguments: argparse.Namespace) -> None:
             verdicts = judge(recording.stamps, recording.ids, recording.end,
                              recording.event_types, replay(recording),
                              recording.clock_steps, waiting=recording.waiting,
-                             hosts=recording.hosts)
+                             hosts=recording.hosts, missing=recording.missing,
+                             attributes=recording.attributes)
             judged.append(Judged(by, recording, verdicts))
             _print(recording, verdicts, trained, threshold)
     if arguments.csv is not None:

@@ -8,7 +8,8 @@ from typing import List, Optional, Sequence, Tuple
 from self_awareness import progress
 from self_awareness.commands import cli
 from self_awareness.training.robot_graph import RobotGraph, graph_file
-from self_awareness_follow_me.faults import described, in_short
+from self_awareness_follow_me.effects import Change
+from self_awareness_follow_me.faults import described, effect_of, in_short
 from self_awareness_follow_me.scenario import Scenario, load_scenario
 from self_awareness_follow_me.simulation import InducedFault, simulate, start_of
 
@@ -33,8 +34,8 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 def _simulate(arguments: argparse.Namespace) -> None:
     scenario = load_scenario(arguments.scenario)
-    graph = _graph(scenario)
     fault = _fault(arguments.fault, arguments.duration)
+    graph = _graph(scenario, fault)
     bags = _bags(arguments.output, arguments.runs, arguments.seed, fault)
     with progress.items(int(arguments.duration) * arguments.runs, 'simulating') as seconds_done:
         for seed, bag in bags:
@@ -44,9 +45,12 @@ def _simulate(arguments: argparse.Namespace) -> None:
             progress.say(str(bag))
 
 
-def _graph(scenario: Scenario) -> RobotGraph:
+def _graph(scenario: Scenario, fault: Optional[InducedFault]) -> RobotGraph:
+    """Return who publishes and subscribes to what, once the fault is there."""
+    effect = None if fault is None else effect_of(scenario, fault.kind)
     graph = RobotGraph()
-    for spec in scenario.components:
+    for normal in scenario.components:
+        spec = effect.changed(normal) if isinstance(effect, Change) else normal
         for topics, nodes in ((spec.outputs(), graph.publishers),
                               (spec.inputs(), graph.subscribers)):
             for topic in topics:

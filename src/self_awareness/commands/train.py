@@ -7,15 +7,16 @@ from contextlib import closing
 from dataclasses import replace
 from typing import Dict, List, Optional, Sequence
 
-from self_awareness import BagError, TrainedModel, encoding_file, progress
+from self_awareness import (Acceptance, BagError, EncodingRules, TrainedModel, accepted_file,
+                            encoding_file, progress)
 from self_awareness.calibration import holes
 from self_awareness.calibration.holes import Hole
 from self_awareness.calibration.limits import TooLittleError
 from self_awareness.commands import cli
 from self_awareness.judging import BOTH, EVIDENCE, PAPER
 from self_awareness.output_files import MODEL, check_outputs
-from self_awareness.recordings import BagPart, expand
-from self_awareness.reporting import coverage_text, unheard_text
+from self_awareness.recordings import BagPart, by_folder, expand
+from self_awareness.reporting import coverage_text, robots_text, unheard_text
 from self_awareness.reporting.training_report import print_summary
 from self_awareness.stamps import SECOND_NS
 from self_awareness.training import live_graph, many_bags
@@ -23,7 +24,7 @@ from self_awareness.training.many_bags import Counting, Trained
 from self_awareness.training.robot_graph import RobotGraph
 from self_awareness.workers import Cluster, Workers, on_this_machine
 
-_OF_THE_MODEL = ('detector', 'bin', 'window', 'horizon', 'encoding')
+_OF_THE_MODEL = ('detector', 'bin', 'window', 'horizon', 'encoding', 'rename')
 
 _EPILOG = """\
 Record all that is normal, after several starts of the robot. Leave the start-up out with --start.
@@ -34,6 +35,8 @@ examples:
   train run.bag --start 20 -o robot.model      from 20 s after the recording's first message on
   train run.bag@20-600 run.bag@660 -o robot.model
   train --add-to robot.model friday.bag -o robot.model
+  train r1/*.bag r2/*.bag --robots-by-folder --rename '/r[0-9]+/(.*)' '/\\1' \\
+        -o fleet.model
   train /nfs/bags/*.bag --scheduler 10.0.0.1:8786 --skip-bad -o fleet.model
 """
 
@@ -48,6 +51,7 @@ def _train(arguments: argparse.Namespace) -> None:
     bags = [part.path for part in parts]
     check_outputs([(arguments.output, MODEL)], bags + [arguments.encoding])
     base = None if arguments.add_to is None else TrainedModel.load(arguments.add_to)
+    accepted = accepted_file.beside(arguments.add_to or arguments.output)
     counting = _counting(arguments, base)
     _check_distinct(parts)
     graph = _live_graph(base) if arguments.graph else RobotGraph()  # first: counting takes long
@@ -64,8 +68,8 @@ def _train(arguments: argparse.Namespace) -> None:
         if counting.encoding is None and model.encoding.source == 'none':
             print('no bag names the senders of its messages: sources are not told apart '
                   '(source: none)')
-        model.graph = model.graph | graph.edges()
-        model.hosts = graph.hosts_of_sources()
+        model.graph = model.graph | graph.edges(model.encoding)
+        model.hosts = graph.hosts_of_sources(model.encoding)
         model.unheard = graph.unheard(model.encoding)
         try:
             limits = _limits(trained, workers)
@@ -80,11 +84,23 @@ def _train(arguments: argparse.Namespace) -> None:
         print(f'  {line}')
     for line in unheard_text.lines(unheard_text.summarise(model.unheard)):
         print(f'  {line}')
+    for line in robots_text.lines(robots_text.summarise(model.robots)):
+        print(f'  {line}')
+    _keep_accepted(accepted, model, arguments.output)
     _say_holes(found, model, arguments.leave_out_holes)
     for bad in trained.bad:
         cli.warn('train', f'skipped: {bad}')
     print(f'written: {arguments.output}; next, find limits on recordings that it was not trained '
           'on (rosrun self_awareness calibrate)')
+
+
+def _keep_accepted(accepted: Sequence[Acceptance], model: TrainedModel, output: str) -> None:
+    learned, left = accepted_file.learned(accepted, model)
+    accepted_file.keep(left, output)
+    for known, what in ((learned, 'accepted before, and learned now, so it is judged again'),
+                        (left, 'accepted, and not learned')):
+        for each in known:
+            print(f'{what}: {accepted_file.in_words(each)}')
 
 
 def _say_holes(found: Sequence[Hole], model: TrainedModel, left_out: bool) -> None:
@@ -132,14 +148,21 @@ def _counting(arguments: argparse.Namespace, base: Optional[TrainedModel]) -> Co
         raise ValueError(f'--horizon {horizon / SECOND_NS:g} is no multiple of the bin size '
                          f'{bin_size / SECOND_NS:g}; choose one')
     encoding = None if arguments.encoding is None else encoding_file.load(arguments.encoding)
-    return Counting(encoding, bin_size, window, horizon // bin_size,
-                    arguments.detector or Counting.detector)
+    counting = Counting(encoding, bin_size, window, horizon // bin_size,
+                        arguments.detector or Counting.detector,
+                        rename=tuple(arguments.rename or ()))
+    try:
+        counting.renamed(EncodingRules()).validate()
+    except ValueError as error:
+        raise ValueError(f'--rename: {error}') from error
+    return counting
 
 
 def _parts(arguments: argparse.Namespace) -> List[BagPart]:
     """Return what is named; --start and --end are for bags that are named without a part."""
-    return [replace(part, start=arguments.start, end=arguments.end)
-            if part.start is None else part for part in expand(arguments.bags)]
+    parts = [replace(part, start=arguments.start, end=arguments.end)
+             if part.start is None else part for part in expand(arguments.bags)]
+    return by_folder(parts) if arguments.robots_by_folder else parts
 
 
 def _workers(arguments: argparse.Namespace, bags: Sequence[str]) -> Workers:
@@ -196,10 +219,15 @@ def _parser() -> argparse.ArgumentParser:
                              'writes beside the bags is used without this option, too')
     parser.add_argument('--encoding', metavar='FILE',
                         help='how messages become events (example: config/encoding.yaml)')
+    parser.add_argument('--rename', nargs=2, action='append', metavar=('PATTERN', 'NAME'),
+                        help='rename the nodes and topics whose whole name matches the regular '
+                             'expression, after what the encoding renames; \\1 to \\9 stand for '
+                             'its groups. The model remembers it. May be given several times')
     parser.add_argument('--start', type=cli.offset, metavar='S',
                         help='use each recording that is named without a part from this time '
                              'on, in s from its first message')
     parser.add_argument('--end', type=cli.offset, metavar='S', help='use it up to this time')
+    cli.add_robots_by_folder(parser)
     parser.add_argument('--add-to', metavar='MODEL',
                         help='add to what this model learned, in its encoding, bins and windows; '
                              'it may be the file to write. Its calibrations are dropped')

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import os
 from collections import Counter
-from typing import Any, Dict, List
+from typing import Any, Dict, List, Set, Tuple
 
 import numpy as np
 
@@ -25,7 +25,8 @@ def summarise_event_log(path: str, recordings: int) -> Dict[str, Any]:
     """
     counts: Counter = Counter()
     found: List[Dict[str, Any]] = []
-    graph = RobotGraph()
+    edges: Set[Tuple[str, str, str]] = set()
+    hosts: Dict[str, str] = {}
     for number in range(recordings):
         summary = summarise_bag(path, number)
         assert summary.encoding is not None, 'every recording of an event log has one'
@@ -33,7 +34,9 @@ def summarise_event_log(path: str, recordings: int) -> Dict[str, Any]:
         for kind, count in zip(events.event_types, np.bincount(
                 events.ids, minlength=len(events.event_types)).tolist()):
             counts[kind] += count
-        graph.add(RobotGraph(*summary.graph))
+        graph = RobotGraph(*summary.graph)
+        edges |= graph.edges(summary.encoding)
+        hosts.update(graph.hosts_of_sources(summary.encoding))
         found.append(_recording(summary, summary.encoding))
     duration = sum(recording['duration'] for recording in found)
     return {
@@ -47,8 +50,8 @@ def summarise_event_log(path: str, recordings: int) -> Dict[str, Any]:
                          'count': count, 'rate': count / duration if duration > 0.0 else None}
                         for kind, count in counts.items()],
         'graph': [dict(zip(('publisher', 'topic', 'subscriber'), edge))
-                  for edge in sorted(graph.edges())],
-        'hosts': graph.hosts_of_sources(),
+                  for edge in sorted(edges)],
+        'hosts': hosts,
     }
 
 
@@ -60,5 +63,6 @@ def _recording(summary: BagSummary, encoding: EncodingRules) -> Dict[str, Any]:
         'events': summary.messages,
         'dropped': summary.dropped,
         'robot_start_ns': summary.robot_start or None,
+        'robot': summary.robot or None,
         'encoding': encoding_file.values(encoding),
     }

@@ -5,7 +5,7 @@ import math
 from statistics import median
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple
 
-from self_awareness import EvidenceModel, TrainedModel
+from self_awareness import HOURS_OF_ROBOTS, EvidenceModel, TrainedModel
 from self_awareness.calibration import confidence
 from self_awareness.calibration.results import FalseAlarms
 from self_awareness.calibration.runs import RECORDED, JudgedRun
@@ -14,7 +14,6 @@ from self_awareness.reporting.number_text import rounded
 from self_awareness.reporting.text_table import aligned
 from self_awareness.stamps import SECOND_NS
 
-_HOURS_OF_ROBOTS = 0.5  # that stand for all robots in the promise, docs/method.md, section 5.5
 _DIFFERENT = 0.8
 _MOST_ROWS = 10
 _COLUMNS = ('fault', 'source', 'found', 'median [s]', 'guilty first', 'among three')
@@ -27,21 +26,21 @@ def counts(tracks: Dict[str, int]) -> str:
 
 def print_verdict(trained: TrainedModel, coverage: Sequence[Dict[str, Any]]) -> None:
     """Print what the model is worth, and then what to record next, and why."""
+    more = []
     if trained.calibration is not None:
         rate = rounded(trained.calibration.false_alarms_per_hour, 2)
         print(f'expect at most {rate} false alarms an hour (95 of 100 robots have fewer)')
+        more_h = (trained.calibration.windows * trained.window / SECOND_NS / 3600.0
+                  + HOURS_OF_ROBOTS)
+        more = [f'{rounded(more_h, 2)} h more of normal operation, of other starts: if they stay '
+                'below the limits, they halve the false alarms to expect']
     found_s = [each['death_found_after'] for each in coverage if each['death_found_after']]
     if found_s:
         print(f'deaths found: those of {len(found_s)} of {len(coverage)} components, after '
               f'{rounded(min(found_s), 2)} s to {rounded(max(found_s), 2)} s')
     print('what to record next:')
-    if trained.calibration is not None:
-        more_h = (trained.calibration.windows * trained.window / SECOND_NS / 3600.0
-                  + _HOURS_OF_ROBOTS)
-        print(f'  {rounded(more_h, 2)} h more of normal operation, of other starts: if they stay '
-              'below the limits, they halve the false alarms to expect')
-    for line in relations_text.to_record(relations_text.relations(trained,
-                                                                  EvidenceModel(trained))):
+    more += relations_text.to_record(relations_text.relations(trained, EvidenceModel(trained)))
+    for line in more:
         print(f'  {line}')
 
 
@@ -52,16 +51,17 @@ def print_coverage(trained: TrainedModel, coverage: Sequence[Dict[str, Any]]) ->
         print(line)
 
 
-def print_budgets(by_budget: Mapping[float, Sequence[Dict[str, Any]]], chosen: float) -> None:
+def print_budgets(by_budget: Mapping[float, Sequence[Dict[str, Any]]]) -> None:
     """Print whose death is found how soon with a smaller budget, and with a larger one.
 
     Args:
         by_budget: what coverage_text.summarise() returned for the limits of each budget.
-        chosen: the one that was asked for.
     """
     budgets = sorted(by_budget)
-    found_s = {component: [_death_s(by_budget[budget], component) for budget in budgets]
-               for component in [each['component'] for each in by_budget[chosen]]}
+    found_s: Dict[str, List[float]] = {}  # of each budget; infinite: not found
+    for budget in budgets:
+        for each in by_budget[budget]:
+            found_s.setdefault(each['component'], []).append(each['death_found_after'] or math.inf)
     differ = sorted(((component, times) for component, times in found_s.items()
                      if times[-1] < _DIFFERENT * times[0]), key=lambda each: -each[1][0])
     names = ', '.join(f'{budget:g}' for budget in budgets)
@@ -76,12 +76,6 @@ def print_budgets(by_budget: Mapping[float, Sequence[Dict[str, Any]]], chosen: f
         print(line)
     if len(differ) > _MOST_ROWS:
         print(f'and {len(differ) - _MOST_ROWS} more')
-
-
-def _death_s(coverage: Sequence[Dict[str, Any]], component: str) -> float:
-    """Return after how long the death of a component is found [s]; infinite: it is not."""
-    found = next(each for each in coverage if each['component'] == component)
-    return found['death_found_after'] or math.inf
 
 
 def print_measured(normal: Sequence[JudgedRun], alarms: FalseAlarms) -> None:

@@ -7,7 +7,7 @@ from typing import Any, Dict, List, Optional, Tuple
 
 from self_awareness import (USUAL_SHARES, Calibration, EvidenceModel, PaperCalibration,
                             Recording, TrainedModel, Tuning, encoding_file)
-from self_awareness.reporting import coverage_text, relations_text, unheard_text
+from self_awareness.reporting import coverage_text, relations_text, robots_text, unheard_text
 from self_awareness.reporting.version_summary import summarise_version
 from self_awareness.judging import EVIDENCE, PAPER
 from self_awareness.stamps import SECOND_NS
@@ -45,6 +45,8 @@ def summarise(model: TrainedModel) -> Dict[str, Any]:
         'graph': [dict(zip(('publisher', 'topic', 'subscriber'), edge))
                   for edge in sorted(model.graph)],
         'hosts': model.hosts,
+        'subscriptions': [dict(zip(('node', 'topic'), each))
+                          for each in sorted(model.subscriptions)],
         'evidence': None if evidence is None else _evidence(model, evidence),
         'calibration': (None if model.paper_calibration is None
                         else _paper_calibration(model.paper_calibration)),
@@ -61,6 +63,7 @@ def _evidence(model: TrainedModel, evidence: EvidenceModel) -> Dict[str, Any]:
         'tuning': {number.name: model.tuning.get(number.name) for number in Tuning.numbers()},
         'without': model.tuning.without,
         'unheard': unheard_text.summarise(model.unheard),
+        **robots_text.summarise(model.robots),
         'left_out': sorted(model.left_out),
         'calibration': None,
     }
@@ -109,6 +112,7 @@ def _recording(recording: Recording) -> Dict[str, Any]:
         'start_ns': recording.start,
         'end_ns': recording.end,
         'duration': _duration(recording),
+        'robot': recording.robot or None,
         'events': recording.events,
         # As text: a JSON reader that knows only floats would round it.
         'fingerprint': f'{recording.fingerprint:016x}',

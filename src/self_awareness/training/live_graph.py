@@ -1,16 +1,13 @@
 """Asks the running robot who listens to whom; the blame needs it to tell roots from victims."""
 from __future__ import annotations
 
-import re
 from typing import Any, Dict, Iterable, Set
 from xmlrpc.client import Fault, MultiCall
 
-from self_awareness import printable
+from self_awareness import host_in, is_own_type, printable
 from self_awareness.training.robot_graph import RobotGraph
 
 _CALLER_ID = '/train'
-_OWN_TYPES = 'self_awareness/'
-_HOST = re.compile(r'\w+://([^:/]+)')
 
 
 def fetch() -> RobotGraph:
@@ -28,7 +25,7 @@ def fetch() -> RobotGraph:
         master = rosgraph.Master(_CALLER_ID)
         state, types = master.getSystemState(), dict(master.getTopicTypes())
         ours = {node for topic, nodes in state[0] for node in nodes
-                if types.get(topic, '').startswith(_OWN_TYPES)}
+                if is_own_type(types.get(topic, ''))}
         publishers, subscribers = (
             [(topic, set(nodes) - ours) for topic, nodes in nodes_of] for nodes_of in state[:2])
         hosts = _hosts(master, {node for _, nodes in publishers for node in nodes})
@@ -48,8 +45,8 @@ def _hosts(master: Any, nodes: Iterable[str]) -> Dict[str, str]:
         answers = list(calls()) if known else []
     except Fault:  # a master that answers one call at a time
         return {}
-    return {printable(node): printable(found[1]) for node, (code, _, uri) in zip(known, answers)
-            for found in [_HOST.match(uri) if code == 1 else None] if found is not None}
+    return {printable(node): host for node, (code, _, uri) in zip(known, answers)
+            for host in [host_in(uri) if code == 1 else ''] if host}
 
 
 def _by_topic(state: Any) -> Dict[str, Set[str]]:

@@ -16,8 +16,8 @@ import numpy as np
 
 from self_awareness import (DEFAULT_WINDOW, BagError, BagSummary, Calibration,
                             DetectorParameters, EncodingRules, Recording,
-                            TrainedModel, Training, Tuning, progress, read_events, recordings,
-                            summarise_bag)
+                            TrainedModel, Training, Tuning, lasting_subscriptions, progress,
+                            read_events, recordings, summarise_bag)
 from self_awareness.calibration import holes, limits
 from self_awareness.calibration.limits import TrainedOn
 from self_awareness.judging import BOTH, EVIDENCE, PAPER
@@ -44,6 +44,7 @@ class Counting:
         detector: who is counted for: evidence, paper or both. The paper's counts take three
             quarters of the time, and most of the file.
         tuning: the numbers of the evidence detector.
+        rename: rules, after those of the encoding.
     """
 
     encoding: Optional[EncodingRules] = None
@@ -52,6 +53,13 @@ class Counting:
     horizon_bins: int = 0
     detector: str = EVIDENCE
     tuning: Tuning = field(default_factory=Tuning)
+    rename: Tuple[Tuple[str, str], ...] = ()
+
+    def renamed(self, encoding: EncodingRules) -> EncodingRules:
+        """Return a copy of an encoding that renames what is to be renamed, too."""
+        renamed = copy.copy(encoding)
+        renamed.rename = [*encoding.rename, *self.rename]
+        return renamed
 
     @classmethod
     def of(cls, model: TrainedModel) -> Counting:
@@ -279,16 +287,19 @@ def _count(how: _How, part: BagPart) -> _Sum:
         recording.events = len(events.stamps)
         recording.fingerprint = events.fingerprint
         recording.robot_start = events.robot_start
+        recording.robot = events.robot
         training = Training(encoding, counting.bin_size, counting.window, counting.horizon_bins,
                             counting.detector in (EVIDENCE, BOTH),
                             counting.detector in (PAPER, BOTH), counting.tuning)
         training.add_events(events.event_types, events.stamps, events.ids,
-                            recording, _before(encoding, events), events.clock_steps)
+                            recording, _before(encoding, events), events.clock_steps,
+                            events.attributes)
         model = training.model(watch=False)
         graph = _graph(part, summary)
-        model.graph = graph.edges()
-        model.hosts = graph.hosts_of_sources()
+        model.graph = graph.edges(encoding)
+        model.hosts = graph.hosts_of_sources(encoding)
         model.unheard = graph.unheard(encoding)
+        model.add_subscriptions(lasting_subscriptions(summary, encoding))
     except BagError as error:
         raise _BadBag(str(error)) from error
     except ValueError as error:
@@ -334,6 +345,7 @@ def _read(counting: Counting, part: BagPart) -> Tuple[RecordingEvents, EncodingR
     encoding = counting.encoding or EncodingRules.defaults()
     if counting.encoding is None and part.recording is not None:
         encoding = summarise_bag(part.path, part.recording).encoding or encoding
+    encoding = counting.renamed(encoding)
     with progress.messages(os.path.basename(part.path)) as update:
         read = read_events(part.path, encoding, [], part.start, part.end, update, part.recording)
     if not read.summary.has_sources or len(read.stamps) == 0:
@@ -342,7 +354,7 @@ def _read(counting: Counting, part: BagPart) -> Tuple[RecordingEvents, EncodingR
         if counting.encoding is not None:
             raise ValueError(_NAMELESS)
         encoding.source = 'none'  # what was read stays the same
-    events = RecordingEvents.of(part, read)
+    events = RecordingEvents.of(part, read, encoding)
     if len(events.stamps) == 0:
         raise ValueError('no message is an event by the encoding; a recording of "rosbag play" '
                          'needs "source: none" (--encoding), and a part that is too short another '

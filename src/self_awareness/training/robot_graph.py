@@ -4,8 +4,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any, Dict, Set, Tuple
 
-from self_awareness import (EncodingRules, FileVersion, stable_name, unheard_publications,
-                            yaml_file)
+from self_awareness import EncodingRules, FileVersion, unheard_publications, yaml_file
 from self_awareness.output_files import replacing
 
 _Nodes = Dict[str, Set[str]]
@@ -48,20 +47,22 @@ class RobotGraph:
                 known |= nodes
         return news
 
-    def edges(self) -> Set[Tuple[str, str, str]]:
-        """Return (publisher, topic, subscriber), as in TrainedModel.graph.
-
-        Anonymous numbers are removed from the names, as the encoding does.
-        """
-        return {(stable_name(publisher), topic, stable_name(subscriber))
+    def edges(self, encoding: EncodingRules) -> Set[Tuple[str, str, str]]:
+        """Return (publisher, topic, subscriber), as in TrainedModel.graph: by the names that the
+        encoding gives them."""
+        scopes = encoding.scopes_of(set(self.publishers))
+        sources = encoding.sources_of(set().union(*self.publishers.values(),
+                                                  *self.subscribers.values()))
+        return {(sources[publisher], scopes[topic], sources[subscriber])
                 for topic, nodes in self.publishers.items() for publisher in nodes
                 for subscriber in self.subscribers.get(topic, ())}
 
-    def hosts_of_sources(self) -> Dict[str, str]:
-        """Return the computers of nodes by their stable names, as in TrainedModel.hosts."""
+    def hosts_of_sources(self, encoding: EncodingRules) -> Dict[str, str]:
+        """Return the computers of nodes, as in TrainedModel.hosts."""
+        sources = encoding.sources_of(set(self.hosts))
         found: Dict[str, Set[str]] = {}
         for node, host in self.hosts.items():
-            found.setdefault(stable_name(node), set()).add(host)
+            found.setdefault(sources[node], set()).add(host)
         return {source: hosts.pop() if len(hosts) == 1 else '' for source, hosts in found.items()}
 
     def unheard(self, encoding: EncodingRules) -> Set[Tuple[str, str]]:

@@ -80,11 +80,11 @@ class Conditions:
         return in_order(sent + delay)
 
     def received(self, arrived: np.ndarray, rng: np.random.Generator) -> np.ndarray:
-        """Return which messages a listener gets, of those that arrive at some times [s]."""
+        """Return which messages a listener gets, bool, of those that arrive at some times [s]."""
         if not self.lost:
-            return arrived
+            return np.ones(len(arrived), dtype=bool)
         soon = np.diff(arrived, prepend=-np.inf) < _SOON_S
-        return arrived[~soon | (rng.uniform(size=len(arrived)) >= self.lost)]
+        return ~soon | (rng.uniform(size=len(arrived)) >= self.lost)
 
     def hiccup(self, times: np.ndarray, rng: np.random.Generator) -> np.ndarray:
         """Return when messages are sent that were to be at some times [s]."""

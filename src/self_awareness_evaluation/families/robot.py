@@ -8,6 +8,7 @@ import numpy as np
 
 from self_awareness import EventType
 from self_awareness.stamps import SECOND_NS, nanoseconds
+from self_awareness_evaluation.families import messages
 from self_awareness_evaluation.families.conditions import Activity, Conditions, in_order
 from self_awareness_evaluation.families.emissions import Emission, Feedback, Sporadic, stalled
 from self_awareness_evaluation.families.scene import Scene
@@ -159,8 +160,13 @@ class Robot:
         for index in range(len(self.outputs)):
             scene.published.append(self._published(scene, index, fault, begin_s))
         recorded = [self._heard(scene, index, _RECORDER) for index in range(len(self.outputs))]
+        heard = [times for times, _ in recorded]
+        attributes = [messages.attributes(output.datatype, scene, index, times, numbers,
+                                          times - scene.published[index][numbers])
+                      for index, (output, (times, numbers))
+                      in enumerate(zip(self.outputs, recorded))]
         origin = (_FIRST_START_S + start_seed * _BETWEEN_STARTS_S) * SECOND_NS
-        return self._merged(recorded, begin_s, begin_s + seconds, origin)
+        return self._merged(heard, attributes, begin_s, begin_s + seconds, origin)
 
     def _check(self, fault: Fault) -> None:
         of_robot = fault.kind in (STARVED, SILENT)
@@ -181,7 +187,7 @@ class Robot:
         """Return when an output sends, with the fault."""
         output = self.outputs[index]
         times = output.emission.times(scene, index,
-                                      lambda heard: self._heard(scene, heard, output.source))
+                                      lambda heard: self._heard(scene, heard, output.source)[0])
         times = stalled(self.conditions.hiccup(times, scene.of_recording(f'hiccup {index}')),
                         scene)
         if fault is None or fault.source not in ('', output.source):
@@ -203,18 +209,21 @@ class Robot:
             return times[~hit | (np.arange(len(times)) % 2 == 0)]
         return times  # it answers to another output of the component, whose rate is halved
 
-    def _heard(self, scene: Scene, index: int, listener: str) -> np.ndarray:
-        """Return when the messages of an output reach a component, or the recorder."""
+    def _heard(self, scene: Scene, index: int, listener: str) -> Tuple[np.ndarray, np.ndarray]:
+        """Return when the messages of an output reach a component, or the recorder, and their
+        numbers."""
         source = self.outputs[index].source
         way = f'{index} to {listener}'
         over_link = source != listener and (source in self.far) != (listener in self.far)
         arrived = self.conditions.transport(scene.published[index], over_link,
                                             scene.of_recording(f'transport {way}'))
-        return self.conditions.received(arrived, scene.of_recording(f'lost {way}'))
+        received = self.conditions.received(arrived, scene.of_recording(f'lost {way}'))
+        return arrived[received], np.flatnonzero(received)
 
-    def _merged(self, recorded: List[np.ndarray], begin: float, end: float,
-                origin: int) -> WindowedEvents:
-        inside = [times[(times >= begin) & (times < end)] for times in recorded]
+    def _merged(self, recorded: List[np.ndarray], attributes: List[np.ndarray], begin: float,
+                end: float, origin: int) -> WindowedEvents:
+        kept = [(times >= begin) & (times < end) for times in recorded]
+        inside = [times[those] for times, those in zip(recorded, kept)]
         stamps = origin + (np.concatenate(inside) * SECOND_NS).astype(np.int64)
         if not len(stamps):
             raise ValueError(f'nothing happens in the {end - begin:g} s of the recording')
@@ -228,7 +237,8 @@ class Robot:
         return WindowedEvents(
             [EventType(output.source, output.topic, output.datatype) for output in outputs],
             stamps[order], np.repeat(ids, [len(times) for times in inside])[order],
-            origin + nanoseconds(end))
+            origin + nanoseconds(end), attributes=np.concatenate(
+                [each[those] for each, those in zip(attributes, kept)])[order])
 
 
 def _missed(times: np.ndarray, scene: Scene, fault: Fault) -> np.ndarray:

@@ -225,14 +225,15 @@ def _paper_threshold(scores: np.ndarray) -> float:
 
 def _judge(trained: TrainedModel, judge: Judge, path: Path, watched: int) -> JudgedCase:
     recording = recordings.read(trained, BagPart(str(path)))
-    verdicts = judge(recording.stamps, recording.ids, recording.end)
+    verdicts = judge(recording.stamps, recording.ids, recording.end,
+                     attributes=recording.attributes)
     return JudgedCase([_span(recording, alarm.begin, alarm.end) for alarm in verdicts.alarms],
                       _span(recording, recording.origin, recording.end)[1], watched)
 
 
 def _events(recording: RecordingEvents) -> WindowedEvents:
     return WindowedEvents(recording.event_types, recording.stamps, recording.ids,
-                          recording.end + 1)
+                          recording.end + 1, attributes=recording.attributes)
 
 
 def _span(recording: RecordingEvents, start: int, end: int) -> Span:

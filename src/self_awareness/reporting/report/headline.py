@@ -37,6 +37,8 @@ def _what(main: Interval, together: Sequence[str], times: int) -> str:
     if main.busy is not None:
         return f'{main.busy}, {_often(times, span)}.'
     first = main.first
+    if main.of.kind == 'new mode':
+        return f'{main.of.reason}, {_often(times, span)}.'
     if first is None:
         return f'something is abnormal, {_often(times, span)}; no suspect stands out.'
     subject = _names([first.component, *together]) if together else _with_topic(first)

@@ -18,7 +18,8 @@ MOST_LISTED = 400
 
 _SHORT = {'slow': 'sends too seldom', 'fast': 'sends too often',
           'late': 'paused for too long', 'out of order': 'sends at an irregular pace',
-          'never came': 'was not heard', 'stranger': 'is new'}
+          'never came': 'was not heard', 'stranger': 'is new',
+          'not subscribed': 'does not subscribe'}
 _SHORT_OF_ANSWERS = {'died': 'does not answer', 'late': 'answers late', 'early': 'answers early',
                      'out of order': 'comes at unusual delays'}
 

@@ -82,4 +82,5 @@ class Judged:
         return evidence_lanes(self.by.trained, self.by.evidence, self.by.parameters,
                               recording.stamps, recording.ids, recording.end,
                               list(recording.event_types), starts.tolist(),
-                              recording.clock_steps, list(recording.waiting))
+                              recording.clock_steps, list(recording.waiting),
+                              recording.attributes)

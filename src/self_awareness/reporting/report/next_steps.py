@@ -66,7 +66,7 @@ def next_steps(judged: Judged, found: Sequence[Incident]) -> Dict[str, NextSteps
     until = [(incident.cause, judged.recording.origin
               + nanoseconds(min(spans[incident.key][1], incident.main.start + _AFTER_S)))
              for incident in detailed]
-    logs = last_log_lines(path, until, MOST_LINES) if detailed else []
+    logs = last_log_lines(path, judged.by.trained.encoding, until, MOST_LINES) if detailed else []
     return {incident.key: NextSteps(
         [LogLine(judged.seconds(stamp), _LEVELS.get(level, str(level)), text)
          for stamp, level, text in log],

@@ -1,0 +1,1 @@
+"""Robots of one make: what was learned on some watches another."""
