@@ -1,5 +1,5 @@
 // Compiles the patterns of an encoding, and matches names: both may be a stranger's. The input is
-// one line after the other: patterns, and the last line a name.
+// one line after the other: patterns, rules to rename (PATTERN>NAME), and the last line a name.
 
 #include <sstream>
 #include <stdexcept>
@@ -15,6 +15,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   std::istringstream lines(std::string(data, data + size));
   std::string line;
   while (std::getline(lines, line)) {
+    if (const std::size_t arrow = line.find('>'); arrow != std::string::npos) {
+      rules.renames.push_back({line.substr(0, arrow), line.substr(arrow + 1)});
+      continue;
+    }
     rules.exclude_sources.push_back(line);
     rules.include_topics.push_back(line);
   }

@@ -10,6 +10,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 METHOD = ROOT / 'docs' / 'method.md'
+NUMBERS = [METHOD, ROOT / 'docs' / 'attributes.md']
 PAGES = [ROOT / 'README.md', ROOT / 'CONTRIBUTING.md', *sorted((ROOT / 'docs').rglob('*.md'))]
 
 # [text](target), also of an image, with an optional "title".
@@ -103,7 +104,7 @@ def _numbers_of_the_method() -> Dict[str, float]:
 
 def test_the_method_names_every_number_once() -> None:
     numbers = _numbers_of_the_method()
-    text = METHOD.read_text(encoding='utf-8')
+    text = '\n'.join(page.read_text(encoding='utf-8') for page in NUMBERS)
     found = {name: [float(value) for value in
                     re.findall(rf'(?<!\w){name}`? = (\d+(?:\.\d+)?)', text)] for name in numbers}
     assert found == {name: [value] for name, value in numbers.items()}

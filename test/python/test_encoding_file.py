@@ -17,7 +17,7 @@ def test_the_example_is_what_train_does_without_a_file() -> None:
 
 def test_the_example_shows_every_key() -> None:
     keys = set(yaml.safe_load(EXAMPLE.read_text()))
-    assert keys == {'source', 'include_topics', 'exclude_topics', 'include_sources',
+    assert keys == {'source', 'rename', 'include_topics', 'exclude_topics', 'include_sources',
                     'exclude_sources', 'type_fields'}
 
 
@@ -31,12 +31,15 @@ def test_keys_left_out_keep_their_default(tmp_path: Path, text: str) -> None:
 def test_keys_are_read(tmp_path: Path) -> None:
     file = tmp_path / 'e.yaml'
     file.write_text('source: none\ninclude_topics: ["/a.*"]\nexclude_topics: []\n'
-                    'include_sources: [/b]\nexclude_sources: []\ntype_fields: {a/B: c.d}\n')
+                    'include_sources: [/b]\nexclude_sources: []\ntype_fields: {a/B: c.d}\n'
+                    "rename: [['/r(.)/x', '/\\1'], [/a, /b]]\n")
     rules = encoding_file.load(str(file))
     assert rules.source == 'none'
     assert (rules.include_topics, rules.exclude_topics) == (['/a.*'], [])
     assert (rules.include_sources, rules.exclude_sources) == (['/b'], [])
     assert rules.type_fields == {'a/B': 'c.d'}
+    assert rules.rename == [('/r(.)/x', '/\\1'), ('/a', '/b')]
+    assert encoding_file.values(rules)['rename'] == [['/r(.)/x', '/\\1'], ['/a', '/b']]
 
 
 @pytest.mark.parametrize('text, key', [
@@ -47,6 +50,11 @@ def test_keys_are_read(tmp_path: Path) -> None:
     ('exclude_sources: [1]', 'exclude_sources'),
     ('exclude_topics: ["(/a"]', 'exclude_topics'),
     ('type_fields: [level]', 'type_fields'),
+    ('rename: /a', 'rename'),
+    ('rename: [[/a]]', 'rename'),
+    ('rename: [[/a, 1]]', 'rename'),
+    ('rename: [[/a, b]]', 'rename'),
+    ('rename: [["/(a", /b]]', 'rename'),
     ('type_fields: {a/B: 1}', 'type_fields'),
 ])
 def test_an_error_names_the_file_and_the_key(tmp_path: Path, text: str, key: str) -> None:

@@ -73,10 +73,11 @@ def test_what_is_neither_is_told_in_a_sentence() -> None:
 
 
 @contextmanager
-def _prefixed(*command: str) -> Iterator[subprocess.Popen[str]]:
+def _prefixed(*command: str, **variables: str) -> Iterator[subprocess.Popen[str]]:
     with subprocess.Popen(('bash', ROOT / 'launch' / 'until_refused.sh', *command),
                           stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                          start_new_session=True, preexec_fn=_take_sigint) as node:
+                          start_new_session=True, preexec_fn=_take_sigint,
+                          env={**os.environ, **variables}) as node:
         try:
             yield node
         finally:
@@ -93,6 +94,18 @@ def _take_sigint() -> None:
 def test_a_node_that_did_not_refuse_may_be_started_again(command: str, code: int) -> None:
     with _prefixed('bash', '-c', command) as node:
         assert node.wait(LONG_S) == code
+
+
+@pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_that_comes_while_the_node_is_started_is_not_lost(number: int,
+                                                                   tmp_path: Path) -> None:
+    slow = tmp_path / 'slow'
+    slow.write_text('trap "sleep 0.2" DEBUG\n')  # before each command of the prefix
+    program = 'trap "echo ended; exit 3" INT TERM; echo begun; while :; do sleep 0.05; done'
+    with _prefixed('sh', '-c', program, BASH_ENV=str(slow)) as node:
+        assert node.stdout.readline() == 'begun\n'
+        os.kill(node.pid, number)
+        assert node.wait(LONG_S) == 3
 
 
 @pytest.mark.parametrize('number', [signal.SIGINT, signal.SIGTERM])

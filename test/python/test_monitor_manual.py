@@ -13,7 +13,7 @@ import pytest
 import yaml
 
 ROOT = Path(__file__).resolve().parents[2]
-TYPES = {'string': str, 'double': float, 'int': int, 'bool': bool}
+TYPES = {'string': str, 'double': float, 'int': int, 'bool': bool, 'list': list}
 NOT_IN_CONFIGURATION = {'model'}
 """Has no default: the launch file sets it."""
 _CONSTANTS = {'kHour': '3600', 'kDay': '86400'}
@@ -102,13 +102,13 @@ def test_ranges_are_those_of_the_code(name: str) -> None:
         assert entry.range.replace('`', '').replace('~', '') == f'{least} to {most}'
         assert (entry.unit == 's') == (reading.how == 'seconds')
     else:
-        assert reading.how in ('text', 'flag')
+        assert reading.how in ('text', 'flag', 'names')
         assert entry.range == ''
 
 
 def _advertised(call: str) -> List[str]:
     code = ''.join((ROOT / 'src/monitor' / name).read_text()
-                   for name in ('monitor.cpp', 'mute_calls.cpp'))
+                   for name in ('monitor.cpp', 'mute_calls.cpp', 'accept_calls.cpp'))
     return re.findall(rf'private_node_handle_?\s*\.{call}\(\s*"(\w+)"', code)
 
 

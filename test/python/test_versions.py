@@ -16,7 +16,8 @@ import rosbag
 import yaml
 from conftest import robot
 
-from self_awareness import METHOD, EvidenceModel, FileVersion, ResultBag, TrainedModel
+from self_awareness import (METHOD, EncodingRules, EvidenceModel, FileVersion, ResultBag,
+                            TrainedModel)
 from self_awareness.commands import calibrate, info, merge, score, train
 from self_awareness.msg import FileVersion as Message
 from self_awareness.training.robot_graph import RobotGraph
@@ -181,7 +182,7 @@ def test_result_bags_of_any_format_are_known(folder: Path) -> None:
 @every_format
 def test_graphs_of_any_format_are_read(folder: Path, tmp_path: Path) -> None:
     graph = RobotGraph.load(str(folder / 'dead.graph.yaml'))
-    assert ('/laser', '/scan', '/slam') in graph.edges()
+    assert ('/laser', '/scan', '/slam') in graph.edges(EncodingRules())
     graph.save(str(tmp_path / 'g.yaml'))
     assert RobotGraph.load(str(tmp_path / 'g.yaml')) == graph
     assert yaml.safe_load((tmp_path / 'g.yaml').read_text())['version']['format'] == 3
@@ -191,7 +192,7 @@ def test_a_graph_of_a_newer_format_is_read_if_it_says_so(tmp_path: Path) -> None
     path = tmp_path / 'g.yaml'
     topic = '/a: {publishers: [/x], subscribers: [/y], since: 3}\n'
     path.write_text(f'version: {{format: 9, oldest_reader: 2, new: 1}}\nservices: [/s]\n{topic}')
-    assert RobotGraph.load(str(path)).edges() == {('/x', '/a', '/y')}
+    assert RobotGraph.load(str(path)).edges(EncodingRules()) == {('/x', '/a', '/y')}
     path.write_text(f'version: {{format: 9, oldest_reader: 9, package: 3.2.1}}\n{topic}')
     with pytest.raises(ValueError, match=f'^{path}: written by a newer self_awareness .3.2.1, '
                                          'format 9'):

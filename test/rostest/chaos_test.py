@@ -189,8 +189,9 @@ class ChaosTest(MonitorCase):
             monitor.stop()  # what it logs comes when the buffer is emptied
             left_out = re.findall(r"the topic '(.*)': its name is illegal; it is left out",
                                   monitor.output)
-            # A log on the terminal is of ASCII; every other byte becomes a question mark.
-            self.assertEqual(sorted(left_out), sorted(
+            # A log on the terminal is of ASCII, and every other byte becomes a question mark; on
+            # Debian 13 it is shown.
+            self.assertEqual(sorted(name.replace('\xfc', '??') for name in left_out), sorted(
                 name[:100].replace('\xfc', '??') for name in illegal + trained))
 
     @again_if_clock_was_set
@@ -228,7 +229,7 @@ class ChaosTest(MonitorCase):
 
     def is_heard_on_rosout(self) -> bool:
         """Whether the monitor is connected to what this node logs."""
-        links = ServerProxy(rospy.get_node_uri()).getBusInfo(rospy.get_name())  # type: Any
+        links: Any = ServerProxy(rospy.get_node_uri()).getBusInfo(rospy.get_name())
         return ('/self_awareness', '/rosout') in [(link[1], link[4]) for link in links[2]]
 
     @again_if_clock_was_set

@@ -38,7 +38,7 @@ class FakePublisher:
         self._topic = topic
         self._node = node
         self._says = says
-        self._connections = []  # type: List[socket.socket]
+        self._connections: List[socket.socket] = []
         self._data = socket.create_server(('127.0.0.1', 0))
         self._slave = SimpleXMLRPCServer(('127.0.0.1', 0), logRequests=False)
         self._slave.register_function(self._request_topic, 'requestTopic')

@@ -79,12 +79,12 @@ class HostileTest(MonitorCase):
         with Talker('/a'), self.monitor(self.model()), MonitorListener() as listener:
             listener.await_settled()
             uri = slave_uri()
-            slave = ServerProxy(uri)  # type: Any
+            slave: Any = ServerProxy(uri)
             for uris in ([], ['http://127.0.0.1:9/'], ['http://no-such-host.invalid:1/']):
                 slave.publisherUpdate('/master', '/a', uris)
                 self.await_heard(listener, AT_ONCE_S)
             # As `rosnode cleanup` does with a node that it cannot reach.
-            master = ServerProxy(rosgraph.get_master_uri())  # type: Any
+            master: Any = ServerProxy(rosgraph.get_master_uri())
             for answer in (master.unregisterSubscriber('/self_awareness', '/a', uri),
                            master.unregisterPublisher('/self_awareness', ALARM, uri)):
                 self.assertEqual(answer[2], 1, 'one registration is taken back')
@@ -217,7 +217,7 @@ class HostileTest(MonitorCase):
             listener.await_settled()
             pid = pid_of('/self_awareness')
             before = resident_of(pid)
-            slave = ServerProxy(slave_uri())  # type: Any
+            slave: Any = ServerProxy(slave_uri())
             answer = slave.requestTopic(rospy.get_name(), '/self_awareness/status', [['TCPROS']])
             connections = [socket.create_connection((answer[2][1], answer[2][2]), timeout=15)
                            for _ in range(60)]

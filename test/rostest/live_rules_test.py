@@ -299,7 +299,8 @@ class LiveRulesTest(MonitorCase):
             'silence': ('golden',), 'poll_interval': ('0', '1e12'),
             'queue_size': ('0', '1.5'), 'detector': ('oracle', '7'), 'unknown': ('panic',),
             'diagnostic_period': ('-1', '0', 'abc'), 'source_diagnostics': ('maybe',),
-            'hardware_id': ('5',), 'recorder/memory': ('1e12',)}
+            'hardware_id': ('5',), 'recorder/memory': ('1e12',), 'optional': ('/a', '5'),
+            'diagnostic_bytes': ('99',)}
         model = self.model()
         for name, values in bad.items():
             for value in values:

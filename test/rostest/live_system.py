@@ -9,8 +9,8 @@ import tempfile
 import threading
 import time
 import unittest
-from typing import (Any, Callable, Dict, Iterable, Iterator, List, Optional, Sequence, Tuple,
-                    TypeVar)
+from typing import (Any, Callable, Dict, Iterable, Iterator, List, Optional, Sequence, Set,
+                    Tuple, TypeVar)
 from xmlrpc.client import ServerProxy
 
 import rosbag
@@ -145,6 +145,7 @@ class MonitorListener:
         self._lock = threading.Lock()
         self._statuses: List[SelfAwareness] = []
         self._alarms: List[SelfAwareness] = []
+        self._awaited: Set[int] = set()  # alarms that await_alarm() returned
         self._diagnostics: List[DiagnosticStatus] = []
         self._heartbeats: List[float] = []
         self._subscribers = [
@@ -210,11 +211,12 @@ class MonitorListener:
             lambda: next((s for s in self.statuses[seen:] if not s.settling), None), timeout)
 
     def await_alarm(self, timeout: float = 20) -> SelfAwareness:
-        """Waits for a change to ERROR that is not among the alarms seen so far."""
-        seen = len(self.alarms)
-        return await_condition(
-            'an alarm', lambda: next((a for a in self.alarms[seen:]
-                                      if a.level == SelfAwareness.ERROR), None), timeout)
+        """Waits for an alarm that it has not returned before; it may have been raised already."""
+        alarm = await_condition(
+            'an alarm', lambda: next((a for a in self.alarms if a.level == SelfAwareness.ERROR
+                                      and a.alarm not in self._awaited), None), timeout)
+        self._awaited.add(alarm.alarm)
+        return alarm
 
 
 def operation(components: Iterable[Tuple[str, str, float]], length: float,

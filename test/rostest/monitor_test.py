@@ -39,7 +39,7 @@ class MonitorTest(unittest.TestCase):
     def setUp(self) -> None:
         self.folder = tempfile.mkdtemp()
         self.addCleanup(shutil.rmtree, self.folder)
-        self.aggregated = {}  # type: dict
+        self.aggregated: dict = {}
         rospy.Subscriber('/diagnostics_agg', DiagnosticArray, self.on_aggregated)
 
     def on_aggregated(self, array: DiagnosticArray) -> None:
@@ -116,8 +116,9 @@ class MonitorTest(unittest.TestCase):
             suspicions = [s for s in statuses if s.level != DiagnosticStatus.OK]
             self.assertLess(len(suspicions), 0.2 * len(statuses), suspicions)
         await_condition('OK on /diagnostics_agg', lambda: (
-            '/Self-awareness/player' in self.aggregated
-            and self.aggregated['/Self-awareness/player'].level == DiagnosticStatus.OK), 10)
+            '/Self-awareness sources/player' in self.aggregated
+            and self.aggregated['/Self-awareness sources/player'].level == DiagnosticStatus.OK),
+                        10)
 
     def check_alarm(self, alarm: SelfAwareness, killed_at: float) -> None:
         delay = alarm.header.stamp.to_sec() - killed_at
@@ -143,7 +144,7 @@ class MonitorTest(unittest.TestCase):
         await_condition('ERROR of the player', lambda: any(
             s.level == DiagnosticStatus.ERROR for s in listener.diagnostics('/player')), 5)
         await_condition('ERROR on /diagnostics_agg', lambda: (
-            self.aggregated['/Self-awareness/player'].level == DiagnosticStatus.ERROR), 10)
+            self.aggregated['/Self-awareness sources/player'].level == DiagnosticStatus.ERROR), 10)
         self.assertIn('/player on /scan',
                       self.aggregated['/Self-awareness/communication'].message)
         self.assertEqual([s for s in listener.diagnostics('/base')

@@ -63,7 +63,7 @@ class RecordTest(unittest.TestCase):
 
     def edges(self) -> Set[object]:
         files = [graph_file(bag) for bag in self.active()]
-        return set().union(*(RobotGraph.load(path).edges() for path in files
+        return set().union(*(RobotGraph.load(path).edges(EncodingRules()) for path in files
                              if os.path.exists(path)))
 
     def topics(self, bag: str) -> Set[str]:
@@ -76,7 +76,7 @@ class RecordTest(unittest.TestCase):
         self.assertNotIn('/b', self.topics(bag))
         name = rospy.get_name()
         graph = RobotGraph.load(graph_file(bag))
-        self.assertIn((name, '/a', name), graph.edges())
+        self.assertIn((name, '/a', name), graph.edges(EncodingRules()))
         self.assertEqual(graph.hosts[name], own_host())
         self.assertEqual(subscribers('/a'), [])
 
@@ -106,7 +106,7 @@ class RecordTest(unittest.TestCase):
         self.assertNotIn('/recorder', {source for source, _, _ in heard_of})
         summary = summarise_bag(log, 0)
         self.assertTrue(0 < summary.robot_start <= summary.start <= events.stamps[0])
-        self.assertIn((name, '/a', name), RobotGraph(*summary.graph).edges())
+        self.assertIn((name, '/a', name), RobotGraph(*summary.graph).edges(EncodingRules()))
         self.assertEqual(RobotGraph(*summary.graph).hosts[name], own_host())
         unheard = RobotGraph(*summary.graph).unheard(EncodingRules.defaults())
         self.assertIn((name, '/lonely'), unheard, 'it is known by name')
@@ -116,8 +116,10 @@ class RecordTest(unittest.TestCase):
         with Talker('/a'), Talker('/b'):
             rospy.Subscriber('/a', String, lambda _: None)
             files = self.record_events(lambda: glob.glob(self.folder + '/run*.bag'),
-                                       'split:=0.1')
+                                       'split:=0.1', 'robot:=r7')
             again = self.record_events(lambda: True, 'split:=1')
+        self.assertEqual({summarise_bag(path, 0).robot for path in files}, {'r7'})
+        self.assertEqual({summarise_bag(path, 0).robot for path in set(again) - set(files)}, {''})
         starts = [summarise_bag(path, 0).robot_start for path in files]
         self.assertGreaterEqual(len(files), 2)
         self.assertEqual(len(set(starts)), 1)

@@ -98,6 +98,7 @@ class TopTest(MonitorCase):
                 drawn = terminal.press('m')
                 terminal.await_text('not told until', drawn)
                 terminal.await_text('muted: {} until'.format(rospy.get_name()), drawn)
+                terminal.await_text('no model that judges by evidence', terminal.press('a'))
                 terminal.await_text('the last ', terminal.press('d'))
                 terminal.press('q')
                 self.assertEqual(terminal.wait(), 0)

@@ -88,7 +88,7 @@ def test_whose_death_another_budget_finds_sooner_is_a_table(capsys) -> None:
                 for component, after in (('/joy', of_joy), ('/imu', 0.5), ('/new', None))]
 
     found = {0.05: coverage(900.0), 0.5: coverage(450.0), 5.0: coverage(225.0)}
-    evidence_report.print_budgets(found, 0.5)
+    evidence_report.print_budgets(found)
     lines = capsys.readouterr().out.splitlines()
     assert lines[0].startswith('--budget: deaths found with 0.05, 0.5, 5 false alarms an hour')
     assert [line.split() for line in lines[1:]] == [

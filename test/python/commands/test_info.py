@@ -57,7 +57,7 @@ def test_json_holds_the_evidence(evidence_model: str, capsys) -> None:
     found = as_json(capsys, evidence_model)['evidence']
     model = TrainedModel.load(evidence_model)
     stored = model.calibration
-    assert set(found['tracks']) <= {'overdue', 'rate', 'pairs', 'deadlines'}
+    assert set(found['tracks']) <= {'overdue', 'rate', 'pairs', 'deadlines', 'size'}
     assert found['tracks']['overdue'] == 3 and found['tracks']['rate'] == 6
     assert sum(found['tracks'].values()) == len(EvidenceModel(model).tracks)
     assert found['not_judged'] == []

@@ -12,6 +12,8 @@ import rosbag
 
 from self_awareness.commands import incidents
 from self_awareness.msg import FileVersion, Incident, Incidents, SelfAwareness
+from self_awareness.recovery import history
+from self_awareness.stamps import SECOND_NS
 
 HOUR_S = 3600
 NOON_S = 1_790_000_000  # 2026-09-21 14:13:20 UTC
@@ -123,3 +125,26 @@ def test_errors_name_what_is_wrong(run: Callable[..., str], tmp_path: Path, caps
     assert f'{damaged}: the incidents in it are damaged' in capsys.readouterr().err
     assert incidents.main(['--file', str(tmp_path / 'none')]) == 1
     assert 'there is no such file' in capsys.readouterr().err
+
+
+def test_what_the_recovery_did_is_shown_with_the_incident(run: Callable[..., str], tmp_path: Path,
+                                                          capsys: Any) -> None:
+    done = history.History()
+    for number, result in ((1, '/player ended by SIGKILL'), (1, '/slam ended'), (99, 'other')):
+        done.begin(history.Action(number, '/player', 'died', 1, 2, 'stop /player',
+                                  NOON_S * SECOND_NS, False))
+        done.end(True, result)
+    done.save(str(tmp_path / 'watch.actions'))
+    assert '/player died (recovery: 2)' in run()
+    told = [line for line in run('1').splitlines() if 'recovery' in line]
+    assert len(told) == 2
+    assert '2026-09-21 14:13:20 UTC, stop /player (step 1 of 2)' in told[0]
+    assert told[0].endswith('done: /player ended by SIGKILL')
+    first, second = json.loads(run('--json'))[:2]
+    assert [each['result'] for each in first['actions']] == ['/player ended by SIGKILL',
+                                                             '/slam ended']
+    assert second['actions'] == []
+    (tmp_path / 'watch.actions').write_text('{}}')
+    assert incidents.main(['--file', str(tmp_path / 'watch.incidents')]) == 0
+    said = capsys.readouterr()
+    assert '/player died ' in said.out and 'watch.actions: not YAML' in said.err

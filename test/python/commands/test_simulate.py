@@ -7,7 +7,7 @@ from typing import List
 import pytest
 import rosbag
 
-from self_awareness import TrainedModel
+from self_awareness import EncodingRules, TrainedModel
 from self_awareness.commands import induce, simulate, train
 from self_awareness.training.robot_graph import RobotGraph, graph_file
 
@@ -48,7 +48,7 @@ def test_train_takes_the_graph_from_beside_the_bags(runs: List[Path], tmp_path: 
     assert train.main([*map(str, runs), '-o', model]) == 0
     graph = TrainedModel.load(model).graph
     assert ('/player', '/scan', '/slam') in graph
-    assert graph == RobotGraph.load(graph_file(str(runs[0]))).edges()
+    assert graph == RobotGraph.load(graph_file(str(runs[0]))).edges(EncodingRules())
 
 
 def test_a_component_may_be_named_as_its_node(tmp_path: Path, capsys) -> None:

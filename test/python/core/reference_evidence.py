@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections import defaultdict
-from typing import Dict, Iterable, List, NamedTuple, Sequence, Tuple
+from typing import Dict, Iterable, List, NamedTuple, Optional, Sequence, Tuple
 
 Event = Tuple[int, str]
 Pair = Tuple[str, str]
@@ -40,6 +40,9 @@ GAPS_TO_DELAYS = (2.0, 10.0)
 LEAST_RATE_EFFECT = 0.04
 LONGEST_GAP_OF_SERIES = 2 * SECOND
 ENDING = 5 * SECOND
+SHORTEST_STALL = 50 * MS
+LONGEST_STALL_OF_TRAINING = 2 * SECOND
+BETWEEN_STALLS = 30 * SECOND
 
 
 def log_bin(delay: int) -> int:
@@ -95,27 +98,54 @@ class Seen(NamedTuple):
     start: int
     end: int
     longest_silence: int
+    longest_stall: int
     events: Dict[str, int]
     longest_gaps: Dict[str, int]
     firsts: Dict[str, int]
 
 
+def stalls_of(events: Sequence[Event]) -> Dict[int, int]:
+    """Return how long the machine stood still [ns] before events, by their place."""
+    stamps = [t for t, _ in events]
+    silences = {n: stamps[n] - max(stamps[:n]) for n in range(1, len(stamps))}
+    often = (max(stamps) - stamps[0]) // BETWEEN_STALLS
+    usual = (sorted(silences.values(), reverse=True) + [0] * (often + 1))[often]
+    stalls: Dict[int, int] = {}
+    for n, silence in silences.items():
+        alone = all(stamps[n] - stamps[other] > BETWEEN_STALLS for other in stalls)
+        if (alone and SHORTEST_STALL < silence <= LONGEST_STALL_OF_TRAINING
+                and silence > usual * 5 // 4):
+            stalls[n] = silence
+    return stalls
+
+
 class Counts:
-    """What was seen in recordings, as lists."""
+    """What was seen in recordings, as lists.
+
+    Args:
+        recordings: their events.
+        types: event types.
+        window: in which rates are counted [ns].
+        stalls: of the recordings, as stalls_of() returns them; None: what it returns.
+    """
 
     def __init__(self, recordings: Iterable[Sequence[Event]], types: Sequence[str],
-                 window: int) -> None:
+                 window: int, stalls: Optional[Sequence[Dict[int, int]]] = None) -> None:
         self.types = types
         self.gaps: Dict[str, List[int]] = defaultdict(list)
         self.delays: Dict[Pair, List[int]] = defaultdict(list)
         self.answers: Dict[Pair, int] = defaultdict(int)
         self.rates: Dict[str, List[int]] = defaultdict(list)
         self.recordings: List[Seen] = []
-        for events in recordings:
-            self._count_delays(events)
-            self._count_answers(events)
-            self._count_rates(events, window)
-            self._count_recording(events)
+        for place, events in enumerate(recordings):
+            stood_still = stalls_of(events) if stalls is None else stalls[place]
+            ran = [(t - sum(length for before, length in stood_still.items() if before <= n), kind)
+                   for n, (t, kind) in enumerate(events)]
+            self._count_delays(ran)
+            self._count_answers(ran)
+            self._count_rates(ran, window, {n: (ran[n - 1][0], length)
+                                            for n, length in stood_still.items()})
+            self._count_recording(events, ran, stood_still)
 
     def _count_delays(self, events: Sequence[Event]) -> None:
         last: Dict[str, int] = {}
@@ -133,7 +163,8 @@ class Counts:
                 for answer in {other for _, other in events[begin + 1:end]}:
                     self.answers[kind, answer] += 1
 
-    def _count_rates(self, events: Sequence[Event], window: int) -> None:
+    def _count_rates(self, events: Sequence[Event], window: int,
+                     stalls: Dict[int, Tuple[int, int]]) -> None:
         # A late event counts in the window that is open.
         newest, windows_of = events[0][0], []
         for t, kind in events:
@@ -141,19 +172,26 @@ class Counts:
             windows_of.append((newest // window, kind))
         span = max(2 * SECOND // window, 1)
         for last in range(events[0][0] // window + span - 1, newest // window):
+            if any(windows_of[n][0] <= last and begin + length > (last - span + 1) * window
+                   for n, (begin, length) in stalls.items()):
+                continue  # what waited came at once
             inside = [kind for index, kind in windows_of if last - span < index <= last]
             for kind in self.types:
                 self.rates[kind].append(inside.count(kind))
 
-    def _count_recording(self, events: Sequence[Event]) -> None:
+    def _count_recording(self, events: Sequence[Event], ran: Sequence[Event],
+                         stalls: Dict[int, int]) -> None:
         stamps = [t for t, _ in events]
-        of_kind = {kind: [t for t, other in events if other == kind] for kind in self.types}
+        of_kind = {kind: [t for t, other in ran if other == kind] for kind in self.types}
+        firsts = {kind: [t for t, other in events if other == kind][:1] for kind in self.types}
+        end = max(stamps) - sum(stalls.values())
         self.recordings.append(Seen(
-            stamps[0], max(stamps), longest_gap(stamps),
+            stamps[0], max(stamps), longest_gap([t for t, _ in ran]),
+            max(stalls.values(), default=0),
             {kind: len(own) for kind, own in of_kind.items()},
-            {kind: max(longest_gap(own), max(stamps) - ENDING - own[-1]) if len(own) > 1 else 0
+            {kind: max(longest_gap(own), end - ENDING - own[-1]) if len(own) > 1 else 0
              for kind, own in of_kind.items()},
-            {kind: max(own[0] - stamps[0], 0) if own else -1 for kind, own in of_kind.items()}))
+            {kind: max(own[0] - stamps[0], 0) if own else -1 for kind, own in firsts.items()}))
 
     def miss_rate(self, asking: str, answer: str) -> float:
         """Return the share of the gaps of `asking` without the other."""
@@ -221,6 +259,7 @@ class ReferenceModel:
         self._least_effect = least_effect
         self.longest = {kind: max(both.gaps[kind], default=0) for kind in self.types}
         self.longest_silence = max(seen.longest_silence for seen in both.recordings)
+        self.longest_stall = max(seen.longest_stall for seen in both.recordings)
         self._gaps = {kind: self._binned(learned.gaps[kind]) for kind in self.types}
         self._surprises = {track: self._standardised(track[2], track[1])
                            for track in tracks if LABELS[track[0]] == 'pairs'}

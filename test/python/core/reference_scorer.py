@@ -4,7 +4,8 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import Dict, List, Optional, Sequence, Tuple
 
-from reference_evidence import LABELS, MS, SECOND, Event, ReferenceModel, Track
+from reference_evidence import (BETWEEN_STALLS, LABELS, LONGEST_STALL_OF_TRAINING, MS, SECOND,
+                                SHORTEST_STALL, Event, ReferenceModel, Track)
 
 DRIFT = 1.0
 """What every delay takes from its sum."""
@@ -19,9 +20,7 @@ MOST_OF_LIMIT = 1.5
 ACCEPT_AFTER = 60 * SECOND
 START_TIME = 60 * SECOND
 REGIME = 120 * SECOND
-SHORTEST_STALL = 50 * MS
 LONGEST_STALL = 700 * MS
-BETWEEN_STALLS = 30 * SECOND
 
 
 class Arming:
@@ -102,6 +101,8 @@ class ReferenceScorer:
         self._watches = {track: Watch(self._caps.get(track, MOST_EVIDENCE))
                          for track in model.tracks if LABELS[track[0]] == 'pairs'}
         self._usual_silence = max(model.longest_silence * 5 // 4, SHORTEST_STALL)
+        self._longest_stall = max(LONGEST_STALL, min(model.longest_stall * 5 // 4,
+                                                     LONGEST_STALL_OF_TRAINING))
         self._start: Optional[int] = None  # the first event
         self._newest: Optional[int] = None
         self._stall: Optional[Tuple[int, int]] = None  # the last one that is over
@@ -125,7 +126,7 @@ class ReferenceScorer:
     def _note_stall(self, t: int) -> None:
         if self._newest is not None:
             silence = t - self._newest
-            if (self._usual_silence < silence <= LONGEST_STALL
+            if (self._usual_silence < silence <= self._longest_stall
                     and (self._stall is None or t - self._stall[1] > BETWEEN_STALLS)):
                 self._stall = (self._newest, t)
                 self.stalls += 1
@@ -193,7 +194,7 @@ class ReferenceScorer:
         if self._has_limits:
             self._accept(end)
         silence = end - self._newest if self._newest is not None else 0
-        stall = silence if self._usual_silence < silence <= LONGEST_STALL else 0
+        stall = silence if self._usual_silence < silence <= self._longest_stall else 0
         stalled = stall > 0 or self._has_waited(end - 2 * SECOND)
         return [self._evidence(track, index, end, stall, stalled)
                 for track in self._model.tracks]

@@ -124,6 +124,10 @@ def _learned(request: pytest.FixtureRequest) -> Robot:
     return Robot(request.param)
 
 
+def test_its_machine_stood_still_in_training(learned: Robot) -> None:
+    assert learned.reference.longest_stall >= OUTAGE_S * SECOND_NS
+
+
 def test_the_same_is_watched(learned: Robot) -> None:
     expected = [(channel, LABELS[channel], learned.ids[to], learned.ids[other])
                 for channel, to, other in learned.reference.tracks]

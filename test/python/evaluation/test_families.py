@@ -236,8 +236,7 @@ def test_queues_lose_only_what_comes_soon_after_another() -> None:
     for gap_s, lost in ((0.1, 0.1), (0.2, 0.0)):
         sent = np.arange(5000) * gap_s
         received = conditions.received(sent, np.random.default_rng(1))
-        assert 1.0 - len(received) / len(sent) == pytest.approx(lost, abs=0.02)
-        assert np.isin(received, sent).all()
+        assert 1.0 - received.mean() == pytest.approx(lost, abs=0.02)
 
 
 def test_a_link_has_a_heavy_tail_and_nothing_overtakes() -> None:

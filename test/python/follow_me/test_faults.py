@@ -67,6 +67,8 @@ def typical_delay(run: Run, first: str, second: str) -> float:
     ('crash:camera', ('/camera',)), ('lat', ('/leg_detection', '/face_detection')),
     ('lat:slam', ('/slam',)), ('half:dialog', ('/dialog',)), ('double:player', ('/player',)),
     ('extra', ('/intruder',)), ('order', ('/slam',)), ('unknown', ('/anchoring',)),
+    ('stale:slam', ('/slam',)), ('lossy:camera', ('/camera',)), ('empty:player', ('/player',)),
+    ('freeze:camera', ('/camera',)), ('unsubscribed:navigation', ('/navigation',)),
 ])
 def test_culprits(scenario: Scenario, kind: str, culprits: Tuple[str, ...]) -> None:
     assert effect_of(scenario, kind).culprits == culprits
@@ -254,6 +256,7 @@ def test_other_components_are_left_alone(scenario: Scenario) -> None:
 @pytest.mark.parametrize('where, value, message', [
     (['lat', 'components'], ['plaer'], r"lat\.components: no component 'plaer'; there are"),
     (['lat', 'delay'], 0, r'lat\.delay: expected a finite number of at least'),
+    (['lossy', 'share'], 1.5, r'lossy\.share: expected a finite number'),
     (['extra', 'name'], 'slam', r"extra\.name: 'slam' is a component"),
     (['extra', 'tasks', 0, 'publish', 0, 'topic'], 'joy', "no component publishes 'joy'"),
     (['extra', 'tasks', 0, 'upon'], 'joy', "no component publishes 'joy'"),

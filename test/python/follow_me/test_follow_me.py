@@ -152,9 +152,11 @@ def test_stamps_pass_through_and_timers_read_the_clock_of_the_host() -> None:
                            clock=lambda now: now - 3 * S)
     component.start(0)
     assert component.receive(10 * S, Message('in', 7 * S)) == [Work(10 * MS, 0)]
-    assert component.work_done(10 * S + MS) == [Publish(Message('relayed', 7 * S))]
+    assert component.work_done(10 * S + MS) == [
+        Publish(Message('relayed', 7 * S, content=10 * S + MS))]
     component.wake(11 * S, 1)
-    assert component.work_done(11 * S + MS) == [Publish(Message('own', 8 * S))]
+    assert component.work_done(11 * S + MS) == [
+        Publish(Message('own', 8 * S, content=11 * S + MS))]
 
 
 def test_busy_worker_takes_the_newest_message_next() -> None:
@@ -162,8 +164,8 @@ def test_busy_worker_takes_the_newest_message_next() -> None:
     assert component.receive(0, Message('in', 1)) == [Work(10 * MS, 0)]
     assert component.receive(1, Message('in', 2)) == []
     assert component.receive(2, Message('in', 3)) == []
-    assert component.work_done(3) == [Publish(Message('out', 1)), Work(10 * MS, 0)]
-    assert component.work_done(4) == [Publish(Message('out', 3))]
+    assert component.work_done(3) == [Publish(Message('out', 1, content=3)), Work(10 * MS, 0)]
+    assert component.work_done(4) == [Publish(Message('out', 3, content=4))]
 
 
 def test_every_nth_message() -> None:

@@ -36,7 +36,9 @@ def said() -> Said:
     of = Said('/watch')
     of.on_status(verdict(-0.5))
     of.on_diagnostics(SimpleNamespace(status=[
-        status('watch: communication', 2, 'abnormal communication', **{'not watched': '/rare'}),
+        status('watch: communication', 2, 'abnormal communication', **{
+            'not watched': '/rare',
+            'not accepted, events so far': '/rostopic on /cmd_vel: 12, /joystick on /joy: 3'}),
         status('watch: monitor', 0, 'listening', **{
             'events a second': '120', 'share of a core spent': '0.02',
             'mute 1': '/noisy until 2026-11-23 15:00:00 UTC, by /rqt'}),
@@ -86,7 +88,10 @@ def test_all_is_in_80_columns(said: Said) -> None:
     texts = [text for _, text in shown]
     assert max(map(len, texts)) <= 80
     page = '\n'.join(texts)
-    for text in ('ERROR  abnormal communication', 'not watched: /rare', 'muted: /noisy until',
+    assert said.strangers == [('/rostopic', '/cmd_vel'), ('/joystick', '/joy')]
+    for text in ('ERROR  abnormal communication', 'not watched: /rare',
+                 'new, not accepted: /rostopic on /cmd_vel, /joystick on /joy',
+                 'muted: /noisy until',
                  'open  /player died, raised 7 times; and /slam, /navigation ...',
                  'over  /old died', 'listening; 120 events/s, 0.02 cores'):
         assert text in page

@@ -31,9 +31,9 @@ def suspect(component: str, short: str = 'fell silent', silence: Optional[Silenc
 
 def interval(start: float, end: float, suspects: Sequence[NamedSuspect] = (), level: str = ALARM,
              cleared: bool = True, kind: str = 'died', busy: Optional[str] = None,
-             silence: Optional[Silence] = None) -> Interval:
+             silence: Optional[Silence] = None, reason: str = '') -> Interval:
     of: Any = SimpleNamespace(culprit=suspects[0].component if suspects else '', kind=kind,
-                              silent=None)
+                              silent=None, reason=reason)
     return Interval(of, level, start, end, '', cleared, None, -2.0, 'overdue', busy, silence,
                     list(suspects), [])
 
@@ -112,6 +112,10 @@ def test_where_nobody_is_to_blame_the_kind_of_the_verdict_is_told() -> None:
         'The machine may be busy: 12 of 26 are late, from 3.0 s to 9.0 s.')
     silent = interval(3.0, 9.0, kind='all silent', silence=Silence(2.8, 7.0))
     assert found(silent)[0].headline == 'All nodes fell silent at 2.8 s, and came back at 7.0 s.'
+    mode = interval(3.0, 9.0, level=SUSPICION, kind='new mode', reason=(
+        '/a, /b, /c and 2 more stopped together, and others go on: a mode'))
+    assert found(mode)[0].headline == (
+        '/a, /b, /c and 2 more stopped together, and others go on: a mode, from 3.0 s to 9.0 s.')
     assert 'no suspect stands out' in found(interval(3.0, 9.0))[0].headline
     assert len(found(busy, interval(300.0, 310.0, kind='busy machine', busy='x'), silent)) == 2
 

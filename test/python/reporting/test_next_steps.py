@@ -12,7 +12,7 @@ from conftest import write_bag
 from judged_recordings import judged, with_graph, without_laser
 from rosgraph_msgs.msg import Log
 
-from self_awareness import BagError, last_log_lines
+from self_awareness import BagError, EncodingRules, last_log_lines
 from self_awareness.commands import convert
 from self_awareness.reporting.report.section import section
 
@@ -41,17 +41,17 @@ def bag(tmp_path: Path) -> str:
 
 def test_the_last_lines_of_a_node(bag: str) -> None:
     nodes = [('/laser', 3_012_000_000_000), ('/slam', 3_100_000_000_000), ('/nobody', 2**62)]
-    laser, slam, nobody = last_log_lines(bag, nodes, 12)
+    laser, slam, nobody = last_log_lines(bag, EncodingRules(), nodes, 12)
     assert [(stamp / 1e9, level) for stamp, level, _ in laser] == [(3001.0, 2), (3011.9, 8)]
     assert laser[1][2] == 'motor stalled \N{REPLACEMENT CHARACTER}[31m'
     assert [text for _, _, text in slam] == ['no scan'] and nobody == []
-    assert last_log_lines(bag, nodes[:1], 1) == [laser[1:]]
+    assert last_log_lines(bag, EncodingRules(), nodes[:1], 1) == [laser[1:]]
 
 
 def test_rosout_agg_is_read_where_there_is_no_rosout(tmp_path: Path) -> None:
     path = write_bag(tmp_path / 'b.bag', [(1.0, '/a', '/b')])
     log(path, '/rosout_agg', [(2.0, '/laser_12345', Log.INFO, 'x' * 2000)])
-    (stamp, level, text), = last_log_lines(path, [('/laser_12345', 2**62)], 9)[0]
+    (stamp, level, text), = last_log_lines(path, EncodingRules(), [('/laser_12345', 2**62)], 9)[0]
     assert (level, len(text)) == (2, 500)
 
 
@@ -61,9 +61,9 @@ def test_a_message_that_is_no_line_is_passed_over(tmp_path: Path) -> None:
     with rosbag.Bag(path, 'w') as out:
         cut = b'\1\0\0\0' * 3 + b'\xff\xff\xff\xff'
         out.write('/rosout', (Log._type, cut, Log._md5sum, None, Log), rospy.Time(5), raw=True)
-    assert last_log_lines(path, [('/a', 2**62)], 9) == [[]]
+    assert last_log_lines(path, EncodingRules(), [('/a', 2**62)], 9) == [[]]
     with pytest.raises(BagError, match='no such file'):
-        last_log_lines(str(tmp_path / 'missing.bag'), [], 9)
+        last_log_lines(str(tmp_path / 'missing.bag'), EncodingRules(), [], 9)
 
 
 def test_an_incident_has_the_log_and_the_commands(evidence_model: str, bag: str,

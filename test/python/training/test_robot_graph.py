@@ -8,7 +8,7 @@ from typing import Tuple
 import pytest
 from conftest import robot
 
-from self_awareness import TrainedModel, stable_name
+from self_awareness import EncodingRules, TrainedModel, stable_name
 from self_awareness.commands import info, score, train
 from self_awareness.training.robot_graph import RobotGraph, graph_file
 
@@ -42,14 +42,14 @@ def test_it_comes_back_as_it_was_saved(tmp_path: Path) -> None:
     path = str(tmp_path / 'g')
     graph.save(path)
     loaded = RobotGraph.load(path)
-    assert loaded.edges() == graph.edges() == {('/laser', '/scan', '/slam'),
-                                               ('/laser', '/scan', '/log')}
+    assert loaded.edges(EncodingRules()) == graph.edges(EncodingRules()) == {
+        ('/laser', '/scan', '/slam'), ('/laser', '/scan', '/log')}
     assert loaded.hosts == graph.hosts
-    assert loaded.hosts_of_sources() == {'/laser': 'base', stable_name(
+    assert loaded.hosts_of_sources(EncodingRules()) == {'/laser': 'base', stable_name(
         '/log_4242_1600000000000'): ''}
     assert not graph.add(loaded) and not loaded.add(graph)
     assert loaded.add(RobotGraph({}, {'/nobody/listens': {'/slam'}}))
-    assert ('/laser', '/nobody/listens', '/slam') in loaded.edges()
+    assert ('/laser', '/nobody/listens', '/slam') in loaded.edges(EncodingRules())
     assert loaded.add(RobotGraph(hosts={'/laser': 'head'})) and loaded.hosts['/laser'] == 'head'
 
 

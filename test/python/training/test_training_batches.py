@@ -94,7 +94,8 @@ def at_once(bags: List[str]) -> TrainedModel:
     whole = Training(EncodingRules.defaults())
     for bag, recording in zip(bags, counted(bags).model.recordings):
         events = read_events(bag, EncodingRules.defaults())
-        whole.add_events(events.event_types, events.stamps, events.ids, recording)
+        whole.add_events(events.event_types, events.stamps, events.ids, recording,
+                         attributes=events.attributes)
     return whole.model()
 
 

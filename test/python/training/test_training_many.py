@@ -52,7 +52,8 @@ def test_bags_counted_apart_are_what_one_training_counts(bags: List[str], tmp_pa
     training = Training(EncodingRules.defaults())
     for bag, recording in zip(bags, trained(bags, tmp_path / 'm').recordings):
         events = read_events(bag, EncodingRules.defaults())
-        training.add_events(events.event_types, events.stamps, events.ids, recording)
+        training.add_events(events.event_types, events.stamps, events.ids, recording,
+                            attributes=events.attributes)
     assert learned(TrainedModel.load(str(tmp_path / 'm'))) == learned(training.model())
 
 
@@ -72,7 +73,8 @@ def test_a_single_bag_is_cut_in_two(bags: List[str], jobs: str, tmp_path: Path) 
     events = read_events(bags[0], EncodingRules.defaults())
     model = trained(bags[:1], tmp_path / 'm', '--jobs', jobs)
     training = Training(EncodingRules.defaults())
-    training.add_events(events.event_types, events.stamps, events.ids, model.recordings[0])
+    training.add_events(events.event_types, events.stamps, events.ids, model.recordings[0],
+                        attributes=events.attributes)
     for half in (0, 1):
         counted = sum(EvidenceCounts(model, half).events(k) for k in range(len(model.event_types)))
         assert 0.4 < counted / len(events.stamps) < 0.6

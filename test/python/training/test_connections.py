@@ -1,0 +1,108 @@
+"""Who does not subscribe as in all starts of the training: learned from event logs, and scored."""
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any, Dict, List, Optional, Tuple
+
+import pytest
+import rosbag
+
+from self_awareness import (EncodingRules, TrainedModel, lasting_subscriptions,
+                            missing_subscriptions, summarise_bag)
+from self_awareness.commands import convert, info, score, simulate, train
+
+MISSING = ('/navigation', '/pose_hypotheses')
+
+
+def as_heard_live(log: str) -> None:
+    """Make an event log of a bag one that was heard live: its graph is all that there was."""
+    with rosbag.Bag(log) as bag:
+        messages = list(bag.read_messages(return_connection_header=True))
+    with rosbag.Bag(log, 'w') as bag:
+        for topic, message, stamp, header in messages:
+            if topic == '/event_log/start':
+                message.bag = ''
+            bag.write(topic, message, stamp, connection_header=header)
+
+
+@pytest.fixture(name='logs', scope='module')
+def _logs(tmp_path_factory: pytest.TempPathFactory) -> Dict[str, str]:
+    folder = tmp_path_factory.mktemp('connections')
+    logs = {}
+    for name, seed, fault in (('1', 1, None), ('2', 2, None), ('fine', 3, None),
+                              ('deaf', 3, 'unsubscribed:navigation'),
+                              ('dead', 3, 'crash:navigation@50')):
+        bag, log = str(folder / f'{name}.bag'), str(folder / f'{name}.events.bag')
+        options = [] if fault is None else ['--fault', fault]
+        assert simulate.main(['-o', bag, '--duration', '100', '--seed', str(seed), *options]) == 0
+        assert convert.main([bag, '-o', log]) == 0
+        logs[f'{name} bag'] = bag
+        logs[f'{name} of a bag'] = str(folder / f'{name}.of_bag.bag')
+        Path(logs[f'{name} of a bag']).write_bytes(Path(log).read_bytes())
+        as_heard_live(log)
+        logs[name] = log
+    return logs
+
+
+@pytest.fixture(name='model', scope='module')
+def _model(logs: Dict[str, str]) -> str:
+    path = str(Path(logs['1']).parent / 'robot.model')
+    assert train.main([logs['1'], logs['2'], '-o', path]) == 0
+    return path
+
+
+def suspicions(model: str, log: str, tmp_path: Path) -> List[Tuple[str, Optional[str], str]]:
+    """Kind, culprit and reason of alarms and suspicions, in their order."""
+    out = tmp_path / 'score.json'
+    assert score.main([log, '--model', model, '--json', str(out)]) == 0
+    recording: Dict[str, Any] = json.loads(out.read_text(encoding='utf-8'))['recordings'][0]
+    return [(each['kind'], each['culprit'], each['reason'])
+            for each in recording['alarms']]
+
+
+def test_what_every_start_had_is_learned(logs: Dict[str, str], model: str,
+                                         capsys: pytest.CaptureFixture) -> None:
+    trained = TrainedModel.load(model)
+    assert MISSING in trained.subscriptions
+    assert len(trained.subscriptions) > 25
+    assert {node for node, _ in trained.subscriptions} <= {
+        kind.source for kind in trained.event_types}
+    assert info.main([model, '--json']) == 0
+    assert dict(zip(('node', 'topic'), MISSING)) in json.loads(
+        capsys.readouterr().out)['subscriptions']
+
+
+def test_who_does_not_subscribe_is_named_after_a_minute(logs: Dict[str, str], model: str,
+                                                        tmp_path: Path) -> None:
+    assert suspicions(model, logs['deaf'], tmp_path) == [
+        ('not subscribed', '/navigation',
+         'does not subscribe to /pose_hypotheses, as it did in all 2 starts')]
+    assert suspicions(model, logs['fine'], tmp_path) == []
+
+
+def test_who_is_dead_is_one_finding(logs: Dict[str, str], model: str, tmp_path: Path) -> None:
+    found = suspicions(model, logs['dead'], tmp_path)
+    assert {(kind, culprit) for kind, culprit, _ in found} == {('died', '/navigation')}
+
+
+@pytest.mark.parametrize('names', [
+    ('1',), ('1 bag', '2 bag'), ('1 of a bag', '2 of a bag'), ('1', '2', '3 of no graph'),
+    ('1', '2', 'deaf')])
+def test_what_not_every_start_is_known_to_have_is_not_expected(
+        logs: Dict[str, str], tmp_path: Path, names: Tuple[str, ...]) -> None:
+    bags = [logs['fine of a bag' if name == '3 of no graph' else name] for name in names]
+    model = str(tmp_path / 'robot.model')
+    assert train.main([*bags, '-o', model]) == 0
+    expected = TrainedModel.load(model).subscriptions
+    assert MISSING not in expected
+    assert bool(expected) == (names == ('1', '2', 'deaf'))
+
+
+def test_graph_of_a_log_says_what_is_missing(logs: Dict[str, str]) -> None:
+    rules = EncodingRules.defaults()
+    normal, deaf = summarise_bag(logs['fine'], 0), summarise_bag(logs['deaf'], 0)
+    lasting = lasting_subscriptions(normal, rules)
+    assert lasting - lasting_subscriptions(deaf, rules) == {MISSING}
+    assert [missing for _, missing in missing_subscriptions(deaf, rules, lasting)] == [{MISSING}]
+    assert missing_subscriptions(summarise_bag(logs['fine bag']), rules, lasting) == []

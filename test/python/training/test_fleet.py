@@ -1,0 +1,159 @@
+"""Learned on some robots, watching another: names are replaced, and a start is of one robot."""
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Iterable, List
+
+import pytest
+from conftest import Message, jittery_robot, write_bag
+
+from self_awareness import EncodingRules, TrainedModel, read_events
+from self_awareness.commands import calibrate, convert, info, merge, score, train
+from self_awareness.recordings import BagPart, by_folder, expand
+from self_awareness.training.robot_graph import RobotGraph, graph_file
+
+LENGTH_S = 60.0
+RENAME = ['--rename', '/r[0-9]+/(.*)', '/\\1']
+
+
+def of_robot(number: int, start: float) -> Iterable[Message]:
+    """What a robot sends in its namespace; the second one has a lidar besides."""
+    more = [(start + 0.7 + 0.5 * i, '/lidar', '/cloud') for i in range(int(LENGTH_S / 0.5) - 2)]
+    messages = [*jittery_robot(start, LENGTH_S, int(start)), *(more if number == 2 else [])]
+    return sorted((stamp, f'/r{number}{source}', f'/r{number}{topic}')
+                  for stamp, source, topic in messages)
+
+
+@pytest.fixture(scope='module', name='folder')
+def _folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Two recordings of each of four robots, in a folder each, at the same times."""
+    folder = tmp_path_factory.mktemp('fleet')
+    for number in range(1, 5):
+        (folder / f'r{number}').mkdir()
+        for start in (10000.0, 20000.0):
+            bag = write_bag(folder / f'r{number}' / f'{start:g}.bag',
+                            of_robot(number, start + number))
+            RobotGraph({f'/r{number}/scan': {f'/r{number}/laser'}},
+                       {f'/r{number}/scan': {f'/r{number}/slam'}},
+                       {f'/r{number}/laser': f'pc{number}'}).save(graph_file(bag))
+    return folder
+
+
+def trained(bags: List[str], path: Path, *options: str) -> TrainedModel:
+    assert train.main([*bags, '-o', str(path), *options]) == 0
+    return TrainedModel.load(str(path))
+
+
+@pytest.fixture(scope='module', name='fleet')
+def _fleet(folder: Path, tmp_path_factory: pytest.TempPathFactory) -> str:
+    """A model that was learned on three of them."""
+    path = tmp_path_factory.mktemp('model') / 'fleet.model'
+    trained([str(folder / f'r{number}') for number in (1, 2, 3)], path, '--robots-by-folder',
+            *RENAME)
+    return str(path)
+
+
+def test_one_name_stands_for_that_of_every_robot(fleet: str) -> None:
+    model = TrainedModel.load(fleet)
+    assert {(kind.source, kind.scope) for kind in model.event_types} == {
+        ('/laser', '/scan'), ('/slam', '/map'), ('/battery', '/charge'), ('/lidar', '/cloud')}
+    assert model.encoding.rename == [('/r[0-9]+/(.*)', '/\\1')]
+    assert model.graph == {('/laser', '/scan', '/slam')}
+    assert set(model.hosts) == {'/laser'}
+    assert {recording.robot for recording in model.recordings} == {'r1', 'r2', 'r3'}
+
+
+def test_the_model_remembers_how_names_are_replaced(fleet: str, folder: Path, capsys) -> None:
+    assert score.main([str(folder / 'r4'), '--model', fleet]) == 0
+    said = capsys.readouterr()
+    assert 'warning' not in said.err
+    assert info.main([fleet]) == 0
+    assert 'rename          /r[0-9]+/(.*) to /\\1' in capsys.readouterr().out
+
+
+def test_what_only_some_robots_have_is_named_and_missed_on_none_of_the_others(
+        fleet: str, folder: Path, tmp_path: Path, capsys) -> None:
+    line = '/lidar: optional, only r2 of 3 robots had it in training'
+    capsys.readouterr()
+    assert info.main([fleet]) == 0
+    assert line in capsys.readouterr().out
+    assert info.main([fleet, '--json']) == 0
+    evidence = json.loads(capsys.readouterr().out)['evidence']
+    assert evidence['robots'] == ['r1', 'r2', 'r3']
+    assert evidence['optional'] == {'/lidar': ['r2']}
+    model = TrainedModel.load(fleet)
+    lidar = next(each for each in model.coverage() if each.component == '/lidar')
+    # Else the recordings of the other robots would be silences of a minute.
+    assert lidar.death_found_after is not None and lidar.death_found_after < 20.0
+    calibrated = str(tmp_path / 'm')
+    assert calibrate.main(['--model', fleet, '--normal', str(folder / 'r4'), '-o', calibrated,
+                           '--robots-by-folder']) == 0
+    assert [each.robot for each in TrainedModel.load(calibrated).calibration.recordings
+            ] == ['r4', 'r4']
+    capsys.readouterr()
+    assert score.main([str(folder / 'r4'), '--model', calibrated]) == 0
+    assert '/lidar' not in capsys.readouterr().out
+
+
+def test_models_of_robots_add_up_to_one_of_all(folder: Path, fleet: str, tmp_path: Path) -> None:
+    paths = [str(tmp_path / f'{number}.model') for number in (1, 2, 3)]
+    for number, path in enumerate(paths, 1):
+        trained([str(folder / f'r{number}')], Path(path), '--robots-by-folder', *RENAME)
+    both = str(tmp_path / 'all.model')
+    assert merge.main([*paths, '-o', both]) == 0
+    assert TrainedModel.load(both).robots == TrainedModel.load(fleet).robots
+
+
+def test_a_log_of_the_robots_own_names_is_renamed_when_it_is_read(folder: Path,
+                                                                  tmp_path: Path) -> None:
+    bag = str(folder / 'r2' / '10000.bag')
+    log = str(tmp_path / 'r2.events.bag')
+    assert convert.main([bag, '-o', log]) == 0
+    rules = EncodingRules.defaults()
+    rules.rename = [('/r[0-9]+/(.*)', '/\\1')]
+    expected = read_events(bag, rules)
+    found = read_events(log, rules, recording=0)
+    assert found.event_types == expected.event_types
+    assert (found.ids == expected.ids).all() and (found.stamps == expected.stamps).all()
+    model = trained([log], tmp_path / 'm', *RENAME)
+    assert set(model.event_types) == set(expected.event_types)
+    assert model.graph == {('/laser', '/scan', '/slam')}
+    rules.rename = [('/r2/(.*)', '/robot/\\1')]
+    assert read_events(log, rules, recording=0).event_types[0].source.startswith('/robot/')
+
+
+def test_a_log_that_was_renamed_is_not_renamed_again(folder: Path, tmp_path: Path,
+                                                     capsys) -> None:
+    encoding = tmp_path / 'e.yaml'
+    encoding.write_text("rename: [['/r2/(.*)', '/robot/\\1']]\n")
+    log = str(tmp_path / 'r2.events.bag')
+    assert convert.main([str(folder / 'r2' / '10000.bag'), '-o', log, '--encoding',
+                         str(encoding)]) == 0
+    assert train.main([log, '-o', str(tmp_path / 'm'), *RENAME]) == 1
+    assert 'recorded by another encoding' in capsys.readouterr().err
+
+
+@pytest.mark.parametrize('rule, problem', [
+    (['/r(', '/x'], "'/r(' is not a regular expression"),
+    (['/r', '/\\1'], 'does not fit its pattern'),
+    (['/r', 'x'], 'must begin with a slash')])
+def test_a_rule_that_cannot_be_is_named(rule: List[str], problem: str, folder: Path,
+                                        tmp_path: Path, capsys) -> None:
+    assert train.main([str(folder / 'r1'), '-o', str(tmp_path / 'm'), '--rename', *rule]) == 1
+    error = capsys.readouterr().err
+    assert '--rename: ' in error and problem in error and error.count('\n') == 1
+
+
+def test_the_rules_of_a_model_stay_when_it_learns_more(folder: Path, fleet: str, tmp_path: Path,
+                                                       capsys) -> None:
+    assert train.main([str(folder / 'r4'), '--add-to', fleet, '-o', str(tmp_path / 'm'),
+                       *RENAME]) == 1
+    assert '--rename: is that of' in capsys.readouterr().err
+    more = trained([str(folder / 'r4')], tmp_path / 'm', '--add-to', fleet, '--robots-by-folder')
+    assert len(more.event_types) == 4 and sorted(more.robots) == ['r1', 'r2', 'r3', 'r4']
+
+
+def test_a_recording_is_of_the_robot_that_its_folder_is_called_after(folder: Path) -> None:
+    parts = by_folder(expand([BagPart.parse(str(folder / 'r3'))]))
+    assert {part.robot for part in parts} == {'r3'}
