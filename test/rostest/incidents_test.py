@@ -162,7 +162,7 @@ class IncidentsTest(MonitorCase):
         with talker('base', '/odom', 10), self.trained_monitor() as monitor, \
                 MonitorListener() as listener, driver() as victim:
             self.await_heard(listener)
-            said = self.mute(component='/driv*', duration=15.0)
+            said = self.mute(component='/driv*', duration=30.0)
             self.assertTrue(said.success, said.message)
             self.assertRegex(said.message, r'not told until \d+-.* UTC: /driv\*')
             victim.send(signal.SIGKILL)
@@ -175,7 +175,7 @@ class IncidentsTest(MonitorCase):
             self.assertNotIn('[ERROR]', monitor.output)
             # By the log: a starved machine can make another one suspect, who is told at once.
             await_condition('its time is over', lambda: 'told again, since its time is over: '
-                            '/driv*; 1 alarms and' in monitor.output, 40)
+                            '/driv*; 1 alarms and' in monitor.output, 60)
             self.await_level(listener, DiagnosticStatus.ERROR, 'abnormal communication')
             self.assertIsNone(listener.value('monitor', 'mute 1'))
             await_condition('it is told', lambda: '[ERROR]' in monitor.output, 20)
@@ -217,8 +217,9 @@ class IncidentsTest(MonitorCase):
                 said = self.mute(NODELET, **what)
                 self.assertFalse(said.success)
                 self.assertIn(why, said.message)
-            said = self.mute(NODELET, component='/a', duration=5.0)
-            self.assertIn('too many calls', said.message)
+            # How many it takes depends on how long they take.
+            await_condition('further calls are refused', lambda: 'too many calls' in self.mute(
+                NODELET, component='/a', duration=5.0).message, 20)
 
 
 if __name__ == '__main__':
