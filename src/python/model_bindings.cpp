@@ -126,8 +126,9 @@ void bindModel(py::module& m) {
       .def_readonly("death_found_after", &Coverage::death_found_after,
                     "longest time from its last event to the alarm [s]; None: its silence is not\n"
                     "judged")
-      .def_readonly("owes_answers", &Coverage::owes_answers,
-                    "whether an answer that it owes is missed")
+      .def_readonly("found_when_asked", &Coverage::found_when_asked,
+                    "longest time to the alarm while others ask it, or go on that pause when it\n"
+                    "does [s]; None: nobody does")
       .def_readonly("late_answers", &Coverage::late_answers, "whether they are found")
       .def_readonly("more_starts", &Coverage::more_starts,
                     "of the robot, after which they would be; 0: no number helps")

@@ -17,7 +17,7 @@ const std::vector<TuningNumber>& tuningNumbers() {
       {"predecessors", &Tuning::predecessors, 0, 1000, "",
        "Event types after which the delays of another one are watched, at most.", 0},
       {"deadlines", &Tuning::deadlines, 0, 1000, "",
-       "Event types whose answer another one owes, at most.", 0},
+       "Event types that another one owes an answer, or pauses with, at most.", 0},
       {"least_gain", &Tuning::least_gain, 0, 100, "nat",
        "What delays must say beyond chance to be watched.", std::nullopt},
       {"least_gain_left", &Tuning::least_gain_left, -100, 1, "",
@@ -180,7 +180,7 @@ const std::vector<TuningNumber>& tuningNumbers() {
       {"longest_repeat", &Tuning::longest_repeat, 0, 1e9, "s",
        "Who had the same content for longer in training may have it for ever.", 0},
       {"share_of_attribute", &Tuning::share_of_attribute, 1e-9, 1, "",
-       "Share of the budget of false alarms that each kind of attribute has besides the others.",
+       "Share of the budget of false alarms that company, and each attribute, has by itself.",
        std::nullopt},
   };
   return numbers;

@@ -130,7 +130,7 @@ std::string foundAfter(const core::evidence::Coverage& component) {
   if (component.death_found_after) {
     return number(*component.death_found_after);
   }
-  return component.owes_answers ? "when it is asked" : "not watched";
+  return component.found_when_asked ? "when it is asked" : "not watched";
 }
 
 }  // namespace

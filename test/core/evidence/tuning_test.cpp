@@ -136,8 +136,15 @@ TEST(EvidenceTuning, AChannelThatIsSwitchedOffIsNotWatched) {
     for (Event& each : asked) {
       each.attributes = messages(kA, 0, 1, Source{}).front().attributes;
     }
-    return countsOf(
-        {later(together({asked, answers(kB, asked, 20 * kMillisecond)}), seed * kStart)}, 2);
+    // C pauses when A and B do.
+    Events pausing;
+    for (const Event& event : together({asked, answers(kB, asked, 20 * kMillisecond),
+                                        timer(kC, 0, 100 * kSecond, 150 * kMillisecond)})) {
+      if (event.stamp / (5 * kSecond) % 2 == 0) {
+        pausing.push_back(event);
+      }
+    }
+    return countsOf({later(pausing, seed * kStart)});
   };
   const auto channels = [&](const std::set<std::string>& without) {
     Tuning tuning;

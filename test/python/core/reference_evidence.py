@@ -18,7 +18,7 @@ MS = 10 ** 6
 EDGES = [round(2.5e6 * 2.0 ** (k / 4)) for k in range(49)]
 BINS = 50
 LABELS = {'overdue': 'overdue', 'fewer': 'rate', 'more': 'rate', 'own gaps': 'pairs',
-          'pairs': 'pairs', 'deadlines': 'deadlines'}
+          'pairs': 'pairs', 'deadlines': 'deadlines', 'company': 'company'}
 """What people call the channels."""
 
 FEWEST_GAPS = 30
@@ -348,4 +348,7 @@ class ReferenceModel:
             return 0.0
         if label == 'deadlines':
             return 3.0 if self.counts_requests(track) else 0.5
+        if label == 'company':
+            gap = self.learned.usual_delay(track[2], track[2], 0.5)
+            return max(3.0, 0.5 / gap) if gap > 0 else 3.0
         return 2 * MOST_SURPRISE + 1 if label == 'pairs' else 3.0

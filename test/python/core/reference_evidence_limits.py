@@ -12,7 +12,7 @@ from reference_scorer import ReferenceScorer
 
 HOUR = 3600 * SECOND
 PART = 30 * SECOND
-LEAST_MARGIN = {'deadlines': 2.0}
+LEAST_MARGIN = {'deadlines': 2.0, 'company': 2.0}
 """By pool; 1.25 elsewhere."""
 MOST_MARGIN = 4.0
 MOST_GAP_MARGIN = 1.6
@@ -34,6 +34,7 @@ QUIETEST = 0.58
 HOURS_OF_ROBOTS = 0.5
 POOLS_OF_GAPS = ('fast timers', 'timers', 'others')
 POOLS = ('fast timers', 'timers', 'others', 'rate', 'pairs', 'deadlines')
+SHARE_OF_ITS_OWN = 0.02
 CHUNK = 120 * SECOND
 LEAST_GAIN_LEFT = 0.7
 
@@ -201,7 +202,8 @@ class ReferenceLimits:
         if all(recording.trained_on for recording in recordings):
             # The training alone promises no less than one in ten times the time that was seen.
             budget = max(budget, HOUR / (10 * self.windows * window))
-        self._rate = budget / len(POOLS)
+        self._rates = {**dict.fromkeys(POOLS, budget / len(POOLS)),
+                       'company': SHARE_OF_ITS_OWN * budget}
         self.relations = [self._relation(track) for track in model.tracks]
         self.limits, self.promised_rate = self._find()
 
@@ -345,7 +347,7 @@ class ReferenceLimits:
                      else self._largest(index), self._model.least_limit(self._model.tracks[index]))
                     for index in tracks]
             held_out = HeldOut(with_gaps if of_gaps else judged, seen, SCALE.get(pool, 0.2))
-            margin = min(held_out.margin(self._rate, LEAST_MARGIN.get(pool, 1.25)),
+            margin = min(held_out.margin(self._rates[pool], LEAST_MARGIN.get(pool, 1.25)),
                          MOST_GAP_MARGIN if of_gaps else MOST_MARGIN)
             for index, (largest, least) in zip(tracks, seen):
                 own = (margin if of_gaps else
@@ -357,7 +359,7 @@ class ReferenceLimits:
                     hours = sum(part.hours for part in with_gaps)
                     starts = len({part.start for part, gap in zip(with_gaps, largest) if gap > 0})
                     tail = self._tail(track[1], hours, starts)
-                    rare = self._window + tail.gap(self._rate / len(tracks))
+                    rare = self._window + tail.gap(self._rates[pool] / len(tracks))
                     longest = self._window + (MOST_TAIL_MARGIN[starts > 1]
                                               * (max(largest) - self._window))
                     if pool == 'others':
@@ -418,8 +420,8 @@ class ReferenceLimits:
             return self._model.overdue(kind, round(found - self._window))
         if channel == 'fewer':
             return found if found < -self._model.rate(kind, 0) else math.nan
-        if channel == 'deadlines':
-            wait = largest * (both.mean_gap(other) if self._model.counts_requests(track)
-                              else SECOND)
+        if channel in ('deadlines', 'company'):
+            in_number = channel == 'company' or self._model.counts_requests(track)
+            wait = largest * (both.mean_gap(other) if in_number else SECOND)
             return found if wait < OWED_OF_SILENCE * max(both.gaps[kind]) else math.nan
         return found

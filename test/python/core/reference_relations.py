@@ -22,6 +22,7 @@ MOST_MEAN_GAPS = 3.0
 MOST_OF_CHANCE_MISSES = 0.75
 LEAST_OF_LONGEST = 0.1
 TAIL_POINTS = 8
+LONGEST_GAPS = 32
 
 Span = Tuple[int, int]
 
@@ -90,6 +91,39 @@ class ReferenceRelations:
         return Relation(irregular and in_order
                         and self._divergence(e_i, misses, by_chance)
                         > math.log(self._looked_at / CHANCE_OF_ANY), False, irregular)
+
+    def _longer_than(self, kind: str) -> float:
+        """Return what a pause is longer than [ns]."""
+        return max(MOST_MEAN_GAPS * self._counts.mean_gap(kind), 2.0 * SECOND)
+
+    def _pauses(self, kind: str) -> List[int]:
+        longest = sorted(self._counts.gaps[kind], reverse=True)[:LONGEST_GAPS]
+        return [gap for gap in longest if gap > self._longer_than(kind)]
+
+    def pauses_in_starts(self, kind: str) -> bool:
+        """Return whether two starts hold pauses."""
+        spans = [(seen.start, seen.end) for seen in self._counts.recordings
+                 if seen.longest_gaps[kind] > self._longer_than(kind)]
+        return number_of_starts(spans) >= 2
+
+    def share_gone_on(self, kind: str, other: str) -> float:
+        """Return how much of the pauses of one is none of the other."""
+        pauses = self._pauses(kind)
+        if not pauses:
+            return math.inf
+        # Ages are counted by bins.
+        begin = max(index for index in range(BINS)
+                    if index == 0 or lower_edge(index) < self._longer_than(kind))
+        events = sum(index >= begin for index in self._counts.delays[kind, other])
+        return ((events + len(pauses)) * self._counts.mean_gap(other)
+                + len(pauses) * self._longer_than(kind)) / sum(pauses)
+
+    def is_company(self, kind: str, other: str, chance: float) -> bool:
+        """Return whether two pause at the same times beyond chance."""
+        shares = self.share_gone_on(kind, other), self.share_gone_on(other, kind)
+        return max(shares) < 1 and (len(self._pauses(kind)) * math.log(shares[0])
+                                    + len(self._pauses(other)) * math.log(shares[1])
+                                    <= math.log(chance))
 
     def misses_by_chance(self, e_i: str, e_j: str) -> float:
         """Return the share of the gaps of e_i without an e_j, if they had nothing to do with it.
@@ -186,6 +220,16 @@ def watched(first: Counts, second: Counts, both: Counts) -> List[Track]:
                                                  len(both.delays[kind, answer]) / 2))[:DEADLINES]
 
     judged = [kind for kind in types if len(both.gaps[kind]) >= FEWEST_GAPS]
+    looked_at = max(len(judged) * (len(judged) - 1), 1)
+
+    def company(kind: str) -> List[str]:
+        kept = [(relations.share_gone_on(kind, other), other) for other in types
+                if kind != other and {kind, other} <= set(judged)
+                and relations.pauses_in_starts(kind) and relations.pauses_in_starts(other)
+                and both.delays[kind, other] and both.delays[other, kind]
+                and relations.is_company(kind, other, CHANCE_OF_ANY / looked_at)]
+        return [other for _, other in sorted(kept)[:DEADLINES]]
+
     often = [kind for kind in judged
              if sum(both.rates[kind]) >= LEAST_RATE * len(both.rates[kind])]
     return ([('overdue', kind, kind) for kind in judged]
@@ -193,4 +237,5 @@ def watched(first: Counts, second: Counts, both: Counts) -> List[Track]:
             + [('more', kind, kind) for kind in often]
             + [('own gaps', kind, kind) for kind in types if says_enough(kind, kind)]
             + [('pairs', kind, other) for kind in types for other in predecessors(kind)]
-            + [('deadlines', kind, other) for kind in types for other in requesting(kind)])
+            + [('deadlines', kind, other) for kind in types for other in requesting(kind)]
+            + [('company', kind, other) for kind in types for other in company(kind)])

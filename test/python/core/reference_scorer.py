@@ -143,7 +143,7 @@ class ReferenceScorer:
             if track[1] == kind:
                 self._add_delay(watch, t, track, catches_up)
         for track in self._model.tracks:
-            if track[0] == 'deadlines':
+            if track[0] in ('deadlines', 'company'):
                 if track[1] == kind:
                     self._requests[track] = []
                 if track[2] == kind and not self._has_waited(t):
@@ -202,12 +202,13 @@ class ReferenceScorer:
     def _evidence(self, track: Track, index: int, end: int, stall: int, stalled: bool) -> float:
         channel, kind, _ = track
         last = self._last.get(kind)
-        if channel == 'deadlines':
+        if channel in ('deadlines', 'company'):
             started = self._start is not None and end - self._start >= START_TIME
             requests = self._requests[track]
             if not requests or (last is None and not started):
                 return 0.0
-            return (float(len(requests)) if self._model.counts_requests(track)
+            return (float(len(requests))
+                    if channel == 'company' or self._model.counts_requests(track)
                     else (end - requests[0]) / SECOND)
         if last is None:
             return 0.0

@@ -20,18 +20,20 @@ MS = 1_000_000
 WINDOW = 100 * MS
 SETTLE = 5 * SECOND_NS
 BUDGET = 0.5
-LETTERS = 'ABCDEFGHI'
+LETTERS = 'ABCDEFGHIJK'
 SEEDS = (1, 2)
 OUTAGE_S = 0.8
 
 
 def robot(chance: random.Random, seconds: float, fault_s: float = math.inf,
           until_s: float = math.inf, outage_s: float = OUTAGE_S) -> List[Event]:
-    """A trigger, two that answer it, a timer, an irregular one, requests, and one that is rare.
+    """A trigger, two that answer it, a timer, an irregular one, requests, one that is rare, and
+    two that pause together.
 
     While the fault lasts, the answers come later and often not at all, requests get none, the
-    timer comes often, the irregular one is gone for a while, and something unknown comes. Once,
-    the whole robot is silent. Some stamps are equal, some late.
+    timer comes often, the irregular one is gone for a while, one of those that pause together is
+    gone, and something unknown comes. Once, the whole robot is silent. Some stamps are equal, some
+    late.
     """
     start = chance.randrange(10 ** 15)
     stall_s = chance.uniform(0.4, 0.6) * seconds
@@ -65,6 +67,11 @@ def robot(chance: random.Random, seconds: float, fault_s: float = math.inf,
             often = 4.0 if kind == 'D' and faulty else 1.0
             spread = 0.1 if kind == 'D' else 0.8
             at += gap / often * chance.uniform(1.0 - spread, 1.0 + spread)
+    for kind, gap in (('J', 0.4), ('K', 0.3)):
+        for step in range(round(seconds / gap)):
+            at = gap * (step + chance.random())
+            if at % 14.0 < 8.0 and not (kind == 'J' and fault_s <= at < until_s):
+                put(at, kind)
     return [(stamp, kind) for _, stamp, kind in sorted(found)]
 
 

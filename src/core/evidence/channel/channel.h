@@ -86,6 +86,9 @@ class Expectation {
   /// Evidence that a normal silence brings by itself, in units of the track's.
   /// @param age up to which a silence of the later type is normal [ns]
   virtual double ofSilence(std::size_t /*track*/, double /*age*/) const { return 0; }
+  /// How long evidence takes to become so much, at the usual pace of the other event type [ns]; 0:
+  /// not known, or there is no other one.
+  virtual double timeUntil(std::size_t /*track*/, double /*evidence*/) const { return 0; }
   /// The limit of a track, in units of its evidence; NaN: of no use (docs/method.md, section 5.4).
   /// @param largest that was seen: evidence, or, of silences, their length [ns]
   /// @param most that is normal, in the same unit
@@ -114,9 +117,11 @@ class Channel {
   /// As people read it; channels of one label share what recordings show of their limits.
   virtual std::string label() const { return name(); }
   virtual Finding finding() const = 0;
-  /// Whether it looks at attributes of messages: such a channel has a small share of the false
-  /// alarms by itself, so that the limits of others do not depend on it (docs/attributes.md).
+  /// Whether it looks at attributes of messages (docs/attributes.md).
   virtual bool isOfAttributes() const { return false; }
+  /// Whether it has a small share of the false alarms by itself, so that the limits of others do
+  /// not depend on it (docs/method.md, section 5.2).
+  virtual bool hasShareOfItsOwn() const { return isOfAttributes(); }
   /// What it watches, given the counts of the training and the graph.
   virtual std::vector<Track> watch(const Choice& choice) const = 0;
   /// What it expects of its tracks.

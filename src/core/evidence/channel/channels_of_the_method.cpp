@@ -2,6 +2,7 @@
 
 #include "core/evidence/channel/age.h"
 #include "core/evidence/channel/channels.h"
+#include "core/evidence/channel/company.h"
 #include "core/evidence/channel/frozen.h"
 #include "core/evidence/channel/lost.h"
 #include "core/evidence/channel/owed.h"
@@ -20,11 +21,12 @@ std::vector<const Channel*> channelsOfTheMethod() {
   static const OwnGaps own_gaps;
   static const Pairs pairs;
   static const Owed owed;
+  static const Company company;
   static const Age age;
   static const Lost lost;
   static const Size size;
   static const Frozen frozen;
-  return {&silence, &fewer, &more, &own_gaps, &pairs, &owed, &age, &lost, &size, &frozen};
+  return {&silence, &fewer, &more, &own_gaps, &pairs, &owed, &company, &age, &lost, &size, &frozen};
 }
 
 std::string channelName(const Track& track) {

@@ -21,10 +21,14 @@ class ExpectedAnswers : public Expectation {
   double leastLimit(std::size_t track) const override {
     return countsRequests(track) ? model_.tuning().least_requests : model_.tuning().least_deadline;
   }
+  double timeUntil(std::size_t track, double evidence) const override {
+    return evidence *
+           (countsRequests(track) ? model_.meanGap(model_.tracks()[track].from) : 1e9);
+  }
   double limit(std::size_t track, double largest, double most) const override {
-    const Track& owed = model_.tracks()[track];
-    const double wait = largest * (countsRequests(track) ? model_.meanGap(owed.from) : 1e9);
-    return wait < model_.tuning().owed_of_silence * static_cast<double>(model_.longestGap(owed.to))
+    const EventId to = model_.tracks()[track].to;
+    return timeUntil(track, largest) <
+                   model_.tuning().owed_of_silence * static_cast<double>(model_.longestGap(to))
                ? most
                : std::numeric_limits<double>::quiet_NaN();
   }

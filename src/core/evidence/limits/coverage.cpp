@@ -10,6 +10,9 @@
 namespace self_awareness::core::evidence {
 namespace {
 
+// In a row, as the alarm's persistence takes by default.
+constexpr std::int64_t kAlarmWindows = 3;
+
 /// The fewest starts that a relation lacks, of those so far (0: of none) and one more.
 std::size_t fewer(std::size_t so_far, const Relation& relation) {
   if (relation.starts_needed <= relation.starts) {
@@ -46,8 +49,10 @@ std::vector<Coverage> coverageOf(const Model& model, const Limits& limits,
       // It is looked at when a window ends, and certain when the next one does.
       const double found = toSeconds(model.ageBeyond(track.to, limit) + 2 * window);
       of.death_found_after = std::min(of.death_found_after.value_or(found), found);
-    } else if (model.finding(number) == Finding::kUnanswered) {
-      of.owes_answers = of.owes_answers || judged;
+    } else if (model.finding(number) == Finding::kUnanswered && judged) {
+      const double found = model.expectation(number).timeUntil(number, limit) * 1e-9 +
+                           toSeconds(kAlarmWindows * window);
+      of.found_when_asked = std::min(of.found_when_asked.value_or(found), found);
     } else if (model.finding(number) == Finding::kBetween) {
       of.late_answers = of.late_answers || judged;
       if (!judged && number < relations.size()) {

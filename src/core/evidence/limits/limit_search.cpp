@@ -76,7 +76,7 @@ double numberOfPools(const Tuning& tuning) {
   std::set<std::string> labels;
   double of_silences = 0;
   for (const Channel* channel : channels()) {
-    if (!tuning.isOn(channel->name()) || channel->isOfAttributes()) {
+    if (!tuning.isOn(channel->name()) || channel->hasShareOfItsOwn()) {
       continue;
     }
     if (channel->finding() == Finding::kSilent) {
@@ -112,7 +112,7 @@ LimitSearch::LimitSearch(const Model& model, const LimitFinder::Findings& findin
   const double all = budgetOf(findings, window, budget, tuning_.most_of_training);
   for (const auto& [pool, tracks] : pools) {
     const Track& any = model_.tracks()[tracks.front().track];
-    const double share = any.channel->isOfAttributes() ? tuning_.share_of_attribute * all
+    const double share = any.channel->hasShareOfItsOwn() ? tuning_.share_of_attribute * all
                                                        : all / numberOfPools(tuning_);
     search(pool.first, tracks, share, pool.first == Kind::kEvidence ? evidence : gaps);
   }

@@ -34,6 +34,8 @@ class Relations {
   /// @param answers gaps of `from` in which a `to` came
   bool mayBeOwed(EventId from, EventId to, std::uint64_t answers) const;
 
+  /// Number of ordered pairs of event types with enough gaps; 1 if there are none.
+  double lookedAt() const { return looked_at_; }
   /// Share of the gaps of `from` in which no `to` would come if they had nothing to do with each
   /// other, 0 to 1.
   double missRateByChance(EventId from, EventId to) const;

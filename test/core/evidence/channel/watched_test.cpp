@@ -208,7 +208,7 @@ TEST(EvidenceTracks, AChannelThatIsSwitchedOffMustExist) {
   } catch (const std::invalid_argument& error) {
     EXPECT_EQ(std::string(error.what()),
               "the method has no channel 'smell', only overdue, fewer, more, own gaps, pairs, "
-              "deadlines, age, lost, size, frozen");
+              "deadlines, company, age, lost, size, frozen");
   }
 }
 
@@ -225,10 +225,11 @@ TEST(EvidenceTracks, ThoseFromOutsideAreChecked) {
 
 TEST(EvidenceTracks, EveryChannelHasANameOfItsOwnAndALabel) {
   EXPECT_EQ(channelNames(),
-            (std::vector<std::string>{kOverdue, kFewer, kMore, kOwnGaps, kPairs, kDeadlines, "age",
-                                      "lost", "size", "frozen"}));
-  const std::vector<std::string> labels{"overdue",   "rate", "rate", "pairs", "pairs",
-                                        "deadlines", "age",  "lost", "size",  "frozen"};
+            (std::vector<std::string>{kOverdue, kFewer, kMore, kOwnGaps, kPairs, kDeadlines,
+                                      "company", "age", "lost", "size", "frozen"}));
+  const std::vector<std::string> labels{"overdue",   "rate",    "rate", "pairs", "pairs",
+                                        "deadlines", "company", "age",  "lost",  "size",
+                                        "frozen"};
   for (std::size_t k = 0; k < labels.size(); ++k) {
     const Track track = trackOf(channelNames()[k], kA, kA);
     EXPECT_EQ(channelName(track), channelNames()[k]);

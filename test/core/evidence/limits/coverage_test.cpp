@@ -56,6 +56,14 @@ TEST_F(CoverageTest, ADeathIsFoundTwoWindowsAfterTheSilenceIsBeyondItsLimit) {
   EXPECT_FALSE(of(kB).isWatched());
 }
 
+TEST_F(CoverageTest, ADeathIsFoundSoonerWhileItIsAsked) {
+  limit(kDeadlines, kB, kA) = 5;  // requests
+  EXPECT_NEAR(of(kB).found_when_asked.value_or(0), 5 * 0.2 + 0.3, 0.1);
+  EXPECT_TRUE(of(kB).isWatched());
+  EXPECT_FALSE(of(kB).death_found_after);
+  EXPECT_FALSE(of(kA).found_when_asked);
+}
+
 TEST_F(CoverageTest, ASilenceBeyondAllGapsHasItsTimeToo) {
   limit(kOverdue, kA, kA) = model_.overdue(kA, 3600 * kSecond);
   EXPECT_NEAR(of(kA).death_found_after.value_or(0), 3600.2, 1e-3);

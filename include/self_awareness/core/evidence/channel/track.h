@@ -20,7 +20,7 @@ struct Track {
 /// Whom the evidence of a channel speaks against, and how (docs/method.md, section 6).
 enum class Finding {
   kSilent,      ///< `to` has not come for too long
-  kUnanswered,  ///< `to` has not come since `from` asked for it
+  kUnanswered,  ///< `to` has not come since `from` asked for it, or while `from` goes on
   kFewer,       ///< `to` comes too seldom
   kUnusual,     ///< something is wrong with `to`, whatever the others do
   kBetween      ///< something is wrong with `to`, or with `from`
@@ -28,7 +28,7 @@ enum class Finding {
 
 /// The channel's name in model files and in Tuning::without.
 std::string channelName(const Track& track);
-/// The channel's name as people read it: overdue, rate, pairs or deadlines.
+/// The channel's name as people read it: overdue, rate, pairs, deadlines or its own.
 std::string channelLabel(const Track& track);
 /// Names of all channels.
 std::vector<std::string> channelNames();

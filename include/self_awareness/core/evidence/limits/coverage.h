@@ -20,8 +20,9 @@ struct Coverage {
   std::uint64_t gaps = 0;
   /// Longest time from its last event to the alarm, if it dies [s]; none: silence is not judged.
   std::optional<double> death_found_after;
-  /// Whether an answer that it owes is missed.
-  bool owes_answers = false;
+  /// Longest time to the alarm, if it dies, while others ask it or go on that pause when it does
+  /// [s]; none: nobody does.
+  std::optional<double> found_when_asked;
   /// Whether it is found that it answers late, or in another order.
   bool late_answers = false;
   /// Starts of the robot after which that would be found, if it is not; 0: no number helps, or it
@@ -29,7 +30,7 @@ struct Coverage {
   std::size_t more_starts = 0;
 
   /// Whether its death is found at all.
-  bool isWatched() const { return death_found_after.has_value() || owes_answers; }
+  bool isWatched() const { return death_found_after.has_value() || found_when_asked.has_value(); }
 };
 
 /// Of all components of a model, in the order of Model::components().

@@ -1,0 +1,229 @@
+#include "core/evidence/channel/company.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "core/evidence/count/log_bins.h"
+#include "self_awareness/core/evidence/channel/model.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+/// Gaps of an event type that are pauses: so long that its silence alone would be found late.
+struct Pauses {
+  double longer_than = 0;  // [ns]
+  double number = 0;
+  double sum = 0;  // [ns]
+  std::size_t starts = 0;  // that have some
+
+  Pauses(const Statistics& counts, EventId id, const Tuning& tuning);
+};
+
+Pauses::Pauses(const Statistics& counts, EventId id, const Tuning& tuning)
+    : longer_than(std::max(tuning.most_mean_gaps * counts.type(id).meanGap(),
+                           static_cast<double>(kRateSpan))) {
+  for (const std::int64_t gap : counts.type(id).longest_gaps) {
+    if (static_cast<double>(gap) > longer_than) {
+      number += 1;
+      sum += static_cast<double>(gap);
+    }
+  }
+  std::vector<Span> spans;
+  for (const Statistics::Recording& recording : counts.recordings()) {
+    if (id < recording.longest_gaps.size() &&
+        static_cast<double>(recording.longest_gaps[id]) > longer_than) {
+      spans.push_back({recording.start, recording.end, recording.robot_start, recording.robot});
+    }
+  }
+  starts = numberOfStarts(spans, toNanoseconds(tuning.start_time));
+}
+
+/// How much of the pauses of `id` is not a pause of `other`: its events in them, as the ages of
+/// `id` at them tell, and one more in each, of those that there would be by chance.
+double shareGoneOn(const Statistics& counts, EventId id, const Pauses& pauses, EventId other) {
+  const DelayHistogram ages = counts.delays(id, other);
+  double events = 0;
+  for (std::size_t bin = ages.size(); bin-- > 0;) {
+    events += ages[bin];
+    if (static_cast<double>(log_bins::lowerEdge(bin)) < pauses.longer_than) {
+      break;
+    }
+  }
+  // What it says in the begin of a pause is not counted.
+  return ((events + pauses.number) * counts.type(other).meanGap() +
+          pauses.number * pauses.longer_than) /
+         pauses.sum;
+}
+
+class ExpectedCompany : public Expectation {
+ public:
+  ExpectedCompany(const Model& model, std::vector<std::size_t> tracks)
+      : Expectation(std::move(tracks)), model_(model) {}
+
+  std::unique_ptr<ChannelState> start() const override;
+  double leastLimit(std::size_t track) const override {
+    const double usual_gap = timeUntil(track, 1) * 1e-9;
+    const Tuning& tuning = model_.tuning();
+    // A hiccup of a host is no fault, however fast the other is.
+    return std::max(tuning.least_requests,
+                    usual_gap > 0 ? tuning.least_deadline / usual_gap : 0.0);
+  }
+  double timeUntil(std::size_t track, double evidence) const override {
+    const EventId from = model_.tracks()[track].from;
+    return evidence * model_.usualDelay(from, from, 0.5);
+  }
+  double limit(std::size_t track, double largest, double most) const override {
+    const Track& watched = model_.tracks()[track];
+    const double silence =
+        model_.tuning().owed_of_silence * static_cast<double>(model_.longestGap(watched.to));
+    // Else it says no more than the silence by itself.
+    return largest * model_.meanGap(watched.from) < silence
+               ? most
+               : std::numeric_limits<double>::quiet_NaN();
+  }
+  const Model& model() const { return model_; }
+
+ private:
+  const Model& model_;
+};
+
+class CompanyState : public ChannelState {
+ public:
+  explicit CompanyState(const ExpectedCompany& expected);
+
+  bool listens() const override { return !gone_on_.empty(); }
+  void add(const Heard::Arrival& arrival, const Heard& /*heard*/) override {
+    for (const std::uint32_t number : of_type_[arrival.id].to) {
+      gone_on_[number] = 0;
+    }
+    if (arrival.stalled) {
+      return;  // what waited comes all at once
+    }
+    for (const std::uint32_t number : of_type_[arrival.id].from) {
+      ++gone_on_[number];
+    }
+  }
+  void forget(EventId id) override {
+    for (const auto* numbers : {&of_type_[id].to, &of_type_[id].from}) {
+      for (const std::uint32_t number : *numbers) {
+        gone_on_[number] = 0;
+      }
+    }
+  }
+  void restart() override { std::fill(gone_on_.begin(), gone_on_.end(), 0); }
+  void closeWindow(const Heard& heard, std::vector<double>& evidence) override;
+  void explain(std::size_t track, const Heard& heard, const RecentEvents& events,
+               Suspect& suspect) const override;
+
+ private:
+  /// Numbers of tracks: whose `to` an event type is, and whose `from`.
+  struct OfType {
+    std::vector<std::uint32_t> to;
+    std::vector<std::uint32_t> from;
+  };
+
+  const ExpectedCompany& expected_;
+  std::int64_t start_time_;             // [ns]
+  std::vector<std::uint32_t> gone_on_;  // `from` since the last `to`, by number
+  std::vector<OfType> of_type_;         // by id
+};
+
+std::unique_ptr<ChannelState> ExpectedCompany::start() const {
+  return std::make_unique<CompanyState>(*this);
+}
+
+CompanyState::CompanyState(const ExpectedCompany& expected)
+    : expected_(expected),
+      start_time_(toNanoseconds(expected.model().tuning().start_time)),
+      gone_on_(expected.tracks().size(), 0),
+      of_type_(expected.model().size()) {
+  for (std::uint32_t number = 0; number < gone_on_.size(); ++number) {
+    const Track& track = expected.model().tracks()[expected.tracks()[number]];
+    of_type_[track.to].to.push_back(number);
+    of_type_[track.from].from.push_back(number);
+  }
+}
+
+void CompanyState::closeWindow(const Heard& heard, std::vector<double>& evidence) {
+  const bool started = heard.windowEnd() - heard.start() >= start_time_;
+  for (std::size_t number = 0; number < gone_on_.size(); ++number) {
+    const std::size_t track = expected_.tracks()[number];
+    // Who was not heard yet may still be starting.
+    const bool may_say = started || heard.hasSeen(expected_.model().tracks()[track].to);
+    evidence[track] = may_say ? gone_on_[number] : 0;
+  }
+}
+
+void CompanyState::explain(std::size_t track, const Heard& /*heard*/,
+                           const RecentEvents& /*events*/, Suspect& suspect) const {
+  const Model& model = expected_.model();
+  const auto place = std::lower_bound(expected_.tracks().begin(), expected_.tracks().end(), track);
+  const std::uint32_t number = gone_on_[static_cast<std::size_t>(place - expected_.tracks().begin())];
+  Reason& reason = suspect.reason;
+  reason.kind = Kind::kDied;
+  reason.after = toString(model.vocabulary().at(model.tracks()[track].from));
+  reason.unit = unit::kRequests;
+  reason.value = number;
+  char text[60];
+  std::snprintf(text, sizeof text, "has not come with the last %u ", number);
+  reason.words = text + reason.after + ", which pauses when it does";
+}
+
+}  // namespace
+
+// Two that have nothing to do with each other would begin and end their pauses at one moment by
+// chance. Both show how far they differ: what the one says while the other is silent.
+std::vector<Track> Company::watch(const Choice& choice) const {
+  const Statistics& counts = choice.both;
+  std::vector<std::optional<Pauses>> pauses(counts.size());
+  for (EventId id = 0; id < counts.size(); ++id) {
+    const Pauses its(counts, id, choice.tuning);
+    if (choice.isJudged(id) && its.starts >= 2) {
+      pauses[id] = its;
+    }
+  }
+  const auto component = [&](EventId id) {
+    const EventType& type = counts.vocabulary().at(id);
+    return componentOf(type.source, type.scope);
+  };
+  std::vector<Track> tracks;
+  for (EventId to = 0; to < counts.size(); ++to) {
+    std::vector<std::pair<double, EventId>> best;
+    for (EventId from = 0; pauses[to] && from < counts.size(); ++from) {
+      if (!pauses[from] || component(to) == component(from) || counts.total(to, from) == 0 ||
+          counts.total(from, to) == 0 || choice.relations.owed(to, from).reaches) {
+        continue;
+      }
+      const double of_to = shareGoneOn(counts, to, *pauses[to], from);
+      const double of_from = shareGoneOn(counts, from, *pauses[from], to);
+      const double chance =
+          pauses[to]->number * std::log(of_to) + pauses[from]->number * std::log(of_from);
+      if (of_to < 1 && of_from < 1 &&
+          chance <= std::log(choice.tuning.chance_of_any / choice.relations.lookedAt())) {
+        best.emplace_back(of_to, from);
+      }
+    }
+    std::sort(best.begin(), best.end());
+    std::set<std::string> components;
+    for (const auto& [found, from] : best) {
+      if (components.size() < static_cast<std::size_t>(choice.tuning.deadlines) &&
+          components.insert(component(from)).second) {
+        tracks.push_back({this, to, from});
+      }
+    }
+  }
+  return tracks;
+}
+
+std::unique_ptr<const Expectation> Company::expect(const Model& model, const Halves& /*halves*/,
+                                                   std::vector<std::size_t> tracks) const {
+  return std::make_unique<ExpectedCompany>(model, std::move(tracks));
+}
+
+}  // namespace self_awareness::core::evidence

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "core/evidence/channel/channel.h"
+
+namespace self_awareness::core::evidence {
+
+/// Company (docs/method.md, section 3.5): `to` and `from` pause together, as everything does that a
+/// robot needs in one of its modes only. While `from` goes on, `to` may not pause. Evidence is the
+/// number of `from` since the last `to`.
+class Company : public Channel {
+ public:
+  std::string name() const override { return "company"; }
+  Finding finding() const override { return Finding::kUnanswered; }
+  bool hasShareOfItsOwn() const override { return true; }
+  std::vector<Track> watch(const Choice& choice) const override;
+  std::unique_ptr<const Expectation> expect(const Model& model, const Halves& /*halves*/,
+                                            std::vector<std::size_t> tracks) const override;
+  Margins margins(const Tuning& tuning) const override {
+    return {tuning.least_deadline_margin, tuning.most_margin};
+  }
+};
+
+}  // namespace self_awareness::core::evidence
