@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kPause = 5;  // between two attempts to write the file [s]
 
-constexpr std::size_t kMostNamed = 20;  // of what is accepted, where a call names something else
+constexpr std::size_t kMostNamed = 20;  // in an answer
 
 std::string listed(const std::vector<std::string>& words) {
   std::string list;
@@ -29,6 +29,15 @@ std::string listed(const std::vector<std::string>& words) {
   return list + (words.size() > kMostNamed
                      ? " and " + std::to_string(words.size() - kMostNamed) + " more"
                      : "");
+}
+
+std::string listed(const std::vector<core::Acceptance>& all) {
+  std::vector<std::string> words;
+  words.reserve(all.size());
+  for (const core::Acceptance& each : all) {
+    words.push_back(inWordsOf(each));
+  }
+  return listed(words);
 }
 
 }  // namespace
@@ -125,7 +134,7 @@ Accept::Response AcceptCalls::serve(const Accept::Request& request, const std::s
   if (named > 1) {
     response.message = std::to_string(named - refused) + " of " + std::to_string(named) + ": ";
   }
-  response.message += (undo ? "judged again: " : "normal from now on: ") + inWordsOf(done) +
+  response.message += (undo ? "judged again: " : "normal from now on: ") + listed(done) +
                       (refused == 0 ? "" : "; refused: " + listed(wanted.refused)) + "; kept in " +
                       path_ + (undo ? "" : unknownOf(done, acceptable->vocabulary));
   ROS_INFO("%s, by %s", response.message.c_str(), caller.c_str());
@@ -156,12 +165,9 @@ std::vector<core::Acceptance> AcceptCalls::takeBack(WantedAcceptances& request) 
   for (const core::Acceptance& each : request.asked) {
     std::vector<core::Acceptance> removed = accepted_.remove(each);
     if (removed.empty()) {
-      std::vector<std::string> words;
-      for (const core::Acceptance& other : accepted_.list()) {
-        words.push_back(inWordsOf(other));
-      }
-      request.refused.push_back(inWordsOf(each) + " is not accepted; " +
-                                (words.empty() ? "nothing is" : "these are: " + listed(words)));
+      request.refused.push_back(
+          inWordsOf(each) + " is not accepted; " +
+          (accepted_.list().empty() ? "nothing is" : "these are: " + listed(accepted_.list())));
     }
     std::move(removed.begin(), removed.end(), std::back_inserter(done));
   }
@@ -170,12 +176,9 @@ std::vector<core::Acceptance> AcceptCalls::takeBack(WantedAcceptances& request) 
 
 std::string AcceptCalls::unknownOf(const std::vector<core::Acceptance>& all,
                                    const core::Vocabulary& vocabulary) {
-  std::vector<std::string> unknown;
-  for (const core::Acceptance& each : all) {
-    if (!isKnown(each, vocabulary)) {
-      unknown.push_back(inWordsOf(each));
-    }
-  }
+  std::vector<core::Acceptance> unknown;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(unknown),
+               [&](const core::Acceptance& each) { return !isKnown(each, vocabulary); });
   return unknown.empty() ? "" : "; nobody of that name is known yet: " + listed(unknown);
 }
 

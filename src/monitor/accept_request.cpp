@@ -183,6 +183,10 @@ bool namesNothing(const Accept::Request& request) {
 
 WantedAcceptances ofNames(const Accept::Request& request, const Acceptable& acceptable,
                           const core::Acceptances& accepted) {
+  if (request.more.size() > core::Acceptances::kMost) {
+    throw std::invalid_argument("more: there are more than " +
+                                std::to_string(core::Acceptances::kMost));
+  }
   std::vector<self_awareness::Acceptance> all = request.more;
   if (!namesNothing(request)) {
     self_awareness::Acceptance& first = *all.emplace(all.begin());

@@ -182,6 +182,17 @@ TEST_F(AcceptCallsTest, SeveralAreTakenInOneCall) {
   EXPECT_EQ(changes_, 1);
 }
 
+TEST_F(AcceptCallsTest, ThereIsAMostInACallAndInAnAnswer) {
+  Accept::Request request;
+  for (std::size_t k = 0; k < core::Acceptances::kMost; ++k) {
+    request.more.push_back(named("/n" + std::to_string(k), ""));
+  }
+  EXPECT_LT(call(request).size(), 2000U);
+  EXPECT_NE(call(asked("/one_more"), false).find("which is the most"), std::string::npos);
+  request.more.push_back(named("/n", ""));
+  EXPECT_NE(call(request, false).find("more than 1000"), std::string::npos);
+}
+
 TEST_F(AcceptCallsTest, NamesAreCheckedAndAreThoseOfTheModel) {
   for (const std::string& name :
        std::vector<std::string>{"driver", "*", "/dri*er", "/a\x1b", std::string(1001, '/')}) {
