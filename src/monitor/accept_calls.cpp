@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <exception>
+#include <iterator>
 #include <set>
 #include <stdexcept>
 #include <utility>
@@ -12,125 +13,31 @@
 #include "ros/text.h"
 #include "ros/verdict/accepted_file.h"
 #include "self_awareness/ros/encoding.h"
-#include "self_awareness/ros/stable_name.h"
 
 namespace self_awareness {
 namespace {
 
 constexpr double kPause = 5;  // between two attempts to write the file [s]
 
-std::string inWordsOf(const core::Acceptance& each) {
-  std::string words = each.component;
-  if (!each.topic.empty() && each.topic != each.component) {
-    words += (words.empty() ? "" : " on ") + each.topic;
+constexpr std::size_t kMostNamed = 20;  // in an answer
+
+std::string listed(const std::vector<std::string>& words) {
+  std::string list;
+  for (std::size_t i = 0; i < words.size() && i < kMostNamed; ++i) {
+    list += (i > 0 ? ", " : "") + words[i];
   }
-  return words + (each.kind ? " (" + core::toString(*each.kind) + ")" : "");
+  return list + (words.size() > kMostNamed
+                     ? " and " + std::to_string(words.size() - kMostNamed) + " more"
+                     : "");
 }
 
-std::string inWordsOf(const std::vector<core::Acceptance>& all) {
-  std::string words;
+std::string listed(const std::vector<core::Acceptance>& all) {
+  std::vector<std::string> words;
+  words.reserve(all.size());
   for (const core::Acceptance& each : all) {
-    words += (words.empty() ? "" : ", ") + inWordsOf(each);
+    words.push_back(inWordsOf(each));
   }
-  return words;
-}
-
-void checkName(const std::string& name, const char* field) {
-  if (name.size() > ros1::kLongestName || !ros1::isPrintable(name)) {
-    throw std::invalid_argument(std::string(field) + ": it is no name");
-  }
-}
-
-std::vector<core::Acceptance> ofNames(const Accept::Request& request) {
-  checkName(request.component, "component");
-  checkName(request.topic, "topic");
-  core::Acceptance acceptance;
-  acceptance.component = request.component;
-  acceptance.topic = request.topic;
-  if (!request.kind.empty()) {
-    acceptance.kind = core::kindOf(request.kind);
-    if (!acceptance.kind) {
-      throw std::invalid_argument("kind: " + ros1::printable(request.kind, ros1::kLongestName) +
-                                  " is none; ~alarm tells the kind of what stands");
-    }
-  }
-  if (request.component.empty() && request.topic.empty()) {
-    throw std::invalid_argument("name a component or a topic: a kind alone is everybody's");
-  }
-  // Anonymous nodes have another number with every start.
-  if (acceptance.component.find('*') == std::string::npos) {
-    acceptance.component = ros1::stableName(acceptance.component);
-  }
-  return {acceptance};
-}
-
-/// What an alarm or a suspicion holds against components: of all that are abnormal by themselves.
-std::vector<core::Acceptance> ofAlarm(const core::Alarm& alarm,
-                                      const core::Vocabulary& vocabulary) {
-  std::vector<core::Acceptance> all;
-  for (const std::vector<core::Suspect>& suspects : {alarm.suspects, alarm.later}) {
-    for (const core::Suspect& suspect : suspects) {
-      if ((suspect.abnormal || suspect.component == alarm.culprit) &&
-          suspect.id < vocabulary.size()) {
-        core::Acceptance& one = all.emplace_back();
-        one.component = suspect.component;
-        one.topic = vocabulary.at(suspect.id).scope;
-        one.kind = suspect.reason.kind;
-      }
-    }
-  }
-  if (all.empty() && !alarm.culprit.empty()) {  // it is of before the start
-    core::Acceptance& one = all.emplace_back();
-    one.component = alarm.culprit;
-    one.kind = alarm.kind;
-  }
-  return all;
-}
-
-std::vector<core::Acceptance> ofIncident(const self_awareness::Incident& incident) {
-  std::vector<std::string> names = incident.together;
-  names.insert(names.end(), incident.victims.begin(), incident.victims.end());
-  if (!incident.component.empty()) {
-    names.insert(names.begin(), incident.component);
-  }
-  std::vector<core::Acceptance> all;
-  for (const std::string& name : names) {
-    core::Acceptance& one = all.emplace_back();
-    one.component = name;
-    one.kind = core::kindOf(incident.kind);
-  }
-  return all;
-}
-
-std::vector<core::Acceptance> asked(const Accept::Request& request,
-                                    const AcceptCalls::Standing& standing) {
-  const bool names = !request.component.empty() || !request.topic.empty() || !request.kind.empty();
-  if (names && request.incident != 0) {
-    throw std::invalid_argument("incident: name it alone, without component, topic and kind");
-  }
-  if (names) {
-    return ofNames(request);
-  }
-  std::vector<core::Acceptance> all;
-  if (request.incident != 0) {
-    const auto& known = standing.incidents.incidents;
-    const auto found = std::find_if(known.begin(), known.end(),
-                                    [&](const auto& each) { return each.id == request.incident; });
-    if (found == known.end()) {
-      throw std::invalid_argument("incident: there is none of the id " +
-                                  std::to_string(request.incident) + " on ~incidents");
-    }
-    all = ofIncident(*found);
-  } else if (standing.alarm) {
-    all = ofAlarm(*standing.alarm, standing.vocabulary);
-  } else {
-    throw std::invalid_argument(
-        "nothing stands; name a component or a topic, or the id of an incident");
-  }
-  if (all.empty()) {
-    throw std::invalid_argument("nobody is to blame for it; name a component or a topic");
-  }
-  return all;
+  return listed(words);
 }
 
 }  // namespace
@@ -144,11 +51,15 @@ ros::ServiceServer AcceptCalls::advertise(ros::NodeHandle& private_node_handle) 
 
 void AcceptCalls::read(const std::string& model) {
   path_ = ros1::pathOfAccepted(model);
-  accepted_ = {};
-  try {
-    accepted_ = ros1::readAccepted(path_).value_or(core::Acceptances());
-  } catch (const std::exception& error) {
-    ROS_ERROR("%s; nothing is accepted", error.what());
+  if (written_.done && !*written_.done && written_.path == path_) {
+    accepted_ = written_.accepted;
+  } else {
+    accepted_ = {};
+    try {
+      accepted_ = ros1::readAccepted(path_).value_or(core::Acceptances());
+    } catch (const std::exception& error) {
+      ROS_ERROR("%s; nothing is accepted", error.what());
+    }
   }
   if (!accepted_.list().empty()) {
     ROS_INFO("accepted by %s: %s", path_.c_str(), inWordsOf(accepted_.list()).c_str());
@@ -160,6 +71,12 @@ bool AcceptCalls::covers(const core::Alarm& alarm, const core::Vocabulary& vocab
     return accepted_.covers(alarm.culprit, "", alarm.kind);
   }
   const core::Suspect& first = alarm.suspects.front();
+  const std::vector<std::string>& topics = first.reason.topics;
+  if (!topics.empty()) {
+    return std::all_of(topics.begin(), topics.end(), [&](const std::string& topic) {
+      return accepted_.covers(first.component, topic, first.reason.kind);
+    });
+  }
   return first.id < vocabulary.size() &&
          accepted_.covers(first.component, vocabulary.at(first.id).scope, first.reason.kind);
 }
@@ -171,8 +88,8 @@ void AcceptCalls::tell(const std::vector<core::EventType>& types,
     std::set<std::string> about;
     for (const core::EventType& type : types) {
       const std::string& component = core::componentOf(type.source, type.scope);
-      if (each.extent() != core::Acceptance::Extent::kStranger &&
-          each.isAbout(component, type.scope) && about.insert(component).second) {
+      if (each.extent() != core::Acceptance::Extent::kStranger && concerns(each, type) &&
+          about.insert(component).second) {
         std::string& words = state.accepted_of[component];
         words += (words.empty() ? "" : ", ") + inWordsOf(each);
       }
@@ -184,49 +101,92 @@ bool AcceptCalls::onAccept(Call& call) {
   if (!calls_.mayServe("accept", call, steadyNow())) {
     return true;
   }
-  Accept::Response& response = call.getResponse();
-  try {
-    const std::string caller = ros1::printable(call.getCallerName(), ros1::kLongestName);
-    response.message = serve(call.getRequest(), caller);
-    response.success = 1U;
-    ROS_INFO("%s, by %s", response.message.c_str(), caller.c_str());
-    handlers_.on_change(caller);
-  } catch (const std::invalid_argument& error) {
-    response.success = 0U;
-    response.message = error.what();
-  }
+  const std::string caller = ros1::printable(call.getCallerName(), ros1::kLongestName);
+  call.getResponse() = serve(call.getRequest(), caller);
   return true;
 }
 
-std::string AcceptCalls::serve(const Accept::Request& request, const std::string& caller) {
-  const std::optional<Standing> standing = handlers_.standing();
-  if (!standing) {
-    throw std::invalid_argument("there is no model that judges by evidence (~detector)");
+Accept::Response AcceptCalls::serve(const Accept::Request& request, const std::string& caller) {
+  Accept::Response response;
+  const std::optional<Acceptable> acceptable = handlers_.acceptable();
+  if (!acceptable) {
+    response.message = "there is no model that judges by evidence (~detector)";
+    return response;
   }
-  std::vector<core::Acceptance> all = asked(request, *standing);
-  core::Acceptances changed = accepted_;
-  for (core::Acceptance& each : all) {
-    each.at = standing->now;
+  WantedAcceptances wanted;
+  try {
+    wanted = requestOf(request, *acceptable, accepted_);
+  } catch (const std::invalid_argument& error) {
+    response.message = error.what();
+    return response;
+  }
+  const std::size_t named = wanted.asked.size() + wanted.refused.size();
+  const bool undo = request.undo != 0U;
+  const std::vector<core::Acceptance> done =
+      undo ? takeBack(wanted) : accept(*acceptable, caller, wanted);
+  const std::size_t refused = wanted.refused.size();
+  response.success = refused == 0 ? 1U : 0U;
+  if (named - refused == 0) {
+    response.message = listed(wanted.refused);
+    return response;
+  }
+  write();
+  if (named > 1) {
+    response.message = std::to_string(named - refused) + " of " + std::to_string(named) + ": ";
+  }
+  response.message += (undo ? "judged again: " : "normal from now on: ") + listed(done) +
+                      (refused == 0 ? "" : "; refused: " + listed(wanted.refused)) + "; kept in " +
+                      path_ + (undo ? "" : unknownOf(done, acceptable->vocabulary));
+  ROS_INFO("%s, by %s", response.message.c_str(), caller.c_str());
+  handlers_.on_change(caller);
+  return response;
+}
+
+std::vector<core::Acceptance> AcceptCalls::accept(const Acceptable& acceptable,
+                                                  const std::string& caller,
+                                                  WantedAcceptances& request) {
+  std::vector<core::Acceptance> done;
+  for (core::Acceptance each : request.asked) {
+    each.at = acceptable.now;
     each.by = caller;
-    if (request.undo != 0U) {
-      if (!changed.remove(each)) {
-        throw std::invalid_argument(inWordsOf(each) + " is not accepted");
-      }
-    } else if (!changed.add(each)) {
-      throw std::invalid_argument(std::to_string(core::Acceptances::kMost) +
-                                  " are accepted, which is the most; take one back, or name "
-                                  "several by a *");
+    if (accepted_.add(each)) {
+      done.push_back(std::move(each));
+    } else {
+      request.refused.push_back(inWordsOf(each) + ": " + std::to_string(core::Acceptances::kMost) +
+                                " are accepted, which is the most; take one back, or name "
+                                "several by a *");
     }
   }
-  accepted_ = std::move(changed);
-  write();
-  return (request.undo != 0U ? "judged again: " : "normal from now on: ") + inWordsOf(all) +
-         "; kept in " + path_;
+  return done;
+}
+
+std::vector<core::Acceptance> AcceptCalls::takeBack(WantedAcceptances& request) {
+  std::vector<core::Acceptance> done;
+  for (const core::Acceptance& each : request.asked) {
+    std::vector<core::Acceptance> removed = accepted_.remove(each);
+    if (removed.empty()) {
+      request.refused.push_back(
+          inWordsOf(each) + " is not accepted; " +
+          (accepted_.list().empty() ? "nothing is" : "these are: " + listed(accepted_.list())));
+    }
+    std::move(removed.begin(), removed.end(), std::back_inserter(done));
+  }
+  return done;
+}
+
+std::string AcceptCalls::unknownOf(const std::vector<core::Acceptance>& all,
+                                   const core::Vocabulary& vocabulary) {
+  std::vector<core::Acceptance> unknown;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(unknown),
+               [&](const core::Acceptance& each) { return !isKnown(each, vocabulary); });
+  return unknown.empty() ? "" : "; nobody of that name is known yet: " + listed(unknown);
 }
 
 void AcceptCalls::write() {
-  writer_.add({path_, 0, [accepted = accepted_](const std::string& path) {
+  written_ = {path_, accepted_, std::make_shared<std::atomic<bool>>(false)};
+  writer_.add({path_, 0, [accepted = accepted_, done = written_.done](const std::string& path) {
                  ros1::writeAccepted(accepted, path);
+                 *done = true;
                }});
 }
 

@@ -3,16 +3,19 @@
 #include <ros/node_handle.h>
 #include <ros/service_server.h>
 
+#include <atomic>
+#include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "accept_request.h"
 #include "file_writer.h"
 #include "operator_calls.h"
 #include "ros/verdict/diagnostic_status.h"
 #include "self_awareness/Accept.h"
-#include "self_awareness/Incidents.h"
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/core/verdict/acceptance.h"
 #include "self_awareness/core/verdict/alarm.h"
@@ -25,16 +28,9 @@ namespace self_awareness {
 /// Belongs to the thread that judges; a thread of its own waits for the disk.
 class AcceptCalls {
  public:
-  /// What a call may refer to.
-  struct Standing {
-    std::optional<core::Alarm> alarm;  ///< none: nothing stands
-    const self_awareness::Incidents& incidents;
-    const core::Vocabulary& vocabulary;  ///< that the ids of the alarm's suspects are of
-    std::int64_t now;                    ///< ROS time [ns]
-  };
   struct Handlers {
     /// What is there now; none: no model judges by evidence.
-    std::function<std::optional<Standing>()> standing;
+    std::function<std::optional<Acceptable>()> acceptable;
     /// Called when something more is accepted, or less. @param caller name of the node
     std::function<void(const std::string& caller)> on_change;
   };
@@ -47,9 +43,11 @@ class AcceptCalls {
   /// Offers the service, for as long as the server lives. It is called in the thread that serves
   /// the node handle.
   ros::ServiceServer advertise(ros::NodeHandle& private_node_handle);
-  /// Reads what is accepted beside a model. A file that is damaged is named in the log, and is
-  /// written anew with the next call.
+  /// Reads what is accepted beside a model; what is not written yet is newer. A file that is
+  /// damaged is named in the log, and is written anew with the next call.
   void read(const std::string& model);
+  /// Does what a call asks for. @return the answer
+  Accept::Response serve(const Accept::Request& request, const std::string& caller);
   /// Writes what is not written yet, and waits for the disk.
   void finish() { writer_.finish(); }
 
@@ -65,16 +63,30 @@ class AcceptCalls {
  private:
   using Call = ros::ServiceEvent<Accept::Request, Accept::Response>;
 
+  /// What was to be written last.
+  struct Written {
+    std::string path;
+    core::Acceptances accepted;
+    std::shared_ptr<std::atomic<bool>> done;  // null: nothing was
+  };
+
   bool onAccept(Call& call);
-  /// @return what is accepted now, in words
-  /// @throw std::invalid_argument says what is wrong with the request
-  std::string serve(const Accept::Request& request, const std::string& caller);
+  /// Accepts what is asked for, as long as there is room.
+  /// @return what is accepted now; what is not is added to the refused
+  std::vector<core::Acceptance> accept(const Acceptable& acceptable, const std::string& caller,
+                                       WantedAcceptances& request);
+  /// Takes back what fits. @return as accept()
+  std::vector<core::Acceptance> takeBack(WantedAcceptances& request);
+  /// Of what is accepted, in the answer: nobody of that name may be known yet.
+  static std::string unknownOf(const std::vector<core::Acceptance>& all,
+                               const core::Vocabulary& vocabulary);
   void write();
 
   OperatorCalls& calls_;
   const Handlers handlers_;
   std::string path_;
   core::Acceptances accepted_;
+  Written written_;
   FileWriter writer_;
 };
 

@@ -41,7 +41,7 @@ Monitor::Monitor(ros::NodeHandle node_handle, const ros::NodeHandle& private_nod
       diagnostics_(node_handle, name, parameters_.hardware_id, parameters_.source_diagnostics,
                    parameters_.diagnostic_bytes),
       mutes_(calls_, [this] { onMutes(); }),
-      accepts_(calls_, {[this] { return standing(); },
+      accepts_(calls_, {[this] { return acceptable(); },
                         [this](const std::string& caller) { onAccepted(caller); }}),
       announcer_({[this](const self_awareness::SelfAwareness& status) {
                     status_publisher_.publish(status);
@@ -137,7 +137,7 @@ void Monitor::startSession(std::unique_ptr<Session> session) {
   announcer_.forgetWindow();
   heard_.setTypes(session_->types());
   accepts_.read(parameters_.model);
-  session_->detector().accept(accepts_.accepted());
+  session_->accept(accepts_.accepted());
   LiveSource::Wanted wanted;
   wanted.encoder = session_->encoder();
   wanted.model_topics = session_->topics();
@@ -283,16 +283,16 @@ void Monitor::onMutes() {
   }
 }
 
-std::optional<AcceptCalls::Standing> Monitor::standing() const {
+std::optional<Acceptable> Monitor::acceptable() const {
   if (!session_ || parameters_.method != MonitorParameters::Method::kEvidence) {
     return std::nullopt;
   }
-  return AcceptCalls::Standing{announcer_.alarm().standing(), incidents_.incidents(),
-                               session_->vocabulary(), live_->now()};
+  return Acceptable{announcer_.alarm().standing(), incidents_.incidents(), session_->vocabulary(),
+                    *session_->encoder(), live_->now()};
 }
 
 void Monitor::onAccepted(const std::string& caller) {
-  session_->detector().accept(accepts_.accepted());
+  session_->accept(accepts_.accepted());
   const std::optional<core::Alarm>& stands = announcer_.alarm().standing();
   if (stands && accepts_.covers(*stands, session_->vocabulary())) {
     calls_.record("accept", caller, wallNow());

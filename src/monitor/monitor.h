@@ -189,7 +189,7 @@ class Monitor : public NodeProgram, public LiveSource::Listener {
   void onMutes();
   /// What ~accept may refer to; none: there is no model, or it is the paper's detector that
   /// judges.
-  std::optional<AcceptCalls::Standing> standing() const;
+  std::optional<Acceptable> acceptable() const;
   /// The first event of a type has come since its node was started again.
   void onFirstOfRestarted(const core::Event& event);
   /// Says who was started again, and is back.

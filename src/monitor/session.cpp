@@ -22,7 +22,7 @@ Session::Session(ros1::TrainedModel trained, const MonitorParameters& parameters
           trained_.encoding, [this](const core::EventType& type) { return intern(type); })),
       detector_(makeJudge(parameters), trained_.window, parameters.detector, std::move(handler)) {
   if (parameters.method == MonitorParameters::Method::kEvidence) {
-    coverage_ = trained_.coverage();
+    accept({});
     expectRates();
   }
   detector_.setOptional(parameters.optional);
@@ -37,15 +37,31 @@ Session::Session(ros1::TrainedModel trained, const MonitorParameters& parameters
   trained_.watched = {};
 }
 
-std::unique_ptr<core::Judge> Session::makeJudge(const MonitorParameters& parameters) const {
+std::unique_ptr<core::Judge> Session::makeJudge(const MonitorParameters& parameters) {
   if (parameters.method == MonitorParameters::Method::kPaper) {
     trained_.requireDelays();
     return core::paper::makeJudge(std::make_shared<core::paper::Model>(trained_.statistics),
                                   trained_.threshold(), parameters.detector.silence_is_abnormal);
   }
   trained_.requireWatched();
-  return core::evidence::makeJudge(std::make_shared<core::evidence::Model>(trained_.watched),
-                                   trained_.limits(), trained_.window, graph_, vocabulary_);
+  model_ = std::make_shared<const core::evidence::Model>(trained_.watched);
+  return core::evidence::makeJudge(model_, trained_.limits(), trained_.window, graph_,
+                                   vocabulary_);
+}
+
+void Session::accept(const core::Acceptances& accepted) {
+  detector_.accept(accepted);
+  if (!model_ || !trained_.calibration) {
+    return;
+  }
+  std::vector<bool> may_be_silent;
+  for (const core::EventType& type : types()) {
+    may_be_silent.push_back(accepted.covers(core::componentOf(type.source, type.scope), type.scope,
+                                            core::Kind::kDied));
+  }
+  coverage_ =
+      core::evidence::coverageOf(*model_, trained_.calibration->limits,
+                                 trained_.calibration->relations, trained_.window, may_be_silent);
 }
 
 void Session::expectRates() {

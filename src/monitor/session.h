@@ -9,7 +9,10 @@
 #include <vector>
 
 #include "parameters.h"
+#include "self_awareness/core/evidence/channel/model.h"
+#include "self_awareness/core/evidence/limits/coverage.h"
 #include "self_awareness/core/stream/vocabulary.h"
+#include "self_awareness/core/verdict/acceptance.h"
 #include "self_awareness/core/verdict/detector.h"
 #include "self_awareness/core/verdict/judge.h"
 #include "self_awareness/core/verdict/source_graph.h"
@@ -38,7 +41,8 @@ class Session {
   std::int64_t window() const { return trained_.window; }
   /// Whether there are limits, or a threshold, for the detector that was chosen.
   bool calibrated() const { return calibrated_; }
-  /// How soon faults of the model's components are found; empty: not known of this detector.
+  /// How soon faults of the model's components are found, with what is accepted; empty: not known
+  /// of this detector.
   const std::vector<core::evidence::Coverage>& coverage() const { return coverage_; }
   /// How often messages came in training [Hz], by component and topic; empty: not known of this
   /// detector.
@@ -57,6 +61,8 @@ class Session {
   const ros1::EncodingRules& encoding() const { return trained_.encoding; }
   const std::shared_ptr<const ros1::Encoder>& encoder() const { return encoder_; }
   core::Detector& detector() { return detector_; }
+  /// Takes what is accepted as normal from now on, in place of what was before.
+  void accept(const core::Acceptances& accepted);
   /// Whose messages reach whom: in training, and as addEdges() was told.
   const core::SourceGraph& graph() const { return *graph_; }
 
@@ -87,10 +93,11 @@ class Session {
   /// Finds out how often messages came in training.
   void expectRates();
   core::EventId intern(const core::EventType& type);
-  std::unique_ptr<core::Judge> makeJudge(const MonitorParameters& parameters) const;
+  std::unique_ptr<core::Judge> makeJudge(const MonitorParameters& parameters);
 
   ros1::TrainedModel trained_;
   bool calibrated_;
+  std::shared_ptr<const core::evidence::Model> model_;  // of the judge; null: it is the paper's
   std::vector<core::evidence::Coverage> coverage_;
   std::map<std::string, std::map<std::string, double>> expected_;
   std::set<std::string> optional_;

@@ -50,6 +50,22 @@ std::map<std::string, std::set<std::string>> robotsOf(const ros1::TrainedModel& 
   return robots.size() > 1 ? robots : std::map<std::string, std::set<std::string>>();
 }
 
+/// When the last recording ended in which each event type came [ns]; 0: in none.
+std::vector<std::int64_t> heardUntil(const ros1::TrainedModel& model) {
+  std::vector<std::int64_t> until(model.vocabulary().size(), 0);
+  for (const core::evidence::Statistics& half : model.watched.halves) {
+    for (const core::evidence::Statistics::Recording& recording : half.recordings()) {
+      for (core::EventId id = 0; id < recording.events.size(); ++id) {
+        const auto known = model.vocabulary().find(half.vocabulary().at(id));
+        if (known && recording.events[id] > 0) {
+          until[*known] = std::max(until[*known], recording.end);
+        }
+      }
+    }
+  }
+  return until;
+}
+
 /// Gaps that an event type needs to be judged; the evidence detector's number can be set.
 std::uint64_t fewestGaps(const ros1::TrainedModel& model) {
   return model.detectors() == "paper"
@@ -249,6 +265,10 @@ void bindModel(py::module& m) {
           "robots", &robotsOf,
           "components that came on each robot in training, by its name: a dict of sets; empty\n"
           "unless several are known")
+      .def_property_readonly("heard_until", &heardUntil,
+                             "when the last recording ended in which each event type came [ns], "
+                             "by id; 0: it came in\n"
+                             "none that the evidence detector learned from")
       .def_property_readonly("threshold", &TrainedModel::threshold, "None: not calibrated")
       .def_property_readonly(
           "bin_size", [](const TrainedModel& self) { return self.statistics.binning().bin_size; },

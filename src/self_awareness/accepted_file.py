@@ -7,6 +7,8 @@ from typing import List, Sequence, Tuple
 from self_awareness import Acceptance, TrainedModel, read_accepted, write_accepted
 
 _BESIDE = '.accepted'
+_MOST = 1000
+_NOT_SUBSCRIBED = 'not subscribed'
 
 
 def path_of(model: str) -> str:
@@ -40,18 +42,64 @@ def keep(accepted: Sequence[Acceptance], model: str) -> None:
         write_accepted(list(accepted), path)
 
 
+def of_either(source: str, output: str) -> List[Acceptance]:
+    """Return what is accepted beside a model and beside the file that takes its place.
+
+    Of the same component, topic and kind, it is what is beside the output.
+
+    Raises:
+        BagError: one of the files is damaged, or another one.
+        ValueError: together they are too many.
+    """
+    kept = beside(output)
+    if os.path.realpath(source) != os.path.realpath(output):
+        kept += [each for each in beside(source)
+                 if not any(_key(each) == _key(other) for other in kept)]
+    if len(kept) > _MOST:
+        raise ValueError(f'{len(kept)} are accepted beside {source} and {output} together, and '
+                         f'{_MOST} is the most: take some back (~accept, undo)')
+    return kept
+
+
 def learned(accepted: Sequence[Acceptance],
             model: TrainedModel) -> Tuple[List[Acceptance], List[Acceptance]]:
     """Divide what is accepted into what a model has learned, and what is accepted on.
 
-    It is learned where the model knows an event type that it names, from a recording that ended
-    after it was accepted. A pattern names others, too, that may yet come: it stays.
+    It is learned where the model knows an event type that it names from a recording that ended
+    after it was accepted; that somebody does not subscribe, where he is so known, and the model
+    does not expect it. A pattern names others, too, that may yet come: it stays.
     """
     known: List[Acceptance] = []
     left: List[Acceptance] = []
-    last = max((recording.end for recording in model.recordings), default=0)
     for each in accepted:
-        heard = any(each.is_about(event_type) for event_type in model.event_types)
         is_pattern = any('*' in name for name in (each.component, each.topic))
-        (known if heard and last >= each.at and not is_pattern else left).append(each)
+        (left if is_pattern or not _is_learned(each, model) else known).append(each)
     return known, left
+
+
+def keep_what_is_left(accepted: Sequence[Acceptance], model: TrainedModel, path: str) -> List[str]:
+    """Write beside a model what it has not learned; return what became of each, in words.
+
+    Raises:
+        FileError: it cannot be written.
+    """
+    known, left = learned(accepted, model)
+    keep(left, path)
+    return [*(f'accepted before, and learned now, so it is judged again: {in_words(each)}'
+              for each in known),
+            *(f'accepted, and not learned: {in_words(each)}' for each in left)]
+
+
+def _is_learned(accepted: Acceptance, model: TrainedModel) -> bool:
+    named = accepted
+    if accepted.kind == _NOT_SUBSCRIBED:
+        if any(accepted.component in ('', node) and accepted.topic in ('', topic)
+               for node, topic in model.subscriptions):
+            return False
+        named = Acceptance(accepted.component)  # the topic is none that it sends
+    return any(until > 0 and until >= accepted.at and named.is_about(event_type)
+               for event_type, until in zip(model.event_types, model.heard_until))
+
+
+def _key(accepted: Acceptance) -> Tuple[str, str, str]:
+    return accepted.component, accepted.topic, accepted.kind

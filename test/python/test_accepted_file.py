@@ -9,10 +9,13 @@ import pytest
 from self_awareness import Acceptance, BagError, EventType, accepted_file
 
 
-def model(*ends: int) -> Any:
+def model(driver: int, replayed: int, base: int = 0) -> Any:
+    """With the ends of the last recordings in which these came."""
     return SimpleNamespace(event_types=[EventType('/driver', '/scan', 'T'),
-                                        EventType('', '/replayed', 'T')],
-                           recordings=[SimpleNamespace(end=end) for end in ends])
+                                        EventType('', '/replayed', 'T'),
+                                        EventType('/base', '/odom', 'T')],
+                           heard_until=[driver, replayed, base],
+                           subscriptions={('/base', '/cmd_vel')})
 
 
 @pytest.fixture()
@@ -23,10 +26,46 @@ def entries() -> List[Acceptance]:
 
 
 def test_what_was_heard_after_it_was_accepted_is_learned(entries: List[Acceptance]) -> None:
-    learned, left = accepted_file.learned(entries, model(50, 100))
+    learned, left = accepted_file.learned(entries, model(100, 100))
     assert learned == [entries[0], entries[4]]
     assert left == entries[1:4], 'too late, not heard, and a pattern'
-    assert accepted_file.learned(entries, model())[0] == []
+    assert accepted_file.learned(entries, model(0, 0))[0] == []
+    assert accepted_file.learned([Acceptance('/driver', at=0)], model(0, 0))[0] == []
+
+
+def test_that_another_one_was_heard_later_teaches_nothing(entries: List[Acceptance]) -> None:
+    assert accepted_file.learned(entries, model(50, 50, 1000))[0] == []
+    assert accepted_file.learned(entries, model(50, 100, 1000))[0] == [entries[4]]
+
+
+def test_who_does_not_subscribe_is_learned_once_it_is_not_expected() -> None:
+    entries = [Acceptance('/base', '/cmd_vel', 'not subscribed', 10),
+               Acceptance('/base', '/stop', 'not subscribed', 10),
+               Acceptance('/base', '', 'not subscribed', 10)]
+    assert accepted_file.learned(entries, model(0, 0, 20)) == ([entries[1]],
+                                                               [entries[0], entries[2]])
+    assert accepted_file.learned(entries, model(20, 20, 5))[0] == []
+
+
+def test_of_two_files_each_is_kept_once_and_the_outputs_wins(entries: List[Acceptance],
+                                                             tmp_path) -> None:
+    source, output = str(tmp_path / 'source'), str(tmp_path / 'output')
+    accepted_file.keep(entries[:2], source)
+    assert accepted_file.of_either(source, output) == entries[:2]
+    newer = Acceptance('/driver', '/scan', 'slow', 200, '/top')
+    accepted_file.keep([newer, entries[2]], output)
+    assert accepted_file.of_either(source, output) == [newer, entries[2], entries[1]]
+    assert accepted_file.of_either(output, str(tmp_path / '.' / 'output')) == [newer, entries[2]]
+    (tmp_path / 'output.accepted').write_text('what is this')
+    with pytest.raises(BagError, match='output.accepted'):
+        accepted_file.of_either(source, output)
+
+
+def test_of_two_files_there_may_be_too_many(tmp_path) -> None:
+    for name in ('source', 'output'):
+        accepted_file.keep([Acceptance(f'/{name}{k}') for k in range(600)], str(tmp_path / name))
+    with pytest.raises(ValueError, match='1200 are accepted'):
+        accepted_file.of_either(str(tmp_path / 'source'), str(tmp_path / 'output'))
 
 
 def test_it_is_kept_beside_the_model(entries: List[Acceptance], tmp_path) -> None:

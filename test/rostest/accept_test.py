@@ -13,7 +13,7 @@ import self_awareness
 from live_system import (MonitorListener, Process, again_if_clock_was_set, await_condition,
                          operation, write_bag)
 from monitor_case import MonitorCase
-from self_awareness.msg import SelfAwareness
+from self_awareness.msg import Acceptance, SelfAwareness
 from self_awareness.srv import Accept, AcceptResponse
 
 NODE = '/self_awareness'
@@ -90,6 +90,8 @@ class AcceptTest(TrainedCase):
                                   said.message)
                     self.await_value(listener, 'accepted', '/joystick on /joy (stranger), by '
                                      + rospy.get_name())
+                    await_condition('it is not listed as new', lambda: not listener.value(
+                        'communication', 'not accepted, events so far'), 20)
                     self.assertEqual(1, sum('unknown events' in alarm.message
                                             and '/joystick' in alarm.message
                                             for alarm in listener.alarms), 'it was told once')
@@ -118,17 +120,21 @@ class AcceptTest(TrainedCase):
                 self.await_heard(listener, '/driver', '/base')
             alarm = listener.await_alarm()
             self.assertEqual(alarm.component, '/driver')
-            said = accept()
+            self.assertIn('does not stand any more', accept(alarm=alarm.alarm + 1).message)
+            said = accept(alarm=alarm.alarm)
             self.assertTrue(said.success, said.message)
             self.assertIn('/driver on /scan (died)', said.message)
             self.await_normal(listener)
             await_condition('it is not watched', lambda: (
-                '(died)' in (listener.value('/driver', 'not watched: accepted') or '')), 20)
+                listener.value('/driver', 'death found after [s]') == 'not watched: accepted'), 20)
+            self.assertIn('(died)', listener.value('/driver', 'accepted'))
+            self.await_value(listener, 'not watched', '/driver (accepted)')
+            self.assertIn('not watched: accepted', listener.diagnostics('/driver')[-1].message)
             seen = len(listener.statuses)
             await_condition('windows after it', lambda: len(listener.statuses) > seen + 50, 20)
             self.assertFalse([status.message for status in listener.statuses[seen:]
                               if any(each.component == '/driver' for each in status.suspects)])
-            said = accept(component='/driver', topic='/scan', kind='died', undo=True)
+            said = accept(component='/driver', undo=True)
             self.assertTrue(said.success, said.message)
             self.assertIn('judged again', said.message)
             await_condition('it is an alarm again', lambda: (
@@ -147,6 +153,23 @@ class AcceptTest(TrainedCase):
         self.assertIn('learned now, so it is judged again: /driver on /scan (slow)', said)
         self.assertIn('accepted, and not learned: /base\n', said)
         self.assertEqual(self_awareness.read_accepted(self.path('model.accepted')), entries[1:])
+
+    @again_if_clock_was_set
+    def test_messages_that_are_accepted_do_not_hide_a_death(self) -> None:
+        with self.trained_monitor(), MonitorListener() as listener, talker('base', '/odom', 10):
+            with talker('driver', '/scan', 12.5):
+                self.await_heard(listener, '/driver', '/base')
+                said = accept(component='/driver', kind='other size', more=[
+                    Acceptance(component='/driver', kind='slow'),
+                    Acceptance(component='driver')])
+                self.assertFalse(said.success)
+                self.assertIn('2 of 3: normal from now on: /driver (other size), /driver (slow)',
+                              said.message)
+                await_condition('it is told', lambda: (
+                    'other size' in (listener.value('/driver', 'accepted') or '')), 20)
+                float(listener.value('/driver', 'death found after [s]'))
+            alarm = listener.await_alarm()
+            self.assertEqual((alarm.component, alarm.kind), ('/driver', 'died'))
 
     @again_if_clock_was_set
     def test_what_cannot_be_accepted_is_refused(self) -> None:

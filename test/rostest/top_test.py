@@ -98,11 +98,15 @@ class TopTest(MonitorCase):
                 drawn = terminal.press('m')
                 terminal.await_text('not told until', drawn)
                 terminal.await_text('muted: {} until'.format(rospy.get_name()), drawn)
-                terminal.await_text('no model that judges by evidence', terminal.press('a'))
+                terminal.await_text('nothing stands, and nobody is new', terminal.press('a'))
                 terminal.await_text('the last ', terminal.press('d'))
                 terminal.press('q')
                 self.assertEqual(terminal.wait(), 0)
             alarm = listener.await_alarm()
+            with top() as terminal:
+                terminal.await_text('score ')
+                # If it is a death, it is asked for.
+                terminal.await_text('no model that judges by evidence', terminal.press('ay'))
             with Talker('/a'), top() as terminal:
                 terminal.await_text('raised 1 times')
                 terminal.await_text('({})'.format(alarm.alarm))

@@ -14,6 +14,7 @@ class Bursts : public Channel {
  public:
   std::string name() const override { return "bursts"; }
   Finding finding() const override { return Finding::kUnusual; }
+  Kind kind() const override { return Kind::kFast; }
   std::vector<Track> watch(const Choice& choice) const override;
   std::unique_ptr<const Expectation> expect(const Model& model, const Halves& halves,
                                             std::vector<std::size_t> tracks) const override;

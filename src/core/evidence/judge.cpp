@@ -52,7 +52,9 @@ class Judge : public core::Judge {
   void accept(const Acceptances& accepted) override {
     excused_.accept(accepted);
     never_heard_.excuse(excused_.mayBeSilent());
+    unsubscribed_.accept(accepted);
   }
+  bool isAccepted(EventId id, Kind kind) const override { return excused_.isAccepted(id, kind); }
   void setOptional(const std::vector<std::string>& patterns) override {
     excused_.setOptional(patterns);
     never_heard_.excuse(excused_.mayBeSilent());

@@ -16,9 +16,22 @@ Acceptance::Extent Acceptance::extent() const {
     case Kind::kEarly:
     case Kind::kOutOfOrder:
       return Extent::kTime;
-    default:
-      return Extent::kAll;
+    case Kind::kStale:
+    case Kind::kLossy:
+    case Kind::kOtherSize:
+    case Kind::kStuck:
+      return Extent::kMessages;
+    case Kind::kUnsubscribed:
+      return Extent::kConnections;
+    case Kind::kBusyMachine:
+    case Kind::kAllSilent:
+    case Kind::kNewMode:
+      return Extent::kNothing;
+    case Kind::kDied:
+    case Kind::kNeverCame:
+      break;
   }
+  return Extent::kAll;
 }
 
 bool Acceptance::isAbout(const std::string& of_component, const std::string& of_topic) const {
@@ -26,7 +39,9 @@ bool Acceptance::isAbout(const std::string& of_component, const std::string& of_
 }
 
 bool Acceptances::add(const Acceptance& acceptance) {
-  remove(acceptance);
+  list_.erase(std::remove_if(list_.begin(), list_.end(),
+                             [&](const Acceptance& each) { return each.isLike(acceptance); }),
+              list_.end());
   if (list_.size() >= kMost) {
     return false;
   }
@@ -34,14 +49,15 @@ bool Acceptances::add(const Acceptance& acceptance) {
   return true;
 }
 
-bool Acceptances::remove(const Acceptance& like) {
-  const auto found = std::find_if(list_.begin(), list_.end(),
-                                  [&](const Acceptance& each) { return each.isLike(like); });
-  if (found == list_.end()) {
-    return false;
-  }
-  list_.erase(found);
-  return true;
+std::vector<Acceptance> Acceptances::remove(const Acceptance& pattern) {
+  const auto removed =
+      std::stable_partition(list_.begin(), list_.end(), [&](const Acceptance& each) {
+        return !pattern.isAbout(each.component, each.topic) ||
+               (pattern.kind && pattern.kind != each.kind);
+      });
+  std::vector<Acceptance> taken_back(removed, list_.end());
+  list_.erase(removed, list_.end());
+  return taken_back;
 }
 
 bool Acceptances::covers(const std::string& component, const std::string& topic, Kind kind) const {

@@ -1,6 +1,7 @@
 #include "self_awareness/core/verdict/detector.h"
 
 #include <algorithm>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -38,6 +39,18 @@ bool Detector::add(const Event& event) {
     settled_at_ = event.stamp + parameters_.settle_time;
   }
   return same_clock;
+}
+
+void Detector::accept(const Acceptances& accepted) {
+  judge_->accept(accepted);
+  for (auto each = unknown_.begin(); each != unknown_.end();) {
+    each =
+        judge_->isAccepted(each->first, Kind::kStranger) ? unknown_.erase(each) : std::next(each);
+  }
+  for (auto each = awaited_.begin(); each != awaited_.end();) {
+    each = judge_->isAccepted(each->first, each->second.kind) ? awaited_.erase(each)
+                                                              : std::next(each);
+  }
 }
 
 void Detector::onMissed(const std::vector<EventId>& ids, std::int64_t now) {
@@ -83,8 +96,9 @@ void Detector::resume(const std::vector<Suspect>& suspects) {
   for (const Suspect& suspect : suspects) {
     named_.emplace(std::pair(suspect.component, suspect.component.empty() ? suspect.id : 0),
                    suspect.since);
-    if (isMissing(suspect.reason.kind)) {
-      awaited_[suspect.id];
+    const Kind kind = suspect.reason.kind;
+    if (isMissing(kind) && !judge_->isAccepted(suspect.id, kind)) {
+      awaited_[suspect.id].kind = kind;
     }
   }
 }
@@ -93,7 +107,8 @@ bool Detector::awaitsSuspects(std::int64_t end) const {
   const std::int64_t long_enough =
       std::max(parameters_.settle_time, parameters_.persistence.alarm_of * windows_.length());
   return std::any_of(awaited_.begin(), awaited_.end(), [&](const auto& awaited) {
-    return !awaited.second || end - *awaited.second < long_enough;
+    const std::optional<std::int64_t>& heard = awaited.second.heard;
+    return !heard || end - *heard < long_enough;
   });
 }
 
@@ -105,7 +120,7 @@ ObservedEvent Detector::observe(const Event& event) {
     heard_[event.id] = true;
     judge_->settle(event, parameters_.settle_time);
     if (const auto awaited = awaited_.find(event.id); awaited != awaited_.end()) {
-      awaited->second = event.stamp;
+      awaited->second.heard = event.stamp;
     }
   }
   const ObservedEvent observed = judge_->add(event);
@@ -124,18 +139,21 @@ std::map<EventId, std::uint64_t> Detector::unknown() const {
 }
 
 bool Detector::isNews(const Window& window) const {
-  if (parameters_.unknown != UnknownEvents::kWarn || window.unknown() == 0) {
-    return parameters_.unknown == UnknownEvents::kError && window.unknown() > 0;
+  if (parameters_.unknown == UnknownEvents::kIgnore) {
+    return false;
   }
   return std::any_of(window.events.begin(), window.events.end(), [&](const ObservedEvent& each) {
-    return each.unknown && !unknown_.at(each.event.id).told;
+    const auto unknown = each.unknown ? unknown_.find(each.event.id) : unknown_.end();
+    return unknown != unknown_.end() &&  // else it was accepted since it came
+           (parameters_.unknown == UnknownEvents::kError || !unknown->second.told);
   });
 }
 
 void Detector::tellOnce(const Window& window) {
   for (const ObservedEvent& each : window.events) {
-    if (each.unknown) {
-      unknown_.at(each.event.id).told = true;
+    const auto unknown = each.unknown ? unknown_.find(each.event.id) : unknown_.end();
+    if (unknown != unknown_.end()) {
+      unknown->second.told = true;
     }
   }
 }

@@ -52,6 +52,7 @@ std::string number(double value) {
 namespace {
 
 constexpr std::size_t kMostListed = 20;
+constexpr char kNotWatchedAccepted[] = "not watched: accepted";
 
 // One after the other, as a value of the diagnostics.
 void tellList(const std::string& key, const std::vector<std::string>& list,
@@ -73,7 +74,7 @@ void tellNotWatched(const std::vector<core::evidence::Coverage>& coverage,
   std::vector<std::string> names;
   for (const core::evidence::Coverage& each : coverage) {
     if (!each.isWatched()) {
-      names.push_back(each.component);
+      names.push_back(each.component + (each.accepted ? " (accepted)" : ""));
     }
   }
   if (!names.empty() && status.level == DiagnosticStatus::OK) {
@@ -129,6 +130,9 @@ bool isMuted(const CommunicationState& state) {
 std::string foundAfter(const core::evidence::Coverage& component) {
   if (component.death_found_after) {
     return number(*component.death_found_after);
+  }
+  if (component.accepted) {
+    return kNotWatchedAccepted;
   }
   return component.found_when_asked ? "when it is asked" : "not watched";
 }
@@ -214,6 +218,9 @@ void tellComponent(const CommunicationState& state, const std::string& name,
   if (!absent && status.level == DiagnosticStatus::OK && not_heard != state.not_heard.end()) {
     status.summary(DiagnosticStatus::WARN, not_heard->second);
   }
+  if (coverage != nullptr && coverage->accepted && status.level == DiagnosticStatus::OK) {
+    status.summary(DiagnosticStatus::OK, status.message + "; " + kNotWatchedAccepted);
+  }
   if (component.last_heard) {
     status.add("last heard [s ago]", number(*component.last_heard));
   }
@@ -221,7 +228,7 @@ void tellComponent(const CommunicationState& state, const std::string& name,
   tellRates(state, name, component, status);
   const auto accepted = state.accepted_of.find(name);
   if (accepted != state.accepted_of.end()) {
-    status.add("not watched: accepted", accepted->second);
+    status.add("accepted", accepted->second);
   }
   if (coverage != nullptr) {
     status.add("death found after [s]", foundAfter(*coverage));

@@ -38,7 +38,7 @@ struct CommunicationState {
   /// What is heard that training never saw, and is not accepted, with how often it came, in words.
   std::vector<std::string> strangers;
   std::vector<std::string> accepted;  ///< as normal, in words
-  /// What is accepted of components that the model knows, and not watched, in words.
+  /// What is accepted of components that the model knows, in words.
   std::map<std::string, std::string> accepted_of;
   /// How often messages came in training [Hz], by component and topic; empty: not known.
   std::map<std::string, std::map<std::string, double>> expected;

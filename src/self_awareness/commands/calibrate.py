@@ -4,14 +4,15 @@ from __future__ import annotations
 import argparse
 import csv
 import dataclasses
+import os
 import time
 from statistics import median
 from typing import Any, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
-from self_awareness import (EVIDENCE_THRESHOLD, DetectorParameters, PaperCalibration, PaperModel,
-                            Roc, RocPoint, TrainedModel, accepted_file)
+from self_awareness import (EVIDENCE_THRESHOLD, Acceptance, DetectorParameters, PaperCalibration,
+                            PaperModel, Roc, RocPoint, TrainedModel, accepted_file)
 from self_awareness.calibration import confidence, holes, limits
 from self_awareness.calibration.fault_injection import (FORMS, InjectedFault, of_each_source,
                                                         of_known_source)
@@ -78,6 +79,7 @@ def _calibrate(arguments: argparse.Namespace) -> None:
     parameters = cli.detector_parameters(arguments)
     _check_options(arguments)
     trained = cli.load_model(arguments.model, arguments.detector)
+    accepted = _accepted(arguments, trained)
     faults = [of_known_source(fault, trained.event_types) for fault in arguments.inject]
 
     normal = [cli.read_recording('calibrate', trained, part) for part in parts['normal']]
@@ -90,7 +92,7 @@ def _calibrate(arguments: argparse.Namespace) -> None:
     faulty_runs = [recorded_fault(recording, trained.window) for recording in faulty] + injected
 
     if arguments.detector == 'evidence':
-        measured = _find_limits(arguments, trained, parameters, normal_runs, faulty_runs)
+        measured = _find_limits(arguments, trained, parameters, normal_runs, faulty_runs, accepted)
         coverage = measured.by_budget[arguments.budget]
         evidence_report.print_verdict(trained, coverage)
         _say_holes(trained, normal)
@@ -112,8 +114,26 @@ def _calibrate(arguments: argparse.Namespace) -> None:
         save_roc(arguments.roc, f'ROC of windows of {trained.window / SECOND_NS:g} s',
                  [(result.fault, result.roc) for result in measured.faults], measured.point)
     trained.save(arguments.output)
-    accepted_file.keep(accepted_file.beside(arguments.model), arguments.output)
+    _keep_accepted(arguments, trained)
     print(f'written: {arguments.output}')
+
+
+def _goes_elsewhere(arguments: argparse.Namespace) -> bool:
+    return os.path.realpath(arguments.model) != os.path.realpath(arguments.output)
+
+
+def _accepted(arguments: argparse.Namespace, trained: TrainedModel) -> List[Acceptance]:
+    """Return what the calibrated model will not judge."""
+    accepted = accepted_file.of_either(arguments.model, arguments.output)
+    return (accepted_file.learned(accepted, trained)[1] if _goes_elsewhere(arguments)
+            else accepted)
+
+
+def _keep_accepted(arguments: argparse.Namespace, trained: TrainedModel) -> None:
+    if _goes_elsewhere(arguments):  # else the file is there
+        accepted = accepted_file.of_either(arguments.model, arguments.output)
+        for line in accepted_file.keep_what_is_left(accepted, trained, arguments.output):
+            print(line)
 
 
 def _say_holes(trained: TrainedModel, normal: Sequence[RecordingEvents]) -> None:
@@ -163,7 +183,7 @@ def _check_options(arguments: argparse.Namespace) -> None:
 
 def _find_limits(arguments: argparse.Namespace, trained: TrainedModel,
                  parameters: DetectorParameters, normal_runs: Sequence[Run],
-                 faulty_runs: Sequence[Run]) -> _Measured:
+                 faulty_runs: Sequence[Run], accepted: Sequence[Acceptance]) -> _Measured:
     try:
         budgets = [factor * arguments.budget for factor in (0.1, 10.0, 1.0)]
         found = limits.held_out(trained, [run.source for run in normal_runs],
@@ -174,7 +194,6 @@ def _find_limits(arguments: argparse.Namespace, trained: TrainedModel,
     for calibration in found:  # the last one stays
         trained.calibration = calibration
         by_budget[calibration.budget] = coverage_text.summarise(trained.coverage())
-    accepted = accepted_file.beside(arguments.model)
     judged = judge_runs(evidence_judge(trained, parameters, accepted=accepted), trained.window,
                         [*normal_runs, *faulty_runs])
     normal, faulty = judged[:len(normal_runs)], judged[len(normal_runs):]

@@ -14,14 +14,14 @@ from std_srvs.srv import Trigger
 
 from self_awareness.commands import cli
 from self_awareness.live_view.said import Said
-from self_awareness.msg import Incidents, SelfAwareness
+from self_awareness.msg import Acceptance, Incidents, SelfAwareness
 from self_awareness.srv import Accept, Mute
 
 _EPILOG = """\
 Keys: q quit, s sort by another column, f filter by a part of the name, p pause, m mute the
-selected component for 10 minutes, a accept what stands, or, if nothing does, who is new, c clear
-the alarm, d write the flight recorder's file. 80 columns are enough. It ends when the master is
-gone.
+selected component for 10 minutes, a accept what stands (after y, if that is a death), or, if
+nothing does, who is new, c clear the alarm, d write the flight recorder's file. 80 columns are
+enough. It ends when the master is gone.
 """
 
 _MASTER_EVERY_S = 1.0
@@ -101,11 +101,12 @@ def _calls(monitor: str) -> Dict[str, Callable[..., str]]:
         return str(rospy.ServiceProxy(f'{monitor}/mute', Mute)(
             component=component, duration=duration).message)
 
-    def accept(strangers: List[Tuple[str, str]]) -> str:
+    def accept(alarm: int, strangers: List[Tuple[str, str]]) -> str:
         call = rospy.ServiceProxy(f'{monitor}/accept', Accept)
-        asked: List[Dict[str, str]] = [{'component': source, 'topic': topic, 'kind': 'stranger'}
-                                       for source, topic in strangers]
-        return '; '.join(str(call(**each).message) for each in asked or [{}])
+        asked: Dict[str, Any] = {'alarm': alarm} if alarm else {'more': [
+            Acceptance(component=source, topic=topic, kind='stranger')
+            for source, topic in strangers]}
+        return str(call(**asked).message)
 
     def answered(call: Callable[..., str]) -> Callable[..., str]:
         def answer(*arguments: Any) -> str:

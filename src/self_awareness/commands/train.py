@@ -7,8 +7,8 @@ from contextlib import closing
 from dataclasses import replace
 from typing import Dict, List, Optional, Sequence
 
-from self_awareness import (Acceptance, BagError, EncodingRules, TrainedModel, accepted_file,
-                            encoding_file, progress)
+from self_awareness import (BagError, EncodingRules, TrainedModel, accepted_file, encoding_file,
+                            progress)
 from self_awareness.calibration import holes
 from self_awareness.calibration.holes import Hole
 from self_awareness.calibration.limits import TooLittleError
@@ -51,7 +51,8 @@ def _train(arguments: argparse.Namespace) -> None:
     bags = [part.path for part in parts]
     check_outputs([(arguments.output, MODEL)], bags + [arguments.encoding])
     base = None if arguments.add_to is None else TrainedModel.load(arguments.add_to)
-    accepted = accepted_file.beside(arguments.add_to or arguments.output)
+    # A damaged file is found before hours of work; it is read again at the end.
+    accepted_file.of_either(arguments.add_to or arguments.output, arguments.output)
     counting = _counting(arguments, base)
     _check_distinct(parts)
     graph = _live_graph(base) if arguments.graph else RobotGraph()  # first: counting takes long
@@ -76,6 +77,7 @@ def _train(arguments: argparse.Namespace) -> None:
         except (BagError, ValueError) as error:  # the counts are not lost
             model.save(arguments.output)
             raise ValueError(f'{error}; {arguments.output} is written, without limits') from error
+    accepted = accepted_file.of_either(arguments.add_to or arguments.output, arguments.output)
     model.save(arguments.output)
     print_summary(model)
     print(limits)
@@ -86,21 +88,13 @@ def _train(arguments: argparse.Namespace) -> None:
         print(f'  {line}')
     for line in robots_text.lines(robots_text.summarise(model.robots)):
         print(f'  {line}')
-    _keep_accepted(accepted, model, arguments.output)
+    for line in accepted_file.keep_what_is_left(accepted, model, arguments.output):
+        print(line)
     _say_holes(found, model, arguments.leave_out_holes)
     for bad in trained.bad:
         cli.warn('train', f'skipped: {bad}')
     print(f'written: {arguments.output}; next, find limits on recordings that it was not trained '
           'on (rosrun self_awareness calibrate)')
-
-
-def _keep_accepted(accepted: Sequence[Acceptance], model: TrainedModel, output: str) -> None:
-    learned, left = accepted_file.learned(accepted, model)
-    accepted_file.keep(left, output)
-    for known, what in ((learned, 'accepted before, and learned now, so it is judged again'),
-                        (left, 'accepted, and not learned')):
-        for each in known:
-            print(f'{what}: {accepted_file.in_words(each)}')
 
 
 def _say_holes(found: Sequence[Hole], model: TrainedModel, left_out: bool) -> None:

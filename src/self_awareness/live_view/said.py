@@ -14,6 +14,7 @@ SORTS = ('level', 'name', 'rate', 'age')
 _BARS = '▁▂▃▄▅▆▇█'
 _LONGEST_CURVE = 400
 _WHOLE, _ITSELF = 'communication', 'monitor'
+_DEATHS = ('died', 'never came')
 
 
 @dataclass(frozen=True)
@@ -106,6 +107,22 @@ class Said:
         told = self._value(_WHOLE, 'not accepted, events so far')
         pairs = [each.rpartition(': ')[0].rpartition(' on ') for each in told.split(', ') if each]
         return [(source, topic) for source, _, topic in pairs]
+
+    @property
+    def standing(self) -> int:
+        """Id of the alarm or suspicion that stands, muted or not; 0: nothing does."""
+        stands = self.verdict is not None and self.verdict.level != 0
+        return int(self.verdict.alarm) if stands else 0
+
+    @property
+    def deaths(self) -> List[str]:
+        """Who has died, or never came, of those that what stands names."""
+        if not self.standing:
+            return []
+        named = [(self.verdict.component, self.verdict.kind),
+                 *((each.component, each.kind) for each in self.verdict.suspects)]
+        return list(dict.fromkeys(component for component, kind in named
+                                  if component and kind in _DEATHS))
 
     @property
     def mutes(self) -> List[str]:

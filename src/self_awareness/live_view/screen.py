@@ -1,7 +1,7 @@
 """The screen of `top`, drawn by urwid."""
 from __future__ import annotations
 
-from typing import Any, Callable, Dict, List
+from typing import Any, Callable, Dict, List, Optional
 
 import urwid
 
@@ -29,13 +29,14 @@ class Screen:
             said: what is shown now.
             is_over: why nothing more will come; empty: it goes on.
             calls: by key c and d, what it does, by m, what mutes a component for some seconds,
-                and by a, what accepts senders and their topics, or, without any, what stands;
-                they return what came of it.
+                and by a, what accepts the alarm of an id, or, where that is 0, senders and their
+                topics; they return what came of it.
         """
         self._said, self._is_over, self._calls = said, is_over, calls
         self._shown = said()
         self._sort, self._pattern, self._paused = SORTS[0], '', False
         self._names: List[str] = []
+        self._if_yes: Optional[Callable[[], str]] = None  # what an answer is awaited for
         self._listed = urwid.SimpleFocusListWalker([])
         self._head = urwid.Pile([urwid.Text('')])
         self._asked = urwid.Edit('filter: ')
@@ -82,6 +83,9 @@ class Screen:
     def _on_key(self, key: str) -> None:
         if self._frame.focus_position == 'footer':
             self._on_filter(key)
+        elif self._if_yes is not None:
+            call, self._if_yes = self._if_yes, None
+            self._say(call() if key in ('y', 'Y') else 'not accepted')
         elif key in ('q', 'Q'):
             raise urwid.ExitMainLoop()
         elif key == 's':
@@ -94,10 +98,24 @@ class Screen:
         elif key == 'm' and self._focus():
             self._say(self._calls['m'](self._focus(), _MUTE_S))
         elif key == 'a':
-            self._say(self._calls['a']([] if self._shown.level else self._shown.strangers))
+            self._on_accept()
         elif key in ('c', 'd'):
             self._say(self._calls[key]())
         self._draw()
+
+    def _on_accept(self) -> None:
+        alarm, strangers = self._shown.standing, self._shown.strangers
+
+        def accept() -> str:
+            return self._calls['a'](alarm, strangers)
+
+        if self._shown.deaths:
+            self._if_yes = accept
+            self._say(f'accept it? {", ".join(self._shown.deaths)} may then die unseen (y/n)')
+        elif alarm or strangers:
+            self._say(accept())
+        else:
+            self._say('nothing stands, and nobody is new')
 
     def _on_filter(self, key: str) -> None:
         if key in ('enter', 'esc'):

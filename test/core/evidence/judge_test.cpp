@@ -444,6 +444,11 @@ TEST_F(EvidenceJudgeTest, WhoDoesNotSubscribeIsASuspicionAndHidesNobody) {
   EXPECT_EQ(missing.evidence, "connections");
   ASSERT_EQ(missing.suspects.size(), 2U);
   EXPECT_EQ(missing.suspects[0].id, kB) << "kA is near its limit, and no more";
+  Acceptances deaf;
+  deaf.add(accepted("/b", "/x", Kind::kUnsubscribed));
+  judge->accept(deaf);
+  EXPECT_FALSE(judgeAt(*judge, 63 * kSecond).suspicious);
+  judge->accept({});
   const Judgement death = judgeAt(*judge, 101 * kSecond, NameSuspects::kIfUnusual);
   EXPECT_TRUE(death.abnormal);
   ASSERT_EQ(death.suspects.size(), 2U);

@@ -37,6 +37,25 @@ TEST(Acceptances, WhoIsSlowMayBeLateAndMayNotBeSilent) {
   EXPECT_FALSE(accepted_now.covers("/camera", "/image", Kind::kNeverCame));
 }
 
+TEST(Acceptances, WhatMessagesAreLikeIsNoSilenceAndNoTime) {
+  Acceptances accepted_now;
+  accepted_now.add(accepted("/camera", "", Kind::kOtherSize));
+  for (const Kind kind : {Kind::kStale, Kind::kLossy, Kind::kOtherSize, Kind::kStuck}) {
+    EXPECT_TRUE(accepted_now.covers("/camera", "/image", kind)) << toString(kind);
+  }
+  for (const Kind kind : {Kind::kDied, Kind::kNeverCame, Kind::kSlow, Kind::kStranger}) {
+    EXPECT_FALSE(accepted_now.covers("/camera", "/image", kind)) << toString(kind);
+  }
+}
+
+TEST(Acceptances, OfConnectionsTheTopicIsTheOneThatIsNotSubscribedTo) {
+  Acceptances accepted_now;
+  accepted_now.add(accepted("/faces", "/image", Kind::kUnsubscribed));
+  EXPECT_TRUE(accepted_now.covers("/faces", "/image", Kind::kUnsubscribed));
+  EXPECT_FALSE(accepted_now.covers("/faces", "/depth", Kind::kUnsubscribed));
+  EXPECT_FALSE(accepted_now.covers("/faces", "/image", Kind::kDied));
+}
+
 TEST(Acceptances, WhoMayBeSilentMayDoAnything) {
   for (const std::optional<Kind>& kind : {std::optional<Kind>(), {Kind::kDied}}) {
     Acceptances accepted_now;
@@ -52,9 +71,26 @@ TEST(Acceptances, EachIsThereOnceAndTakenBack) {
   EXPECT_TRUE(accepted_now.add(accepted("/camera", "")));
   EXPECT_TRUE(accepted_now.add(accepted("/camera", "")));
   EXPECT_EQ(accepted_now.list().size(), 1U);
-  EXPECT_FALSE(accepted_now.remove(accepted("/camera", "/image")));
-  EXPECT_TRUE(accepted_now.remove(accepted("/camera", "")));
+  EXPECT_TRUE(accepted_now.remove(accepted("/camera", "/image")).empty());
+  EXPECT_EQ(accepted_now.remove(accepted("/camera", "")).size(), 1U);
   EXPECT_FALSE(accepted_now.covers("/camera", "/image", Kind::kDied));
+}
+
+TEST(Acceptances, AllThatFitsIsTakenBack) {
+  Acceptances all;
+  all.add(accepted("/camera", "/image", Kind::kSlow));
+  all.add(accepted("/camera", "", Kind::kStale));
+  all.add(accepted("/cam*", "/image"));
+  all.add(accepted("", "/image", Kind::kSlow));
+  Acceptances left = all;
+  EXPECT_EQ(left.remove(accepted("/camera", "")).size(), 2U);
+  EXPECT_EQ(left.list().size(), 2U) << "wider ones stay";
+  left = all;
+  EXPECT_EQ(left.remove(accepted("/cam*", "")).size(), 3U);
+  left = all;
+  EXPECT_EQ(left.remove(accepted("", "", Kind::kSlow)).size(), 2U);
+  ASSERT_EQ(left.list().size(), 2U);
+  EXPECT_EQ(left.list()[0].kind, Kind::kStale) << "in their order";
 }
 
 TEST(Acceptances, ThereIsAMost) {

@@ -3,7 +3,7 @@ from __future__ import annotations
 
 import math
 from types import SimpleNamespace
-from typing import Any, List
+from typing import Any, List, Tuple
 
 import pytest
 
@@ -22,7 +22,15 @@ def of_component(name: str, level: int, rate: str, age: str) -> Any:
 
 
 def verdict(score: float, threshold: float = -1.0, settling: bool = False) -> Any:
-    return SimpleNamespace(score=score, threshold=threshold, settling=settling)
+    return SimpleNamespace(score=score, threshold=threshold, settling=settling, level=0, alarm=0,
+                           component='', kind='', suspects=[])
+
+
+def stands(alarm: int, component: str, kind: str, *suspects: Tuple[str, str]) -> Any:
+    of = verdict(-2.0)
+    of.level, of.alarm, of.component, of.kind = 2, alarm, component, kind
+    of.suspects = [SimpleNamespace(component=name, kind=what) for name, what in suspects]
+    return of
 
 
 def incident(component: str, alarms: int = 1, over: bool = False, **lists: List[str]) -> Any:
@@ -98,6 +106,19 @@ def test_all_is_in_80_columns(said: Said) -> None:
     assert '/quiet' not in page and '/laser' not in page
     assert ('ERROR', 'WARN') == tuple(style for style, text in shown
                                       if text.startswith(('/player ', '/camera ')))
+
+
+def test_what_stands_is_what_the_verdict_says(said: Said) -> None:
+    assert said.level == 2 and said.standing == 0 and said.deaths == []
+    said.on_status(stands(7, '/player', 'died', ('/player', 'died'), ('/base', 'late'),
+                          ('/slam', 'never came')))
+    assert said.standing == 7 and said.deaths == ['/player', '/slam']
+    said.on_status(stands(8, '/player', 'slow', ('/player', 'slow')))
+    assert said.standing == 8 and said.deaths == []
+    over = stands(8, '/player', 'died')
+    over.level = 0
+    said.on_status(over)
+    assert said.standing == 0 and said.deaths == [], 'it ended with this window'
 
 
 def test_names_do_not_control_the_terminal(said: Said) -> None:

@@ -12,20 +12,22 @@ namespace self_awareness::core {
 
 /// What somebody takes as normal from now on (docs/accept.md): it is no evidence any more.
 struct Acceptance {
-  /// How much of what it names is accepted.
+  /// How much of what it names is accepted. A fault seldom comes alone: who is slow is late, too.
   enum class Extent {
-    kStranger,  ///< that it is there, although training never saw it
-    kTime,      ///< when and how often it comes; that it falls silent is still judged
-    kAll        ///< whatever it does
+    kStranger,     ///< that it is there, although training never saw it
+    kTime,         ///< when and how often it comes; that it falls silent is still judged
+    kMessages,     ///< how old, complete, large and new its messages are
+    kConnections,  ///< what it does not subscribe to
+    kNothing,      ///< what no component does: a busy machine, all silent, a new mode
+    kAll           ///< whatever it does
   };
 
   std::string component;     ///< a name, or its begin and a `*`; empty: all
-  std::string topic;         ///< likewise
+  std::string topic;         ///< likewise; of kUnsubscribed, what it does not subscribe to
   std::optional<Kind> kind;  ///< none: all that it does
   std::int64_t at = 0;       ///< when it was accepted [ns of ROS time]
   std::string by;            ///< who did
 
-  /// A fault seldom comes alone: who is slow is late, too.
   Extent extent() const;
   /// Whether it is about an event type.
   bool isAbout(const std::string& of_component, const std::string& of_topic) const;
@@ -44,10 +46,12 @@ class Acceptances {
   /// Adds one, or replaces the one that is like it.
   /// @return whether there is room for it
   bool add(const Acceptance& acceptance);
-  /// Takes one back. @return whether there is one like it
-  bool remove(const Acceptance& like);
+  /// Takes back all that fits. @param pattern its names are patterns; no kind: any
+  /// @return what is taken back
+  std::vector<Acceptance> remove(const Acceptance& pattern);
 
-  /// Whether something that an event type does is accepted.
+  /// Whether something that an event type does is accepted; of kUnsubscribed, that a component
+  /// does not subscribe to a topic.
   bool covers(const std::string& component, const std::string& topic, Kind kind) const;
   const std::vector<Acceptance>& list() const { return list_; }
 

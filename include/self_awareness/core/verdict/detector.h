@@ -77,8 +77,9 @@ class Detector : private WindowObserver {
   /// Takes note of who may be absent. What is unusual of them while they are there is judged.
   /// @param patterns names of components or topics, or their begins and a `*`
   void setOptional(const std::vector<std::string>& patterns) { judge_->setOptional(patterns); }
-  /// Takes what is accepted as normal from now on, in place of what was before.
-  void accept(const Acceptances& accepted) { judge_->accept(accepted); }
+  /// Takes what is accepted as normal from now on, in place of what was before. It is no unknown
+  /// event any more, and no alarm of before the start waits for it.
+  void accept(const Acceptances& accepted);
   /// Takes note which subscriptions are missing from now on; as Judge::setMissing().
   void setMissing(const std::set<SourceGraph::Subscription>& missing) {
     judge_->setMissing(missing);
@@ -107,8 +108,7 @@ class Detector : private WindowObserver {
 
   /// Whether an event has come since the start.
   bool started() const { return windows_.lastStamp().has_value(); }
-  /// Events since the start that training never saw, by id; without those that were accepted when
-  /// they came.
+  /// Events since the start that training never saw, by id; without what is accepted.
   std::map<EventId, std::uint64_t> unknown() const;
 
  private:
@@ -116,6 +116,11 @@ class Detector : private WindowObserver {
   struct Unknown {
     std::uint64_t events = 0;
     bool told = false;
+  };
+  /// A suspect of an alarm of before the start.
+  struct Awaited {
+    Kind kind = Kind::kDied;            // what was wrong with it
+    std::optional<std::int64_t> heard;  // for the first time [ns]
   };
 
   ObservedEvent observe(const Event& event) override;
@@ -146,13 +151,12 @@ class Detector : private WindowObserver {
   Windows windows_;
   Persistence persistence_;
   bool resumed_ = false;  // the alarm is that of before the start, and has to stand on
-  // Its suspects that have to be heard, and when they were for the first time [ns].
-  std::map<EventId, std::optional<std::int64_t>> awaited_;
-  std::size_t silent_ = 0;          // components that the alarm said are silent together
-  bool suspicion_ = false;          // whether it stands
-  std::int64_t suspicious_at_ = 0;  // end of the last suspicious window [ns], while it stands
-  std::int64_t settled_at_ = 0;     // [ns], valid once started
-  std::vector<bool> heard_;         // since the start, by id
+  std::map<EventId, Awaited> awaited_;  // its suspects that have to be heard
+  std::size_t silent_ = 0;              // components that the alarm said are silent together
+  bool suspicion_ = false;              // whether it stands
+  std::int64_t suspicious_at_ = 0;      // end of the last suspicious window [ns], while it stands
+  std::int64_t settled_at_ = 0;         // [ns], valid once started
+  std::vector<bool> heard_;             // since the start, by id
   std::map<EventId, Unknown> unknown_;
   // When the alarm or the suspicion that stands named a component, or an event type whose
   // component is not known: end of the window [ns].

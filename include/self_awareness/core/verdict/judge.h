@@ -63,6 +63,8 @@ class Judge {
   /// Takes what is accepted as normal from now on, in place of what was before. Who knows no event
   /// type of its own has no use for it.
   virtual void accept(const Acceptances& /*accepted*/) {}
+  /// Whether something that an event type does is accepted.
+  virtual bool isAccepted(EventId /*id*/, Kind /*kind*/) const { return false; }
   /// Takes note of who may be absent: names of components or topics, or their begins and a `*`.
   /// What is unusual of them while they are there is judged.
   virtual void setOptional(const std::vector<std::string>& /*patterns*/) {}

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "self_awareness/core/stream/event.h"
 
@@ -78,6 +79,7 @@ struct Reason {
   std::size_t of = 0;             ///< delays that the value is of; 0: it is not of delays
   std::size_t times = 0;          ///< of them, unusual
   std::string words;              ///< "silent for 2.31 s, usually every 0.083 s, at most 0.104 s"
+  std::vector<std::string> topics;  ///< that it does not subscribe to, of kUnsubscribed
 };
 
 /// Why a stranger is one that came in the window.

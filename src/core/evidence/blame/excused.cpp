@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/evidence/channel/channel.h"
 #include "self_awareness/core/verdict/name_pattern.h"
 
 namespace self_awareness::core::evidence {
@@ -33,21 +34,21 @@ void Excused::update() {
     const Track& watched = model_->tracks()[track];
     const Finding finding = model_->finding(track);
     const bool is_absence = finding == Finding::kSilent || finding == Finding::kUnanswered;
-    if (covers(watched, finding) || (is_optional_[watched.to] && is_absence)) {
+    if (covers(watched) || (is_optional_[watched.to] && is_absence)) {
       tracks_.push_back(track);
     } else if (is_optional_[watched.to] || is_optional_[watched.from]) {
       optional_.push_back(track);
     }
   }
   for (EventId id = 0; id < model_->size(); ++id) {
-    may_be_silent_[id] = is_optional_[id] || covers(id, Kind::kDied);
+    may_be_silent_[id] = is_optional_[id] || isAccepted(id, Kind::kDied);
   }
 }
 
 bool Excused::isAcceptedStranger(EventId id) {
   const auto [known, is_new] = is_accepted_.try_emplace(id, false);
   if (is_new) {
-    known->second = covers(id, Kind::kStranger);
+    known->second = isAccepted(id, Kind::kStranger);
   }
   return known->second;
 }
@@ -71,13 +72,15 @@ void Excused::leaveOut(const Heard& heard, std::vector<double>& evidence) const 
 void Excused::leaveOut(std::vector<Suspect>& suspects) const {
   const auto isExcused = [this](const Suspect& suspect) {
     const Kind kind = suspect.reason.kind;
-    return covers(suspect.id, kind) || (model_->knows(suspect.id) && is_optional_[suspect.id] &&
-                                        (kind == Kind::kDied || kind == Kind::kNeverCame));
+    // What is not subscribed to is no topic of an event type: Unsubscribed leaves it out.
+    return (kind != Kind::kUnsubscribed && isAccepted(suspect.id, kind)) ||
+           (model_->knows(suspect.id) && is_optional_[suspect.id] &&
+            (kind == Kind::kDied || kind == Kind::kNeverCame));
   };
   suspects.erase(std::remove_if(suspects.begin(), suspects.end(), isExcused), suspects.end());
 }
 
-bool Excused::covers(EventId id, Kind kind) const {
+bool Excused::isAccepted(EventId id, Kind kind) const {
   if (accepted_.list().empty() ||
       (!model_->knows(id) && (!vocabulary_ || id >= vocabulary_->size()))) {
     return false;
@@ -86,9 +89,10 @@ bool Excused::covers(EventId id, Kind kind) const {
   return accepted_.covers(componentOf(type.source, type.scope), type.scope, kind);
 }
 
-bool Excused::covers(const Track& track, Finding finding) const {
-  const Kind kind = finding == Finding::kSilent ? Kind::kDied : Kind::kLate;
-  return covers(track.to, kind) || (finding == Finding::kBetween && covers(track.from, kind));
+bool Excused::covers(const Track& track) const {
+  const Kind kind = track.channel->kind();
+  return isAccepted(track.to, kind) ||
+         (track.channel->finding() == Finding::kBetween && isAccepted(track.from, kind));
 }
 
 }  // namespace self_awareness::core::evidence

@@ -39,6 +39,8 @@ class Excused {
   }
   /// Whether an event type that the model does not know is accepted.
   bool isAcceptedStranger(EventId id);
+  /// Whether something that an event type does is accepted.
+  bool isAccepted(EventId id, Kind kind) const;
   /// Whether an event type of the model may be silent, by id.
   const std::vector<bool>& mayBeSilent() const { return may_be_silent_; }
   /// Takes back what tracks say of what is accepted, or of who is absent and may be.
@@ -47,16 +49,14 @@ class Excused {
   void leaveOut(std::vector<Suspect>& suspects) const;
 
  private:
-  bool covers(EventId id, Kind kind) const;
   /// Whether what a track says is accepted.
-  bool covers(const Track& track, Finding finding) const;
+  bool covers(const Track& track) const;
+  void update();
+  bool isAbsent(EventId id, const Heard& heard) const;
 
   std::shared_ptr<const Model> model_;
   std::shared_ptr<const Vocabulary> vocabulary_;  // of all that is heard
   Acceptances accepted_;
-  void update();
-  bool isAbsent(EventId id, const Heard& heard) const;
-
   std::vector<bool> is_optional_;        // by id of the model
   std::vector<std::size_t> optional_;    // tracks of them, whose evidence may be left out
   std::vector<std::size_t> tracks_;      // whose evidence is left out

@@ -25,18 +25,31 @@ Unsubscribed::Unsubscribed(const Model& model)
 }
 
 void Unsubscribed::set(const std::set<SourceGraph::Subscription>& missing) {
-  std::map<SourceGraph::Subscription, std::optional<std::int64_t>> now;
+  std::map<SourceGraph::Subscription, Missing> now;
   for (const SourceGraph::Subscription& each : missing) {
     const auto before = missing_.find(each);
-    now.emplace(each, before == missing_.end() ? std::nullopt : before->second);
+    now[each].since = before == missing_.end() ? std::nullopt : before->second.since;
   }
   missing_ = std::move(now);
+  update();
+}
+
+void Unsubscribed::accept(const Acceptances& accepted) {
+  accepted_ = accepted;
+  update();
+}
+
+void Unsubscribed::update() {
+  for (auto& [subscription, missing] : missing_) {
+    missing.accepted =
+        accepted_.covers(subscription.first, subscription.second, Kind::kUnsubscribed);
+  }
   late_ = 0;  // for the next window to say
 }
 
 void Unsubscribed::restart() {
-  for (auto& [subscription, since] : missing_) {
-    since.reset();
+  for (auto& [subscription, missing] : missing_) {
+    missing.since.reset();
   }
   late_ = 0;
   suspects_.clear();
@@ -45,9 +58,9 @@ void Unsubscribed::restart() {
 void Unsubscribed::closeWindow(std::int64_t end) {
   std::map<std::string, std::vector<std::string>> late;
   std::size_t number = 0;
-  for (auto& [subscription, since] : missing_) {
-    since = since.value_or(end);
-    if (end - *since > start_time_) {
+  for (auto& [subscription, missing] : missing_) {
+    missing.since = missing.since.value_or(end);
+    if (!missing.accepted && end - *missing.since > start_time_) {
       late[subscription.first].push_back(subscription.second);
       ++number;
     }
@@ -70,6 +83,7 @@ Suspect Unsubscribed::suspect(const std::string& component,
   suspect.id = ids_.at(component);
   suspect.component = component;
   suspect.reason.kind = Kind::kUnsubscribed;
+  suspect.reason.topics = topics;
   std::string& words = suspect.reason.words;
   for (std::size_t k = 0; k < std::min(topics.size(), kMostTopics); ++k) {
     words += (k > 0 ? ", " : "does not subscribe to ") + topics[k];

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "self_awareness/core/evidence/channel/model.h"
+#include "self_awareness/core/verdict/acceptance.h"
 #include "self_awareness/core/verdict/source_graph.h"
 #include "self_awareness/core/verdict/suspect.h"
 
@@ -23,6 +24,8 @@ class Unsubscribed {
 
   /// Takes note of all that is missing from now on.
   void set(const std::set<SourceGraph::Subscription>& missing);
+  /// Takes what is accepted, in place of what was before: it is not missing.
+  void accept(const Acceptances& accepted);
   /// All that is missing is so from the next window on only.
   void restart();
   /// Looks at how long it has been missing.
@@ -34,13 +37,20 @@ class Unsubscribed {
   const std::vector<Suspect>& suspects() const { return suspects_; }
 
  private:
+  struct Missing {
+    std::optional<std::int64_t> since;  // [ns]; none: the next window says it
+    bool accepted = false;
+  };
+
+  /// Looks at what of it is accepted.
+  void update();
   Suspect suspect(const std::string& component, const std::vector<std::string>& topics) const;
 
   std::int64_t start_time_;             // that a start may take [ns]
   std::size_t starts_;                  // of the training
   std::map<std::string, EventId> ids_;  // of one event type of each component
-  /// Since when [ns]; none: the next window says it.
-  std::map<SourceGraph::Subscription, std::optional<std::int64_t>> missing_;
+  Acceptances accepted_;
+  std::map<SourceGraph::Subscription, Missing> missing_;
   std::size_t late_ = 0;  // of these, missing for too long
   std::vector<Suspect> suspects_;
 };

@@ -10,6 +10,7 @@ class Age : public Channel {
  public:
   std::string name() const override { return "age"; }
   Finding finding() const override { return Finding::kUnusual; }
+  Kind kind() const override { return Kind::kStale; }
   bool isOfAttributes() const override { return true; }
   std::vector<Track> watch(const Choice& choice) const override;
   std::unique_ptr<const Expectation> expect(const Model& model, const Halves& halves,

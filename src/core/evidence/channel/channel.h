@@ -117,6 +117,9 @@ class Channel {
   /// As people read it; channels of one label share what recordings show of their limits.
   virtual std::string label() const { return name(); }
   virtual Finding finding() const = 0;
+  /// What its tracks say is wrong, in general; explain() knows it exactly. Who accepts it accepts
+  /// them (Acceptance::extent()).
+  virtual Kind kind() const = 0;
   /// Whether it looks at attributes of messages (docs/attributes.md).
   virtual bool isOfAttributes() const { return false; }
   /// Whether it has a small share of the false alarms by itself, so that the limits of others do

@@ -11,6 +11,7 @@ class Company : public Channel {
  public:
   std::string name() const override { return "company"; }
   Finding finding() const override { return Finding::kUnanswered; }
+  Kind kind() const override { return Kind::kDied; }
   bool hasShareOfItsOwn() const override { return true; }
   std::vector<Track> watch(const Choice& choice) const override;
   std::unique_ptr<const Expectation> expect(const Model& model, const Halves& /*halves*/,

@@ -11,6 +11,7 @@ class OwnGaps : public Channel {
   std::string name() const override { return "own gaps"; }
   std::string label() const override { return "pairs"; }
   Finding finding() const override { return Finding::kUnusual; }
+  Kind kind() const override { return Kind::kLate; }
   std::vector<Track> watch(const Choice& choice) const override;
   std::unique_ptr<const Expectation> expect(const Model& model, const Halves& halves,
                                             std::vector<std::size_t> tracks) const override;

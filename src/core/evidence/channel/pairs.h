@@ -10,6 +10,7 @@ class Pairs : public Channel {
  public:
   std::string name() const override { return "pairs"; }
   Finding finding() const override { return Finding::kBetween; }
+  Kind kind() const override { return Kind::kLate; }
   std::vector<Track> watch(const Choice& choice) const override;
   std::unique_ptr<const Expectation> expect(const Model& model, const Halves& halves,
                                             std::vector<std::size_t> tracks) const override;

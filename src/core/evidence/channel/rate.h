@@ -17,6 +17,7 @@ class Rate : public Channel {
   Finding finding() const override {
     return side_ == Side::kFewer ? Finding::kFewer : Finding::kUnusual;
   }
+  Kind kind() const override { return side_ == Side::kFewer ? Kind::kSlow : Kind::kFast; }
   std::int64_t looksBack() const override { return kRateSpan; }
   std::vector<Track> watch(const Choice& choice) const override;
   std::unique_ptr<const Expectation> expect(const Model& model, const Halves& /*halves*/,

@@ -10,6 +10,7 @@ class Size : public Channel {
  public:
   std::string name() const override { return "size"; }
   Finding finding() const override { return Finding::kUnusual; }
+  Kind kind() const override { return Kind::kOtherSize; }
   bool isOfAttributes() const override { return true; }
   std::vector<Track> watch(const Choice& choice) const override;
   std::unique_ptr<const Expectation> expect(const Model& model, const Halves& halves,

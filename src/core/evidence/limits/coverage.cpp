@@ -25,7 +25,8 @@ std::size_t fewer(std::size_t so_far, const Relation& relation) {
 }  // namespace
 
 std::vector<Coverage> coverageOf(const Model& model, const Limits& limits,
-                                 const std::vector<Relation>& relations, std::int64_t window) {
+                                 const std::vector<Relation>& relations, std::int64_t window,
+                                 const std::vector<bool>& may_be_silent) {
   if (limits.tracks.size() != model.tracks().size()) {
     throw std::invalid_argument("limits: one of each track is needed");
   }
@@ -44,16 +45,20 @@ std::vector<Coverage> coverageOf(const Model& model, const Limits& limits,
     const Track& track = model.tracks()[number];
     const double limit = limits.tracks[number];
     Coverage& of = coverages[model.componentIndex(track.to)];
+    const Finding finding = model.finding(number);
+    const bool accepted = track.to < may_be_silent.size() && may_be_silent[track.to];
     const bool judged = !std::isnan(limit);
-    if (model.finding(number) == Finding::kSilent && judged) {
+    if (accepted && (finding == Finding::kSilent || finding == Finding::kUnanswered)) {
+      of.accepted = of.accepted || judged;
+    } else if (finding == Finding::kSilent && judged) {
       // It is looked at when a window ends, and certain when the next one does.
       const double found = toSeconds(model.ageBeyond(track.to, limit) + 2 * window);
       of.death_found_after = std::min(of.death_found_after.value_or(found), found);
-    } else if (model.finding(number) == Finding::kUnanswered && judged) {
+    } else if (finding == Finding::kUnanswered && judged) {
       const double found = model.expectation(number).timeUntil(number, limit) * 1e-9 +
                            toSeconds(kAlarmWindows * window);
       of.found_when_asked = std::min(of.found_when_asked.value_or(found), found);
-    } else if (model.finding(number) == Finding::kBetween) {
+    } else if (finding == Finding::kBetween) {
       of.late_answers = of.late_answers || judged;
       if (!judged && number < relations.size()) {
         of.more_starts = fewer(of.more_starts, relations[number]);
@@ -62,6 +67,7 @@ std::vector<Coverage> coverageOf(const Model& model, const Limits& limits,
   }
   for (Coverage& of : coverages) {
     of.more_starts = of.late_answers ? 0 : of.more_starts;
+    of.accepted = of.accepted && !of.isWatched();  // else another topic of it tells
   }
   return coverages;
 }

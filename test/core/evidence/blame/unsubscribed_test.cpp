@@ -95,6 +95,28 @@ TEST_F(UnsubscribedTest, AComponentIsOneFindingWhateverItMisses) {
                 "/faces does not subscribe to /a, /b, /c and 1 more, as it did in all 2 starts"});
 }
 
+TEST_F(UnsubscribedTest, WhatIsAcceptedIsNotMissing) {
+  Acceptance of_image;
+  of_image.component = "/faces";
+  of_image.topic = "/image";
+  of_image.kind = Kind::kUnsubscribed;
+  Acceptances accepted;
+  accepted.add(of_image);
+  unsubscribed_.set({{"/faces", "/image"}});
+  at(0);
+  EXPECT_TRUE(at(61));
+  EXPECT_EQ(unsubscribed_.suspects().front().reason.topics, std::vector<std::string>{"/image"});
+  unsubscribed_.accept(accepted);
+  EXPECT_FALSE(at(62));
+  unsubscribed_.set({{"/faces", "/image"}, {"/faces", "/depth"}});
+  EXPECT_FALSE(at(63));
+  EXPECT_TRUE(at(124)) << "another topic is missing";
+  EXPECT_EQ(unsubscribed_.suspects().front().reason.topics, std::vector<std::string>{"/depth"});
+  unsubscribed_.accept({});
+  EXPECT_TRUE(at(125));
+  EXPECT_EQ(unsubscribed_.suspects().front().reason.topics.size(), 2U);
+}
+
 TEST_F(UnsubscribedTest, ASetClockBeginsItAnew) {
   unsubscribed_.set({{"/faces", "/image"}});
   at(1000);

@@ -64,6 +64,18 @@ TEST_F(CoverageTest, ADeathIsFoundSoonerWhileItIsAsked) {
   EXPECT_FALSE(of(kA).found_when_asked);
 }
 
+TEST_F(CoverageTest, WhoMayBeSilentIsNotWatchedSinceThatIsAccepted) {
+  limit(kOverdue, kA, kA) = model_.overdue(kA, 3 * kSecond);
+  const auto with = [&](const std::vector<bool>& may_be_silent) {
+    return coverageOf(model_, {limits_, {}}, relations_, kWindow, may_be_silent)
+        .at(model_.componentIndex(kA));
+  };
+  EXPECT_TRUE(with({true, true, true}).accepted);
+  EXPECT_FALSE(with({true, true, true}).isWatched());
+  EXPECT_FALSE(with({false, true, true}).accepted);
+  EXPECT_TRUE(with({false, true, true}).isWatched());
+}
+
 TEST_F(CoverageTest, ASilenceBeyondAllGapsHasItsTimeToo) {
   limit(kOverdue, kA, kA) = model_.overdue(kA, 3600 * kSecond);
   EXPECT_NEAR(of(kA).death_found_after.value_or(0), 3600.2, 1e-3);

@@ -23,6 +23,8 @@ struct Coverage {
   /// Longest time to the alarm, if it dies, while others ask it or go on that pause when it does
   /// [s]; none: nobody does.
   std::optional<double> found_when_asked;
+  /// Whether its death would be found, but is accepted as normal (docs/accept.md).
+  bool accepted = false;
   /// Whether it is found that it answers late, or in another order.
   bool late_answers = false;
   /// Starts of the robot after which that would be found, if it is not; 0: no number helps, or it
@@ -37,8 +39,10 @@ struct Coverage {
 /// @param limits of its tracks
 /// @param relations by track; empty: not known
 /// @param window length of a window [ns]
+/// @param may_be_silent by id: event types whose silence is accepted; empty: none
 /// @throw std::invalid_argument unless there is a limit for each track
 std::vector<Coverage> coverageOf(const Model& model, const Limits& limits,
-                                 const std::vector<Relation>& relations, std::int64_t window);
+                                 const std::vector<Relation>& relations, std::int64_t window,
+                                 const std::vector<bool>& may_be_silent = {});
 
 }  // namespace self_awareness::core::evidence

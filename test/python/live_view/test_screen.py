@@ -1,0 +1,79 @@
+"""What keys do on the screen of `top`, without a terminal."""
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any, List
+
+import pytest
+
+from self_awareness.live_view.said import Said
+
+screen = pytest.importorskip('self_awareness.live_view.screen', reason='needs urwid')
+
+
+class Shown:
+    """A screen, what it shows, and what was called."""
+
+    def __init__(self) -> None:
+        self.said = Said('/watch')
+        self.called: List[Any] = []
+        self._screen = screen.Screen(lambda: self.said, lambda: '', {'a': self._accept})
+
+    def press(self, *keys: str) -> str:
+        """Press keys; return the last line but that of the keys."""
+        for key in keys:
+            self._screen._on_key(key)
+        return str(self._screen._foot.get_text()[0].split('\n')[0])
+
+    def _accept(self, *what: Any) -> str:
+        self.called.append(what)
+        return 'done'
+
+    def stands(self, kind: str, suspect: str) -> None:
+        self.said.on_status(SimpleNamespace(
+            score=-2.0, threshold=-1.0, settling=False, level=1, alarm=7, component='/player',
+            kind=kind, suspects=[SimpleNamespace(component='/player', kind=kind),
+                                 SimpleNamespace(component='/slam', kind=suspect)]))
+
+
+@pytest.fixture()
+def shown() -> Shown:
+    return Shown()
+
+
+def test_a_death_is_accepted_after_yes_only(shown: Shown) -> None:
+    shown.stands('slow', 'died')
+    assert shown.press('a') == 'accept it? /slam may then die unseen (y/n)'
+    assert shown.press('n') == 'not accepted' and shown.called == []
+    shown.press('y')
+    assert shown.called == [], 'there is no question any more'
+    assert shown.press('a', 'y') == 'done'
+    assert shown.called == [(7, [])]
+
+
+def test_what_is_no_death_is_accepted_at_once_by_its_id(shown: Shown) -> None:
+    shown.stands('slow', 'late')
+    assert shown.press('a') == 'done' and shown.called == [(7, [])]
+
+
+def test_a_pause_keeps_what_is_shown(shown: Shown) -> None:
+    shown.stands('slow', 'late')
+    shown.press('p')
+    shown.said = Said('/watch')  # it is over meanwhile
+    shown.press('a')
+    assert shown.called == [(7, [])], 'the monitor refuses it'
+
+
+def test_a_warning_of_which_nothing_stands_is_not_accepted(shown: Shown) -> None:
+    shown.said.on_diagnostics(SimpleNamespace(status=[SimpleNamespace(
+        name='watch: communication', level=1, message='is the model of this robot?', values=[])]))
+    assert shown.press('a') == 'nothing stands, and nobody is new' and shown.called == []
+
+
+def test_all_who_are_new_are_accepted_in_one_call(shown: Shown) -> None:
+    told = ', '.join(f'/n{k} on /t{k}: 3' for k in range(9))
+    shown.said.on_diagnostics(SimpleNamespace(status=[SimpleNamespace(
+        name='watch: communication', level=0, message='', values=[SimpleNamespace(
+            key='not accepted, events so far', value=told)])]))
+    assert shown.press('a') == 'done'
+    assert shown.called == [(0, [(f'/n{k}', f'/t{k}') for k in range(9)])]
