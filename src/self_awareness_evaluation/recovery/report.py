@@ -8,9 +8,10 @@ from typing import List
 
 from self_awareness_evaluation.page_section import machine, write_section
 from self_awareness_evaluation.pages import written_by
-from self_awareness_evaluation.recovery.measures import BACK_WITHIN_S, of_healthy
+from self_awareness_evaluation.recovery.measures import BACK_WITHIN_S, not_mended, of_healthy
 from self_awareness_evaluation.recovery.session import DELAY_S, Recovered, RecoveryPlan
 from self_awareness_evaluation.simulated.tables import table
+from self_awareness_evaluation.soak.measures import Happened
 
 SECTION = 'recovery'
 """Of the page reliability.md."""
@@ -20,8 +21,10 @@ def failures(recovered: Recovered) -> List[str]:
     """Return what was not as it should be, in words; empty: the recovery passed."""
     wrong = [f'hang {number} was not back in time: {hang}'
              for number, hang in enumerate(recovered.hangs, 1) if not hang.in_time(DELAY_S)]
-    return wrong + [f'{each.node} was healthy and restarted at {each.at:.1f}'
-                    for each in of_healthy(recovered.restarts, recovered.happened)]
+    wrong += [f'{each.node} was healthy and restarted at {each.at:.1f}'
+              for each in of_healthy(recovered.restarts, recovered.happened)]
+    return wrong + [f'{each.culprit} hung from {each.onset:.1f} to {each.end:.1f}, and was not '
+                    'restarted' for each in _not_mended(recovered)]
 
 
 def write(docs: Path, plan: RecoveryPlan, recovered: Recovered, command: str) -> Path:
@@ -54,8 +57,13 @@ def section(plan: RecoveryPlan, recovered: Recovered, command: str) -> str:
         ['from the alarm to the first message of the new process', '', _times(back)],
         [f'faults at random, in {plan.minutes:g} minutes', '', str(len(recovered.happened))],
         ['nodes restarted meanwhile', '', str(len(recovered.restarts))],
-        ['of them healthy', 'none', str(len(healthy))]])
+        ['of them healthy', 'none', str(len(healthy))],
+        ['hangs that lasted on', 'none', str(len(_not_mended(recovered)))]])
     return '\n'.join([*lines, '', *(f'- {each}' for each in failures(recovered))]).rstrip()
+
+
+def _not_mended(recovered: Recovered) -> List[Happened]:
+    return not_mended(recovered.happened, recovered.blamed, recovered.restarts, DELAY_S)
 
 
 def _times(seconds: List[float]) -> str:

@@ -1,7 +1,6 @@
 """One session: a fast robot whose nodes are respawned, the monitor, the recovery, and faults."""
 from __future__ import annotations
 
-import os
 import signal
 import threading
 import time
@@ -13,18 +12,20 @@ import rospy
 import yaml
 
 from self_awareness.msg import RecoveryAction, RecoveryActions, SelfAwareness
+from self_awareness.recovery import history
 from self_awareness.recovery.ladder import SHORTEST_HEALING_S
+from self_awareness.recovery.node_process import process_of
 from self_awareness_evaluation.live.learning import learn
 from self_awareness_evaluation.live.listeners import (STARTED_WITHIN_S, MonitorListener,
                                                       RobotListener)
 from self_awareness_evaluation.live.master import own_master
 from self_awareness_evaluation.live.passing import say, wait
 from self_awareness_evaluation.live.processes import Processes, await_condition, becomes_true
-from self_awareness_evaluation.recovery.measures import Hang, Restart
+from self_awareness_evaluation.recovery.measures import Blamed, Hang, Restart
 from self_awareness_evaluation.soak.measures import Happened
 from self_awareness_evaluation.soak.robot import Robot
 from self_awareness_evaluation.soak.schedule import CRASH, faults, regular
-from self_awareness_follow_me.induction import process_id
+from self_awareness_follow_me.induction import InduceError, process_id
 from self_awareness_follow_me.scenario import load_scenario
 
 DELAY_S = 1.0
@@ -33,7 +34,7 @@ DELAY_S = 1.0
 _MONITOR, _RECOVERY = '/self_awareness', '/self_awareness_recovery'
 _VICTIM, _ITS_TOPIC = '/player', 'scan'
 _GRACE_S = 1.0
-_MOST_STEPS = 1000  # nothing is limited: what is wrong is to be seen
+_MOST_STEPS = history.MOST  # more than faults: what is wrong is to be seen
 _QUIET_WITHIN_S = 90.0
 _BACK_WITHIN_S = 60.0
 _CRASH_LASTS_S = 1.0
@@ -69,11 +70,13 @@ class Recovered:
         hangs: of the laser driver.
         happened: the faults at random.
         restarts: that the recovery made meanwhile.
+        blamed: the alarms meanwhile.
     """
 
     hangs: List[Hang]
     happened: List[Happened]
     restarts: List[Restart]
+    blamed: List[Blamed]
 
 
 def run(plan: RecoveryPlan, folder: Path) -> Recovered:
@@ -135,7 +138,10 @@ class _Session:
         begin = time.time()
         happened = self._break_for(60.0 * self._plan.minutes)
         return Recovered(hangs, happened,
-                         [each for each in self._actions.restarts if each.at > begin])
+                         [each for each in self._actions.restarts if each.at > begin],
+                         [Blamed(status.component, status.received)
+                          for status in self._monitor.statuses
+                          if status.level >= SelfAwareness.ERROR and status.received > begin])
 
     def _model(self) -> Path:
         model = self._folder / 'recovery.model'
@@ -162,28 +168,41 @@ class _Session:
 
     def _hang(self, number: int) -> Hang:
         """Stop the laser driver, and see how it comes back."""
-        becomes_true(self._is_quiet, _QUIET_WITHIN_S)
-        listener = RobotListener([_ITS_TOPIC])
-        seen = len(self._monitor.statuses)
-        onset = time.time()
-        os.kill(process_id(_VICTIM), signal.SIGSTOP)
-
-        def raised() -> float:
-            return next((status.received for status in self._monitor.statuses[seen:]
-                         if status.level >= SelfAwareness.ERROR and status.component == _VICTIM),
-                        0.0)
-
-        def back() -> float:
-            """Return when it was heard after the alarm; 0: it was not."""
-            last = listener.last(_VICTIM, _ITS_TOPIC)
-            return last if last > raised() > 0.0 else 0.0
-
-        becomes_true(lambda: back() > 0.0, _BACK_WITHIN_S)
-        heard, alarm = back(), raised()
-        listener.close()
-        hang = Hang(alarm - onset if alarm else None, heard - alarm if heard else None)
+        if becomes_true(self._is_quiet, _QUIET_WITHIN_S):
+            hang = self._stop_until_back()
+        else:
+            hang = Hang(None, None, f'the monitor was not quiet within {_QUIET_WITHIN_S:g} s')
         say(f'hang {number} of {self._plan.times}: {hang}')
         return hang
+
+    def _stop_until_back(self) -> Hang:
+        pid = process_id(_VICTIM)
+        process = process_of(_VICTIM, pid)
+        listener = RobotListener([_ITS_TOPIC])
+        onset = time.time()
+        process.signal(signal.SIGSTOP)
+        try:
+            seen = len(self._monitor.statuses)
+            ended: List[float] = []  # when its process was seen to have ended
+            back: List[float] = []  # when another one was heard
+
+            def is_back() -> bool:
+                if not ended and not process.runs():
+                    ended.append(time.time())
+                heard = listener.last(_VICTIM, _ITS_TOPIC)
+                if ended and heard > ended[0] and _is_another(pid):
+                    back.append(heard)
+                return bool(back)
+
+            becomes_true(is_back, _BACK_WITHIN_S)
+            alarm = next((status.received for status in self._monitor.statuses[seen:]
+                          if status.level >= SelfAwareness.ERROR
+                          and status.component == _VICTIM), None)
+        finally:
+            process.signal(signal.SIGCONT)  # of who was not mended: the next hang is another one
+            listener.close()
+        return Hang(None if alarm is None else alarm - onset,
+                    back[0] - alarm if back and alarm is not None else None)
 
     def _break_for(self, seconds: float) -> List[Happened]:
         happened: List[Happened] = []
@@ -198,3 +217,11 @@ class _Session:
             happened.append(Happened(fault.name, f'/{fault.component}', onset, time.time()))
             becomes_true(self._is_quiet, _QUIET_WITHIN_S)
         return happened
+
+
+def _is_another(pid: int) -> bool:
+    """Return whether the laser driver is another process now."""
+    try:
+        return process_id(_VICTIM) != pid
+    except InduceError:  # the new one is not known to the master yet
+        return False
