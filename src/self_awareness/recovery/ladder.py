@@ -16,11 +16,11 @@ _MOST_DOUBLINGS = 16
 
 @dataclass(frozen=True)
 class Fault:
-    """An open incident that a component is to blame for.
+    """What is wrong with a component.
 
     Args:
-        incident: its id.
-        component: that is to blame.
+        incident: id of the one that is open.
+        component: that is to blame for it, or abnormal besides.
         kind: what is wrong with it.
         stands: it is abnormal at this moment; false: the alarm is only held, or waits.
     """

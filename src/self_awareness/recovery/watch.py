@@ -2,12 +2,16 @@
 """
 from __future__ import annotations
 
-from typing import Any, List, Optional, Sequence, Set
+from dataclasses import dataclass
+from typing import Any, Dict, List, Mapping, Optional, Sequence, Set
 
 from self_awareness.recovery.ladder import Fault
 
 FRESH_S = 2.0
 """A monitor that says nothing for so long is not believed any more [s]."""
+BESIDE_S = 5.0
+"""Who is not to blame for the alarm is named for so long before it is a fault of its own [s]: who
+is well is named now and then."""
 _ABNORMAL_S = 0.5
 """Who was abnormal so recently is so now [s]: not every window of a slow node is."""
 
@@ -15,15 +19,40 @@ _ERROR = 2  # of SelfAwareness
 _NOBODY_IS_TO_BLAME = ('busy machine', 'all silent')
 
 
+@dataclass
+class _Named:
+    """A component that abnormal windows name.
+
+    Args:
+        since, at: when they named it first and last, without a pause of _ABNORMAL_S [s].
+        kinds: what is wrong with it, the most likely first; of the last such window.
+        later: the alarm named it after it was raised, which it only does with those that are
+            abnormal by themselves.
+    """
+
+    since: float
+    at: float
+    kinds: List[str]
+    later: bool
+
+
 class Watch:
-    """What a monitor has said last; times are steady [s]."""
+    """What a monitor has said last; times are steady [s].
+
+    The alarm that stands decides what is a fault: an incident may be of several alarms, and keeps
+    the kind of one of them, so that it only gives its id.
+    """
 
     def __init__(self) -> None:
         self._incidents: Optional[Sequence[Any]] = None
         self._heard_at = float('-inf')
-        self._settling = True
-        self._abnormal_at = float('-inf')
-        self._abnormal: Set[str] = set()
+        self._status: Any = None
+        self._named: Dict[str, _Named] = {}
+
+    @property
+    def heard(self) -> bool:
+        """Whether the monitor has ever said something."""
+        return self._status is not None
 
     def on_incidents(self, incidents: Sequence[Any]) -> None:
         """Take in the last incidents (Incident)."""
@@ -32,30 +61,89 @@ class Watch:
     def on_status(self, now: float, status: Any) -> None:
         """Take in the verdict on a window (SelfAwareness)."""
         self._heard_at = now
-        self._settling = status.settling
-        if status.level == _ERROR and status.abnormal:
-            self._abnormal_at = now
-            self._abnormal = {suspect.component for suspect in status.suspects}
+        if self._status is not None and self._status.alarm != status.alarm:
+            self._named.clear()
+        self._status = status
+        if status.level != _ERROR or not status.abnormal:
+            return
+        kinds: Dict[str, List[str]] = {}
+        later: Set[str] = set()
+        for suspect in status.suspects:
+            kinds.setdefault(suspect.component, []).append(suspect.kind)
+            # The id of an alarm is the time when it was raised.
+            if suspect.since.to_nsec() > status.alarm:
+                later.add(suspect.component)
+        before = {name: each for name, each in self._named.items()
+                  if now - each.at <= _ABNORMAL_S}
+        self._named = {**before, **{
+            name: _Named(before[name].since if name in before else now, now, kinds[name],
+                         name in later) for name in kinds}}
 
     def why_blind(self, now: float) -> str:
         """Return why nothing is known of what there is to mend; empty: it is known."""
         if now - self._heard_at > FRESH_S or self._incidents is None:
             return 'the monitor is not heard'
-        if self._settling:
+        if self._status.settling:
             return 'the monitor has not settled'
-        if any(each.kind in _NOBODY_IS_TO_BLAME for each in self._open()):
+        if self._status.level == _ERROR and self._status.kind in _NOBODY_IS_TO_BLAME:
             return 'the machine is busy, or all are silent: no component is to blame'
         return ''
 
-    def faults(self, now: float) -> Optional[List[Fault]]:
-        """Return what there is to mend; None: it is not known."""
+    def beside(self, now: float) -> List[str]:
+        """Return who is abnormal by itself besides the one to blame; also victims."""
+        if self.why_blind(now) or self._status.level != _ERROR or not self._status.component:
+            return []
+        return [name for name, each in self._named.items()
+                if name and name != self._status.component and each.later
+                and now - each.at <= _ABNORMAL_S and each.at - each.since >= BESIDE_S]
+
+    def faults(self, now: float, listeners: Optional[Mapping[str, Set[str]]] = None
+               ) -> Optional[List[Fault]]:
+        """Return what there is to mend; None: it is not known.
+
+        Args:
+            now: [s].
+            listeners: by each node, who hears it; None: not known, so that only the one that is
+                to blame is a fault.
+        """
         if self.why_blind(now):
             return None
-        recent = now - self._abnormal_at <= _ABNORMAL_S
-        return [Fault(each.id, each.component, each.kind,
-                      recent and each.component in self._abnormal)
-                for each in self._open() if each.component]
+        status = self._status
+        if status.level != _ERROR or not status.component:
+            return []
+        incident = self._incident()
+        number = status.alarm if incident is None else incident.id
+        named = self._named.get(status.component)
+        faults = [Fault(number, status.component, self._kind(status.component, status.kind),
+                        named is not None and now - named.at <= _ABNORMAL_S)]
+        if incident is None or listeners is None:
+            return faults
+        return faults + [Fault(number, name, self._kind(name, ''), True)
+                         for name in self.beside(now)
+                         if name not in incident.victims
+                         and not self._hears_one(name, listeners)]
 
-    def _open(self) -> List[Any]:
-        return [each for each in self._incidents or ()
-                if each.level == _ERROR and not each.over]
+    def _incident(self) -> Any:
+        """Return the incident of the alarm that stands; None: it is not known yet."""
+        return next((each for each in reversed(self._incidents or ())
+                     if not each.over and self._status.alarm in (each.id, each.last)), None)
+
+    def _kind(self, component: str, of_alarm: str) -> str:
+        """Return what is wrong with a component now, which may be another thing than at first."""
+        named = self._named.get(component)
+        if named is None or of_alarm in named.kinds:
+            return of_alarm
+        return named.kinds[0]
+
+    def _hears_one(self, name: str, listeners: Mapping[str, Set[str]]) -> bool:
+        """Return whether somebody else that is named may be why a component is abnormal."""
+        causes = {self._status.component, *self._named} - {name, ''}
+        if not causes <= set(listeners):  # one is gone: who hears it is not known
+            return True
+        reached: Set[str] = set()
+        left = list(causes)
+        while left:
+            hearing = listeners.get(left.pop(), set()) - reached
+            reached |= hearing
+            left += hearing
+        return name in reached

@@ -1,22 +1,34 @@
 """What a recovery takes from the messages of a monitor."""
 from __future__ import annotations
 
-from typing import Any, Iterable
+from typing import Any, Dict, Iterable, List, Optional, Set
 
 import pytest
+import rospy
 
 from self_awareness.msg import Incident, SelfAwareness, Suspect
 from self_awareness.recovery.ladder import Fault
-from self_awareness.recovery.watch import FRESH_S, Watch
+from self_awareness.recovery.watch import BESIDE_S, FRESH_S, Watch
+
+RAISED = 100 * 10 ** 9  # [ns], the id of the alarm
+Listeners = Dict[str, Set[str]]
+NOBODY_LISTENS: Listeners = {'/player': set(), '/camera': set(), '/slam': set()}
 
 
 def incident(component: str = '/player', kind: str = 'died', **fields: Any) -> Incident:
-    return Incident(id=7, level=SelfAwareness.ERROR, component=component, kind=kind, **fields)
+    return Incident(**{'id': 7, 'last': RAISED, 'level': SelfAwareness.ERROR,
+                       'component': component, 'kind': kind, **fields})
 
 
-def status(*components: str, **fields: Any) -> SelfAwareness:
-    values = {'level': SelfAwareness.ERROR, 'abnormal': True, **fields}
-    return SelfAwareness(suspects=[Suspect(component=each) for each in components], **values)
+def suspect(component: str, kind: str = 'died', since: int = 100) -> Suspect:
+    return Suspect(component=component, kind=kind, since=rospy.Time(since))
+
+
+def status(*suspects: Any, **fields: Any) -> SelfAwareness:
+    values = {'level': SelfAwareness.ERROR, 'abnormal': True, 'alarm': RAISED,
+              'component': '/player', 'kind': 'died', **fields}
+    return SelfAwareness(suspects=[suspect(each) if isinstance(each, str) else each
+                                   for each in suspects], **values)
 
 
 def watch(incidents: Iterable[Incident] = (incident(),), said: Any = status('/player')) -> Watch:
@@ -26,21 +38,50 @@ def watch(incidents: Iterable[Incident] = (incident(),), said: Any = status('/pl
     return made
 
 
-def test_an_open_incident_is_a_fault() -> None:
+def faults(tested: Watch, now: float, listeners: Optional[Listeners] = None) -> List[str]:
+    return [f'{each.component} {each.kind}' for each in tested.faults(now, listeners) or []
+            if each.stands]
+
+
+def test_the_alarm_that_stands_is_a_fault() -> None:
     assert watch().faults(0.0) == [Fault(7, '/player', 'died', True)]
 
 
-@pytest.mark.parametrize('changed', [{'over': True}, {'component': ''}])
-def test_others_are_none(changed: Any) -> None:
-    assert watch([incident(**changed)]).faults(0.0) == []
-    near_miss = incident()
-    near_miss.level = SelfAwareness.WARN
-    assert watch([near_miss]).faults(0.0) == []
-
-
 @pytest.mark.parametrize('said', [
-    status('/slam'), status('/player', abnormal=False),
-    status('/player', level=SelfAwareness.WARN), status()])
+    status('/player', component=''), status('/player', level=SelfAwareness.WARN),
+    status(level=SelfAwareness.OK, abnormal=False)])
+def test_others_are_none(said: Any) -> None:
+    """Also while an incident of an alarm before is open, which a suspicion has opened again."""
+    assert watch(said=said).faults(0.0) == []
+
+
+@pytest.mark.parametrize('then, now', [('died', 'slow'), ('slow', 'died')])
+def test_the_alarm_says_what_is_wrong_and_not_the_incident_that_it_has_opened_again(
+        then: str, now: str) -> None:
+    again = incident(kind=then)
+    said = status(suspect('/player', now), kind=now)
+    assert watch([again], said).faults(0.0) == [Fault(7, '/player', now, True)]
+
+
+@pytest.mark.parametrize('then, now', [('died', 'slow'), ('slow', 'died')])
+def test_what_is_wrong_may_change_while_the_alarm_stands(then: str, now: str) -> None:
+    said = status(suspect('/player', now), kind=then)
+    assert watch(said=said).faults(0.0) == [Fault(7, '/player', now, True)]
+    both = status(suspect('/player', now), suspect('/player', then), kind=then)
+    assert watch(said=both).faults(0.0) == [Fault(7, '/player', then, True)]
+
+
+def test_who_is_to_blame_is_told_by_the_alarm() -> None:
+    said = status('/slam', component='/slam')
+    assert watch(said=said).faults(0.0) == [Fault(7, '/slam', 'died', True)]
+
+
+def test_an_alarm_whose_incident_is_not_known_yet_has_its_own_id() -> None:
+    for others in ([], [incident(last=1)], [incident(over=True)]):
+        assert watch(others).faults(0.0) == [Fault(RAISED, '/player', 'died', True)]
+
+
+@pytest.mark.parametrize('said', [status('/slam'), status('/player', abnormal=False), status()])
 def test_it_stands_while_a_window_is_abnormal_and_names_the_component(said: Any) -> None:
     fault, = watch(said=said).faults(0.0) or []
     assert not fault.stands
@@ -59,7 +100,9 @@ def test_it_does_not_stand_for_long_after_the_last_abnormal_window() -> None:
 def test_nothing_is_known_from_a_monitor_that_is_gone_or_has_not_settled() -> None:
     tested = Watch()
     assert tested.faults(0.0) is None and 'not heard' in tested.why_blind(0.0)
+    assert not tested.heard
     tested.on_status(0.0, status())
+    assert tested.heard
     assert tested.faults(0.0) is None, 'its incidents are not known yet'
     tested = watch()
     assert tested.faults(FRESH_S) is not None
@@ -70,8 +113,68 @@ def test_nothing_is_known_from_a_monitor_that_is_gone_or_has_not_settled() -> No
 
 @pytest.mark.parametrize('kind', [SelfAwareness.BUSY_MACHINE, SelfAwareness.ALL_SILENT])
 def test_nobody_is_restarted_while_the_machine_is_to_blame(kind: str) -> None:
-    whole = incident('', kind)
-    assert watch([incident(), whole]).faults(0.0) is None
-    assert watch([incident(), whole]).why_blind(0.0)
-    over = incident('', kind, over=True)
-    assert watch([incident(), over]).faults(0.0)
+    tested = watch(said=status('/player', '/slam', component='', kind=kind))
+    assert tested.faults(0.0) is None
+    assert 'no component is to blame' in tested.why_blind(0.0)
+    tested.on_status(1.0, status(component='', kind=kind, level=SelfAwareness.WARN))
+    assert tested.faults(1.0) == []
+
+
+def beside(*others: Suspect, seconds: float = BESIDE_S, known: Incident = incident()) -> Watch:
+    """The alarm of /player stands, and abnormal windows name others for a while."""
+    tested = watch([known])
+    for tenth in range(int(10.0 * seconds) + 1):
+        tested.on_status(tenth / 10.0, status('/player', *others))
+    return tested
+
+
+LATER = suspect('/camera', since=200)
+
+
+def test_who_fails_while_an_alarm_stands_is_a_fault_besides() -> None:
+    tested = beside(LATER)
+    assert tested.beside(BESIDE_S) == ['/camera']
+    assert tested.faults(BESIDE_S, NOBODY_LISTENS) == [
+        Fault(7, '/player', 'died', True), Fault(7, '/camera', 'died', True)]
+    assert faults(tested, BESIDE_S + 0.6, NOBODY_LISTENS) == [], 'neither is abnormal any more'
+
+
+def test_it_is_none_if_it_is_not_known_who_hears_whom() -> None:
+    assert faults(beside(LATER), BESIDE_S) == ['/player died']
+    without_player: Listeners = {'/camera': set(), '/slam': set()}
+    assert faults(beside(LATER), BESIDE_S, without_player) == ['/player died']
+    assert faults(beside(LATER, known=incident(last=1)), BESIDE_S, NOBODY_LISTENS) == [
+        '/player died']
+
+
+def test_who_was_named_when_the_alarm_was_raised_need_not_be_abnormal_by_itself() -> None:
+    assert faults(beside(suspect('/camera', since=100)), BESIDE_S, NOBODY_LISTENS) == [
+        '/player died']
+
+
+def test_who_is_named_now_and_then_is_no_fault() -> None:
+    tested = beside(LATER, seconds=BESIDE_S - 0.1)
+    assert faults(tested, BESIDE_S - 0.1, NOBODY_LISTENS) == ['/player died']
+    for tenth in range(1, 8):
+        tested.on_status(BESIDE_S + tenth / 10.0, status('/player'))
+    tested.on_status(BESIDE_S + 0.8, status('/player', LATER))
+    assert faults(tested, BESIDE_S + 0.8, NOBODY_LISTENS) == ['/player died']
+
+
+def test_victims_are_no_faults() -> None:
+    tested = beside(LATER, known=incident(victims=['/camera']))
+    assert faults(tested, BESIDE_S, NOBODY_LISTENS) == ['/player died']
+    through_slam: Listeners = {'/player': {'/slam'}, '/slam': {'/camera', '/slam'},
+                               '/camera': set()}
+    assert faults(beside(LATER), BESIDE_S, through_slam) == ['/player died']
+    of_another: Listeners = {'/player': set(), '/slam': {'/camera'}, '/camera': set()}
+    tested = beside(LATER, suspect('/slam', 'slow', since=150))
+    assert faults(tested, BESIDE_S, of_another) == ['/player died', '/slam slow']
+    both_ways = {**of_another, '/camera': {'/slam'}}
+    assert faults(tested, BESIDE_S, both_ways) == ['/player died']
+
+
+def test_another_alarm_begins_anew() -> None:
+    tested = beside(LATER)
+    tested.on_status(BESIDE_S, status('/player', LATER, alarm=RAISED + 1))
+    assert tested.beside(BESIDE_S) == []
