@@ -1,32 +1,24 @@
-"""Calls to the master and to the slave API of nodes; each answers in time, or fails."""
+"""Calls to the master, to nodes and to roslaunch; each answers in time, or fails."""
 from __future__ import annotations
 
-import http.client
 from typing import Any, Dict, Set, Tuple
 from urllib.parse import urlparse
-from xml.parsers.expat import ExpatError
-from xmlrpc.client import Error as XmlRpcError
-from xmlrpc.client import ServerProxy, Transport
 
 import rosgraph
 import rosgraph.network
 
+from self_awareness.recovery.launchers import Launchers
+from self_awareness.recovery.xml_rpc import NoAnswer, ask
+
 ANSWER_S = 1.0
 """A node that is well answers sooner [s]."""
+MOST_OF_NODE = 1 << 16
+"""Bytes of an answer of a node."""
+_MASTER_S = 5.0
+_MOST_OF_MASTER = 1 << 24  # the state of a large robot
 _PACKAGE = 'self_awareness/'
-
-
-class NoAnswer(Exception):
-    """A node or the master cannot be asked; the message says why."""
-
-
-class _Hasty(Transport):
-    """Gives up after ANSWER_S."""
-
-    def make_connection(self, host: Any) -> http.client.HTTPConnection:
-        connection = super().make_connection(host)
-        connection.timeout = ANSWER_S
-        return connection
+_FOR_ALL = {'/rosout'}
+"""Topics that nobody needs."""
 
 
 class NodeCalls:
@@ -47,10 +39,33 @@ class NodeCalls:
         """
         return str(self._ask_master('lookupNode', node))
 
+    def parameter(self, name: str) -> Any:
+        """Return the value of a parameter; None: there is none.
+
+        Raises:
+            NoAnswer: the master does not answer.
+        """
+        return self._ask_master('getParam', name) if self._ask_master('hasParam', name) else None
+
+    def service(self, name: str) -> str:
+        """Return the address of a service.
+
+        Raises:
+            NoAnswer: the master does not know the service, or does not answer.
+        """
+        return str(self._ask_master('lookupService', name))
+
     def is_here(self, address: str) -> bool:
-        """Return whether a node runs on this machine."""
-        host = urlparse(address).hostname
-        return host is not None and rosgraph.network.is_local_address(host)
+        """Return whether a node runs on this machine.
+
+        Raises:
+            NoAnswer: the address is none.
+        """
+        try:
+            host = urlparse(address).hostname
+            return host is not None and rosgraph.network.is_local_address(host)
+        except ValueError as error:  # as of the host name robot..lan
+            raise NoAnswer(f'{address!r} is no address ({error})') from error
 
     def process_id(self, node: str, address: str) -> int:
         """Return the process id of a node, as it tells it.
@@ -86,16 +101,34 @@ class NodeCalls:
                if types.get(topic, '').startswith(_PACKAGE)}
         return everybody, own
 
-    def _ask_master(self, method: str, *words: str) -> Any:
-        return self._ask('the master', rosgraph.get_master_uri(), method, *words)
+    def listeners(self) -> Dict[str, Set[str]]:
+        """Return who listens to whom now: by each node that publishes, those that subscribe.
 
-    def _ask(self, whom: str, address: str, method: str, *words: str) -> Any:
-        try:
-            with ServerProxy(address, transport=_Hasty()) as server:
-                code, text, value = getattr(server, method)(self._name, *words)
-        except (OSError, http.client.HTTPException, XmlRpcError, ExpatError, ValueError,
-                TypeError) as error:
-            raise NoAnswer(f'{whom} does not answer ({error})') from error
-        if code != 1:
-            raise NoAnswer(f'{whom} says: {text}')
-        return value
+        Raises:
+            NoAnswer: the master does not answer.
+        """
+        publishers, subscribers, _ = self._ask_master('getSystemState')
+        hearing = {topic: set(nodes) for topic, nodes in subscribers if topic not in _FOR_ALL}
+        found: Dict[str, Set[str]] = {}
+        for topic, nodes in publishers:
+            for node in nodes:
+                found.setdefault(node, set()).update(hearing.get(topic, set()) - {node})
+        return found
+
+    def launchers(self) -> Launchers:
+        """Return what the running roslaunch say of the nodes that they have started.
+
+        Raises:
+            NoAnswer: the master does not answer, or knows of no roslaunch.
+        """
+        addresses = self._ask_master('getParam', '/roslaunch/uris')
+        if not isinstance(addresses, dict):
+            raise NoAnswer('the parameter /roslaunch/uris is none of roslaunch')
+        return Launchers(str(each) for each in addresses.values())
+
+    def _ask_master(self, method: str, *words: str) -> Any:
+        return ask('the master', rosgraph.get_master_uri(), _MASTER_S, _MOST_OF_MASTER, method,
+                   self._name, *words)
+
+    def _ask(self, node: str, address: str, method: str, *words: str) -> Any:
+        return ask(node, address, ANSWER_S, MOST_OF_NODE, method, self._name, *words)
