@@ -2,22 +2,43 @@
 from __future__ import annotations
 
 import threading
+from dataclasses import dataclass
 from typing import Any, Callable, Dict, List, Optional, Sequence, Tuple
 
 import rospy
 from std_srvs.srv import Trigger
 
-from self_awareness.recovery.node_calls import NoAnswer, NodeCalls
-from self_awareness.recovery.node_process import NodeProcess, NotItsProcess, process_of
+from self_awareness.recovery.launchers import Launchers
+from self_awareness.recovery.node_calls import NodeCalls
+from self_awareness.recovery.node_process import (NodeProcess, NotItsProcess, line_of,
+                                                  process_of)
 from self_awareness.recovery.rules import Call, Step
+from self_awareness.recovery.xml_rpc import NoAnswer
 from self_awareness.srv import Mute
 
 _SERVICE_S = 10.0
 _OF_ROS = {'/rosout'}
+_NOT_HEARD = 'not heard so far'
+_ENDED = 'has ended already; roslaunch starts it again'
 
 
 class ActionError(Exception):
     """A step could not be done; the message says why."""
+
+
+@dataclass(frozen=True)
+class _Found:
+    """A node that runs.
+
+    Args:
+        address: of its slave API.
+        process: itself; None: on another machine.
+        hangs: it does not answer.
+    """
+
+    address: str
+    process: Optional[NodeProcess]
+    hangs: bool
 
 
 class Actions:
@@ -27,23 +48,28 @@ class Actions:
         calls: to the master and to nodes.
         nodes: that may be stopped.
         grace: a node has so long to end, before the next way to stop it [s].
+        held: returns whether nothing may be done at this moment, in words; empty: it may.
     """
 
-    def __init__(self, calls: NodeCalls, nodes: Sequence[str], grace: float) -> None:
+    def __init__(self, calls: NodeCalls, nodes: Sequence[str], grace: float,
+                 held: Callable[[], str] = str) -> None:
         self._calls = calls
         self._nodes = nodes
         self._grace = grace
+        self._held = held
         self._lock = threading.Lock()
         # By node, its process when it was well, and its address then. Guarded by _lock.
         self._known: Dict[str, Tuple[NodeProcess, str]] = {}
-        self._refused: Dict[str, str] = {}  # node: why it cannot be stopped. Guarded by _lock.
+        # By node, why it cannot be stopped. Guarded by _lock.
+        self._refused = {node: f'{node}: {_NOT_HEARD}' for node in nodes}
         self._asking: Dict[str, threading.Thread] = {}  # by service, who waits for its answer
 
     def look(self) -> None:
         """Ask the nodes which processes they are, and remember it; it may take a while."""
+        launchers: List[Launchers] = []  # asked only if it is needed, then once
         for node in self._nodes:
             try:
-                self._look_at(node, self._calls.address(node))
+                self._look_at(node, self._calls.address(node), launchers)
             except (NoAnswer, NotItsProcess):
                 pass  # what hangs is remembered as it was; what is refused is told by refused()
 
@@ -63,19 +89,36 @@ class Actions:
         Raises:
             ActionError: it could not be done, or not to its end.
         """
+        self._check_hold()
         if isinstance(step, Call):
             answer = self.ask(step.service, Trigger)
             if not answer.success:
                 raise ActionError(f'{step.service} says: {answer.message}')
             return f'{step.service} says: {answer.message}' if answer.message else 'called'
+        results: List[str] = []
         try:
             self._check(step.nodes)
-            results = []
             for node in step.nodes:
+                self._check_hold()
                 if node != culprit:
                     mute(node)
                 results.append(f'{node} {self._stop(node)}')
             return ', '.join(results)
+        except (ActionError, NoAnswer, NotItsProcess, OSError) as error:
+            raise ActionError('; '.join([*results, str(error)])) from error
+
+    def would_do(self, step: Step) -> str:
+        """Return what a step would be done to, which is looked up, in words.
+
+        Raises:
+            ActionError: it could not be done.
+        """
+        try:
+            if isinstance(step, Call):
+                self._calls.service(step.service)
+                return f'{step.service} is there'
+            self._check(step.nodes)
+            return ', '.join(self._would_stop(node) for node in step.nodes)
         except (NoAnswer, NotItsProcess, OSError) as error:
             raise ActionError(str(error)) from error
 
@@ -94,7 +137,7 @@ class Actions:
         def run() -> None:
             try:
                 answers.append(rospy.ServiceProxy(service, kind)(**fields))
-            except (rospy.ServiceException, rospy.ROSException, OSError) as error:
+            except Exception as error:  # rospy hands on whatever the answer is decoded to
                 problems.append(f'{service}: {error}')
 
         # rospy waits for an answer for ever.
@@ -124,24 +167,66 @@ class Actions:
             raise NotItsProcess('these are all nodes of the robot: it may not be stopped as a '
                                 'whole')
 
+    def _check_hold(self) -> None:
+        held = self._held()
+        if held:
+            raise ActionError(f'not done to its end: {held}')
+
     def _stop(self, node: str) -> str:
-        address = self._calls.address(node)
+        found = self._find(node)
+        if found is None:
+            return _ENDED
+        process = found.process
+        if process is not None and found.hangs:
+            return f'{process.end(self._grace, self._check_hold)}, since it hangs'
+        self._check_hold()  # to find it may have taken a while
         try:
-            process = self._look_at(node, address)
-        except NoAnswer:
-            return f'{self._hanging(node, address).end(self._grace)}, since it hangs'
-        try:
-            self._calls.shut_down(node, address, 'stopped by the recovery')
+            self._calls.shut_down(node, found.address, 'stopped by the recovery')
         except NoAnswer:
             pass  # then by signals
         if process is None:
             return 'asked to end, on another machine'
-        if process.ends_within(self._grace):
+        if process.ends_within(self._grace, self._check_hold):
             return 'ended when it was asked to'
-        return process.end(self._grace)
+        return process.end(self._grace, self._check_hold)
 
-    def _look_at(self, node: str, address: str) -> Optional[NodeProcess]:
+    def _would_stop(self, node: str) -> str:
+        found = self._find(node)
+        if found is None:
+            return f'{node} {_ENDED}'
+        where = ('on another machine' if found.process is None
+                 else f'process {found.process.pid}')
+        return f'{node} {"hangs, and is" if found.hangs else "is"} {where}'
+
+    def _find(self, node: str) -> Optional[_Found]:
+        """Return what a node is now; None: it was known, and has ended.
+
+        Raises:
+            NoAnswer: the master does not know it, or does not answer.
+            NotItsProcess: it may not be stopped, or its process is not known.
+        """
+        try:
+            address = self._calls.address(node)
+        except NoAnswer:
+            with self._lock:
+                known = self._known.get(node)
+            if known is not None and not known[0].runs():
+                return None
+            raise
+        try:
+            return _Found(address, self._look_at(node, address), False)
+        except NoAnswer:
+            process = self._hanging(node, address)
+            return _Found(address, process, True) if process is not None else None
+
+    def _look_at(self, node: str, address: str, launchers: Optional[List[Launchers]] = None
+                 ) -> Optional[NodeProcess]:
         """Return the process of a node that is well, and remember it; None: it is elsewhere.
+
+        Args:
+            node, address: its own.
+            launchers: who starts nodes, if that is known already; it is added if it is asked for.
+                None: to be asked for in any case; else not again for a process that is known.
 
         Raises:
             NoAnswer: it does not answer.
@@ -150,6 +235,10 @@ class Actions:
         pid = self._calls.process_id(node, address)
         try:
             process = process_of(node, pid) if self._calls.is_here(address) else None
+            with self._lock:
+                known = self._known.get(node)
+            if launchers is None or process is None or known is None or known[0] != process:
+                self._check_launched(node, process, launchers)
         except NotItsProcess as error:
             with self._lock:
                 self._known.pop(node, None)
@@ -161,11 +250,29 @@ class Actions:
                 self._known[node] = process, address
         return process
 
-    def _hanging(self, node: str, address: str) -> NodeProcess:
-        """Return the process of a node that does not answer.
+    def _check_launched(self, node: str, process: Optional[NodeProcess],
+                        launchers: Optional[List[Launchers]] = None) -> None:
+        """Look whether a node would be started again, and its end does no further harm.
 
         Raises:
-            NotItsProcess: it is not known, or has ended.
+            NotItsProcess: not so.
+        """
+        launchers = [] if launchers is None else launchers
+        if not launchers:
+            try:
+                launchers.append(self._calls.launchers())
+            except NoAnswer as error:
+                raise NotItsProcess(f'{node} may stay dead: who has started it is not known '
+                                    f'({error})') from error
+        why_not = launchers[0].why_not(node, None if process is None else line_of(process.pid))
+        if why_not:
+            raise NotItsProcess(why_not)
+
+    def _hanging(self, node: str, address: str) -> Optional[NodeProcess]:
+        """Return the process of a node that does not answer; None: it has ended.
+
+        Raises:
+            NotItsProcess: it is not known, or may not be stopped.
         """
         if not self._calls.is_here(address):
             raise NotItsProcess(f'{node} does not answer, and runs on another machine ({address})')
@@ -175,6 +282,6 @@ class Actions:
             raise NotItsProcess(f'{node} does not answer, and has not since it was started: its '
                                 'process is not known')
         if not process.runs():
-            raise NotItsProcess(f'{node} does not run; roslaunch starts it again if its launch '
-                                'file says respawn="true"')
+            return None
+        self._check_launched(node, process)
         return process

@@ -11,7 +11,7 @@ import signal
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Optional, Sequence, Tuple
+from typing import Callable, Optional, Sequence, Set, Tuple
 
 PROC = Path('/proc')
 _POLL_S = 0.02
@@ -24,6 +24,10 @@ _STATE, _PARENT, _START = 0, 1, 19
 
 class NotItsProcess(ValueError):
     """A process is not that of the node, or must not be ended; the message says why."""
+
+
+def _nothing() -> None:
+    pass
 
 
 @dataclass(frozen=True)
@@ -56,17 +60,28 @@ class NodeProcess:
             except ProcessLookupError:
                 pass
 
-    def ends_within(self, seconds: float) -> bool:
-        """Wait for its end; return whether it came in time."""
+    def ends_within(self, seconds: float, check: Callable[[], None] = _nothing) -> bool:
+        """Wait for its end; return whether it came in time.
+
+        Args:
+            seconds: to wait at most.
+            check: called again and again meanwhile; it may raise what ends the wait.
+        """
         deadline = time.monotonic() + seconds
         while self.runs():
+            check()
             if time.monotonic() > deadline:
                 return False
             time.sleep(_POLL_S)
         return True
 
-    def end(self, grace: float) -> str:
+    def end(self, grace: float, check: Callable[[], None] = _nothing) -> str:
         """End it by SIGTERM, and by SIGKILL if it has not ended after the grace [s].
+
+        Args:
+            grace: [s].
+            check: called before each signal, and while its end is awaited; it may raise what is
+                to prevent the next signal.
 
         Returns:
             what ended it, in words.
@@ -76,8 +91,9 @@ class NodeProcess:
         """
         for number, name, within in ((signal.SIGTERM, 'SIGTERM', grace),
                                      (signal.SIGKILL, 'SIGKILL', _KILLED_WITHIN_S)):
+            check()
             self.signal(number)
-            if self.ends_within(within):
+            if self.ends_within(within, check):
                 return f'ended by {name}'
         raise OSError(f'process {self.pid} does not even end by SIGKILL')
 
@@ -100,21 +116,23 @@ def process_of(node: str, pid: int) -> NodeProcess:
     if f'__name:={node.rsplit("/", 1)[-1]}' not in words:
         raise NotItsProcess(f'{node} says that it is process {pid}, which was not started with '
                             'its name (__name:=)')
-    if not _is_launched(int(found[_PARENT])):
+    if not any(_is_roslaunch(each) for each in line_of(pid) - {pid}):
         raise NotItsProcess(f'{node} was not started by roslaunch: it would stay dead')
     return NodeProcess(pid, int(found[_START]))
 
 
-def _is_launched(pid: int) -> bool:
-    """Return whether a process is roslaunch, or was started below it."""
-    for _ in range(_MOST_ANCESTORS):
-        if any(_LAUNCHER.fullmatch(word) for word in _command_line(pid)[:2]):
-            return True
+def line_of(pid: int) -> Set[int]:
+    """Return a process, and those that it was started by, one by the other."""
+    line: Set[int] = set()
+    while pid > 1 and pid not in line and len(line) < _MOST_ANCESTORS:
+        line.add(pid)
         found = _stat(pid)
-        if found is None or pid <= 1:
-            return False
-        pid = int(found[_PARENT])
-    return False
+        pid = 0 if found is None else int(found[_PARENT])
+    return line
+
+
+def _is_roslaunch(pid: int) -> bool:
+    return any(_LAUNCHER.fullmatch(word) for word in _command_line(pid)[:2])
 
 
 def _command_line(pid: int) -> Sequence[str]:
