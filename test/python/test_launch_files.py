@@ -135,7 +135,8 @@ def test_a_node_gets_the_signal_and_its_exit_code_is_handed_on(number: int, to_a
 
 
 @pytest.mark.parametrize('launched', [
-    ('monitor.launch',), ('monitor.launch', 'standalone:=false'), ('learn.launch',)])
+    ('monitor.launch',), ('monitor.launch', 'standalone:=false'), ('learn.launch',),
+    ('recovery.launch', 'name:=self_awareness')])
 def test_who_is_respawned_is_started_so(launched: Tuple[str, ...]) -> None:
     done = _roslaunch('--args', '/self_awareness', 'self_awareness', *launched)
     words = done.stdout.split()

@@ -129,9 +129,19 @@ class RecoveryTest(MonitorCase):
                 listener.close()
 
     @contextmanager
-    def hung(self) -> Iterator[int]:
-        """The process of /player, stopped; it goes on if it is still there at the end."""
-        pid = pid_of(PLAYER)
+    def launched(self, *nodes: str) -> Iterator[None]:
+        """Other nodes, which say nothing; each by its name and attributes."""
+        with open(self.path('others.launch'), 'w') as file:
+            file.write('<launch>{}</launch>'.format(''.join(
+                '<node pkg="topic_tools" type="relay" args="/none /nothing" name={}/>'.format(each)
+                for each in nodes)))
+        with Process('roslaunch', '--wait', file.name):
+            yield
+
+    @contextmanager
+    def hung(self, node: str = PLAYER) -> Iterator[int]:
+        """The process of a node, stopped; it goes on if it is still there at the end."""
+        pid = pid_of(node)
         os.kill(pid, signal.SIGSTOP)
         try:
             yield pid
@@ -186,6 +196,19 @@ class RecoveryTest(MonitorCase):
                               if each['id'] == alarm.alarm], [['stop /player']])
 
     @again_if_clock_was_set
+    def test_who_fails_while_the_alarm_of_another_one_stays_is_mended_too(self) -> None:
+        with self.recovering(self.rules(STOP)) as recovery, self.hung('/camera') as camera:
+            alarm = self.said.await_alarm()
+            self.assertEqual(alarm.component, '/camera')
+            with self.hung():
+                action: RecoveryAction = await_condition('an action is over', lambda: next(
+                    (each for each in recovery.actions if each.over), None), 60)
+            self.assertEqual((action.incident, action.component, action.kind, action.result),
+                             (alarm.alarm, PLAYER, 'died',
+                              '/player ended by SIGKILL, since it hangs'))
+            self.assertEqual(state_of(camera), 'T', 'there is no rule for it')
+
+    @again_if_clock_was_set
     def test_what_does_not_help_stops_at_its_limit_and_says_so(self) -> None:
         calls: List[float] = []
 
@@ -229,6 +252,19 @@ class RecoveryTest(MonitorCase):
                 await_condition('then it is done', lambda: any(
                     each.success for each in recovery.actions), 40)
 
+    def test_who_cannot_be_stopped_is_told_before_it_is_needed(self) -> None:
+        stop = {'stop': ['/lasting', '/required', '/misspelt', PLAYER]}
+        with self.launched('"lasting"', '"required" required="true"'), \
+                self.recovering(self.rules(stop)) as recovery:
+            def told() -> List[str]:
+                return [each.value for each in recovery.statuses[-1].values
+                        if each.key.startswith('cannot stop')]
+
+            await_condition('all three are told', lambda: len(told()) == 3 and all(
+                words in ''.join(told()) for words in (
+                    '/lasting is not respawn="true"', '/required is required="true"',
+                    '/misspelt: not heard so far')), 40)
+
     @again_if_clock_was_set
     def test_a_dry_run_says_what_it_would_do(self) -> None:
         with self.recovering(self.rules(STOP, dry_run=True)) as recovery:
@@ -236,8 +272,10 @@ class RecoveryTest(MonitorCase):
                 await_condition('it is told', lambda: any(
                     each.over for each in recovery.actions), 40)
                 action = recovery.actions[0]
-                self.assertEqual((action.dry_run, action.action, action.result),
-                                 (True, 'stop /player', 'nothing, since this is a dry run'))
+                self.assertEqual(
+                    (action.dry_run, action.action, action.result),
+                    (True, 'stop /player', 'nothing, since this is a dry run: /player hangs, and '
+                     'is process {}'.format(pid)))
                 self.assertEqual(state_of(pid), 'T')
 
 

@@ -4,13 +4,15 @@ from __future__ import annotations
 import argparse
 import os
 import sys
-from typing import Optional, Sequence
+import traceback
+from contextlib import contextmanager
+from typing import Iterator, Optional, Sequence
 
 import rospy
 
 from self_awareness.commands import cli
 from self_awareness.learning.leaving import limit_goodbye
-from self_awareness.recovery import history, rules
+from self_awareness.recovery import rules
 from self_awareness.recovery.node import Recovery
 
 _EPILOG = """\
@@ -18,23 +20,44 @@ Better: roslaunch self_awareness recovery.launch rules:=FILE. config/recovery.ya
 rules. Call ~hold (self_awareness/Maintenance) before you work on the robot.
 """
 
-_DIRECTORY = '$ROS_HOME/self_awareness/$NAME'  # the monitor's default
+_START_AGAIN = 3  # exit code: neither that of cli.run for an error nor for wrong usage
 
 
 def main(argv: Optional[Sequence[str]] = None) -> int:
-    """Run the program; return its exit code (see cli.run)."""
+    """Run the program.
+
+    Returns:
+        see cli.run; 1: the rules cannot be used. 3 if it failed for another reason, so that it may
+        be started again (launch/until_refused.sh).
+    """
     given = sys.argv if argv is None else ['', *argv]
-    return cli.run(_parser(), _recover, rospy.myargv(given)[1:])
+    try:
+        return cli.run(_parser(), _recover, rospy.myargv(given)[1:])
+    except _Failed:
+        traceback.print_exc()
+        return _START_AGAIN
+
+
+class _Failed(Exception):
+    """Something failed that may go well the next time."""
 
 
 def _recover(arguments: argparse.Namespace) -> None:
-    limit_goodbye()
-    rospy.init_node('self_awareness_recovery')
-    monitor = rospy.resolve_name(arguments.monitor)
-    path = os.path.expanduser(arguments.rules)
-    allowed = rules.load(path, monitor, rospy.get_name())
-    directory = str(rospy.get_param(f'{monitor}/recorder/directory', _DIRECTORY))
-    Recovery(allowed, monitor, history.beside_incidents(directory, monitor)).run()
+    with _failing():
+        limit_goodbye()
+        rospy.init_node('self_awareness_recovery')
+        monitor = rospy.resolve_name(arguments.monitor)
+    allowed = rules.load(os.path.expanduser(arguments.rules), monitor, rospy.get_name())
+    with _failing():
+        Recovery(allowed, monitor).run()
+
+
+@contextmanager
+def _failing() -> Iterator[None]:
+    try:
+        yield
+    except Exception as error:
+        raise _Failed(str(error)) from error
 
 
 def _parser() -> argparse.ArgumentParser:

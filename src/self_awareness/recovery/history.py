@@ -5,18 +5,20 @@ import json
 import os
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
-from typing import List
+from typing import Any, Dict, List, Sequence
 
 from self_awareness import printable, yaml_file
 from self_awareness.output_files import replacing
 from self_awareness.yaml_section import Section
 
-MOST = 100
-"""Actions that are kept: the last ones."""
+MOST = 200
+"""Actions that are kept: the last ones, all of an hour at least (limits of the rules)."""
 ENDING = '.actions'
+ENDED_MEANWHILE = 'the recovery ended meanwhile'
 
 _MOST_STAMP = 2 ** 63
 _LONGEST_RESULT = 500
+_BOOT_ID = Path('/proc/sys/kernel/random/boot_id')
 
 
 @dataclass(frozen=True)
@@ -33,6 +35,8 @@ class Action:
         over: it is not being done any more.
         success: it was done, which need not have helped.
         result: what came of it, in words.
+        steady: when it was begun by the steady clock of this boot of the machine, which nobody
+            sets [ns]; 0: it was another boot.
     """
 
     incident: int
@@ -46,6 +50,13 @@ class Action:
     over: bool = False
     success: bool = False
     result: str = ''
+    steady: int = 0
+
+    def told(self) -> Dict[str, Any]:
+        """Return by name what others are told of it."""
+        values = asdict(self)
+        del values['steady']
+        return values
 
 
 @dataclass
@@ -55,10 +66,13 @@ class History:
     Args:
         actions: in the order in which they were begun.
         held_until: [ns since 1970]; 0: not at all.
+        held_until_steady: the same by the steady clock of this boot [ns]; 0: it was set in
+            another boot.
     """
 
     actions: List[Action] = field(default_factory=list)
     held_until: int = 0
+    held_until_steady: int = 0
 
     def begin(self, action: Action) -> None:
         """Add an action."""
@@ -69,6 +83,20 @@ class History:
         told = printable(' '.join(result.split()))[:_LONGEST_RESULT]
         self.actions[-1] = replace(self.actions[-1], over=True, success=success, result=told)
 
+    def ages(self, steady: int, wall: int) -> List[int]:
+        """Return how long ago the actions were begun [ns], 0 or more.
+
+        Args:
+            steady, wall: what the clocks say now [ns]. The latter may have been set since.
+        """
+        return [steady - each.steady if 0 < each.steady <= steady
+                else max(0, wall - each.begin) for each in self.actions]
+
+    def hold_left(self, steady: int, wall: int) -> int:
+        """Return how long nothing may be done from now on [ns], 0 or more; see ages()."""
+        return max(0, self.held_until_steady - steady if self.held_until_steady
+                   else self.held_until - wall)
+
     def save(self, path: str) -> None:
         """Write the file, whole or not at all; its folder is made.
 
@@ -76,6 +104,8 @@ class History:
             OSError: it cannot be written.
         """
         values = {key: value for key, value in asdict(self).items() if value}
+        if values:
+            values['boot'] = _boot()
         os.makedirs(os.path.dirname(path), exist_ok=True)
         with replacing(path) as temporary:
             # YAML, which reads it, knows no pairs of escapes.
@@ -93,8 +123,19 @@ def load(path: str) -> History:
     if not os.path.exists(path):
         return History()
     with Section(yaml_file.load(path), path) as section:
-        return History([_action(each) for each in section.sections('actions', ())][-MOST:],
-                       int(section.number('held_until', 0, _MOST_STAMP, 0)))
+        read = History([_action(each) for each in section.sections('actions', ())][-MOST:],
+                       _stamp(section, 'held_until', 0), _stamp(section, 'held_until_steady', 0))
+        same_boot = section.text('boot', '.*', '') == _boot() != ''
+    if not same_boot:
+        read.held_until_steady = 0
+        read.actions = [replace(each, steady=0) for each in read.actions]
+    return read
+
+
+def ended(actions: Sequence[Action]) -> List[Action]:
+    """Return actions of another start, none of which is being done any more."""
+    return [each if each.over else replace(each, over=True, result=ENDED_MEANWHILE)
+            for each in actions]
 
 
 def beside_incidents(directory: str, monitor: str) -> str:
@@ -117,6 +158,19 @@ def _action(section: Section) -> Action:
             incident=section.integer('incident', 0), component=section.text('component'),
             kind=section.text('kind'), step=section.integer('step', 1),
             steps=section.integer('steps', 1), action=section.text('action'),
-            begin=int(section.number('begin', 0, _MOST_STAMP)),
+            begin=_stamp(section, 'begin'), steady=_stamp(section, 'steady', 0),
             dry_run=section.boolean('dry_run'), over=section.boolean('over'),
             success=section.boolean('success'), result=section.text('result', '.*'))
+
+
+def _stamp(section: Section, *key_and_default: Any) -> int:
+    key, *default = key_and_default
+    return int(section.number(key, 0, _MOST_STAMP, *default))
+
+
+def _boot() -> str:
+    """Return what tells this boot of the machine from others; empty: not known."""
+    try:
+        return _BOOT_ID.read_text().strip()
+    except OSError:
+        return ''

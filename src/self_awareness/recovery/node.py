@@ -3,8 +3,9 @@ from __future__ import annotations
 
 import threading
 import time
-from dataclasses import asdict
-from typing import Optional, Tuple
+import traceback
+from dataclasses import dataclass
+from typing import Dict, Optional, Set, Tuple
 
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
@@ -16,6 +17,7 @@ from self_awareness.recovery.ladder import HOUR_S, Ladder, Order
 from self_awareness.recovery.node_calls import NodeCalls
 from self_awareness.recovery.rules import Rules
 from self_awareness.recovery.watch import Watch
+from self_awareness.recovery.xml_rpc import NoAnswer
 from self_awareness.srv import Maintenance, MaintenanceRequest, MaintenanceResponse
 from self_awareness.stamps import SECOND_NS, nanoseconds, utc
 
@@ -23,6 +25,7 @@ LONGEST_HOLD_S = 86400.0
 _TICK_S = 0.1
 _HEARTBEAT_S = 1.0
 _LOOK_EVERY_S = 1.0
+_DIRECTORY = '$ROS_HOME/self_awareness/$NAME'  # the monitor's default
 
 
 class Recovery:
@@ -30,26 +33,29 @@ class Recovery:
 
     Subscribes to `status` and `incidents` of the monitor. Publishes `~actions` (RecoveryActions,
     latched) and a status on /diagnostics, every second and at once when it changes. Serves `~hold`
-    (Maintenance): nothing is done for a while.
+    (Maintenance): nothing is done for a while. What it has done is kept in a file beside that of
+    the monitor's incidents (history).
 
     Args:
         rules: what may be done.
         monitor: full name of the monitor.
-        path: of the file of actions (history).
     """
 
-    def __init__(self, rules: Rules, monitor: str, path: str) -> None:
+    def __init__(self, rules: Rules, monitor: str) -> None:
         self._rules = rules
         self._monitor = monitor
-        self._path = path
-        self._history = self._kept()
+        self._path = ''  # of the file; empty: not read yet
+        self._found_path = ''  # the same; empty: not known yet. Guarded by _lock.
+        self._history = history.History()
         self._lock = threading.Lock()
         self._watch = Watch()  # Guarded by _lock.
-        self._ladder = self._restored()  # Guarded by _lock.
-        self._hold: Optional[int] = None  # until when [ns since 1970], as told. Guarded by _lock.
-        self._held_by = ''  # Guarded by _lock.
+        self._listeners: Optional[Dict[str, Set[str]]] = None  # Guarded by _lock.
+        self._ladder = Ladder(rules)  # Guarded by _lock.
+        self._hold: Optional[_Hold] = None  # as told, and not kept yet. Guarded by _lock.
+        self._held = _Hold(0, 0, '')  # Guarded by _lock.
         self._done: Optional[Tuple[bool, str]] = None  # Guarded by _lock.
-        self._actions = Actions(NodeCalls(rospy.get_name()), rules.nodes, rules.grace)
+        self._calls = NodeCalls(rospy.get_name())
+        self._actions = Actions(self._calls, rules.nodes, rules.grace, self._why_held)
         self._hardware_id = str(rospy.get_param('~hardware_id', 'none'))
         self._said: Tuple[int, str] = (words.OK, '')
         self._said_at = float('-inf')
@@ -74,14 +80,19 @@ class Recovery:
             tick.wait(_TICK_S)
 
     def _advance(self, now: float) -> None:
+        if not self._path:
+            self._read()
+        hold = None
         with self._lock:
             done, self._done = self._done, None
             if done is not None:
                 self._ladder.done(now)
-            order = self._ladder.advance(now, self._watch.faults(now))
-            hold, self._hold = self._hold, None
+            faults = self._watch.faults(now, self._listeners) if self._path else None
+            order = self._ladder.advance(now, faults)
+            if self._path:  # else it is kept when it is known where
+                hold, self._hold = self._hold, None
         if hold is not None:
-            self._history.held_until = hold
+            self._history.held_until, self._history.held_until_steady = hold.until, hold.steady
             self._keep()
         if done is not None:
             self._end(*done)
@@ -89,21 +100,48 @@ class Recovery:
             self._begin(order)
         self._say(now)
 
+    def _read(self) -> None:
+        """Read what was done before the start, once it is known where that is kept."""
+        with self._lock:
+            path = self._found_path
+        if not path:
+            return
+        try:
+            self._history = history.load(path)
+        except (OSError, ValueError) as error:
+            rospy.logwarn('what was done before the start is not known: %s', error)
+        self._path = path
+        self._restore(time.monotonic_ns(), time.time_ns())
+        actions = self._history.actions
+        self._history.actions = history.ended(actions)
+        if self._history.actions == actions:
+            self._publish()
+        else:
+            self._keep()
+
     def _begin(self, order: Order) -> None:
         self._history.begin(history.Action(
             order.fault.incident, order.fault.component, order.fault.kind, order.number,
-            len(order.rule.steps), str(order.step), time.time_ns(), self._rules.dry_run))
+            len(order.rule.steps), str(order.step), time.time_ns(), self._rules.dry_run,
+            steady=time.monotonic_ns()))
         rospy.logwarn(words.what(self._history.actions[-1]))
         self._keep()
         threading.Thread(target=self._do, args=(order,), daemon=True).start()
 
     def _do(self, order: Order) -> None:
-        success, result = True, 'nothing, since this is a dry run'
-        if not self._rules.dry_run:
-            try:
-                result = self._actions.do(order.step, order.rule.component, self._mute)
-            except ActionError as error:
-                success, result = False, str(error)
+        try:
+            if self._rules.dry_run:
+                success = True
+                result = ('nothing, since this is a dry run: '
+                          + self._actions.would_do(order.step))
+            else:
+                success, result = True, self._actions.do(order.step, order.rule.component,
+                                                         self._mute)
+        except ActionError as error:
+            success, result = False, str(error)
+        except Exception as error:  # it must not leave the step under way for ever
+            rospy.logerr('the step failed unexpectedly:\n%s', traceback.format_exc())
+            success, result = False, f'it failed unexpectedly: {error!r}'
         with self._lock:
             self._done = success, result
 
@@ -130,15 +168,17 @@ class Recovery:
         message = RecoveryActions()
         message.header.stamp = rospy.Time.now()
         for action in self._history.actions:
-            fields = {**asdict(action), 'begin': rospy.Time(*divmod(action.begin, SECOND_NS))}
+            fields = {**action.told(), 'begin': rospy.Time(*divmod(action.begin, SECOND_NS))}
             message.actions.append(RecoveryAction(**fields))
         self._publisher.publish(message)
 
     def _say(self, now: float) -> None:
         with self._lock:
+            blind = self._watch.why_blind(now) or (
+                '' if self._path else 'the master does not say where the monitor keeps its files')
             said = words.status(len({rule.component for rule in self._rules.rules}),
-                                self._ladder.standings(now), self._history.actions,
-                                self._watch.why_blind(now), self._held())
+                                self._ladder.standings(now), self._history.actions, blind,
+                                self._shown_hold())
         if said[0] == self._said[0] and now - self._said_at < _HEARTBEAT_S:
             return
         if said[0] == words.ERROR != self._said[0]:
@@ -155,8 +195,46 @@ class Recovery:
     def _look(self) -> None:
         wait = threading.Event()
         while not rospy.is_shutdown():
-            self._actions.look()
+            try:
+                self._find_path()
+                self._actions.look()
+                self._ask_listeners()
+            except Exception:  # whatever a node answers, the others are looked at again
+                rospy.logerr_throttle(60.0, 'a look at the nodes failed unexpectedly:\n'
+                                      + traceback.format_exc())
             wait.wait(_LOOK_EVERY_S)
+
+    def _find_path(self) -> None:
+        """Find out where the actions are kept.
+
+        The monitor may be started later than this node: its parameter, or what it says, shows that
+        it is there. Before, nothing is done anyway.
+        """
+        with self._lock:
+            if self._found_path:
+                return
+            heard = self._watch.heard
+        try:
+            directory = self._calls.parameter(f'{self._monitor}/recorder/directory')
+        except NoAnswer:
+            return
+        if directory is not None or heard:
+            with self._lock:
+                self._found_path = history.beside_incidents(str(directory or _DIRECTORY),
+                                                            self._monitor)
+
+    def _ask_listeners(self) -> None:
+        """Ask who hears whom, if more than one component is abnormal."""
+        with self._lock:
+            asked = bool(self._watch.beside(time.monotonic()))
+        listeners = None
+        if asked:
+            try:
+                listeners = self._calls.listeners()
+            except NoAnswer as error:
+                rospy.logwarn_throttle(60.0, 'only who is to blame is mended: %s' % error)
+        with self._lock:
+            self._listeners = listeners
 
     def _on_incidents(self, message: Incidents) -> None:
         with self._lock:
@@ -171,38 +249,60 @@ class Recovery:
             return MaintenanceResponse(False, f'duration: {request.duration:g}; it must be from 1 '
                                        f'to {LONGEST_HOLD_S:g} s, or 0 to go on')
         by = request._connection_header.get('callerid', 'nobody')
-        until = time.time_ns() + nanoseconds(request.duration)
+        hold = _Hold(time.time_ns() + nanoseconds(request.duration),
+                     time.monotonic_ns() + nanoseconds(request.duration), f', by {by}')
         with self._lock:
-            self._hold, self._held_by = until, f', by {by}'
-            self._ladder.hold(time.monotonic() + request.duration)
-        answer = (f'does nothing until {_shown(until)}' if request.duration else 'goes on')
+            self._held = self._hold = hold
+            self._ladder.hold(hold.steady / SECOND_NS)
+        answer = (f'does nothing until {_shown(hold.until)}' if request.duration else 'goes on')
+        under_way = [words.what(each) for each in self._history.actions[-1:] if not each.over]
+        if request.duration and under_way:
+            answer += f'; still ends what it does: {under_way[0]}'
         rospy.logwarn('%s, by %s', answer, by)
         return MaintenanceResponse(True, answer)
 
-    def _held(self) -> str:
+    def _why_held(self) -> str:
+        """Return why nothing may be done at this moment; empty: it may."""
+        with self._lock:
+            return f'it is held{self._held.by}' if self._is_held() else ''
+
+    def _is_held(self) -> bool:
+        return time.monotonic_ns() < self._held.steady
+
+    def _shown_hold(self) -> str:
         """Return until when nothing is done, and who wanted it; empty: it is not held."""
-        if self._history.held_until <= time.time_ns():
-            return ''
-        return f'until {_shown(self._history.held_until)}{self._held_by}'
+        return f'until {_shown(self._held.until)}{self._held.by}' if self._is_held() else ''
 
-    def _kept(self) -> history.History:
-        try:
-            return history.load(self._path)
-        except (OSError, ValueError) as error:
-            rospy.logwarn('what was done before the start is not known: %s', error)
-            return history.History()
+    def _restore(self, steady: int, wall: int) -> None:
+        """Let the ladder know of the hour before the start, and of the hold.
 
-    def _restored(self) -> Ladder:
-        """Return a ladder that knows of the hour before the start, and of the hold."""
-        ladder = Ladder(self._rules)
-        now, wall = time.monotonic(), time.time_ns()
-        for action in self._history.actions:
-            ago = max(0, wall - action.begin) / SECOND_NS  # the clock may have been set
-            if ago < HOUR_S and (self._rules.dry_run or not action.dry_run):
-                ladder.restore(action.component, now - ago)
-        held = (self._history.held_until - wall) / SECOND_NS
-        ladder.hold(now + min(held, LONGEST_HOLD_S))
-        return ladder
+        Args:
+            steady, wall: what the clocks say now [ns].
+        """
+        ages = self._history.ages(steady, wall)
+        left = min(self._history.hold_left(steady, wall), nanoseconds(LONGEST_HOLD_S))
+        with self._lock:
+            for age, action in sorted(zip(ages, self._history.actions), key=lambda pair: -pair[0]):
+                if age < HOUR_S * SECOND_NS and (self._rules.dry_run or not action.dry_run):
+                    self._ladder.restore(action.component, (steady - age) / SECOND_NS)
+            if left > 0 and self._hold is None:  # what is told after the start counts
+                self._held = _Hold(wall + left, steady + left, '')
+                self._ladder.hold(self._held.steady / SECOND_NS)
+
+
+@dataclass(frozen=True)
+class _Hold:
+    """Nothing is done for a while.
+
+    Args:
+        until: when [ns since 1970].
+        steady: the same by the steady clock [ns].
+        by: who wants it, in words.
+    """
+
+    until: int
+    steady: int
+    by: str
 
 
 def _shown(stamp: int) -> str:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import List, Mapping, Set, Tuple, Union
 
 from self_awareness import yaml_file
+from self_awareness.recovery.history import MOST
 from self_awareness.yaml_section import Section, shown
 
 KINDS = ('died', 'slow', 'fast', 'late', 'early', 'out of order', 'never came',
@@ -18,7 +19,6 @@ MOST_STOPPED = 5
 """Nodes that a step may stop: it mends a part of the robot."""
 
 _WITHOUT_CULPRIT = ('busy machine', 'all silent')
-_MOST_ACTIONS = 1000
 _DAY_S = 86400.0
 _LONGEST_GRACE_S = 60.0
 _NAME = re.compile(r'(/[A-Za-z][A-Za-z0-9_]*)+')
@@ -132,8 +132,8 @@ def load(path: str, monitor: str, recovery: str) -> Rules:
 
 def _limit(section: Section, key: str, default: int) -> int:
     limit = section.integer(key, 1, default)
-    if limit > _MOST_ACTIONS:
-        section.fail(key, f'expected an integer from 1 to {_MOST_ACTIONS}, found {limit}')
+    if limit > MOST:
+        section.fail(key, f'expected an integer from 1 to {MOST}, found {limit}')
     return int(limit)
 
 

@@ -24,15 +24,17 @@ def status(watched: int, standings: Sequence[Standing], actions: Sequence[Action
         blind: why nothing is known; empty: it is known.
         held: until when nothing is done; empty: not held.
     """
+    told = [f'gave up on {each.rule.component}: {each.gave_up}' for each in standings
+            if each.gave_up]
+    given_up = bool(told)
     doing = [what(each) for each in actions[-1:] if not each.over]
-    given_up = [f'gave up on {each.rule.component}: {each.gave_up}' for each in standings
-                if each.gave_up]
-    waiting = [_waiting(each) for each in standings if not each.gave_up]
-    if blind:
-        waiting = [f'does nothing: {blind}']
+    told += doing
     if held:
-        waiting = [f'does nothing {held}']
-    told = [*given_up, *(doing or waiting)]
+        told.append(f'does nothing {"more " if doing else ""}{held}')
+    if blind:
+        told.append(f'does nothing: {blind}')
+    if not doing and not held and not blind:
+        told += [_waiting(each) for each in standings if not each.gave_up]
     if not told:
         return OK, f'watches {watched} components; {len(actions)} actions so far'
     return ERROR if given_up else WARN, '; '.join(told)

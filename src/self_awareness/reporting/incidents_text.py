@@ -3,7 +3,6 @@ from __future__ import annotations
 
 import os
 import shlex
-from dataclasses import asdict
 from typing import Any, Dict, List, Sequence
 
 from self_awareness import KeptIncident
@@ -77,7 +76,7 @@ def as_values(incident: KeptIncident, actions: Sequence[Action]) -> Dict[str, An
         'near_misses': incident.near_misses,
         'recording': incident.recording or None,
         'model': incident.model or None,
-        'actions': [asdict(each) for each in of_incident(incident, actions)],
+        'actions': [each.told() for each in of_incident(incident, actions)],
     }
 
 

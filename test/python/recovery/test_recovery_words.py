@@ -39,6 +39,16 @@ def test_why_nothing_is_done_is_told() -> None:
         words.WARN, 'does nothing until noon, by /me')
 
 
+def test_a_hold_and_a_step_under_way_are_both_told() -> None:
+    doing = 'stop /player, /slam (step 2 of 2), since /player: died'
+    assert words.status(1, [], [DONE, DOING], '', 'until noon, by /me') == (
+        words.WARN, f'{doing}; does nothing more until noon, by /me')
+    assert words.status(1, [], [DONE, DOING], 'not heard', 'until noon') == (
+        words.WARN, f'{doing}; does nothing more until noon; does nothing: not heard')
+    assert words.status(1, [], [], 'not heard', 'until noon')[1] == (
+        'does nothing until noon; does nothing: not heard')
+
+
 def test_the_last_actions_are_values() -> None:
     shown = words.values([DONE] * 11 + [DOING], ['/x was not started by roslaunch'], True)
     assert shown['dry run'] == 'true'

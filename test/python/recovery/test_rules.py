@@ -78,7 +78,7 @@ def test_the_kinds_are_those_of_the_monitor_that_blame_somebody() -> None:
     ({**rule(), 'grace': 61}, 'grace', 'from 0.1 to 60'),
     ({**rule(), 'limit': 0}, 'limit', 'at least 1'),
     ({**rule(), 'limit': 1.5}, 'limit', 'an integer'),
-    ({**rule(), 'limit': 1001}, 'limit', 'from 1 to 1000'),
+    ({**rule(), 'limit': 201}, 'limit', 'from 1 to 200'),
     ({**rule(), 'limit_of_all': True}, 'limit_of_all', 'number'),
     ({**rule(), 'dry_run': 'yes please'}, 'dry_run', 'true or false'),
     ({'rules': [{'kinds': ['died'], 'steps': GOOD['steps']}]}, 'rules[0].component', 'missing'),

@@ -1,0 +1,141 @@
+"""The recovery as a node, without ROS: what it keeps, and that it survives what is unexpected."""
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, List
+from unittest.mock import MagicMock
+
+import pytest
+import rospy
+
+from self_awareness.recovery import history
+from self_awareness.recovery.history import ENDED_MEANWHILE, Action, History
+from self_awareness.recovery.ladder import Fault, Order
+from self_awareness.recovery.node import Recovery
+from self_awareness.recovery.rules import Rule, Rules, Stop
+
+RULE = Rule('/player', ('died',), (Stop(('/player',)),))
+FAULT = Fault(7, '/player', 'died', True)
+SECOND = 10 ** 9
+
+
+@pytest.fixture(name='recovery')
+def made(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> Recovery:
+    for name in ('Publisher', 'Subscriber', 'Service'):
+        monkeypatch.setattr(rospy, name, MagicMock())
+    monkeypatch.setattr(rospy, 'get_param', lambda name, default: default)
+    monkeypatch.setattr(rospy, 'get_name', lambda: '/recovery')
+    monkeypatch.setattr(rospy.Time, 'now', lambda: rospy.Time(1))
+    made = Recovery(Rules((RULE,)), '/monitor')
+    monkeypatch.setattr(made._calls, 'parameter', lambda name: str(tmp_path))
+    return made
+
+
+def path(tmp_path: Path) -> Path:
+    return tmp_path / 'monitor.actions'
+
+
+def hold(recovery: Recovery, seconds: float) -> str:
+    return recovery._on_hold(SimpleNamespace(
+        duration=seconds, _connection_header={'callerid': '/me'})).message
+
+
+def action(**fields: Any) -> Action:
+    return Action(7, '/player', 'died', 1, 1, 'stop /player', time.time_ns(), False, **fields)
+
+
+def test_where_the_actions_are_kept_is_known_when_the_monitor_is_there(
+        recovery: Recovery, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    directories: List[Any] = [None]
+    monkeypatch.setattr(recovery._calls, 'parameter', lambda name: directories[0])
+    History([action(over=True)]).save(str(path(tmp_path)))
+    recovery._find_path()
+    recovery._advance(0.0)
+    assert recovery._history.actions == [], 'it may be set when the monitor is started'
+    directories[0] = str(tmp_path)
+    recovery._find_path()
+    recovery._advance(0.1)
+    assert len(recovery._history.actions) == 1
+    directories[0] = '/other'
+    recovery._find_path()
+    recovery._advance(0.2)
+    assert recovery._path == str(path(tmp_path))
+
+
+def test_a_monitor_without_the_parameter_has_the_usual_place(
+        recovery: Recovery, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv('ROS_HOME', '/ros')
+    monkeypatch.setattr(recovery._calls, 'parameter', lambda name: None)
+    recovery._find_path()
+    assert recovery._found_path == ''
+    recovery._on_status(MagicMock())
+    recovery._find_path()
+    assert recovery._found_path == '/ros/self_awareness/monitor/monitor.actions'
+
+
+def test_a_step_of_another_start_is_over(recovery: Recovery, tmp_path: Path) -> None:
+    History([action()]).save(str(path(tmp_path)))
+    recovery._find_path()
+    recovery._advance(0.0)
+    assert [each.result for each in recovery._history.actions] == [ENDED_MEANWHILE]
+    assert history.load(str(path(tmp_path))).actions == recovery._history.actions
+
+
+def test_a_hold_counts_before_it_is_known_where_it_is_kept(recovery: Recovery,
+                                                           tmp_path: Path) -> None:
+    History([], time.time_ns() + 600 * SECOND).save(str(path(tmp_path)))
+    assert hold(recovery, 0.0) == 'goes on'
+    recovery._advance(0.0)
+    recovery._find_path()
+    recovery._advance(0.1)
+    assert recovery._why_held() == ''
+    assert history.load(str(path(tmp_path))).held_until <= time.time_ns()
+
+
+def test_a_hold_outlives_steps_of_the_clock(recovery: Recovery, tmp_path: Path) -> None:
+    now = time.monotonic_ns()
+    History([], 1, now + 600 * SECOND).save(str(path(tmp_path)))
+    recovery._find_path()
+    recovery._advance(0.0)
+    assert recovery._why_held() == 'it is held'
+
+
+def test_a_hold_says_what_is_still_being_done(recovery: Recovery) -> None:
+    assert 'stop' not in hold(recovery, 60.0)
+    recovery._history.begin(action())
+    assert 'still ends what it does: stop /player (step 1 of 1)' in hold(recovery, 60.0)
+    assert recovery._why_held() == 'it is held, by /me'
+    assert hold(recovery, 0.0) == 'goes on'
+    assert recovery._why_held() == ''
+
+
+@pytest.mark.parametrize('dry_run', [True, False])
+def test_a_step_that_fails_unexpectedly_has_failed(recovery: Recovery, dry_run: bool,
+                                                   monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail(*_: Any) -> str:
+        raise UnicodeError('label empty or too long')
+
+    recovery._rules = Rules((RULE,), dry_run=dry_run)
+    monkeypatch.setattr(recovery._actions, 'do', fail)
+    monkeypatch.setattr(recovery._actions, 'would_do', fail)
+    recovery._do(Order(RULE, 1, RULE.steps[0], FAULT))
+    assert recovery._done is not None
+    success, result = recovery._done
+    assert not success and 'label empty or too long' in result
+
+
+def test_a_look_that_fails_unexpectedly_is_followed_by_another(
+        recovery: Recovery, monkeypatch: pytest.MonkeyPatch) -> None:
+    looks: List[int] = []
+
+    def fail() -> None:
+        looks.append(1)
+        raise UnicodeError('label empty or too long')
+
+    monkeypatch.setattr('self_awareness.recovery.node._LOOK_EVERY_S', 0.0)
+    monkeypatch.setattr(recovery._actions, 'look', fail)
+    monkeypatch.setattr(rospy, 'is_shutdown', lambda: len(looks) == 2)
+    recovery._look()
+    assert len(looks) == 2
