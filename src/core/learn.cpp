@@ -31,15 +31,6 @@ RecordingInfo infoOf(const Recording& recording) {
   return info;
 }
 
-std::vector<evidence::MachineStall> stallsOf(const std::vector<Event>& events,
-                                             const evidence::Tuning& tuning) {
-  evidence::MachineStalls stalls(tuning);
-  for (const Event& event : events) {
-    stalls.add(event.stamp);
-  }
-  return stalls.find();
-}
-
 /// Index of the first event that is not before a time [ns]; their number if all are.
 std::size_t firstFrom(const std::vector<Event>& events, std::int64_t time) {
   const auto first = std::find_if(events.begin(), events.end(),
@@ -59,6 +50,15 @@ void forEachEvent(const Recording& recording, std::size_t begin, std::size_t end
     }
     onEvent(recording.events[k]);
   }
+}
+
+std::vector<evidence::MachineStall> stallsOf(const Recording& recording,
+                                             const evidence::Tuning& tuning) {
+  evidence::MachineStalls stalls(tuning);
+  forEachEvent(
+      recording, 0, recording.events.size(), [&](const Event& event) { stalls.add(event.stamp); },
+      [&] { stalls.restart(); });
+  return stalls.find();
 }
 
 }  // namespace
@@ -143,7 +143,7 @@ void Learner::add(Recording recording) {
   }
   training_.startRecording({*recording.fingerprint, middleOf(recording.events), std::nullopt,
                             recording.robot_start, recording.robot,
-                            stallsOf(recording.events, parameters_.tuning)});
+                            stallsOf(recording, parameters_.tuning)});
   forEachEvent(
       recording, 0, recording.events.size(), [this](const Event& event) { training_.add(event); },
       [this] { training_.onClockStep(); });

@@ -51,13 +51,13 @@ class Training {
       start.robot_start = recording->robot_start;
       start.robot = recording->robot;
     }
-    start.stalls = stallsOf(stamps);
+    const core::ClockSteps steps(std::move(clock_steps));
+    start.stalls = stallsOf(stamps, steps);
     training_.startRecording(start);
     if (before) {
       addBefore(types, *before);
     }
     std::vector<std::optional<core::EventId>> here(types.size());
-    const core::ClockSteps steps(std::move(clock_steps));
     const py::gil_scoped_release release;
     const auto add = [&](const core::Event& event) {
       std::optional<core::EventId>& id = here.at(event.id);
@@ -102,9 +102,13 @@ class Training {
     });
   }
 
-  std::vector<core::evidence::MachineStall> stallsOf(const Stamps& stamps) const {
+  std::vector<core::evidence::MachineStall> stallsOf(const Stamps& stamps,
+                                                     const core::ClockSteps& steps) const {
     core::evidence::MachineStalls stalls(tuning_);
     for (py::ssize_t k = 0; k < stamps.size(); ++k) {
+      if (k > 0 && steps.between(stamps.at(k - 1), stamps.at(k))) {
+        stalls.restart();
+      }
       stalls.add(stamps.at(k));
     }
     return stalls.find();

@@ -104,18 +104,25 @@ class Seen(NamedTuple):
     firsts: Dict[str, int]
 
 
-def stalls_of(events: Sequence[Event]) -> Dict[int, int]:
-    """Return how long the machine stood still [ns] before events, by their place."""
-    stamps = [t for t, _ in events]
-    silences = {n: stamps[n] - max(stamps[:n]) for n in range(1, len(stamps))}
-    often = (max(stamps) - stamps[0]) // BETWEEN_STALLS
-    usual = (sorted(silences.values(), reverse=True) + [0] * (often + 1))[often]
-    stalls: Dict[int, int] = {}
-    for n, silence in silences.items():
-        alone = all(stamps[n] - stamps[other] > BETWEEN_STALLS for other in stalls)
-        if (alone and SHORTEST_STALL < silence <= LONGEST_STALL_OF_TRAINING
-                and silence > usual * 5 // 4):
-            stalls[n] = silence
+def stalls_of(pieces: Sequence[Sequence[Event]]) -> List[Dict[int, int]]:
+    """Return how long the machine stood still [ns] before events, by their place.
+
+    Args:
+        pieces: of a recording, cut where the clock was set.
+    """
+    stamps = [[t for t, _ in events] for events in pieces]
+    silences = [{n: own[n] - max(own[:n]) for n in range(1, len(own))} for own in stamps]
+    often = sum(max(own) - own[0] for own in stamps) // BETWEEN_STALLS
+    usual = (sorted((silence for each in silences for silence in each.values()), reverse=True)
+             + [0] * (often + 1))[often]
+    stalls: List[Dict[int, int]] = []
+    for own, own_silences in zip(stamps, silences):
+        stalls.append({})
+        for n, silence in own_silences.items():
+            alone = all(own[n] - own[other] > BETWEEN_STALLS for other in stalls[-1])
+            if (alone and SHORTEST_STALL < silence <= LONGEST_STALL_OF_TRAINING
+                    and silence > usual * 5 // 4):
+                stalls[-1][n] = silence
     return stalls
 
 
@@ -138,7 +145,7 @@ class Counts:
         self.rates: Dict[str, List[int]] = defaultdict(list)
         self.recordings: List[Seen] = []
         for place, events in enumerate(recordings):
-            stood_still = stalls_of(events) if stalls is None else stalls[place]
+            stood_still = stalls_of([events])[0] if stalls is None else stalls[place]
             ran = [(t - sum(length for before, length in stood_still.items() if before <= n), kind)
                    for n, (t, kind) in enumerate(events)]
             self._count_delays(ran)

@@ -59,16 +59,6 @@ def ids_of(trained: TrainedModel) -> Dict[str, int]:
     return {kind.scope: index for index, kind in enumerate(trained.event_types)}
 
 
-def stalls_of_pieces(events: Sequence[Event]) -> List[Dict[int, int]]:
-    """Return the stalls of a recording, by its pieces; none where the clock was set."""
-    stalls, of_pieces, first = stalls_of(events), [], 0
-    for piece in pieces(events):
-        of_pieces.append({n - first: length for n, length in stalls.items()
-                          if first < n < first + len(piece)})
-        first += len(piece)
-    return of_pieces
-
-
 def judged(trained: TrainedModel, events: Sequence[Event]) -> Verdicts:
     """Judge a recording by the paper's detector."""
     ids = ids_of(trained)
@@ -104,7 +94,7 @@ def test_the_counts_of_evidence_are_the_literal_ones(all_events: List[List[Event
     ids = ids_of(trained)
     parts = [piece for events in all_events for piece in pieces(events)]
     reference = Counts(parts, list(ids), WINDOW,
-                       [stalls for events in all_events for stalls in stalls_of_pieces(events)])
+                       [stalls for events in all_events for stalls in stalls_of(pieces(events))])
     found = EvidenceCounts(trained)
     assert found.duration == sum(seen.end - seen.start for seen in reference.recordings)
     for i in ids:

@@ -85,9 +85,43 @@ TEST_F(MachineStallsTest, WithoutEventsThereIsNone) {
   EXPECT_TRUE(stalls_.find().empty());
 }
 
+TEST_F(MachineStallsTest, TheTimeAcrossAStepOfTheClockIsNone) {
+  for (const bool seen : {false, true}) {
+    stalls_ = MachineStalls(Tuning{});
+    now_ = 0;
+    stalls_.add(now_);
+    if (seen) {
+      now_ = 57000000 * kSecond;  // the first /clock
+    } else {
+      now_ += 300 * kSecond;  // by the tuning, ten stalls are usual
+      stalls_.restart();
+    }
+    stalls_.add(now_);
+    for (int k = 0; k < 12; ++k) {
+      run(10 * kSecond);
+      stall(400 * kMillisecond);
+    }
+    EXPECT_TRUE(stalls_.find().empty()) << seen;
+    run(40 * kSecond);
+    stall(501 * kMillisecond);
+    EXPECT_EQ(lengths(), (std::vector<std::int64_t>{501 * kMillisecond})) << seen;
+  }
+}
+
+TEST_F(MachineStallsTest, AStepOfTheClockHidesNone) {
+  run(40 * kSecond);
+  stall(kSecond);
+  run(40 * kSecond);
+  now_ = kStart - 10 * kSecond;  // by its stamps, it lies before the one above
+  stalls_.add(now_);
+  run(40 * kSecond);
+  stall(1200 * kMillisecond);
+  EXPECT_EQ(lengths(), (std::vector<std::int64_t>{kSecond, 1200 * kMillisecond}));
+}
+
 TEST_F(MachineStallsTest, AStampThatIsOlderIsNone) {
   run(40 * kSecond);
-  stalls_.add(now_ - kSecond);
+  stalls_.add(now_ - 100 * kMillisecond);
   run(40 * kSecond);
   EXPECT_TRUE(stalls_.find().empty());
 }

@@ -18,17 +18,27 @@ class MachineStalls {
   explicit MachineStalls(const Tuning& tuning);
   /// @param stamp of the next event of the recording [ns]
   void add(std::int64_t stamp);
+  /// The clock was set, which the stamps do not say by themselves (stream/clock_steps.h).
+  void restart();
   /// The stalls so far, in their order.
   std::vector<MachineStall> find() const;
 
  private:
+  /// A time without any event.
+  struct Silence {
+    MachineStall stall;
+    std::size_t run = 0;  // between two steps of the clock
+  };
+
   double least_margin_;
-  std::int64_t shortest_;              // [ns]
-  std::int64_t between_;               // [ns]
-  std::optional<std::int64_t> start_;  // stamp of the first event [ns]
-  std::int64_t newest_ = 0;            // [ns], once there was an event
+  std::int64_t shortest_;             // [ns]
+  std::int64_t between_;              // [ns]
+  std::optional<std::int64_t> last_;  // stamp of the event before [ns]; none: a run begins
+  std::int64_t newest_ = 0;           // of the run [ns], once it had an event
+  std::int64_t ran_ = 0;              // length of all runs [ns]
+  std::size_t runs_ = 0;              // that have ended
   std::size_t events_ = 0;
-  std::vector<MachineStall> silences_;  // that are long enough
+  std::vector<Silence> silences_;  // that are long enough
 };
 
 }  // namespace self_awareness::core::evidence
