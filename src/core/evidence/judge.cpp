@@ -218,7 +218,7 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
   if (largest > 1) {
     judgement.silent = silent_together_.find(shares_, *limits_, scorer_, strangers_.silences(end));
     if (!judgement.silent) {
-      judgement.silent = new_mode_.excuse(shares_, *limits_, scorer_);
+      judgement.silent = new_mode_.excuse(shares_, *limits_, scorer_, excused_.mayBeSilent());
       largest = largestOf(shares_);
     }
   }

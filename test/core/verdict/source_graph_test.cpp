@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <string>
+#include <vector>
+
 namespace self_awareness::core {
 namespace {
 
@@ -80,6 +83,25 @@ TEST(SourceGraph, ALoopBesideTheWayIsWalkedOnce) {
   graph.connect("/b", "/b/out", "/c");
   EXPECT_TRUE(graph.isUpstream("/a", "/c"));
   EXPECT_FALSE(graph.isUpstream("/c", "/a"));
+}
+
+TEST(SourceGraph, KnowsOfManyAtOnceWhoIsUpstream) {
+  const std::vector<std::string> names{"/e", "/a", "/b", "/c", "/alone", "/d"};
+  SourceGraph graph;
+  graph.connect("/a", "/1", "/b");
+  graph.connect("/b", "/2", "/not named");
+  graph.connect("/not named", "/3", "/c");
+  graph.connect("/c", "/4", "/a");
+  graph.connect("/c", "/5", "/d");
+  graph.connect("/d", "/6", "/d");
+  graph.connect("/e", "/7", "/b");
+  const std::vector<std::vector<bool>> upstream = graph.upstream(names);
+  for (std::size_t from = 0; from < names.size(); ++from) {
+    for (std::size_t to = 0; to < names.size(); ++to) {
+      EXPECT_EQ(upstream[from][to], graph.isUpstream(names[from], names[to]))
+          << names[from] << " " << names[to];
+    }
+  }
 }
 
 }  // namespace

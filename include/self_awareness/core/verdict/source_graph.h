@@ -7,6 +7,7 @@
 #include <string>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 namespace self_awareness::core {
 
@@ -65,6 +66,9 @@ class SourceGraph {
   /// Whether messages of `from` reach `to`, directly or through others, in fewer steps than the
   /// other way round. Robots have loops; what is wrong with both more likely began at `from`.
   bool isUpstream(const std::string& from, const std::string& to) const;
+  /// The same of many: whether the first one is upstream of the second one, by their places.
+  /// @param sources each once
+  std::vector<std::vector<bool>> upstream(const std::vector<std::string>& sources) const;
 
  private:
   /// Number of steps from a source to another or back to itself; none: there is no way.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <map>
 #include <utility>
 
 namespace self_awareness::core::evidence {
@@ -14,30 +15,30 @@ bool isOfSilence(Finding finding) {
          finding == Finding::kUnanswered;
 }
 
+/// When the last of them was heard [ns].
+std::int64_t lastOf(const std::vector<EventId>& ids, const Heard& heard) {
+  std::int64_t last = 0;
+  for (const EventId id : ids) {
+    last = std::max(last, heard.stamps()[id]);
+  }
+  return last;
+}
+
 }  // namespace
 
 NewMode::NewMode(std::shared_ptr<const Model> model, std::shared_ptr<const SourceGraph> graph)
     : model_(std::move(model)), graph_(std::move(graph)), excused_until_(model_->size(), 0) {}
 
 std::optional<Silent> NewMode::excuse(std::vector<double>& shares, const Limits& limits,
-                                      const Scorer& scorer) {
+                                      const Scorer& scorer,
+                                      const std::vector<bool>& may_be_silent) {
   if (graph_->empty()) {
     return std::nullopt;
   }
+  lookAtGraph();
   const std::int64_t now = scorer.heard().windowEnd();
-  const std::vector<EventId> silent = this->silent(limits, scorer);
-  std::set<EventId> stopped;
-  for (std::size_t track = 0; track < shares.size(); ++track) {
-    const EventId id = model_->tracks()[track].to;
-    if (shares[track] <= 1 || model_->finding(track) != Finding::kSilent ||
-        stopped.count(id) > 0) {
-      continue;
-    }
-    const std::vector<EventId> together = stoppedWith(id, silent, scorer);
-    if (areUnrelated(together) && othersGoOn(together, scorer.heard())) {
-      stopped.insert(together.begin(), together.end());
-    }
-  }
+  const std::vector<EventId> silent = this->silent(limits, scorer, may_be_silent);
+  std::set<EventId> stopped = this->stopped(silent, shares, scorer.heard());
   // They do not come back all at once.
   for (const EventId id : silent) {
     if (stopped.count(id) > 0) {
@@ -49,13 +50,10 @@ std::optional<Silent> NewMode::excuse(std::vector<double>& shares, const Limits&
   if (stopped.empty()) {
     return std::nullopt;
   }
-  std::set<std::string> components;
-  for (const EventId id : stopped) {
-    components.insert(model_->component(id));
-  }
+  const std::set<std::size_t> components = componentsOf({stopped.begin(), stopped.end()});
   const auto hearsThem = [&](EventId id) {
-    return std::any_of(components.begin(), components.end(), [&](const std::string& component) {
-      return graph_->isUpstream(component, model_->component(id));
+    return std::any_of(components.begin(), components.end(), [&](std::size_t component) {
+      return upstream_[component][model_->componentIndex(id)];
     });
   };
   for (std::size_t track = 0; track < shares.size(); ++track) {
@@ -67,36 +65,71 @@ std::optional<Silent> NewMode::excuse(std::vector<double>& shares, const Limits&
   }
   Silent found;
   found.others_go_on = true;
-  found.components.assign(components.begin(), components.end());
+  for (const std::size_t component : components) {
+    found.components.push_back(model_->components()[component]);
+  }
+  std::sort(found.components.begin(), found.components.end());
   for (const EventId id : stopped) {
     found.since = std::max(found.since, *scorer.heard().lastSeen(id));
   }
   return found;
 }
 
+void NewMode::lookAtGraph() {
+  if (edges_ != graph_->edges().size()) {
+    upstream_ = graph_->upstream(model_->components());
+    edges_ = graph_->edges().size();
+  }
+}
+
 void NewMode::restart() {
   std::fill(excused_until_.begin(), excused_until_.end(), 0);
 }
 
-std::vector<EventId> NewMode::silent(const Limits& limits, const Scorer& scorer) const {
+std::vector<EventId> NewMode::silent(const Limits& limits, const Scorer& scorer,
+                                     const std::vector<bool>& may_be_silent) const {
   const double rare = std::log(model_->tuning().rare_silence);
   std::vector<EventId> silent;
   for (std::size_t track = 0; track < model_->tracks().size(); ++track) {
     const EventId id = model_->tracks()[track].to;
     if (model_->finding(track) == Finding::kSilent && !std::isnan(limits.tracks[track]) &&
-        scorer.heard().hasSeen(id) && model_->logSurvival(id, scorer.heard().silence(id)) < rare) {
+        !may_be_silent[id] && scorer.heard().hasSeen(id) &&
+        model_->logSurvival(id, scorer.heard().silence(id)) < rare) {
       silent.push_back(id);
     }
   }
   return silent;
 }
 
+std::set<EventId> NewMode::stopped(const std::vector<EventId>& silent,
+                                   const std::vector<double>& shares, const Heard& heard) {
+  std::set<EventId> stopped;
+  if (static_cast<double>(componentsOf(silent).size()) < model_->tuning().fewest_busy) {
+    return stopped;
+  }
+  std::map<std::vector<EventId>, bool> answers;  // most stop with the same ones
+  for (std::size_t track = 0; track < shares.size(); ++track) {
+    const EventId id = model_->tracks()[track].to;
+    if (shares[track] <= 1 || model_->finding(track) != Finding::kSilent ||
+        stopped.count(id) > 0) {
+      continue;
+    }
+    const std::vector<EventId> together = stoppedWith(id, silent, heard);
+    const auto [answer, is_new] = answers.try_emplace(together, false);
+    if (is_new && areUnrelated(together, heard) && othersGoOn(together, heard)) {
+      answer->second = true;
+      stopped.insert(together.begin(), together.end());
+    }
+  }
+  return stopped;
+}
+
 std::vector<EventId> NewMode::stoppedWith(EventId id, const std::vector<EventId>& silent,
-                                          const Scorer& scorer) const {
-  const auto stopped = static_cast<double>(*scorer.heard().lastSeen(id));
+                                          const Heard& heard) const {
+  const auto stopped = static_cast<double>(*heard.lastSeen(id));
   std::vector<EventId> together;
   for (const EventId other : silent) {
-    const double earlier = stopped - static_cast<double>(*scorer.heard().lastSeen(other));
+    const double earlier = stopped - static_cast<double>(*heard.lastSeen(other));
     const double usual = model_->meanGap(earlier > 0 ? other : id);
     if (std::abs(earlier) <= static_cast<double>(kRateSpan) + usual) {
       together.push_back(other);
@@ -105,28 +138,54 @@ std::vector<EventId> NewMode::stoppedWith(EventId id, const std::vector<EventId>
   return together;
 }
 
-bool NewMode::areUnrelated(const std::vector<EventId>& ids) const {
-  std::set<std::string> components;
-  for (const EventId id : ids) {
-    components.insert(model_->component(id));
+bool NewMode::areUnrelated(const std::vector<EventId>& ids, const Heard& heard) const {
+  const std::set<std::size_t> components = componentsOf(ids);
+  if (static_cast<double>(components.size()) < model_->tuning().fewest_busy) {
+    return false;
   }
-  const auto isRoot = [&](const std::string& component) {
-    return std::none_of(components.begin(), components.end(), [&](const std::string& other) {
-      return graph_->isUpstream(other, component);
-    });
+  std::vector<bool> may_have_died = mayHaveDied(lastOf(ids, heard), heard);
+  for (const std::size_t component : components) {
+    may_have_died[component] = true;
+  }
+  const auto isRoot = [&](std::size_t component) {
+    for (std::size_t other = 0; other < may_have_died.size(); ++other) {
+      if (may_have_died[other] && upstream_[other][component]) {
+        return false;
+      }
+    }
+    return true;
   };
   return static_cast<double>(std::count_if(components.begin(), components.end(), isRoot)) >=
          model_->tuning().fewest_busy;
 }
 
-bool NewMode::othersGoOn(const std::vector<EventId>& stopped, const Heard& heard) const {
-  const std::int64_t* stamps = heard.stamps();
-  std::int64_t stopped_at = 0;
-  for (const EventId id : stopped) {
-    stopped_at = std::max(stopped_at, stamps[id]);
+std::vector<bool> NewMode::mayHaveDied(std::int64_t by, const Heard& heard) const {
+  std::vector<bool> as_usual(model_->components().size(), false);
+  std::vector<bool> since(model_->components().size(), false);
+  for (EventId id = 0; id < model_->size(); ++id) {
+    if (const std::optional<std::int64_t> last = heard.lastSeen(id)) {
+      const std::size_t component = model_->componentIndex(id);
+      since[component] = since[component] || *last > by;
+      as_usual[component] =
+          as_usual[component] || by - *last <= kRateSpan + model_->longestGap(id);
+    }
   }
-  const std::int64_t last = *std::max_element(stamps, stamps + model_->size());
-  return last - stopped_at > heard.windowEnd() - last;
+  std::transform(as_usual.begin(), as_usual.end(), since.begin(), as_usual.begin(),
+                 [](bool usual, bool later) { return usual && !later; });
+  return as_usual;
+}
+
+std::set<std::size_t> NewMode::componentsOf(const std::vector<EventId>& ids) const {
+  std::set<std::size_t> components;
+  for (const EventId id : ids) {
+    components.insert(model_->componentIndex(id));
+  }
+  return components;
+}
+
+bool NewMode::othersGoOn(const std::vector<EventId>& stopped, const Heard& heard) const {
+  const std::int64_t last = *std::max_element(heard.stamps(), heard.stamps() + model_->size());
+  return last - lastOf(stopped, heard) > heard.windowEnd() - last;
 }
 
 }  // namespace self_awareness::core::evidence

@@ -27,24 +27,37 @@ class NewMode {
   /// @param shares of their limits that the tracks of the model have reached
   /// @param limits of the model's tracks
   /// @param scorer that has closed the window
+  /// @param may_be_silent event types of the model whose silence says nothing, by id
   /// @return who stopped; none: nobody has in that way
   std::optional<Silent> excuse(std::vector<double>& shares, const Limits& limits,
-                               const Scorer& scorer);
+                               const Scorer& scorer, const std::vector<bool>& may_be_silent);
   void restart();
 
  private:
   /// Event types that should have come by now.
-  std::vector<EventId> silent(const Limits& limits, const Scorer& scorer) const;
+  std::vector<EventId> silent(const Limits& limits, const Scorer& scorer,
+                              const std::vector<bool>& may_be_silent) const;
+  /// Those of them that stopped as in a new mode, while one was beyond its limit.
+  std::set<EventId> stopped(const std::vector<EventId>& silent, const std::vector<double>& shares,
+                            const Heard& heard);
   /// Those of them that stopped when this one did.
   std::vector<EventId> stoppedWith(EventId id, const std::vector<EventId>& silent,
-                                   const Scorer& scorer) const;
-  /// Whether they are of enough components that are victims of none of the others.
-  bool areUnrelated(const std::vector<EventId>& ids) const;
+                                   const Heard& heard) const;
+  /// Whether they are of enough components that are victims of nobody.
+  bool areUnrelated(const std::vector<EventId>& ids, const Heard& heard) const;
+  /// By component, whether it may have died by then [ns], judged or not: it was not heard since,
+  /// but as lately as is usual.
+  std::vector<bool> mayHaveDied(std::int64_t by, const Heard& heard) const;
   /// Whether somebody was heard for most of the time since then: or all are silent.
   bool othersGoOn(const std::vector<EventId>& stopped, const Heard& heard) const;
+  /// Their components, each once.
+  std::set<std::size_t> componentsOf(const std::vector<EventId>& ids) const;
+  void lookAtGraph();
 
   std::shared_ptr<const Model> model_;
   std::shared_ptr<const SourceGraph> graph_;
+  std::vector<std::vector<bool>> upstream_;  // whether a component is of another one
+  std::size_t edges_ = 0;                    // of the graph that this was computed of
   std::vector<std::int64_t> excused_until_;  // [ns], by id
 };
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <ctime>
 #include <memory>
 #include <string>
 #include <vector>
@@ -49,11 +50,12 @@ class NewModeTest : public testing::Test {
       share(id) = ages[id] > 0 ? 2 : 0;
     }
     const Limits limits{std::vector<double>(model_->tracks().size(), 1), {}};
-    return new_mode_->excuse(shares_, limits, scorer);
+    return new_mode_->excuse(shares_, limits, scorer, may_be_silent_);
   }
   double& share(EventId id) { return shares_[indexOf(model_->tracks(), kOverdue, id, id)]; }
 
   std::vector<double> shares_;
+  std::vector<bool> may_be_silent_ = std::vector<bool>(kRobot.size(), false);
   std::shared_ptr<SourceGraph> graph_ = std::make_shared<SourceGraph>();
   std::shared_ptr<const Model> model_ = std::make_shared<Model>(
       watch(countsOf({robot(0, 100)}, kRobot), countsOf({robot(kStart, 200)}, kRobot)));
@@ -78,6 +80,22 @@ TEST_F(NewModeTest, AVictimIsNoneOfTheFour) {
   EXPECT_FALSE(excuse({kAgo, kAgo, kAgo, 0, kAgo, 0}));
   EXPECT_TRUE(excuse({kAgo, kAgo, kAgo, kAgo, kAgo, 0}));
   EXPECT_EQ(share(kSlam), 0) << "but excused with them";
+}
+
+TEST_F(NewModeTest, WhoMayBeSilentIsNoneOfTheFour) {
+  may_be_silent_[2] = true;
+  EXPECT_FALSE(excuse({kAgo, kAgo, kAgo, kAgo, 0, 0}));
+  EXPECT_EQ(share(0), 2);
+  const std::optional<Silent> silent = excuse({kAgo, kAgo, kAgo, kAgo, 0, kAgo});
+  ASSERT_TRUE(silent);
+  EXPECT_EQ(silent->components, (Strings{"/imu", "/laser", "/lidar", "/wheels"}));
+}
+
+TEST_F(NewModeTest, TheGraphMayGrow) {
+  EXPECT_TRUE(excuse({kAgo, kAgo, kAgo, kAgo, 0, 0}));
+  new_mode_->restart();
+  graph_->connect("/wheels", "/odom", "/arm");
+  EXPECT_FALSE(excuse({kAgo, kAgo, kAgo, kAgo, 0, 0}));
 }
 
 TEST_F(NewModeTest, AVictimThatStopsLaterIsExcused) {
@@ -114,6 +132,118 @@ TEST_F(NewModeTest, AfterARestartNothingIsExcused) {
   EXPECT_TRUE(excuse({kAgo, kAgo, kAgo, kAgo, 0, 0}));
   new_mode_->restart();
   EXPECT_FALSE(excuse({kAgo + kSecond, 0, 0, 0, 0, 0}, kEnd + kSecond));
+}
+
+// A planner that is heard every 10 s, too seldom to be judged, and controllers that need it.
+class RootWithoutTrackTest : public testing::Test {
+ protected:
+  RootWithoutTrackTest() {
+    for (EventId id = 1; id < kImuOfPlanned; ++id) {
+      graph_->connect("/planner", "/plan", types()[id].source);
+    }
+  }
+  static std::vector<EventType> types() {
+    std::vector<EventType> types{{"/planner", "/plan", "T"}};
+    for (EventId id = 1; id < kImuOfPlanned; ++id) {
+      types.push_back({"/c" + std::to_string(id), "/command" + std::to_string(id), "T"});
+    }
+    types.push_back({"/imu", "/imu/data", "T"});
+    return types;
+  }
+  static Events robot(std::int64_t start, unsigned seed) {
+    Events events = timer(0, start, start + kEnd, 10 * kSecond);
+    for (EventId id = 1; id <= kImuOfPlanned; ++id) {
+      events =
+          together({events, irregular(id, start, start + kEnd, 100 * kMillisecond, seed + id)});
+    }
+    return events;
+  }
+  /// Whether controllers that stopped kAgo are excused.
+  /// @param planner when that was heard last [ns]
+  bool isExcused(std::int64_t planner) {
+    Scorer scorer(model_, kWindow);
+    Events last{{planner, 0}, {kEnd, kImuOfPlanned}};
+    for (EventId id = 1; id < kImuOfPlanned; ++id) {
+      last.push_back({kEnd - kAgo, id});
+    }
+    for (const Event& event : together({last})) {
+      scorer.add(event);
+    }
+    scorer.closeWindow(kEnd);
+    std::vector<double> shares(model_->tracks().size(), 0);
+    for (EventId id = 1; id < kImuOfPlanned; ++id) {
+      shares[indexOf(model_->tracks(), kOverdue, id, id)] = 2;
+    }
+    const Limits limits{std::vector<double>(model_->tracks().size(), 1), {}};
+    NewMode new_mode(model_, graph_);
+    return new_mode.excuse(shares, limits, scorer, std::vector<bool>(model_->size(), false))
+        .has_value();
+  }
+
+  static constexpr EventId kImuOfPlanned = 5;
+  std::shared_ptr<SourceGraph> graph_ = std::make_shared<SourceGraph>();
+  std::shared_ptr<const Model> model_ = std::make_shared<Model>(
+      watch(countsOf({robot(0, 100)}, types()), countsOf({robot(kStart, 200)}, types())));
+};
+
+TEST_F(RootWithoutTrackTest, WhoWasNotHeardSinceMayHaveDied) {
+  ASSERT_FALSE(isWatched(model_->tracks(), kOverdue, 0, 0));
+  EXPECT_FALSE(isExcused(kEnd - kAgo - 10 * kMillisecond));
+  EXPECT_FALSE(isExcused(kEnd - kAgo - 10 * kSecond)) << "for as long as it usually waits";
+}
+
+TEST_F(RootWithoutTrackTest, WhoWasHeardSinceIsAlive) {
+  EXPECT_TRUE(isExcused(kEnd - kAgo + kMillisecond));
+}
+
+TEST_F(RootWithoutTrackTest, WhoWasSilentForLongBeforeIsNotMissed) {
+  EXPECT_TRUE(isExcused(kEnd - kAgo - 13 * kSecond));
+}
+
+TEST(NewModeOfALargeRobot, TakesLittleTimeWhileAllWaitForOneThatDied) {
+  constexpr EventId kComponents = 60;
+  constexpr EventId kTypes = 150;
+  constexpr int kWindows = 20;
+  std::vector<EventType> types;
+  auto graph = std::make_shared<SourceGraph>();
+  const auto name = [](EventId component) { return "/c" + std::to_string(component); };
+  Events events;
+  for (EventId id = 0; id < kTypes; ++id) {
+    const EventId component = id % kComponents;
+    types.push_back({name(component), "/t" + std::to_string(id), "T"});
+    graph->connect(name(component / 2), types[component / 2].scope, name(component));
+    graph->connect(name(component), types.back().scope, name((7 * component + id) % kComponents));
+    graph->connect("/root", "/root/out", name(component));
+    events = together({events, timer(id, 0, 20 * kSecond, 200 * kMillisecond)});
+  }
+  types.push_back({"/root", "/root/out", "T"});
+  types.push_back({"/alive", "/alive/out", "T"});
+  events = together({events, timer(kTypes, 0, 20 * kSecond, 200 * kMillisecond),
+                     timer(kTypes + 1, 0, 20 * kSecond, 200 * kMillisecond)});
+  Tuning tuning;
+  tuning.without = {kPairs, kOwnGaps, kDeadlines};
+  const auto model = std::make_shared<Model>(
+      watch(countsOf({events}, types), countsOf({later(events)}, types), *graph, tuning));
+  Scorer scorer(model, kWindow);
+  for (const Event& event : events) {
+    scorer.add(event);
+  }
+  scorer.add({40 * kSecond, kTypes + 1});
+  scorer.closeWindow(40 * kSecond);
+  std::vector<double> shares(model->tracks().size(), 0);
+  for (EventId id = 0; id <= kTypes; ++id) {
+    shares.at(indexOf(model->tracks(), kOverdue, id, id)) = 2;
+  }
+  const Limits limits{std::vector<double>(shares.size(), 1), {}};
+  NewMode new_mode(model, graph);
+  const std::vector<bool> none(model->size(), false);
+  const std::clock_t begin = std::clock();
+  for (int window = 0; window < kWindows; ++window) {
+    EXPECT_FALSE(new_mode.excuse(shares, limits, scorer, none));
+  }
+  const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+  RecordProperty("milliseconds", std::to_string(1000 * seconds / kWindows));
+  EXPECT_LT(seconds / kWindows, 0.01);
 }
 
 }  // namespace
