@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/evidence/channel/channel.h"
+
 namespace self_awareness::core::evidence {
 namespace {
 
@@ -51,7 +53,7 @@ std::optional<Busy> BusyMachine::late(const std::vector<double>& shares, const S
     heard[component] = heard[component] || scorer.heard().hasSeen(id);
     if (model_->finding(track) == Finding::kSilent) {
       silent[component] = silent[component] || shares[track] > 1;
-    } else {
+    } else if (!model_->tracks()[track].channel->isOfAttributes()) {  // these are not about time
       largest[component] = std::max(largest[component], shares[track]);
     }
   }

@@ -16,12 +16,16 @@ constexpr EventId kComponents = 9;
 // All at random but the last one, which answers the first one.
 Events robot(std::int64_t start, unsigned seed) {
   Events events;
+  const Attributes usual{ageClass(kMillisecond), sizeClass(100), Attributes::Step::kNext, false};
   for (EventId id = 0; id + 1 < kComponents; ++id) {
     const Events its = irregular(id, start, start + 60 * kSecond, 200 * kMillisecond, seed + id);
     events = together({events, its});
     if (id == 0) {
       events = together({events, answers(kComponents - 1, its, 20 * kMillisecond)});
     }
+  }
+  for (Event& event : events) {
+    event.attributes = usual;
   }
   return events;
 }
@@ -110,6 +114,12 @@ TEST_F(BusyMachineTest, ItIsStarvedWhileProcessesWait) {
 
 TEST_F(BusyMachineTest, WhoIsSilentIsNotLate) {
   EXPECT_FALSE(at(1.2, 0, kComponents, true, kOverdue));
+}
+
+TEST_F(BusyMachineTest, WhoSaysSomethingElseIsNotLate) {
+  for (const char* channel : {"age", "lost", "size", "frozen"}) {
+    EXPECT_FALSE(at(1.2, 1, 5, true, channel)) << channel;
+  }
 }
 
 TEST_F(BusyMachineTest, WhoFollowsAnotherAsUsualIsNoFurtherOne) {
