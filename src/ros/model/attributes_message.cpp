@@ -55,9 +55,12 @@ evidence::AttributeCounts fromMessage(const self_awareness::AttributeCounts& mes
   std::copy(message.steps.begin(), message.steps.end(), counts.steps.begin());
   counts.repeats = message.repeats;
   counts.longest_repeat = message.longest_repeat;
-  const std::uint64_t known = counts.known();
-  check(std::max({evidence::total(counts.ages), evidence::total(counts.rises), counts.repeats,
-                  *std::max_element(counts.steps.begin(), counts.steps.end())}) <= known,
+  for (const std::uint64_t step : counts.steps) {
+    check(step < kLargestCount, "its attributes have counts that cannot be");
+  }
+  check(counts.counted() <= counts.known() &&
+            std::max({evidence::total(counts.ages), evidence::total(counts.rises),
+                      counts.repeats}) <= counts.counted(),
         "its attributes are of more messages than there are");
   check(areTimes({counts.longest_repeat}, 0), "its attributes have a time that cannot be");
   return counts;

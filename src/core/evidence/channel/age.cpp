@@ -10,7 +10,8 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-// Of messages whose stamps are as old as they are, this share may be older than that once more.
+// This share of the messages may lack a stamp, and of those whose stamps are as old as they are,
+// as many may be older than that once more.
 constexpr double kMostRises = 0.01;
 constexpr double kUsualRise = 1;  // [s]
 // Two classes of ages, and of stamps in the future: to tell them apart takes that much.
@@ -71,11 +72,11 @@ struct AgeOfMessages {
 
 std::vector<Track> Age::watch(const Choice& choice) const {
   return tracksOfMessages(*this, choice, [](const AttributeCounts& counts) {
-    const auto zero = counts.ages.find(Attributes::kZeroStamp);
+    const auto counted = static_cast<double>(counts.counted());
     const std::uint64_t large =
         total({counts.rises.upper_bound(ageClass(toNanoseconds(kUsualRise))), counts.rises.end()});
     const auto rises = static_cast<double>(total(counts.rises));
-    return zero == counts.ages.end() && total(counts.rises) == counts.known() &&
+    return counted - rises <= kMostRises * counted &&
            static_cast<double>(large) <= kMostRises * rises;
   });
 }
@@ -84,7 +85,8 @@ std::unique_ptr<const Expectation> Age::expect(const Model& model, const Halves&
                                                std::vector<std::size_t> tracks) const {
   return std::make_unique<ExpectedMessages<AgeOfMessages>>(
       model, std::move(tracks), [&](EventId id) {
-        const ClassCounts& ages = model.statistics().type(id).attributes.ages;
+        ClassCounts ages = model.statistics().type(id).attributes.ages;
+        ages.erase(Attributes::kZeroStamp);  // no age
         AgeOfMessages::Usual usual;
         usual.shortest = ageOf(quantile(ages, kUsualFrom));
         usual.middle = ageOf(quantile(ages, 0.5));

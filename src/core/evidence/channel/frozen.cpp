@@ -22,7 +22,7 @@ constexpr double kByChance = 1e-7;
 /// Mean gaps with the same content that are more than chance.
 double gapsBeyondChance(const AttributeCounts& counts) {
   const double repeats =
-      (static_cast<double>(counts.repeats) + 1) / (static_cast<double>(counts.known()) + 2);
+      (static_cast<double>(counts.repeats) + 1) / (static_cast<double>(counts.counted()) + 2);
   return std::max(kFewestGaps, std::log(kByChance) / std::log(repeats));
 }
 
@@ -60,9 +60,9 @@ struct ContentOfMessages {
 
 std::vector<Track> Frozen::watch(const Choice& choice) const {
   return tracksOfMessages(*this, choice, [&](const AttributeCounts& counts) {
-    const auto known = static_cast<double>(counts.known());
-    return known >= kFewestMessages &&
-           static_cast<double>(counts.repeats) <= kMostRepeats * known &&
+    const auto counted = static_cast<double>(counts.counted());
+    return counted >= kFewestMessages &&
+           static_cast<double>(counts.repeats) <= kMostRepeats * counted &&
            toSeconds(counts.longest_repeat) <= choice.tuning.longest_repeat;
   });
 }

@@ -50,8 +50,9 @@ struct NumbersOfMessages {
   struct Usual {
     double least_limit = 0;
     bool is_supported = true;
-    double share = 0;  // of the losses that training had
-    double drift = 0;  // what each message takes from the sum
+    double share = 0;        // of the losses that training had
+    double drift = 0;        // what each message takes from the sum
+    std::int64_t pause = 0;  // a longer gap [ns]
   };
 
   void add(const Heard::Arrival& arrival, const Usual& usual, double most) {
@@ -59,6 +60,9 @@ struct NumbersOfMessages {
       return;
     }
     const bool loss = arrival.attributes.isAfterLoss();
+    if (!loss && arrival.stamp - arrival.last_stamp > usual.pause) {
+      sum = 0;  // after a pause, what was lost before it is no news
+    }
     if (sum <= 0) {
       losses = 0;
       messages = 0;
@@ -109,6 +113,7 @@ std::unique_ptr<const Expectation> Lost::expect(const Model& model, const Halves
         const Tuning& tuning = model.tuning();
         const AttributeCounts& counts = model.learned().type(id).attributes;
         NumbersOfMessages::Usual usual;
+        usual.pause = pauseOf(model, id);
         usual.share = shareOf(counts);
         usual.drift = std::max(tuning.usual_losses, kTimesUsual * std::max(usual.share, of_all));
         usual.least_limit = std::max(

@@ -18,9 +18,11 @@ namespace self_awareness::core::evidence {
 
 /// Whether training knows enough messages of an event type, and nearly all of its events.
 inline bool knowsMessages(const Choice& choice, EventId id) {
-  const auto known = static_cast<double>(choice.both.type(id).attributes.known());
-  return choice.isJudged(id) && known >= choice.tuning.fewest_gaps &&
-         known >= choice.tuning.usual * static_cast<double>(choice.both.type(id).events);
+  const AttributeCounts& counts = choice.both.type(id).attributes;
+  return choice.isJudged(id) &&
+         static_cast<double>(counts.counted()) >= choice.tuning.fewest_gaps &&
+         static_cast<double>(counts.known()) >=
+             choice.tuning.usual * static_cast<double>(choice.both.type(id).events);
 }
 
 /// The tracks of a channel for all event types that it supports.
@@ -37,6 +39,12 @@ std::vector<Track> tracksOfMessages(const Channel& channel, const Choice& choice
   return tracks;
 }
 
+/// A source that is silent for longer than this [ns] pauses: its last messages say nothing of now.
+inline std::int64_t pauseOf(const Model& model, EventId id) {
+  return std::max(kRateSpan,
+                  static_cast<std::int64_t>(model.tuning().most_mean_gaps * model.meanGap(id)));
+}
+
 /// What is expected of event types, by a class of what was heard of one. It has these members:
 /// `Usual`, what is expected of it; add() of a message, with the most that it may add up to;
 /// evidence(); explain().
@@ -50,7 +58,9 @@ class ExpectedMessages : public Expectation {
   ExpectedMessages(const Model& model, std::vector<std::size_t> tracks, UsualOf usualOf)
       : Expectation(std::move(tracks)), model_(model) {
     for (const std::size_t track : this->tracks()) {
-      usual_.push_back(usualOf(model.tracks()[track].to));
+      const EventId id = model.tracks()[track].to;
+      usual_.push_back(usualOf(id));
+      pauses_.push_back(pauseOf(model, id));
     }
   }
 
@@ -60,6 +70,7 @@ class ExpectedMessages : public Expectation {
     return usualOf(track).is_supported ? most : std::numeric_limits<double>::quiet_NaN();
   }
   const Usual& usual(std::size_t number) const { return usual_[number]; }
+  std::int64_t pause(std::size_t number) const { return pauses_[number]; }
   const Model& model() const { return model_; }
 
  private:
@@ -69,7 +80,8 @@ class ExpectedMessages : public Expectation {
   }
 
   const Model& model_;
-  std::vector<Usual> usual_;  // by number
+  std::vector<Usual> usual_;          // by number
+  std::vector<std::int64_t> pauses_;  // longer silences [ns], by number
 };
 
 template <typename Messages>
@@ -107,9 +119,12 @@ class MessagesState : public ChannelState {
       }
     }
   }
-  void closeWindow(const Heard& /*heard*/, std::vector<double>& evidence) override {
+  void closeWindow(const Heard& heard, std::vector<double>& evidence) override {
     for (std::size_t number = 0; number < messages_.size(); ++number) {
-      evidence[expected_.tracks()[number]] = messages_[number].evidence();
+      const std::size_t track = expected_.tracks()[number];
+      const EventId id = expected_.model().tracks()[track].to;
+      evidence[track] =
+          heard.silence(id) > expected_.pause(number) ? 0 : messages_[number].evidence();
     }
   }
   void explain(std::size_t /*track*/, const Heard& /*heard*/, const RecentEvents& /*events*/,

@@ -68,6 +68,15 @@ void Scorer::forget(EventId id) {
   }
 }
 
+void Scorer::forgetAttributes(EventId id) {
+  for (std::size_t k = 0; k < states_.size(); ++k) {
+    const std::size_t track = model_->expectations()[k]->tracks().front();
+    if (model_->tracks()[track].channel->isOfAttributes()) {
+      states_[k]->forget(id);
+    }
+  }
+}
+
 std::vector<double>& Scorer::closeWindow(std::int64_t end) {
   heard_.closeWindow(end);
   for (ChannelState* const state : closing_) {

@@ -52,6 +52,8 @@ class Scorer {
   std::vector<double>& closeWindow(std::int64_t end);
   /// Forgets what the sums say of an event type: what was unusual so far was its start.
   void forget(EventId id);
+  /// The same, of what the channels of attributes say.
+  void forgetAttributes(EventId id);
   /// Forgets what was seen: a new recording starts, or the clock was set.
   void restart();
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <numeric>
 #include <tuple>
 
 namespace self_awareness::core::evidence {
@@ -44,6 +45,10 @@ void AttributeCounts::merge(const AttributeCounts& other) {
   std::transform(steps.begin(), steps.end(), other.steps.begin(), steps.begin(), std::plus<>());
   repeats += other.repeats;
   longest_repeat = std::max(longest_repeat, other.longest_repeat);
+}
+
+std::uint64_t AttributeCounts::known() const {
+  return std::accumulate(steps.begin(), steps.end(), std::uint64_t{0});
 }
 
 std::uint64_t AttributeCounts::numbered() const {

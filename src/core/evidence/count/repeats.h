@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 #include <optional>
 
 #include "self_awareness/core/stream/attributes.h"
@@ -15,8 +14,7 @@ class Repeats {
   /// Takes in a message of which something is known, at `now` [ns].
   /// @param most that a gap counts [ns]: who pauses repeats nothing meanwhile
   /// @return time since the first one with the same bytes [ns]
-  std::int64_t add(std::int64_t now, const Attributes& attributes,
-                   std::int64_t most = std::numeric_limits<std::int64_t>::max()) {
+  std::int64_t add(std::int64_t now, const Attributes& attributes, std::int64_t most) {
     const bool goes_on = attributes.same && last_ && now >= *last_;
     lasted_ = goes_on ? lasted_ + std::min(now - *last_, most) : 0;
     last_ = now;

@@ -20,6 +20,9 @@ constexpr std::size_t kTogether = 8;
 struct Trainer::OfMessages {
   AgeLevel level;
   Repeats repeats;
+  // So far, of the recording: what others say must not matter, or counts would not add up.
+  std::int64_t gap_sum = 0;  // [ns]
+  std::int64_t gaps = 0;
 };
 
 Trainer::Trainer(Statistics& statistics, std::int64_t window)
@@ -111,7 +114,7 @@ void Trainer::add(const Event& event) {
   ++recording_.events[ran.id];
   counts_.add(ran.id);
   countDelays(ran);
-  countAttributes(ran);
+  countAttributes(ran, event.stamp >= *since_ + recording_.firsts[ran.id] + kAttributesFrom);
   if (last.number > 0) {
     const std::int64_t gap = std::max<std::int64_t>(ran.stamp - last.stamp, 0);
     ++type.gaps;
@@ -164,7 +167,7 @@ void Trainer::countDelays(const Event& event) {
   }
 }
 
-void Trainer::countAttributes(const Event& event) {
+void Trainer::countAttributes(const Event& event, bool started) {
   const Attributes& attributes = event.attributes;
   if (!attributes.isKnown()) {
     return;
@@ -173,12 +176,21 @@ void Trainer::countAttributes(const Event& event) {
     messages_.resize(statistics_->size());
   }
   OfMessages& messages = messages_[event.id];
+  const std::int64_t mean_gap = messages.gaps > 0 ? messages.gap_sum / messages.gaps : 0;
+  if (const Seen& last = last_seen_[event.id]; last.number > 0) {
+    messages.gap_sum += std::max<std::int64_t>(event.stamp - last.stamp, 0);
+    ++messages.gaps;
+  }
   AttributeCounts& counts = statistics_->type(event.id).attributes;
+  if (!started) {
+    ++counts.steps[static_cast<std::size_t>(Attributes::Step::kNotKnown)];
+    return;
+  }
   ++counts.sizes[attributes.size];
   ++counts.steps[static_cast<std::size_t>(attributes.step)];
   counts.repeats += attributes.same ? 1 : 0;
   counts.longest_repeat =
-      std::max(counts.longest_repeat, messages.repeats.add(event.stamp, attributes));
+      std::max(counts.longest_repeat, messages.repeats.add(event.stamp, attributes, mean_gap));
   if (attributes.age != Attributes::kNoAge) {
     ++counts.ages[attributes.age];
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -14,6 +15,12 @@
 #include "self_awareness/core/verdict/suspect.h"
 
 namespace self_awareness::core::evidence {
+namespace {
+
+constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
+
+}  // namespace
+
 void LimitFinder::Parameters::validate() const {
   if (window <= 0 || settle_time < 0) {
     throw std::invalid_argument("window must be more than 0 ns, settle_time 0 or more");
@@ -45,6 +52,8 @@ void LimitFinder::startRecording(std::shared_ptr<const Model> model, std::int64_
 void LimitFinder::startScoring() {
   scorer_ = std::make_unique<Scorer>(judging_, parameters_.window);
   scorer_->leaveOut(Finding::kSilent);  // the longest gaps say it
+  settled_at_.assign(model_->size(), kNever);
+  settling_.clear();
   recording_ = {};
   recording_.robot_start = robot_start_;
   recording_.robot = robot_;
@@ -66,6 +75,10 @@ ObservedEvent LimitFinder::observe(const Event& event) {
   recording_.end = event.stamp;
   if (event.id < firsts_.size() && firsts_[event.id] < 0) {
     firsts_[event.id] = std::max<std::int64_t>(event.stamp - *first_stamp_, 0);
+  }
+  if (event.id < settled_at_.size() && settled_at_[event.id] == kNever) {
+    settled_at_[event.id] = event.stamp + parameters_.settle_time;
+    settling_.push_back(event.id);
   }
   const ObservedEvent observed{event, !model_->knows(event.id), scorer_->add(event)};
   if (!observed.unknown) {
@@ -145,6 +158,7 @@ void LimitFinder::close(const Window& window, std::int64_t end) {
   if (end < window.start + parameters_.window) {
     return;  // the recording ends within its last window
   }
+  forgetStarts(window.start);
   const std::vector<double>& evidence = scorer_->closeWindow(end);
   if (end - parameters_.window < *first_stamp_ + parameters_.settle_time) {
     return;
@@ -156,8 +170,19 @@ void LimitFinder::close(const Window& window, std::int64_t end) {
   ++part.windows;
   ++recording_.windows;
   for (std::size_t track = 0; track < evidence.size(); ++track) {
-    part.evidence[track] = std::max(part.evidence[track], static_cast<float>(evidence[track]));
+    const Track& watched = model_->tracks()[track];
+    if (evidence[track] > 0 &&
+        !(watched.channel->isOfAttributes() && window.start < settled_at_[watched.to])) {
+      part.evidence[track] = std::max(part.evidence[track], static_cast<float>(evidence[track]));
+    }
   }
+}
+
+void LimitFinder::forgetStarts(std::int64_t now) {
+  const auto settles = std::partition(settling_.begin(), settling_.end(),
+                                      [&](EventId id) { return now < settled_at_[id]; });
+  std::for_each(settles, settling_.end(), [&](EventId id) { scorer_->forgetAttributes(id); });
+  settling_.erase(settles, settling_.end());
 }
 
 std::uint64_t LimitFinder::windows() const {

@@ -59,10 +59,11 @@ TEST(AttributeCounts, CountsWhatMessagesAre) {
   const Statistics counts = countsOf({messages(kA, kStart, kStart + 100 * kSecond, {})}, 1);
   const AttributeCounts& found = counts.type(kA).attributes;
   EXPECT_EQ(found.known(), 1000U);
-  EXPECT_EQ(found.numbered(), 1000U);
+  EXPECT_EQ(found.counted(), 950U);  // without those of its start
+  EXPECT_EQ(found.numbered(), 950U);
   EXPECT_EQ(found.losses(), 0U);
   EXPECT_EQ(found.repeats, 0U);
-  EXPECT_EQ(total(found.rises), 1000U);
+  EXPECT_EQ(total(found.rises), 950U);
   EXPECT_NEAR(ageOf(quantile(found.ages, 0.5)), 0.02, 0.002);
   EXPECT_EQ(quantile(found.sizes, 0), sizeClass(800));
   EXPECT_EQ(quantile(found.sizes, 1), sizeClass(800));
@@ -75,8 +76,52 @@ TEST(AttributeCounts, CountsLossesAndRepetitions) {
   const Statistics counts = countsOf({messages(kA, kStart, kStart + 100 * kSecond, source)}, 1);
   const AttributeCounts& found = counts.type(kA).attributes;
   EXPECT_NEAR(static_cast<double>(found.losses()), 100, 40);
-  EXPECT_EQ(found.repeats, 1000U);
-  EXPECT_NEAR(toSeconds(found.longest_repeat), 100, 0.2);
+  EXPECT_EQ(found.repeats, 950U);
+  EXPECT_NEAR(toSeconds(found.longest_repeat), 95, 0.2);
+}
+
+TEST(AttributeCounts, WhatATypeSaysFirstDoesNotCount) {
+  Events events = messages(kA, kStart, kStart + 100 * kSecond, {});
+  const Events usual = events;
+  for (std::size_t k = 0; k < 50; ++k) {
+    events[k].attributes = {Attributes::kZeroStamp, sizeClass(1), Step::kLostMany, true};
+  }
+  EXPECT_EQ(countsOf({events}, 1).type(kA).attributes, countsOf({usual}, 1).type(kA).attributes);
+  events[50].attributes.age = Attributes::kZeroStamp;
+  EXPECT_FALSE(countsOf({events}, 1).type(kA).attributes ==
+               countsOf({usual}, 1).type(kA).attributes);
+}
+
+TEST(AttributeCounts, AStartIsThatOfTheRecording) {
+  Statistics counts;
+  counts.intern(kTypes[kA]);
+  Trainer trainer(counts, kWindow);
+  trainer.startRecording();
+  trainer.addBefore({kStart - 10 * kSecond, kA});
+  for (const Event& event : messages(kA, kStart, kStart + 100 * kSecond, {})) {
+    trainer.add(event);
+  }
+  trainer.finish();
+  EXPECT_EQ(counts.type(kA).attributes.counted(), 1000U);
+}
+
+TEST(AttributeCounts, APauseRepeatsNothing) {
+  const auto recording = [](std::int64_t pause) {
+    Events events =
+        together({messages(kA, kStart, kStart + 20 * kSecond, {}),
+                  messages(kA, kStart + 20 * kSecond + pause, kStart + 40 * kSecond + pause, {})});
+    for (std::size_t k = 199; k < 210; ++k) {
+      events[k].attributes.same = true;  // of which the second one comes after the pause
+    }
+    return events;
+  };
+  const auto longest = [](const Statistics& counts) {
+    return toSeconds(counts.type(kA).attributes.longest_repeat);
+  };
+  EXPECT_NEAR(longest(countsOf({recording(31 * kSecond)}, 1)), 1.1, 0.01);
+  Statistics sum = countsOf({recording(31 * kSecond)}, 1);
+  sum.merge(countsOf({later(recording(60 * kSecond))}, 1));
+  EXPECT_TRUE(sum == countsOf({recording(31 * kSecond), later(recording(60 * kSecond))}, 1));
 }
 
 TEST(Repeats, APauseCountsNoMoreThanIsSaid) {

@@ -8,6 +8,11 @@
 
 namespace self_awareness::core::evidence {
 
+/// An event type's first messages may be odd, as those of a driver that starts: for so long after
+/// its first one in a recording [ns], attributes do not count. The detector forgets them as well
+/// (docs/method.md, section 4.4).
+constexpr std::int64_t kAttributesFrom = 5000000000;
+
 /// Numbers of messages by class; classes without any are left out.
 using ClassCounts = std::map<std::uint8_t, std::uint64_t>;
 
@@ -16,19 +21,23 @@ std::uint64_t total(const ClassCounts& counts);
 /// The class that a share (0 to 1) of the messages does not exceed; 0 without messages.
 std::uint8_t quantile(const ClassCounts& counts, double share);
 
-/// What training counts of the attributes of an event type's messages (docs/attributes.md). The
-/// counts of two trainings add up.
+/// What training counts of the attributes of an event type's messages (docs/attributes.md). Of
+/// those in the first kAttributesFrom of a recording, it only knows that they came. The counts of
+/// two trainings add up.
 struct AttributeCounts {
   ClassCounts ages;   ///< of messages with a header: Attributes::age
   ClassCounts rises;  ///< ageClass() of how much older they were than of late (AgeLevel)
-  ClassCounts sizes;  ///< Attributes::size, of all messages of which anything is known
-  std::array<std::uint64_t, Attributes::kSteps> steps{};  ///< by Attributes::Step
+  ClassCounts sizes;  ///< Attributes::size, of all messages that count
+  /// By Attributes::Step; kNotKnown of those that do not count.
+  std::array<std::uint64_t, Attributes::kSteps> steps{};
   std::uint64_t repeats = 0;        ///< messages with the bytes of the one before
   std::int64_t longest_repeat = 0;  ///< the longest time with the same bytes [ns]
 
   void merge(const AttributeCounts& other);
   /// Messages of which anything is known.
-  std::uint64_t known() const { return total(sizes); }
+  std::uint64_t known() const;
+  /// Those of them that count.
+  std::uint64_t counted() const { return total(sizes); }
   /// Messages with a number that follows another one.
   std::uint64_t numbered() const;
   /// Those of them before which messages are missing.

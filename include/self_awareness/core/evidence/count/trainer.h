@@ -79,7 +79,8 @@ class Trainer {
   void resize();
   void countDelays(const Event& event);
   void countWaiting();
-  void countAttributes(const Event& event);
+  /// @param started whether its type came first long enough ago
+  void countAttributes(const Event& event, bool started);
   void closeWindows(std::int64_t now);
   void endRecording();
   /// How long the machine stood still before the next event of the recording [ns].

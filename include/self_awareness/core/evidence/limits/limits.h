@@ -116,6 +116,10 @@ class LimitFinder : private WindowObserver {
   /// The latest of the first events, of all recordings that were not trained on; as in Limits.
   std::vector<std::int64_t> latestFirsts() const;
   void startScoring();
+  /// Forgets attributes of event types that have settled, as the detector does: their first
+  /// messages may be odd.
+  /// @param now start of the window [ns]
+  void forgetStarts(std::int64_t now);
   void startPart();
   /// Joins neighbouring parts: they then last twice as long.
   void joinParts();
@@ -131,6 +135,8 @@ class LimitFinder : private WindowObserver {
   std::string robot_;                        // of the recording; empty: not known
   std::optional<std::int64_t> first_stamp_;  // of the recording, or since a step of the clock [ns]
   std::vector<std::int64_t> firsts_;         // of the recording, as in Recording
+  std::vector<std::int64_t> settled_at_;     // when an event type has settled [ns], by id
+  std::vector<EventId> settling_;            // those that have not
   Recording recording_;                      // the open one
   std::uint64_t part_windows_ = 0;           // length of its parts
   std::unique_ptr<MisleadingPairs> misleading_;

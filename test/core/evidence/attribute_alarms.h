@@ -1,0 +1,106 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "attributed.h"
+#include "self_awareness/core/evidence/judge.h"
+#include "self_awareness/core/learn.h"
+#include "self_awareness/core/verdict/detector.h"
+
+/// Robots of two sources, from their events to the alarm, for the tests of the channels of
+/// attributes.
+namespace self_awareness::core::evidence {
+
+constexpr char kAge[] = "age";
+constexpr char kLost[] = "lost";
+constexpr char kSize[] = "size";
+constexpr char kFrozen[] = "frozen";
+constexpr std::int64_t kLength = 200 * kSecond;
+constexpr std::int64_t kFault = 60 * kSecond;  // after the start of a recording
+
+/// Two sources, the second of which is always healthy.
+inline Events robot(const Source& source, unsigned seed, std::int64_t length = kLength) {
+  const std::int64_t start = (seed + 1) * kStart;
+  return together({messages(kA, start, start + length, source, seed),
+                   messages(kB, start + 7 * kMillisecond, start + length, {}, seed + 100)});
+}
+
+/// A model of recordings, each of a start of its own.
+inline std::shared_ptr<const core::Model> learned(const std::vector<Events>& recordings) {
+  Learner learner;
+  learner.intern(kTypes[kA]);
+  learner.intern(kTypes[kB]);
+  for (const Events& events : recordings) {
+    learner.add({events, ""});
+  }
+  auto model = std::make_shared<core::Model>(learner.learn());
+  EXPECT_TRUE(model->calibration) << learner.why();
+  return model;
+}
+
+inline std::shared_ptr<const core::Model> learned(const Source& source) {
+  std::vector<Events> recordings;
+  for (unsigned seed = 0; seed < 4; ++seed) {
+    recordings.push_back(robot(source, seed));
+  }
+  return learned(recordings);
+}
+
+inline bool watches(const core::Model& model, const std::string& channel, EventId id = kA) {
+  const std::size_t track = indexOf(model.watched.tracks, channel, id, id);
+  return track < model.watched.tracks.size() && !std::isnan(model.limits()->tracks[track]);
+}
+
+/// The begin of an alarm.
+struct Begun {
+  std::int64_t time = 0;  // end of the window [ns]
+  std::string evidence;
+  std::vector<Suspect> suspects;
+};
+
+/// Judges a recording; tells the handler of every verdict.
+template <typename OnVerdict>
+void judge(const core::Model& model, const Events& events, OnVerdict onVerdict) {
+  Detector detector(makeJudge(std::make_shared<Model>(model.watched), model.limits(), model.window,
+                              std::make_shared<SourceGraph>()),
+                    model.window, {}, onVerdict);
+  for (const Event& event : events) {
+    detector.add(event);
+  }
+  detector.finish();
+}
+
+/// The first alarm of a recording.
+inline std::optional<Begun> alarmIn(const core::Model& model, const Events& events) {
+  std::optional<Begun> alarm;
+  judge(model, events, [&](const Verdict& verdict) {
+    if (!alarm && verdict.alarm) {
+      alarm = {verdict.window->start + model.window, verdict.evidence, verdict.suspects};
+    }
+  });
+  return alarm;
+}
+
+/// Changes what all messages of the first source say.
+template <typename Change>
+std::vector<Events> recordingsWhere(Change change) {
+  std::vector<Events> recordings;
+  for (unsigned seed = 0; seed < 4; ++seed) {
+    recordings.push_back(robot({}, seed));
+    std::size_t number = 0;
+    for (Event& event : recordings.back()) {
+      if (event.id == kA) {
+        change(event, number++);
+      }
+    }
+  }
+  return recordings;
+}
+
+}  // namespace self_awareness::core::evidence
