@@ -116,6 +116,9 @@ void LiveEvents::onArrival(const Arrival& arrival) {
   }
   core::Event event{handlers_.time ? handlers_.time(arrival.stamp, arrival.steady) : arrival.stamp,
                     0, arrival.attributes};
+  if (event.stamp != arrival.stamp) {
+    event.attributes = {};  // the age is that by a clock which does not count
+  }
   if (!encoder->needsContent()) {
     event.id = encoder->id();
   } else if (!arrival.content) {  // it came before its content was wanted, or is too long

@@ -55,7 +55,9 @@ class LiveEventsTest : public testing::Test {
     LiveEvents::Handlers handlers;
     handlers.on_event = [this](const core::Event& event) {
       types_.push_back(vocabulary_.at(event.id).type);
+      attributes_known_ = event.attributes.isKnown();
     };
+    handlers.time = [this](std::int64_t ros_time, std::int64_t) { return ros_time + ahead_; };
     handlers.on_arrivals = [this] { ++wakes_; };
     live_events_ = std::make_unique<LiveEvents>(node_handle_, kQueueSize, handlers);
     subscriptions_ = std::make_unique<Subscriptions>(live_events_->arrivals());
@@ -117,6 +119,8 @@ class LiveEventsTest : public testing::Test {
   ros::CallbackQueue queue_;
   core::Vocabulary vocabulary_;
   Types types_;
+  bool attributes_known_ = false;  // of the last event
+  std::int64_t ahead_ = 0;         // of ROS time, the time that counts [ns]
   int wakes_ = 0;
   std::unique_ptr<LiveEvents> live_events_;
   std::unique_ptr<Subscriptions> subscriptions_;
@@ -139,6 +143,16 @@ TEST_F(LiveEventsTest, ReadsAMessageFromTheFirstOnWhereTheEncodingNeedsIt) {
   publish(publisher, message("on"));
   publish(publisher, message("off"));
   EXPECT_EQ(delivered(), (Types{"std_msgs/String[data=on]", "std_msgs/String[data=off]"}));
+}
+
+TEST_F(LiveEventsTest, WhereRosTimeDoesNotCountAttributesAreNotKnown) {
+  const ros::Publisher publisher = advertise("/a");
+  for (const std::int64_t ahead : {0L, 1L, 0L}) {
+    ahead_ = ahead;
+    publish(publisher, message(""));
+    EXPECT_EQ(delivered(), Types{"std_msgs/String"});
+    EXPECT_EQ(attributes_known_, ahead == 0);
+  }
 }
 
 TEST_F(LiveEventsTest, AnotherEncoderMayReadWhatThisOneDoesNot) {
