@@ -3,6 +3,8 @@
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 
+#include <algorithm>
+#include <list>
 #include <memory>
 #include <utility>
 
@@ -20,12 +22,14 @@ class MessagesOfChunks : public BagMessages {
       : file_(path), numbers_(std::move(numbers)), largest_(largest) {}
 
   void read(const BagIndexEntry& entry, std::vector<std::uint8_t>& content) override {
-    const std::string_view bytes = records(entry).data(head(entry));
+    const ChunkRecords& records = this->records(entry.chunk);
+    const std::string_view bytes = records.data(head(records, entry));
     content.assign(bytes.begin(), bytes.end());
   }
 
   void pass(const BagIndexEntry& entry, AttributeReader& reader) override {
-    const PiecesOfFile::Head message = head(entry);
+    const ChunkRecords& records = this->records(entry.chunk);
+    const PiecesOfFile::Head message = head(records, entry);
     const std::uint64_t size = message.end - message.data;
     reader.begin(size);
     for (AttributeReader::Part part = reader.next(); part.begin < part.end; part = reader.next()) {
@@ -34,7 +38,7 @@ class MessagesOfChunks : public BagMessages {
       PiecesOfFile::Head piece = message;
       piece.data = message.data + part.begin;
       piece.end = message.data + part.end;
-      const std::string_view bytes = records_->data(piece, size <= kAtOnce ? kAhead : 0);
+      const std::string_view bytes = records.data(piece, size <= kAtOnce ? kAhead : 0);
       reader.skipTo(part.begin);
       reader.add(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
     }
@@ -45,23 +49,49 @@ class MessagesOfChunks : public BagMessages {
   // After a small message, more small ones follow: one call of the system reads many.
   static constexpr std::uint64_t kAhead = 8192;  // [bytes]
 
-  /// The records of the chunk that a message is in.
-  ChunkRecords& records(const BagIndexEntry& entry) {
-    if (!records_ || chunk_position_ != entry.chunk) {
-      const Chunk chunk(file_, entry.chunk);
-      if (chunk.isPacked() && chunk.unpacked_bytes > largest_) {
-        throw FormatError("a chunk that announces too much");
-      }
-      records_.reset();  // the memory holds one
-      records_ = std::make_unique<ChunkRecords>(file_, chunk);
-      chunk_position_ = entry.chunk;
+  // Messages may come from several chunks in turn: in memory, unpacked, these have together at
+  // most so many bytes, but for a single one.
+  static constexpr std::uint64_t kMostUnpacked = std::uint64_t{64} << 20U;
+  static constexpr std::size_t kMostChunks = 64;
+
+  struct KeptChunk {
+    std::uint64_t position = 0;
+    std::uint64_t unpacked = 0;  // in memory [bytes]
+    std::unique_ptr<const ChunkRecords> records;
+  };
+
+  /// The records of a chunk.
+  const ChunkRecords& records(std::uint64_t position) {
+    const auto kept = std::find_if(chunks_.begin(), chunks_.end(), [&](const KeptChunk& chunk) {
+      return chunk.position == position;
+    });
+    if (kept != chunks_.end()) {
+      chunks_.splice(chunks_.begin(), chunks_, kept);
+      return *chunks_.front().records;
     }
-    return *records_;
+    const Chunk chunk(file_, position);
+    if (chunk.isPacked() && chunk.unpacked_bytes > largest_) {
+      throw FormatError("a chunk that announces too much");
+    }
+    const std::uint64_t unpacked = chunk.isPacked() ? chunk.unpacked_bytes : 0;
+    makeRoom(unpacked);
+    chunks_.push_front({position, unpacked, std::make_unique<const ChunkRecords>(file_, chunk)});
+    unpacked_ += unpacked;
+    return *chunks_.front().records;
+  }
+
+  /// Forgets those that were read longest ago, until there is room for another one.
+  void makeRoom(std::uint64_t unpacked) {
+    while (!chunks_.empty() &&
+           (unpacked_ + unpacked > kMostUnpacked || chunks_.size() >= kMostChunks)) {
+      unpacked_ -= chunks_.back().unpacked;
+      chunks_.pop_back();
+    }
   }
 
   /// Where a message lies.
-  PiecesOfFile::Head head(const BagIndexEntry& entry) {
-    const PiecesOfFile::Head found = records(entry).message(entry.offset);
+  PiecesOfFile::Head head(const ChunkRecords& records, const BagIndexEntry& entry) const {
+    const PiecesOfFile::Head found = records.message(entry.offset);
     check(found.header, entry);
     return found;
   }
@@ -75,10 +105,10 @@ class MessagesOfChunks : public BagMessages {
   }
 
   PiecesOfFile file_;
-  std::vector<std::uint32_t> numbers_;     // of the connections, in the file
-  std::uint64_t largest_;                  // that a chunk may be when it is unpacked [bytes]
-  std::unique_ptr<ChunkRecords> records_;  // of the chunk that was read last
-  std::uint64_t chunk_position_ = 0;
+  std::vector<std::uint32_t> numbers_;  // of the connections, in the file
+  std::uint64_t largest_;               // that a chunk may be when it is unpacked [bytes]
+  std::list<KeptChunk> chunks_;         // that was read last first
+  std::uint64_t unpacked_ = 0;          // of all of them [bytes]
 };
 
 class MessagesOfRosbag : public BagMessages, private rosbag::View {

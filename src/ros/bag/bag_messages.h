@@ -12,8 +12,8 @@
 namespace self_awareness::ros1 {
 
 /// Reads the contents of a bag's messages. rosbag reads the whole chunk around a message; this
-/// class reads the message alone, unless the chunk is compressed. Such a chunk is unpacked once
-/// for all of its messages that are read in a row.
+/// class reads the message alone, unless the chunk is compressed. The last few of such chunks stay
+/// unpacked.
 class BagMessages {
  public:
   virtual ~BagMessages() = default;

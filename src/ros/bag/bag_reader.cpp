@@ -159,16 +159,20 @@ void BagReader::read(const Encoder& encoder, const TimeRange& range, const Handl
         continue;
       }
       AttributeReader& reader = attributes[entry.connection];
-      messages->pass(entry, reader);
-      const core::Attributes found = reader.end(entry.stamp);
-      if (!accepted) {
-        continue;
-      }
-      if (connection_encoder->needsContent()) {
+      const bool needs_content = accepted && connection_encoder->needsContent();
+      if (needs_content) {
         messages->read(entry, content);
-        handler({entry.stamp, connection_encoder->id(content.data(), content.size()), found});
+        reader.begin(content.size());
+        reader.add(content.data(), content.size());
       } else {
-        handler({entry.stamp, connection_encoder->id(), found});
+        messages->pass(entry, reader);
+      }
+      const core::Attributes found = reader.end(entry.stamp);
+      if (accepted) {
+        handler({entry.stamp,
+                 needs_content ? connection_encoder->id(content.data(), content.size())
+                               : connection_encoder->id(),
+                 found});
       }
     }
   } catch (const rosbag::BagException& error) {

@@ -204,6 +204,31 @@ TEST_F(BagReaderTest, HardlyAnythingIsReadOfABagWithImages) {
   EXPECT_LT(read, 0.05 * static_cast<double>(fs::file_size(path("images.bag"))));
 }
 
+TEST_F(BagReaderTest, ChunksThatTakeTurnsAreUnpackedOnce) {
+  constexpr int kChunks = 3;
+  constexpr int kOfEach = 40;
+  std::mt19937 random(1);
+  rosbag::Bag bag(path("turns.bag"), rosbag::bagmode::Write);
+  bag.setCompression(rosbag::compression::LZ4);
+  bag.setChunkThreshold(300000);
+  for (int chunk = 0; chunk < kChunks; ++chunk) {
+    for (int k = 0; k < kOfEach; ++k) {
+      std_msgs::String message;
+      message.data.resize(10000);
+      for (char& c : message.data) {
+        c = static_cast<char>(random());
+      }
+      bag.write("/a", ros::Time(100, 0) + ros::Duration(kChunks * k + chunk), message,
+                header("/node"));
+    }
+  }
+  bag.close();
+  const std::uint64_t before = bytesRead();
+  EXPECT_EQ(read(path("turns.bag")).size(), static_cast<std::size_t>(kChunks * kOfEach));
+  EXPECT_LT(static_cast<double>(bytesRead() - before),
+            4 * static_cast<double>(fs::file_size(path("turns.bag"))));
+}
+
 TEST_F(BagReaderTest, ABagOfTheFormerFormatIsLeftToRosbag) {
   const std::string bag = path("former.bag");
   bag_bytes::writeFile(bag, bag_bytes::formerBag());
