@@ -110,8 +110,9 @@ std::set<EventId> NewMode::stopped(const std::vector<EventId>& silent,
   std::map<std::vector<EventId>, bool> answers;  // most stop with the same ones
   for (std::size_t track = 0; track < shares.size(); ++track) {
     const EventId id = model_->tracks()[track].to;
-    if (shares[track] <= 1 || model_->finding(track) != Finding::kSilent ||
-        stopped.count(id) > 0) {
+    const Finding finding = model_->finding(track);
+    if (shares[track] <= 1 || !heard.hasSeen(id) || stopped.count(id) > 0 ||
+        (finding != Finding::kSilent && finding != Finding::kUnanswered)) {
       continue;
     }
     const std::vector<EventId> together = stoppedWith(id, silent, heard);

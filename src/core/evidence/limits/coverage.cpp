@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "core/evidence/channel/channel.h"
 #include "self_awareness/core/evidence/count/gap_distribution.h"
 #include "self_awareness/core/stream/event.h"
 

@@ -200,6 +200,57 @@ TEST_F(RootWithoutTrackTest, WhoWasSilentForLongBeforeIsNotMissed) {
   EXPECT_TRUE(isExcused(kEnd - kAgo - 13 * kSecond));
 }
 
+// Five that run in sessions only, and an IMU that always does.
+class CompanyOfOthersTest : public testing::Test {
+ protected:
+  CompanyOfOthersTest() { graph_->connect("/laser", "/scan", "/slam"); }
+
+  static Events robot(std::int64_t start, unsigned seed) {
+    Events events = irregular(kImu, start, start + kEnd, 100 * kMillisecond, seed + kImu);
+    for (std::int64_t session = start; session < start + kEnd; session += 20 * kSecond) {
+      for (EventId id = 0; id < kImu; ++id) {
+        events = together({events, irregular(id, session, session + 10 * kSecond,
+                                             100 * kMillisecond, seed + id)});
+      }
+    }
+    return events;
+  }
+
+  std::shared_ptr<SourceGraph> graph_ = std::make_shared<SourceGraph>();
+  std::shared_ptr<const Model> model_ = std::make_shared<Model>(
+      watch(countsOf({robot(0, 100)}, kRobot), countsOf({robot(kStart, 200)}, kRobot)));
+};
+
+TEST_F(CompanyOfOthersTest, ThatGoesOnMakesThemNoFaultEither) {
+  constexpr std::int64_t kBefore = 3 * kSecond;
+  Scorer scorer(model_, kWindow);
+  for (EventId id = 0; id < kSlam; ++id) {
+    scorer.add({kEnd - kBefore, id});
+  }
+  for (std::int64_t stamp = kEnd - kBefore; stamp < kEnd; stamp += 100 * kMillisecond) {
+    scorer.add({stamp, kSlam});
+    scorer.add({stamp, kImu});
+  }
+  scorer.closeWindow(kEnd);
+  std::vector<double> shares(model_->tracks().size(), 0);
+  std::size_t beyond = 0;
+  for (std::size_t track = 0; track < shares.size(); ++track) {
+    const Track& watched = model_->tracks()[track];
+    if (channelName(watched) == "company" && watched.to < kSlam) {
+      shares[track] = 2;
+      ++beyond;
+    }
+  }
+  ASSERT_GE(beyond, 4U);
+  const Limits limits{std::vector<double>(shares.size(), 1), {}};
+  NewMode new_mode(model_, graph_);
+  const auto found =
+      new_mode.excuse(shares, limits, scorer, std::vector<bool>(model_->size(), false));
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->components, (Strings{"/arm", "/laser", "/lidar", "/wheels"}));
+  EXPECT_EQ(shares, std::vector<double>(shares.size(), 0));
+}
+
 TEST(NewModeOfALargeRobot, TakesLittleTimeWhileAllWaitForOneThatDied) {
   constexpr EventId kComponents = 60;
   constexpr EventId kTypes = 150;
