@@ -217,6 +217,8 @@ void bindCalibration(py::module& module);
 void bindEvidence(py::module& module);
 /// Binds the evidence of components over time (lanes_bindings.cpp).
 void bindLanes(py::module& module);
+/// Binds the test for drift (drift_bindings.cpp).
+void bindDrift(py::module& module);
 /// Binds result bags (result_bindings.cpp).
 void bindResults(py::module& module);
 /// Binds model, scores, verdicts and ROC (detector_bindings.cpp).

@@ -46,7 +46,8 @@ Lanes lanesOf(const ros1::TrainedModel& trained, const std::shared_ptr<evidence:
               const core::Detector::Parameters& parameters, const Stamps& stamps, const Ids& ids,
               std::optional<std::int64_t> end, const std::vector<core::EventType>& event_types,
               std::vector<std::int64_t> starts, std::vector<std::int64_t> clock_steps,
-              const std::vector<core::Waiting>& waiting, const MessageAttributes& attributes) {
+              const std::vector<core::Waiting>& waiting, const MessageAttributes& attributes,
+              const std::vector<core::Acceptance>& accepted) {
   evidence::Lanes lanes(model, std::move(starts));
   core::Detector detector(
       evidence::makeJudge(model, trained.limits(), trained.window,
@@ -56,6 +57,7 @@ Lanes lanesOf(const ros1::TrainedModel& trained, const std::shared_ptr<evidence:
                             lanes.add(window, shares);
                           }),
       trained.window, parameters, [](const core::Verdict&) {});
+  detector.accept(acceptancesOf(accepted));
   judgeRecording(detector, stamps, ids, attributes, core::ClockSteps(std::move(clock_steps)), end,
                  waiting);
   return {model->components(), lanes.columns()};
@@ -91,6 +93,7 @@ void bindLanes(py::module& m) {
         py::arg("stamps"), py::arg("ids"), py::arg("end"), py::arg("event_types"),
         py::arg("starts"), py::arg("clock_steps") = std::vector<std::int64_t>(),
         py::arg("waiting") = std::vector<core::Waiting>(), py::arg("attributes") = py::none(),
+        py::arg("accepted") = std::vector<core::Acceptance>(),
         "EvidenceLanes of a recording, judged as by judge_by_evidence. starts: of the stretches\n"
         "[ns], in order; ValueError if they are not.");
 }

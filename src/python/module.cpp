@@ -21,4 +21,5 @@ PYBIND11_MODULE(_core, m) {
   self_awareness::python::bindAccepted(m);
   self_awareness::python::bindDetector(m);
   self_awareness::python::bindLanes(m);
+  self_awareness::python::bindDrift(m);
 }

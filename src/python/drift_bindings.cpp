@@ -1,0 +1,33 @@
+#include <pybind11/stl.h>
+
+#include "bindings.h"
+#include "core/evidence/limits/drift.h"
+
+namespace self_awareness::python {
+
+using core::evidence::Drift;
+
+void bindDrift(py::module& m) {
+  py::class_<Drift::Component>(m, "ComponentDrift", "How far a component has drifted.")
+      .def_readonly("evidence", &Drift::Component::evidence, "of the test; 1 at the beginning")
+      .def_readonly("usual", &Drift::Component::usual,
+                    "median of its largest shares; 1 is the limit")
+      .def_readonly("last", &Drift::Component::last, "share of the last sample")
+      .def_readonly("told_by", &Drift::Component::told_by,
+                    "number of the sample, from 1, that told it first; 0: none did");
+  py::class_<Drift>(m, "Drift",
+                    "Tells that what is heard drifts towards the limits: a test whose false\n"
+                    "alarms over a lifetime are bounded (docs/learn_more.md).")
+      .def(py::init<std::size_t>(), py::arg("components"))
+      .def("add", &Drift::add, py::arg("shares"),
+           "Takes in the next sample: the largest share of its limit of each component.\n"
+           "ValueError if their number is another one, or one is not finite or below 0.")
+      .def("component", &Drift::component, py::arg("number"))
+      .def_property_readonly("samples", &Drift::samples, "number of samples so far")
+      .def_property_readonly("needed", &Drift::needed, "evidence from which on it is told")
+      .def_property_readonly_static(
+          "FALSE_ALARMS", [](const py::object&) { return Drift::kFalseAlarms; },
+          "probability that a robot in which nothing changes is ever told to drift");
+}
+
+}  // namespace self_awareness::python
