@@ -11,8 +11,9 @@ from self_awareness import (EventType, ModelFileError, PaperModel, ResultBag, Tr
                             recordings_in_event_log)
 from self_awareness.commands import cli
 from self_awareness.judging import EVIDENCE
+from self_awareness.learning.age import age_of, logs_of
 from self_awareness.recordings import is_bag
-from self_awareness.reporting import histogram_text
+from self_awareness.reporting import age_text, histogram_text
 from self_awareness.reporting import (coverage_text, relations_text, robots_text, tuning_text,
                                       unheard_text)
 from self_awareness.reporting.event_log_summary import summarise_event_log
@@ -32,6 +33,9 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 
 def _info(arguments: argparse.Namespace) -> None:
+    if arguments.age is not None:
+        _info_of_age(arguments)
+        return
     recordings = recordings_in_event_log(arguments.model)
     if recordings is not None:
         _info_of_log(arguments, recordings)
@@ -48,6 +52,18 @@ def _info(arguments: argparse.Namespace) -> None:
         print(json.dumps(summarise(model), indent=2, allow_nan=False))
     else:
         _print(summarise(model))
+
+
+def _info_of_age(arguments: argparse.Namespace) -> None:
+    for option, given in (('pair', arguments.pair), ('tuning', arguments.tuning)):
+        if given:
+            raise ValueError(f'--{option}: says nothing of an age (--age)')
+    found = age_of(arguments.model, _load(arguments.model),
+                   logs_of(arguments.model, arguments.age))
+    if arguments.json:
+        print(json.dumps(age_text.summarise(found), indent=2, allow_nan=False))
+    else:
+        _print_lines(age_text.lines(found))
 
 
 def _load(path: str) -> TrainedModel:
@@ -287,4 +303,7 @@ def _parser() -> argparse.ArgumentParser:
     how.add_argument('--pair', nargs=2, metavar=('A', 'B'),
                      help="draw the delays from the last A to the current B; event types are "
                           "written 'SOURCE SCOPE TYPE', and a part that only one has is enough")
+    parser.add_argument('--age', nargs='*', metavar='LOG',
+                        help='say how far recordings of normal operation since have drifted from '
+                             'what the model was learned from (default: those of MODEL.kept)')
     return parser

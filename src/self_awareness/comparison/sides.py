@@ -5,13 +5,13 @@ import copy
 import os
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Dict, Iterator, List, Optional, Set, Tuple
+from typing import Dict, Iterable, Iterator, List, Optional, Set, Tuple
 
 import numpy as np
 
 from self_awareness import (EventType, EvidenceCounts, EvidenceModel, TrainedModel, Training,
                             recordings, recordings_in_event_log)
-from self_awareness.recordings import BagPart, RecordingEvents
+from self_awareness.recordings import BagPart, RecordingEvents, expand
 from self_awareness.stamps import SECOND_NS
 
 Kind = Tuple[str, str, str]
@@ -102,9 +102,26 @@ def read_sides(before: str, after: str) -> Tuple[Side, Side]:
     like = next(model for model in models if model is not None)
     sides: List[Side] = []
     for name, model in zip((before, after), models):
-        sides.append(_recording_side(name, like) if model is None else Side(name, model, False))
+        sides.append(_recording_side(name, expand([BagPart.parse(name)]), like)
+                     if model is None else Side(name, model, False))
     _check(*sides)
     return sides[0], sides[1]
+
+
+def with_recordings(path: str, name: str, parts: Iterable[BagPart]) -> Tuple[Side, Side]:
+    """Return a model, and recordings that are called by one name, as the two sides.
+
+    Raises:
+        BagError, ModelFileError: a file cannot be read.
+        ValueError: the model was not trained for the evidence detector, or knows none of a
+            recording.
+    """
+    model = TrainedModel.load(path)
+    try:
+        model.require('evidence')
+    except ValueError as error:
+        raise ValueError(f'{path}: {error}') from error
+    return Side(path, model, False), _recording_side(name, parts, model)
 
 
 def _model_of(name: str) -> Optional[TrainedModel]:
@@ -122,11 +139,11 @@ def _model_of(name: str) -> Optional[TrainedModel]:
     return model
 
 
-def _recording_side(name: str, like: TrainedModel) -> Side:
+def _recording_side(name: str, parts: Iterable[BagPart], like: TrainedModel) -> Side:
     training = Training(copy.copy(like.encoding), like.bin_size, like.window, like.horizon_bins,
                         True, False, like.tuning)
     ends: Dict[Kind, End] = {}
-    for part in recordings.expand([BagPart.parse(name)]):
+    for part in parts:
         recording = recordings.read(like, part)
         training.add_events(recording.event_types, recording.stamps, recording.ids,
                             recording.recording, clock_steps=recording.clock_steps)

@@ -6,7 +6,7 @@ import shlex
 import subprocess
 import sys
 import tempfile
-from typing import Callable
+from typing import Callable, Optional
 
 import roslib.packages
 
@@ -32,7 +32,7 @@ def executable(name: str) -> str:
 
 
 def train_and_calibrate(division: Division, model: str, folder: str, budget: float,
-                        interrupted: Callable[[], bool]) -> None:
+                        interrupted: Callable[[], bool], add_to: Optional[str] = None) -> None:
     """Learn a model, and print what it can find.
 
     The programs are processes of their own: a robot runs beside them, so they stand back, and
@@ -44,6 +44,7 @@ def train_and_calibrate(division: Division, model: str, folder: str, budget: flo
         folder: where there is space for the model that has no limits yet.
         budget: false alarms an hour that the limits allow.
         interrupted: asked from time to time whether to stop.
+        add_to: the model whose training it is added to; None: it is a new one.
 
     Raises:
         ProgramError: one of them says why it cannot do it, or is interrupted; or there is nothing
@@ -53,7 +54,8 @@ def train_and_calibrate(division: Division, model: str, folder: str, budget: flo
         raise ProgramError('the recordings are too short')
     with tempfile.TemporaryDirectory(prefix='.training', dir=folder) as temporary:
         counted = os.path.join(temporary, 'trained.model')
-        _run(interrupted, 'train', *map(str, division.training), '-o', counted)
+        base = [] if add_to is None else ['--add-to', add_to]
+        _run(interrupted, 'train', *base, *map(str, division.training), '-o', counted)
         _run(interrupted, 'calibrate', '--model', counted,
              '--normal', *map(str, division.calibration), '--budget', f'{budget:g}',
              '--inject', 'crash:*', '-o', model)

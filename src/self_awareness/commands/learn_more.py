@@ -1,0 +1,89 @@
+"""`rosrun self_awareness learn_more`: trains and calibrates again, with what came since."""
+from __future__ import annotations
+
+import argparse
+import os
+from typing import Optional, Sequence
+
+from self_awareness.calibration import limits
+from self_awareness.commands import cli
+from self_awareness.comparison.changes import compare
+from self_awareness.comparison.sides import with_recordings
+from self_awareness.learning import age, more, programs
+from self_awareness.output_files import MODEL, check_outputs
+from self_awareness.reporting import age_text, diff_text
+
+_START_UP_S = 30.0
+_NEW = '.new'
+
+_EPILOG = """\
+What the model was learned from is not learned twice. Recordings in which it finds an alarm or a
+suspicion are left out: accept what is normal first (~accept). Two thirds of each other one are
+trained on, and the limits are found on the rest; recordings that the model was calibrated on are
+calibrated on again if you name them, too. Read what changed before you take the new model.
+examples:
+  learn_more --model robot.model                 with the logs of robot.model.kept
+  learn_more --model robot.model normal_*.bag -o new.model
+  learn_more --model robot.model --take          the old one stays, as robot.model.before
+"""
+
+
+def main(argv: Optional[Sequence[str]] = None) -> int:
+    """Run the program; return its exit code (see cli.run)."""
+    return cli.run(_parser(), _learn_more, argv)
+
+
+def _learn_more(arguments: argparse.Namespace) -> None:
+    new = arguments.output or f'{arguments.model}{_NEW}'
+    if arguments.take and not arguments.logs and os.path.exists(new):
+        _take(new, arguments.model)
+        return
+    parts = age.logs_of(arguments.model, arguments.logs)
+    check_outputs([(new, MODEL)], [arguments.model, *(part.path for part in parts)])
+    trained = cli.load_model(arguments.model, 'evidence')
+    found = age.age_of(arguments.model, trained, parts)
+    for line in age_text.lines(found):
+        print(line)
+    division = more.divided(trained, found, arguments.start_up)
+    if not division.training:
+        raise ValueError('no recording is left to learn from')
+    cli.stand_back()
+    programs.train_and_calibrate(division, new, os.path.dirname(os.path.abspath(new)),
+                                 arguments.budget or found.budget, lambda: False, arguments.model)
+    print('what changed, in the logs')
+    learned = list(dict.fromkeys(part.whole() for part in division.training))
+    for line in diff_text.lines(compare(*with_recordings(arguments.model, 'the logs', learned))):
+        print(f'  {line}')
+    if arguments.take:
+        _take(new, arguments.model)
+    else:
+        print(f'written: {new}; {arguments.model} is as it was (--take takes the new one)')
+
+
+def _take(new: str, model: str) -> None:
+    check_outputs([(model, MODEL)], [new])
+    before = more.take(new, model)
+    print(f'taken: {model} is the new one now, and {before} the old one; a monitor takes it with '
+          '~reload')
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog='learn_more', description=__doc__.split(': ', 1)[1],
+                                     epilog=_EPILOG,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument('logs', nargs='*', metavar='LOG',
+                        help='a recording of normal operation since, or a folder of them '
+                             '(default: MODEL.kept)')
+    parser.add_argument('--model', required=True, metavar='MODEL', help='to add to')
+    parser.add_argument('-o', '--output', metavar='NEW',
+                        help='file to write (default: MODEL.new)')
+    parser.add_argument('--budget', type=cli.budget, metavar='N',
+                        help='false alarms an hour that the limits allow (default: as before, '
+                             f'{limits.BUDGET:g} at first)')
+    parser.add_argument('--start-up', type=cli.offset, default=_START_UP_S, metavar='S',
+                        help='leave out so much after each start of the robot, in s (default: '
+                             f'{_START_UP_S:g})')
+    parser.add_argument('--take', action='store_true',
+                        help='let the new model take the place of MODEL, which is kept; without '
+                             'LOG, the one that is written already')
+    return parser

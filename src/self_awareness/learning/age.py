@@ -1,0 +1,203 @@
+"""How old a model is: how far what was heard since has drifted from what was learned."""
+from __future__ import annotations
+
+import os
+from collections import Counter
+from dataclasses import dataclass, field
+from typing import Dict, List, Sequence, Tuple
+
+from self_awareness import (Acceptance, ComponentDrift, DetectorParameters, Drift, EvidenceModel,
+                            Recording, TrainedModel, accepted_file, evidence_lanes, recordings)
+from self_awareness.judging import evidence_judge
+from self_awareness.recordings import BagPart, RecordingEvents, expand, overlap
+from self_awareness.stamps import SECOND_NS
+
+LEARNED, INCIDENT, SHORT = 'learned from', 'not normal', 'too short'
+"""Why a recording says nothing of a drift."""
+
+_KEPT = '.kept'
+_DAY_NS = 86_400 * SECOND_NS
+_START_NS = 60 * SECOND_NS  # a start of the robot ends with a longer pause, method.md section 3.1
+_SHORTEST_NS = 60 * SECOND_NS
+
+
+@dataclass(frozen=True)
+class Heard:
+    """A recording, as a model judges it.
+
+    Args:
+        part: the whole recording.
+        recording: what a model file says of it.
+        origin: stamp of its first message [ns].
+        left_out: why it says nothing of a drift; empty: it does.
+        why: the same in more words; may be empty.
+        shares: the largest share of its limit, by component; empty: it is left out.
+    """
+
+    part: BagPart
+    recording: Recording
+    origin: int
+    left_out: str = ''
+    why: str = ''
+    shares: Dict[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Age:
+    """What recordings say of a model's age.
+
+    Args:
+        budget: false alarms an hour that the model's limits allow.
+        learned_until: end of the last recording that it was learned from, or calibrated on [ns].
+        heard: the recordings, in the order of time.
+        drift: by component; empty: nothing says anything of it.
+        samples: starts of the robot, or days of one, that the drift comes from.
+        needed: evidence from which on a drift is told.
+    """
+
+    budget: float
+    learned_until: int
+    heard: List[Heard]
+    drift: Dict[str, ComponentDrift]
+    samples: int
+    needed: float
+
+    @property
+    def counted(self) -> List[Heard]:
+        """Return the recordings that are not left out."""
+        return [each for each in self.heard if not each.left_out]
+
+    @property
+    def left_out(self) -> Dict[str, int]:
+        """Return how many recordings are left out, by reason."""
+        return dict(Counter(each.left_out for each in self.heard if each.left_out))
+
+    @property
+    def drifting(self) -> List[str]:
+        """Return the components of which a drift is told, the one with most evidence first."""
+        told = [(drift.evidence, name) for name, drift in self.drift.items() if drift.told_by]
+        return [name for _, name in sorted(told, reverse=True)]
+
+
+def kept_beside(model: str) -> str:
+    """Return the folder of the logs that are kept for a model."""
+    return model + _KEPT
+
+
+def logs_of(model: str, named: Sequence[str]) -> List[BagPart]:
+    """Return the recordings that are named; without any, those that are kept beside the model.
+
+    Raises:
+        BagError: a file cannot be read.
+        ValueError: there is none, or a part of a recording is named.
+    """
+    kept = kept_beside(model)
+    if not named and not os.path.isdir(kept):
+        raise ValueError(f'there is no folder {kept}: name event logs of normal operation '
+                         '(roslaunch self_awareness record.launch)')
+    parts = [BagPart.parse(name) for name in named or [kept]]
+    for part in parts:
+        if part.start is not None:
+            raise ValueError(f'{part}: a part of a recording; name the whole one')
+    return expand(parts)
+
+
+def age_of(path: str, trained: TrainedModel, parts: Sequence[BagPart]) -> Age:
+    """Return what recordings say of the age of a model, which has limits.
+
+    Args:
+        path: of the model: what is accepted lies beside it.
+        trained: the model.
+        parts: whole recordings, of one robot, that are taken for normal.
+
+    Raises:
+        BagError: one cannot be read.
+        ValueError: it is of another robot, or there as well twice; or the model has no limits.
+    """
+    trained.require('evidence')
+    if trained.calibration is None:
+        raise ValueError(f'{path}: has no limits that anything could drift towards (rosrun '
+                         'self_awareness calibrate)')
+    accepted = accepted_file.beside(path)
+    computed = EvidenceModel(trained)
+    heard: List[Heard] = []
+    for part in parts:
+        found = _heard(trained, computed, accepted, part)
+        for other in heard:
+            if overlap(found.recording, other.recording):
+                raise ValueError(f'{part}: the same recording as {other.part}; name it once')
+        heard.append(found)
+    heard.sort(key=lambda each: each.origin)
+    robots = sorted({each.recording.robot for each in heard})
+    if len(robots) > 1:
+        raise ValueError(f'the recordings are of several robots ({", ".join(robots)}); name those '
+                         'of one')
+    samples = _samples([each for each in heard if not each.left_out])
+    components = list(samples[0]) if samples else []
+    drift = Drift(len(components))
+    for sample in samples:
+        drift.add([sample[name] for name in components])
+    learned = [*trained.recordings, *trained.calibration.recordings]
+    return Age(trained.calibration.budget, max((each.end for each in learned), default=0), heard,
+               {name: drift.component(number) for number, name in enumerate(components)},
+               drift.samples, drift.needed)
+
+
+def _heard(trained: TrainedModel, computed: EvidenceModel, accepted: Sequence[Acceptance],
+           part: BagPart) -> Heard:
+    events = recordings.read(trained, part)
+    recording = events.recording
+
+    def left_out(reason: str, why: str = '') -> Heard:
+        return Heard(part, recording, events.origin, reason, why)
+
+    assert trained.calibration is not None
+    if any(overlap(recording, each)
+           for each in (*trained.recordings, *trained.calibration.recordings)):
+        return left_out(LEARNED)
+    parameters = DetectorParameters()
+    first = int(events.stamps[0])
+    if events.end - first < parameters.settle_time + _SHORTEST_NS:
+        return left_out(SHORT)
+    judge = evidence_judge(trained, parameters, computed, accepted)
+    verdicts = judge(events.stamps, events.ids, events.end, events.event_types,
+                     clock_steps=events.clock_steps, waiting=events.waiting,
+                     hosts=dict(events.hosts), missing=events.missing,
+                     attributes=events.attributes)
+    alarms = [*verdicts.alarms, *verdicts.suspicions]
+    if alarms:
+        return left_out(INCIDENT, f'{alarms[0].kind} {alarms[0].culprit}'.strip())
+    return Heard(part, recording, events.origin,
+                 shares=_shares(trained, computed, accepted, parameters, events, first))
+
+
+def _shares(trained: TrainedModel, computed: EvidenceModel, accepted: Sequence[Acceptance],
+            parameters: DetectorParameters, events: RecordingEvents,
+            first: int) -> Dict[str, float]:
+    """Return the largest share of each component, once the detector has settled."""
+    lanes = evidence_lanes(trained, computed, parameters, events.stamps, events.ids, events.end,
+                           list(events.event_types), [first + parameters.settle_time],
+                           list(events.clock_steps), list(events.waiting), events.attributes,
+                           list(accepted))
+    return dict(zip(lanes.components, lanes.shares[:, 0].tolist()))
+
+
+def _samples(heard: Sequence[Heard]) -> List[Dict[str, float]]:
+    """Return the shares of each start of the robot, or of each day of one, in their order.
+
+    Recordings of one start are no independent draws, and what a robot does depends on the time of
+    day: so neither hours nor files are samples.
+    """
+    found: Dict[Tuple[int, int], Dict[str, float]] = {}
+    begin, end, start = 0, -_START_NS - 1, 0
+    for each in heard:
+        robot_start = each.recording.robot_start
+        same = (robot_start == start if robot_start and found
+                else each.origin - end <= _START_NS)
+        if not same or not found:
+            begin = each.origin
+        start, end = robot_start, each.recording.end
+        key = begin, (each.origin - begin) // _DAY_NS
+        before = found.get(key, each.shares)
+        found[key] = {name: max(share, before[name]) for name, share in each.shares.items()}
+    return list(found.values())

@@ -1,0 +1,89 @@
+"""Trains and calibrates a model again, with what was heard since."""
+from __future__ import annotations
+
+import math
+import os
+import shutil
+from typing import List, Sequence
+
+from self_awareness import Recording, TrainedModel, accepted_file
+from self_awareness.learning.age import INCIDENT, LEARNED, Age, Heard
+from self_awareness.learning.division import Division, divide
+from self_awareness.learning.logs import Log
+from self_awareness.output_files import replacing
+from self_awareness.recordings import BagPart
+from self_awareness.stamps import SECOND_NS
+
+_BEFORE = '.before'
+
+
+def divided(trained: TrainedModel, age: Age, start_up: float) -> Division:
+    """Return what of the recordings is trained on, and what the limits are found on.
+
+    Each new recording is cut, as by learn.launch. What the model was calibrated on already is
+    calibrated on again, as far as it is named: training drops what it has shown.
+
+    Args:
+        trained: the model.
+        age: what its recordings say.
+        start_up: left out after each start of the robot [s].
+    """
+    new = [Log(each.part, (each.recording.end - each.origin) / SECOND_NS,
+               each.recording.robot_start or each.origin)
+           for each in age.heard if each.left_out not in (LEARNED, INCIDENT)]
+    division = divide(new, start_up)
+    known = [] if trained.calibration is None else trained.calibration.recordings
+    again = [part for each in age.heard if each.left_out == LEARNED
+             for part in _calibrated_on(each, trained.recordings, known)]
+    return Division(division.training, again + division.calibration)
+
+
+def _calibrated_on(heard: Heard, trained: Sequence[Recording],
+                   calibrated: Sequence[Recording]) -> List[BagPart]:
+    """Return the parts of a recording that were calibrated on, and not trained on since."""
+    parts = []
+    for each in calibrated:
+        if each.fingerprint != heard.recording.fingerprint or any(
+                each.fingerprint == other.fingerprint and each.start <= other.end
+                and other.start <= each.end for other in trained):
+            continue
+        # Whole seconds, as they are printed.
+        begin = math.ceil((each.start - heard.origin) / SECOND_NS)
+        end = math.floor((each.end - heard.origin) / SECOND_NS)
+        parts.append(BagPart(heard.part.path, float(begin), float(end), heard.part.recording,
+                             heard.part.alone))
+    return parts
+
+
+def take(new: str, model: str) -> str:
+    """Let a new model take the place of another one, which stays under another name.
+
+    What was accepted meanwhile stays accepted, unless the new one has learned it.
+
+    Returns:
+        that name.
+
+    Raises:
+        ModelFileError: the new one is damaged, or no model.
+        OSError: a file cannot be written; the old model is in its place.
+    """
+    _, left = accepted_file.learned(accepted_file.beside(model), TrainedModel.load(new))
+    before = _free_name(model)
+    with replacing(before) as temporary:
+        shutil.copyfile(model, temporary)
+    accepted_file.keep(accepted_file.beside(model), before)
+    with replacing(model) as temporary:
+        shutil.copyfile(new, temporary)
+    accepted_file.keep(left, model)
+    for path in (new, accepted_file.path_of(new)):
+        if os.path.exists(path):
+            os.remove(path)
+    return before
+
+
+def _free_name(model: str) -> str:
+    name, number = f'{model}{_BEFORE}', 1
+    while os.path.exists(name):
+        number += 1
+        name = f'{model}{_BEFORE}_{number}'
+    return name
