@@ -98,6 +98,21 @@ void Diagnostics::tellMonitor(const MonitorState& state, Status& status) {
   if (state.recorder) {
     tellRecorder(*state.recorder, status);
   }
+  if (state.kept_logs) {
+    tellKeptLogs(*state.kept_logs, status);
+  }
+}
+
+void Diagnostics::tellKeptLogs(const KeptLogs::Report& report, Status& status) {
+  if (!report.files.error.empty()) {
+    status.mergeSummary(DiagnosticStatus::WARN,
+                        "logs of normal operation cannot be kept: " + report.files.error);
+  }
+  status.add("logs kept to learn from", report.files.written);
+  status.add("logs left out as not normal", report.left_out);
+  if (!report.why.empty()) {
+    status.add("why the last one was", report.why);
+  }
 }
 
 void Diagnostics::tellRecorder(const FlightRecorder::Report& report, Status& status) {

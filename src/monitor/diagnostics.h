@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "flight_recorder.h"
+#include "kept_logs.h"
 #include "not_heard.h"
 #include "ros/verdict/diagnostic_status.h"
 
@@ -36,6 +37,7 @@ struct MonitorState {
   std::string keeper_error;                 ///< why alarm or incidents are not in their files
   double longest_pause = 0;  ///< for which this program stood still, since the last report [s]
   std::optional<FlightRecorder::Report> recorder;  ///< none: there is no recorder
+  std::optional<KeptLogs::Report> kept_logs;       ///< none: nothing is kept to learn from
 };
 
 /// Publishes on /diagnostics (REP-107: OK, WARN, ERROR; never STALE): one status for the whole,
@@ -57,6 +59,7 @@ class Diagnostics {
 
   static void tellMonitor(const MonitorState& state, Status& status);
   static void tellRecorder(const FlightRecorder::Report& report, Status& status);
+  static void tellKeptLogs(const KeptLogs::Report& report, Status& status);
 
   std::string name_;
   std::string hardware_id_;

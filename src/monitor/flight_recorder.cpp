@@ -6,9 +6,8 @@
 #include <cmath>
 #include <utility>
 
-#include "self_awareness/EventLogStart.h"
+#include "recorded_log.h"
 #include "self_awareness/ros/bag/event_log_writer.h"
-#include "self_awareness/ros/output_file.h"
 
 namespace self_awareness {
 namespace {
@@ -19,46 +18,6 @@ constexpr std::int64_t kNameStep = 1000000;  // names tell milliseconds [ns]
 
 std::int64_t nanoseconds(double seconds) {
   return std::llround(seconds * 1e9);
-}
-
-std::size_t bytesOf(const self_awareness::EventType& type) {
-  return sizeof type + type.source.capacity() + type.scope.capacity() + type.type.capacity();
-}
-
-std::size_t bytesOf(const self_awareness::EventLog& part) {
-  std::size_t bytes =
-      sizeof part + part.packed.capacity() + 3 * sizeof(std::int64_t) * part.waited.capacity();
-  for (const self_awareness::EventType& type : part.new_types) {
-    bytes += bytesOf(type);
-  }
-  return bytes;
-}
-
-/// An event log of one recording, as it will be written.
-struct Recording {
-  self_awareness::EventLogStart start;
-  std::shared_ptr<const ros1::Graph> graph;
-  std::vector<self_awareness::EventType> types_before;  // which the parts take for known
-  std::vector<std::shared_ptr<const self_awareness::EventLog>> parts;
-};
-
-void writeLog(const Recording& recording, const std::string& path) {
-  ros1::OutputFile file(path);
-  ros1::EventLogWriter log(file.temporary(), path);
-  log.start(recording.start);
-  if (recording.graph) {
-    log.writeGraph(*recording.graph, static_cast<std::int64_t>(recording.start.begin.toNSec()));
-  }
-  for (const auto& part : recording.parts) {
-    self_awareness::EventLog written = *part;
-    if (part == recording.parts.front()) {
-      written.new_types.insert(written.new_types.begin(), recording.types_before.begin(),
-                               recording.types_before.end());
-    }
-    log.write(std::move(written));
-  }
-  log.close();
-  file.complete();
 }
 
 }  // namespace
@@ -186,7 +145,7 @@ std::string FlightRecorder::newPath(RecorderFolder::Cause cause) {
 void FlightRecorder::write(const std::string& path) {
   packer_.flush(last_);
   const Source source = source_();
-  Recording recording;
+  RecordedLog recording;
   recording.start = ros1::startOfRecording(source.encoding, *first_);
   recording.graph = source.graph;
   recording.types_before = forgotten_types_;

@@ -53,6 +53,12 @@ Monitor::Monitor(ros::NodeHandle node_handle, const ros::NodeHandle& private_nod
                 [this] {
                   return FlightRecorder::Source{session_->encoding(), live_->graph()};
                 }),
+      kept_logs_(
+          parameters_.kept_logs,
+          [this] {
+            return FlightRecorder::Source{session_->encoding(), live_->graph()};
+          },
+          wallNow()),
       keeper_(folderOf(parameters_.recorder), runId()),
       incidents_(folderOf(parameters_.recorder)),
       restarts_(parameters_.detector.settle_time) {
@@ -95,6 +101,7 @@ Monitor::~Monitor() {
 void Monitor::finish() {
   live_->stop();  // first: what it serves uses the recorder
   recorder_.finish(announcer_.alarm().message().level == self_awareness::SelfAwareness::ERROR);
+  kept_logs_.finish();
   keeper_.finish();
   incidents_.finish();
   accepts_.finish();
@@ -131,7 +138,9 @@ std::string Monitor::modelPath() const {
 
 void Monitor::startSession(std::unique_ptr<Session> session) {
   recorder_.restart();  // the events to come are those of another model
+  kept_logs_.endStretch();
   session_ = std::move(session);
+  kept_logs_.setModel(parameters_.model, session_->calibrated());
   quotes_.clear();
   model_error_.clear();
   announcer_.forgetWindow();
@@ -161,6 +170,7 @@ void Monitor::onEvent(const core::Event& event) {
     session_->detector().add(event);
   }
   recorder_.add(event, session_->vocabulary());
+  kept_logs_.add(event, session_->vocabulary());
 }
 
 void Monitor::onContent(core::EventId id, const ros1::Content& content) {
@@ -178,6 +188,7 @@ void Monitor::onClockSet(std::int64_t /*now*/) {
 void Monitor::onPause(std::int64_t now, std::int64_t pause) {
   if (session_) {
     longest_pause_ = std::max(longest_pause_, pause);
+    kept_logs_.leaveOut("this program stood still");
     session_->detector().onPause(now);
   }
 }
@@ -186,12 +197,14 @@ void Monitor::onWaiting(const core::Waiting& waiting) {
   if (session_) {
     session_->detector().hear(waiting);
     recorder_.add(waiting);
+    kept_logs_.add(waiting);
   }
 }
 
 void Monitor::onDropped(const ros1::Publication& publication) {
   if (session_) {
     session_->detector().onMissed(session_->typesOf(publication), live_->now());
+    kept_logs_.leaveOut("messages were dropped");
   }
 }
 
@@ -201,6 +214,10 @@ void Monitor::onTick(std::int64_t now) {
     session_->detector().advance(now - kGrace);
   }
   recorder_.advance(now - kGrace, steadyNow());
+  if (mutes_.mutesAll()) {
+    kept_logs_.leaveOut("maintenance");
+  }
+  kept_logs_.advance(now - kGrace);
   followRestarts(now);
   incidents_.advance(steadyNow());
   mutes_.advance(steadyNow());
@@ -212,6 +229,7 @@ void Monitor::restart() {
   heard_.onClockStep();
   restarts_.onClockSet();
   recorder_.restart();
+  kept_logs_.endStretch();
   standDown(ros1::kClockWasSet);
 }
 
@@ -233,6 +251,9 @@ void Monitor::resume() {
 
 void Monitor::onVerdict(const core::Verdict& verdict) {
   const bool stood = announcer_.alarm().message().level == self_awareness::SelfAwareness::ERROR;
+  if (verdict.alarm || verdict.suspicion) {
+    kept_logs_.leaveOut(verdict.alarm ? "an alarm" : "a suspicion");
+  }
   if (verdict.alarm && !stood) {
     alarm_file_ = recorder_.onAlarm(steadyNow());
   }

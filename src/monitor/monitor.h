@@ -17,6 +17,7 @@
 #include "diagnostics.h"
 #include "flight_recorder.h"
 #include "incident_keeper.h"
+#include "kept_logs.h"
 #include "live_source.h"
 #include "log_quotes.h"
 #include "mute_calls.h"
@@ -85,6 +86,10 @@ namespace self_awareness {
 /// - `~recorder/disk` (int, MB; default: 200; 1 to 1000000): most of all files together.
 /// - `~recorder/memory` (int, MB; default: 32; 1 to 10000): most for the events in memory; the
 ///   oldest are forgotten. Files that the disk does not take keep as much each, three at most.
+/// - `~learn_more` (bool; default: false): event logs of normal operation are kept in MODEL.kept,
+///   beside the model, to learn more from (KeptLogs).
+/// - `~learn_more_disk` (int, MB; default: 500; 1 to 1000000): most of all these logs; the oldest
+///   are removed.
 /// - `~diagnostic_period` (double, s; default: 1.0; 0.1 to 3600): time between two
 ///   reports on /diagnostics (steady time); a change of the level is reported at once.
 /// - `~diagnostic_bytes` (int, bytes a second; default: 2000; 100 to 10000000): most on
@@ -103,7 +108,7 @@ namespace self_awareness {
 ///
 /// **Files**: those of the flight recorder; the alarm that stands (AlarmKeeper) and the last
 /// incidents (IncidentKeeper): a monitor that is started again goes on with them. MODEL.accepted,
-/// beside the model: what is accepted.
+/// beside the model: what is accepted. MODEL.kept: logs of normal operation (KeptLogs).
 ///
 /// **Services**
 ///
@@ -164,6 +169,7 @@ class Monitor : public NodeProgram, public LiveSource::Listener {
   void onWaiting(const core::Waiting& waiting) override;
   void onDropped(const ros1::Publication& publication) override;
   void onGraph(const ros1::Graph& graph) override;
+  void onMasterRestart(std::int64_t now) override;
   void onTick(std::int64_t now) override;
   void onReport() override;
 
@@ -218,6 +224,7 @@ class Monitor : public NodeProgram, public LiveSource::Listener {
   ros1::Announcer announcer_;
   ros1::HeardTally heard_;
   FlightRecorder recorder_;
+  KeptLogs kept_logs_;
   AlarmKeeper keeper_;
   IncidentKeeper incidents_;
   Restarts restarts_;

@@ -64,6 +64,9 @@ void Monitor::onReport() {
   if (recorder_.enabled()) {
     state.recorder = recorder_.report();
   }
+  if (kept_logs_.enabled()) {
+    state.kept_logs = kept_logs_.report();
+  }
   diagnostics_.publish(state);
 }
 

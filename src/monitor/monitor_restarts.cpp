@@ -11,6 +11,10 @@
 
 namespace self_awareness {
 
+void Monitor::onMasterRestart(std::int64_t /*now*/) {
+  kept_logs_.onRobotStart(wallNow());
+}
+
 void Monitor::onGraph(const ros1::Graph& graph) {
   session_->addEdges(graph, ros::this_node::getName());
   const std::int64_t now = live_->now();

@@ -2,6 +2,7 @@
 
 #include <ros/console.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -108,6 +109,11 @@ void MuteCalls::log(const self_awareness::SelfAwareness& alarm) const {
   } else {
     ROS_INFO("%s", alarm.message.c_str());
   }
+}
+
+bool MuteCalls::mutesAll() const {
+  return std::any_of(mutes_.list().begin(), mutes_.list().end(),
+                     [](const core::Mute& mute) { return mute.mutesAll(); });
 }
 
 std::string MuteCalls::ofWhatStands() const {

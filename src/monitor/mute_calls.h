@@ -48,6 +48,8 @@ class MuteCalls {
   /// Why what stands is not told: "/player until 15:04:11 UTC, by /rqt"; empty: it is told, or
   /// nothing stands.
   std::string ofWhatStands() const;
+  /// Whether everything is muted: maintenance.
+  bool mutesAll() const;
   /// All mutes in words, with what they have muted so far.
   std::vector<std::string> inWords() const;
 

@@ -69,6 +69,9 @@ MonitorParameters MonitorParameters::load(const ros::NodeHandle& private_node_ha
   recorder.files = reader.wholeNumber("recorder/files", recorder.files, {1, 100000});
   recorder.disk = reader.wholeNumber("recorder/disk", recorder.disk, {1, 1000000});
   recorder.memory = reader.wholeNumber("recorder/memory", recorder.memory, {1, 10000});
+  KeptLogsParameters& kept_logs = parameters.kept_logs;
+  kept_logs.on = reader.flag("learn_more", kept_logs.on);
+  kept_logs.disk = reader.wholeNumber("learn_more_disk", kept_logs.disk, {1, 1000000});
   parameters.live.diagnostic_period =
       reader.seconds("diagnostic_period", defaults.live.diagnostic_period, {0.1, kHour});
   parameters.diagnostic_bytes = static_cast<std::size_t>(reader.wholeNumber(

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "flight_recorder.h"
+#include "kept_logs.h"
 #include "live_source.h"
 #include "ros/verdict/diagnostic_status.h"
 #include "self_awareness/core/verdict/detector.h"
@@ -27,6 +28,7 @@ struct MonitorParameters {
   std::size_t diagnostic_bytes = 2000;          ///< ~diagnostic_bytes: a second, on /diagnostics
   std::string hardware_id = ros1::kNoHardware;  ///< ~hardware_id: of the diagnostics
   RecorderParameters recorder;                  ///< ~recorder/...
+  KeptLogsParameters kept_logs;                 ///< ~learn_more, ~learn_more_disk
 
   /// Reads the parameters, checks and logs them; warns of those it does not know.
   /// @throw std::invalid_argument names the parameter, its value and what it may be

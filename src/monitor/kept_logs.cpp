@@ -1,0 +1,165 @@
+#include "kept_logs.h"
+
+#include <algorithm>
+#include <boost/filesystem.hpp>
+#include <cstdio>
+#include <ctime>
+#include <regex>
+#include <utility>
+
+#include "recorded_log.h"
+#include "ros/now.h"
+#include "self_awareness/ros/bag/event_log_writer.h"
+
+namespace self_awareness {
+namespace {
+
+namespace filesystem = boost::filesystem;
+
+constexpr char kBeside[] = ".kept";
+constexpr double kPause = 5;  // between two attempts to write a file [s]
+constexpr std::uint64_t kMegabyte = 1000000;
+constexpr std::int64_t kNameStep = 1000000;  // names tell milliseconds [ns]
+
+/// "normal_2026-11-22-05-10-33.123.bag", by UTC: names sort as they were given.
+std::string nameOf(std::int64_t wall_time) {
+  const std::time_t seconds = wall_time / core::kNanosecondsPerSecond;
+  std::tm utc{};
+  gmtime_r(&seconds, &utc);
+  char time[32];
+  std::strftime(time, sizeof time, "%Y-%m-%d-%H-%M-%S", &utc);
+  char milliseconds[16];
+  std::snprintf(milliseconds, sizeof milliseconds, ".%03d",
+                static_cast<int>(wall_time % core::kNanosecondsPerSecond / kNameStep));
+  return std::string("normal_") + time + milliseconds + ".bag";
+}
+
+/// Removes the oldest logs until the rest is within the bound; the newest one stays.
+void removeOldest(const std::string& folder, std::uint64_t most_bytes) {
+  static const std::regex pattern("normal_[-0-9.]+\\.bag");
+  std::vector<filesystem::path> files;
+  std::uint64_t bytes = 0;
+  for (const filesystem::directory_entry& entry : filesystem::directory_iterator(folder)) {
+    if (std::regex_match(entry.path().filename().string(), pattern) &&
+        filesystem::is_regular_file(entry.path())) {
+      files.push_back(entry.path());
+      bytes += filesystem::file_size(entry.path());
+    }
+  }
+  std::sort(files.begin(), files.end());
+  for (std::size_t k = 0; k + 1 < files.size() && bytes > most_bytes; ++k) {
+    bytes -= filesystem::file_size(files[k]);
+    filesystem::remove(files[k]);
+  }
+}
+
+}  // namespace
+
+KeptLogs::KeptLogs(const KeptLogsParameters& parameters,
+                   std::function<FlightRecorder::Source()> source, std::int64_t robot_start)
+    : parameters_(parameters),
+      source_(std::move(source)),
+      robot_start_(robot_start),
+      writer_(kPause) {}
+
+void KeptLogs::setModel(const std::string& path, bool calibrated) {
+  folder_ = enabled() && calibrated ? filesystem::absolute(path).string() + kBeside : "";
+}
+
+void KeptLogs::add(const core::Event& event, const core::Vocabulary& vocabulary) {
+  if (folder_.empty() || finished_) {
+    return;
+  }
+  if (!packer_) {
+    packer_.emplace([this](self_awareness::EventLog part) {
+      bytes_ += bytesOf(part);
+      parts_.push_back(std::make_shared<const self_awareness::EventLog>(std::move(part)));
+    });
+    first_ = event.stamp;
+    last_ = event.stamp;
+  }
+  last_ = std::max(last_, event.stamp);
+  if (why_.empty()) {  // else nobody will read it
+    packer_->add(event, vocabulary);
+  }
+}
+
+void KeptLogs::add(const core::Waiting& waiting) {
+  if (packer_ && why_.empty()) {
+    packer_->add(waiting);
+  }
+}
+
+void KeptLogs::advance(std::int64_t now) {
+  if (!packer_) {
+    return;
+  }
+  last_ = std::max(last_, now);
+  packer_->advance(last_);
+  if (last_ - first_ >= kLongest || bytes_ >= kMostBytes) {
+    endStretch();
+  }
+}
+
+void KeptLogs::leaveOut(const std::string& why) {
+  if (packer_ && why_.empty()) {
+    why_ = why;
+    parts_.clear();
+    bytes_ = 0;
+  }
+}
+
+void KeptLogs::endStretch() {
+  if (!packer_) {
+    return;
+  }
+  if (!why_.empty()) {
+    ++report_.left_out;
+    report_.why = why_;
+  } else if (last_ - first_ >= kShortest) {
+    write();
+  }
+  packer_.reset();
+  parts_.clear();
+  bytes_ = 0;
+  why_.clear();
+}
+
+void KeptLogs::write() {
+  packer_->flush(last_);
+  const FlightRecorder::Source source = source_();
+  RecordedLog log;
+  log.start = ros1::startOfRecording(source.encoding, first_, robot_start_);
+  log.graph = source.graph;
+  log.parts = parts_;
+  ++report_.kept;
+  named_at_ = std::max(wallNow(), named_at_ + kNameStep);
+  writer_.add(
+      {folder_ + "/" + nameOf(named_at_), bytes_,
+       [log = std::move(log), folder = folder_,
+        most = static_cast<std::uint64_t>(parameters_.disk) * kMegabyte](const std::string& file) {
+         filesystem::create_directories(folder);
+         writeLog(log, file);
+         removeOldest(folder, most);
+       }});
+}
+
+void KeptLogs::onRobotStart(std::int64_t robot_start) {
+  endStretch();
+  robot_start_ = robot_start;
+}
+
+void KeptLogs::finish() {
+  if (!std::exchange(finished_, true)) {
+    endStretch();
+    writer_.finish();
+  }
+}
+
+KeptLogs::Report KeptLogs::report() const {
+  Report report = report_;
+  report.files = writer_.report();
+  return report;
+}
+
+}  // namespace self_awareness
