@@ -53,7 +53,8 @@ std::optional<Busy> BusyMachine::late(const std::vector<double>& shares, const S
     heard[component] = heard[component] || scorer.heard().hasSeen(id);
     if (model_->finding(track) == Finding::kSilent) {
       silent[component] = silent[component] || shares[track] > 1;
-    } else if (!model_->tracks()[track].channel->hasShareOfItsOwn()) {  // these say nothing of late
+    } else if (!model_->tracks()[track]
+                    .channel->hasShareOfItsOwn()) {  // these say nothing of late
       largest[component] = std::max(largest[component], shares[track]);
     }
   }

@@ -26,7 +26,8 @@ std::vector<const Channel*> channelsOfTheMethod() {
   static const Lost lost;
   static const Size size;
   static const Frozen frozen;
-  return {&silence, &fewer, &more, &own_gaps, &pairs, &owed, &company, &age, &lost, &size, &frozen};
+  return {&silence, &fewer, &more, &own_gaps, &pairs, &owed,
+          &company, &age,   &lost, &size,     &frozen};
 }
 
 std::string channelName(const Track& track) {

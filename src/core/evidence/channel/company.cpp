@@ -19,7 +19,7 @@ namespace {
 struct Pauses {
   double longer_than = 0;  // [ns]
   double number = 0;
-  double sum = 0;  // [ns]
+  double sum = 0;          // [ns]
   std::size_t starts = 0;  // that have some
 
   Pauses(const Statistics& counts, EventId id, const Tuning& tuning);
@@ -164,7 +164,8 @@ void CompanyState::explain(std::size_t track, const Heard& /*heard*/,
                            const RecentEvents& /*events*/, Suspect& suspect) const {
   const Model& model = expected_.model();
   const auto place = std::lower_bound(expected_.tracks().begin(), expected_.tracks().end(), track);
-  const std::uint32_t number = gone_on_[static_cast<std::size_t>(place - expected_.tracks().begin())];
+  const std::uint32_t number =
+      gone_on_[static_cast<std::size_t>(place - expected_.tracks().begin())];
   Reason& reason = suspect.reason;
   reason.kind = Kind::kDied;
   reason.after = toString(model.vocabulary().at(model.tracks()[track].from));

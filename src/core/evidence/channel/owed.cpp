@@ -22,8 +22,7 @@ class ExpectedAnswers : public Expectation {
     return countsRequests(track) ? model_.tuning().least_requests : model_.tuning().least_deadline;
   }
   double timeUntil(std::size_t track, double evidence) const override {
-    return evidence *
-           (countsRequests(track) ? model_.meanGap(model_.tracks()[track].from) : 1e9);
+    return evidence * (countsRequests(track) ? model_.meanGap(model_.tracks()[track].from) : 1e9);
   }
   double limit(std::size_t track, double largest, double most) const override {
     const EventId to = model_.tracks()[track].to;

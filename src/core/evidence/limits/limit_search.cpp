@@ -113,7 +113,7 @@ LimitSearch::LimitSearch(const Model& model, const LimitFinder::Findings& findin
   for (const auto& [pool, tracks] : pools) {
     const Track& any = model_.tracks()[tracks.front().track];
     const double share = any.channel->hasShareOfItsOwn() ? tuning_.share_of_attribute * all
-                                                       : all / numberOfPools(tuning_);
+                                                         : all / numberOfPools(tuning_);
     search(pool.first, tracks, share, pool.first == Kind::kEvidence ? evidence : gaps);
   }
   rate_ =

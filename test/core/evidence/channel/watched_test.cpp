@@ -227,9 +227,8 @@ TEST(EvidenceTracks, EveryChannelHasANameOfItsOwnAndALabel) {
   EXPECT_EQ(channelNames(),
             (std::vector<std::string>{kOverdue, kFewer, kMore, kOwnGaps, kPairs, kDeadlines,
                                       "company", "age", "lost", "size", "frozen"}));
-  const std::vector<std::string> labels{"overdue",   "rate",    "rate", "pairs", "pairs",
-                                        "deadlines", "company", "age",  "lost",  "size",
-                                        "frozen"};
+  const std::vector<std::string> labels{"overdue", "rate", "rate", "pairs", "pairs", "deadlines",
+                                        "company", "age",  "lost", "size",  "frozen"};
   for (std::size_t k = 0; k < labels.size(); ++k) {
     const Track track = trackOf(channelNames()[k], kA, kA);
     EXPECT_EQ(channelName(track), channelNames()[k]);
