@@ -30,7 +30,8 @@ void Monitor::onReport() {
       if (restarts_.count(each.component, moment.ros) > 0) {
         state.communication.restarts[each.component] = {
             restarts_.inWords(each.component, moment.ros),
-            restarts_.count(each.component, moment.ros) >= Restarts::kMany};
+            restarts_.count(each.component, moment.ros) >= Restarts::kMany &&
+                mutes_.ofComponent(each.component).empty()};
       }
     }
     state.communication.optional = session_->optional();
@@ -47,7 +48,6 @@ void Monitor::onReport() {
   state.clock_stands_still_for = live_->clock().standsStillFor();
   state.longest_pause = core::toSeconds(std::exchange(longest_pause_, 0));
   state.master_answers = discovered.master_answers;
-  state.unheard = withoutOptional(live_->discovery().unheard(), parameters_.optional);
   state.strangers_closed = discovered.strangers_closed;
   state.strangers_newly_closed =
       discovered.strangers_closed - std::exchange(strangers_closed_, discovered.strangers_closed);
@@ -56,6 +56,8 @@ void Monitor::onReport() {
   state.communication.muted = mutes_.ofWhatStands();
   state.clock_rivals = live_->clockRivals();
   if (session_) {
+    state.unheard = withoutOptional(live_->discovery().unheard(), parameters_.optional,
+                                    *session_->encoder());
     not_heard_.set(state.unheard, *session_->encoder());
     state.communication.not_heard = not_heard_.components();
   }

@@ -18,18 +18,26 @@ void Monitor::onMasterRestart(std::int64_t /*now*/) {
 void Monitor::onGraph(const ros1::Graph& graph) {
   session_->addEdges(graph, ros::this_node::getName());
   const std::int64_t now = live_->now();
-  for (const std::string& node : restarts_.see(graph.addresses, now, ros1::utc(wallNow()))) {
-    session_->onRestarted(node);
-    if (restarts_.count(node, now) == Restarts::kMany) {
-      ROS_WARN("%s %s", node.c_str(), restarts_.inWords(node, now).c_str());
+  for (const std::string& source :
+       restarts_.see(graph.addresses, *session_->encoder(), now, ros1::utc(wallNow()))) {
+    session_->onRestarted(source);
+    const std::string words = restarts_.inWords(source, now);
+    const std::string muted = mutes_.ofComponent(source);
+    if (restarts_.count(source, now) == Restarts::kMany) {
+      if (muted.empty()) {
+        ROS_WARN("%s %s", source.c_str(), words.c_str());
+      } else {
+        ROS_INFO("muted (%s): %s %s", muted.c_str(), source.c_str(), words.c_str());
+      }
     }
-    if (restarts_.count(node, now) >= Restarts::kMany && !announcer_.alarm().standing()) {
+    if (restarts_.count(source, now) >= Restarts::kMany && muted.empty() &&
+        !announcer_.alarm().standing()) {
       core::Alarm near_miss;
       near_miss.id = static_cast<std::uint64_t>(now);
       near_miss.begin = near_miss.end = now;
       near_miss.over = true;
-      near_miss.culprit = node;
-      near_miss.reason = restarts_.inWords(node, now);
+      near_miss.culprit = source;
+      near_miss.reason = words;
       incidents_.add(near_miss, session_->graph(), "", parameters_.model);
       incidents_publisher_.publish(incidents_.incidents());
     }
@@ -37,12 +45,12 @@ void Monitor::onGraph(const ros1::Graph& graph) {
 }
 
 void Monitor::onFirstOfRestarted(const core::Event& event) {
-  const std::string& node = session_->types()[event.id].source;
-  restarts_.onHeard(node, event.stamp);
+  const std::string& source = session_->types()[event.id].source;
+  restarts_.onHeard(source, event.stamp);
   // Who is started again and again is not excused; and by the paper's score, which is that of all,
   // one node that starts would excuse the whole robot.
   if (parameters_.method == MonitorParameters::Method::kEvidence &&
-      restarts_.count(node, event.stamp) <= Restarts::kMany) {
+      restarts_.count(source, event.stamp) <= Restarts::kMany) {
     session_->detector().onMissed({event.id}, event.stamp);
   }
 }

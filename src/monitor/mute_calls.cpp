@@ -41,6 +41,11 @@ std::string counts(const core::Mute& mute) {
          " suspicions were muted";
 }
 
+/// Empty: there is none.
+std::string reasonOf(const core::Mute* mute) {
+  return mute == nullptr ? "" : what(*mute) + " " + until(*mute) + ", by " + mute->by;
+}
+
 std::string pattern(const std::string& name, const char* field) {
   if (name.size() > ros1::kLongestName || !ros1::isPrintable(name)) {
     throw std::invalid_argument(std::string(field) + ": it is no name");
@@ -117,8 +122,11 @@ bool MuteCalls::mutesAll() const {
 }
 
 std::string MuteCalls::ofWhatStands() const {
-  const core::Mute* mute = mutes_.active();
-  return mute == nullptr ? "" : what(*mute) + " " + until(*mute) + ", by " + mute->by;
+  return reasonOf(mutes_.active());
+}
+
+std::string MuteCalls::ofComponent(const std::string& component) const {
+  return reasonOf(mutes_.ofComponent(component));
 }
 
 std::vector<std::string> MuteCalls::inWords() const {
@@ -167,9 +175,11 @@ void MuteCalls::answer(const core::Mute& mute, double duration, Response& respon
   } else {
     core::Mute timed = mute;
     timed.until = steadyNow() + std::llround(duration * 1e9);
-    response.success = mutes_.add(timed);
+    const core::Mute* kept = mutes_.add(timed);
+    response.success = kept != nullptr;
     response.message = response.success
-                           ? "not told " + until(timed) + ": " + what(timed)
+                           ? "not told " + until(*kept) + ": " + what(*kept) +
+                                 (kept->by == mute.by ? "" : ", as " + kept->by + " wanted")
                            : std::to_string(core::Mutes::kMost) +
                                  " mutes are there, which is the most; take one back, or name "
                                  "several by a *";

@@ -50,6 +50,8 @@ class MuteCalls {
   std::string ofWhatStands() const;
   /// Whether everything is muted: maintenance.
   bool mutesAll() const;
+  /// Why nothing is told of a component, likewise; empty: it is.
+  std::string ofComponent(const std::string& component) const;
   /// All mutes in words, with what they have muted so far.
   std::vector<std::string> inWords() const;
 

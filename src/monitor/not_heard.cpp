@@ -8,7 +8,6 @@
 #include "self_awareness/core/stream/event.h"
 #include "self_awareness/core/verdict/name_pattern.h"
 #include "self_awareness/ros/encoding.h"
-#include "self_awareness/ros/stable_name.h"
 
 namespace self_awareness {
 namespace {
@@ -31,9 +30,10 @@ std::string inWords(const std::string& why) {
 }  // namespace
 
 std::vector<ros1::Unheard> withoutOptional(std::vector<ros1::Unheard> unheard,
-                                           const std::vector<std::string>& optional) {
+                                           const std::vector<std::string>& optional,
+                                           const ros1::Encoder& encoder) {
   const auto may_be_absent = [&](const ros1::Unheard& each) {
-    return core::isOneOf(optional, ros1::stableName(each.node), each.topic);
+    return core::isOneOf(optional, encoder.sourceOf(each.node), encoder.scopeOf(each.topic));
   };
   unheard.erase(std::remove_if(unheard.begin(), unheard.end(), may_be_absent), unheard.end());
   return unheard;

@@ -17,8 +17,10 @@ namespace self_awareness {
 
 /// Those that are not expected to be heard all the time are left out.
 /// @param optional patterns of nodes or topics that may be absent
+/// @param encoder gives nodes and topics the names that the patterns are of
 std::vector<ros1::Unheard> withoutOptional(std::vector<ros1::Unheard> unheard,
-                                           const std::vector<std::string>& optional);
+                                           const std::vector<std::string>& optional,
+                                           const ros1::Encoder& encoder);
 
 /// Adds to the status of a node who it does not hear, though the master names them: a warning.
 void tellUnheard(const std::vector<ros1::Unheard>& unheard,

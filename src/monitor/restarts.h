@@ -9,10 +9,13 @@
 #include <string>
 #include <vector>
 
+#include "self_awareness/ros/encoding.h"
+
 namespace self_awareness {
 
 /// Follows nodes that are started again, by roslaunch's respawn or by hand: the same name comes
-/// with another address.
+/// with another address. What is asked and said of them is by the names that events have: the
+/// model of a fleet renames nodes.
 ///
 /// Times are ROS time [ns].
 class Restarts {
@@ -27,13 +30,15 @@ class Restarts {
   explicit Restarts(std::int64_t settle_time) : settle_time_(settle_time) {}
 
   /// Takes in where nodes are.
-  /// @param addresses URIs, by node
+  /// @param addresses URIs, by the full names of nodes
+  /// @param encoder gives them the names that events have, and says who is left out
   /// @param when in words
-  /// @return those that were started again
+  /// @return sources that were started again
   std::vector<std::string> see(const std::map<std::string, std::string>& addresses,
-                               std::int64_t now, const std::string& when);
-  /// A node that was started again is heard.
-  void onHeard(const std::string& node, std::int64_t now);
+                               const ros1::Encoder& encoder, std::int64_t now,
+                               const std::string& when);
+  /// A source that was started again is heard.
+  void onHeard(const std::string& source, std::int64_t now);
   /// Time has passed.
   /// @param abnormal who is named by what stands
   /// @return lines for those that are back as usual
@@ -41,14 +46,13 @@ class Restarts {
   /// ROS time was set.
   void onClockSet();
 
-  /// How often a node was started again in the last kSpan.
-  std::size_t count(const std::string& node, std::int64_t now) const;
+  /// How often a source was started again in the last kSpan.
+  std::size_t count(const std::string& source, std::int64_t now) const;
   /// That in words: "restarted 7 times in 10 min"; empty: it was not.
-  std::string inWords(const std::string& node, std::int64_t now) const;
+  std::string inWords(const std::string& source, std::int64_t now) const;
 
  private:
-  struct Node {
-    std::string address;
+  struct Source {
     std::deque<std::int64_t> restarts;  // of the last kSpan, the newest kMostCounted
     std::string when;                   // the last one was, in words
     bool waits = false;                 // for it to be as usual
@@ -56,7 +60,8 @@ class Restarts {
   };
 
   std::int64_t settle_time_;
-  std::map<std::string, Node> nodes_;
+  std::map<std::string, std::string> addresses_;  // by the full names of nodes
+  std::map<std::string, Source> sources_;         // those that were started again
 };
 
 }  // namespace self_awareness

@@ -86,8 +86,7 @@ core::EventId Session::intern(const core::EventType& type) {
   return ros1::internUpTo(trained_.vocabulary().size() + kMostUnknownTypes, type, *vocabulary_);
 }
 
-void Session::onRestarted(const std::string& node) {
-  const std::string source = encoder_->sourceOf(node);
+void Session::onRestarted(const std::string& source) {
   restarted_.resize(types().size(), false);
   for (core::EventId id = 0; id < types().size(); ++id) {
     restarted_[id] = restarted_[id] || types()[id].source == source;

@@ -75,8 +75,8 @@ class Session {
   /// what is accepted.
   std::vector<std::string> strangers() const;
 
-  /// Takes note that a node, by its full name, was started again.
-  void onRestarted(const std::string& node);
+  /// Takes note that a source was started again.
+  void onRestarted(const std::string& source);
   /// Whether an event is the first of its type since its node was started again.
   bool isFirstOfRestarted(core::EventId id);
 

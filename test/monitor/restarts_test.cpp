@@ -2,21 +2,36 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <string>
 #include <vector>
+
+#include "self_awareness/ros/encoding.h"
 
 namespace self_awareness {
 namespace {
 
 constexpr std::int64_t kSecond = 1'000'000'000;
 using Names = std::vector<std::string>;
+using Addresses = std::map<std::string, std::string>;
+
+ros1::Encoder encoder(const std::vector<ros1::Rename>& renames = {}) {
+  ros1::EncodingRules rules = ros1::EncodingRules::defaults();
+  rules.renames = renames;
+  return ros1::Encoder(rules, [](const core::EventType&) { return core::EventId{0}; });
+}
+
+Names see(Restarts& restarts, const Addresses& addresses, std::int64_t now,
+          const std::string& when) {
+  return restarts.see(addresses, encoder(), now, when);
+}
 
 TEST(Restarts, AnotherAddressIsARestartAndTheLineComesWhenAllIsAsUsual) {
   Restarts restarts(5 * kSecond);
-  EXPECT_EQ(restarts.see({{"/player", "http://a:1"}}, 0, "0"), Names()) << "it is new";
-  EXPECT_EQ(restarts.see({{"/player", "http://a:1"}}, kSecond, "1"), Names());
-  EXPECT_EQ(restarts.see({}, 2 * kSecond, "2"), Names()) << "it has gone";
-  EXPECT_EQ(restarts.see({{"/player", "http://a:2"}}, 3 * kSecond, "3"), Names{"/player"});
+  EXPECT_EQ(see(restarts, {{"/player", "http://a:1"}}, 0, "0"), Names()) << "it is new";
+  EXPECT_EQ(see(restarts, {{"/player", "http://a:1"}}, kSecond, "1"), Names());
+  EXPECT_EQ(see(restarts, {}, 2 * kSecond, "2"), Names()) << "it has gone";
+  EXPECT_EQ(see(restarts, {{"/player", "http://a:2"}}, 3 * kSecond, "3"), Names{"/player"});
   EXPECT_EQ(restarts.advance(60 * kSecond, {}), Names()) << "it is not heard";
   restarts.onHeard("/player", 61 * kSecond);
   restarts.onHeard("/player", 64 * kSecond);
@@ -30,7 +45,7 @@ TEST(Restarts, AnotherAddressIsARestartAndTheLineComesWhenAllIsAsUsual) {
 TEST(Restarts, AreCountedForTenMinutes) {
   Restarts restarts(0);
   for (int i = 0; i <= 7; ++i) {
-    restarts.see({{"/player", "http://a:" + std::to_string(i)}}, i * kSecond, "then");
+    see(restarts, {{"/player", "http://a:" + std::to_string(i)}}, i * kSecond, "then");
   }
   EXPECT_EQ(restarts.count("/player", 7 * kSecond), 7U);
   EXPECT_EQ(restarts.inWords("/player", 7 * kSecond), "restarted 7 times in 10 min");
@@ -39,10 +54,30 @@ TEST(Restarts, AreCountedForTenMinutes) {
   EXPECT_EQ(restarts.inWords("/slam", 0), "");
 }
 
+TEST(Restarts, AreKnownByTheNamesOfTheModel) {
+  Restarts restarts(5 * kSecond);
+  const ros1::Encoder fleet = encoder({{"/r[0-9]+/(.*)", "/\\1"}});
+  EXPECT_EQ(restarts.see({{"/r7/player", "http://a:1"}}, fleet, 0, "0"), Names());
+  EXPECT_EQ(restarts.see({{"/r7/player", "http://a:2"}}, fleet, kSecond, "1"), Names{"/player"});
+  EXPECT_EQ(restarts.count("/player", kSecond), 1U);
+  restarts.onHeard("/player", 2 * kSecond);
+  EXPECT_EQ(restarts.advance(8 * kSecond, {"/player"}), Names());
+  EXPECT_EQ(restarts.advance(8 * kSecond, {}), Names{"/player restarted at 1, back as usual"});
+}
+
+TEST(Restarts, WhoIsLeftOutIsNotFollowed) {
+  Restarts restarts(0);
+  ros1::EncodingRules rules;
+  rules.exclude_sources = {"/tool"};
+  const ros1::Encoder without(rules, [](const core::EventType&) { return core::EventId{0}; });
+  restarts.see({{"/tool", "http://a:1"}}, without, 0, "0");
+  EXPECT_EQ(restarts.see({{"/tool", "http://a:2"}}, without, 1, "1"), Names());
+}
+
 TEST(Restarts, AreForgottenWhenTheClockIsSet) {
   Restarts restarts(0);
-  restarts.see({{"/player", "http://a:1"}}, 0, "then");
-  restarts.see({{"/player", "http://a:2"}}, 0, "then");
+  see(restarts, {{"/player", "http://a:1"}}, 0, "then");
+  see(restarts, {{"/player", "http://a:2"}}, 0, "then");
   restarts.onClockSet();
   EXPECT_EQ(restarts.count("/player", 0), 0U);
   restarts.onHeard("/player", 0);

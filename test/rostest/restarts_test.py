@@ -4,6 +4,7 @@
 import os
 import re
 import signal
+import subprocess
 from typing import List
 
 import rospy
@@ -12,8 +13,9 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from rosgraph_msgs.msg import Log
 
 from accept_test import NODE, TrainedCase, talker
-from live_system import MonitorListener, again_if_clock_was_set, await_condition
+from live_system import MonitorListener, Process, again_if_clock_was_set, await_condition
 from self_awareness.msg import Incident, Incidents, SelfAwareness
+from self_awareness.srv import Mute
 
 
 def driver(rate: float = 12.5):
@@ -81,6 +83,45 @@ class RestartsTest(TrainedCase):
             with driver():
                 await_condition('normal', lambda: listener.diagnostics('communication')[
                     -1].level == DiagnosticStatus.OK, 40)
+
+    @again_if_clock_was_set
+    def test_of_a_fleet_it_is_followed_by_the_names_of_the_model_and_can_be_muted(self) -> None:
+        subprocess.run(['rosrun', 'self_awareness', 'train', *self.bags, '-o', self.path('model'),
+                        '--rename', '/r[0-9]+/(.*)', '/\\1'], check=True,
+                       stdout=subprocess.DEVNULL)
+
+        def of_r7(name: str, topic: str, rate: float) -> Process:
+            return Process('rosrun', 'self_awareness', 'talker.py', '__ns:=/r7',
+                           '__name:=' + name, '_output:=' + topic, '_rate:={}'.format(rate),
+                           '_variation:=0.3')
+
+        with of_r7('base', '/r7/odom', 10), self.trained_monitor(), \
+                MonitorListener() as listener:
+            rospy.wait_for_service(NODE + '/mute', 20)
+            mute = rospy.ServiceProxy(NODE + '/mute', Mute)
+            self.assertTrue(mute(component='/driver', duration=600).success)
+            for times in range(4):
+                with of_r7('driver', '/r7/scan', 12.5):
+                    self.await_heard(listener, '/driver', '/base')
+                    if times > 0:
+                        await_condition('it is told how often', lambda: (
+                            listener.value('/driver', 'restarts') or '').startswith(
+                                'restarted {} time'.format(times)), 20)
+                        await_condition('it is back', lambda: sum(
+                            '/driver restarted at' in line for line in self.logged) == times, 60)
+                await_condition('it is gone', lambda: listener.statuses[-1].abnormal, 40)
+            status = listener.diagnostics('/driver')[-1]
+            self.assertEqual(status.level, DiagnosticStatus.OK, status.message)
+            self.assertTrue(any(
+                re.fullmatch(r'muted \(.*\): /driver restarted 3 times in 10 min', line)
+                for line in self.logged))
+            self.assertNotIn('/driver restarted 3 times in 10 min', self.logged)
+            self.assertFalse([each for each in self.incidents if 'restarted' in each.reason])
+            with of_r7('driver', '/r7/scan', 12.5):
+                await_condition('normal', lambda: not listener.statuses[-1].abnormal, 40)
+                self.assertTrue(mute(component='/driver', duration=0).success)
+                await_condition('it is told', lambda: (
+                    listener.diagnostics('/driver')[-1].level == DiagnosticStatus.WARN), 40)
 
     @again_if_clock_was_set
     def test_what_stood_stands_again_until_it_was_heard_for_long_enough(self) -> None:

@@ -1,6 +1,7 @@
 #include "self_awareness/core/verdict/mute.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <iterator>
 #include <set>
 #include <utility>
@@ -10,13 +11,24 @@
 
 namespace self_awareness::core {
 
-bool Mutes::add(const Mute& mute) {
-  end(mute);
-  if (mutes_.size() >= kMost) {
-    return false;
+const Mute* Mutes::add(const Mute& mute) {
+  const auto old = std::find_if(mutes_.begin(), mutes_.end(),
+                                [&](const Mute& each) { return each.isLike(mute); });
+  if (old == mutes_.end()) {
+    if (mutes_.size() >= kMost) {
+      return nullptr;
+    }
+    mutes_.push_back(mute);
+    return &mutes_.back();
   }
-  mutes_.push_back(mute);
-  return true;
+  if (old->by == mute.by || old->until <= mute.until) {
+    Mute renewed = mute;
+    renewed.alarms = old->alarms;
+    renewed.suspicions = old->suspicions;
+    renewed.has_muted = active_ && mutes_.begin() + static_cast<std::ptrdiff_t>(*active_) == old;
+    *old = std::move(renewed);  // in its place: what stands is muted by it as before
+  }
+  return &*old;
 }
 
 std::optional<Mute> Mutes::end(const Mute& like) {
@@ -54,9 +66,10 @@ std::vector<Mute> Mutes::onStanding(const std::optional<Alarm>& standing,
   if (active_ && std::exchange(counted_, standing->id) != standing->id) {
     Mute& mute = mutes_[*active_];
     ++(standing->level == Alarm::Level::kAlarm ? mute.alarms : mute.suspicions);
+    mute.has_muted = true;
   }
   for (const Mute& mute : std::vector<Mute>(mutes_)) {
-    if (!standing && mute.until_over && mute.alarms + mute.suspicions > 0) {
+    if (!standing && mute.until_over && mute.has_muted) {
       over.push_back(*end(mute));
     }
   }
@@ -65,6 +78,13 @@ std::vector<Mute> Mutes::onStanding(const std::optional<Alarm>& standing,
 
 const Mute* Mutes::active() const {
   return active_ ? &mutes_[*active_] : nullptr;
+}
+
+const Mute* Mutes::ofComponent(const std::string& component) const {
+  const auto found = std::find_if(mutes_.begin(), mutes_.end(), [&](const Mute& mute) {
+    return mute.topic.empty() && !mute.kind && matchesPattern(mute.component, component);
+  });
+  return found == mutes_.end() ? nullptr : &*found;
 }
 
 std::optional<std::size_t> Mutes::muteOf(const std::string& component, const std::string& topic,

@@ -43,7 +43,7 @@ struct CommunicationState {
   /// How often messages came in training [Hz], by component and topic; empty: not known.
   std::map<std::string, std::map<std::string, double>> expected;
   /// Components that were started again lately: how often, in words, and whether that is too
-  /// often.
+  /// often, and not muted.
   std::map<std::string, std::pair<std::string, bool>> restarts;
   std::set<std::string> optional;  ///< components that may be absent
   /// Who cannot be heard by the monitor, and why, in words; by component.

@@ -154,6 +154,73 @@ TEST_F(MutesTest, AMuteIsReplacedOrTakenBack) {
   EXPECT_TRUE(mutes_.list().empty());
 }
 
+TEST_F(MutesTest, RenewedItCountsOnAndEndsWhenAllIsOver) {
+  Mute until_over = mute("/player");
+  until_over.until_over = true;
+  mutes_.add(until_over);
+  EXPECT_TRUE(stands(alarm({0})));
+  until_over.until = 200;
+  mutes_.add(until_over);
+  EXPECT_TRUE(stands(alarm({0})));
+  EXPECT_EQ(mutes_.active()->alarms, 1U);
+  stands(std::nullopt);
+  ASSERT_EQ(ended_.size(), 1U);
+  EXPECT_EQ(ended_[0].alarms, 1U);
+}
+
+TEST_F(MutesTest, WhatIsOverDoesNotEndWhatIsRenewedLater) {
+  mutes_.add(mute("/player"));
+  stands(alarm({0}));
+  stands(std::nullopt);
+  Mute until_over = mute("/player");
+  until_over.until_over = true;
+  mutes_.add(until_over);
+  EXPECT_FALSE(stands(std::nullopt));
+  EXPECT_TRUE(ended_.empty()) << "it waits for the next alarm";
+  stands(alarm({0}, 2));
+  stands(std::nullopt);
+  ASSERT_EQ(ended_.size(), 1U);
+  EXPECT_EQ(ended_[0].alarms, 2U);
+}
+
+TEST_F(MutesTest, ToRenewOneDoesNotTellWhatIsLeftOfAnAlarm) {
+  mutes_.add(mute("", "/scan"));
+  EXPECT_TRUE(stands(alarm({0})));
+  mutes_.add(mute("", "/scan"));
+  std::optional<Alarm> left = alarm({}, 2);
+  left->culprit = "/player";
+  EXPECT_TRUE(stands(left));
+}
+
+TEST_F(MutesTest, SomebodyElseDoesNotShortenIt) {
+  Mute of_operator = mute("/player");
+  of_operator.by = "/rqt";
+  Mute of_recovery = mute("/player");
+  of_recovery.by = "/recovery";
+  of_recovery.until = 20;
+  mutes_.add(of_operator);
+  EXPECT_EQ(mutes_.add(of_recovery)->until, 100);
+  EXPECT_TRUE(mutes_.advance(99).empty());
+  EXPECT_EQ(mutes_.list()[0].by, "/rqt");
+  of_operator.until = 30;
+  EXPECT_EQ(mutes_.add(of_operator)->until, 30) << "who asked for it may shorten it";
+  of_recovery.until = 40;
+  EXPECT_EQ(mutes_.add(of_recovery)->by, "/recovery") << "it is for longer";
+  EXPECT_EQ(mutes_.list().size(), 1U);
+}
+
+TEST_F(MutesTest, AllOfAComponentIsMutedByItsNameOrByMaintenance) {
+  mutes_.add(mute("/player", "/scan"));
+  mutes_.add(mute("/player", "", Kind::kSlow));
+  EXPECT_EQ(mutes_.ofComponent("/player"), nullptr) << "a part of it";
+  mutes_.add(mute("/pl*"));
+  ASSERT_NE(mutes_.ofComponent("/player"), nullptr);
+  EXPECT_EQ(mutes_.ofComponent("/player")->component, "/pl*");
+  EXPECT_EQ(mutes_.ofComponent("/camera"), nullptr);
+  mutes_.add(mute(""));
+  EXPECT_NE(mutes_.ofComponent("/camera"), nullptr);
+}
+
 TEST_F(MutesTest, TheirNumberIsBounded) {
   for (std::size_t i = 0; i < Mutes::kMost; ++i) {
     EXPECT_TRUE(mutes_.add(mute("/n" + std::to_string(i))));

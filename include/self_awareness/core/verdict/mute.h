@@ -23,6 +23,7 @@ struct Mute {
   std::string by;                ///< who wanted it
   std::uint32_t alarms = 0;      ///< that it has muted
   std::uint32_t suspicions = 0;  ///< likewise
+  bool has_muted = false;        ///< something since it was asked for, or what still stands
 
   /// Whether it mutes everything: maintenance.
   bool mutesAll() const { return component.empty() && topic.empty() && !kind; }
@@ -40,9 +41,10 @@ class Mutes {
   /// Mutes at a time, at most so many.
   static constexpr std::size_t kMost = 100;
 
-  /// Adds a mute, or replaces the one that is like it.
-  /// @return whether there is room for it
-  bool add(const Mute& mute);
+  /// Adds a mute, or renews the one that is like it: what that has muted counts on. Where somebody
+  /// else wanted it for longer, it stays as he wanted it.
+  /// @return the mute that there is now, until the next call; null: there is no room for it
+  const Mute* add(const Mute& mute);
   /// Takes a mute back. @return it; none: there is none like it
   std::optional<Mute> end(const Mute& like);
   /// Ends those whose time has come. @return them
@@ -60,6 +62,9 @@ class Mutes {
                                const SourceGraph& graph);
   /// The mute of what stands; null: it is not muted, or nothing stands.
   const Mute* active() const;
+  /// The mute of all that can be said of a component, whatever its topic and kind; null: there is
+  /// none. What was started again is such a thing.
+  const Mute* ofComponent(const std::string& component) const;
 
   const std::vector<Mute>& list() const { return mutes_; }
 
