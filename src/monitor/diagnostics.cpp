@@ -12,6 +12,19 @@ namespace self_awareness {
 using diagnostic_msgs::DiagnosticStatus;
 using ros1::number;
 
+namespace {
+
+/// All lists as they are told where nothing is left out.
+std::string allLists(const MonitorState& state) {
+  std::string lists = ros1::listed(state.mutes) + '\n' + ros1::listed(inWords(state.unheard));
+  for (const auto& [key, list] : ros1::listsOf(state.communication)) {
+    lists += '\n' + ros1::listed(list);
+  }
+  return lists;
+}
+
+}  // namespace
+
 Diagnostics::Diagnostics(ros::NodeHandle node_handle, const std::string& name,
                          const std::string& hardware_id, bool component_statuses,
                          std::size_t bytes_per_second)
@@ -22,7 +35,10 @@ Diagnostics::Diagnostics(ros::NodeHandle node_handle, const std::string& name,
       published_at_(steadyNow()),
       publisher_(node_handle.advertise<diagnostic_msgs::DiagnosticArray>("/diagnostics", 1)) {}
 
-void Diagnostics::publish(const MonitorState& state) {
+void Diagnostics::publish(MonitorState state) {
+  const std::int64_t now = steadyNow();
+  const double elapsed = core::toSeconds(now - std::exchange(published_at_, now));
+  state.communication.lists = lists_.next(allLists(state), elapsed);
   ros1::DiagnosticStatuses statuses(name_, hardware_id_, state.ros_now);
   Status communication;
   ros1::tellCommunication(state.communication, communication);
@@ -37,9 +53,7 @@ void Diagnostics::publish(const MonitorState& state) {
   if (component_statuses_) {
     ros1::DiagnosticStatuses of_components(name_, hardware_id_, state.ros_now);
     ros1::addComponents(state.communication, of_components);
-    const std::int64_t now = steadyNow();
-    ros1::addChosen(of_components, round_,
-                    core::toSeconds(now - std::exchange(published_at_, now)), statuses);
+    ros1::addChosen(of_components, round_, elapsed, statuses);
   }
   publisher_.publish(statuses.message());
 }
@@ -80,7 +94,7 @@ void Diagnostics::tellMonitor(const MonitorState& state, Status& status) {
     status.mergeSummary(DiagnosticStatus::WARN,
                         "what is accepted is not kept: " + state.accept_error);
   }
-  tellUnheard(state.unheard, status);
+  tellUnheard(state.unheard, state.communication.lists, status);
   tellStrangers(state.strangers_closed, state.strangers_newly_closed, status);
   status.add("events a second", number(heard.rate));
   status.add("dropped messages", heard.dropped);
@@ -91,9 +105,7 @@ void Diagnostics::tellMonitor(const MonitorState& state, Status& status) {
   if (!state.taken_back.empty()) {
     status.add("alarm taken back", state.taken_back);
   }
-  for (std::size_t i = 0; i < state.mutes.size(); ++i) {
-    status.add("mute " + std::to_string(i + 1), state.mutes[i]);
-  }
+  ros1::tellNumbered("mute", state.mutes, state.communication.lists, status);
   status.add("times the clock was set", heard.clock_steps);
   if (state.recorder) {
     tellRecorder(*state.recorder, status);

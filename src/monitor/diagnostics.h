@@ -51,8 +51,8 @@ class Diagnostics {
   Diagnostics(ros::NodeHandle node_handle, const std::string& name, const std::string& hardware_id,
               bool component_statuses, std::size_t bytes_per_second);
 
-  /// Publishes the state now.
-  void publish(const MonitorState& state);
+  /// Publishes the state now. @param state which lists are told is decided here
+  void publish(MonitorState state);
 
  private:
   using Status = diagnostic_updater::DiagnosticStatusWrapper;
@@ -65,6 +65,7 @@ class Diagnostics {
   std::string hardware_id_;
   bool component_statuses_;
   ros1::StatusRound round_;
+  ros1::ListRound lists_;
   std::int64_t published_at_;  // [ns of steady time]
   ros::Publisher publisher_;
 };

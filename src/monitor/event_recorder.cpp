@@ -250,7 +250,7 @@ void EventRecorder::onReport() {
   }
   tellClock(live_->clock().standsStillFor(), rosNow(), status);
   const Discovery::State discovered = live_->discovery().state();
-  tellUnheard(live_->discovery().unheard(), status);
+  tellUnheard(live_->discovery().unheard(), ros1::ListsAre::kTold, status);
   tellStrangers(
       discovered.strangers_closed,
       discovered.strangers_closed - std::exchange(strangers_closed_, discovered.strangers_closed),

@@ -94,7 +94,8 @@ namespace self_awareness {
 ///   reports on /diagnostics (steady time); a change of the level is reported at once.
 /// - `~diagnostic_bytes` (int, bytes a second; default: 2000; 100 to 10000000): most on
 /// /diagnostics.
-///   What changes goes out at once; sources that do not take turns where all do not fit.
+///   What changes goes out at once; sources that do not take turns where all do not fit, of 50 s
+///   at most, whatever that takes.
 ///
 /// **Subscribed topics**: those of the model and others by `~subscribe`, of any type.
 ///

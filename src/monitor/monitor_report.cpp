@@ -26,6 +26,7 @@ void Monitor::onReport() {
     state.communication.coverage = session_->coverage();
     state.communication.unheard = session_->unheard();
     state.communication.expected = session_->expected();
+    state.communication.shares = session_->takeShares();
     for (const core::evidence::Coverage& each : session_->coverage()) {
       if (restarts_.count(each.component, moment.ros) > 0) {
         state.communication.restarts[each.component] = {
@@ -56,8 +57,8 @@ void Monitor::onReport() {
   state.communication.muted = mutes_.ofWhatStands();
   state.clock_rivals = live_->clockRivals();
   if (session_) {
-    state.unheard = withoutOptional(live_->discovery().unheard(), parameters_.optional,
-                                    *session_->encoder());
+    state.unheard =
+        withoutOptional(live_->discovery().unheard(), parameters_.optional, *session_->encoder());
     not_heard_.set(state.unheard, *session_->encoder());
     state.communication.not_heard = not_heard_.components();
   }
@@ -69,7 +70,7 @@ void Monitor::onReport() {
   if (kept_logs_.enabled()) {
     state.kept_logs = kept_logs_.report();
   }
-  diagnostics_.publish(state);
+  diagnostics_.publish(std::move(state));
 }
 
 }  // namespace self_awareness

@@ -3,6 +3,7 @@
 #include <diagnostic_msgs/DiagnosticStatus.h>
 
 #include <algorithm>
+#include <iterator>
 
 #include "ros/text.h"
 #include "self_awareness/core/stream/event.h"
@@ -12,18 +13,18 @@
 namespace self_awareness {
 namespace {
 
-constexpr std::size_t kMostNamed = 20;
 constexpr std::size_t kMostInMessage = 3;
+constexpr std::size_t kMostOfName = 100;  // bytes
 
 std::string describe(const ros1::Unheard& unheard) {
   if (unheard.node.empty()) {
     return unheard.why;
   }
-  return ros1::printable(unheard.node, ros1::kLongestName) + " on " +
-         ros1::printable(unheard.topic, ros1::kLongestName) + " (" + unheard.why + ")";
+  return ros1::printable(unheard.node, kMostOfName) + " on " +
+         ros1::printable(unheard.topic, kMostOfName) + " (" + unheard.why + ")";
 }
 
-std::string inWords(const std::string& why) {
+std::string notHeard(const std::string& why) {
   return "not heard by the monitor: " + why;
 }
 
@@ -39,23 +40,28 @@ std::vector<ros1::Unheard> withoutOptional(std::vector<ros1::Unheard> unheard,
   return unheard;
 }
 
-void tellUnheard(const std::vector<ros1::Unheard>& unheard,
+std::vector<std::string> inWords(const std::vector<ros1::Unheard>& unheard) {
+  std::vector<std::string> words;
+  std::transform(unheard.begin(), unheard.end(), std::back_inserter(words), describe);
+  return words;
+}
+
+void tellUnheard(const std::vector<ros1::Unheard>& unheard, ros1::ListsAre lists,
                  diagnostic_updater::DiagnosticStatusWrapper& status) {
   status.add("publishers not heard", unheard.size());
   if (unheard.empty()) {
     return;
   }
+  const std::vector<std::string> words = inWords(unheard);
   std::string message = "not heard: ";
-  for (std::size_t i = 0; i < std::min(unheard.size(), kMostInMessage); ++i) {
-    message += (i > 0 ? ", " : "") + describe(unheard[i]);
+  for (std::size_t i = 0; i < std::min(words.size(), kMostInMessage); ++i) {
+    message += (i > 0 ? ", " : "") + words[i];
   }
-  if (unheard.size() > kMostInMessage) {
-    message += " and " + std::to_string(unheard.size() - kMostInMessage) + " more";
+  if (words.size() > kMostInMessage) {
+    message += " and " + std::to_string(words.size() - kMostInMessage) + " more";
   }
   status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN, message);
-  for (std::size_t i = 0; i < std::min(unheard.size(), kMostNamed); ++i) {
-    status.add("not heard " + std::to_string(i + 1), describe(unheard[i]));
-  }
+  ros1::tellNumbered("not heard", words, lists, status);
 }
 
 void tellStrangers(std::size_t closed, std::size_t newly,
@@ -83,7 +89,7 @@ void NotHeard::explain(std::vector<core::Suspect>& suspects,
     const core::EventType& type = vocabulary.at(suspect.id);
     const auto why = why_.find({type.source, type.scope});
     if (why != why_.end() && core::isMissing(suspect.reason.kind)) {
-      suspect.reason.words = inWords(why->second);
+      suspect.reason.words = notHeard(why->second);
     }
   }
 }
@@ -92,7 +98,7 @@ std::map<std::string, std::string> NotHeard::components() const {
   std::map<std::string, std::string> components;
   for (const auto& [publication, why] : why_) {
     const auto& [source, topic] = publication;
-    components.try_emplace(core::componentOf(source, topic), topic + ": " + inWords(why));
+    components.try_emplace(core::componentOf(source, topic), topic + ": " + notHeard(why));
   }
   return components;
 }

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "ros/verdict/status_lists.h"
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/core/verdict/detector.h"
 #include "self_awareness/ros/encoding.h"
@@ -22,8 +23,11 @@ std::vector<ros1::Unheard> withoutOptional(std::vector<ros1::Unheard> unheard,
                                            const std::vector<std::string>& optional,
                                            const ros1::Encoder& encoder);
 
+/// Who is not heard, where, and why, in words.
+std::vector<std::string> inWords(const std::vector<ros1::Unheard>& unheard);
+
 /// Adds to the status of a node who it does not hear, though the master names them: a warning.
-void tellUnheard(const std::vector<ros1::Unheard>& unheard,
+void tellUnheard(const std::vector<ros1::Unheard>& unheard, ros1::ListsAre lists,
                  diagnostic_updater::DiagnosticStatusWrapper& status);
 
 /// Adds how many connections of strangers were closed: a warning, where there are new ones.

@@ -1,8 +1,8 @@
 #include "session.h"
 
+#include <algorithm>
 #include <utility>
 
-#include "self_awareness/core/evidence/judge.h"
 #include "self_awareness/core/paper/judge.h"
 #include "self_awareness/core/verdict/name_pattern.h"
 
@@ -45,8 +45,11 @@ std::unique_ptr<core::Judge> Session::makeJudge(const MonitorParameters& paramet
   }
   trained_.requireWatched();
   model_ = std::make_shared<const core::evidence::Model>(trained_.watched);
-  return core::evidence::makeJudge(model_, trained_.limits(), trained_.window, graph_,
-                                   vocabulary_);
+  return core::evidence::makeJudge(
+      model_, trained_.limits(), trained_.window, graph_, vocabulary_,
+      [this](const core::Window& /*window*/, const core::evidence::Shares& shares) {
+        onShares(shares);
+      });
 }
 
 void Session::accept(const core::Acceptances& accepted) {
@@ -62,6 +65,31 @@ void Session::accept(const core::Acceptances& accepted) {
   coverage_ =
       core::evidence::coverageOf(*model_, trained_.calibration->limits,
                                  trained_.calibration->relations, trained_.window, may_be_silent);
+}
+
+void Session::onShares(const core::evidence::Shares& shares) {
+  shares_.resize(model_->components().size(), 0);
+  const auto raise = [&](core::EventId id, double share) {
+    double& largest = shares_[model_->componentIndex(id)];
+    largest = std::max(largest, share);
+  };
+  for (std::size_t track = 0; track < shares.tracks.size(); ++track) {
+    if (shares.tracks[track] > 0) {
+      raise(model_->tracks()[track].to, shares.tracks[track]);
+    }
+  }
+  for (const auto& [id, share] : shares.never_heard) {
+    raise(id, share);
+  }
+}
+
+std::map<std::string, double> Session::takeShares() {
+  std::map<std::string, double> shares;
+  for (std::size_t i = 0; i < shares_.size(); ++i) {
+    shares[model_->components()[i]] = shares_[i];
+  }
+  shares_.clear();
+  return shares;
 }
 
 void Session::expectRates() {

@@ -11,6 +11,7 @@
 #include "parameters.h"
 #include "self_awareness/core/evidence/channel/model.h"
 #include "self_awareness/core/evidence/limits/coverage.h"
+#include "self_awareness/core/evidence/judge.h"
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/core/verdict/acceptance.h"
 #include "self_awareness/core/verdict/detector.h"
@@ -49,6 +50,9 @@ class Session {
   const std::map<std::string, std::map<std::string, double>>& expected() const {
     return expected_;
   }
+  /// Largest share of a limit that components have reached in the windows since the last call, by
+  /// component; 1 is the limit. Empty: no window was judged, or not known of this detector.
+  std::map<std::string, double> takeShares();
   /// Components that may be absent, or some topics of which may.
   const std::set<std::string>& optional() const { return optional_; }
   /// What was published in training, and nobody subscribed to, by source and topic.
@@ -92,6 +96,8 @@ class Session {
  private:
   /// Finds out how often messages came in training.
   void expectRates();
+  /// Takes in what a window says of components.
+  void onShares(const core::evidence::Shares& shares);
   core::EventId intern(const core::EventType& type);
   std::unique_ptr<core::Judge> makeJudge(const MonitorParameters& parameters);
 
@@ -100,6 +106,7 @@ class Session {
   std::shared_ptr<const core::evidence::Model> model_;  // of the judge; null: it is the paper's
   std::vector<core::evidence::Coverage> coverage_;
   std::map<std::string, std::map<std::string, double>> expected_;
+  std::vector<double> shares_;  // since they were taken, by component; empty: no window since
   std::set<std::string> optional_;
   std::set<core::SourceGraph::Publication> unheard_;
   std::set<core::SourceGraph::Subscription> subscriptions_;  // that are expected

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "alarm_state.h"
+#include "self_awareness/core/evidence/tuning.h"
 #include "self_awareness/core/stream/event.h"
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/ros/ros_time.h"
@@ -51,47 +52,35 @@ std::string number(double value) {
 
 namespace {
 
-constexpr std::size_t kMostListed = 20;
 constexpr char kNotWatchedAccepted[] = "not watched: accepted";
+constexpr std::size_t kMostTopics = 20;
 
-// One after the other, as a value of the diagnostics.
-void tellList(const std::string& key, const std::vector<std::string>& list,
-              DiagnosticStatusWrapper& status) {
-  std::string words;
-  for (std::size_t i = 0; i < list.size() && i < kMostListed; ++i) {
-    words += (i > 0 ? ", " : "") + list[i];
-  }
-  if (!list.empty()) {
-    status.add(key, list.size() > kMostListed
-                        ? words + " and " + std::to_string(list.size() - kMostListed) + " more"
-                        : words);
-  }
-}
-
-// Where nobody looks, it is not quiet.
-void tellNotWatched(const std::vector<core::evidence::Coverage>& coverage,
-                    DiagnosticStatusWrapper& status) {
+std::vector<std::string> notWatched(const CommunicationState& state) {
   std::vector<std::string> names;
-  for (const core::evidence::Coverage& each : coverage) {
+  for (const core::evidence::Coverage& each : state.coverage) {
     if (!each.isWatched()) {
       names.push_back(each.component + (each.accepted ? " (accepted)" : ""));
     }
   }
-  if (!names.empty() && status.level == DiagnosticStatus::OK) {
-    status.summary(DiagnosticStatus::OK, status.message + "; " + std::to_string(names.size()) +
-                                             " of " + std::to_string(coverage.size()) +
-                                             " components are not watched");
-  }
-  tellList("not watched", names, status);
+  return names;
 }
 
-void tellUnheard(const std::set<core::SourceGraph::Publication>& unheard,
-                 DiagnosticStatusWrapper& status) {
+std::vector<std::string> unheard(const CommunicationState& state) {
   std::vector<std::string> names;
-  for (const auto& [source, topic] : unheard) {
+  for (const auto& [source, topic] : state.unheard) {
     names.push_back((source.empty() ? "" : source + " on ") + topic);
   }
-  tellList("nobody subscribed in training", names, status);
+  return names;
+}
+
+// Where nobody looks, it is not quiet.
+void tellNotWatched(const CommunicationState& state, DiagnosticStatusWrapper& status) {
+  const std::vector<std::string> names = notWatched(state);
+  if (!names.empty() && status.level == DiagnosticStatus::OK) {
+    status.summary(DiagnosticStatus::OK, status.message + "; " + std::to_string(names.size()) +
+                                             " of " + std::to_string(state.coverage.size()) +
+                                             " components are not watched");
+  }
 }
 
 // Whether one that may be absent is: its death would have been found.
@@ -109,7 +98,7 @@ void tellRates(const CommunicationState& state, const std::string& name,
   }
   std::size_t told = 0;
   for (const auto& [topic, rate] : expected->second) {
-    if (told++ < kMostListed) {
+    if (told++ < kMostTopics) {
       const auto actual = component.rates.find(topic);
       char text[48];
       std::snprintf(text, sizeof text, "%.3g of %.3g Hz",
@@ -117,13 +106,20 @@ void tellRates(const CommunicationState& state, const std::string& name,
       status.add(topic, text);
     }
   }
-  if (told > kMostListed) {
-    status.add("further topics", told - kMostListed);
+  if (told > kMostTopics) {
+    status.add("further topics", told - kMostTopics);
   }
 }
 
 bool isMuted(const CommunicationState& state) {
   return !state.muted.empty() && state.last.level != DiagnosticStatus::OK;
+}
+
+// Why the death of a component is not found.
+std::string whyNotWatched(const core::evidence::Coverage& component) {
+  return static_cast<double>(component.gaps) < core::evidence::Tuning().fewest_gaps
+             ? "too few messages in training: " + std::to_string(component.gaps) + " gaps"
+             : "all of it came at one moment in training";
 }
 
 // How soon its death is found.
@@ -138,6 +134,14 @@ std::string foundAfter(const core::evidence::Coverage& component) {
 }
 
 }  // namespace
+
+std::vector<std::pair<std::string, std::vector<std::string>>> listsOf(
+    const CommunicationState& state) {
+  return {{"not watched", notWatched(state)},
+          {"nobody subscribed in training", unheard(state)},
+          {"not accepted, events so far", state.strangers},
+          {"accepted", state.accepted}};
+}
 
 void tellCommunication(const CommunicationState& state, DiagnosticStatusWrapper& status) {
   const self_awareness::SelfAwareness& last = state.last;
@@ -160,10 +164,10 @@ void tellCommunication(const CommunicationState& state, DiagnosticStatusWrapper&
                               " of the " + std::to_string(heard) +
                               " event types that were heard: is it of this robot?");
     }
-    tellNotWatched(state.coverage, status);
-    tellUnheard(state.unheard, status);
-    tellList("not accepted, events so far", state.strangers, status);
-    tellList("accepted", state.accepted, status);
+    tellNotWatched(state, status);
+    for (const auto& [key, list] : listsOf(state)) {
+      tellList(key, list, state.lists, status);
+    }
     status.add("score", number(last.score));
     status.add("threshold", number(last.threshold));
     status.add("events in the window", last.events);
@@ -226,12 +230,21 @@ void tellComponent(const CommunicationState& state, const std::string& name,
   }
   status.add("events a second", number(component.rate));
   tellRates(state, name, component, status);
+  const auto share = state.shares.find(name);
+  if (share != state.shares.end()) {
+    char text[16];
+    std::snprintf(text, sizeof text, "%.2g", share->second);
+    status.add("share of limit", text);
+  }
   const auto accepted = state.accepted_of.find(name);
   if (accepted != state.accepted_of.end()) {
     status.add("accepted", accepted->second);
   }
   if (coverage != nullptr) {
     status.add("death found after [s]", foundAfter(*coverage));
+    if (!coverage->isWatched()) {
+      status.add("why not watched", whyNotWatched(*coverage));
+    }
   }
 }
 

@@ -14,6 +14,7 @@
 #include "self_awareness/SelfAwareness.h"
 #include "self_awareness/core/evidence/limits/coverage.h"
 #include "self_awareness/core/verdict/source_graph.h"
+#include "status_lists.h"
 #include "status_round.h"
 
 namespace self_awareness::ros1 {
@@ -48,6 +49,10 @@ struct CommunicationState {
   std::set<std::string> optional;  ///< components that may be absent
   /// Who cannot be heard by the monitor, and why, in words; by component.
   std::map<std::string, std::string> not_heard;
+  /// Largest share of a limit that components have reached since the last report, by component; 1
+  /// is the limit. Empty: not known.
+  std::map<std::string, double> shares;
+  ListsAre lists = ListsAre::kTold;  ///< long ones
 
   /// Takes over what the alarm says, and what was heard.
   /// @param now ROS time [ns]
@@ -82,6 +87,9 @@ class DiagnosticStatuses {
 
 /// A number as the diagnostics show it; "none" for NaN.
 std::string number(double value);
+/// The lists in the status of the whole, by their keys.
+std::vector<std::pair<std::string, std::vector<std::string>>> listsOf(
+    const CommunicationState& state);
 /// Fills in the level, message and values of the status of the whole.
 void tellCommunication(const CommunicationState& state,
                        diagnostic_updater::DiagnosticStatusWrapper& status);

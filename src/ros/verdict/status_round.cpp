@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <set>
 
+#include "status_lists.h"
+
 namespace self_awareness::ros1 {
 namespace {
 
@@ -13,6 +15,8 @@ using diagnostic_msgs::DiagnosticStatus;
 // What a quiet time saves, and what many changes at once take in advance [s].
 constexpr double kSaved = 1;
 constexpr double kAdvance = 30;
+// Everybody has his turn within so long [s]; reports may be late.
+constexpr double kRound = 50;
 
 }  // namespace
 
@@ -29,14 +33,14 @@ std::vector<DiagnosticStatus> StatusRound::next(const std::vector<DiagnosticStat
   const auto send = [&](const DiagnosticStatus& status) {
     if (names.insert(status.name).second) {
       left_ -= static_cast<double>(bytesOf(status));
-      said_[status.name] = {status.level, status.message};
+      said_[status.name] = {status.level, withoutNumbers(status.message)};
       chosen.push_back(status);
     }
   };
   for (const DiagnosticStatus& status : all) {
     const auto said = said_.find(status.name);
     if (said == said_.end() || said->second.level != status.level ||
-        said->second.message != status.message) {
+        said->second.words != withoutNumbers(status.message)) {
       send(status);
     }
   }
@@ -44,13 +48,13 @@ std::vector<DiagnosticStatus> StatusRound::next(const std::vector<DiagnosticStat
   while (at < all.size() && all[at].name != last_) {
     ++at;
   }
-  for (std::size_t i = 1; i <= all.size(); ++i) {
+  const auto number = static_cast<double>(all.size());
+  due_ = std::min(due_ + number * elapsed / kRound, number);
+  for (std::size_t i = 1; i <= all.size() && (left_ > 0 || due_ >= 1); ++i) {
     const DiagnosticStatus& status = all[(at + i) % all.size()];
-    if (i > 1 && left_ <= 0) {  // one in any case: nobody waits for ever
-      break;
-    }
     send(status);
     last_ = status.name;
+    due_ = std::max(due_ - 1, 0.0);
   }
   left_ = std::max(left_, -kAdvance * bytes_per_second_);
   return chosen;

@@ -10,8 +10,9 @@
 namespace self_awareness::ros1 {
 
 /// Chooses which statuses of components go out with a report: what has changed at once, all else
-/// one after the other, as many as a number of bytes allows. /diagnostics is heard by everybody,
-/// also over a radio link.
+/// one after the other, as many as a number of bytes allows, but everybody within 50 s: the
+/// aggregator takes for stale what was not said for 60 s (config/diagnostic_analyzers.yaml).
+/// /diagnostics is heard by everybody, also over a radio link.
 class StatusRound {
  public:
   /// @param bytes_per_second that everything together may take
@@ -29,11 +30,12 @@ class StatusRound {
  private:
   struct Said {
     int level = 0;
-    std::string message;
+    std::string words;  // of the message, without numbers: they change all the time
   };
 
   double bytes_per_second_;
   double left_ = 0;                   // bytes that may be sent; below 0: what changed took more
+  double due_ = 0;                    // statuses whose turn it is, whatever they take
   std::map<std::string, Said> said_;  // by name, as it was sent last
   std::string last_;                  // of the round: who is next comes after it
 };

@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Callable, List, Tuple
 
@@ -100,6 +101,9 @@ def test_no_result_is_green_where_nobody_looks(half_blind: Tuple[str, str], tmp_
     after = {status.name.split(': ')[1]: each.value for status in message.status
              for each in status.values if each.key == 'death found after [s]'}
     assert after['/rare'] == 'not watched' and 0 < float(after['/laser']) < 2
+    why, = (each.value for status in message.status for each in status.values
+            if each.key == 'why not watched')
+    assert re.fullmatch(r'too few messages in training: \d+ gaps', why)
 
 
 def test_a_model_that_watches_all_says_nothing_of_that(
