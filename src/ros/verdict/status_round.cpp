@@ -15,6 +15,9 @@ using diagnostic_msgs::DiagnosticStatus;
 // What a quiet time saves, and what many changes at once take in advance [s].
 constexpr double kSaved = 1;
 constexpr double kAdvance = 30;
+// What is not OK is said after so long [s], so many of them with a report.
+constexpr double kUrgentAfter = 5;
+constexpr std::size_t kUrgent = 2;
 // Everybody has his turn within so long [s]; reports may be late.
 constexpr double kRound = 50;
 
@@ -33,15 +36,31 @@ std::vector<DiagnosticStatus> StatusRound::next(const std::vector<DiagnosticStat
   const auto send = [&](const DiagnosticStatus& status) {
     if (names.insert(status.name).second) {
       left_ -= static_cast<double>(bytesOf(status));
-      said_[status.name] = {status.level, withoutNumbers(status.message)};
+      said_[status.name] = {status.level, 0, withoutNumbers(status.message)};
       chosen.push_back(status);
     }
   };
+  for (auto& [name, said] : said_) {
+    said.since += elapsed;
+  }
   for (const DiagnosticStatus& status : all) {
     const auto said = said_.find(status.name);
     if (said == said_.end() || said->second.level != status.level ||
         said->second.words != withoutNumbers(status.message)) {
       send(status);
+    }
+  }
+  for (std::size_t i = 0; i < kUrgent; ++i) {
+    const DiagnosticStatus* oldest = nullptr;
+    for (const DiagnosticStatus& status : all) {
+      const double since = said_[status.name].since;
+      if (status.level != DiagnosticStatus::OK && since >= kUrgentAfter &&
+          (oldest == nullptr || since > said_[oldest->name].since)) {
+        oldest = &status;
+      }
+    }
+    if (oldest != nullptr) {
+      send(*oldest);
     }
   }
   std::size_t at = 0;

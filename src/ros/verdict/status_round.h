@@ -9,10 +9,11 @@
 
 namespace self_awareness::ros1 {
 
-/// Chooses which statuses of components go out with a report: what has changed at once, all else
-/// one after the other, as many as a number of bytes allows, but everybody within 50 s: the
-/// aggregator takes for stale what was not said for 60 s (config/diagnostic_analyzers.yaml).
-/// /diagnostics is heard by everybody, also over a radio link.
+/// Chooses which statuses of components go out with a report: what has changed at once, what is
+/// not OK every 5 s (two of them a report: they may be many), all else one after the other, as
+/// many as a number of bytes allows, but everybody within 50 s: the aggregator takes for stale
+/// what was not said for 60 s (config/diagnostic_analyzers.yaml). /diagnostics is heard by
+/// everybody, also over a radio link.
 class StatusRound {
  public:
   /// @param bytes_per_second that everything together may take
@@ -30,6 +31,7 @@ class StatusRound {
  private:
   struct Said {
     int level = 0;
+    double since = 0;   // [s]
     std::string words;  // of the message, without numbers: they change all the time
   };
 
