@@ -5,6 +5,7 @@ import fcntl
 import os
 import pty
 import re
+import signal
 import struct
 import subprocess
 import termios
@@ -115,6 +116,21 @@ class TopTest(MonitorCase):
                 terminal.await_text('the alarm is cleared', terminal.press('c'))
                 await_condition('it is cleared', lambda: (
                     listener.alarms[-1].level == SelfAwareness.OK), 20)
+
+    @again_if_clock_was_set
+    def test_a_monitor_that_hangs_is_stale_and_keys_go_on(self) -> None:
+        with self.monitor(self.model()) as monitor, MonitorListener() as listener:
+            with Talker('/a'), top() as terminal:
+                listener.await_settled()
+                terminal.await_text('OK  normal communication')
+                monitor.send(signal.SIGSTOP)
+                terminal.await_text('STALE  the monitor has not been heard for')
+                terminal.await_text('asked ...', terminal.press('c'))
+                terminal.await_text('not done: the call before is', terminal.press('d'))
+                terminal.await_text('no answer for')
+                terminal.await_text('by name', terminal.press('s'))
+                terminal.press('q')
+                self.assertEqual(terminal.wait(), 0)
 
     def test_it_ends_when_the_master_is_gone(self) -> None:
         port = '11399'

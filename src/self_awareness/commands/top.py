@@ -21,7 +21,7 @@ _EPILOG = """\
 Keys: q quit, s sort by another column, f filter by a part of the name, p pause, m mute the
 selected component for 10 minutes, a accept what stands (after y, if that is a death), or, if
 nothing does, who is new, c clear the alarm, d write the flight recorder's file. 80 columns are
-enough. It ends when the master is gone.
+enough. A monitor that was not heard for 5 s is STALE. It ends when the master is gone.
 """
 
 _MASTER_EVERY_S = 1.0
@@ -112,7 +112,7 @@ def _calls(monitor: str) -> Dict[str, Callable[..., str]]:
         def answer(*arguments: Any) -> str:
             try:
                 return call(*arguments)
-            except (rospy.ServiceException, rospy.ROSException) as error:
+            except (rospy.ServiceException, rospy.ROSException, OSError) as error:
                 return f'not done: {error}'
         return answer
 

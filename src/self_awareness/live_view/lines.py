@@ -4,13 +4,15 @@ from __future__ import annotations
 from typing import Any, List, Optional, Tuple
 
 from self_awareness import printable
-from self_awareness.live_view.said import LEVELS, Component, Said
+from self_awareness.live_view.said import LEVELS, STALE_S, Component, Said
 
 Line = Tuple[str, str]
 """A style (one of LEVELS, head, faint, or none) and a text."""
 
 _MOST_INCIDENTS = 5
-_NAME = 28
+_MOST_MUTES = 3
+_NAME = 24
+_WIDE = 100  # columns, for one column more
 
 
 def head(said: Said, width: int, paused: bool) -> List[Line]:
@@ -20,6 +22,9 @@ def head(said: Said, width: int, paused: bool) -> List[Line]:
     verdict = said.verdict
     level = LEVELS[said.level]
     lines = [(level, cut(f'{level}  {said.message}', width))]
+    if said.silent_for > STALE_S:
+        lines = [('STALE', cut('STALE  the monitor has not been heard for '
+                               f'{said.silent_for:.0f} s; it said: {said.message}', width))]
     if verdict is not None:
         state = 'paused' if paused else 'settling' if verdict.settling else ''
         lines.append(('', cut(f'score {said.score:5.2f} of its limit  '
@@ -31,7 +36,10 @@ def head(said: Said, width: int, paused: bool) -> List[Line]:
     if said.strangers:
         new = ', '.join(f'{source} on {topic}' for source, topic in said.strangers)
         lines.append(('', cut(f'new, not accepted: {new}', width)))
-    lines += [('WARN', cut(f'muted: {mute}', width)) for mute in said.mutes]
+    shown = said.mutes[:_MOST_MUTES]
+    lines += [('WARN', cut(f'muted: {mute}', width)) for mute in shown]
+    if said.number_of_mutes > len(shown):
+        lines.append(('WARN', f'muted: {said.number_of_mutes - len(shown)} more'))
     return lines
 
 
@@ -46,21 +54,31 @@ def component_head(sort: str, pattern: str, width: int) -> Line:
     """Return the head of the table of components."""
     filtered = f', {printable(pattern)}' if pattern else ''
     name = f'component (by {sort}{filtered})'
-    return 'head', cut(f'{name:<{_NAME}} {"events/s":>9} {"age":>8} {"found in":>9}  state', width)
+    return 'head', cut(_row(name, 'events/s', 'age', 'limit', 'found in', 'state', width), width)
 
 
 def component(of: Component, width: int) -> Line:
-    """Return the line of a component."""
+    """Return the line of a component: events/s are those heard of those expected."""
     name = of.name if len(of.name) <= _NAME else f'{of.name[:_NAME - 1]}…'
-    return (LEVELS[of.level] if of.level else '',
-            cut(f'{name:<{_NAME}} {_shown(of.rate):>9} {_shown(of.age, " s"):>8} '
-                f'{_found(of.found_after):>9}  {of.message}', width))
+    rate = _shown(of.rate) + ('' if of.expected is None else f'/{_shown(of.expected)}')
+    share = '-' if of.share is None else f'{min(of.share, 9.99):.0%}'
+    state = of.message
+    if of.not_watched:
+        state = f'not watched: {of.not_watched}' if of.level == 0 else (
+            f'{of.message}; not watched: {of.not_watched}')
+    return (LEVELS[of.level] if of.level else '', cut(_row(
+        name, rate, _shown(of.age, ' s'), share, _found(of.found_after), state, width), width))
 
 
 def cut(text: str, width: int) -> str:
     """Return a text that fits, without what controls a terminal: names come from strangers."""
     text = printable(text)
     return text if len(text) <= width else f'{text[:width - 1]}…'
+
+
+def _row(name: str, rate: str, age: str, share: str, found: str, state: str, width: int) -> str:
+    found = f' {found:>9}' if width >= _WIDE else ''
+    return f'{name:<{_NAME}} {rate:>11} {age:>7} {share:>5}{found}  {state}'
 
 
 def _incident(each: Any, width: int) -> Line:

@@ -2,19 +2,27 @@
 from __future__ import annotations
 
 import fnmatch
+import re
+import time
 from collections import deque
 from dataclasses import dataclass
-from typing import Any, Deque, Dict, List, Mapping, Optional, Tuple
+from typing import Any, Callable, Deque, Dict, List, Mapping, Optional, Tuple
 
 LEVELS = ('OK', 'WARN', 'ERROR', 'STALE')
 """As of diagnostic_msgs/DiagnosticStatus."""
-SORTS = ('level', 'name', 'rate', 'age')
+SORTS = ('level', 'name', 'rate', 'age', 'limit')
 """By what components can be sorted; `level` puts the worst first."""
+STALE_S = 5.0
+"""A monitor that was not heard for longer is stale, as the aggregator has it."""
 
 _BARS = '▁▂▃▄▅▆▇█'
 _LONGEST_CURVE = 400
 _WHOLE, _ITSELF = 'communication', 'monitor'
 _DEATHS = ('died', 'never came')
+# Components take turns of 50 s; the aggregator waits for 60 s.
+_STALE_COMPONENT_S, _FORGOTTEN_COMPONENT_S = 60.0, 120.0
+_COUNTED = re.compile(r'[0-9]+, listed every 20 s')
+_RATES = re.compile(r'([0-9.e+-]+) of ([0-9.e+-]+) Hz')
 
 
 @dataclass(frozen=True)
@@ -26,27 +34,41 @@ class Component:
         level: index in LEVELS.
         message: in words.
         rate: events a second; None: not told.
+        expected: events a second in training; None: not told.
         age: when it was last heard [s ago]; None: it was not.
+        share: of its limit that its evidence has reached, 1 is the limit; None: not told.
         found_after: how soon its death is found, in words; empty: not known.
+        not_watched: why it is not, or is watched less; empty: it is.
     """
 
     name: str
     level: int
     message: str
     rate: Optional[float]
+    expected: Optional[float]
     age: Optional[float]
+    share: Optional[float]
     found_after: str
+    not_watched: str
 
 
 class Said:
     """All that is shown of a monitor."""
 
-    def __init__(self, monitor: str) -> None:
+    def __init__(self, monitor: str, clock: Callable[[], float] = time.monotonic) -> None:
         """Nothing was said yet.
 
         Args:
             monitor: its full name.
+            clock: steady time [s].
         """
+        self._clock = clock
+        self._said_at: Dict[str, float] = {}  # when, by status
+        self._lists: Dict[Tuple[str, str], str] = {}  # as they were told last, by status and key
+        self._mutes: Tuple[str, ...] = ()
+        self._all_mutes = 0
+        self.heard_at: Optional[float] = None
+        """When the monitor said something last; None: it has not."""
         self._prefix = f'{monitor.lstrip("/")}: '
         self._statuses: Dict[str, Any] = {}
         self._scores: Deque[float] = deque(maxlen=_LONGEST_CURVE)
@@ -58,14 +80,25 @@ class Said:
     def on_status(self, verdict: Any) -> None:
         """Take in the verdict on a window (SelfAwareness)."""
         self.verdict = verdict
+        self.heard_at = self._clock()
         share = verdict.score / verdict.threshold if verdict.threshold else 0.0
         self._scores.append(share if share > 0 else 0.0)  # also where it is NaN
 
     def on_diagnostics(self, array: Any) -> None:
         """Take in a DiagnosticArray: what others say is left out."""
-        for status in array.status:
-            if status.name.startswith(self._prefix):
-                self._statuses[status.name[len(self._prefix):]] = status
+        told = {status.name[len(self._prefix):]: status for status in array.status
+                if status.name.startswith(self._prefix)}
+        if not told:
+            return
+        now = self.heard_at = self._clock()
+        model = self._value(_WHOLE, 'model')
+        self._statuses.update(told)
+        self._said_at.update(dict.fromkeys(told, now))
+        reloaded = model not in ('', self._value(_WHOLE, 'model'))
+        for name in set(self._statuses).difference(told):
+            if reloaded or now - self._said_at[name] > _FORGOTTEN_COMPONENT_S:
+                del self._statuses[name], self._said_at[name]
+        self._keep_lists()
 
     def on_incidents(self, incidents: Any) -> None:
         """Take in the Incidents."""
@@ -74,7 +107,12 @@ class Said:
     @property
     def heard(self) -> bool:
         """Whether the monitor has said anything."""
-        return self.verdict is not None or bool(self._statuses)
+        return self.heard_at is not None
+
+    @property
+    def silent_for(self) -> float:
+        """How long the monitor has said nothing [s]; 0: it never did."""
+        return 0.0 if self.heard_at is None else self._clock() - self.heard_at
 
     @property
     def level(self) -> int:
@@ -98,13 +136,18 @@ class Said:
 
     @property
     def not_watched(self) -> str:
-        """Who is not watched; empty: everybody is, or it is not known."""
-        return self._value(_WHOLE, 'not watched')
+        """Who is not watched, and why; empty: everybody is, or it is not known."""
+        why = {name: reason for name in self._components() if (reason := self._not_watched(name))}
+        told = self._list(_WHOLE, 'not watched') or self._value(_WHOLE, 'not watched')
+        for name in re.findall(r'(?:^|, )(/[^, ]+)', told):
+            why.setdefault(name, '')
+        return (', '.join(f'{name} ({reason})' if reason else name for name, reason in why.items())
+                or told)
 
     @property
     def strangers(self) -> List[Tuple[str, str]]:
         """Who is heard, and where, whom training never saw and nobody has accepted."""
-        told = self._value(_WHOLE, 'not accepted, events so far')
+        told = self._list(_WHOLE, 'not accepted, events so far')
         pairs = [each.rpartition(': ')[0].rpartition(' on ') for each in told.split(', ') if each]
         return [(source, topic) for source, _, topic in pairs]
 
@@ -126,8 +169,13 @@ class Said:
 
     @property
     def mutes(self) -> List[str]:
-        """All mutes in words."""
-        return [value for key, value in self._values(_ITSELF).items() if key.startswith('mute ')]
+        """Mutes in words; where there are many, the first."""
+        return list(self._mutes)
+
+    @property
+    def number_of_mutes(self) -> int:
+        """How many mutes there are."""
+        return self._all_mutes
 
     @property
     def itself(self) -> str:
@@ -145,20 +193,56 @@ class Said:
             pattern: a part of the name, or one with `*`; empty: all.
         """
         asked = pattern if '*' in pattern else f'*{pattern}*'
-        found = [self._component(name) for name in self._statuses
-                 if name not in (_WHOLE, _ITSELF) and fnmatch.fnmatch(name, asked)]
+        found = [self._component(name) for name in self._components()
+                 if fnmatch.fnmatch(name, asked)]
         keys = {'level': lambda each: (-each.level, each.name),
                 'name': lambda each: each.name,
                 'rate': lambda each: (-(each.rate or 0.0), each.name),
-                'age': lambda each: (each.age is not None, -(each.age or 0.0), each.name)}
+                'age': lambda each: (each.age is not None, -(each.age or 0.0), each.name),
+                'limit': lambda each: (-(each.share or 0.0), each.name)}
         return sorted(found, key=keys[sort])
+
+    def _components(self) -> List[str]:
+        return [name for name in self._statuses if name not in (_WHOLE, _ITSELF)]
 
     def _component(self, name: str) -> Component:
         status = self._statuses[name]
-        return Component(name, int(status.level), status.message,
-                         _number(self._value(name, 'events a second')),
-                         _number(self._value(name, 'last heard [s ago]')),
-                         self._value(name, 'death found after [s]'))
+        level, message = int(status.level), status.message
+        untold = max(self._said_at.values()) - self._said_at[name]
+        if untold > _STALE_COMPONENT_S:
+            level, message = LEVELS.index('STALE'), f'not told for {untold:.0f} s'
+        # By topic, as in training; the mean of some seconds.
+        rates = [match for value in self._values(name).values()
+                 if (match := _RATES.fullmatch(value))]
+        return Component(
+            name, level, message,
+            sum(float(match[1]) for match in rates) if rates
+            else _number(self._value(name, 'events a second')),
+            sum(float(match[2]) for match in rates) if rates else None,
+            _number(self._value(name, 'last heard [s ago]')),
+            _number(self._value(name, 'share of limit')),
+            self._value(name, 'death found after [s]'), self._not_watched(name))
+
+    def _not_watched(self, name: str) -> str:
+        accepted = self._value(name, 'not watched: accepted')
+        return (self._value(name, 'why not watched')
+                or (f'accepted: {accepted}' if accepted else ''))
+
+    def _keep_lists(self) -> None:
+        """Keep what was told: for some seconds, long lists are only counted."""
+        for key, value in self._values(_WHOLE).items():
+            if not _COUNTED.fullmatch(value):
+                self._lists[_WHOLE, key] = value
+        values = self._values(_ITSELF)
+        told = tuple(value for key, value in values.items() if re.fullmatch('mute [0-9]+', key))
+        number = len(told) + int(_number(values.get('further mute', '')) or 0)
+        if len(told) >= len(self._mutes) or number != self._all_mutes:
+            self._mutes = told
+        self._all_mutes = number
+
+    def _list(self, name: str, key: str) -> str:
+        value = self._value(name, key)
+        return self._lists.get((name, key), '') if _COUNTED.fullmatch(value) else value
 
     def _value(self, name: str, key: str) -> str:
         return self._values(name).get(key, '')

@@ -1,7 +1,10 @@
 """The screen of `top`, drawn by urwid."""
 from __future__ import annotations
 
-from typing import Any, Callable, Dict, List, Optional
+import queue
+import threading
+import time
+from typing import Any, Callable, Dict, List, Optional, Tuple
 
 import urwid
 
@@ -13,6 +16,9 @@ KEYS = 'q quit  s sort  f filter  p pause  m mute 10 min  a accept  c clear  d d
 
 _EVERY_S = 0.5
 _MUTE_S = 600.0
+# The monitor answers within a tenth of a second; a call that is not answered keeps others waiting
+# for no longer.
+_SLOW_S, _GIVEN_UP_S = 2.0, 10.0
 _PALETTE = [('head', 'default,bold', 'default'), ('OK', 'dark green', 'default'),
             ('WARN', 'yellow', 'default'), ('ERROR', 'light red,bold', 'default'),
             ('STALE', 'dark cyan', 'default'), ('faint', 'dark gray', 'default')]
@@ -30,9 +36,12 @@ class Screen:
             is_over: why nothing more will come; empty: it goes on.
             calls: by key c and d, what it does, by m, what mutes a component for some seconds,
                 and by a, what accepts the alarm of an id, or, where that is 0, senders and their
-                topics; they return what came of it.
+                topics; they return what came of it, and may take as long as they like.
         """
-        self._said, self._is_over, self._calls = said, is_over, calls
+        self._said, self._is_over = said, is_over
+        self._calls = {key: self._in_thread(call) for key, call in calls.items()}
+        self._answers: queue.SimpleQueue[Tuple[float, str]] = queue.SimpleQueue()
+        self._called_at: Optional[float] = None  # steady [s]; None: all is answered
         self._shown = said()
         self._sort, self._pattern, self._paused = SORTS[0], '', False
         self._names: List[str] = []
@@ -57,8 +66,12 @@ class Screen:
         self.why = self._is_over()
         if self.why:
             raise urwid.ExitMainLoop()
-        if not self._paused:
-            self._shown = self._said()
+        latest = self._said()
+        if self._paused:
+            self._shown.heard_at = latest.heard_at  # whether it lives is shown all the same
+        else:
+            self._shown = latest
+        self._take_answers()
         self._draw()
         self._loop.set_alarm_in(_EVERY_S, self._on_time)
 
@@ -121,6 +134,28 @@ class Screen:
         if key in ('enter', 'esc'):
             self._pattern = self._asked.edit_text if key == 'enter' else self._pattern
             self._frame.footer, self._frame.focus_position = self._foot, 'body'
+
+    def _in_thread(self, call: Callable[..., str]) -> Callable[..., str]:
+        """Return what makes a call without waiting for its answer: keys go on meanwhile."""
+        def start(*arguments: Any) -> str:
+            now = time.monotonic()
+            if self._called_at is not None and now - self._called_at < _GIVEN_UP_S:
+                return 'not done: the call before is not answered yet'
+            self._called_at = now
+            threading.Thread(target=lambda: self._answers.put((now, call(*arguments))),
+                             daemon=True).start()
+            return 'asked ...'
+        return start
+
+    def _take_answers(self) -> None:
+        while not self._answers.empty():
+            called_at, answer = self._answers.get()
+            if called_at == self._called_at:
+                self._called_at = None
+            self._say(answer)
+        waited = 0.0 if self._called_at is None else time.monotonic() - self._called_at
+        if waited > _SLOW_S:
+            self._say(f'no answer for {waited:.0f} s')
 
     def _say(self, answer: str) -> None:
         width = self._loop.screen.get_cols_rows()[0]

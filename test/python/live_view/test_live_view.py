@@ -2,8 +2,9 @@
 from __future__ import annotations
 
 import math
+import re
 from types import SimpleNamespace
-from typing import Any, List, Tuple
+from typing import Any, Dict, List, Tuple
 
 import pytest
 
@@ -18,7 +19,22 @@ def status(name: str, level: int = 0, message: str = 'heard', **values: str) -> 
 
 def of_component(name: str, level: int, rate: str, age: str) -> Any:
     return status(f'watch: {name}', level, 'heard' if level == 0 else '/t: silent for 1.2 s', **{
-        'events a second': rate, 'last heard [s ago]': age, 'death found after [s]': '0.4'})
+        'events a second': rate, 'last heard [s ago]': age, 'death found after [s]': '0.4',
+        'share of limit': '0.07', '/t': f'{rate} of 10 Hz', '/u': '5 of 2.5 Hz'})
+
+
+class Clock:
+    """A steady clock that a test sets."""
+
+    def __init__(self) -> None:
+        self.now = 100.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+def diagnostics(*statuses: Any) -> Any:
+    return SimpleNamespace(status=list(statuses))
 
 
 def verdict(score: float, threshold: float = -1.0, settling: bool = False) -> Any:
@@ -52,6 +68,9 @@ def said() -> Said:
             'mute 1': '/noisy until 2026-11-23 15:00:00 UTC, by /rqt'}),
         of_component('/base', 0, '10.02', '0.05'), of_component('/player', 2, '0', '3.1'),
         of_component('/camera', 1, '29.5', '0.4'),
+        status('watch: /rare', 0, 'heard', **{
+            'events a second': '0', 'last heard [s ago]': '90', 'death found after [s]':
+            'not watched', 'why not watched': 'too few messages in training: 7 gaps'}),
         status('another: /laser', 2, 'of another monitor')]))
     of.on_incidents(SimpleNamespace(incidents=[
         incident('/old', over=True), incident('/quiet', alarms=0),
@@ -63,13 +82,15 @@ def test_components_are_sorted_and_filtered(said: Said) -> None:
     def names(sort: str, pattern: str = '') -> List[str]:
         return [each.name for each in said.components(sort, pattern)]
 
-    assert names('level') == ['/player', '/camera', '/base'], 'the worst first'
-    assert names('name') == ['/base', '/camera', '/player']
-    assert names('rate') == ['/camera', '/base', '/player']
-    assert names('age') == ['/player', '/camera', '/base']
+    assert names('level') == ['/player', '/camera', '/base', '/rare'], 'the worst first'
+    assert names('name') == ['/base', '/camera', '/player', '/rare']
+    assert names('rate') == ['/camera', '/base', '/player', '/rare']
+    assert names('age') == ['/rare', '/player', '/camera', '/base']
+    assert names('limit') == ['/base', '/camera', '/player', '/rare']
     assert names('name', 'a*r') == [] and names('name', '/c*a') == ['/camera']
     assert names('name', 'as') == ['/base']
-    assert {each for sort in SORTS for each in names(sort)} == {'/base', '/camera', '/player'}
+    assert {each for sort in SORTS for each in names(sort)} == {
+        '/base', '/camera', '/player', '/rare'}
 
 
 def test_who_was_never_heard_comes_first_by_age() -> None:
@@ -97,13 +118,17 @@ def test_all_is_in_80_columns(said: Said) -> None:
     assert max(map(len, texts)) <= 80
     page = '\n'.join(texts)
     assert said.strangers == [('/rostopic', '/cmd_vel'), ('/joystick', '/joy')]
-    for text in ('ERROR  abnormal communication', 'not watched: /rare',
+    for text in ('ERROR  abnormal communication',
+                 'not watched: /rare (too few messages in training: 7 gaps)',
                  'new, not accepted: /rostopic on /cmd_vel, /joystick on /joy',
                  'muted: /noisy until',
                  'open  /player died, raised 7 times; and /slam, /navigation ...',
                  'over  /old died', 'listening; 120 events/s, 0.02 cores'):
         assert text in page
     assert '/quiet' not in page and '/laser' not in page
+    rows = [re.sub(' +', ' ', text) for text in texts]
+    assert '/base 15.0/12.5 0.1 s 7% heard' in rows
+    assert [each for each in rows if each.startswith('/rare 0.0 90.0 s - not watched: too few')]
     assert ('ERROR', 'WARN') == tuple(style for style, text in shown
                                       if text.startswith(('/player ', '/camera ')))
 
@@ -131,3 +156,71 @@ def test_before_the_first_word() -> None:
     (style, text), = lines.head(Said('/watch'), 80, False)
     assert text.startswith('waiting for the monitor')
     assert lines.incidents(Said('/watch'), 80) == [('head', 'no incident')]
+
+
+def test_a_monitor_that_is_silent_is_stale() -> None:
+    clock = Clock()
+    of = Said('/watch', clock)
+    assert lines.head(of, 80, False) == [('head', 'waiting for the monitor ...')]
+    clock.now += 60
+    assert of.silent_for == 0.0, 'it was never heard'
+    of.on_diagnostics(diagnostics(status('watch: communication', message='normal communication')))
+    clock.now += 4.9
+    assert lines.head(of, 80, False)[0] == ('OK', 'OK  normal communication')
+    of.on_diagnostics(diagnostics(status('another: communication')))
+    clock.now += 1.1
+    style, text = lines.head(of, 80, False)[0]
+    assert style == 'STALE'
+    assert text.startswith('STALE  the monitor has not been heard for 6 s; it said: normal')
+    of.on_status(verdict(-0.5))
+    assert lines.head(of, 80, False)[0][0] == 'OK'
+
+
+def test_components_of_a_model_that_was_replaced_go() -> None:
+    clock = Clock()
+    of = Said('/watch', clock)
+
+    def names() -> List[str]:
+        return [each.name for each in of.components('name', '')]
+
+    def whole(model: str) -> Any:
+        return status('watch: communication', model=model)
+
+    of.on_diagnostics(diagnostics(whole('a'), of_component('/a', 0, '1', '1'),
+                                  of_component('/b', 0, '1', '1')))
+    of.on_diagnostics(diagnostics(whole('a'), of_component('/b', 0, '1', '1')))
+    assert names() == ['/a', '/b'], 'they take turns'
+    of.on_diagnostics(diagnostics(whole('b'), of_component('/b', 0, '1', '1'),
+                                  of_component('/c', 0, '1', '1')))
+    assert names() == ['/b', '/c']
+    clock.now += 61
+    of.on_diagnostics(diagnostics(whole('b'), of_component('/c', 0, '1', '1')))
+    shown = lines.component(of.components('name', '')[0], 80)
+    assert shown[0] == 'STALE' and 'not told for 61 s' in shown[1]
+    clock.now += 60
+    of.on_diagnostics(diagnostics(whole('b'), of_component('/c', 0, '1', '1')))
+    assert names() == ['/c']
+
+
+def test_lists_that_are_only_counted_for_some_seconds_stay() -> None:
+    of = Said('/watch')
+
+    def say(strangers: str, *mutes: str, further: int = 0) -> None:
+        told: Dict[str, Any] = {f'mute {i + 1}': mute for i, mute in enumerate(mutes)}
+        new: Dict[str, Any] = {'not accepted, events so far': strangers}
+        if further:
+            told['further mute'] = str(further)
+        of.on_diagnostics(diagnostics(
+            status('watch: communication', **new), status('watch: monitor', **told)))
+
+    say('2, listed every 20 s', '/a', further=1)
+    assert of.strangers == [] and of.mutes == ['/a'] and of.number_of_mutes == 2
+    say('/x on /y: 3, /z on /u: 4', '/a', '/b')
+    say('2, listed every 20 s', '/a', further=1)
+    assert of.strangers == [('/x', '/y'), ('/z', '/u')]
+    assert of.mutes == ['/a', '/b']
+    assert ('WARN', 'muted: /b') in lines.head(of, 80, False)
+    say('', '/a')
+    assert of.strangers == [] and of.mutes == ['/a']
+    say('', *'abcde', further=10)
+    assert lines.head(of, 80, False)[-1] == ('WARN', 'muted: 12 more')
