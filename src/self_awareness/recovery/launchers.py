@@ -76,4 +76,4 @@ class Launchers:
 
 
 def _ask(address: str, method: str, *words: str) -> Any:
-    return ask('roslaunch', address, _WITHIN_S, _MOST, method, *words)
+    return ask('a roslaunch', address, _WITHIN_S, _MOST, method, *words)
