@@ -10,8 +10,8 @@
 
 #include "parameters.h"
 #include "self_awareness/core/evidence/channel/model.h"
-#include "self_awareness/core/evidence/limits/coverage.h"
 #include "self_awareness/core/evidence/judge.h"
+#include "self_awareness/core/evidence/limits/coverage.h"
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/core/verdict/acceptance.h"
 #include "self_awareness/core/verdict/detector.h"

@@ -1,6 +1,7 @@
 """What keys do on the screen of `top`, without a terminal."""
 from __future__ import annotations
 
+import time
 from types import SimpleNamespace
 from typing import Any, List
 
@@ -23,6 +24,13 @@ class Shown:
         """Press keys; return the last line but that of the keys."""
         for key in keys:
             self._screen._on_key(key)
+        end = time.monotonic() + 60.0
+        while self._said_last() == 'asked ...' and time.monotonic() < end:
+            time.sleep(0.01)
+            self._screen._take_answers()
+        return self._said_last()
+
+    def _said_last(self) -> str:
         return str(self._screen._foot.get_text()[0].split('\n')[0])
 
     def _accept(self, *what: Any) -> str:

@@ -1,10 +1,10 @@
-#!/usr/bin/python3
 """Draws what a program shows in a terminal of 80 columns, 3 s after it shows a text; then ends it.
 
-usage: scripts/terminal_picture FILE.png TEXT COMMAND...
+usage: python3 -m self_awareness_evaluation.terminal_picture FILE.png TEXT COMMAND...
 """
+from __future__ import annotations
+
 import fcntl
-import io
 import os
 import pty
 import re
@@ -15,7 +15,7 @@ import subprocess
 import sys
 import termios
 import time
-from typing import List, Tuple
+from typing import Any, Callable, List, Tuple
 
 import matplotlib
 
@@ -24,7 +24,6 @@ matplotlib.use('Agg')  # before pyplot
 import urwid  # noqa: E402
 import urwid.vterm  # noqa: E402
 from matplotlib import pyplot  # noqa: E402
-from PIL import Image  # noqa: E402
 
 urwid.set_encoding('utf8')
 COLUMNS, ROWS = 80, 24
@@ -41,8 +40,10 @@ class Quiet:
 
     term_modes = urwid.vterm.TermModes()
 
-    def __getattr__(self, _name: str):
-        return lambda *_: None
+    def __getattr__(self, _name: str) -> Callable[..., None]:
+        def nothing(*_: Any) -> None:
+            pass
+        return nothing
 
 
 def drawn_by(command: List[str], text: str) -> urwid.vterm.TermCanvas:
@@ -75,7 +76,7 @@ def rows_of(screen: urwid.vterm.TermCanvas) -> List[Row]:
     """Return what is on it."""
     rows = []
     for line in screen.content():
-        row = []
+        row: Row = []
         for attribute, _, text in line:
             style = attribute.foreground if attribute is not None else 'default'
             color = next((COLORS[name] for name in COLORS if name in style), PLAIN)
@@ -98,9 +99,7 @@ def draw(rows: List[Row], file: str) -> None:
                                 1 - (at + 1.1) / (len(rows) + 1), letter, color=color, size=9,
                                 family='DejaVu Sans Mono', weight='bold' if bold else 'normal')
                 column += 1
-    drawn = io.BytesIO()
-    figure.savefig(drawn, dpi=130, facecolor=PAPER)
-    Image.open(drawn).convert('RGB').quantize(48).save(file, optimize=True)  # a third of the bytes
+    figure.savefig(file, dpi=110, facecolor=PAPER, pil_kwargs={'optimize': True})
 
 
 def main() -> None:
