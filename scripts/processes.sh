@@ -15,17 +15,28 @@ start() {  # LOG COMMAND...
 stop_all() {
   local pid
   for pid in $(jobs -p); do
-    [ -n "${started[$pid]:-}" ] || { kill "$pid" && wait "$pid"; } 2> /dev/null || true
+    [ -n "${started[$pid]:-}" ] || stop "$pid" "$pid"
   done
-  for pid in "${!started[@]}"; do kill -- "-$pid" 2> /dev/null || true; done
-  for pid in "${!started[@]}"; do
-    for _ in $(seq 100); do
-      kill -0 -- "-$pid" 2> /dev/null || break
-      sleep 0.1
-    done
-    kill -KILL -- "-$pid" 2> /dev/null || true
-    wait "$pid" 2> /dev/null || true
+  for pid in "${!started[@]}"; do stop "$pid" "-$pid"; done
+}
+
+# One that was forked a moment ago leads no group yet, and still has the handlers of this shell, which
+# forget the signal when it becomes another program. So a group gets it when there is one, and a
+# process once more every second.
+stop() {  # PID PID|-GROUP
+  local pid=$1 target=$2 tenths sent=
+  for ((tenths = 0; tenths < 100; ++tenths)); do
+    if [ "$target" = "$pid" ]; then
+      [ $((tenths % 10)) -gt 0 ] || sent=
+    elif [ -n "$sent" ]; then
+      kill -0 -- "$target" 2> /dev/null || break
+    fi
+    [ -n "$sent" ] || ! kill -- "$target" 2> /dev/null || sent=yes
+    kill -0 "$pid" 2> /dev/null || kill -0 -- "$target" 2> /dev/null || break
+    sleep 0.1
   done
+  kill -KILL -- "$target" 2> /dev/null || true
+  wait "$pid" 2> /dev/null || true
 }
 
 # Shows how far a build is, in steps of 5 %, by the output of make; and how long it took.
