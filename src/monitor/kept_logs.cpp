@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <boost/filesystem.hpp>
-#include <cstdio>
-#include <ctime>
 #include <regex>
 #include <utility>
 
 #include "recorded_log.h"
+#include "recorder_folder.h"
 #include "ros/now.h"
 #include "self_awareness/ros/bag/event_log_writer.h"
 
@@ -21,17 +20,9 @@ constexpr double kPause = 5;  // between two attempts to write a file [s]
 constexpr std::uint64_t kMegabyte = 1000000;
 constexpr std::int64_t kNameStep = 1000000;  // names tell milliseconds [ns]
 
-/// "normal_2026-11-22-05-10-33.123.bag", by UTC: names sort as they were given.
+/// "normal_2026-11-22-05-10-33.123.bag": names sort as they were given.
 std::string nameOf(std::int64_t wall_time) {
-  const std::time_t seconds = wall_time / core::kNanosecondsPerSecond;
-  std::tm utc{};
-  gmtime_r(&seconds, &utc);
-  char time[32];
-  std::strftime(time, sizeof time, "%Y-%m-%d-%H-%M-%S", &utc);
-  char milliseconds[16];
-  std::snprintf(milliseconds, sizeof milliseconds, ".%03d",
-                static_cast<int>(wall_time % core::kNanosecondsPerSecond / kNameStep));
-  return std::string("normal_") + time + milliseconds + ".bag";
+  return "normal_" + timeInFileName(wall_time) + ".bag";
 }
 
 /// Removes the oldest logs until the rest is within the bound; the newest one stays.

@@ -99,7 +99,7 @@ std::string RecorderFolder::pathOf(Cause cause, std::int64_t wall_time) const {
   return path;
 }
 
-std::string RecorderFolder::nameOfFile(Cause cause, std::int64_t wall_time) const {
+std::string timeInFileName(std::int64_t wall_time) {
   const std::time_t seconds = wall_time / core::kNanosecondsPerSecond;
   std::tm utc{};
   gmtime_r(&seconds, &utc);
@@ -108,7 +108,11 @@ std::string RecorderFolder::nameOfFile(Cause cause, std::int64_t wall_time) cons
   char milliseconds[8];
   std::snprintf(milliseconds, sizeof milliseconds, ".%03d",
                 static_cast<int>(wall_time % core::kNanosecondsPerSecond / kMillisecond));
-  return path_ + "/" + nameOf(cause) + "_" + time + milliseconds + ".bag";
+  return std::string(time) + milliseconds;
+}
+
+std::string RecorderFolder::nameOfFile(Cause cause, std::int64_t wall_time) const {
+  return path_ + "/" + nameOf(cause) + "_" + timeInFileName(wall_time) + ".bag";
 }
 
 void RecorderFolder::create() const {

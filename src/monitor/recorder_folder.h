@@ -6,6 +6,10 @@
 
 namespace self_awareness {
 
+/// A time [ns since 1970] in the name of a file, by UTC and in milliseconds:
+/// "2026-11-22-05-10-33.123". Names sort as the times do.
+std::string timeInFileName(std::int64_t wall_time);
+
 /// The folder of the flight recorder's files, in which the oldest ones make room for new ones.
 /// Other files in it are left alone.
 class RecorderFolder {

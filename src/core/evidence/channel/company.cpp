@@ -198,7 +198,7 @@ std::vector<Track> Company::watch(const Choice& choice) const {
     std::vector<std::pair<double, EventId>> best;
     for (EventId from = 0; pauses[to] && from < counts.size(); ++from) {
       if (!pauses[from] || component(to) == component(from) || counts.total(to, from) == 0 ||
-          counts.total(from, to) == 0 || choice.relations.owed(to, from).reaches) {
+          counts.total(from, to) == 0) {
         continue;
       }
       const double of_to = shareGoneOn(counts, to, *pauses[to], from);
@@ -206,7 +206,8 @@ std::vector<Track> Company::watch(const Choice& choice) const {
       const double chance =
           pauses[to]->number * std::log(of_to) + pauses[from]->number * std::log(of_from);
       if (of_to < 1 && of_from < 1 &&
-          chance <= std::log(choice.tuning.chance_of_any / choice.relations.lookedAt())) {
+          chance <= std::log(choice.tuning.chance_of_any / choice.relations.lookedAt()) &&
+          !choice.relations.owed(to, from).reaches) {  // last, since this takes time
         best.emplace_back(of_to, from);
       }
     }
