@@ -1,5 +1,6 @@
 #include "self_awareness/core/evidence/judge.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -27,7 +28,12 @@ namespace {
 constexpr double kStillBusy = 1.01 * kThreshold;
 
 double largestOf(const std::vector<double>& shares) {
-  return shares.empty() ? 0 : *std::max_element(shares.begin(), shares.end());
+  if (shares.empty()) {
+    return 0;
+  }
+  // By vectors of the processor: every window needs it.
+  const auto size = static_cast<Eigen::Index>(shares.size());
+  return Eigen::Map<const Eigen::ArrayXd>(shares.data(), size).maxCoeff();
 }
 
 class Judge : public core::Judge {
@@ -239,7 +245,7 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
     channels.insert("busy");
   }
   judgement.abnormal = *judgement.score < kThreshold;
-  judgement.certain = never_heard_.share() > 1 || isCertain();
+  judgement.certain = never_heard_.share() > 1 || (largest > 1 && isCertain());
   const bool new_mode = judgement.silent && judgement.silent->others_go_on;
   judgement.suspicious =
       never_heard_.share() > 0 || unsubscribed_.any() || judgement.busy.has_value() || new_mode;
