@@ -6,7 +6,7 @@ from typing import List, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
-from self_awareness import (DEFAULT_WINDOW, EVIDENCE_THRESHOLD, DetectorParameters,
+from self_awareness import (DEFAULT_WINDOW, EVIDENCE_THRESHOLD, Alarm, DetectorParameters,
                             EncodingRules, EventType, EvidenceModel, Learner, PaperModel,
                             Recording, TrainedModel, Training, Tuning, Verdicts,
                             judge_by_evidence)
@@ -79,8 +79,11 @@ class Evidence:
             learner.add(recording.event_types, recording.stamps, recording.ids,
                         recording.fingerprint, robot=recording.robot,
                         attributes=recording.attributes)
-        self._trained = learner.learn()
-        self._model = EvidenceModel(self._trained)
+        trained = learner.learn()
+        for recording in recordings:
+            trained.add_subscriptions(_lasting(recording))
+        self._trained = trained
+        self._model = EvidenceModel(trained)
 
     def calibrate(self, recordings: Sequence[WindowedEvents]) -> None:
         """Find the limits."""
@@ -116,9 +119,18 @@ class Evidence:
         encoded = recording.encoded(trained.event_types)
         # - 1, because the window in which the recording ends is the last one.
         model: EvidenceModel = required(self._model, self.name, 'train')
+        expected = trained.subscriptions
         return judge_by_evidence(trained, model, parameters, encoded.stamps,
                                  encoded.ids, encoded.end - 1, encoded.event_types,
+                                 missing=[(stamp, expected - present)
+                                          for stamp, present in encoded.subscriptions],
                                  attributes=encoded.attributes)
+
+
+def _lasting(recording: WindowedEvents) -> Set[Tuple[str, str]]:
+    """Return what nodes of a recording subscribe to all the time; empty: it is not known."""
+    states = [set(present) for _, present in recording.subscriptions]
+    return set.intersection(*states) if states else set()
 
 
 def _counted(recordings: Sequence[WindowedEvents]) -> TrainedModel:
@@ -131,12 +143,15 @@ def _counted(recordings: Sequence[WindowedEvents]) -> TrainedModel:
 
 
 def _judged(encoded: WindowedEvents, verdicts: Verdicts, threshold: float) -> Judged:
-    alarms = [SystemAlarm(alarm.begin, alarm.end, alarm.over,
-                          distinct([encoded.event_types[suspect.id].source
-                                    for suspect in alarm.suspects]), alarm.evidence)
-              for alarm in verdicts.alarms]
+    def told(found: Sequence[Alarm]) -> List[SystemAlarm]:
+        return [SystemAlarm(alarm.begin, alarm.end, alarm.over,
+                            distinct([encoded.event_types[suspect.id].source
+                                      for suspect in alarm.suspects]), alarm.evidence)
+                for alarm in found]
+
     return Judged(verdicts.start, verdicts.abnormal, np.nan_to_num(verdicts.score),
-                  verdicts.settling, alarms, threshold, verdicts.suspicion)
+                  verdicts.settling, told(verdicts.alarms), threshold, verdicts.suspicion,
+                  told(verdicts.suspicions))
 
 
 def scenario_graph() -> Set[Tuple[str, str, str]]:

@@ -47,6 +47,7 @@ class Judged:
         alarms: after persistence.
         threshold: a score below it is abnormal.
         suspicion: whether there is a suspicion, which is no alarm; None: the system knows none.
+        suspicions: the same as stretches of time, with who is suspected.
     """
 
     start: np.ndarray
@@ -56,6 +57,7 @@ class Judged:
     alarms: List[SystemAlarm]
     threshold: float
     suspicion: Optional[np.ndarray] = None
+    suspicions: Sequence[SystemAlarm] = ()
 
     @property
     def noticed(self) -> np.ndarray:

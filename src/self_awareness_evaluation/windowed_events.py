@@ -5,14 +5,17 @@ The windows of all systems are DEFAULT_WINDOW long and lie on the absolute time 
 from __future__ import annotations
 
 import zlib
-from dataclasses import dataclass
-from typing import Callable, Dict, Hashable, List, Optional, Sequence, TypeVar
+from dataclasses import dataclass, replace
+from typing import Callable, Dict, FrozenSet, Hashable, List, Optional, Sequence, Tuple, TypeVar
 
 import numpy as np
 
 from self_awareness import DEFAULT_WINDOW, EventType
 
 _Key = TypeVar('_Key', bound=Hashable)
+
+Subscriptions = FrozenSet[Tuple[str, str]]
+"""Node and topic of all that nodes subscribe to."""
 
 
 @dataclass(frozen=True)
@@ -26,6 +29,7 @@ class WindowedEvents:
         end: the recording lasts until then [ns], exclusive, whether something comes or not.
         robot: its name; empty: there is one only.
         attributes: of the messages, uint32, one for each stamp; None: not known.
+        subscriptions: what there was from a time [ns] on, in the order of time; empty: not known.
     """
 
     event_types: Sequence[EventType]
@@ -34,6 +38,7 @@ class WindowedEvents:
     end: int
     robot: str = ''
     attributes: Optional[np.ndarray] = None
+    subscriptions: Sequence[Tuple[int, Subscriptions]] = ()
 
     def encoded(self, vocabulary: Sequence[EventType]) -> WindowedEvents:
         """Return the same recording with the types of a vocabulary first, as the bag reader does.
@@ -43,8 +48,7 @@ class WindowedEvents:
         ids = {event_type: index for index, event_type in enumerate(vocabulary)}
         translation = np.array([ids.setdefault(event_type, len(ids))
                                 for event_type in self.event_types], dtype=np.uint32)
-        return WindowedEvents(list(ids), self.stamps, translation[self.ids], self.end,
-                              self.robot, self.attributes)
+        return replace(self, event_types=list(ids), ids=translation[self.ids])
 
     @property
     def fingerprint(self) -> int:
@@ -65,9 +69,10 @@ class WindowedEvents:
         first = int(self.stamps[0])
         end = first + round((self.end - first) * share)
         inside = self.stamps < end
-        attributes = None if self.attributes is None else self.attributes[inside]
-        return WindowedEvents(self.event_types, self.stamps[inside], self.ids[inside], end,
-                              self.robot, attributes)
+        return replace(
+            self, stamps=self.stamps[inside], ids=self.ids[inside], end=end,
+            attributes=None if self.attributes is None else self.attributes[inside],
+            subscriptions=[each for each in self.subscriptions if each[0] < end])
 
 
 def vocabulary(recordings: Sequence[WindowedEvents]) -> List[EventType]:
@@ -97,6 +102,12 @@ def stamps_by(recording: WindowedEvents, key: Callable[[EventType], _Key]
 
     What no event has is not in it.
     """
+    return values_by(recording, key, recording.stamps)
+
+
+def values_by(recording: WindowedEvents, key: Callable[[EventType], _Key],
+              values: np.ndarray) -> Dict[_Key, np.ndarray]:
+    """Return values, one for each event, likewise."""
     keys: Dict[_Key, int] = {}
     numbers = [keys.setdefault(key(event_type), len(keys))
                for event_type in recording.event_types]
@@ -104,5 +115,5 @@ def stamps_by(recording: WindowedEvents, key: Callable[[EventType], _Key]
     of_events = np.array(numbers, dtype=np.min_scalar_type(len(keys)))[recording.ids]
     order = np.argsort(of_events, kind='stable')
     edges = np.searchsorted(of_events[order], np.arange(len(keys) + 1))
-    return {known: recording.stamps[order[begin:end]]
+    return {known: values[order[begin:end]]
             for known, begin, end in zip(keys, edges, edges[1:]) if end > begin}

@@ -40,13 +40,28 @@ _WARM_UP_NS = 15 * SECOND_NS
 
 
 class Event(NamedTuple):
-    """A message as the recorder sees it: arrival (ns since 1970), node, topic, type and value."""
+    """A message as the recorder sees it.
+
+    Args:
+        stamp_ns: arrival (ns since 1970).
+        source: node.
+        topic: with the slash.
+        datatype: of the message.
+        message: what it says.
+        number: that its publisher gave it (header.seq).
+    """
 
     stamp_ns: int
     source: str
     topic: str
     datatype: str
-    value: Optional[Value]
+    message: Message
+    number: int
+
+    @property
+    def value(self) -> Optional[Value]:
+        """What the message says, as far as the scenario cares."""
+        return self.message.value
 
 
 @dataclass(frozen=True)
@@ -95,8 +110,9 @@ def events(duration_s: float, seed: int, fault: Optional[InducedFault] = None,
     """Return what a recorder would see, in the order of arrival; arguments as for `simulate`."""
     scenario = load_scenario() if scenario is None else scenario
     return (Event(arrival, source, '/' + message.topic, scenario.datatypes[message.topic],
-                  message.value)
-            for arrival, source, message, _ in _record(scenario, duration_s, seed, fault, start_s))
+                  message, sequence)
+            for arrival, source, message, sequence
+            in _record(scenario, duration_s, seed, fault, start_s))
 
 
 def simulate(path: Union[str, Path], duration_s: float, seed: int,

@@ -25,7 +25,7 @@ AFTER_DEATH_S = 600.0
 """A record lasts for so long after the death of who speaks only when it is asked [s]."""
 
 _OWN_LEARNING = Learning(len(simulated.TRAINING_NAMES), simulated.RECORD_S, 1, 600.0)
-_WARNED_ONLY = ('extra', 'unknown')  # a suspicion, no alarm
+_WARNED_ONLY = ('extra', 'unknown', 'unsubscribed')  # a suspicion, no alarm
 _OWN_KINDS = {'ac': CLOCKS, 'rs': STARVED, 'lat': LATE, 'half': HALF_RATE, 'crash': CRASH,
               'cc1': CRASH, 'cc2': CRASH}
 
@@ -155,7 +155,8 @@ def _own(wanted: _Wanted) -> Robot:
 def _own_faults(seed: int) -> Iterator[Fault]:
     scenario = load_scenario()
     for name in simulated.default_faults(scenario):
-        if name not in _WARNED_ONLY:
+        kind = name.split(':')[0]
+        if kind not in _WARNED_ONLY:
             record = simulated.fault_record(scenario, seed, name)
-            yield Fault(_OWN_KINDS.get(name.split(':')[0], OTHER), name, record.culprits,
+            yield Fault(_OWN_KINDS.get(kind, OTHER), name, record.culprits,
                         record.recording, record.onset)

@@ -51,8 +51,7 @@ def renamed(recording: WindowedEvents, robot: str) -> WindowedEvents:
     scopes = rules.scopes_of({kind.scope for kind in recording.event_types})
     kinds = [EventType(sources[kind.source], scopes[kind.scope], kind.type)
              for kind in recording.event_types]
-    return WindowedEvents(kinds, recording.stamps, recording.ids, recording.end, robot,
-                          recording.attributes)
+    return replace(recording, event_types=kinds, robot=robot)
 
 
 def renamed_graph(robot: Robot) -> Set[Tuple[str, str, str]]:

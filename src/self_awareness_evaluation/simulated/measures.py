@@ -40,6 +40,8 @@ class Row:
         top1, top3: whether a guilty source is the first, or among the first three, at the moment
             of that alarm; None: no such alarm, no guilty source, or the system names no
             suspects.
+        noticed_first: whether a guilty source is the first that is named by that suspicion or
+            alarm, likewise.
     """
 
     system: str
@@ -61,6 +63,7 @@ class Row:
     noticed_s: Optional[float] = None
     top1: Optional[bool] = None
     top3: Optional[bool] = None
+    noticed_first: Optional[bool] = None
 
 
 def normal_row(system: str, training_share: float, seed: int, judged: Judged) -> Row:
@@ -106,7 +109,8 @@ def fault_row(system: str, training_share: float, seed: int, kind: str, judged: 
         latency_s=None if alarm is None else (alarm.start - onset) / SECOND_NS,
         noticed_s=_noticed_s(judged, onset),
         top1=None if suspects is None else bool(set(suspects[:1]) & set(culprits)),
-        top3=None if suspects is None else bool(set(suspects[:3]) & set(culprits)))
+        top3=None if suspects is None else bool(set(suspects[:3]) & set(culprits)),
+        noticed_first=_noticed_first(judged, onset, culprits))
 
 
 def beginnings(noticed: np.ndarray) -> int:
@@ -121,6 +125,14 @@ def _noticed_s(judged: Judged, onset: int) -> Optional[float]:
         return None
     first = ends[noticed & (ends > onset)][:1]
     return (int(first[0]) - onset) / SECOND_NS if len(first) else None
+
+
+def _noticed_first(judged: Judged, onset: int, culprits: Sequence[str]) -> Optional[bool]:
+    found = sorted([*judged.alarms, *judged.suspicions], key=lambda each: each.start)
+    first = first_alarm(found, onset)
+    if _noticed_s(judged, onset) is None or first is None or first.suspects is None:
+        return None
+    return bool(set(first.suspects[:1]) & set(culprits)) if culprits else None
 
 
 def first_alarm(alarms: List[SystemAlarm], onset: int) -> Optional[SystemAlarm]:

@@ -6,6 +6,7 @@ from typing import Callable, Dict, List, NamedTuple, Sequence
 
 from self_awareness_evaluation.simulated import summary
 from self_awareness_evaluation.simulated.measures import NORMAL, Row
+from self_awareness_evaluation.simulated.records import WITHIN_S
 from self_awareness_evaluation.simulated.summary import Measure
 from self_awareness_evaluation.simulated.tradeoff import TradeOff
 
@@ -54,8 +55,11 @@ def _median(rows: Sequence[Row]) -> float:
     return summary.latency(rows, 0.5)
 
 
-def _noticed_soon(rows: Sequence[Row]) -> float:
-    return summary.noticed(rows, 5.0)
+def _noticed_within(within_s: float) -> Measure:
+    return lambda rows: summary.noticed(rows, within_s)
+
+
+_noticed_soon = _noticed_within(5.0)
 
 
 def _within(within_s: float) -> Measure:
@@ -84,6 +88,9 @@ _TARGETS = (
     _Target('guilty among three, crashes', '100 %',
             _of('crash', summary.guilty_among_three, percent)),
     _Target('guilty first, lat', '>= 80 %', _of('lat', summary.guilty_first, percent)),
+    *(_Target(f'suspicion (WARN) or alarm within {within_s:g} s, {kind}', '100 %',
+              _of(kind, _noticed_within(within_s), percent))
+      for kind, within_s in WITHIN_S.items()),
 )
 
 

@@ -2,7 +2,9 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
+from typing import List, Optional
 
 import numpy as np
 import pytest
@@ -11,7 +13,7 @@ from evaluation_robot import BATTERY, LASER, START, robot
 from self_awareness import (DEFAULT_WINDOW, DetectorParameters, EncodingRules, EventType,
                             PaperModel, Persistence, Training, read_events)
 from self_awareness.stamps import SECOND_NS
-from self_awareness_evaluation.detectors import Paper
+from self_awareness_evaluation.detectors import Paper, scenario_graph
 from self_awareness_evaluation.simulated import measures, summary, tradeoff
 from self_awareness_evaluation.simulated.records import (default_faults, encode, fault_record,
                                                          normal_record)
@@ -19,7 +21,7 @@ from self_awareness_evaluation.systems import Judged, SystemAlarm, persistent, s
 from self_awareness_evaluation.windowed_events import WindowedEvents, counts, known_ids, stamps_by
 from self_awareness_follow_me.faults import effect_of
 from self_awareness_follow_me.scenario import load_scenario
-from self_awareness_follow_me.simulation import START_S, events, simulate
+from self_awareness_follow_me.simulation import START_S, InducedFault, events, simulate
 
 
 def judged(scores: list, alarms: list, settling: int = 0, threshold: float = 1.0) -> Judged:
@@ -123,6 +125,35 @@ def test_events_of_the_simulation_are_encoded_as_from_its_bag(tmp_path: Path) ->
     assert np.array_equal(recording.stamps, expected.stamps)
     assert ([recording.event_types[id_] for id_ in recording.ids]
             == [expected.event_types[id_] for id_ in expected.ids])
+    assert np.array_equal(recording.attributes, expected.attributes)
+
+
+@pytest.mark.parametrize('kind', ['stale:slam', 'lossy:camera', 'empty:player', 'freeze:camera'])
+def test_faults_of_messages_are_encoded_as_from_a_bag(kind: str, tmp_path: Path) -> None:
+    scenario = load_scenario()
+    bag = str(tmp_path / 'run.bag')
+    fault = InducedFault(kind, 5.0)
+    simulate(bag, 15.0, 5, fault, scenario)
+    rules = EncodingRules()
+    rules.type_fields = dict(scenario.type_fields)
+    end = round((START_S + 15.0) * SECOND_NS)
+    recording = encode(list(events(15.0, 5, fault, scenario)), scenario, end)
+    assert np.array_equal(recording.attributes, read_events(bag, rules).attributes)
+    normal = encode(list(events(15.0, 5, None, scenario)), scenario, end)
+    assert not np.array_equal(recording.attributes, normal.attributes)
+
+
+def test_a_record_knows_who_does_not_subscribe_from_the_onset_on() -> None:
+    scenario = load_scenario()
+    record = fault_record(scenario, 3, 'unsubscribed:navigation')
+    (start, before), (onset, after) = record.recording.subscriptions
+    assert start < record.onset == onset
+    assert before - after == {('/navigation', '/pose_hypotheses')} and not after - before
+    assert record.recording.end >= onset + 60 * SECOND_NS
+    assert len(record.recording.beginning(0.1).subscriptions) == 1
+    normal = normal_record(scenario, 3, 'training 1', 5.0)
+    assert [present for _, present in normal.subscriptions] == [before]
+    assert {edge[1:] for edge in scenario_graph()} <= {(topic, node) for node, topic in before}
 
 
 def test_every_record_differs_and_can_be_repeated() -> None:
@@ -193,6 +224,20 @@ def test_measures_of_normal_operation() -> None:
     assert (row.normal_windows, row.false_windows, row.false_alarms) == (3, 1, 1)
     assert summary.false_positive_rate([row]) == pytest.approx(1 / 3)
     assert summary.false_alarms([row]).per_hour == pytest.approx(3600 / 0.3)
+
+
+@pytest.mark.parametrize('culprits, first', [(['/slam'], True), (['/player'], False), ([], None)])
+def test_a_suspicion_names_somebody_too(culprits: List[str], first: Optional[bool]) -> None:
+    found = replace(judged([9.0] * 20, []), suspicion=np.arange(20) == 12,
+                    suspicions=[SystemAlarm(at(13), at(14), True, ['/slam'])])
+    row = measures.fault_row('x', 1.0, 1, 'unsubscribed:slam', found, at(10), culprits,
+                             judged([9] * 20, []))
+    assert (row.latency_s, row.noticed_s) == (None, pytest.approx(0.3))
+    assert row.noticed_first == first
+    # One that stands at the onset is no finding.
+    early = measures.fault_row('x', 1.0, 1, 'unsubscribed:slam', found, at(13), ['/slam'],
+                               judged([9] * 20, []))
+    assert (early.noticed_s, early.noticed_first) == (None, None)
 
 
 def test_what_was_not_found_took_for_ever() -> None:

@@ -11,8 +11,8 @@ from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation.detectors import Evidence, Paper, scenario_graph
 from self_awareness_evaluation.simulated.measures import first_alarm
 from self_awareness_evaluation.simulated.records import (CALIBRATION_NAME, RECORD_S,
-                                                         TRAINING_NAMES, FaultRecord, fault_record,
-                                                         normal_record)
+                                                         TRAINING_NAMES, WITHIN_S, FaultRecord,
+                                                         fault_record, normal_record)
 from self_awareness_evaluation.systems import Judged
 from self_awareness_follow_me.scenario import load_scenario
 
@@ -71,6 +71,10 @@ def latency(judged: Judged, onset: int) -> Optional[float]:
     ('lat', 1.5, VARIES),                # components answer later, as often as before
     ('order', 4.0, BLIND),               # two in a row change places
     ('ac', 30.0, BLIND),                 # a host's clock is out of step now and then
+    # What neither silence nor timing tells; losses are not always found in the record.
+    ('stale:slam', 1.7, BLIND),
+    ('empty:player', 5.0, BLIND),
+    ('freeze:camera', 5.0, BLIND),
 ])
 def test_evidence_raises_the_alarm(systems: Systems, record_of: Record, kind: str,
                                    within_s: float, paper: str) -> None:
@@ -88,6 +92,16 @@ def test_evidence_raises_the_alarm(systems: Systems, record_of: Record, kind: st
         assert of_paper is not None and of_paper > 2.0 * within_s
     elif paper == BLIND:
         assert of_paper is None
+
+
+def test_who_does_not_subscribe_is_suspected(systems: Systems, record_of: Record) -> None:
+    kind = 'unsubscribed:navigation'
+    record = record_of(kind)
+    judged = systems[0].judge(record.recording)
+    assert judged.alarms == []
+    suspicion, = judged.suspicions
+    assert suspicion.suspects == ['/navigation']
+    assert 60.0 <= (suspicion.start - record.onset) / SECOND_NS <= WITHIN_S[kind]
 
 
 @pytest.mark.parametrize('kind, within_s, paper', [
