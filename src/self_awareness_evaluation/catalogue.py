@@ -6,6 +6,7 @@ from typing import Callable, Dict, Optional, Sequence
 
 from self_awareness import Tuning
 from self_awareness_evaluation.detectors import Evidence, Paper, scenario_graph
+from self_awareness_evaluation.peers import sizes, timestamps
 from self_awareness_evaluation.peers.frequency import (TOLERANCE, FrequencyMonitor,
                                                        LearnedFrequencyMonitor)
 from self_awareness_evaluation.peers.gaps import GapMonitor
@@ -38,6 +39,8 @@ _SYSTEMS: Dict[str, Callable[[Tuning], System]] = {
 _SCORERS: Dict[str, Callable[[], Scorer]] = {
     'frequency': FrequencyMonitor,
     'frequency_learned': LearnedFrequencyMonitor,
+    'timestamps': timestamps.TimestampMonitor,
+    'sizes': sizes.SizeMonitor,
     'isolation_forest': _isolation_forest,
     'one_class_svm': _one_class_svm,
     'hmm': _hmm,
@@ -45,7 +48,8 @@ _SCORERS: Dict[str, Callable[[], Scorer]] = {
 }
 
 # Scorers that have a threshold of their own.
-_THRESHOLDS = {'frequency': -TOLERANCE}
+_THRESHOLDS = {'frequency': -TOLERANCE, 'timestamps': timestamps.WITHIN_BOUNDS,
+               'sizes': sizes.WITHIN_BOUNDS}
 
 # Imported when the peer is made: nothing else needs them.
 _LIBRARIES = {'isolation_forest': 'sklearn', 'one_class_svm': 'sklearn', 'hmm': 'hmmlearn'}

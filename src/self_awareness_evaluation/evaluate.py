@@ -23,7 +23,7 @@ from self_awareness_evaluation.fleet import command as fleet
 from self_awareness_evaluation.page_section import write_section
 from self_awareness_evaluation.recordings import outages, report as recordings_report
 from self_awareness_evaluation.recovery import arguments as recovery_arguments
-from self_awareness_evaluation.simulated import experiment, report
+from self_awareness_evaluation.simulated import attributes_command, experiment, report
 from self_awareness_evaluation.simulated.experiment import Plan
 from self_awareness_evaluation.simulated.records import default_faults
 from self_awareness_follow_me.faults import effect_of
@@ -191,6 +191,10 @@ def parser() -> argparse.ArgumentParser:
         'simulated', help='the simulated follow-me robot, in simulated time',
         description='Every system learns from the same records of the simulated robot, and judges '
         'the same normal operation and the same faults, once for every seed.'))
+    attributes_command.add(parts.add_parser(
+        'attributes', help='the same robot: faults that neither silence nor timing tells',
+        description='Old stamps, lost, empty and repeated messages, and a missing subscription, '
+        'beside monitors of stamps and sizes, as in simulated.'))
     _add_families(parts.add_parser(
         'families', help='simulated robots as different as possible, drawn by seed',
         description='Every system learns from few starts of each robot and from many, watches '

@@ -31,14 +31,16 @@ Seeds {seeds}.
 For each seed there are records of the simulated follow-me robot: {training} of {record_s:g} s to
 learn from, one of {calibration_s:g} s to choose the threshold by, one of {normal_s:g} s of normal
 operation to count false alarms on, and one of {record_s:g} s for each fault, which begins between
-50 and 52 s. Each record has a seed of its own, the first four bytes of the SHA-256 of
-`SEED/RECORD`; the records are called {names},
+50 and 52 s (longer where a fault is a finding only after a minute). All have the attributes of the
+messages and who subscribes to what, as event logs have. Each record has a seed of its own, the
+first four bytes of the SHA-256 of `SEED/RECORD`; the records are called {names},
 and as the faults. All systems learn from and judge the same records.
 
 Each system gives every window of {window_ms:g} ms a score. The threshold is chosen on the
-calibration record: a share of {rate:g} of its windows falls below. Three systems differ:
-`frequency` has bounds of its own, those of diagnostic_updater's FrequencyStatus; `gaps` has those
-of both training and calibration, wider by a quarter; and `evidence` has the limits that
+calibration record: a share of {rate:g} of its windows falls below. Five systems differ:
+`frequency` and `timestamps` have bounds of their own, those of diagnostic_updater's
+FrequencyStatus and TimeStampStatus; `sizes` has those of the training, and `gaps` those of both
+training and calibration, wider by a quarter; and `evidence` has the limits that
 `calibrate` finds on the same record for a budget of {budget:g} false alarms an hour. Three
 abnormal windows of five raise the alarm, 2 s without one clear it, and none is raised in the first
 5 s, by the same code for all; `evidence` raises it at once for a silence that has lasted a
