@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import math
-from typing import List, Optional, Sequence, Set, Tuple
+from typing import Any, Dict, List, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from self_awareness import (DEFAULT_WINDOW, EVIDENCE_THRESHOLD, Alarm, DetectorP
                             judge_by_evidence)
 from self_awareness.calibration import limits
 from self_awareness.calibration.limits import HeldOut
+from self_awareness.judging import EVIDENCE, PAPER
 from self_awareness_evaluation.systems import (Judged, SystemAlarm, common_threshold, distinct,
                                                required)
 from self_awareness_evaluation.windowed_events import WindowedEvents
@@ -30,7 +31,7 @@ class Paper:
 
     def train(self, recordings: Sequence[WindowedEvents]) -> None:
         """Count the delays."""
-        trained = _counted(recordings)
+        trained = counted(recordings, PAPER)
         self._types = trained.event_types
         self._model = PaperModel(trained)
 
@@ -54,7 +55,7 @@ class Paper:
 
 
 class Evidence:
-    """The evidence detector (`detector: evidence`).
+    """The evidence detector (`detector: evidence`). What it learned can be handed over by pickle.
 
     Args:
         graph: publisher, topic and subscriber, as the model holds it after a training while the
@@ -82,6 +83,10 @@ class Evidence:
         trained = learner.learn()
         for recording in recordings:
             trained.add_subscriptions(_lasting(recording))
+        self.take(trained)
+
+    def take(self, trained: TrainedModel) -> None:
+        """Judge by a model that was learned elsewhere."""
         self._trained = trained
         self._model = EvidenceModel(trained)
 
@@ -126,6 +131,14 @@ class Evidence:
                                           for stamp, present in encoded.subscriptions],
                                  attributes=encoded.attributes)
 
+    def __getstate__(self) -> Dict[str, Any]:
+        return {**self.__dict__, '_model': None}
+
+    def __setstate__(self, state: Dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        if self._trained is not None:
+            self.take(self._trained)
+
 
 def _lasting(recording: WindowedEvents) -> Set[Tuple[str, str]]:
     """Return what nodes of a recording subscribe to all the time; empty: it is not known."""
@@ -133,12 +146,18 @@ def _lasting(recording: WindowedEvents) -> Set[Tuple[str, str]]:
     return set.intersection(*states) if states else set()
 
 
-def _counted(recordings: Sequence[WindowedEvents]) -> TrainedModel:
-    training = Training(EncodingRules(), window=DEFAULT_WINDOW, evidence=False, paper=True)
+def counted(recordings: Sequence[WindowedEvents], detector: str = EVIDENCE) -> TrainedModel:
+    """Return what a detector counts in recordings. Counts add up; watch() what they come to."""
+    training = Training(EncodingRules(), window=DEFAULT_WINDOW, evidence=detector == EVIDENCE,
+                        paper=detector == PAPER)
     for recording in recordings:
         said = Recording()
         said.fingerprint = recording.fingerprint
-        training.add_events(recording.event_types, recording.stamps, recording.ids, said)
+        said.robot = recording.robot
+        said.start, said.end = int(recording.stamps[0]), int(recording.stamps[-1])
+        said.events = len(recording.stamps)
+        training.add_events(recording.event_types, recording.stamps, recording.ids, said,
+                            attributes=recording.attributes)
     return training.model(watch=False)
 
 

@@ -219,3 +219,36 @@ def test_a_bridge_that_dies_is_found(voice_assistant: Path,
     alarm = verdicts.alarms[0]
     assert onset < alarm.begin < onset + 60 * SECOND_NS
     assert alarm.culprit == '/lisa_mqtt_ros_bridge'
+
+
+# By build of the assistant: its normal runs, and the one in loud noise.
+BUILDS = {
+    'mic1': (('mic1_quiet', 'mic1_quiet_2', 'mic1_spk70_55db_level', 'mic1_spk70_65db_level',
+              'mic1_spk70_70db_level', 'mic1_spk80_70db_level'), 'mic1_spk80_75db_level'),
+    'array': (('array_spk70_quiet_room', 'array_spk70_60db_level', 'array_spk70_70db_level'),
+              'array_spk70_75db_level')}
+
+
+@pytest.mark.parametrize('learned, watched, most_false', [('array', 'mic1', 0),
+                                                          ('mic1', 'array', 1)])
+def test_learned_on_one_build_it_watches_another(voice_assistant: Path, tmp_path: Path,
+                                                 learned: str, watched: str,
+                                                 most_false: int) -> None:
+    """One has a microphone, one an array; a fleet, as far as the data has one.
+
+    Learned with the one microphone, a late answer in the quiet room is a false alarm.
+    """
+    (tmp_path / learned).mkdir()
+    for run in BUILDS[learned][0]:
+        (tmp_path / learned / f'{run}.bag').symlink_to(voice_assistant / f'{run}.bag')
+    path = str(tmp_path / 'm')
+    assert train.main([str(tmp_path / learned), '--robots-by-folder', '-o', path]) == 0
+    assert {recording.robot for recording in TrainedModel.load(path).recordings} == {learned}
+    model = self_awareness.load(path)
+    normal, degraded = BUILDS[watched]
+    false = [run for run in normal if any(each.level == 'ERROR' for each in model.judge(
+        voice_assistant / f'{run}.bag'))]
+    assert len(false) <= most_false
+    alarm = next(each for each in model.judge(voice_assistant / f'{degraded}.bag')
+                 if each.level == 'ERROR')
+    assert alarm.culprit == '/lisa_mqtt_ros_bridge'

@@ -3,11 +3,15 @@ from __future__ import annotations
 
 import argparse
 import os
+from contextlib import closing
+from typing import ContextManager
 
 from self_awareness.calibration.limits import BUDGET
 from self_awareness.commands import cli
+from self_awareness.workers import Workers, on_this_machine
 from self_awareness_evaluation import options
 from self_awareness_evaluation.fleet import experiment, report
+from self_awareness_evaluation.fleet.cluster import cluster_here
 from self_awareness_evaluation.fleet.make import MOST_ROBOTS
 
 
@@ -33,7 +37,11 @@ def add(parser: argparse.ArgumentParser) -> None:
                         help='false alarms an hour that limits are made for '
                         f'(default: {BUDGET:g})')
     parser.add_argument('--jobs', type=cli.count, default=os.cpu_count(), metavar='N',
-                        help='makes at a time (default: as many as there are cores)')
+                        help='processes that count and judge (default: as many as there are '
+                        'cores)')
+    parser.add_argument('--dask', action='store_true', help='they are the workers of a cluster of '
+                        'dask.distributed that is started on this machine; the results are the '
+                        'same')
 
 
 def _work(arguments: argparse.Namespace, command: str) -> None:
@@ -44,8 +52,13 @@ def _work(arguments: argparse.Namespace, command: str) -> None:
     plan = experiment.Plan(
         tuple(range(arguments.seed, arguments.seed + arguments.makes)), arguments.robots,
         arguments.starts, arguments.calibrations, arguments.recorded, arguments.hours,
-        arguments.budget)
+        arguments.budget, arguments.jobs, arguments.dask)
     arguments.output.mkdir(parents=True, exist_ok=True)
-    results = experiment.run(plan, arguments.jobs)
+    with _workers(plan) as workers:
+        results = experiment.run(plan, workers)
     for path in report.write(arguments.output, plan, results, command):
         print(f'written: {path}')
+
+
+def _workers(plan: experiment.Plan) -> ContextManager[Workers]:
+    return cluster_here(plan.jobs) if plan.dask else closing(on_this_machine(plan.jobs))
