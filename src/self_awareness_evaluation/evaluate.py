@@ -20,6 +20,7 @@ from self_awareness_evaluation.families import experiment as families, report as
 from self_awareness_evaluation.families.kinds import FAMILIES
 from self_awareness_evaluation.families.protocol import KINDS, Learning
 from self_awareness_evaluation.fleet import command as fleet
+from self_awareness_evaluation.modes import command as modes
 from self_awareness_evaluation.page_section import write_section
 from self_awareness_evaluation.recordings import outages, report as recordings_report
 from self_awareness_evaluation.recovery import arguments as recovery_arguments
@@ -212,6 +213,10 @@ def parser() -> argparse.ArgumentParser:
         description='Two models of a robot that is watched for hours and whose components crash '
         'in turn: one is learned on other robots of its make, one on as many recordings of its '
         'own.'))
+    modes.add(parts.add_parser(
+        'modes', help='robots that do something only at times: one model for all, or one a mode',
+        description='All that a robot needs in a mode dies in it. A model that was learned in all '
+        'modes judges that, beside one that was learned in this mode alone.'))
     compare.add(parts.add_parser(
         'compare', help='two versions side by side, by what the same commands measured',
         description='Writes a page about two folders that families, simulated or recordings wrote '

@@ -128,11 +128,14 @@ class Records:
     Args:
         family: one of FAMILIES.
         seed: of the robot.
+        mode: the robot does all that it does at times all the time (True), or never (False);
+            None: at times. The rest of each start is the same.
     """
 
-    def __init__(self, family: str, seed: int) -> None:
+    def __init__(self, family: str, seed: int, mode: Optional[bool] = None) -> None:
         self._family = FAMILIES[family]
-        self.robot: Robot = self._family.draw(seed)
+        robot = self._family.draw(seed)
+        self.robot: Robot = robot if mode is None else robot.in_mode(mode)
 
     def training(self, learning: Learning) -> List[WindowedEvents]:
         """Return the recordings to train on."""

@@ -1,7 +1,7 @@
 """A simulated robot: components whose outputs send messages, and a recorder that hears all."""
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Dict, FrozenSet, Iterable, List, Optional, Set, Tuple
 
 import numpy as np
@@ -32,6 +32,7 @@ LONGEST_START_S = 90_000.0
 
 _FIRST_START_S = 1_600_000_000
 _BETWEEN_STARTS_S = 100_000
+_FOR_EVER_S = 1e12  # mean time that a mode lasts
 _SHORT_PAUSE_S = 3.0  # who pauses for less on average is still regular
 _RECORDER = ''
 
@@ -132,6 +133,11 @@ class Robot:
     def answering(self) -> List[str]:
         """The components that answer to another one."""
         return _distinct(output.source for output in self.outputs if self._answers_others(output))
+
+    def in_mode(self, on: bool) -> Robot:
+        """Return the robot in all of its activities, for ever, or in none of them."""
+        mode = Activity(_FOR_EVER_S, 0.0) if on else Activity(0.0, _FOR_EVER_S)
+        return replace(self, activities=dict.fromkeys(self.activities, mode))
 
     def start(self, start_seed: int, seconds: float, fault: Optional[Fault] = None,
               begin_s: float = 0.0) -> WindowedEvents:

@@ -1,0 +1,1 @@
+"""Robots that do something only at times: one model for all they do, and one for each mode."""
