@@ -31,8 +31,9 @@ class AcceptCalls {
   struct Handlers {
     /// What is there now; none: no model judges by evidence.
     std::function<std::optional<Acceptable>()> acceptable;
-    /// Called when something more is accepted, or less. @param caller name of the node
-    std::function<void(const std::string& caller)> on_change;
+    /// Called when something more is accepted, or something was taken back.
+    /// @param caller name of the node
+    std::function<void(const std::string& caller, bool undo)> on_change;
   };
 
   /// @param calls admits them

@@ -35,6 +35,8 @@ struct MonitorState {
   std::vector<std::string> mutes;           ///< in words
   std::string accept_error;                 ///< why what is accepted is not in its file
   std::string keeper_error;                 ///< why alarm or incidents are not in their files
+  std::vector<std::string> drift;           ///< who drifts, in words, most evidence first
+  std::string drift_error;                  ///< why it is not in its file
   double longest_pause = 0;  ///< for which this program stood still, since the last report [s]
   std::optional<FlightRecorder::Report> recorder;  ///< none: there is no recorder
   std::optional<KeptLogs::Report> kept_logs;       ///< none: nothing is kept to learn from

@@ -42,7 +42,7 @@ Monitor::Monitor(ros::NodeHandle node_handle, const ros::NodeHandle& private_nod
                    parameters_.diagnostic_bytes),
       mutes_(calls_, [this] { onMutes(); }),
       accepts_(calls_, {[this] { return acceptable(); },
-                        [this](const std::string& caller) { onAccepted(caller); }}),
+                        [this](const std::string& caller, bool undo) { onAccepted(caller, undo); }}),
       announcer_({[this](const self_awareness::SelfAwareness& status) {
                     status_publisher_.publish(status);
                   },
@@ -59,6 +59,7 @@ Monitor::Monitor(ros::NodeHandle node_handle, const ros::NodeHandle& private_nod
             return FlightRecorder::Source{session_->encoding(), live_->graph()};
           },
           wallNow()),
+      drift_(runId(), wallNow()),
       keeper_(folderOf(parameters_.recorder), runId()),
       incidents_(folderOf(parameters_.recorder)),
       restarts_(parameters_.detector.settle_time) {
@@ -102,6 +103,7 @@ void Monitor::finish() {
   live_->stop();  // first: what it serves uses the recorder
   recorder_.finish(announcer_.alarm().message().level == self_awareness::SelfAwareness::ERROR);
   kept_logs_.finish();
+  drift_.finish();
   keeper_.finish();
   incidents_.finish();
   accepts_.finish();
@@ -141,6 +143,7 @@ void Monitor::startSession(std::unique_ptr<Session> session) {
   kept_logs_.endStretch();
   session_ = std::move(session);
   kept_logs_.setModel(parameters_.model, session_->calibrated());
+  drift_.setModel(parameters_.model, {session_->content(), session_->components()});
   quotes_.clear();
   model_error_.clear();
   announcer_.forgetWindow();
@@ -188,7 +191,7 @@ void Monitor::onClockSet(std::int64_t /*now*/) {
 void Monitor::onPause(std::int64_t now, std::int64_t pause) {
   if (session_) {
     longest_pause_ = std::max(longest_pause_, pause);
-    kept_logs_.leaveOut("this program stood still");
+    notNormal("this program stood still");
     session_->detector().onPause(now);
   }
 }
@@ -204,7 +207,7 @@ void Monitor::onWaiting(const core::Waiting& waiting) {
 void Monitor::onDropped(const ros1::Publication& publication) {
   if (session_) {
     session_->detector().onMissed(session_->typesOf(publication), live_->now());
-    kept_logs_.leaveOut("messages were dropped");
+    notNormal("messages were dropped");
   }
 }
 
@@ -215,7 +218,7 @@ void Monitor::onTick(std::int64_t now) {
   }
   recorder_.advance(now - kGrace, steadyNow());
   if (mutes_.mutesAll()) {
-    kept_logs_.leaveOut("maintenance");
+    notNormal("maintenance");
   }
   kept_logs_.advance(now - kGrace);
   followRestarts(now);
@@ -230,6 +233,7 @@ void Monitor::restart() {
   restarts_.onClockSet();
   recorder_.restart();
   kept_logs_.endStretch();
+  drift_.endStretch();
   standDown(ros1::kClockWasSet);
 }
 
@@ -251,8 +255,12 @@ void Monitor::resume() {
 
 void Monitor::onVerdict(const core::Verdict& verdict) {
   const bool stood = announcer_.alarm().message().level == self_awareness::SelfAwareness::ERROR;
+  if (!verdict.settling) {
+    const std::int64_t begin = verdict.window->start;
+    drift_.add(begin, begin + session_->window(), session_->sharesOfWindow());
+  }
   if (verdict.alarm || verdict.suspicion) {
-    kept_logs_.leaveOut(verdict.alarm ? "an alarm" : "a suspicion");
+    notNormal(verdict.alarm ? "an alarm" : "a suspicion");
   }
   if (verdict.alarm && !stood) {
     alarm_file_ = recorder_.onAlarm(steadyNow());
@@ -270,6 +278,11 @@ void Monitor::onVerdict(const core::Verdict& verdict) {
   }
   announcer_.add(said, session_->vocabulary(), session_->window(),
                  {verdict.busy ? loadInWords() : "", alarm_file_});
+}
+
+void Monitor::notNormal(const std::string& why) {
+  kept_logs_.leaveOut(why);
+  drift_.leaveOut();
 }
 
 void Monitor::standDown(const std::string& message) {
@@ -312,8 +325,11 @@ std::optional<Acceptable> Monitor::acceptable() const {
                     *session_->encoder(), live_->now()};
 }
 
-void Monitor::onAccepted(const std::string& caller) {
+void Monitor::onAccepted(const std::string& caller, bool undo) {
   session_->accept(accepts_.accepted());
+  if (undo) {
+    drift_.forget();  // what is judged again would look like a drift
+  }
   const std::optional<core::Alarm>& stands = announcer_.alarm().standing();
   if (stands && accepts_.covers(*stands, session_->vocabulary())) {
     calls_.record("accept", caller, wallNow());

@@ -15,6 +15,7 @@
 #include "accept_calls.h"
 #include "alarm_keeper.h"
 #include "diagnostics.h"
+#include "drift_keeper.h"
 #include "flight_recorder.h"
 #include "incident_keeper.h"
 #include "kept_logs.h"
@@ -109,7 +110,8 @@ namespace self_awareness {
 ///
 /// **Files**: those of the flight recorder; the alarm that stands (AlarmKeeper) and the last
 /// incidents (IncidentKeeper): a monitor that is started again goes on with them. MODEL.accepted,
-/// beside the model: what is accepted. MODEL.kept: logs of normal operation (KeptLogs).
+/// beside the model: what is accepted. MODEL.drift: how near components came to their limits
+/// (DriftKeeper). MODEL.kept: logs of normal operation (KeptLogs).
 ///
 /// **Services**
 ///
@@ -177,6 +179,9 @@ class Monitor : public NodeProgram, public LiveSource::Listener {
   /// Goes on with the incidents, and with an alarm that stood when the monitor ended.
   void resume();
   void onVerdict(const core::Verdict& verdict);
+  /// What is heard now is not normal operation.
+  /// @param why in words
+  void notNormal(const std::string& why);
   bool onReset(Call& call);
   bool onClear(Call& call);
   bool onDump(std_srvs::Trigger::Request& request, std_srvs::Trigger::Response& response);
@@ -201,8 +206,8 @@ class Monitor : public NodeProgram, public LiveSource::Listener {
   void onFirstOfRestarted(const core::Event& event);
   /// Says who was started again, and is back.
   void followRestarts(std::int64_t now);
-  /// Something more is accepted, or less.
-  void onAccepted(const std::string& caller);
+  /// Something more is accepted, or something was taken back.
+  void onAccepted(const std::string& caller, bool undo);
 
   ros::CallbackQueue queue_;
   ros::NodeHandle private_node_handle_;
@@ -226,6 +231,7 @@ class Monitor : public NodeProgram, public LiveSource::Listener {
   ros1::HeardTally heard_;
   FlightRecorder recorder_;
   KeptLogs kept_logs_;
+  DriftKeeper drift_;
   AlarmKeeper keeper_;
   IncidentKeeper incidents_;
   Restarts restarts_;

@@ -64,6 +64,12 @@ void Monitor::onReport() {
   }
   state.keeper_error = keeper_.error().empty() ? incidents_.error() : keeper_.error();
   state.accept_error = accepts_.error();
+  state.drift_error = drift_.error();
+  for (const DriftKeeper::Told& each : drift_.told()) {
+    if (mutes_.ofComponent(each.component).empty()) {
+      state.drift.push_back(each.words);
+    }
+  }
   if (recorder_.enabled()) {
     state.recorder = recorder_.report();
   }

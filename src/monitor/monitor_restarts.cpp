@@ -13,6 +13,7 @@ namespace self_awareness {
 
 void Monitor::onMasterRestart(std::int64_t /*now*/) {
   kept_logs_.onRobotStart(wallNow());
+  drift_.onRobotStart(wallNow());
 }
 
 void Monitor::onGraph(const ros1::Graph& graph) {

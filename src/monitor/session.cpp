@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "ros/content_digest.h"
 #include "self_awareness/core/paper/judge.h"
 #include "self_awareness/core/verdict/name_pattern.h"
+#include "self_awareness/ros/file_version.h"
 
 namespace self_awareness {
 
@@ -68,9 +70,9 @@ void Session::accept(const core::Acceptances& accepted) {
 }
 
 void Session::onShares(const core::evidence::Shares& shares) {
-  shares_.resize(model_->components().size(), 0);
+  window_shares_.assign(model_->components().size(), 0);
   const auto raise = [&](core::EventId id, double share) {
-    double& largest = shares_[model_->componentIndex(id)];
+    double& largest = window_shares_[model_->componentIndex(id)];
     largest = std::max(largest, share);
   };
   for (std::size_t track = 0; track < shares.tracks.size(); ++track) {
@@ -81,6 +83,29 @@ void Session::onShares(const core::evidence::Shares& shares) {
   for (const auto& [id, share] : shares.never_heard) {
     raise(id, share);
   }
+  shares_.resize(window_shares_.size(), 0);
+  std::transform(shares_.begin(), shares_.end(), window_shares_.begin(), shares_.begin(),
+                 [](double one, double other) { return std::max(one, other); });
+}
+
+std::vector<std::string> Session::components() const {
+  return model_ && calibrated_ ? model_->components() : std::vector<std::string>();
+}
+
+std::uint64_t Session::content() const {
+  ros1::ContentDigest digest;
+  const auto add = [&](const void* data, std::size_t size) {
+    digest.add(static_cast<const std::uint8_t*>(data), size);
+  };
+  add(&ros1::kMethod, sizeof ros1::kMethod);
+  for (const std::string& component : components()) {
+    add(component.data(), component.size());
+  }
+  if (trained_.calibration) {
+    const std::vector<double>& limits = trained_.calibration->limits.tracks;
+    add(limits.data(), limits.size() * sizeof(double));
+  }
+  return digest.value();
 }
 
 std::map<std::string, double> Session::takeShares() {

@@ -1,11 +1,18 @@
 #include <pybind11/stl.h>
 
+#include <cstddef>
+#include <cstdint>
+#include <utility>
+#include <vector>
+
 #include "bindings.h"
-#include "core/evidence/limits/drift.h"
+#include "self_awareness/core/evidence/limits/drift.h"
+#include "self_awareness/core/evidence/limits/drift_samples.h"
 
 namespace self_awareness::python {
 
 using core::evidence::Drift;
+using core::evidence::DriftSamples;
 
 void bindDrift(py::module& m) {
   py::class_<Drift::Component>(m, "ComponentDrift", "How far a component has drifted.")
@@ -28,6 +35,21 @@ void bindDrift(py::module& m) {
       .def_property_readonly_static(
           "FALSE_ALARMS", [](const py::object&) { return Drift::kFalseAlarms; },
           "probability that a robot in which nothing changes is ever told to drift");
+  py::class_<DriftSamples>(m, "DriftSamples",
+                           "What is one sample of a Drift: all that was normal in a start of the\n"
+                           "robot, or in a day of one.")
+      .def(py::init<std::size_t>(), py::arg("components"))
+      .def(
+          "add",
+          [](DriftSamples& self, std::int64_t begin, std::int64_t end, std::int64_t robot_start,
+             std::vector<double> shares) {
+            self.add({begin, end, robot_start, std::move(shares)});
+          },
+          py::arg("begin"), py::arg("end"), py::arg("robot_start"), py::arg("shares"),
+          "Takes in the next time that was normal [ns]. robot_start: the same for all of a start\n"
+          "of the robot; 0: not known, then a start ends with a pause of more than a minute.\n"
+          "shares: as Drift.add().")
+      .def_property_readonly("drift", &DriftSamples::drift, "what they say");
 }
 
 }  // namespace self_awareness::python

@@ -35,6 +35,7 @@ from self_awareness._core import (  # noqa: F401
     Coverage,
     DetectorParameters,
     Drift,
+    DriftSamples,
     EncodingRules,
     EventLogWriter,
     EventType,

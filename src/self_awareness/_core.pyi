@@ -181,6 +181,13 @@ class Drift:
     def samples(self) -> int: ...
 
 
+class DriftSamples:
+    def __init__(self, components: int) -> None: ...
+    def add(self, begin: int, end: int, robot_start: int, shares: Sequence[float]) -> None: ...
+    @property
+    def drift(self) -> Drift: ...
+
+
 class EncodingRules:
     exclude_sources: List[str]
     exclude_topics: List[str]

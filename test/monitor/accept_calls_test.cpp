@@ -94,7 +94,7 @@ class AcceptCallsTest : public testing::Test {
                      {[this]() -> std::optional<Acceptable> {
                         return Acceptable{alarm_, incidents_, vocabulary_, encoder_, 7};
                       },
-                      [this](const std::string& /*caller*/) { ++changes_; }}};
+                      [this](const std::string& /*caller*/, bool /*undo*/) { ++changes_; }}};
 };
 
 TEST_F(AcceptCallsTest, WhatStandsIsTakenByItsIdWhileItStands) {

@@ -4,10 +4,11 @@ from __future__ import annotations
 import os
 from collections import Counter
 from dataclasses import dataclass, field
-from typing import Dict, List, Sequence, Tuple
+from typing import Dict, List, Sequence
 
-from self_awareness import (Acceptance, ComponentDrift, DetectorParameters, Drift, EvidenceModel,
-                            Recording, TrainedModel, accepted_file, evidence_lanes, recordings)
+from self_awareness import (Acceptance, ComponentDrift, DetectorParameters, DriftSamples,
+                            EvidenceModel, Recording, TrainedModel, accepted_file, evidence_lanes,
+                            recordings)
 from self_awareness.judging import evidence_judge
 from self_awareness.recordings import BagPart, RecordingEvents, expand, overlap
 from self_awareness.stamps import SECOND_NS
@@ -16,8 +17,6 @@ LEARNED, INCIDENT, SHORT = 'learned from', 'not normal', 'too short'
 """Why a recording says nothing of a drift."""
 
 _KEPT = '.kept'
-_DAY_NS = 86_400 * SECOND_NS
-_START_NS = 60 * SECOND_NS  # a start of the robot ends with a longer pause, method.md section 3.1
 _SHORTEST_NS = 60 * SECOND_NS
 
 
@@ -132,11 +131,13 @@ def age_of(path: str, trained: TrainedModel, parts: Sequence[BagPart]) -> Age:
     if len(robots) > 1:
         raise ValueError(f'the recordings are of several robots ({", ".join(robots)}); name those '
                          'of one')
-    samples = _samples([each for each in heard if not each.left_out])
-    components = list(samples[0]) if samples else []
-    drift = Drift(len(components))
-    for sample in samples:
-        drift.add([sample[name] for name in components])
+    counted = [each for each in heard if not each.left_out]
+    components = list(counted[0].shares) if counted else []
+    samples = DriftSamples(len(components))
+    for each in counted:
+        samples.add(each.origin, each.recording.end, each.recording.robot_start,
+                    [each.shares[name] for name in components])
+    drift = samples.drift
     learned = [*trained.recordings, *trained.calibration.recordings]
     return Age(trained.calibration.budget, max((each.end for each in learned), default=0), heard,
                {name: drift.component(number) for number, name in enumerate(components)},
@@ -180,24 +181,3 @@ def _shares(trained: TrainedModel, computed: EvidenceModel, accepted: Sequence[A
                            list(events.clock_steps), list(events.waiting), events.attributes,
                            list(accepted))
     return dict(zip(lanes.components, lanes.shares[:, 0].tolist()))
-
-
-def _samples(heard: Sequence[Heard]) -> List[Dict[str, float]]:
-    """Return the shares of each start of the robot, or of each day of one, in their order.
-
-    Recordings of one start are no independent draws, and what a robot does depends on the time of
-    day: so neither hours nor files are samples.
-    """
-    found: Dict[Tuple[int, int], Dict[str, float]] = {}
-    begin, end, start = 0, -_START_NS - 1, 0
-    for each in heard:
-        robot_start = each.recording.robot_start
-        same = (robot_start == start if robot_start and found
-                else each.origin - end <= _START_NS)
-        if not same or not found:
-            begin = each.origin
-        start, end = robot_start, each.recording.end
-        key = begin, (each.origin - begin) // _DAY_NS
-        before = found.get(key, each.shares)
-        found[key] = {name: max(share, before[name]) for name, share in each.shares.items()}
-    return list(found.values())

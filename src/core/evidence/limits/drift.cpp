@@ -1,4 +1,4 @@
-#include "core/evidence/limits/drift.h"
+#include "self_awareness/core/evidence/limits/drift.h"
 
 #include <algorithm>
 #include <array>
@@ -40,7 +40,7 @@ Drift::Drift(std::size_t components)
     : bets_(components,
             Bets{{}, 0, std::vector<double>(kExponents.size(), 1.0 / kExponents.size()), 0}) {}
 
-void Drift::add(const std::vector<double>& shares) {
+void Drift::check(const std::vector<double>& shares) const {
   if (shares.size() != bets_.size()) {
     throw std::invalid_argument("a sample has one share for each component");
   }
@@ -48,6 +48,10 @@ void Drift::add(const std::vector<double>& shares) {
                    [](double share) { return std::isfinite(share) && share >= 0; })) {
     throw std::invalid_argument("a share is 0 or more, and finite");
   }
+}
+
+void Drift::add(const std::vector<double>& shares) {
+  check(shares);
   ++samples_;
   for (std::size_t number = 0; number < shares.size(); ++number) {
     Bets& bets = bets_[number];

@@ -1,4 +1,4 @@
-#include "core/evidence/limits/drift.h"
+#include "self_awareness/core/evidence/limits/drift.h"
 
 #include <gtest/gtest.h>
 

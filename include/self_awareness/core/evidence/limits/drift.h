@@ -35,6 +35,9 @@ class Drift {
   /// @param shares by component, 0 or more; 1 is the limit
   /// @throw std::invalid_argument if their number is another one, or one is not finite or below 0
   void add(const std::vector<double>& shares);
+  /// Looks at a sample, and takes in nothing.
+  /// @throw std::invalid_argument as add()
+  void check(const std::vector<double>& shares) const;
 
   /// Number of samples so far.
   std::size_t samples() const { return samples_; }
