@@ -145,6 +145,10 @@ void bindModel(py::module& m) {
       .def_readonly("found_when_asked", &Coverage::found_when_asked,
                     "longest time to the alarm while others ask it, or go on that pause when it\n"
                     "does [s]; None: nobody does")
+      .def_property_readonly(
+          "found_after",
+          [](const Coverage& self) { return core::evidence::foundAfter(self, " s"); },
+          "both in words, as /diagnostics says them; empty: neither")
       .def_readonly("late_answers", &Coverage::late_answers, "whether they are found")
       .def_readonly("more_starts", &Coverage::more_starts,
                     "of the robot, after which they would be; 0: no number helps")

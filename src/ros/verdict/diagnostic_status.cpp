@@ -123,14 +123,11 @@ std::string whyNotWatched(const core::evidence::Coverage& component) {
 }
 
 // How soon its death is found.
-std::string foundAfter(const core::evidence::Coverage& component) {
-  if (component.death_found_after) {
-    return number(*component.death_found_after);
+std::string deathFoundAfter(const core::evidence::Coverage& component) {
+  if (component.isWatched()) {
+    return core::evidence::foundAfter(component, "");
   }
-  if (component.accepted) {
-    return kNotWatchedAccepted;
-  }
-  return component.found_when_asked ? "when it is asked" : "not watched";
+  return component.accepted ? kNotWatchedAccepted : "not watched";
 }
 
 }  // namespace
@@ -241,7 +238,7 @@ void tellComponent(const CommunicationState& state, const std::string& name,
     status.add("accepted", accepted->second);
   }
   if (coverage != nullptr) {
-    status.add("death found after [s]", foundAfter(*coverage));
+    status.add("death found after [s]", deathFoundAfter(*coverage));
     if (!coverage->isWatched()) {
       status.add("why not watched", whyNotWatched(*coverage));
     }

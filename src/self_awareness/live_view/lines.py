@@ -77,7 +77,7 @@ def cut(text: str, width: int) -> str:
 
 
 def _row(name: str, rate: str, age: str, share: str, found: str, state: str, width: int) -> str:
-    found = f' {found:>9}' if width >= _WIDE else ''
+    found = f' {found:>10}' if width >= _WIDE else ''
     return f'{name:<{_NAME}} {rate:>11} {age:>7} {share:>5}{found}  {state}'
 
 
@@ -94,7 +94,9 @@ def _shown(value: Optional[float], unit: str = '') -> str:
 
 
 def _found(text: str) -> str:
+    """Return by itself and while it is needed, as `9.5/0.6 s`; one where the other is not known."""
     try:
-        return f'{float(text):.1f} s'
+        times = [float(each.partition(' ')[0]) for each in text.split(', ')]
     except ValueError:
-        return text[:9] or '-'
+        return text[:10] or '-'
+    return '/'.join(f'{each:.0f}' if each >= 100.0 else f'{each:.1f}' for each in times) + ' s'

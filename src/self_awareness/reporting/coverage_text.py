@@ -20,7 +20,8 @@ def summarise(coverage: Sequence[Coverage]) -> List[Dict[str, Any]]:
     """
     return [{'component': each.component, 'period': each.period or None, 'gaps': each.gaps,
              'watched': each.is_watched, 'death_found_after': each.death_found_after,
-             'found_when_asked': each.found_when_asked, 'late_answers': each.late_answers,
+             'found_when_asked': each.found_when_asked, 'found_after': each.found_after,
+             'late_answers': each.late_answers,
              'more_starts': each.more_starts or None} for each in coverage]
 
 
@@ -62,12 +63,8 @@ def lines(found: Sequence[Dict[str, Any]], fewest_gaps: int) -> List[str]:
 
 
 def _death(each: Dict[str, Any], fewest_gaps: int) -> str:
-    alone, asked = each['death_found_after'], each['found_when_asked']
-    if alone is not None and (asked is None or asked >= alone):
-        return f'{rounded(alone, 2)} s'
-    if asked is not None:
-        alone_text = '' if alone is None else f'{rounded(alone, 2)} s, '
-        return f'{alone_text}{rounded(asked, 2)} s while it is needed'
+    if each['watched']:
+        return str(each['found_after'])
     if each['gaps'] < fewest_gaps:
         return f'not watched: {each["gaps"]} gaps in training, {fewest_gaps} are needed'
     return 'not watched: all of it came at one moment'

@@ -93,6 +93,20 @@ def test_components_are_sorted_and_filtered(said: Said) -> None:
         '/base', '/camera', '/player', '/rare'}
 
 
+def test_it_shows_how_soon_a_death_is_found_also_while_it_is_needed() -> None:
+    def found(text: str) -> str:
+        of = Said('/watch')
+        of.on_diagnostics(diagnostics(status('watch: /a', **{'death found after [s]': text})))
+        row = lines.component(of.components('name', '')[0], 120)[1]
+        return row.rpartition('  heard')[0][-10:]
+
+    assert found('0.4').strip() == '0.4 s'
+    assert found('9.5, 0.6 while it is needed').strip() == '9.5/0.6 s'
+    assert found('1200, 0.6 while it is needed') == '1200/0.6 s'
+    assert found('0.61 while it is needed').strip() == '0.6 s'
+    assert found('not watched: accepted') == 'not watche'
+
+
 def test_who_was_never_heard_comes_first_by_age() -> None:
     of = Said('/watch')
     of.on_diagnostics(SimpleNamespace(status=[of_component('/a', 0, '1', '9'),

@@ -181,6 +181,27 @@ TEST(StatusRound, ThreeHundredTopicsTakeLessThanTwoKilobytesASecond) {
   RecordProperty("during_an_alarm", static_cast<int>(alarm.bytes_per_second));
 }
 
+TEST(DiagnosticStatus, SaysHowSoonADeathIsFoundAlsoWhileItIsNeeded) {
+  CommunicationState state = largeRobot();
+  const auto found = [&] {
+    for (const diagnostic_msgs::KeyValue& pair : componentsOf(state).front().values) {
+      if (pair.key == "death found after [s]") {
+        return pair.value;
+      }
+    }
+    return std::string();
+  };
+  EXPECT_EQ(found(), "0.21");
+  core::evidence::Coverage& coverage = state.coverage.front();
+  coverage.death_found_after = 9.5;
+  coverage.found_when_asked = 0.6;
+  EXPECT_EQ(found(), "9.5, 0.6 while it is needed");
+  coverage.death_found_after.reset();
+  EXPECT_EQ(found(), "0.6 while it is needed");
+  coverage.found_when_asked.reset();
+  EXPECT_EQ(found(), "not watched");
+}
+
 TEST(StatusRound, WhoseNumbersChangeHasNotChanged) {
   StatusRound round(kBytes);
   std::vector<DiagnosticStatus> all = componentsOf(largeRobot());

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <stdexcept>
 
 #include "core/evidence/channel/channel.h"
@@ -23,7 +25,26 @@ std::size_t fewer(std::size_t so_far, const Relation& relation) {
   return so_far == 0 ? lacks : std::min(so_far, lacks);
 }
 
+/// Two digits, without an exponent.
+std::string rounded(double seconds, const std::string& unit) {
+  char digits[32];
+  std::snprintf(digits, sizeof digits, "%.2g", seconds);
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", std::strtod(digits, nullptr));
+  return text + unit;
+}
+
 }  // namespace
+
+std::string foundAfter(const Coverage& coverage, const std::string& unit) {
+  const std::optional<double>& alone = coverage.death_found_after;
+  const std::optional<double>& asked = coverage.found_when_asked;
+  std::string words = alone ? rounded(*alone, unit) : "";
+  if (asked && (!alone || *asked < *alone)) {
+    words += (alone ? ", " : "") + rounded(*asked, unit) + " while it is needed";
+  }
+  return words;
+}
 
 std::vector<Coverage> coverageOf(const Model& model, const Limits& limits,
                                  const std::vector<Relation>& relations, std::int64_t window,

@@ -64,6 +64,18 @@ TEST_F(CoverageTest, ADeathIsFoundSoonerWhileItIsAsked) {
   EXPECT_FALSE(of(kA).found_when_asked);
 }
 
+TEST(FoundAfter, SaysTheSoonerOneWhileItIsNeeded) {
+  Coverage coverage;
+  EXPECT_EQ(foundAfter(coverage, " s"), "");
+  coverage.found_when_asked = 0.6123;
+  EXPECT_EQ(foundAfter(coverage, " s"), "0.61 s while it is needed");
+  coverage.death_found_after = 1234;
+  EXPECT_EQ(foundAfter(coverage, " s"), "1200 s, 0.61 s while it is needed");
+  EXPECT_EQ(foundAfter(coverage, ""), "1200, 0.61 while it is needed");
+  coverage.death_found_after = 0.5;
+  EXPECT_EQ(foundAfter(coverage, ""), "0.5");
+}
+
 TEST_F(CoverageTest, WhoMayBeSilentIsNotWatchedSinceThatIsAccepted) {
   limit(kOverdue, kA, kA) = model_.overdue(kA, 3 * kSecond);
   const auto with = [&](const std::vector<bool>& may_be_silent) {

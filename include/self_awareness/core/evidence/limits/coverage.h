@@ -35,6 +35,11 @@ struct Coverage {
   bool isWatched() const { return death_found_after.has_value() || found_when_asked.has_value(); }
 };
 
+/// How soon its death is found, in words: "9.5 s", "9.5 s, 0.6 s while it is needed" where that is
+/// sooner, "0.6 s while it is needed", or nothing where it is not. Two digits are told.
+/// @param unit after each number: " s", or nothing where the reader knows it
+std::string foundAfter(const Coverage& coverage, const std::string& unit);
+
 /// Of all components of a model, in the order of Model::components().
 /// @param limits of its tracks
 /// @param relations by track; empty: not known
