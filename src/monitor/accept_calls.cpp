@@ -67,6 +67,9 @@ void AcceptCalls::read(const std::string& model) {
 }
 
 bool AcceptCalls::covers(const core::Alarm& alarm, const core::Vocabulary& vocabulary) const {
+  if (alarm.kind == core::Kind::kNewMode) {
+    return alarm.silent && accepted_.coversMode(alarm.silent->components);
+  }
   if (alarm.suspects.empty()) {  // it is of before the start
     return accepted_.covers(alarm.culprit, "", alarm.kind);
   }

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <set>
 #include <stdexcept>
+#include <utility>
 
 #include "ros/text.h"
+#include "self_awareness/core/verdict/incident.h"
 
 namespace self_awareness {
 namespace {
@@ -106,10 +108,21 @@ std::vector<core::Acceptance> ofSuspect(const core::Suspect& suspect,
   return all;
 }
 
+/// That these are off together. @param components in order
+core::Acceptance ofMode(std::vector<std::string> components) {
+  core::Acceptance mode;
+  mode.kind = core::Kind::kNewMode;
+  mode.together = std::move(components);
+  return mode;
+}
+
 /// What an alarm or a suspicion holds against components: of all that are abnormal by themselves,
 /// unless they share something that is to blame for the others.
 std::vector<core::Acceptance> ofAlarm(const core::Alarm& alarm,
                                       const core::Vocabulary& vocabulary) {
+  if (alarm.kind == core::Kind::kNewMode && alarm.silent) {
+    return {ofMode(alarm.silent->components)};
+  }
   if (alarm.culprit.empty()) {
     throw std::invalid_argument("nobody is to blame for it (" + core::toString(alarm.kind) +
                                 "); name a component that may do so, and the kind of what it "
@@ -135,7 +148,15 @@ std::vector<core::Acceptance> ofAlarm(const core::Alarm& alarm,
 }
 
 /// What an incident holds against its component, and those who failed in the same way at once.
+/// @throw std::invalid_argument if nobody is to blame, or it is a mode of unknown components
 std::vector<core::Acceptance> ofIncident(const self_awareness::Incident& incident) {
+  if (incident.kind == core::toString(core::Kind::kNewMode)) {
+    if (incident.together.empty() || incident.together.size() == core::Incident::kMostNamed) {
+      throw std::invalid_argument(
+          "not all who were off are known any more; accept the mode while it stands: {}");
+    }
+    return {ofMode(incident.together)};
+  }
   if (incident.component.empty()) {
     throw std::invalid_argument("nobody is to blame for it (" + incident.kind +
                                 "); name a component, and the kind of what it may do");
@@ -205,6 +226,12 @@ WantedAcceptances ofNames(const Accept::Request& request, const Acceptable& acce
       }
       result.asked.push_back(
           ofNames(each.component, each.topic, each.kind, names, acceptable.encoder));
+      if (request.undo == 0U && result.asked.back().kind == core::Kind::kNewMode) {
+        result.asked.pop_back();
+        throw std::invalid_argument(
+            "kind: a new mode is of several components; accept it while it stands, or the "
+            "incident");
+      }
     } catch (const std::invalid_argument& error) {
       const std::string& name = each.component.empty() ? each.topic : each.component;
       result.refused.push_back(
@@ -238,6 +265,9 @@ WantedAcceptances requestOf(const Accept::Request& request, const Acceptable& ac
 
 std::string inWordsOf(const core::Acceptance& acceptance) {
   std::string words = acceptance.component;
+  for (const std::string& each : acceptance.together) {
+    words += (words.empty() ? "" : " ") + each;
+  }
   if (!acceptance.topic.empty() && acceptance.topic != acceptance.component) {
     words += (words.empty() ? "" : " on ") + acceptance.topic;
   }

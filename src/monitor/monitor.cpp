@@ -41,8 +41,9 @@ Monitor::Monitor(ros::NodeHandle node_handle, const ros::NodeHandle& private_nod
       diagnostics_(node_handle, name, parameters_.hardware_id, parameters_.source_diagnostics,
                    parameters_.diagnostic_bytes),
       mutes_(calls_, [this] { onMutes(); }),
-      accepts_(calls_, {[this] { return acceptable(); },
-                        [this](const std::string& caller, bool undo) { onAccepted(caller, undo); }}),
+      accepts_(calls_,
+               {[this] { return acceptable(); },
+                [this](const std::string& caller, bool undo) { onAccepted(caller, undo); }}),
       announcer_({[this](const self_awareness::SelfAwareness& status) {
                     status_publisher_.publish(status);
                   },
@@ -146,6 +147,7 @@ void Monitor::startSession(std::unique_ptr<Session> session) {
   drift_.setModel(parameters_.model, {session_->content(), session_->components()});
   quotes_.clear();
   model_error_.clear();
+  mode_.clear();
   announcer_.forgetWindow();
   heard_.setTypes(session_->types());
   accepts_.read(parameters_.model);
@@ -255,6 +257,7 @@ void Monitor::resume() {
 
 void Monitor::onVerdict(const core::Verdict& verdict) {
   const bool stood = announcer_.alarm().message().level == self_awareness::SelfAwareness::ERROR;
+  mode_ = verdict.mode;
   if (!verdict.settling) {
     const std::int64_t begin = verdict.window->start;
     drift_.add(begin, begin + session_->window(), session_->sharesOfWindow());

@@ -236,6 +236,7 @@ class Monitor : public NodeProgram, public LiveSource::Listener {
   IncidentKeeper incidents_;
   Restarts restarts_;
   std::string alarm_file_;            // of the alarm that was raised last
+  std::vector<std::string> mode_;     // components that are off together, as is accepted
   std::unique_ptr<LiveSource> live_;  // last: its listener uses all of the above
 };
 

@@ -38,6 +38,7 @@ void Monitor::onReport() {
     state.communication.optional = session_->optional();
     state.communication.strangers = session_->strangers();
     accepts_.tell(session_->types(), state.communication);
+    state.communication.mode = mode_;
   }
   state.communication.take(announcer_.alarm(), heard_.report(moment, live_->events().dropped()),
                            moment.ros);

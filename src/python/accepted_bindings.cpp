@@ -1,5 +1,6 @@
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <stdexcept>
@@ -18,13 +19,20 @@ namespace {
 using core::Acceptance;
 
 Acceptance acceptanceOf(std::string component, std::string topic, const std::string& kind,
-                        std::int64_t at, std::string by) {
+                        std::int64_t at, std::string by, std::vector<std::string> together) {
   Acceptance acceptance;
   acceptance.component = std::move(component);
   acceptance.topic = std::move(topic);
   acceptance.kind = core::kindOf(kind);
   acceptance.at = at;
   acceptance.by = std::move(by);
+  acceptance.together = std::move(together);
+  std::sort(acceptance.together.begin(), acceptance.together.end());
+  if ((acceptance.kind == core::Kind::kNewMode) == acceptance.together.empty()) {
+    throw std::invalid_argument(
+        "those who are off together are of the kind new mode, and of no "
+        "other");
+  }
   if (!kind.empty() && !acceptance.kind) {
     throw std::invalid_argument(kind + " is no kind of an alarm");
   }
@@ -54,8 +62,11 @@ void bindAccepted(py::module& m) {
                          "What somebody takes as normal from now on (docs/accept.md).")
       .def(py::init(&acceptanceOf), py::arg("component") = "", py::arg("topic") = "",
            py::arg("kind") = "", py::arg("at") = 0, py::arg("by") = "",
+           py::arg("together") = std::vector<std::string>(),
            "component, topic: a name, or its begin and a *; empty: all. kind: as Alarm.kind;\n"
-           "empty: all that it does. at: [ns]. ValueError: there is no such kind.")
+           "empty: all that it does. at: [ns]. together: of the kind new mode, the components "
+           "that\n"
+           "are off. ValueError: there is no such kind, or no such mode.")
       .def_readonly("component", &Acceptance::component)
       .def_readonly("topic", &Acceptance::topic)
       .def_property_readonly("kind",
@@ -64,6 +75,8 @@ void bindAccepted(py::module& m) {
                              })
       .def_readonly("at", &Acceptance::at, "when it was accepted [ns]")
       .def_readonly("by", &Acceptance::by, "node that asked for it")
+      .def_readonly("together", &Acceptance::together,
+                    "of the kind new mode: components that are off together, in order")
       .def(
           "is_about",
           [](const Acceptance& self, const core::EventType& type) {

@@ -28,7 +28,8 @@ def beside(model: str) -> List[Acceptance]:
 def in_words(accepted: Acceptance) -> str:
     """Return what is accepted, as the monitor says it."""
     names = [name for name in (accepted.component, accepted.topic) if name]
-    return ' on '.join(dict.fromkeys(names)) + (f' ({accepted.kind})' if accepted.kind else '')
+    what = ' '.join(accepted.together) or ' on '.join(dict.fromkeys(names))
+    return what + (f' ({accepted.kind})' if accepted.kind else '')
 
 
 def keep(accepted: Sequence[Acceptance], model: str) -> None:
@@ -67,7 +68,8 @@ def learned(accepted: Sequence[Acceptance],
 
     It is learned where the model knows an event type that it names from a recording that ended
     after it was accepted; that somebody does not subscribe, where he is so known, and the model
-    does not expect it. A pattern names others, too, that may yet come: it stays.
+    does not expect it; a mode, where it is so of all who are off. A pattern names others, too,
+    that may yet come: it stays.
     """
     known: List[Acceptance] = []
     left: List[Acceptance] = []
@@ -91,6 +93,9 @@ def keep_what_is_left(accepted: Sequence[Acceptance], model: TrainedModel, path:
 
 
 def _is_learned(accepted: Acceptance, model: TrainedModel) -> bool:
+    if accepted.together:
+        return all(_is_learned(Acceptance(each, at=accepted.at), model)
+                   for each in accepted.together)
     named = accepted
     if accepted.kind == _NOT_SUBSCRIBED:
         if any(accepted.component in ('', node) and accepted.topic in ('', topic)
@@ -101,5 +106,5 @@ def _is_learned(accepted: Acceptance, model: TrainedModel) -> bool:
                for event_type, until in zip(model.event_types, model.heard_until))
 
 
-def _key(accepted: Acceptance) -> Tuple[str, str, str]:
-    return accepted.component, accepted.topic, accepted.kind
+def _key(accepted: Acceptance) -> Tuple[str, ...]:
+    return accepted.component, accepted.topic, accepted.kind, *accepted.together

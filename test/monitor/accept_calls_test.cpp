@@ -126,6 +126,45 @@ TEST_F(AcceptCallsTest, WhatIsNobodysFaultIsRefused) {
   EXPECT_EQ(accepted(), "");
 }
 
+TEST_F(AcceptCallsTest, AModeIsTakenWhileItStandsOrByItsIncidentAndTakenBack) {
+  const std::string words = "/base /camera /driver /imu (new mode)";
+  core::Alarm& alarm = stands(core::Kind::kNewMode, {});
+  alarm.silent.emplace();
+  alarm.silent->others_go_on = true;
+  alarm.silent->components = {"/base", "/camera", "/driver", "/imu"};
+  EXPECT_FALSE(calls_.covers(alarm, vocabulary_));
+  call({});
+  EXPECT_EQ(accepted(), words);
+  EXPECT_TRUE(calls_.covers(alarm, vocabulary_));
+  alarm.silent->components.push_back("/other");
+  EXPECT_FALSE(calls_.covers(alarm, vocabulary_));
+  alarm_.reset();
+  ros1::CommunicationState state;
+  calls_.tell(vocabulary_.types(), state);
+  EXPECT_EQ(state.accepted, std::vector<std::string>{words + ", by /rqt"});
+  EXPECT_EQ(state.accepted_of.at("/driver"), words);
+  call(asked("/camera", "", "", true));
+  EXPECT_EQ(accepted(), "");
+
+  self_awareness::Incident incident;
+  incident.id = 3;
+  incident.kind = "new mode";
+  incidents_.incidents = {incident};
+  Accept::Request request;
+  request.incident = 3;
+  EXPECT_NE(call(request, false).find("not all who were off are known"), std::string::npos);
+  incidents_.incidents[0].together = {"/base", "/camera", "/driver", "/imu"};
+  call(request);
+  EXPECT_EQ(accepted(), words);
+  calls_.finish();
+  EXPECT_TRUE(ros1::readAccepted(ros1::pathOfAccepted(model_)).value().coversMode({"/imu"}));
+  EXPECT_NE(call(asked("/driver", "", "new mode"), false).find("accept it while it stands"),
+            std::string::npos);
+  request.undo = 1U;
+  call(request);
+  EXPECT_EQ(accepted(), "");
+}
+
 TEST_F(AcceptCallsTest, WhileTheMachineIsBusyOnlyTheCulpritIsTaken) {
   stands(core::Kind::kDied,
          {suspect(0, "/driver", core::Kind::kDied), suspect(1, "/base", core::Kind::kLate)})

@@ -95,3 +95,24 @@ def test_it_is_said_as_the_monitor_says_it(entry: Acceptance, words: str) -> Non
 def test_there_are_no_other_kinds() -> None:
     with pytest.raises(ValueError, match='odd'):
         Acceptance('/a', kind='odd')
+
+
+def test_a_mode_is_learned_once_all_of_it_were_heard_after_it() -> None:
+    entry = Acceptance(kind='new mode', at=90, by='/rqt', together=['/driver', '/base'])
+    assert accepted_file.in_words(entry) == '/base /driver (new mode)'
+    assert accepted_file.learned([entry], model(100, 0, 100)) == ([entry], [])
+    assert accepted_file.learned([entry], model(100, 0, 80)) == ([], [entry])
+    other = Acceptance(kind='new mode', at=90, by='/rqt', together=['/driver', '/laser'])
+    assert accepted_file.learned([other], model(100, 0, 100)) == ([], [other])
+    assert entry != other
+
+
+def test_a_mode_is_kept_as_it_was(tmp_path) -> None:
+    path = str(tmp_path / 'robot.model')
+    entry = Acceptance(kind='new mode', at=90, by='/rqt', together=['/driver', '/base'])
+    accepted_file.keep([entry], path)
+    kept, = accepted_file.beside(path)
+    assert kept == entry and kept.together == ['/base', '/driver']
+    for wrong in ({'kind': 'new mode'}, {'kind': 'slow', 'together': ['/a', '/b']}):
+        with pytest.raises(ValueError, match='of the kind new mode'):
+            Acceptance(**wrong)

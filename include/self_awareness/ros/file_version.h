@@ -25,7 +25,7 @@ inline constexpr FileKind kEventLogFile{"event log", 4, 4, 0};
 inline constexpr FileKind kResultBag{"result bag", 2, 1, kMethod};
 inline constexpr FileKind kStandingAlarmFile{"standing alarm", 1, 1, 0};
 inline constexpr FileKind kIncidentsFile{"incidents", 1, 1, 0};
-inline constexpr FileKind kAcceptedFile{"accepted", 1, 1, 0};
+inline constexpr FileKind kAcceptedFile{"accepted", 2, 2, 0};
 inline constexpr FileKind kDriftFile{"drift", 1, 1, kMethod};
 inline constexpr FileKind kGraphFile{"graph", 3, 2, 0};  ///< beside bags, in YAML
 

@@ -59,6 +59,7 @@ class Judge : public core::Judge {
     excused_.accept(accepted);
     never_heard_.excuse(excused_.mayBeSilent());
     unsubscribed_.accept(accepted);
+    new_mode_.accept(accepted);
   }
   bool isAccepted(EventId id, Kind kind) const override { return excused_.isAccepted(id, kind); }
   void setOptional(const std::vector<std::string>& patterns) override {
@@ -216,17 +217,22 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
   }
   never_heard_.closeWindow(end, settle_time_);
   unsubscribed_.closeWindow(end);
-  if (tell_shares_) {
-    tell_shares_(window, {shares_, never_heard_.shares()});
-  }
-  std::set<std::string> channels;
   double largest = largestOf(shares_);
   if (largest > 1) {
     judgement.silent = silent_together_.find(shares_, *limits_, scorer_, strangers_.silences(end));
     if (!judgement.silent) {
-      judgement.silent = new_mode_.excuse(shares_, *limits_, scorer_, excused_.mayBeSilent());
+      judgement.mode =
+          new_mode_.excuseAccepted(shares_, *limits_, scorer_, excused_.mayBeSilent());
       largest = largestOf(shares_);
     }
+  }
+  if (tell_shares_) {  // what is accepted is no evidence, also to who listens
+    tell_shares_(window, {shares_, never_heard_.shares()});
+  }
+  std::set<std::string> channels;
+  if (largest > 1 && !judgement.silent) {
+    judgement.silent = new_mode_.excuse(shares_, *limits_, scorer_, excused_.mayBeSilent());
+    largest = largestOf(shares_);
   }
   for (std::size_t track = 0; track < shares_.size() && largest > 1; ++track) {
     if (shares_[track] > 1) {

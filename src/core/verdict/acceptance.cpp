@@ -5,6 +5,27 @@
 #include "self_awareness/core/verdict/name_pattern.h"
 
 namespace self_awareness::core {
+namespace {
+
+/// Whether something that is accepted is what somebody asks for.
+bool fits(const Acceptance& accepted, const Acceptance& pattern) {
+  if (pattern.kind && pattern.kind != accepted.kind) {
+    return false;
+  }
+  if (!pattern.together.empty()) {
+    return pattern.together == accepted.together;
+  }
+  if (accepted.together.empty()) {
+    return matchesPattern(pattern.component, accepted.component) &&
+           matchesPattern(pattern.topic, accepted.topic);
+  }
+  return pattern.topic.empty() && std::any_of(accepted.together.begin(), accepted.together.end(),
+                                              [&](const std::string& each) {
+                                                return matchesPattern(pattern.component, each);
+                                              });
+}
+
+}  // namespace
 
 Acceptance::Extent Acceptance::extent() const {
   switch (kind.value_or(Kind::kDied)) {
@@ -25,8 +46,9 @@ Acceptance::Extent Acceptance::extent() const {
       return Extent::kConnections;
     case Kind::kBusyMachine:
     case Kind::kAllSilent:
-    case Kind::kNewMode:
       return Extent::kNothing;
+    case Kind::kNewMode:
+      return Extent::kMode;
     case Kind::kDied:
     case Kind::kNeverCame:
       break;
@@ -35,7 +57,9 @@ Acceptance::Extent Acceptance::extent() const {
 }
 
 bool Acceptance::isAbout(const std::string& of_component, const std::string& of_topic) const {
-  return matchesPattern(component, of_component) && matchesPattern(topic, of_topic);
+  return extent() == Extent::kMode
+             ? std::binary_search(together.begin(), together.end(), of_component)
+             : matchesPattern(component, of_component) && matchesPattern(topic, of_topic);
 }
 
 bool Acceptances::add(const Acceptance& acceptance) {
@@ -50,11 +74,8 @@ bool Acceptances::add(const Acceptance& acceptance) {
 }
 
 std::vector<Acceptance> Acceptances::remove(const Acceptance& pattern) {
-  const auto removed =
-      std::stable_partition(list_.begin(), list_.end(), [&](const Acceptance& each) {
-        return !pattern.isAbout(each.component, each.topic) ||
-               (pattern.kind && pattern.kind != each.kind);
-      });
+  const auto removed = std::stable_partition(
+      list_.begin(), list_.end(), [&](const Acceptance& each) { return !fits(each, pattern); });
   std::vector<Acceptance> taken_back(removed, list_.end());
   list_.erase(removed, list_.end());
   return taken_back;
@@ -66,6 +87,13 @@ bool Acceptances::covers(const std::string& component, const std::string& topic,
   return std::any_of(list_.begin(), list_.end(), [&](const Acceptance& each) {
     return each.isAbout(component, topic) &&
            (each.extent() == Acceptance::Extent::kAll || each.extent() == asked.extent());
+  });
+}
+
+bool Acceptances::coversMode(const std::vector<std::string>& off) const {
+  return std::any_of(list_.begin(), list_.end(), [&](const Acceptance& each) {
+    return each.extent() == Acceptance::Extent::kMode &&
+           std::includes(each.together.begin(), each.together.end(), off.begin(), off.end());
   });
 }
 

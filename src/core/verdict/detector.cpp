@@ -191,6 +191,7 @@ void Detector::close(const Window& window, std::int64_t end) {
     verdict.evidence = judgement.evidence;
     verdict.busy = judgement.busy;
     verdict.silent = std::move(judgement.silent);
+    verdict.mode = std::move(judgement.mode);
     verdict.suspects = std::move(judgement.suspects);
     count(judgement, window_end);
     verdict.alarm = persistence_.raised();

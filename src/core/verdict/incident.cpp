@@ -50,7 +50,8 @@ std::vector<std::string> togetherWith(const Occurrence& main, const SourceGraph&
   const auto first = std::find_if(main.named.begin(), main.named.end(), [&](const auto& named) {
     return named.component == main.culprit;
   });
-  std::vector<std::string> together;
+  std::vector<std::string> together = main.mode;
+  together.resize(std::min(together.size(), Incident::kMostNamed));
   if (main.culprit.empty() || first == main.named.end()) {
     return together;
   }
@@ -174,6 +175,9 @@ Occurrence occurrenceOf(const Alarm& alarm) {
   occurrence.reason = alarm.reason;
   if (alarm.silent) {
     occurrence.hosts = alarm.silent->hosts;
+    if (alarm.kind == Kind::kNewMode) {
+      occurrence.mode = alarm.silent->components;
+    }
   }
   for (const std::vector<Suspect>* suspects : {&alarm.suspects, &alarm.later}) {
     for (const Suspect& suspect : *suspects) {

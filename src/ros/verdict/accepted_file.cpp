@@ -17,10 +17,19 @@ constexpr OneMessageFile kFile{kAcceptedFile, "/accepted", "what is accepted in 
 void checkContent(const self_awareness::Acceptances& accepted) {
   requireOfFile(accepted.accepted.size() <= core::Acceptances::kMost, "there are too many");
   for (const self_awareness::Acceptance& each : accepted.accepted) {
-    requireOfFile(!each.component.empty() || !each.topic.empty(), "one names nobody");
+    const bool is_mode = core::kindOf(each.kind) == core::Kind::kNewMode;
     requireOfFile(
-        std::max({each.component.size(), each.topic.size(), each.by.size()}) <= kLongestName,
+        is_mode ? !each.together.empty() : !each.component.empty() || !each.topic.empty(),
+        "one names nobody");
+    requireOfFile(is_mode ? each.component.empty() && each.topic.empty() : each.together.empty(),
+                  "one is of a component and of a mode");
+    requireOfFile(
+        std::max({each.component.size(), each.topic.size(), each.by.size()}) <= kLongestName &&
+            std::all_of(each.together.begin(), each.together.end(),
+                        [](const std::string& name) { return name.size() <= kLongestName; }),
         "a name is too long");
+    requireOfFile(std::is_sorted(each.together.begin(), each.together.end()),
+                  "the components of a mode are in no order");
     requireOfFile(each.kind.empty() || core::kindOf(each.kind).has_value(),
                   "the kind of one is none");
   }
@@ -40,6 +49,7 @@ void writeAccepted(const core::Acceptances& accepted, const std::string& path) {
     one.component = each.component;
     one.topic = each.topic;
     one.kind = each.kind ? core::toString(*each.kind) : "";
+    one.together = each.together;
     one.at = toRosTime(each.at);
     one.by = each.by;
     latest = std::max(latest, each.at);
@@ -58,6 +68,7 @@ std::optional<core::Acceptances> readAccepted(const std::string& path) {
     each.component = one.component;
     each.topic = one.topic;
     each.kind = core::kindOf(one.kind);
+    each.together = one.together;
     each.at = fromRosTime(one.at);
     each.by = one.by;
     accepted.add(each);

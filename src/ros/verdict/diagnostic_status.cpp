@@ -137,7 +137,8 @@ std::vector<std::pair<std::string, std::vector<std::string>>> listsOf(
   return {{"not watched", notWatched(state)},
           {"nobody subscribed in training", unheard(state)},
           {"not accepted, events so far", state.strangers},
-          {"accepted", state.accepted}};
+          {"accepted", state.accepted},
+          {"off together, as is accepted", state.mode}};
 }
 
 void tellCommunication(const CommunicationState& state, DiagnosticStatusWrapper& status) {

@@ -39,6 +39,7 @@ struct CommunicationState {
   /// What is heard that training never saw, and is not accepted, with how often it came, in words.
   std::vector<std::string> strangers;
   std::vector<std::string> accepted;  ///< as normal, in words
+  std::vector<std::string> mode;      ///< components that are off together now, as is accepted
   /// What is accepted of components that the model knows, in words.
   std::map<std::string, std::string> accepted_of;
   /// How often messages came in training [Hz], by component and topic; empty: not known.

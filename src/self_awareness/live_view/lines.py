@@ -33,6 +33,8 @@ def head(said: Said, width: int, paused: bool) -> List[Line]:
         lines.append(('faint', cut(f'monitor: {said.itself}', width)))
     if said.not_watched:
         lines.append(('faint', cut(f'not watched: {said.not_watched}', width)))
+    if said.mode:
+        lines.append(('', cut(f'off together, as is accepted: {said.mode}', width)))
     if said.strangers:
         new = ', '.join(f'{source} on {topic}' for source, topic in said.strangers)
         lines.append(('', cut(f'new, not accepted: {new}', width)))
@@ -94,7 +96,7 @@ def _shown(value: Optional[float], unit: str = '') -> str:
 
 
 def _found(text: str) -> str:
-    """Return by itself and while it is needed, as `9.5/0.6 s`; one where the other is not known."""
+    """Return by itself and while it is needed, as `9.5/0.6 s`; one if only that is known."""
     try:
         times = [float(each.partition(' ')[0]) for each in text.split(', ')]
     except ValueError:

@@ -152,6 +152,11 @@ class Said:
         return [(source, topic) for source, _, topic in pairs]
 
     @property
+    def mode(self) -> str:
+        """Who is off together, as somebody has accepted; empty: nobody is."""
+        return self._list(_WHOLE, 'off together, as is accepted')
+
+    @property
     def standing(self) -> int:
         """Id of the alarm or suspicion that stands, muted or not; 0: nothing does."""
         stands = self.verdict is not None and self.verdict.level != 0

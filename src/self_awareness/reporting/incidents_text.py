@@ -43,8 +43,8 @@ def details(incident: KeptIncident, actions: Sequence[Action]) -> List[str]:
              else f'at {moment(incident.ended)}'),
             ('raised', f'{incident.alarms} times, and {incident.near_misses} near misses')]
     rows += [(title, ', '.join(names)) for title, names in (
-        ('failed with it', incident.together), ('victims', incident.victims),
-        ('named besides', incident.others)) if names]
+        ('failed with it' if incident.component else 'stopped', incident.together),
+        ('victims', incident.victims), ('named besides', incident.others)) if names]
     rows += [('recovery', f'{utc(each.begin)[:19]} UTC, {words.what(each)}')
              for each in of_incident(incident, actions)]
     return [f'incident {incident.id}',

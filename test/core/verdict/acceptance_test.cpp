@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace self_awareness::core {
 namespace {
@@ -24,6 +25,49 @@ TEST(Acceptances, WhatIsNamedMustAllFit) {
   EXPECT_FALSE(accepted_now.covers("/rostopic_12", "/scan", Kind::kStranger));
   EXPECT_FALSE(accepted_now.covers("/joystick", "/cmd_vel", Kind::kStranger));
   EXPECT_FALSE(accepted_now.covers("/rostopic_12", "/cmd_vel", Kind::kSlow)) << "once known";
+}
+
+Acceptance mode(const std::vector<std::string>& together) {
+  Acceptance acceptance = accepted("", "", Kind::kNewMode);
+  acceptance.together = together;
+  return acceptance;
+}
+
+TEST(Acceptances, AModeCoversThatThoseOfItAreOffTogetherAndNoDeath) {
+  Acceptances accepted_now;
+  accepted_now.add(mode({"/arm", "/laser", "/lidar", "/wheels"}));
+  EXPECT_TRUE(accepted_now.coversMode({"/arm", "/laser", "/lidar", "/wheels"}));
+  EXPECT_TRUE(accepted_now.coversMode({"/arm", "/lidar"}));
+  EXPECT_FALSE(accepted_now.coversMode({"/arm", "/imu"}));
+  accepted_now.add(mode({"/imu"}));
+  EXPECT_FALSE(accepted_now.coversMode({"/arm", "/imu"})) << "they are of two modes";
+  EXPECT_FALSE(accepted_now.covers("/arm", "/joints", Kind::kDied));
+  EXPECT_FALSE(accepted_now.covers("/arm", "/joints", Kind::kSlow));
+  EXPECT_FALSE(accepted_now.covers("", "", Kind::kAllSilent));
+  EXPECT_TRUE(accepted_now.list().front().isAbout("/arm", "/joints"));
+  EXPECT_FALSE(accepted_now.list().front().isAbout("/imu", "/imu/data"));
+  Acceptances death;
+  death.add(accepted("/arm", ""));
+  EXPECT_FALSE(death.coversMode({"/arm"}));
+}
+
+TEST(Acceptances, AModeIsTakenBackByItselfItsKindOrOneOfIt) {
+  const Acceptance arm = mode({"/arm", "/laser"});
+  const Acceptance imu = mode({"/imu", "/lidar"});
+  const auto left = [&](const Acceptance& pattern) {
+    Acceptances accepted_now;
+    accepted_now.add(arm);
+    accepted_now.add(imu);
+    accepted_now.add(arm);  // replaces it
+    accepted_now.add(accepted("/arm", ""));
+    accepted_now.remove(pattern);
+    return accepted_now.list().size();
+  };
+  EXPECT_EQ(left(arm), 2U);
+  EXPECT_EQ(left(accepted("/arm", "")), 1U) << "what it does by itself, too";
+  EXPECT_EQ(left(accepted("/i*", "")), 2U);
+  EXPECT_EQ(left(accepted("", "", Kind::kNewMode)), 1U);
+  EXPECT_EQ(left(accepted("/arm", "/joints")), 3U) << "a mode has no topic";
 }
 
 TEST(Acceptances, WhoIsSlowMayBeLateAndMayNotBeSilent) {

@@ -86,6 +86,23 @@ TEST_F(IncidentsTest, ComputersThatFallSilentAreCausesOfTheirOwn) {
   EXPECT_EQ(list().back().hosts, Names{"arm"});
 }
 
+TEST_F(IncidentsTest, OfANewModeAllWhoStoppedAreKept) {
+  Alarm mode;
+  mode.id = 10;
+  mode.kind = Kind::kNewMode;
+  mode.begin = 10 * kSecond;
+  mode.silent.emplace();
+  mode.silent->others_go_on = true;
+  mode.silent->components = {"/a", "/b", "/c", "/d"};
+  add(occurrenceOf(mode));
+  EXPECT_EQ(one().together, mode.silent->components);
+  EXPECT_TRUE(one().others.empty());
+  mode.silent->components.push_back("/e");
+  mode.over = true;
+  add(occurrenceOf(mode));
+  EXPECT_EQ(one().together, mode.silent->components);
+}
+
 TEST_F(IncidentsTest, StrangersComeTogetherWithStrangersOnly) {
   graph_.connect("/player", "/scan", "/slam");
   Occurrence flood = alarm(10, 15, {"/new", "/newer", "/camera"});

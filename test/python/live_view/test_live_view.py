@@ -107,6 +107,17 @@ def test_it_shows_how_soon_a_death_is_found_also_while_it_is_needed() -> None:
     assert found('not watched: accepted') == 'not watche'
 
 
+def test_it_shows_who_is_off_together_as_is_accepted() -> None:
+    def shown(values: Dict[str, str]) -> List[str]:
+        of = Said('/watch')
+        of.on_diagnostics(diagnostics(status('watch: communication', **values)))
+        return [line for _, line in lines.head(of, 80, False) if 'off together' in line]
+
+    assert shown({'off together, as is accepted': '/arm, /base'}) == [
+        'off together, as is accepted: /arm, /base']
+    assert shown({}) == []
+
+
 def test_who_was_never_heard_comes_first_by_age() -> None:
     of = Said('/watch')
     of.on_diagnostics(SimpleNamespace(status=[of_component('/a', 0, '1', '9'),

@@ -30,6 +30,10 @@ class AcceptedFileTest : public testing::Test {
     acceptance.kind = core::Kind::kSlow;
     acceptance.topic.clear();
     accepted_.add(acceptance);
+    acceptance.component.clear();
+    acceptance.kind = core::Kind::kNewMode;
+    acceptance.together = {"/arm", "/laser", "/wheels"};
+    accepted_.add(acceptance);
   }
   ~AcceptedFileTest() override { fs::remove_all(folder_); }
   AcceptedFileTest(const AcceptedFileTest&) = delete;
@@ -67,8 +71,8 @@ TEST_F(AcceptedFileTest, IsReadAsItWasWritten) {
   written();
   const auto read = readAccepted(path_);
   ASSERT_TRUE(read);
-  ASSERT_EQ(read->list().size(), 2U);
-  for (std::size_t i = 0; i < 2; ++i) {
+  ASSERT_EQ(read->list().size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_TRUE(read->list()[i].isLike(accepted_.list()[i]));
     EXPECT_EQ(read->list()[i].at, accepted_.list()[i].at);
     EXPECT_EQ(read->list()[i].by, "/rqt");
@@ -91,6 +95,18 @@ TEST_F(AcceptedFileTest, WhatCannotBeIsRefused) {
   EXPECT_NE(errorOf(entry, 1001).find("(there are too many)"), std::string::npos);
   entry.kind = "odd";
   EXPECT_NE(errorOf(entry).find("(the kind of one is none)"), std::string::npos);
+  entry.kind = "new mode";
+  EXPECT_NE(errorOf(entry).find("(one names nobody)"), std::string::npos);
+  entry.together = {"/a", "/b"};
+  EXPECT_NE(errorOf(entry).find("(one is of a component and of a mode)"), std::string::npos);
+  entry.component.clear();
+  EXPECT_EQ(errorOf(entry), "");
+  entry.together = {"/b", "/a"};
+  EXPECT_NE(errorOf(entry).find("(the components of a mode are in no order)"), std::string::npos);
+  entry.together = {std::string(1001, 'a')};
+  EXPECT_NE(errorOf(entry).find("(a name is too long)"), std::string::npos);
+  entry.together.clear();
+  entry.component = "/a";
   entry.kind.clear();
   entry.by = std::string(1001, 'a');
   EXPECT_NE(errorOf(entry).find("(a name is too long)"), std::string::npos);

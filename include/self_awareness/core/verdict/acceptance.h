@@ -18,22 +18,26 @@ struct Acceptance {
     kTime,         ///< when and how often it comes; that it falls silent is still judged
     kMessages,     ///< how old, complete, large and new its messages are
     kConnections,  ///< what it does not subscribe to
-    kNothing,      ///< what no component does: a busy machine, all silent, a new mode
+    kNothing,      ///< what no component does: a busy machine, all silent
+    kMode,         ///< that components are off together while others go on
     kAll           ///< whatever it does
   };
 
   std::string component;     ///< a name, or its begin and a `*`; empty: all
   std::string topic;         ///< likewise; of kUnsubscribed, what it does not subscribe to
   std::optional<Kind> kind;  ///< none: all that it does
-  std::int64_t at = 0;       ///< when it was accepted [ns of ROS time]
-  std::string by;            ///< who did
+  /// Of kNewMode: the components that are off together, in order; then there is no name above.
+  std::vector<std::string> together;
+  std::int64_t at = 0;  ///< when it was accepted [ns of ROS time]
+  std::string by;       ///< who did
 
   Extent extent() const;
-  /// Whether it is about an event type.
+  /// Whether it is about an event type: of a mode, whether its component may be off.
   bool isAbout(const std::string& of_component, const std::string& of_topic) const;
   /// Whether it is about the same as another one.
   bool isLike(const Acceptance& other) const {
-    return component == other.component && topic == other.topic && kind == other.kind;
+    return component == other.component && topic == other.topic && kind == other.kind &&
+           together == other.together;
   }
 };
 
@@ -46,13 +50,17 @@ class Acceptances {
   /// Adds one, or replaces the one that is like it.
   /// @return whether there is room for it
   bool add(const Acceptance& acceptance);
-  /// Takes back all that fits. @param pattern its names are patterns; no kind: any
+  /// Takes back all that fits: of a mode, one of its components has to.
+  /// @param pattern its names are patterns; no kind: any. A mode: that of the same components
   /// @return what is taken back
   std::vector<Acceptance> remove(const Acceptance& pattern);
 
   /// Whether something that an event type does is accepted; of kUnsubscribed, that a component
   /// does not subscribe to a topic.
   bool covers(const std::string& component, const std::string& topic, Kind kind) const;
+  /// Whether it is accepted that these are off together: all are of one mode.
+  /// @param off names of components, in order
+  bool coversMode(const std::vector<std::string>& off) const;
   const std::vector<Acceptance>& list() const { return list_; }
 
  private:

@@ -34,6 +34,7 @@ struct Verdict {
   std::string evidence;           ///< what made the window abnormal or suspicious, once settled
   std::optional<Busy> busy;       ///< of such a window: the machine, not the suspects
   std::optional<Silent> silent;   ///< of such a window: all, or all of some computers, are silent
+  std::vector<std::string> mode;  ///< components that are off together, as is accepted, in order
   std::vector<Suspect> suspects;  ///< of an abnormal window that is not settling, best first
   /// Those of components that an alarm which stood before names for the first time: there may be
   /// another fault. One for each component.

@@ -35,6 +35,7 @@ struct Occurrence {
   std::string reason;   ///< why it is one, in words
   std::vector<Named> named;
   std::vector<std::string> hosts;  ///< computers that fell silent as a whole
+  std::vector<std::string> mode;   ///< components that stopped together while others go on
 };
 
 /// An alarm as its own reasons tell it.
@@ -54,11 +55,13 @@ struct Incident {
   Kind kind = Kind::kDied;                        ///< what is wrong, as the main one says
   std::string cause;                              ///< component; empty: nobody is to blame
   std::string reason;                             ///< why, in words, as the main one says
-  std::vector<std::string> together;  ///< failed at once with it, and do not need its messages
-  std::vector<std::string> victims;   ///< are named, and need messages of these, by the graph
-  std::vector<std::string> others;    ///< are named besides
-  std::vector<std::string> hosts;     ///< that fell silent as a whole: they are the cause
-  std::int64_t opened = 0;            ///< begin of the one that `id` is of [ns]
+  /// Failed at once with it, and do not need its messages; of a new mode: all that stopped, if
+  /// they are known.
+  std::vector<std::string> together;
+  std::vector<std::string> victims;  ///< are named, and need messages of these, by the graph
+  std::vector<std::string> others;   ///< are named besides
+  std::vector<std::string> hosts;    ///< that fell silent as a whole: they are the cause
+  std::int64_t opened = 0;           ///< begin of the one that `id` is of [ns]
   std::int64_t grown = 0;  ///< when it was raised last, or named a further component [ns]
   std::int64_t end = 0;    ///< of the last one, so far if it is not over [ns]
   bool over = false;

@@ -32,8 +32,71 @@ NewMode::NewMode(std::shared_ptr<const Model> model, std::shared_ptr<const Sourc
 std::optional<Silent> NewMode::excuse(std::vector<double>& shares, const Limits& limits,
                                       const Scorer& scorer,
                                       const std::vector<bool>& may_be_silent) {
-  if (graph_->empty()) {
+  const std::set<EventId> stopped = find(shares, limits, scorer, may_be_silent);
+  if (stopped.empty()) {
     return std::nullopt;
+  }
+  takeBack(stopped, shares);
+  Silent found;
+  found.others_go_on = true;
+  found.components = namesOf(stopped);
+  for (const EventId id : stopped) {
+    found.since = std::max(found.since, *scorer.heard().lastSeen(id));
+  }
+  return found;
+}
+
+std::vector<std::string> NewMode::excuseAccepted(std::vector<double>& shares, const Limits& limits,
+                                                 const Scorer& scorer,
+                                                 const std::vector<bool>& may_be_silent) {
+  if (accepted_.list().empty() || graph_->empty()) {
+    return {};
+  }
+  std::set<EventId> stopped = find(shares, limits, scorer, may_be_silent);
+  if (!stopped.empty() && !accepted_.coversMode(namesOf(stopped))) {
+    return {};
+  }
+  const std::vector<EventId> silent = this->silent(limits, scorer, may_be_silent);
+  for (const Acceptance& mode : accepted_.list()) {
+    if (mode.extent() == Acceptance::Extent::kMode) {
+      stopped.merge(offIn(mode, silent, scorer.heard()));
+    }
+  }
+  takeBack(stopped, shares);
+  return namesOf(stopped);
+}
+
+std::set<EventId> NewMode::offIn(const Acceptance& mode, const std::vector<EventId>& silent,
+                                 const Heard& heard) const {
+  const auto isOfIt = [&](EventId id) {
+    return std::binary_search(mode.together.begin(), mode.together.end(), model_->component(id));
+  };
+  std::int64_t latest = 0;
+  std::set<std::size_t> seen;
+  for (EventId id = 0; id < model_->size(); ++id) {
+    if (heard.hasSeen(id) && isOfIt(id)) {
+      latest = std::max(latest, heard.stamps()[id]);
+      seen.insert(model_->componentIndex(id));
+    }
+  }
+  std::set<EventId> off;
+  if (static_cast<double>(seen.size()) < model_->tuning().fewest_busy) {
+    return off;
+  }
+  for (const EventId id : silent) {
+    const auto others_longer = static_cast<double>(latest - heard.stamps()[id]);
+    if (isOfIt(id) && others_longer <= static_cast<double>(heard.silence(id)) / 2 &&
+        others_longer <= static_cast<double>(kRateSpan) + model_->meanGap(id)) {
+      off.insert(id);
+    }
+  }
+  return off;
+}
+
+std::set<EventId> NewMode::find(const std::vector<double>& shares, const Limits& limits,
+                                const Scorer& scorer, const std::vector<bool>& may_be_silent) {
+  if (graph_->empty()) {
+    return {};
   }
   lookAtGraph();
   const std::int64_t now = scorer.heard().windowEnd();
@@ -47,9 +110,10 @@ std::optional<Silent> NewMode::excuse(std::vector<double>& shares, const Limits&
       stopped.insert(id);
     }
   }
-  if (stopped.empty()) {
-    return std::nullopt;
-  }
+  return stopped;
+}
+
+void NewMode::takeBack(const std::set<EventId>& stopped, std::vector<double>& shares) const {
   const std::set<std::size_t> components = componentsOf({stopped.begin(), stopped.end()});
   const auto hearsThem = [&](EventId id) {
     return std::any_of(components.begin(), components.end(), [&](std::size_t component) {
@@ -63,16 +127,15 @@ std::optional<Silent> NewMode::excuse(std::vector<double>& shares, const Limits&
       shares[track] = 0;
     }
   }
-  Silent found;
-  found.others_go_on = true;
-  for (const std::size_t component : components) {
-    found.components.push_back(model_->components()[component]);
+}
+
+std::vector<std::string> NewMode::namesOf(const std::set<EventId>& ids) const {
+  std::vector<std::string> names;
+  for (const std::size_t component : componentsOf({ids.begin(), ids.end()})) {
+    names.push_back(model_->components()[component]);
   }
-  std::sort(found.components.begin(), found.components.end());
-  for (const EventId id : stopped) {
-    found.since = std::max(found.since, *scorer.heard().lastSeen(id));
-  }
-  return found;
+  std::sort(names.begin(), names.end());
+  return names;
 }
 
 void NewMode::lookAtGraph() {

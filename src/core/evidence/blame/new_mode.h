@@ -10,6 +10,7 @@
 
 #include "core/evidence/channel/scorer.h"
 #include "self_awareness/core/evidence/channel/model.h"
+#include "self_awareness/core/verdict/acceptance.h"
 #include "self_awareness/core/verdict/silent.h"
 #include "self_awareness/core/verdict/source_graph.h"
 
@@ -31,9 +32,27 @@ class NewMode {
   /// @return who stopped; none: nobody has in that way
   std::optional<Silent> excuse(std::vector<double>& shares, const Limits& limits,
                                const Scorer& scorer, const std::vector<bool>& may_be_silent);
+  /// The same, if all who stopped are of one mode that is accepted, or it begins: that is normal.
+  /// @return their components, in order; empty: they are not, or nobody has stopped
+  std::vector<std::string> excuseAccepted(std::vector<double>& shares, const Limits& limits,
+                                          const Scorer& scorer,
+                                          const std::vector<bool>& may_be_silent);
+  /// Takes what is accepted, in place of what was before.
+  void accept(const Acceptances& accepted) { accepted_ = accepted; }
   void restart();
 
  private:
+  /// Who stopped in that way, or did so and is not back yet; empty: nobody.
+  std::set<EventId> find(const std::vector<double>& shares, const Limits& limits,
+                         const Scorer& scorer, const std::vector<bool>& may_be_silent);
+  /// Who of an accepted mode is silent since none of it was heard: it has begun, though it is too
+  /// early to miss all of them. Who died alone is not off: the others were heard since.
+  std::set<EventId> offIn(const Acceptance& mode, const std::vector<EventId>& silent,
+                          const Heard& heard) const;
+  /// Takes back the evidence against them, and against who hears them.
+  void takeBack(const std::set<EventId>& stopped, std::vector<double>& shares) const;
+  /// The names of their components, in order.
+  std::vector<std::string> namesOf(const std::set<EventId>& ids) const;
   /// Event types that should have come by now.
   std::vector<EventId> silent(const Limits& limits, const Scorer& scorer,
                               const std::vector<bool>& may_be_silent) const;
@@ -59,6 +78,7 @@ class NewMode {
   std::vector<std::vector<bool>> upstream_;  // whether a component is of another one
   std::size_t edges_ = 0;                    // of the graph that this was computed of
   std::vector<std::int64_t> excused_until_;  // [ns], by id
+  Acceptances accepted_;
 };
 
 }  // namespace self_awareness::core::evidence

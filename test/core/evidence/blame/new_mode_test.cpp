@@ -2,12 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <ctime>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "../recordings.h"
+#include "self_awareness/core/evidence/judge.h"
 
 namespace self_awareness::core::evidence {
 namespace {
@@ -37,6 +41,25 @@ class NewModeTest : public testing::Test {
   /// Judges who stopped so long ago [ns], all of them beyond their limits.
   std::optional<Silent> excuse(const std::vector<std::int64_t>& ages, std::int64_t now = kEnd) {
     Scorer scorer(model_, kWindow);
+    const Limits limits = close(scorer, ages, now);
+    return new_mode_->excuse(shares_, limits, scorer, may_be_silent_);
+  }
+  /// Whether that is a mode which is accepted.
+  bool isNormal(const std::vector<std::int64_t>& ages, std::int64_t now = kEnd) {
+    Scorer scorer(model_, kWindow);
+    const Limits limits = close(scorer, ages, now);
+    return !new_mode_->excuseAccepted(shares_, limits, scorer, may_be_silent_).empty();
+  }
+  void accept(const Strings& together) {
+    Acceptance mode;
+    mode.kind = Kind::kNewMode;
+    mode.together = together;
+    Acceptances accepted;
+    accepted.add(mode);
+    new_mode_->accept(accepted);
+  }
+  /// @return limits of the model's tracks
+  Limits close(Scorer& scorer, const std::vector<std::int64_t>& ages, std::int64_t now) {
     Events last;
     for (EventId id = 0; id < kRobot.size(); ++id) {
       last.push_back({now - ages[id], id});
@@ -49,8 +72,7 @@ class NewModeTest : public testing::Test {
     for (EventId id = 0; id < kRobot.size(); ++id) {
       share(id) = ages[id] > 0 ? 2 : 0;
     }
-    const Limits limits{std::vector<double>(model_->tracks().size(), 1), {}};
-    return new_mode_->excuse(shares_, limits, scorer, may_be_silent_);
+    return {std::vector<double>(model_->tracks().size(), 1), {}};
   }
   double& share(EventId id) { return shares_[indexOf(model_->tracks(), kOverdue, id, id)]; }
 
@@ -128,10 +150,121 @@ TEST_F(NewModeTest, WhoComesBackLastIsExcusedForAMoment) {
   EXPECT_EQ(share(0), 2);
 }
 
+TEST_F(NewModeTest, WhatIsAcceptedIsNormal) {
+  EXPECT_FALSE(isNormal({kAgo, kAgo, kAgo, kAgo, 0, 0})) << "it is not yet";
+  EXPECT_EQ(share(0), 2);
+  accept({"/arm", "/laser", "/lidar", "/slam", "/wheels"});
+  EXPECT_TRUE(isNormal({kAgo, kAgo, kAgo, kAgo, 0, 0}));
+  EXPECT_EQ(shares_, std::vector<double>(shares_.size(), 0));
+  EXPECT_TRUE(isNormal({kAgo, kAgo, kAgo, kAgo, kAgo, 0}));
+  EXPECT_TRUE(isNormal({kAgo + kSecond, 0, 0, 0, 0, 0}, kEnd + kSecond)) << "it comes back last";
+  EXPECT_EQ(share(0), 0);
+}
+
+TEST_F(NewModeTest, WhenAnAcceptedModeBeginsTheFirstOneMissedIsNotDead) {
+  constexpr std::int64_t kGap = 100 * kMillisecond;
+  accept({"/arm", "/laser", "/lidar", "/wheels"});
+  EXPECT_TRUE(isNormal({30 * kGap, 29 * kGap, 28 * kGap, 27 * kGap, 0, 0}));
+  new_mode_->restart();
+  const std::vector<std::int64_t> begun{10 * kGap, 9 * kGap, kGap / 10, kGap / 10, 0, 0};
+  EXPECT_FALSE(isNormal(begun)) << "two were heard since";
+  EXPECT_EQ(share(0), 2);
+  EXPECT_TRUE(isNormal({15 * kGap, 14 * kGap, 15 * kGap, 14 * kGap, 0, 0}));
+  EXPECT_EQ(share(0), 0);
+}
+
+TEST_F(NewModeTest, ADeathAndAnotherModeAreNotAccepted) {
+  accept({"/arm", "/laser", "/lidar", "/wheels"});
+  for (const std::vector<std::int64_t>& faults : {std::vector<std::int64_t>{kAgo, 0, 0, 0, 0, 0},
+                                                  {kAgo, kAgo, kAgo, 0, 0, 0},
+                                                  {kAgo, kAgo, kAgo, 0, 0, kAgo},
+                                                  {kAgo, kAgo, kAgo, kAgo, 0, kAgo}}) {
+    EXPECT_FALSE(isNormal(faults));
+    EXPECT_EQ(share(0), 2);
+    new_mode_->restart();
+  }
+  EXPECT_TRUE(excuse({kAgo, kAgo, kAgo, kAgo, 0, kAgo})) << "that of more is new";
+}
+
 TEST_F(NewModeTest, AfterARestartNothingIsExcused) {
   EXPECT_TRUE(excuse({kAgo, kAgo, kAgo, kAgo, 0, 0}));
   new_mode_->restart();
   EXPECT_FALSE(excuse({kAgo + kSecond, 0, 0, 0, 0, 0}, kEnd + kSecond));
+}
+
+/// What a judge says of a robot some of whom stop after 20 s.
+class AcceptedModeTest : public NewModeTest {
+ protected:
+  struct Said {
+    std::optional<std::int64_t> first;  ///< end of the first unusual window [ns]
+    double largest = 0;                 ///< share that was told
+    Strings mode;                       ///< of the last window
+  };
+  Said judge(const std::vector<EventId>& stopping, const Acceptances& accepted) {
+    Limits limits{std::vector<double>(model_->tracks().size(), std::nan("")), {}};
+    for (EventId id = 0; id < kRobot.size(); ++id) {
+      limits.tracks[indexOf(model_->tracks(), kOverdue, id, id)] =
+          model_->overdue(id, 2 * kSecond);
+    }
+    Said said;
+    const auto judge = makeJudge(model_, limits, kWindow, graph_, nullptr,
+                                 [&](const Window& /*window*/, const Shares& shares) {
+                                   for (const double share : shares.tracks) {
+                                     said.largest = std::max(said.largest, share);
+                                   }
+                                 });
+    judge->accept(accepted);
+    Events events;
+    for (EventId id = 0; id < kRobot.size(); ++id) {
+      const bool stops = std::count(stopping.begin(), stopping.end(), id) > 0;
+      events = together(
+          {events, timer(id, 0, stops ? 20 * kSecond : 40 * kSecond, 100 * kMillisecond)});
+    }
+    std::size_t next = 0;
+    for (std::int64_t end = kWindow; end <= 40 * kSecond; end += kWindow) {
+      for (; next < events.size() && events[next].stamp < end; ++next) {
+        judge->add(events[next]);
+      }
+      Window window;
+      window.start = end - kWindow;
+      const Judgement judgement = judge->judge(window, end, NameSuspects::kIfUnusual);
+      said.mode = judgement.mode;
+      if ((judgement.abnormal || judgement.suspicious) && !said.first) {
+        said.first = end;
+      }
+    }
+    return said;
+  }
+  static Acceptances withMode(const Strings& together) {
+    Acceptance mode;
+    mode.kind = Kind::kNewMode;
+    mode.together = together;
+    Acceptances accepted;
+    accepted.add(mode);
+    return accepted;
+  }
+};
+
+TEST_F(AcceptedModeTest, IsNeitherSuspiciousNorAShareOfALimit) {
+  const Said before = judge({0, 1, 2, 3}, {});
+  ASSERT_TRUE(before.first);
+  EXPECT_LT(*before.first, 23 * kSecond);
+  EXPECT_GT(before.largest, 1);
+  const Said after = judge({0, 1, 2, 3}, withMode({"/arm", "/laser", "/lidar", "/wheels"}));
+  EXPECT_FALSE(after.first);
+  EXPECT_TRUE(before.mode.empty());
+  EXPECT_EQ(after.mode, (Strings{"/arm", "/laser", "/lidar", "/wheels"}));
+  EXPECT_LE(after.largest, 1);
+}
+
+TEST_F(AcceptedModeTest, WhoDiesByHimselfIsFoundAsSoonAsBefore) {
+  const Acceptances accepted = withMode({"/arm", "/laser", "/lidar", "/wheels"});
+  for (const std::vector<EventId>& dead :
+       {std::vector<EventId>{0}, {2}, {0, 2}, {0, 1, 2}, {kImu}}) {
+    const Said before = judge(dead, {});
+    ASSERT_TRUE(before.first);
+    EXPECT_EQ(judge(dead, accepted).first, before.first);
+  }
 }
 
 // A planner that is heard every 10 s, too seldom to be judged, and controllers that need it.
