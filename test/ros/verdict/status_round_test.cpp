@@ -184,7 +184,8 @@ TEST(StatusRound, ThreeHundredTopicsTakeLessThanTwoKilobytesASecond) {
 TEST(DiagnosticStatus, SaysHowSoonADeathIsFoundAlsoWhileItIsNeeded) {
   CommunicationState state = largeRobot();
   const auto found = [&] {
-    for (const diagnostic_msgs::KeyValue& pair : componentsOf(state).front().values) {
+    const DiagnosticStatus status = componentsOf(state).front();
+    for (const diagnostic_msgs::KeyValue& pair : status.values) {
       if (pair.key == "death found after [s]") {
         return pair.value;
       }
