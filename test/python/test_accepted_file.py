@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from types import SimpleNamespace
-from typing import Any, List
+from typing import Any, Dict, List
 
 import pytest
 
@@ -113,6 +113,8 @@ def test_a_mode_is_kept_as_it_was(tmp_path) -> None:
     accepted_file.keep([entry], path)
     kept, = accepted_file.beside(path)
     assert kept == entry and kept.together == ['/base', '/driver']
-    for wrong in ({'kind': 'new mode'}, {'kind': 'slow', 'together': ['/a', '/b']}):
+    wrongs: List[Dict[str, Any]] = [{'kind': 'new mode'},
+                                    {'kind': 'slow', 'together': ['/a', '/b']}]
+    for wrong in wrongs:
         with pytest.raises(ValueError, match='of the kind new mode'):
             Acceptance(**wrong)

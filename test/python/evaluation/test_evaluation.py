@@ -128,7 +128,7 @@ def test_events_of_the_simulation_are_encoded_as_from_its_bag(tmp_path: Path) ->
     assert np.array_equal(recording.attributes, expected.attributes)
 
 
-@pytest.mark.parametrize('kind', ['stale:slam', 'lossy:camera', 'empty:player', 'freeze:camera'])
+@pytest.mark.parametrize('kind', ['stale:slam', 'lossy:motors', 'empty:player', 'freeze:camera'])
 def test_faults_of_messages_are_encoded_as_from_a_bag(kind: str, tmp_path: Path) -> None:
     scenario = load_scenario()
     bag = str(tmp_path / 'run.bag')

@@ -96,7 +96,8 @@ def test_components_are_sorted_and_filtered(said: Said) -> None:
 def test_it_shows_how_soon_a_death_is_found_also_while_it_is_needed() -> None:
     def found(text: str) -> str:
         of = Said('/watch')
-        of.on_diagnostics(diagnostics(status('watch: /a', **{'death found after [s]': text})))
+        of.on_diagnostics(diagnostics(status('watch: /a', 0, 'heard', **{
+            'death found after [s]': text})))
         row = lines.component(of.components('name', '')[0], 120)[1]
         return row.rpartition('  heard')[0][-10:]
 
@@ -110,7 +111,7 @@ def test_it_shows_how_soon_a_death_is_found_also_while_it_is_needed() -> None:
 def test_it_shows_who_is_off_together_as_is_accepted() -> None:
     def shown(values: Dict[str, str]) -> List[str]:
         of = Said('/watch')
-        of.on_diagnostics(diagnostics(status('watch: communication', **values)))
+        of.on_diagnostics(diagnostics(status('watch: communication', 0, 'normal', **values)))
         return [line for _, line in lines.head(of, 80, False) if 'off together' in line]
 
     assert shown({'off together, as is accepted': '/arm, /base'}) == [
