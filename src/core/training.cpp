@@ -74,7 +74,9 @@ void Training::addBefore(const Event& event) {
 }
 
 void Training::add(const Event& event) {
-  if (parameters_.paper) {
+  if (vocabulary().tellsMode(event.id)) {
+    // The paper knows no modes.
+  } else if (parameters_.paper) {
     trainers_->paper.add(event);
   } else {
     counts_.delays.countEvent(event.id);

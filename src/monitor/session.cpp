@@ -5,6 +5,7 @@
 
 #include "ros/content_digest.h"
 #include "self_awareness/core/paper/judge.h"
+#include "self_awareness/core/stream/mode.h"
 #include "self_awareness/core/verdict/name_pattern.h"
 #include "self_awareness/ros/file_version.h"
 
@@ -43,7 +44,8 @@ std::unique_ptr<core::Judge> Session::makeJudge(const MonitorParameters& paramet
   if (parameters.method == MonitorParameters::Method::kPaper) {
     trained_.requireDelays();
     return core::paper::makeJudge(std::make_shared<core::paper::Model>(trained_.statistics),
-                                  trained_.threshold(), parameters.detector.silence_is_abnormal);
+                                  trained_.threshold(), parameters.detector.silence_is_abnormal,
+                                  vocabulary_);
   }
   trained_.requireWatched();
   model_ = std::make_shared<const core::evidence::Model>(trained_.watched);
@@ -128,7 +130,7 @@ void Session::expectRates() {
       }
     }
     const core::EventType& type = types()[id];
-    if (seconds > 0) {
+    if (seconds > 0 && !core::tellsMode(type)) {
       expected_[core::componentOf(type.source, type.scope)][type.scope] +=
           static_cast<double>(gaps) / seconds;
     }

@@ -92,9 +92,10 @@ Verdicts judgeByPaper(const std::shared_ptr<core::paper::Model>& model, std::int
                       const Ids& ids, std::optional<std::int64_t> end,
                       const std::vector<core::EventType>& event_types,
                       ros1::ReplayedMonitor* monitor, std::vector<std::int64_t> clock_steps) {
-  return judge(core::paper::makeJudge(model, threshold, parameters.silence_is_abnormal), window,
-               parameters, stamps, ids, end, core::Vocabulary(event_types), monitor,
-               std::move(clock_steps), {});
+  const auto vocabulary = std::make_shared<core::Vocabulary>(event_types);
+  return judge(
+      core::paper::makeJudge(model, threshold, parameters.silence_is_abnormal, vocabulary), window,
+      parameters, stamps, ids, end, *vocabulary, monitor, std::move(clock_steps), {});
 }
 
 Verdicts judgeByEvidence(const ros1::TrainedModel& trained,

@@ -35,8 +35,12 @@ class EvidenceRows : public core::WindowObserver {
     scorer_.capAt({*limits, {}});
   }
 
-  core::ObservedEvent observe(const core::Event& event) override {
-    return {event, !model_.knows(event.id), scorer_.add(event)};
+  std::optional<core::ObservedEvent> observe(const core::Event& event) override {
+    if (model_.vocabulary().tellsMode(event.id)) {
+      scorer_.enter(event);
+      return std::nullopt;
+    }
+    return core::ObservedEvent{event, !model_.knows(event.id), scorer_.add(event)};
   }
   void close(const core::Window& window, std::int64_t /*end*/) override {
     const std::vector<double>& evidence = scorer_.closeWindow(window.start + window_);

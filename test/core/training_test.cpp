@@ -12,6 +12,7 @@
 #include "self_awareness/core/evidence/channel/watched.h"
 #include "self_awareness/core/evidence/count/trainer.h"
 #include "self_awareness/core/evidence/limits/cross_fit.h"
+#include "self_awareness/core/stream/mode.h"
 
 namespace self_awareness::core {
 namespace {
@@ -144,6 +145,23 @@ TEST(Training, CountsOnlyForTheDetectorsAskedFor) {
   EXPECT_TRUE(paper.delays == both.delays);
   EXPECT_EQ(paper.halves[0].size(), 0U);
   EXPECT_THROW(Training(counting(false, false)), std::invalid_argument);
+}
+
+TEST(Training, ThePaperKnowsNoModes) {
+  for (const bool paper : {true, false}) {
+    Training training(counting(true, paper));
+    training.intern(kType);
+    const EventId mode = training.intern({"/b", "/y", typeOfMode("t", "DRIVING")});
+    training.startRecording(recordingOf(1, kPeriod));
+    for (const Event& event : recording(0, 100)) {
+      training.add(event);
+    }
+    const TrainingCounts counts = training.finish();
+    EXPECT_EQ(counts.delays.eventCount(0), 50U);
+    EXPECT_EQ(counts.delays.eventCount(mode), 0U);
+    EXPECT_EQ(counts.halves[0].type(mode).events + counts.halves[1].type(mode).events, 5U)
+        << "that it ticks in 5 s";
+  }
 }
 
 TEST(Training, RecordingsOfOneHalfAreCutInTwo) {

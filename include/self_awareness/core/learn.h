@@ -57,7 +57,7 @@ class Calibrator {
   /// @throw std::invalid_argument if it has no fingerprint
   void addTrainedOn(const Recording& recording);
   /// Takes in a recording that the model was not trained on. Ids from the model's number of event
-  /// types on are unknown events.
+  /// types on are unknown events; kOtherMode (stream/vocabulary.h) tells a mode that it lacks.
   void addHeldOut(const Recording& recording);
 
   /// What the recordings said. Findings of some add up to those of all, in any order.

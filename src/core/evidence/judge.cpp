@@ -42,17 +42,21 @@ class Judge : public core::Judge {
         std::shared_ptr<const SourceGraph> graph, std::shared_ptr<const Vocabulary> heard,
         SharesHandler shares);
 
-  ObservedEvent add(const Event& event) override {
+  std::optional<ObservedEvent> add(const Event& event) override {
     never_heard_.add(event);
+    if (model_->vocabulary().tellsMode(event.id) || (heard_ && heard_->tellsMode(event.id))) {
+      scorer_.enter(event);  // one that training never saw is no stranger
+      return std::nullopt;
+    }
     const bool unknown = strangers_.add(event, excused_);
     const std::optional<std::int64_t> gap = scorer_.add(event);
     if (model_->knows(event.id)) {
       events_.add(event, scorer_.stalled());
       if (gap && excused_.isBack(event.id, *gap)) {
-        leaveOut({event.id}, event.stamp + settle_time_);
+        settleUntil(event.id, event.stamp + settle_time_);
       }
     }
-    return {event, unknown, gap};
+    return ObservedEvent{event, unknown, gap};
   }
   void hear(const Waiting& waiting) override { scorer_.hear(waiting); }
   void accept(const Acceptances& accepted) override {
@@ -75,6 +79,8 @@ class Judge : public core::Judge {
   void restart() override;
 
  private:
+  /// Lets an event type settle, if the model knows it.
+  void settleUntil(EventId id, std::int64_t until);
   /// Takes back that there are too few events, in a window that ended with the recording.
   void leaveOutFewer(std::vector<double>& evidence) const;
   /// Forgets what the sums say of event types that have settled since the window before.
@@ -91,7 +97,8 @@ class Judge : public core::Judge {
 
   std::shared_ptr<const Model> model_;
   std::optional<Limits> limits_;
-  std::int64_t window_;  // length of a whole one [ns]
+  std::int64_t window_;                      // length of a whole one [ns]
+  std::shared_ptr<const Vocabulary> heard_;  // event types by id; null: those of the model
   Scorer scorer_;
   RecentEvents events_;
   Blame blame_;
@@ -117,6 +124,7 @@ Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, s
     : model_(std::move(model)),
       limits_(std::move(limits)),
       window_(window),
+      heard_(heard),
       scorer_(model_, window),
       events_(model_->size()),
       blame_(model_, graph),
@@ -140,16 +148,23 @@ Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, s
 
 void Judge::settle(const Event& first, std::int64_t settle_time) {
   settle_time_ = settle_time;
-  leaveOut({first.id}, first.stamp + settle_time);
+  settleUntil(first.id, first.stamp + settle_time);
 }
 
 void Judge::leaveOut(const std::vector<EventId>& ids, std::int64_t until) {
   for (const EventId id : ids) {
-    if (model_->knows(id)) {
-      settled_at_[id] = std::max(settled_at_[id], until);
-      all_settled_at_ = std::max(all_settled_at_, settled_at_[id]);
-      settling_ = true;
+    settleUntil(id, until);
+    if (model_->vocabulary().tellsMode(id)) {
+      scorer_.loseMode();  // another one may have been told
     }
+  }
+}
+
+void Judge::settleUntil(EventId id, std::int64_t until) {
+  if (model_->knows(id)) {
+    settled_at_[id] = std::max(settled_at_[id], until);
+    all_settled_at_ = std::max(all_settled_at_, settled_at_[id]);
+    settling_ = true;
   }
 }
 

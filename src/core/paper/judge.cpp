@@ -6,6 +6,7 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/paper/blame.h"
@@ -17,10 +18,11 @@ namespace {
 class Judge : public core::Judge {
  public:
   Judge(const std::shared_ptr<const Model>& model, std::optional<double> threshold,
-        bool silence_is_abnormal)
+        bool silence_is_abnormal, std::shared_ptr<const Vocabulary> heard)
       : threshold_(threshold),
         silence_is_abnormal_(silence_is_abnormal),
         model_(model),
+        heard_types_(std::move(heard)),
         scorer_(model),
         blame_(model) {
     if (threshold_ && !std::isfinite(*threshold_)) {
@@ -28,7 +30,11 @@ class Judge : public core::Judge {
     }
   }
 
-  ObservedEvent add(const Event& event) override {
+  std::optional<ObservedEvent> add(const Event& event) override {
+    if (model_->vocabulary().tellsMode(event.id) ||
+        (heard_types_ && heard_types_->tellsMode(event.id))) {
+      return std::nullopt;  // the paper knows no modes
+    }
     const Scorer::Scored scored = scorer_.score(event);
     scores_.push_back(scored.score);
     return scored.event;
@@ -97,6 +103,7 @@ class Judge : public core::Judge {
   std::optional<double> threshold_;
   bool silence_is_abnormal_;
   std::shared_ptr<const Model> model_;
+  std::shared_ptr<const Vocabulary> heard_types_;  // by id; null: those of the model
   Scorer scorer_;
   Blame blame_;
   std::vector<double> scores_;                    // of the events since the last window
@@ -108,8 +115,9 @@ class Judge : public core::Judge {
 }  // namespace
 
 std::unique_ptr<core::Judge> makeJudge(const std::shared_ptr<const Model>& model,
-                                       std::optional<double> threshold, bool silence_is_abnormal) {
-  return std::make_unique<Judge>(model, threshold, silence_is_abnormal);
+                                       std::optional<double> threshold, bool silence_is_abnormal,
+                                       std::shared_ptr<const Vocabulary> heard) {
+  return std::make_unique<Judge>(model, threshold, silence_is_abnormal, std::move(heard));
 }
 
 }  // namespace self_awareness::core::paper

@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 
+#include "self_awareness/core/stream/mode.h"
+
 namespace self_awareness::core {
 
 std::string toString(const EventType& type) {
@@ -21,6 +23,7 @@ EventId Vocabulary::intern(const EventType& type) {
   const auto [entry, is_new] = ids_.try_emplace(type, static_cast<EventId>(types_.size()));
   if (is_new) {
     types_.push_back(type);
+    tells_mode_.push_back(core::tellsMode(type));
   }
   return entry->second;
 }

@@ -34,12 +34,14 @@ bool Windows::add(const Event& event) {
   }
   last_stamp_ = event.stamp;
   advance(event.stamp);
-  const ObservedEvent observed = observer_.observe(event);
+  const std::optional<ObservedEvent> observed = observer_.observe(event);
   if (!open_) {
     open_ = Window{floorToGrid(event.stamp, length_), {}};
     now_ = event.stamp;
   }
-  open_->events.push_back(observed);
+  if (observed) {
+    open_->events.push_back(*observed);
+  }
   return !clock_step;
 }
 

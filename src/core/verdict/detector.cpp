@@ -112,7 +112,7 @@ bool Detector::awaitsSuspects(std::int64_t end) const {
   });
 }
 
-ObservedEvent Detector::observe(const Event& event) {
+std::optional<ObservedEvent> Detector::observe(const Event& event) {
   if (event.id >= heard_.size()) {
     heard_.resize(event.id + 1, false);
   }
@@ -123,8 +123,8 @@ ObservedEvent Detector::observe(const Event& event) {
       awaited->second.heard = event.stamp;
     }
   }
-  const ObservedEvent observed = judge_->add(event);
-  if (observed.unknown) {
+  const std::optional<ObservedEvent> observed = judge_->add(event);
+  if (observed && observed->unknown) {
     ++unknown_[event.id].events;
   }
   return observed;

@@ -239,8 +239,8 @@ TEST_F(EvidenceJudgeTest, WithoutLimitsItSaysNothing) {
 
 TEST_F(EvidenceJudgeTest, KnowsUnknownEvents) {
   const std::unique_ptr<core::Judge> judge = newJudge(limits_);
-  EXPECT_FALSE(judge->add({0, kA}).unknown);
-  EXPECT_TRUE(judge->add({0, kC}).unknown);
+  EXPECT_FALSE(judge->add({0, kA})->unknown);
+  EXPECT_TRUE(judge->add({0, kC})->unknown);
 }
 
 TEST_F(EvidenceJudgeTest, WhatIsAcceptedIsNoEvidenceAndAllElseIs) {
@@ -491,7 +491,7 @@ class EvidenceJudgeOfStrangersTest : public EvidenceJudgeTest {
     const Event event{end - ago, id};
     Window window;
     window.start = end - kWindow;
-    const ObservedEvent observed = judge->add(event);
+    const ObservedEvent observed = judge->add(event).value();
     if (ago <= kWindow) {
       window.events.push_back(observed);
     }
@@ -510,9 +510,9 @@ TEST_F(EvidenceJudgeOfStrangersTest, AnUnknownSenderOnAKnownTopicIsTheFirstSuspe
   for (std::int64_t now = 0; now < 5 * kSecond; now += kWindow) {
     Window window{now, {}};
     for (int i = 0; i < 5; ++i) {
-      window.events.push_back(judge->add({now + i * kMillisecond, kB}));
+      window.events.push_back(*judge->add({now + i * kMillisecond, kB}));
     }
-    window.events.push_back(judge->add({now + kWindow / 2, stranger}));
+    window.events.push_back(*judge->add({now + kWindow / 2, stranger}));
     named = judge->judge(window, now + kWindow, NameSuspects::kIfUnusual).suspects;
   }
   ASSERT_GE(named.size(), 2U);
@@ -540,7 +540,7 @@ TEST_F(EvidenceJudgeOfStrangersTest, ManyStrangersDoNotHideWhoIsToBlame) {
   window.start = 5 * kSecond - kWindow;
   for (int number = 0; number < 6; ++number) {
     const EventId id = heard_->intern({"/stranger" + std::to_string(number), "/y", "T"});
-    window.events.push_back(judge->add({5 * kSecond - 50 * kMillisecond, id}));
+    window.events.push_back(*judge->add({5 * kSecond - 50 * kMillisecond, id}));
   }
   const std::vector<Suspect> named =
       judge->judge(window, 5 * kSecond, NameSuspects::kIfUnusual).suspects;
@@ -561,9 +561,9 @@ TEST_F(EvidenceJudgeOfStrangersTest, WhatTrainingKnowsByNameIsNotUnknown) {
   limits_.tracks[track(kOverdue, kA, kA)] = model_->overdue(kA, kSecond);
   const std::unique_ptr<core::Judge> judge = makeJudge(model_, limits_, kWindow, graph, heard_);
   judge->add({0, kA});
-  EXPECT_FALSE(judge->add({1, debug}).unknown);
-  EXPECT_TRUE(judge->add({2, other}).unknown);
-  EXPECT_TRUE(judge->add({3, level}).unknown);
+  EXPECT_FALSE(judge->add({1, debug})->unknown);
+  EXPECT_TRUE(judge->add({2, other})->unknown);
+  EXPECT_TRUE(judge->add({3, level})->unknown);
 }
 
 TEST_F(EvidenceJudgeOfStrangersTest, WhoIsAcceptedIsNotUnknownUntilThatIsTakenBack) {
@@ -572,14 +572,14 @@ TEST_F(EvidenceJudgeOfStrangersTest, WhoIsAcceptedIsNotUnknownUntilThatIsTakenBa
   const EventId other = heard_->intern({"/joystick", "/y", "T"});
   const std::unique_ptr<core::Judge> judge =
       makeJudge(model_, limits_, kWindow, std::make_shared<SourceGraph>(), heard_);
-  EXPECT_TRUE(judge->add({0, id}).unknown);
+  EXPECT_TRUE(judge->add({0, id})->unknown);
   Acceptances all;
   all.add(accepted("/rostopic", "/y", Kind::kStranger));
   judge->accept(all);
-  EXPECT_FALSE(judge->add({1, id}).unknown);
-  EXPECT_TRUE(judge->add({1, other}).unknown);
+  EXPECT_FALSE(judge->add({1, id})->unknown);
+  EXPECT_TRUE(judge->add({1, other})->unknown);
   judge->accept({});
-  EXPECT_TRUE(judge->add({2, id}).unknown);
+  EXPECT_TRUE(judge->add({2, id})->unknown);
 }
 
 TEST_F(EvidenceJudgeOfStrangersTest, OfNodesThatLogAnewOnlyErrorsAreNews) {
@@ -587,7 +587,7 @@ TEST_F(EvidenceJudgeOfStrangersTest, OfNodesThatLogAnewOnlyErrorsAreNews) {
   const std::unique_ptr<core::Judge> judge =
       makeJudge(model_, limits_, kWindow, std::make_shared<SourceGraph>(), heard_);
   const auto isNews = [&](const std::string& source, const std::string& type) {
-    return judge->add({kSecond, heard_->intern({source, "/rosout", type})}).unknown;
+    return judge->add({kSecond, heard_->intern({source, "/rosout", type})})->unknown;
   };
   for (const std::string level : {"1", "2", "4"}) {
     EXPECT_FALSE(isNews("/a", "rosgraph_msgs/Log[level=" + level + "]")) << level;

@@ -9,6 +9,7 @@
 
 #include "core/paper/delay_trainer.h"
 #include "core/paper/scorer.h"
+#include "self_awareness/core/stream/mode.h"
 
 namespace self_awareness::core::paper {
 namespace {
@@ -30,7 +31,7 @@ class PaperJudgeTest : public testing::Test {
     return std::make_shared<const Model>(statistics);
   }
   // Does what the windows do with the judge.
-  void add(const Event& event) { window_.events.push_back(judge_->add(event)); }
+  void add(const Event& event) { window_.events.push_back(judge_->add(event).value()); }
   Judgement judge(std::int64_t end, NameSuspects suspects = NameSuspects::kIfUnusual) {
     Judgement judgement = judge_->judge(window_, end, suspects);
     window_.events.clear();
@@ -87,6 +88,20 @@ TEST_F(PaperJudgeTest, NamesSuspectsOnlyWhereTheyAreAskedFor) {
   EXPECT_EQ(unknownWindow(NameSuspects::kAlways), 1U);
   judge_ = makeJudge(model_, std::nullopt, true);
   EXPECT_EQ(unknownWindow(NameSuspects::kAlways), 0U);
+}
+
+TEST(PaperJudge, SeesNoMode) {
+  DelayStatistics statistics{Binning{}};
+  const EventType driving{"/logic", "/state", typeOfMode("S", "DRIVING")};
+  statistics.countEvent(statistics.intern({"/a", "/x", "T"}));
+  const EventId known = statistics.intern(driving);
+  const auto heard = std::make_shared<Vocabulary>(statistics.vocabulary());
+  const EventId unknown = heard->intern({"/logic", "/state", typeOfMode("S", "LOST")});
+  const std::unique_ptr<core::Judge> judge =
+      makeJudge(std::make_shared<Model>(statistics), std::nullopt, true, heard);
+  EXPECT_FALSE(judge->add({0, known}));
+  EXPECT_FALSE(judge->add({0, unknown}));
+  EXPECT_TRUE(judge->add({0, 0}));
 }
 
 }  // namespace

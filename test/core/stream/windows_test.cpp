@@ -14,13 +14,16 @@ namespace {
 
 constexpr std::int64_t kWindow = 100 * kNanosecondsPerSecond / 1000;
 constexpr EventId kUnknownId = 7;
+constexpr EventId kModeId = 8;
 
 // Records what it is told: "1" for an event of type 1, "[start end events]" for a window.
 class Told : public WindowObserver {
  public:
-  ObservedEvent observe(const Event& event) override {
+  std::optional<ObservedEvent> observe(const Event& event) override {
     told += std::to_string(event.id);
-    return {event, event.id == kUnknownId, {}};
+    return event.id == kModeId
+               ? std::nullopt
+               : std::optional(ObservedEvent{event, event.id == kUnknownId, std::nullopt});
   }
   void close(const Window& window, std::int64_t end) override {
     told += "[" + std::to_string(window.start) + " " + std::to_string(end) + " " +
@@ -85,6 +88,17 @@ TEST(Windows, AStepOfTheClockStartsANewRecording) {
     EXPECT_EQ(told.told, "1!2") << step;  // the open window is lost
     EXPECT_EQ(windows.lastStamp(), start + step);
   }
+}
+
+TEST(Windows, WhatTellsAModeIsInNone) {
+  Told told;
+  Windows windows(100, told);
+  windows.add({10, kModeId});
+  windows.add({20, 1});
+  windows.add({110, kModeId});
+  EXPECT_EQ(told.told, "81[0 100 1]8");
+  windows.finish();
+  EXPECT_EQ(told.told, "81[0 100 1]8[100 110 0]");
 }
 
 TEST(Windows, ARestartForgetsTheOpenWindow) {

@@ -22,8 +22,9 @@ const std::vector<EventType> kTypes{{"/base", "/odom", "T"}, {"/joystick", "/joy
 // Nothing is abnormal.
 class QuietJudge : public Judge {
  public:
-  ObservedEvent add(const Event& event) override {
-    return {event, event.id == kNew && !isAccepted(event.id, Kind::kStranger), std::nullopt};
+  std::optional<ObservedEvent> add(const Event& event) override {
+    return ObservedEvent{event, event.id == kNew && !isAccepted(event.id, Kind::kStranger),
+                         std::nullopt};
   }
   void settle(const Event& /*first*/, std::int64_t /*settle_time*/) override {}
   void leaveOut(const std::vector<EventId>& /*ids*/, std::int64_t /*until*/) override {}

@@ -21,8 +21,8 @@ class ToldJudge : public Judge {
  public:
   explicit ToldJudge(std::shared_ptr<Judgement> told) : told_(std::move(told)) {}
 
-  ObservedEvent add(const Event& event) override {
-    return {event, event.id == kUnknownId, std::nullopt};
+  std::optional<ObservedEvent> add(const Event& event) override {
+    return ObservedEvent{event, event.id == kUnknownId, std::nullopt};
   }
   void settle(const Event& first, std::int64_t settle_time) override {
     settling_[first.id] = first.stamp + settle_time;

@@ -1,7 +1,7 @@
 """The evidence detector, literally and slowly: docs/method.md, section 3, and the headers.
 
 Nothing here is shared with the package: it is what the core is compared with. Stamps in ns. An
-event type is a letter, a track a triple (channel, to, from).
+event type is a letter, a mode of the robot a small one, a track a triple (channel, to, from).
 """
 from __future__ import annotations
 
@@ -43,6 +43,35 @@ ENDING = 5 * SECOND
 SHORTEST_STALL = 50 * MS
 LONGEST_STALL_OF_TRAINING = 2 * SECOND
 BETWEEN_STALLS = 30 * SECOND
+
+
+def is_mode(kind: str) -> bool:
+    """Return whether the event type is a mode: its event says that it begins."""
+    return kind.islower()
+
+
+def with_ticks(events: Sequence[Event]) -> List[Event]:
+    """Return the events with those of modes in place of what tells them: one a second."""
+    found: List[Event] = []
+    lasted: Dict[str, int] = defaultdict(int)  # before the mode that lasts began
+    ticks: Dict[str, int] = defaultdict(int)
+    mode, since = '', 0
+
+    def tick(now: int) -> None:
+        while mode and since + ticks[mode] * SECOND - lasted[mode] <= now:
+            found.append((since + ticks[mode] * SECOND - lasted[mode], mode))
+            ticks[mode] += 1
+
+    for t, kind in events:
+        tick(t - 1 if is_mode(kind) else t)
+        if not is_mode(kind):
+            found.append((t, kind))
+            continue
+        if kind != mode:
+            lasted[mode] += max(t - since, 0)
+            mode, since = kind, t
+        tick(t)
+    return found
 
 
 def log_bin(delay: int) -> int:
@@ -148,11 +177,12 @@ class Counts:
             stood_still = stalls_of([events])[0] if stalls is None else stalls[place]
             ran = [(t - sum(length for before, length in stood_still.items() if before <= n), kind)
                    for n, (t, kind) in enumerate(events)]
-            self._count_delays(ran)
-            self._count_answers(ran)
+            ticking = with_ticks(ran)
+            self._count_delays(ticking)
+            self._count_answers(ticking)
             self._count_rates(ran, window, {n: (ran[n - 1][0], length)
                                             for n, length in stood_still.items()})
-            self._count_recording(events, ran, stood_still)
+            self._count_recording(events, ran, ticking, stood_still)
 
     def _count_delays(self, events: Sequence[Event]) -> None:
         last: Dict[str, int] = {}
@@ -187,9 +217,9 @@ class Counts:
                 self.rates[kind].append(inside.count(kind))
 
     def _count_recording(self, events: Sequence[Event], ran: Sequence[Event],
-                         stalls: Dict[int, int]) -> None:
+                         ticking: Sequence[Event], stalls: Dict[int, int]) -> None:
         stamps = [t for t, _ in events]
-        of_kind = {kind: [t for t, other in ran if other == kind] for kind in self.types}
+        of_kind = {kind: [t for t, other in ticking if other == kind] for kind in self.types}
         firsts = {kind: [t for t, other in events if other == kind][:1] for kind in self.types}
         end = max(stamps) - sum(stalls.values())
         self.recordings.append(Seen(
@@ -241,7 +271,8 @@ def gain(learned: Counts, measured: Counts, e_i: str, e_j: str) -> float:
     if not learned.delays[e_i, e_j] or len(delays) < FEWEST_GAPS:
         return 0.0
     p_ij = log_probabilities(learned.delays[e_i, e_j])
-    q_i = log_probabilities([b for k in learned.types for b in learned.delays[e_i, k]])
+    q_i = log_probabilities([b for k in learned.types if not is_mode(k)
+                             for b in learned.delays[e_i, k]])
     return math.fsum(p_ij[b] - q_i[b] for b in delays) / len(delays)
 
 
@@ -356,6 +387,6 @@ class ReferenceModel:
         if label == 'deadlines':
             return 3.0 if self.counts_requests(track) else 0.5
         if label == 'company':
-            gap = self.learned.usual_delay(track[2], track[2], 0.5)
+            gap = 1.0 if is_mode(track[2]) else self.learned.usual_delay(track[2], track[2], 0.5)
             return max(3.0, 0.5 / gap) if gap > 0 else 3.0
         return 2 * MOST_SURPRISE + 1 if label == 'pairs' else 3.0

@@ -6,7 +6,7 @@ from typing import Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 from reference_evidence import (ENDING, FEWEST_GAPS, LABELS, SECOND, Counts, Event, ReferenceModel,
-                                Seen, Track, gain)
+                                Seen, Track, gain, is_mode)
 from reference_relations import ReferenceRelations, Relation, Span, starts_of
 from reference_scorer import ReferenceScorer
 
@@ -243,7 +243,8 @@ class ReferenceLimits:
 
     def _said(self, recording: Judged, e_i: str, e_j: str) -> Optional[bool]:
         """Return whether delays say as much as in training; None: there are too few."""
-        known = [event for event in recording.events if event[1] in self._model.types]
+        known = [event for event in recording.events
+                 if event[1] in self._model.types and not is_mode(event[1])]
         chunks: List[List[Event]] = [[]]
         for event in known:
             chunks[-1].append(event)
@@ -422,6 +423,7 @@ class ReferenceLimits:
             return found if found < -self._model.rate(kind, 0) else math.nan
         if channel in ('deadlines', 'company'):
             in_number = channel == 'company' or self._model.counts_requests(track)
-            wait = largest * (both.mean_gap(other) if in_number else SECOND)
+            wait = largest * (both.mean_gap(other) if in_number and not is_mode(other)
+                              else SECOND)
             return found if wait < OWED_OF_SILENCE * max(both.gaps[kind]) else math.nan
         return found

@@ -9,8 +9,8 @@ from typing import Dict, List, NamedTuple, Sequence, Tuple
 
 from reference_evidence import (BINS, DEADLINES, EDGES, FEWEST_DELAYS_OF_PAIR, FEWEST_GAPS,
                                 LEAST_GAIN, LEAST_RATE, MOST_MISSES, PREDECESSORS, SECOND, USUAL,
-                                Counts, Track, bin_below, gain, log_bin, lower_edge, middle,
-                                usual_bins)
+                                Counts, Track, bin_below, gain, is_mode, log_bin, lower_edge,
+                                middle, usual_bins)
 
 SAME_START = 60 * SECOND
 CHANCE_OF_ANY = 0.1
@@ -55,7 +55,8 @@ class ReferenceRelations:
 
     def __init__(self, counts: Counts) -> None:
         self._counts = counts
-        types = sum(len(counts.gaps[kind]) >= FEWEST_GAPS for kind in counts.types)
+        types = sum(len(counts.gaps[kind]) >= FEWEST_GAPS and not is_mode(kind)
+                    for kind in counts.types)
         self._looked_at = max(types * (types - 1), 1)
 
     def delays(self, e_i: str, e_j: str, more: Sequence[Span] = ()) -> Relation:
@@ -197,7 +198,7 @@ class ReferenceRelations:
 
 def watched(first: Counts, second: Counts, both: Counts) -> List[Track]:
     """Return the tracks by the counts of the halves of the training, and of all of it."""
-    types = both.types
+    types = [kind for kind in both.types if not is_mode(kind)]
     relations = ReferenceRelations(both)
     gains = {(i, j): (gain(first, second, i, j) + gain(second, first, i, j)) / 2
              for i in types for j in types}
@@ -222,13 +223,17 @@ def watched(first: Counts, second: Counts, both: Counts) -> List[Track]:
     judged = [kind for kind in types if len(both.gaps[kind]) >= FEWEST_GAPS]
     looked_at = max(len(judged) * (len(judged) - 1), 1)
 
+    known = [kind for kind in both.types if len(both.gaps[kind]) >= FEWEST_GAPS]
+
     def company(kind: str) -> List[str]:
-        kept = [(relations.share_gone_on(kind, other), other) for other in types
-                if kind != other and {kind, other} <= set(judged)
+        kept = [(relations.share_gone_on(kind, other), other) for other in both.types
+                if kind != other and {kind, other} <= set(known)
                 and relations.pauses_in_starts(kind) and relations.pauses_in_starts(other)
                 and both.delays[kind, other] and both.delays[other, kind]
                 and relations.is_company(kind, other, CHANCE_OF_ANY / looked_at)]
-        return [other for _, other in sorted(kept)[:DEADLINES]]
+        best = [other for _, other in sorted(kept)]
+        kept_of_types = [other for other in best if not is_mode(other)][:DEADLINES]
+        return [other for other in best if is_mode(other) or other in kept_of_types]
 
     often = [kind for kind in judged
              if sum(both.rates[kind]) >= LEAST_RATE * len(both.rates[kind])]

@@ -5,7 +5,7 @@ from collections import defaultdict
 from typing import Dict, List, Optional, Sequence, Tuple
 
 from reference_evidence import (BETWEEN_STALLS, LABELS, LONGEST_STALL_OF_TRAINING, MS, SECOND,
-                                SHORTEST_STALL, Event, ReferenceModel, Track)
+                                SHORTEST_STALL, Event, ReferenceModel, Track, is_mode)
 
 DRIFT = 1.0
 """What every delay takes from its sum."""
@@ -98,6 +98,7 @@ class ReferenceScorer:
         self._behind: Dict[str, float] = defaultdict(float)  # [ns]
         self._in_window: Dict[str, List[int]] = defaultdict(list)
         self._requests: Dict[Track, List[int]] = defaultdict(list)  # without an answer
+        self._told: List[Tuple[int, str]] = []  # modes
         self._watches = {track: Watch(self._caps.get(track, MOST_EVIDENCE))
                          for track in model.tracks if LABELS[track[0]] == 'pairs'}
         self._usual_silence = max(model.longest_silence * 5 // 4, SHORTEST_STALL)
@@ -117,6 +118,9 @@ class ReferenceScorer:
             if kind in model.types:
                 self._start = t if self._start is None else self._start
                 self._note_stall(t)
+                if is_mode(kind):
+                    self._told.append((t, kind))
+                    continue
                 self._add(t, kind)
                 self._last[kind] = (t, number)
                 self._first_stamps.setdefault(kind, t)
@@ -146,7 +150,7 @@ class ReferenceScorer:
             if track[0] in ('deadlines', 'company'):
                 if track[1] == kind:
                     self._requests[track] = []
-                if track[2] == kind and not self._has_waited(t):
+                if track[2] == kind and not self._has_waited(t):  # never a mode
                     self._requests[track].append(t)
         if own is not None and t - own[0] > GONE_GAPS * self._model.longest[kind]:
             for track, watch in self._watches.items():
@@ -199,9 +203,27 @@ class ReferenceScorer:
         return [self._evidence(track, index, end, stall, stalled)
                 for track in self._model.tracks]
 
+    def _lasted(self, mode: str, since: int, end: int) -> int:
+        """Return how long a mode has lasted."""
+        begins = [t for t, _ in self._told] + [end]
+        return sum(max(min(after, end) - max(begin, since), 0)
+                   for (begin, kind), after in zip(self._told, begins[1:]) if kind == mode)
+
+    def _stood_still(self, since: int, stall: int, stalled: bool) -> int:
+        """Return how long the whole robot did."""
+        if stalled and not stall and self._stall is not None and since <= self._stall[0]:
+            return self._stall[1] - self._stall[0]
+        return stall
+
     def _evidence(self, track: Track, index: int, end: int, stall: int, stalled: bool) -> float:
-        channel, kind, _ = track
+        channel, kind, other = track
         last = self._last.get(kind)
+        if is_mode(other):
+            since = last[0] if last is not None else self._start
+            if since is None or (last is None and end - since < START_TIME):
+                return 0.0
+            return max(self._lasted(other, since, end)
+                       - self._stood_still(since, stall, stalled), 0) / SECOND
         if channel in ('deadlines', 'company'):
             started = self._start is not None and end - self._start >= START_TIME
             requests = self._requests[track]
@@ -213,9 +235,8 @@ class ReferenceScorer:
         if last is None:
             return 0.0
         if channel == 'overdue':
-            if stalled and not stall and self._stall is not None and last[0] <= self._stall[0]:
-                stall = self._stall[1] - self._stall[0]
-            return self._model.overdue(kind, max(end - last[0] - stall, 0))
+            stood_still = self._stood_still(last[0], stall, stalled)
+            return self._model.overdue(kind, max(end - last[0] - stood_still, 0))
         if channel in ('fewer', 'more'):
             span = max(2 * SECOND // self._window, 1)
             if (stalled or index - self._first + 1 < span

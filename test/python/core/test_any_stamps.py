@@ -13,7 +13,7 @@ from any_stamps import LEFT_OUT, LETTERS, MS, SECOND, Event, long_recordings, pi
 from hypothesis import assume, given, reject, settings
 from hypothesis import strategies as st
 from reference import Reference
-from reference_evidence import BINS, Counts, lower_edge, stalls_of
+from reference_evidence import BINS, Counts, is_mode, lower_edge, stalls_of
 
 from self_awareness import (Calibrator, DetectorParameters, EncodingRules, EventType,
                             EvidenceCounts, EvidenceModel, PaperModel, Recording, TrainedModel,
@@ -23,7 +23,10 @@ WINDOW = 100 * MS
 BIN = 10 * MS
 SETTLE = 5 * SECOND
 THRESHOLD = 0.4
-TYPES = [EventType('', letter, '') for letter in LETTERS]
+MODES = {'C': 'x', 'D': 'y'}
+"""What tells a mode in place of an event type."""
+KINDS = [*LETTERS, *MODES.values()]
+TYPES = [EventType('', kind, f'[mode: {kind}]' if is_mode(kind) else '') for kind in KINDS]
 SEVERAL = st.lists(recordings(), min_size=1, max_size=3)
 MUCH = st.lists(long_recordings(), min_size=1, max_size=2)
 """Enough for something to be watched."""
@@ -36,7 +39,7 @@ examples = settings(max_examples=30, deadline=None, derandomize=True, database=N
 def arrays(events: Sequence[Event]) -> Tuple[np.ndarray, np.ndarray]:
     """Return stamps, and ids of TYPES."""
     return (np.array([stamp for stamp, _ in events]),
-            np.array([LETTERS.index(kind) for _, kind in events]))
+            np.array([KINDS.index(kind) for _, kind in events]))
 
 
 def trained_on(all_events: Sequence[Sequence[Event]],
@@ -90,6 +93,19 @@ def test_the_papers_counts_are_the_literal_ones(all_events: List[List[Event]]) -
 @examples
 @given(SEVERAL)
 def test_the_counts_of_evidence_are_the_literal_ones(all_events: List[List[Event]]) -> None:
+    check_counts(all_events)
+
+
+@examples
+@given(SEVERAL)
+def test_modes_count_by_their_literal_ticks(all_events: List[List[Event]]) -> None:
+    assume(all(len(pieces(events)) == 1 for events in all_events))  # else it lasts on
+    check_counts([[(stamp, MODES.get(kind, kind)) for stamp, kind in events]
+                  for events in all_events])
+
+
+def check_counts(all_events: List[List[Event]]) -> None:
+    """Compare the counts of recordings with the literal ones."""
     trained = trained_on(all_events)
     ids = ids_of(trained)
     parts = [piece for events in all_events for piece in pieces(events)]
@@ -99,7 +115,7 @@ def test_the_counts_of_evidence_are_the_literal_ones(all_events: List[List[Event
     assert found.duration == sum(seen.end - seen.start for seen in reference.recordings)
     for i in ids:
         assert found.events(ids[i]) == sum(seen.events[i] for seen in reference.recordings)
-        counts = reference.rates[i] or [0]
+        counts = [0] if is_mode(i) else reference.rates[i] or [0]
         mean = sum(counts) / len(counts)
         assert found.rate_variance(ids[i]) == pytest.approx(
             sum(n * n for n in counts) / len(counts) - mean * mean, abs=1e-9)

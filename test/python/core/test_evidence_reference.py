@@ -7,7 +7,7 @@ from typing import Dict, List, Optional, Tuple
 
 import numpy as np
 import pytest
-from reference_evidence import LABELS, LEAST_EFFECT, Counts, Event, ReferenceModel
+from reference_evidence import LABELS, LEAST_EFFECT, Counts, Event, ReferenceModel, is_mode
 from reference_evidence_limits import Judged, ReferenceLimits
 from reference_relations import ReferenceRelations, number_of_starts, watched
 from reference_scorer import ReferenceScorer
@@ -20,20 +20,20 @@ MS = 1_000_000
 WINDOW = 100 * MS
 SETTLE = 5 * SECOND_NS
 BUDGET = 0.5
-LETTERS = 'ABCDEFGHIJK'
+LETTERS = 'ABCDEFGHIJKLxy'
 SEEDS = (1, 2)
 OUTAGE_S = 0.8
 
 
 def robot(chance: random.Random, seconds: float, fault_s: float = math.inf,
           until_s: float = math.inf, outage_s: float = OUTAGE_S) -> List[Event]:
-    """A trigger, two that answer it, a timer, an irregular one, requests, one that is rare, and
-    two that pause together.
+    """A trigger, two that answer it, a timer, an irregular one, requests, one that is rare, two
+    that pause together, and one that pauses while a mode lasts, which is told when it begins.
 
     While the fault lasts, the answers come later and often not at all, requests get none, the
-    timer comes often, the irregular one is gone for a while, one of those that pause together is
-    gone, and something unknown comes. Once, the whole robot is silent. Some stamps are equal, some
-    late.
+    timer comes often, the irregular one is gone for a while, one of those that pause together and
+    the one of the mode are gone, and something unknown comes. Once, the whole robot is silent.
+    Some stamps are equal, some late.
     """
     start = chance.randrange(10 ** 15)
     stall_s = chance.uniform(0.4, 0.6) * seconds
@@ -71,6 +71,14 @@ def robot(chance: random.Random, seconds: float, fault_s: float = math.inf,
         for step in range(round(seconds / gap)):
             at = gap * (step + chance.random())
             if at % 14.0 < 8.0 and not (kind == 'J' and fault_s <= at < until_s):
+                put(at, kind)
+    for step in range(round(seconds / 0.25)):
+        at = 0.25 * (step + 0.1 * (step * 7 % 5))
+        if at % 24.0 < 8.0 and not fault_s <= at < until_s:
+            put(at, 'L')
+    for step in range(round(seconds / 24.0) + 1):
+        for at, kind in ((24.0 * step, 'x'), (24.0 * step + 8.0, 'y'), (24.0 * step + 9.5, 'y')):
+            if at < seconds:
                 put(at, kind)
     return [(stamp, kind) for _, stamp, kind in sorted(found)]
 
@@ -112,7 +120,8 @@ class Robot:
         tuning.set('least_effect', least_effect[0] / SECOND_NS)
         tuning.set('least_effect_of_period', least_effect[1])
         training = Training(EncodingRules(), window=WINDOW, paper=True, tuning=tuning)
-        every_type = [EventType('', letter, '') for letter in LETTERS]
+        every_type = [EventType('', letter, f'[mode: {letter}]' if is_mode(letter) else '')
+                      for letter in LETTERS]
         for half, events in enumerate(recordings):
             recording = Recording()
             recording.fingerprint = half
@@ -141,6 +150,9 @@ def test_the_same_is_watched(learned: Robot) -> None:
     assert [(track.name, track.channel, track.to_id, track.from_id)
             for track in learned.model.tracks] == expected
     assert {channel for channel, _, _ in learned.reference.tracks} == set(LABELS)
+    assert ('company', 'L', 'x') in learned.reference.tracks
+    assert {channel for channel, _, other in learned.reference.tracks
+            if is_mode(other)} == {'company'}
 
 
 def test_overdue_is_the_literal_sum(learned: Robot) -> None:
@@ -174,6 +186,7 @@ def test_the_evidence_of_all_channels(learned: Robot, fault_s: float) -> None:
         for channel in LABELS:
             assert max(value for value, track in zip(largest, learned.reference.tracks)
                        if track[0] == channel) > 3.0, channel
+        assert largest[learned.reference.tracks.index(('company', 'L', 'x'))] > 6.0
 
 
 def test_the_evidence_with_other_least_effects() -> None:

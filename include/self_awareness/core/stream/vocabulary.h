@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <map>
 #include <optional>
 #include <vector>
@@ -11,6 +12,10 @@ namespace self_awareness::core {
 
 /// A model that knows a smaller share of the event types of a stream is hardly that of its robot.
 constexpr double kLeastKnown = 0.5;
+
+/// Stands for all modes of the robot (mode.h) that a vocabulary lacks, where events have ids and
+/// nobody knows their types: in recordings that limits are found by.
+constexpr EventId kOtherMode = std::numeric_limits<EventId>::max();
 
 /// The set U_E of event types, each with a dense id in the order of first appearance
 /// (docs/method.md, section 1.1).
@@ -25,11 +30,16 @@ class Vocabulary {
   std::optional<EventId> find(const EventType& type) const;
   /// @throw std::out_of_range if there is no such id
   const EventType& at(EventId id) const { return types_.at(id); }
+  /// Whether an id is that of a type that tells the mode of the robot (mode.h), or kOtherMode.
+  bool tellsMode(EventId id) const {
+    return id < tells_mode_.size() ? tells_mode_[id] : id == kOtherMode;
+  }
   std::size_t size() const { return types_.size(); }
   const std::vector<EventType>& types() const { return types_; }
 
  private:
   std::vector<EventType> types_;
+  std::vector<bool> tells_mode_;  // by id: events ask all the time
   std::map<EventType, EventId> ids_;
 };
 

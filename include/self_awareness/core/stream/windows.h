@@ -42,7 +42,8 @@ class WindowObserver {
   virtual ~WindowObserver() = default;
 
   /// Takes in the next event. All windows that end at or before it are closed already.
-  virtual ObservedEvent observe(const Event& event) = 0;
+  /// @return none: it is no event of a window, but tells the mode of the robot (mode.h)
+  virtual std::optional<ObservedEvent> observe(const Event& event) = 0;
   /// Looks at a window that is over.
   /// @param end up to where the window is known [ns]: its own end, or the recording's if that is
   /// earlier

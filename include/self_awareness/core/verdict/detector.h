@@ -124,7 +124,7 @@ class Detector : private WindowObserver {
     std::optional<std::int64_t> heard;  // for the first time [ns]
   };
 
-  ObservedEvent observe(const Event& event) override;
+  std::optional<ObservedEvent> observe(const Event& event) override;
   void close(const Window& window, std::int64_t end) override;
   void onClockStep() override;
   /// Takes a window that is not settling into account for the alarm and the suspicion.

@@ -50,14 +50,15 @@ class Judge {
   virtual ~Judge() = default;
 
   /// Takes in the next event. One with an id that the model does not know is an unknown event.
-  virtual ObservedEvent add(const Event& event) = 0;
+  /// @return none: it is no event of a window, but tells the mode of the robot (stream/mode.h)
+  virtual std::optional<ObservedEvent> add(const Event& event) = 0;
   /// Takes note that an event type is heard for the first time in the recording: what is unusual
   /// of it meanwhile is its start (docs/method.md, section 4.4).
   /// @param first event of the type, which add() follows
   /// @param settle_time from the event on [ns]
   virtual void settle(const Event& first, std::int64_t settle_time) = 0;
   /// Takes note that events of these types were missed: what is unusual of them up to `until` [ns]
-  /// says nothing of who sends them.
+  /// says nothing of who sends them. If they tell a mode, it is not known any more.
   virtual void leaveOut(const std::vector<EventId>& ids, std::int64_t until) = 0;
   /// Takes note of how the machine was in a stretch of time, one after the other. Who does not
   /// judge by time has no use for it.

@@ -54,7 +54,8 @@ bool Excused::isAcceptedStranger(EventId id) {
 }
 
 bool Excused::isAbsent(EventId id, const Heard& heard) const {
-  return is_optional_[id] && (!heard.hasSeen(id) || heard.silence(id) > model_->longestGap(id));
+  return is_optional_[id] && !model_->vocabulary().tellsMode(id) &&
+         (!heard.hasSeen(id) || heard.silence(id) > model_->longestGap(id));
 }
 
 void Excused::leaveOut(const Heard& heard, std::vector<double>& evidence) const {

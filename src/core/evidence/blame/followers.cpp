@@ -18,7 +18,8 @@ Followers::Followers(std::shared_ptr<const Model> model) : model_(std::move(mode
 }
 
 bool Followers::follows(const Track& track) const {
-  if (model_->component(track.from) == model_->component(track.to)) {
+  if (model_->component(track.from) == model_->component(track.to) ||
+      model_->vocabulary().tellsMode(track.from)) {
     return false;
   }
   const double period = std::min(model_->meanGap(track.from), model_->meanGap(track.to));

@@ -44,7 +44,8 @@ NeverHeard::NeverHeard(const Model& model, const Limits& limits,
     component_of_.push_back(model.componentIndex(id));
     Expected expected{id, std::numeric_limits<std::int64_t>::max(), 0, 0, 0, 0};
     bool always = !statistics.recordings().empty() &&
-                  static_cast<double>(statistics.type(id).gaps) >= model.tuning().fewest_gaps;
+                  static_cast<double>(statistics.type(id).gaps) >= model.tuning().fewest_gaps &&
+                  !model.vocabulary().tellsMode(id);
     for (const Statistics::Recording& recording : statistics.recordings()) {
       const std::int64_t first = id < recording.firsts.size() ? recording.firsts[id] : -1;
       always = always && first >= 0;

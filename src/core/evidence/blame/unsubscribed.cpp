@@ -20,7 +20,9 @@ Unsubscribed::Unsubscribed(const Model& model)
   }
   starts_ = numberOfStarts(spans, start_time_);
   for (EventId id = 0; id < model.size(); ++id) {
-    ids_.try_emplace(model.component(id), id);
+    if (!model.vocabulary().tellsMode(id)) {
+      ids_.try_emplace(model.component(id), id);
+    }
   }
 }
 

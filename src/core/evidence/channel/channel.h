@@ -28,13 +28,17 @@ struct Choice {
   const Relations& relations;
   const Tuning& tuning;
 
-  /// Whether enough is known of an event type to judge it.
-  bool isJudged(EventId id) const {
+  /// Whether it is a mode of the robot (stream/mode.h). Nobody but Company looks at one.
+  bool isMode(EventId id) const { return both.vocabulary().tellsMode(id); }
+  /// Whether there are enough gaps of an event type to say something of it.
+  bool isKnown(EventId id) const {
     return static_cast<double>(both.type(id).gaps) >= tuning.fewest_gaps;
   }
+  /// Whether enough is known of an event type to judge it.
+  bool isJudged(EventId id) const { return isKnown(id) && !isMode(id); }
   /// Whether the delays from `from` to `to` say enough of `to`, and are enough.
   bool saysEnough(EventId from, EventId to) const {
-    return gains(from, to) >= tuning.least_gain &&
+    return gains(from, to) >= tuning.least_gain && !isMode(from) && !isMode(to) &&
            static_cast<double>(both.total(from, to)) >= tuning.fewest_delays_of_pair;
   }
 };

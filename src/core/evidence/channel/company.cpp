@@ -11,6 +11,7 @@
 
 #include "core/evidence/count/log_bins.h"
 #include "self_awareness/core/evidence/channel/model.h"
+#include "self_awareness/core/stream/mode.h"
 
 namespace self_awareness::core::evidence {
 namespace {
@@ -76,17 +77,19 @@ class ExpectedCompany : public Expectation {
   }
   double timeUntil(std::size_t track, double evidence) const override {
     const EventId from = model_.tracks()[track].from;
-    return evidence * model_.usualDelay(from, from, 0.5);
+    return evidence * (isMode(from) ? static_cast<double>(ModeTime::kTick)
+                                    : model_.usualDelay(from, from, 0.5));
   }
   double limit(std::size_t track, double largest, double most) const override {
     const Track& watched = model_.tracks()[track];
     const double silence =
         model_.tuning().owed_of_silence * static_cast<double>(model_.longestGap(watched.to));
+    const double gap =
+        isMode(watched.from) ? static_cast<double>(ModeTime::kTick) : model_.meanGap(watched.from);
     // Else it says no more than the silence by itself.
-    return largest * model_.meanGap(watched.from) < silence
-               ? most
-               : std::numeric_limits<double>::quiet_NaN();
+    return largest * gap < silence ? most : std::numeric_limits<double>::quiet_NaN();
   }
+  bool isMode(EventId from) const { return model_.vocabulary().tellsMode(from); }
   const Model& model() const { return model_; }
 
  private:
@@ -98,9 +101,12 @@ class CompanyState : public ChannelState {
   explicit CompanyState(const ExpectedCompany& expected);
 
   bool listens() const override { return !gone_on_.empty(); }
-  void add(const Heard::Arrival& arrival, const Heard& /*heard*/) override {
+  void add(const Heard::Arrival& arrival, const Heard& heard) override {
     for (const std::uint32_t number : of_type_[arrival.id].to) {
       gone_on_[number] = 0;
+      if (is_mode_[number]) {
+        lasted_[number] = heard.lasted(fromOf(number), arrival.stamp);
+      }
     }
     if (arrival.stalled) {
       return;  // what waited comes all at once
@@ -113,10 +119,15 @@ class CompanyState : public ChannelState {
     for (const auto* numbers : {&of_type_[id].to, &of_type_[id].from}) {
       for (const std::uint32_t number : *numbers) {
         gone_on_[number] = 0;
+        forgotten_[number] = true;
       }
     }
   }
-  void restart() override { std::fill(gone_on_.begin(), gone_on_.end(), 0); }
+  void restart() override {
+    std::fill(gone_on_.begin(), gone_on_.end(), 0);
+    std::fill(lasted_.begin(), lasted_.end(), 0);
+    std::fill(forgotten_.begin(), forgotten_.end(), false);
+  }
   void closeWindow(const Heard& heard, std::vector<double>& evidence) override;
   void explain(std::size_t track, const Heard& heard, const RecentEvents& events,
                Suspect& suspect) const override;
@@ -128,10 +139,22 @@ class CompanyState : public ChannelState {
     std::vector<std::uint32_t> from;
   };
 
+  EventId fromOf(std::size_t number) const { return trackOf(number).from; }
+  const Track& trackOf(std::size_t number) const {
+    return expected_.model().tracks()[expected_.tracks()[number]];
+  }
+  /// What `from` said since the last `to`; of a mode, the ticks that it lasted, and parts of one.
+  double goneOn(std::size_t number, const Heard& heard) const;
+
   const ExpectedCompany& expected_;
   std::int64_t start_time_;             // [ns]
   std::vector<std::uint32_t> gone_on_;  // `from` since the last `to`, by number
-  std::vector<OfType> of_type_;         // by id
+  std::vector<bool> is_mode_;           // whether `from` is one, by number
+  // How long the mode had lasted at the last `to` [ns], by number; or, as soon as a window is
+  // closed, by now.
+  std::vector<std::int64_t> lasted_;
+  std::vector<bool> forgotten_;
+  std::vector<OfType> of_type_;  // by id
 };
 
 std::unique_ptr<ChannelState> ExpectedCompany::start() const {
@@ -142,50 +165,75 @@ CompanyState::CompanyState(const ExpectedCompany& expected)
     : expected_(expected),
       start_time_(toNanoseconds(expected.model().tuning().start_time)),
       gone_on_(expected.tracks().size(), 0),
+      is_mode_(expected.tracks().size(), false),
+      lasted_(expected.tracks().size(), 0),
+      forgotten_(expected.tracks().size(), false),
       of_type_(expected.model().size()) {
   for (std::uint32_t number = 0; number < gone_on_.size(); ++number) {
-    const Track& track = expected.model().tracks()[expected.tracks()[number]];
+    const Track& track = trackOf(number);
     of_type_[track.to].to.push_back(number);
     of_type_[track.from].from.push_back(number);
+    is_mode_[number] = expected.isMode(track.from);
   }
+}
+
+double CompanyState::goneOn(std::size_t number, const Heard& heard) const {
+  if (!is_mode_[number]) {
+    return gone_on_[number];
+  }
+  const auto [channel, to, from] = trackOf(number);
+  const std::int64_t since = heard.lastSeen(to).value_or(heard.start());
+  // Who would have published all the time had stood still as well.
+  const std::int64_t lasted =
+      heard.lasted(from, heard.windowEnd()) - lasted_[number] - heard.stoodStillSince(since);
+  return std::max(static_cast<double>(lasted) / static_cast<double>(ModeTime::kTick), 0.0);
 }
 
 void CompanyState::closeWindow(const Heard& heard, std::vector<double>& evidence) {
   const bool started = heard.windowEnd() - heard.start() >= start_time_;
   for (std::size_t number = 0; number < gone_on_.size(); ++number) {
-    const std::size_t track = expected_.tracks()[number];
+    if (forgotten_[number] && is_mode_[number]) {
+      lasted_[number] = heard.lasted(fromOf(number), heard.windowEnd());
+    }
+    forgotten_[number] = false;
     // Who was not heard yet may still be starting.
-    const bool may_say = started || heard.hasSeen(expected_.model().tracks()[track].to);
-    evidence[track] = may_say ? gone_on_[number] : 0;
+    const bool may_say = started || heard.hasSeen(trackOf(number).to);
+    evidence[expected_.tracks()[number]] = may_say ? goneOn(number, heard) : 0;
   }
 }
 
-void CompanyState::explain(std::size_t track, const Heard& /*heard*/,
-                           const RecentEvents& /*events*/, Suspect& suspect) const {
-  const Model& model = expected_.model();
+void CompanyState::explain(std::size_t track, const Heard& heard, const RecentEvents& /*events*/,
+                           Suspect& suspect) const {
   const auto place = std::lower_bound(expected_.tracks().begin(), expected_.tracks().end(), track);
-  const std::uint32_t number =
-      gone_on_[static_cast<std::size_t>(place - expected_.tracks().begin())];
+  const auto number = static_cast<std::size_t>(place - expected_.tracks().begin());
+  const EventType& from = expected_.model().vocabulary().at(fromOf(number));
   Reason& reason = suspect.reason;
   reason.kind = Kind::kDied;
-  reason.after = toString(model.vocabulary().at(model.tracks()[track].from));
-  reason.unit = unit::kRequests;
-  reason.value = number;
+  reason.after = toString(from);
+  reason.value = goneOn(number, heard);
   char text[60];
-  std::snprintf(text, sizeof text, "has not come with the last %u ", number);
-  reason.words = text + reason.after + ", which pauses when it does";
+  if (is_mode_[number]) {
+    reason.unit = unit::kSeconds;
+    std::snprintf(text, sizeof text, "has not come for %.3g s of the mode ", reason.value);
+    reason.words = text + modeOf(from) + " (" + from.scope + "), in which it does not pause";
+  } else {
+    reason.unit = unit::kRequests;
+    std::snprintf(text, sizeof text, "has not come with the last %.0f ", reason.value);
+    reason.words = text + reason.after + ", which pauses when it does";
+  }
 }
 
 }  // namespace
 
 // Two that have nothing to do with each other would begin and end their pauses at one moment by
-// chance. Both show how far they differ: what the one says while the other is silent.
+// chance. Both show how far they differ: what the one says while the other is silent. A mode lasts
+// on when who told it has died, so it tells of the death of whoever hears it, or tells it.
 std::vector<Track> Company::watch(const Choice& choice) const {
   const Statistics& counts = choice.both;
   std::vector<std::optional<Pauses>> pauses(counts.size());
   for (EventId id = 0; id < counts.size(); ++id) {
     const Pauses its(counts, id, choice.tuning);
-    if (choice.isJudged(id) && its.starts >= 2) {
+    if (choice.isKnown(id) && its.starts >= 2) {
       pauses[id] = its;
     }
   }
@@ -196,9 +244,10 @@ std::vector<Track> Company::watch(const Choice& choice) const {
   std::vector<Track> tracks;
   for (EventId to = 0; to < counts.size(); ++to) {
     std::vector<std::pair<double, EventId>> best;
-    for (EventId from = 0; pauses[to] && from < counts.size(); ++from) {
-      if (!pauses[from] || component(to) == component(from) || counts.total(to, from) == 0 ||
-          counts.total(from, to) == 0) {
+    for (EventId from = 0; pauses[to] && !choice.isMode(to) && from < counts.size(); ++from) {
+      const bool lasts = choice.isMode(from);
+      if (!pauses[from] || (component(to) == component(from) && !lasts) ||
+          counts.total(to, from) == 0 || counts.total(from, to) == 0) {
         continue;
       }
       const double of_to = shareGoneOn(counts, to, *pauses[to], from);
@@ -207,15 +256,16 @@ std::vector<Track> Company::watch(const Choice& choice) const {
           pauses[to]->number * std::log(of_to) + pauses[from]->number * std::log(of_from);
       if (of_to < 1 && of_from < 1 &&
           chance <= std::log(choice.tuning.chance_of_any / choice.relations.lookedAt()) &&
-          !choice.relations.owed(to, from).reaches) {  // last, since this takes time
+          (lasts || !choice.relations.owed(to, from).reaches)) {  // last, since this takes time
         best.emplace_back(of_to, from);
       }
     }
     std::sort(best.begin(), best.end());
     std::set<std::string> components;
     for (const auto& [found, from] : best) {
-      if (components.size() < static_cast<std::size_t>(choice.tuning.deadlines) &&
-          components.insert(component(from)).second) {
+      if (choice.isMode(from) ||
+          (components.size() < static_cast<std::size_t>(choice.tuning.deadlines) &&
+           components.insert(component(from)).second)) {
         tracks.push_back({this, to, from});
       }
     }

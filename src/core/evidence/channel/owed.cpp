@@ -163,7 +163,8 @@ std::vector<Track> Owed::watch(const Choice& choice) const {
     for (EventId from = 0; from < choice.both.size(); ++from) {
       const std::uint64_t answers = choice.both.answers(from, to);
       const double misses = missRate(choice.both.type(from).gaps, answers);
-      if (from != to && static_cast<double>(answers) >= choice.tuning.fewest_gaps &&
+      if (from != to && !choice.isMode(from) && !choice.isMode(to) &&
+          static_cast<double>(answers) >= choice.tuning.fewest_gaps &&
           misses <= choice.tuning.most_misses && choice.relations.owed(from, to).watched) {
         best.emplace_back(choice.both.delays(from, to).middle(0).last, from);
       }

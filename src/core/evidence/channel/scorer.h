@@ -44,6 +44,14 @@ class Scorer {
     heard_.end(arrival);
     return gap;
   }
+  /// Takes in that a mode of the robot is told (stream/mode.h), whether the model knows it or not.
+  void enter(const Event& event) {
+    heard_.enter(model_->knows(event.id) ? std::optional(event.id) : std::nullopt, event.stamp);
+  }
+  /// Takes in that the mode is not known any more, since the last window.
+  void loseMode() { heard_.loseMode(); }
+  /// Takes in which mode lasts when the recording begins.
+  void enterBefore(std::optional<EventId> mode) { heard_.enterBefore(mode); }
   /// Takes in how the machine was.
   void hear(const Waiting& waiting) { heard_.hear(waiting); }
   /// Closes a window.
@@ -54,7 +62,7 @@ class Scorer {
   void forget(EventId id);
   /// The same, of what the channels of attributes say.
   void forgetAttributes(EventId id);
-  /// Forgets what was seen: a new recording starts, or the clock was set.
+  /// Forgets what was seen, but for the mode: a new recording starts, or the clock was set.
   void restart();
 
   const Model& model() const { return *model_; }

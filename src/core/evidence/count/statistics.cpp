@@ -193,9 +193,9 @@ std::vector<SumOfDelays> Statistics::delaysToAny() const {
   for (const Type& type : types_) {
     sums.push_back(type.left_out);
   }
-  for (const Partners& partners : partners_) {
-    for (std::size_t k = 0; k < partners.size(); ++k) {
-      addCounts(partners.at(k).delays, sums[partners.id(k)]);
+  for (EventId to = 0; to < size(); ++to) {
+    for (std::size_t k = 0; k < partners_[to].size() && !vocabulary_.tellsMode(to); ++k) {
+      addCounts(partners_[to].at(k).delays, sums[partners_[to].id(k)]);
     }
   }
   return sums;
@@ -249,7 +249,7 @@ Statistics Statistics::filtered(Keep keep) const {
       const Partner partner = partners_[to].at(k);
       if (keep(to, partner.id)) {
         rest.partners_[to].append(partner);
-      } else {
+      } else if (!vocabulary_.tellsMode(to)) {
         addCounts(partner.delays, rest.types_[partner.id].left_out);
       }
     }

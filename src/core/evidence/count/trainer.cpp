@@ -35,6 +35,7 @@ void Trainer::startRecording(Start start) {
   recording_.robot_start = start.robot_start;
   recording_.robot = std::move(start.robot);
   since_ = start.since;
+  mode_ = {};
   stalls_ = std::move(start.stalls);
   next_stall_ = 0;
   next_event_ = 0;
@@ -63,6 +64,7 @@ void Trainer::endRecording() {
   recording_ = {};
   since_.reset();
   last_seen_.clear();
+  mode_.restart();
   messages_.clear();
   last_stamp_.reset();
   number_ = 0;
@@ -78,6 +80,14 @@ void Trainer::resizeRecording() {
 }
 
 void Trainer::addBefore(const Event& event) {
+  noteFirst(event);
+  if (statistics_->vocabulary().tellsMode(event.id)) {
+    mode_.enter(event.id, event.stamp);
+    mode_.restart();  // it has not lasted yet
+  }
+}
+
+void Trainer::noteFirst(const Event& event) {
   resizeRecording();
   since_ = since_.value_or(event.stamp);
   std::int64_t& first = recording_.firsts.at(event.id);
@@ -91,7 +101,7 @@ void Trainer::add(const Event& event) {
     onClockStep();
   }
   resize();
-  addBefore(event);
+  noteFirst(event);
   const std::int64_t stall = stallBeforeNext();
   const Event ran{event.stamp - stood_still_, event.id, event.attributes};
   if (last_stamp_) {
@@ -105,24 +115,42 @@ void Trainer::add(const Event& event) {
     newest_stamp_ = event.stamp;
     recording_.start = event.stamp;
     window_end_ = floorToGrid(ran.stamp, window_) + window_;
+    mode_.begin(ran.stamp);
   }
   last_stamp_ = event.stamp;
 
-  Statistics::Type& type = statistics_->type(ran.id);
-  Seen& last = last_seen_.at(ran.id);
-  ++type.events;
-  ++recording_.events[ran.id];
+  if (statistics_->vocabulary().tellsMode(ran.id)) {
+    countTicks(ran.stamp - 1);  // a mode that ends now does not tick any more
+    mode_.enter(ran.id, ran.stamp);
+    countTicks(ran.stamp);
+    return;
+  }
+  countTicks(ran.stamp);
   counts_.add(ran.id);
-  countDelays(ran);
   countAttributes(ran, event.stamp >= *since_ + recording_.firsts[ran.id] + kAttributesFrom);
+  count(ran);
+}
+
+void Trainer::countTicks(std::int64_t now) {
+  while (const std::optional<Event> tick = mode_.tickUntil(now)) {
+    count(*tick);
+  }
+}
+
+void Trainer::count(const Event& event) {
+  Statistics::Type& type = statistics_->type(event.id);
+  Seen& last = last_seen_.at(event.id);
+  ++type.events;
+  ++recording_.events[event.id];
+  countDelays(event);
   if (last.number > 0) {
-    const std::int64_t gap = std::max<std::int64_t>(ran.stamp - last.stamp, 0);
+    const std::int64_t gap = std::max<std::int64_t>(event.stamp - last.stamp, 0);
     ++type.gaps;
     type.gap_sum += gap;
     type.addGap(gap);
-    recording_.longest_gaps[ran.id] = std::max(recording_.longest_gaps[ran.id], gap);
+    recording_.longest_gaps[event.id] = std::max(recording_.longest_gaps[event.id], gap);
   }
-  last = Seen{ran.stamp, ++number_};
+  last = Seen{event.stamp, ++number_};
 }
 
 std::int64_t Trainer::stallBeforeNext() {

@@ -57,6 +57,9 @@ std::vector<Coverage> coverageOf(const Model& model, const Limits& limits,
     coverages[k].component = model.components()[k];
   }
   for (EventId id = 0; id < model.size(); ++id) {
+    if (model.vocabulary().tellsMode(id)) {
+      continue;  // it ticks, and nothing is sent
+    }
     Coverage& of = coverages[model.componentIndex(id)];
     const double period = model.meanGap(id) * 1e-9;
     of.period =

@@ -66,13 +66,17 @@ void LimitFinder::add(const Event& event) {
   windows_.add(event);
 }
 
-ObservedEvent LimitFinder::observe(const Event& event) {
+std::optional<ObservedEvent> LimitFinder::observe(const Event& event) {
   if (!first_stamp_) {
     first_stamp_ = event.stamp;
     recording_.start = event.stamp;
     startPart();
   }
   recording_.end = event.stamp;
+  if (model_->vocabulary().tellsMode(event.id)) {
+    scorer_->enter(event);
+    return std::nullopt;
+  }
   if (event.id < firsts_.size() && firsts_[event.id] < 0) {
     firsts_[event.id] = std::max<std::int64_t>(event.stamp - *first_stamp_, 0);
   }
@@ -97,8 +101,10 @@ void LimitFinder::restart() {
 }
 
 void LimitFinder::onClockStep() {
+  const std::optional<EventId> mode = scorer_->heard().mode();
   endRecording();
   startScoring();
+  scorer_->enterBefore(mode);
 }
 
 void LimitFinder::finish() {

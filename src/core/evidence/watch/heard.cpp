@@ -16,6 +16,7 @@ void Heard::restart() {
   counts_.restart();
   stalls_.restart();
   starvation_.restart();
+  mode_.restart();
   stamps_.assign(stamps_.size(), 0);
   first_stamps_.assign(stamps_.size(), 0);
   numbers_.assign(stamps_.size(), 0);

@@ -11,6 +11,7 @@
 #include "self_awareness/core/evidence/count/statistics.h"
 #include "self_awareness/core/evidence/tuning.h"
 #include "self_awareness/core/stream/event.h"
+#include "self_awareness/core/stream/mode.h"
 #include "self_awareness/core/stream/recent_counts.h"
 
 namespace self_awareness::core::evidence {
@@ -34,6 +35,13 @@ class Heard {
                                   ///< the machine had no time
     Attributes attributes{};
   };
+  /// The mode is not known any more, since the last window.
+  void loseMode() { mode_.enter(std::nullopt, window_end_); }
+  /// The mode of the robot that lasts when the recording begins.
+  void enterBefore(std::optional<EventId> mode) {
+    mode_.enter(mode, 0);
+    mode_.restart();
+  }
   /// Takes in how the machine was in the stretch of time after the one before.
   void hear(const Waiting& waiting) {
     if (number_ > 0 && waiting.from >= start_) {  // what was before is in no recording of events
@@ -43,8 +51,7 @@ class Heard {
   /// Begins to take in an event; the channels see it before end() does.
   Arrival begin(const Event& event) {
     counts_.add(event.id);
-    start_ = number_ == 0 ? event.stamp : start_;
-    stalls_.add(event.stamp, number_ > 0);
+    note(event.stamp);
     const std::uint64_t last = numbers_[event.id];
     return {event.stamp,
             event.id,
@@ -60,8 +67,15 @@ class Heard {
     stamps_[arrival.id] = arrival.stamp;
     numbers_[arrival.id] = ++number_;
   }
+  /// A mode of the robot is told (stream/mode.h).
+  /// @param mode none: the model does not know it
+  void enter(std::optional<EventId> mode, std::int64_t stamp) {
+    note(stamp);
+    ++number_;
+    mode_.enter(mode, stamp);
+  }
   void closeWindow(std::int64_t end);
-  /// Forgets what was heard: a new recording starts, or the clock was set.
+  /// Forgets what was heard, but for the mode: a new recording starts, or the clock was set.
   void restart();
 
   /// Stamps of the last events [ns], by id.
@@ -78,14 +92,21 @@ class Heard {
   std::int64_t start() const { return start_; }
   /// End of the window that was closed last [ns].
   std::int64_t windowEnd() const { return window_end_; }
+  /// The mode that the robot is in; none: it is not known.
+  const std::optional<EventId>& mode() const { return mode_.mode(); }
+  /// How long a mode has lasted since the start, up to a stamp [ns].
+  std::int64_t lasted(EventId mode, std::int64_t stamp) const { return mode_.lasted(mode, stamp); }
   /// Time since the last event of a type, at the end of the last window [ns]; 0 before the first.
   std::int64_t silence(EventId id) const { return hasSeen(id) ? window_end_ - stamps_[id] : 0; }
   /// The same without the time in which the whole robot stood still, or its machine was starved:
   /// then nobody's silence grows.
   std::int64_t age(EventId id) const {
-    return hasSeen(id) ? silence(id) - std::max(stalls_.standstillSince(stamps_[id], window_end_),
-                                                starvedSince(stamps_[id]))
-                       : 0;
+    return hasSeen(id) ? silence(id) - stoodStillSince(stamps_[id]) : 0;
+  }
+  /// How long the whole robot stood still, or its machine was starved, since a stamp [ns], at the
+  /// end of the last window.
+  std::int64_t stoodStillSince(std::int64_t stamp) const {
+    return std::max(stalls_.standstillSince(stamp, window_end_), starvedSince(stamp));
   }
   /// How long processes waited since a stamp [ns], at the end of the last window; at most for as
   /// long as a stall lasts [ns].
@@ -108,10 +129,19 @@ class Heard {
   std::uint32_t recentCount(EventId id) const { return counts_.counts().at(id); }
 
  private:
+  void note(std::int64_t stamp) {
+    if (number_ == 0) {
+      start_ = stamp;
+      mode_.begin(stamp);
+    }
+    stalls_.add(stamp, number_ > 0);
+  }
+
   std::int64_t window_;  // [ns]
   RecentCounts counts_;
   Stalls stalls_;
   Starvation starvation_;
+  ModeTime mode_;
   std::int64_t longest_stall_;              // that is forgiven [ns]
   std::int64_t start_ = 0;                  // [ns], once there was an event
   std::vector<std::int64_t> stamps_;        // of the last event [ns], by id

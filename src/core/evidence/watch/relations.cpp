@@ -33,7 +33,9 @@ Relations::Relations(const Statistics& counts, const SourceGraph& graph, const T
   double types = 0;
   for (EventId id = 0; id < counts.size(); ++id) {
     const Statistics::Type& type = counts.type(id);
-    types += static_cast<double>(type.gaps) >= tuning.fewest_gaps ? 1 : 0;
+    const bool is_judged =
+        static_cast<double>(type.gaps) >= tuning.fewest_gaps && !counts.vocabulary().tellsMode(id);
+    types += is_judged ? 1 : 0;
     const DelayHistogram& delays = counts.delays(id, id);
     const auto longest = static_cast<double>(type.longestGap());
     for (std::size_t bin = 0; bin < delays.size(); ++bin) {

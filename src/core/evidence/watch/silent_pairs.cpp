@@ -64,7 +64,8 @@ PairSet silentPairs(const Halves& counts, const SourceGraph& graph, const Tuning
   const Relations relations(own, graph, tuning);
   const Says says(counts, tuning);
   const auto isKnown = [&](EventId id) {
-    return static_cast<double>(own.type(id).gaps) >= tuning.fewest_gaps;
+    return static_cast<double>(own.type(id).gaps) >= tuning.fewest_gaps &&
+           !own.vocabulary().tellsMode(id);  // company needs all pairs with a mode
   };
   const auto mayBeOwed = [&](EventId from, EventId to) {
     return relations.mayBeOwed(from, to,

@@ -13,6 +13,7 @@
 #include "../recordings.h"
 #include "core/evidence/count/log_bins.h"
 #include "self_awareness/core/stream/clock.h"
+#include "self_awareness/core/stream/mode.h"
 
 namespace self_awareness::core::evidence {
 namespace {
@@ -264,6 +265,53 @@ TEST(EvidenceTrainer, WhatCameBeforeOnlyTellsWhenItCameFirst) {
   EXPECT_EQ(counts.recordings()[0].start, 20 * kSecond);
   EXPECT_EQ(counts.recordings()[0].firsts, (std::vector<std::int64_t>{19 * kSecond, 2 * kSecond}));
   EXPECT_FALSE(counts == same);
+}
+
+// A, and two modes.
+const std::vector<EventType> kWithModes{{"/a", "/x", "T"},
+                                        {"/logic", "/state", typeOfMode("T", "ONE")},
+                                        {"/logic", "/state", typeOfMode("T", "TWO")}};
+constexpr EventId kOne = 1;
+constexpr EventId kTwo = 2;
+
+TEST(EvidenceTrainer, AModeCountsAsItsTicks) {
+  const Statistics counts = countsOf(
+      {inMilliseconds(
+          {{0, kOne}, {500, kA}, {2600, kA}, {2900, kTwo}, {5500, kA}, {5800, kOne}, {6500, kA}})},
+      kWithModes);
+  EXPECT_EQ(counts.type(kOne).events, 4U) << "at 0, 1, 2 s, and, after 3 s, at 5.9 s";
+  EXPECT_EQ(counts.type(kOne).longest_gaps.front(), 3900 * kMillisecond);
+  EXPECT_EQ(counts.type(kTwo).events, 3U) << "at 2.9, 3.9 and 4.9 s";
+  EXPECT_EQ(counts.type(kTwo).rate_sum, 0U) << "no message comes";
+  EXPECT_EQ(counts.delays(kA, kOne).total(), 3U) << "of its ticks after the first A";
+  EXPECT_EQ(counts.delays(kA, kOne).at(log_bins::bin(1500 * kMillisecond)), 1U) << "at 2 s";
+  EXPECT_EQ(counts.delays(kOne, kA).at(log_bins::bin(600 * kMillisecond)), 2U) << "at 2.6, 6.5 s";
+  EXPECT_EQ(counts.recordings().front().firsts,
+            (std::vector<std::int64_t>{500 * kMillisecond, 0, 2900 * kMillisecond}));
+}
+
+TEST(EvidenceTrainer, TheModeOfBeforeLastsFromTheFirstEventOn) {
+  Statistics counts = countsOf({}, kWithModes);
+  Trainer trainer(counts, kWindow);
+  trainer.startRecording({kSecond});
+  trainer.addBefore({3 * kSecond, kOne});
+  trainer.add({20 * kSecond, kA});
+  trainer.add({22 * kSecond + 1, kA});
+  trainer.finish();
+  EXPECT_EQ(counts.type(kOne).events, 3U);
+  trainer.startRecording();
+  trainer.add({30 * kSecond, kA});
+  trainer.add({40 * kSecond, kA});
+  trainer.finish();
+  EXPECT_EQ(counts.type(kOne).events, 3U) << "another recording does not know it";
+}
+
+TEST(EvidenceTrainer, TheModeLastsOverAStepOfTheClock) {
+  const Statistics counts =
+      countsOf({{{20 * kSecond, kTwo}, {21 * kSecond, kA}, {5 * kSecond, kA}, {6 * kSecond, kA}}},
+               kWithModes);
+  EXPECT_EQ(counts.type(kTwo).events, 4U);
+  EXPECT_EQ(counts.type(kTwo).gaps, 2U);
 }
 
 TEST(EvidenceTrainer, AfterAStepOfTheClockTheStartIsAnother) {

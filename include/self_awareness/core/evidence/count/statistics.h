@@ -103,7 +103,7 @@ class Statistics {
   void count(EventId id, const std::vector<std::uint8_t>& bins,
              const std::vector<std::uint8_t>& came);
 
-  /// Delays from the last event of a type to any event, by type.
+  /// Delays from the last event of a type to any event, by type; ticks of a mode are none.
   std::vector<SumOfDelays> delaysToAny() const;
   /// The counts of all event types, but only of these pairs, in both orders. delaysToAny() stays
   /// the same.

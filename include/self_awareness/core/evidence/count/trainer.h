@@ -8,6 +8,7 @@
 
 #include "self_awareness/core/evidence/count/statistics.h"
 #include "self_awareness/core/stream/event.h"
+#include "self_awareness/core/stream/mode.h"
 #include "self_awareness/core/stream/recent_counts.h"
 
 namespace self_awareness::core::evidence {
@@ -21,7 +22,9 @@ struct MachineStall {
 
 /// Counts one recording after the other into a Statistics, in one pass (docs/method.md, section
 /// 3.1); the last delays are there when the recording has ended. No delay and no window crosses
-/// from one recording into the next, or a step of the clock (stream/clock.h).
+/// from one recording into the next, or a step of the clock (stream/clock.h). A mode of the robot
+/// counts as an event type whose events are its ticks (stream/mode.h): for all but delays and
+/// gaps, there are none.
 class Trainer {
  public:
   /// @param statistics counted into; must outlive the trainer
@@ -46,7 +49,7 @@ class Trainer {
   /// Starts a new recording of the same start of the robot: the clock was set.
   void onClockStep();
   /// An event of the recording before those that are counted: it only says when its type came
-  /// first.
+  /// first, or which mode lasts then.
   void addBefore(const Event& event);
   /// @param event with an id of the statistics' vocabulary; in the order of the recording.
   void add(const Event& event);
@@ -75,8 +78,12 @@ class Trainer {
   struct OfMessages;  // what is remembered of the attributes of a type's messages
 
   void resizeRecording();
+  void noteFirst(const Event& event);
   /// Makes room for the event types that are new.
   void resize();
+  /// Counts an event, or a tick, but for rates and attributes.
+  void count(const Event& event);
+  void countTicks(std::int64_t now);
   void countDelays(const Event& event);
   void countWaiting();
   /// @param started whether its type came first long enough ago
@@ -97,6 +104,7 @@ class Trainer {
   std::int64_t window_end_ = 0;             // of the open window [ns], once something was seen
   std::uint64_t number_ = 0;
   RecentCounts counts_;
+  ModeTime mode_;
   std::vector<OfMessages> messages_;  // by id
   std::vector<MachineStall> stalls_;  // of the recording
   std::size_t next_stall_ = 0;

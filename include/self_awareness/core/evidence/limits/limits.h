@@ -109,7 +109,7 @@ class LimitFinder : private WindowObserver {
   static constexpr std::size_t kMostParts = 16;
 
  private:
-  ObservedEvent observe(const Event& event) override;
+  std::optional<ObservedEvent> observe(const Event& event) override;
   void close(const Window& window, std::int64_t end) override;
   void onClockStep() override;
   void endRecording();

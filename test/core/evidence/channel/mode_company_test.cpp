@@ -1,0 +1,347 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../recordings.h"
+#include "core/evidence/channel/company.h"
+#include "core/evidence/channel/scorer.h"
+#include "core/evidence/watch/relations.h"
+#include "self_awareness/core/evidence/limits/limits.h"
+#include "self_awareness/core/learn.h"
+#include "self_awareness/core/stream/mode.h"
+#include "self_awareness/core/verdict/alarm.h"
+#include "self_awareness/core/verdict/detector.h"
+
+namespace self_awareness::core::evidence {
+namespace {
+
+constexpr const char* kCompany = "company";
+constexpr EventId kPlan = 0;
+constexpr EventId kImu = 1;
+constexpr EventId kState = 2;
+constexpr EventId kDriving = 3;
+constexpr EventId kDocked = 4;
+constexpr EventId kNewMode = 5;
+const std::vector<EventType> kRobot{
+    {"/planner", "/plan", "T"},
+    {"/imu", "/imu/data", "T"},
+    {"/logic", "/state", "S"},
+    {"/logic", "/state", typeOfMode("S", "DRIVING")},
+    {"/logic", "/state", typeOfMode("S", "DOCKED")},
+};
+
+constexpr std::int64_t kDrive = 20 * kSecond;
+constexpr std::int64_t kCharge = 100 * kSecond;
+constexpr std::int64_t kCycle = kDrive + kCharge;
+constexpr std::int64_t kPlanning = 100 * kMillisecond;
+constexpr std::int64_t kEnd = 5 * kCycle;
+
+/// A message that says a state, and what it says of the mode.
+Events told(std::int64_t stamp, EventId mode, bool with_mode) {
+  return with_mode ? Events{{stamp, mode}, {stamp, kState}} : Events{{stamp, kState}};
+}
+
+/// A robot that drives and charges in turn, and says so when it begins to. The planner plans while
+/// it drives, until it dies.
+Events driving(std::int64_t begin, bool with_mode = true, std::int64_t planner_dies = kEnd) {
+  Events plans;
+  Events states;
+  for (std::int64_t start = 0; start < kEnd; start += kCycle) {
+    const std::int64_t end = std::min(start + kDrive, planner_dies);
+    plans = together({plans, timer(kPlan, start + 300 * kMillisecond, end, kPlanning)});
+    states = together(
+        {states, told(start, kDriving, with_mode), told(start + kDrive, kDocked, with_mode)});
+  }
+  return later(together({states, plans, timer(kImu, 7 * kMillisecond, kEnd, kPlanning)}), begin);
+}
+
+class ModeCompanyTest : public testing::Test {
+ protected:
+  void learn(const SourceGraph& graph = {}, const std::vector<EventType>& types = kRobot) {
+    watched_ =
+        watch(countsOf({driving(kStart)}, types), countsOf({driving(2 * kStart)}, types), graph);
+    model_ = std::make_shared<Model>(watched_);
+    track_ = indexOf(model_->tracks(), kCompany, kPlan, kDriving);
+    scorer_ = std::make_unique<Scorer>(model_, kWindow);
+  }
+  bool watches(EventId to, EventId from) const {
+    return isWatched(watched_.tracks, kCompany, to, from);
+  }
+  double evidenceAt(std::int64_t stamp) { return scorer_->closeWindow(stamp)[track_]; }
+
+  Watched watched_;
+  std::shared_ptr<const Model> model_;
+  std::size_t track_ = 0;
+  std::unique_ptr<Scorer> scorer_;
+};
+
+TEST_F(ModeCompanyTest, WhoPausesInOtherModesIsInCompanyWithOne) {
+  learn();
+  EXPECT_TRUE(watches(kPlan, kDriving));
+  EXPECT_FALSE(watches(kPlan, kDocked));
+  EXPECT_FALSE(watches(kImu, kDriving)) << "it does not pause";
+  EXPECT_FALSE(watches(kDriving, kPlan)) << "a mode cannot be silent";
+}
+
+TEST_F(ModeCompanyTest, WhoHearsItOrTellsItIsInCompanyAsWell) {
+  SourceGraph graph;
+  graph.connect("/logic", "/state", "/planner");
+  graph.connect("/planner", "/plan", "/logic");
+  learn(graph);
+  EXPECT_TRUE(watches(kPlan, kDriving)) << "the mode lasts, whoever has died";
+  std::vector<EventType> types = kRobot;
+  types[kPlan].source = types[kState].source;
+  learn({}, types);
+  EXPECT_TRUE(watches(kPlan, kDriving)) << "of one node";
+}
+
+TEST_F(ModeCompanyTest, NobodyElseSeesAMode) {
+  learn();
+  const Watched without = watch(countsOf({driving(kStart, false)}, kRobot),
+                                countsOf({driving(2 * kStart, false)}, kRobot));
+  std::vector<Track> others;
+  for (const Track& track : watched_.tracks) {
+    if (track.from != kDriving) {
+      others.push_back(track);
+    }
+  }
+  ASSERT_EQ(others.size(), without.tracks.size());
+  const Model plain(without);
+  for (std::size_t k = 0; k < others.size(); ++k) {
+    EXPECT_EQ(channelName(others[k]), channelName(without.tracks[k]));
+    EXPECT_EQ(others[k].to, without.tracks[k].to);
+    EXPECT_EQ(others[k].from, without.tracks[k].from);
+  }
+  EXPECT_EQ(model_->learned().delaysToAny()[kPlan], plain.learned().delaysToAny()[kPlan]);
+  const SourceGraph graph;
+  const Tuning tuning;
+  EXPECT_EQ(Relations(countsOf({driving(kStart)}, kRobot), graph, tuning).lookedAt(), 2)
+      << "of the two that come often";
+  EXPECT_EQ(countsOf({driving(kStart)}, kRobot).rateWindows(),
+            countsOf({driving(kStart, false)}, kRobot).rateWindows());
+}
+
+TEST_F(ModeCompanyTest, EvidenceIsTheTimeThatTheModeHasLasted) {
+  learn();
+  scorer_->enter({0, kDriving});
+  scorer_->add({kSecond, kPlan});
+  EXPECT_EQ(evidenceAt(kSecond), 0);
+  EXPECT_EQ(evidenceAt(6 * kSecond), 5);
+  Suspect suspect;
+  suspect.id = kPlan;
+  scorer_->explain(track_, RecentEvents(5), suspect);
+  EXPECT_EQ(suspect.reason.kind, Kind::kDied);
+  EXPECT_EQ(suspect.reason.after, "/logic /state S[mode: DRIVING]");
+  EXPECT_EQ(suspect.reason.unit, unit::kSeconds);
+  EXPECT_EQ(suspect.reason.value, 5);
+  EXPECT_EQ(suspect.reason.words,
+            "has not come for 5 s of the mode DRIVING (/state), in which it does not pause");
+  scorer_->enter({7 * kSecond, kDocked});
+  EXPECT_EQ(evidenceAt(100 * kSecond), 6) << "the other mode says nothing";
+  scorer_->enter({200 * kSecond, kDriving});
+  EXPECT_EQ(evidenceAt(202 * kSecond), 8);
+  scorer_->add({202 * kSecond, kPlan});
+  EXPECT_EQ(evidenceAt(203 * kSecond), 1);
+}
+
+TEST_F(ModeCompanyTest, AModeThatTrainingNeverSawEndsTheOneBefore) {
+  learn();
+  scorer_->enter({0, kDriving});
+  scorer_->add({kSecond, kPlan});
+  scorer_->enter({3 * kSecond, kNewMode});
+  EXPECT_EQ(evidenceAt(100 * kSecond), 2);
+}
+
+TEST_F(ModeCompanyTest, TheModeLastsOverARestart) {
+  learn();
+  scorer_->enter({500 * kSecond, kDriving});
+  scorer_->add({501 * kSecond, kPlan});
+  EXPECT_EQ(evidenceAt(520 * kSecond), 19);
+  scorer_->restart();
+  scorer_->add({10 * kSecond, kPlan});
+  EXPECT_EQ(evidenceAt(10 * kSecond), 0);
+  EXPECT_EQ(evidenceAt(14 * kSecond), 4);
+}
+
+TEST_F(ModeCompanyTest, LimitsKnowTheModeThatLastsWhenTheClockIsSet) {
+  learn();
+  LimitFinder finder(model_, {kWindow, 5 * kSecond});
+  finder.startRecording(model_);
+  finder.add({500 * kSecond, kDriving});
+  finder.add({501 * kSecond, kPlan});
+  finder.add({10 * kSecond, kPlan});
+  for (const Event& event : timer(kImu, 10 * kSecond, 30 * kSecond, kPlanning)) {
+    finder.add(event);
+  }
+  finder.finish();
+  EXPECT_NEAR(finder.findings().back().parts.back().evidence[track_], 20, 0.2);
+}
+
+TEST_F(ModeCompanyTest, WhatIsForgottenBeginsAnew) {
+  learn();
+  scorer_->enter({0, kDriving});
+  scorer_->add({0, kPlan});
+  EXPECT_EQ(evidenceAt(9 * kSecond), 9);
+  scorer_->forget(kDriving);
+  EXPECT_EQ(evidenceAt(10 * kSecond), 0);
+  EXPECT_EQ(evidenceAt(11 * kSecond), 1);
+}
+
+TEST_F(ModeCompanyTest, WhoWasNeverHeardMayBeStartingForAMinute) {
+  learn();
+  scorer_->enter({0, kDriving});
+  EXPECT_EQ(evidenceAt(60 * kSecond - kWindow), 0);
+  EXPECT_EQ(evidenceAt(60 * kSecond), 60);
+}
+
+TEST_F(ModeCompanyTest, WhileTheWholeRobotStandsStillNoModeGoesOn) {
+  learn();
+  scorer_->enter({0, kDriving});
+  scorer_->add({kSecond, kPlan});
+  scorer_->add({kSecond + kMillisecond, kImu});
+  const double standing = evidenceAt(kSecond + 601 * kMillisecond);
+  EXPECT_LT(standing, 0.01) << "nobody is heard";
+}
+
+TEST_F(ModeCompanyTest, ItHasTheLeastLimitOfWhoComesEverySecond) {
+  learn();
+  const Expectation& expected = model_->expectation(track_);
+  EXPECT_EQ(model_->leastLimit(track_), model_->tuning().least_requests);
+  EXPECT_EQ(expected.timeUntil(track_, 4), 4.0 * kSecond);
+  EXPECT_EQ(expected.limit(track_, 3, 7), 7);
+  EXPECT_TRUE(std::isnan(expected.limit(track_, 100, 200))) << "as long as a pause";
+}
+
+/// What a model learns of starts of this robot, and what it says then.
+class ModeLearnedTest : public testing::Test {
+ protected:
+  static core::Model learned(bool with_mode) {
+    Learner learner;
+    for (const EventType& type : kRobot) {
+      learner.intern(type);
+    }
+    for (std::int64_t start = 1; start <= 4; ++start) {
+      learner.add({driving(start * kStart, with_mode), "normal"});
+    }
+    return learner.learn();
+  }
+  /// The first alarm of a recording.
+  static std::optional<Alarm> alarmIn(const core::Model& model, const Events& events) {
+    const auto heard = std::make_shared<Vocabulary>(model.vocabulary());
+    heard->intern({"/logic", "/state", typeOfMode("S", "LOST")});
+    Alarms alarms;
+    std::optional<Alarm> first;
+    std::vector<std::string> unknown;
+    Detector detector(model.makeJudge(heard), model.window, {}, [&](const Verdict& verdict) {
+      alarms.add(verdict, model.window, *heard);
+      if (verdict.alarm && !first) {
+        first = alarms.standing();
+      }
+      EXPECT_EQ(verdict.window->unknown(), 0U);
+    });
+    for (const Event& event : events) {
+      detector.add(event);
+    }
+    detector.finish();
+    EXPECT_TRUE(detector.unknown().empty());
+    return first;
+  }
+};
+
+// A planner that dies while the robot drives is looked for as long as a charge lasts, unless the
+// mode says that it drives.
+TEST_F(ModeLearnedTest, ADeathWhileDrivingIsFoundSoon) {
+  const std::int64_t dies = 2 * kCycle + 5 * kSecond;
+  const std::optional<Alarm> found = alarmIn(learned(true), driving(9 * kStart, true, dies));
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->culprit, "/planner");
+  EXPECT_LT(found->begin - 9 * kStart - dies, 10 * kSecond);
+  EXPECT_GT(found->begin - 9 * kStart - dies, 2 * kSecond);
+
+  const std::optional<Alarm> without = alarmIn(learned(false), driving(9 * kStart, false, dies));
+  EXPECT_TRUE(!without || without->begin - 9 * kStart - dies > kCharge);
+}
+
+TEST_F(ModeLearnedTest, NobodyWaitsForAMode) {
+  const core::Model model = learned(true);
+  Detector detector(model.makeJudge(), model.window, {}, [&](const Verdict& verdict) {
+    EXPECT_FALSE(verdict.alarm || verdict.suspicion) << verdict.evidence;
+  });
+  for (const Event& event : driving(9 * kStart, false)) {
+    detector.add(event);
+  }
+  detector.finish();
+  const std::vector<Coverage> coverage = model.coverage();
+  const auto logic = std::find_if(coverage.begin(), coverage.end(),
+                                  [](const Coverage& each) { return each.component == "/logic"; });
+  ASSERT_NE(logic, coverage.end());
+  EXPECT_EQ(logic->gaps, 4U * 9) << "those between its messages";
+}
+
+TEST_F(ModeLearnedTest, WhileItChargesNothingIsWrong) {
+  const core::Model model = learned(true);
+  EXPECT_FALSE(alarmIn(model, driving(9 * kStart)));
+  // It charges for longer than ever: the silence of the planner is unusual then, as without modes;
+  // the mode does not make it worse.
+  Events longer = driving(9 * kStart);
+  for (Event& event : longer) {
+    if (event.stamp >= 9 * kStart + kCycle && event.id != kImu) {
+      event.stamp += 30 * kSecond;
+    }
+  }
+  longer = together(
+      {longer, timer(kImu, 9 * kStart + kEnd, 9 * kStart + kEnd + 30 * kSecond, kPlanning)});
+  EXPECT_FALSE(alarmIn(model, longer));
+}
+
+TEST_F(ModeLearnedTest, WhoMissedAMessageOfTheModeDoesNotKnowIt) {
+  const core::Model model = learned(true);
+  const std::int64_t dead = kCycle + 2 * kSecond;
+  const auto dies = [&](const std::vector<EventId>& missed) {
+    bool alarm = false;
+    Detector detector(model.makeJudge(), model.window, {},
+                      [&](const Verdict& verdict) { alarm = alarm || verdict.alarm; });
+    for (const Event& event : driving(9 * kStart, true, dead)) {
+      if (event.stamp < 9 * kStart + dead) {
+        detector.add(event);
+      }
+    }
+    detector.onMissed(missed, 9 * kStart + dead);
+    for (const Event& event : timer(kImu, dead, kCycle + kDrive, kPlanning)) {
+      detector.add({9 * kStart + event.stamp, event.id});
+    }
+    detector.finish();
+    return alarm;
+  };
+  EXPECT_TRUE(dies({kState}));
+  EXPECT_FALSE(dies({kState, kDriving, kDocked})) << "it may be another one by now";
+}
+
+TEST_F(ModeLearnedTest, AModeThatTrainingNeverSawIsNeitherAStrangerNorAReason) {
+  const core::Model model = learned(true);
+  const auto unknown = static_cast<EventId>(kRobot.size());
+  Events events = driving(9 * kStart);
+  // In the third drive something else is done for 15 s, and nothing is planned.
+  const std::int64_t begin = 9 * kStart + 2 * kCycle + kSecond;
+  const std::int64_t end = begin + 15 * kSecond;
+  events.erase(std::remove_if(events.begin(), events.end(),
+                              [&](const Event& event) {
+                                return event.id == kPlan && event.stamp >= begin &&
+                                       event.stamp < end;
+                              }),
+               events.end());
+  const Events silent = events;
+  events = together({events, {{begin, unknown}, {end, kDriving}}});
+  EXPECT_FALSE(alarmIn(model, events));
+  EXPECT_TRUE(alarmIn(model, silent)) << "the same without the mode that is told";
+}
+
+}  // namespace
+}  // namespace self_awareness::core::evidence

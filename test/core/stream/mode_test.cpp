@@ -1,0 +1,98 @@
+#include "self_awareness/core/stream/mode.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "self_awareness/core/stream/vocabulary.h"
+
+namespace self_awareness::core {
+namespace {
+
+constexpr EventId kDriving = 3;
+constexpr EventId kDocked = 5;
+constexpr std::int64_t kTick = ModeTime::kTick;
+
+std::vector<std::int64_t> ticksUntil(ModeTime& mode, std::int64_t now) {
+  std::vector<std::int64_t> stamps;
+  while (const std::optional<Event> tick = mode.tickUntil(now)) {
+    stamps.push_back(tick->stamp);
+  }
+  return stamps;
+}
+
+TEST(ModeType, SaysItsMode) {
+  const EventType type{"/logic", "/state", typeOfMode("std_msgs/String", "DRIVING [x]")};
+  EXPECT_TRUE(tellsMode(type));
+  EXPECT_EQ(modeOf(type), "DRIVING [x]");
+  EXPECT_EQ(toString(type), "/logic /state std_msgs/String[mode: DRIVING [x]]");
+}
+
+TEST(ModeType, NoFieldOfATypeIsAMode) {
+  for (const char* type : {"std_msgs/String", "a/B[mode=DRIVING]", "a/B[x=[mode: DRIVING]]",
+                           "a/B[mode: DRIVING", ""}) {
+    EXPECT_FALSE(tellsMode({"/logic", "/state", type})) << type;
+    EXPECT_EQ(modeOf({"/logic", "/state", type}), "") << type;
+  }
+}
+
+TEST(ModeType, TheVocabularyKnowsItById) {
+  Vocabulary vocabulary;
+  vocabulary.intern({"/logic", "/state", "std_msgs/String"});
+  vocabulary.intern({"/logic", "/state", typeOfMode("std_msgs/String", "DRIVING")});
+  EXPECT_FALSE(vocabulary.tellsMode(0));
+  EXPECT_TRUE(vocabulary.tellsMode(1));
+  EXPECT_FALSE(vocabulary.tellsMode(2));
+  EXPECT_TRUE(vocabulary.tellsMode(kOtherMode));
+}
+
+TEST(ModeTime, AModeLastsUntilAnotherOneIsTold) {
+  ModeTime mode;
+  EXPECT_EQ(mode.lasted(kDriving, 10), 0);
+  mode.enter(kDriving, 100);
+  mode.enter(kDriving, 150);
+  EXPECT_EQ(mode.lasted(kDriving, 170), 70) << "told again, it is the same";
+  mode.enter(kDocked, 200);
+  EXPECT_EQ(mode.lasted(kDriving, 900), 100);
+  EXPECT_EQ(mode.lasted(kDocked, 900), 700);
+  mode.enter(kDriving, 1000);
+  EXPECT_EQ(mode.lasted(kDriving, 1010), 110);
+  mode.enter(std::nullopt, 1020);
+  EXPECT_EQ(mode.lasted(kDriving, 5000), 120) << "one that is not known lasts then";
+  EXPECT_FALSE(mode.mode());
+}
+
+TEST(ModeTime, ALateEventTurnsNothingBack) {
+  ModeTime mode;
+  mode.enter(kDriving, 100);
+  EXPECT_EQ(mode.lasted(kDriving, 90), 0);
+  mode.enter(kDocked, 95);
+  EXPECT_EQ(mode.lasted(kDriving, 1000), 0);
+}
+
+TEST(ModeTime, ARestartForgetsTimeAndNotTheMode) {
+  ModeTime mode;
+  mode.enter(kDriving, 100);
+  mode.restart();
+  EXPECT_EQ(mode.mode(), kDriving);
+  EXPECT_EQ(mode.lasted(kDriving, 1000), 0);
+  mode.begin(1000);
+  mode.begin(2000);
+  EXPECT_EQ(mode.lasted(kDriving, 2500), 1500) << "from the first event on";
+}
+
+TEST(ModeTime, TicksAsOftenAsItHasLasted) {
+  ModeTime mode;
+  EXPECT_FALSE(mode.tickUntil(10 * kTick));
+  mode.enter(kDriving, 100);
+  EXPECT_EQ(ticksUntil(mode, 100), std::vector<std::int64_t>{100});
+  EXPECT_EQ(ticksUntil(mode, 2 * kTick + 99), std::vector<std::int64_t>{kTick + 100});
+  mode.enter(kDocked, 2 * kTick);
+  EXPECT_EQ(ticksUntil(mode, 2 * kTick), std::vector<std::int64_t>{2 * kTick});
+  mode.enter(kDriving, 2 * kTick + 500);
+  EXPECT_EQ(ticksUntil(mode, 3 * kTick), std::vector<std::int64_t>{2 * kTick + 600})
+      << "100 ns are left of the second tick";
+}
+
+}  // namespace
+}  // namespace self_awareness::core
