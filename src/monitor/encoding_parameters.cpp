@@ -3,6 +3,7 @@
 #include <xmlrpcpp/XmlRpcValue.h>
 
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -67,6 +68,27 @@ void addFields(const std::string& name, const std::string& prefix, XmlRpcValue& 
   }
 }
 
+std::optional<ros1::ModeField> modeOf(const std::string& name, XmlRpcValue& value) {
+  if (value.getType() == XmlRpcValue::TypeStruct && value.size() == 0) {
+    return std::nullopt;
+  }
+  ros1::ModeField mode;
+  const std::map<std::string, std::string*> parts{{"topic", &mode.topic}, {"field", &mode.field}};
+  const std::string form = "a topic and a field: {topic: /mode, field: data}";
+  if (value.getType() != XmlRpcValue::TypeStruct ||
+      value.size() != static_cast<int>(parts.size())) {
+    fail(name, form);
+  }
+  for (auto& [key, part] : value) {
+    const auto known = parts.find(key);
+    if (known == parts.end() || part.getType() != XmlRpcValue::TypeString) {
+      fail(name, form);
+    }
+    *known->second = static_cast<std::string>(part);
+  }
+  return mode;
+}
+
 ros1::EncodingRules::Source sourceOf(const std::string& name, XmlRpcValue& value) {
   if (value.getType() == XmlRpcValue::TypeString) {
     const std::string text = value;
@@ -109,6 +131,8 @@ ros1::EncodingRules loadEncoding(const ros::NodeHandle& private_node_handle) {
     } else if (key == "type_fields") {
       rules.type_fields.clear();
       addFields(name, "", value, rules.type_fields);
+    } else if (key == "mode") {
+      rules.mode = modeOf(name, value);
     } else {
       fail(name, "left out: there is no such key in an encoding");
     }

@@ -10,7 +10,7 @@ namespace self_awareness {
 /// config/encoding.yaml is loaded there. A key that is not set keeps its value of
 /// EncodingRules::defaults().
 /// @throw std::invalid_argument names the parameter that is unknown, of the wrong kind, or no
-/// regular expression
+/// regular expression, or what EncodingRules::validate() refuses
 ros1::EncodingRules loadEncoding(const ros::NodeHandle& private_node_handle);
 
 }  // namespace self_awareness

@@ -81,6 +81,9 @@ EventRecorder::EventRecorder(ros::NodeHandle node_handle,
       parameters_.encoding, [this](const core::EventType& type) {
         return ros1::internUpTo(ros1::kMostEventTypes, type, vocabulary_);
       });
+  if (parameters_.encoding.mode) {
+    wanted.model_topics.insert(parameters_.encoding.mode->topic);  // also if nobody else hears it
+  }
   wanted.own_output = ros1::OwnOutput(ros::this_node::getName(), {});
   wanted.tick = ros::WallDuration(kTick);
   live_->setWanted(std::move(wanted));
@@ -98,6 +101,9 @@ void EventRecorder::finish() {
 }
 
 void EventRecorder::onEvent(const core::Event& event) {
+  if (vocabulary_.tellsMode(event.id)) {
+    mode_ = event.id;
+  }
   if (!file_) {
     return;
   }
@@ -125,6 +131,7 @@ void EventRecorder::onClockSet(std::int64_t now) {
 void EventRecorder::onMasterRestart(std::int64_t now) {
   ROS_WARN("the master was restarted: the next recording is of another start of the robot");
   robot_start_ = wallNow();
+  mode_.reset();
   end(now);
 }
 
@@ -171,6 +178,9 @@ void EventRecorder::begin(std::int64_t now) {
         ros1::startOfRecording(parameters_.encoding, now, robot_start_, parameters_.robot);
     file_->log.start(start);
     start_publisher_.publish(start);
+    if (mode_) {
+      packer_->add({now, *mode_}, vocabulary_);
+    }
     began_ = steadyNow();
     problem_.clear();
     ROS_INFO("recording to %s", file_->log.path().c_str());

@@ -109,6 +109,7 @@ class EventRecorder : public NodeProgram, public LiveSource::Listener {
   const std::function<void()> end_;
   Parameters parameters_;
   core::Vocabulary vocabulary_;
+  std::optional<core::EventId> mode_;  // that was told last: each recording begins with it
   ros::Publisher diagnostics_;
   ros::Publisher start_publisher_;
   ros::ServiceServer finish_;

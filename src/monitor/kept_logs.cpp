@@ -54,6 +54,7 @@ KeptLogs::KeptLogs(const KeptLogsParameters& parameters,
       writer_(kPause) {}
 
 void KeptLogs::setModel(const std::string& path, bool calibrated) {
+  mode_.reset();
   folder_ = enabled() && calibrated ? filesystem::absolute(path).string() + kBeside : "";
 }
 
@@ -68,6 +69,12 @@ void KeptLogs::add(const core::Event& event, const core::Vocabulary& vocabulary)
     });
     first_ = event.stamp;
     last_ = event.stamp;
+    if (mode_) {
+      packer_->add({first_, *mode_}, vocabulary);
+    }
+  }
+  if (vocabulary.tellsMode(event.id)) {
+    mode_ = event.id;
   }
   last_ = std::max(last_, event.stamp);
   if (why_.empty()) {  // else nobody will read it
@@ -137,6 +144,7 @@ void KeptLogs::write() {
 
 void KeptLogs::onRobotStart(std::int64_t robot_start) {
   endStretch();
+  mode_.reset();
   robot_start_ = robot_start;
 }
 

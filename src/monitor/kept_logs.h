@@ -86,11 +86,12 @@ class KeptLogs {
   std::string folder_;                          // empty: nothing is kept
   std::optional<ros1::EventLogPacker> packer_;  // of the stretch; none: it has not begun
   std::vector<std::shared_ptr<const self_awareness::EventLog>> parts_;
-  std::size_t bytes_ = 0;      // of the parts
-  std::int64_t first_ = 0;     // of the stretch
-  std::int64_t last_ = 0;      // up to where all of it was heard
-  std::string why_;            // it is not normal; empty: it is, so far
-  std::int64_t named_at_ = 0;  // wall time that the last file is named by [ns]
+  std::size_t bytes_ = 0;              // of the parts
+  std::int64_t first_ = 0;             // of the stretch
+  std::int64_t last_ = 0;              // up to where all of it was heard
+  std::optional<core::EventId> mode_;  // that was told last: each stretch begins with it
+  std::string why_;                    // it is not normal; empty: it is, so far
+  std::int64_t named_at_ = 0;          // wall time that the last file is named by [ns]
   Report report_;
   bool finished_ = false;
   FileWriter writer_;  // last: it writes what the others have handed over

@@ -166,7 +166,9 @@ void Monitor::startSession(std::unique_ptr<Session> session) {
 }
 
 void Monitor::onEvent(const core::Event& event) {
-  heard_.add(event);
+  if (!session_->vocabulary().tellsMode(event.id)) {  // else its message is another event
+    heard_.add(event);
+  }
   if (session_->isFirstOfRestarted(event.id)) {
     onFirstOfRestarted(event);
   }

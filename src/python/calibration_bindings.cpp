@@ -82,6 +82,7 @@ void bindCalibration(py::module& m) {
       .def(py::pickle([](const Findings& self) { return stateOf(self); },
                       [](const FindingsState& state) { return fromState(state); }));
 
+  m.attr("OTHER_MODE") = core::kOtherMode;
   m.attr("HOURS_OF_ROBOTS") = evidence::LimitFinder::kHoursOfRobots;
 
   using core::Calibrator;
@@ -124,7 +125,9 @@ void bindCalibration(py::module& m) {
           },
           py::arg("stamps"), py::arg("ids"), py::arg("robot_start") = 0,
           py::arg("clock_steps") = std::vector<std::int64_t>(), py::arg("robot") = "",
-          py::arg("attributes") = py::none(), "Takes in a recording that was not trained on.")
+          py::arg("attributes") = py::none(),
+          "Takes in a recording that was not trained on.\n"
+          "The id OTHER_MODE tells a mode that the model does not know.")
       .def("part", &Calibrator::part, "A calibrator without findings, for the same model.")
       .def("findings", &Calibrator::findings, "LimitFindings of what was added.")
       .def("merge", &Calibrator::merge, py::arg("findings"))

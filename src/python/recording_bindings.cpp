@@ -14,6 +14,7 @@
 #include "bindings.h"
 #include "ros/bag/log_lines.h"
 #include "ros/text.h"
+#include "self_awareness/core/stream/mode.h"
 #include "self_awareness/ros/bag/bag_reader.h"
 #include "self_awareness/ros/bag/event_log_reader.h"
 #include "self_awareness/ros/stable_name.h"
@@ -133,9 +134,11 @@ RecordedEvents readEvents(const std::string& path, const InLog& recording,
 
 using EventTypeState = std::tuple<std::string, std::string, std::string>;
 using RenameState = std::pair<std::string, std::string>;
-using EncodingState = std::tuple<bool, std::vector<RenameState>, std::vector<std::string>,
-                                 std::vector<std::string>, std::vector<std::string>,
-                                 std::vector<std::string>, std::map<std::string, std::string>>;
+using ModeState = std::pair<std::string, std::string>;  // topic, field
+using EncodingState =
+    std::tuple<bool, std::vector<RenameState>, std::vector<std::string>, std::vector<std::string>,
+               std::vector<std::string>, std::vector<std::string>,
+               std::map<std::string, std::string>, std::optional<ModeState>>;
 
 std::vector<RenameState> renamesOf(const ros1::EncodingRules& rules) {
   std::vector<RenameState> renames;
@@ -150,6 +153,15 @@ void setRenames(ros1::EncodingRules& rules, const std::vector<RenameState>& rena
   for (const auto& [pattern, name] : renames) {
     rules.renames.push_back({pattern, name});
   }
+}
+
+std::optional<ModeState> modeOf(const ros1::EncodingRules& rules) {
+  return rules.mode ? std::optional(ModeState(rules.mode->topic, rules.mode->field))
+                    : std::nullopt;
+}
+
+void setMode(ros1::EncodingRules& rules, const std::optional<ModeState>& mode) {
+  rules.mode = mode ? std::optional(ros1::ModeField{mode->first, mode->second}) : std::nullopt;
 }
 
 using Names = std::set<std::string>;
@@ -170,16 +182,19 @@ EncodingState stateOf(const ros1::EncodingRules& rules) {
           rules.exclude_topics,
           rules.include_sources,
           rules.exclude_sources,
-          rules.type_fields};
+          rules.type_fields,
+          modeOf(rules)};
 }
 
 ros1::EncodingRules fromState(const EncodingState& state) {
   ros1::EncodingRules rules;
   bool none = false;
   std::vector<RenameState> renames;
+  std::optional<ModeState> mode;
   std::tie(none, renames, rules.include_topics, rules.exclude_topics, rules.include_sources,
-           rules.exclude_sources, rules.type_fields) = state;
+           rules.exclude_sources, rules.type_fields, mode) = state;
   setRenames(rules, renames);
+  setMode(rules, mode);
   rules.source =
       none ? ros1::EncodingRules::Source::kNone : ros1::EncodingRules::Source::kCallerId;
   return rules;
@@ -197,6 +212,9 @@ void bindEncoding(py::module& m) {
       .def_readonly("source", &core::EventType::source)
       .def_readonly("scope", &core::EventType::scope)
       .def_readonly("type", &core::EventType::type)
+      .def_property_readonly(
+          "tells_mode", [](const core::EventType& self) { return core::tellsMode(self); },
+          "whether it tells the mode of the robot, and is no message of its own")
       .def("__str__", py::overload_cast<const core::EventType&>(&core::toString))
       .def("__repr__",
            [](const core::EventType& self) { return "<EventType " + core::toString(self) + ">"; })
@@ -213,7 +231,7 @@ void bindEncoding(py::module& m) {
 
   py::class_<ros1::EncodingRules>(m, "EncodingRules",
                                   "How messages become events; see config/encoding.yaml.")
-      .def(py::init<>(), "Sources told apart, nothing excluded, no type fields.")
+      .def(py::init<>(), "Sources told apart, nothing excluded, no type fields, no mode.")
       .def_static("defaults", &ros1::EncodingRules::defaults)
       .def_property(
           "source",
@@ -236,8 +254,12 @@ void bindEncoding(py::module& m) {
       .def_readwrite("include_sources", &ros1::EncodingRules::include_sources)
       .def_readwrite("exclude_sources", &ros1::EncodingRules::exclude_sources)
       .def_readwrite("type_fields", &ros1::EncodingRules::type_fields)
-      .def("validate", &ros1::EncodingRules::validate,
-           "ValueError if a pattern is no regular expression, or a new name does not fit one.")
+      .def_property("mode", &modeOf, &setMode,
+                    "what tells the mode of the robot: its topic, and a field of its messages")
+      .def(
+          "validate", &ros1::EncodingRules::validate,
+          "ValueError if a pattern is no regular expression, a new name does not fit one, or the\n"
+          "mode's topic is none, or is left out.")
       .def(
           "sources_of",
           [](const ros1::EncodingRules& self, const Names& nodes) {

@@ -9,6 +9,7 @@
 
 #include "name_patterns.h"
 #include "name_renames.h"
+#include "self_awareness/core/stream/mode.h"
 #include "self_awareness/ros/siblings.h"
 #include "self_awareness/ros/stable_name.h"
 #include "text.h"
@@ -33,6 +34,25 @@ bool isLegalTopic(const std::string& name) {
   std::string error;
   return !name.empty() && name.size() <= kLongestName && ros::names::validate(name, error) &&
          name[0] != '~';
+}
+
+/// @throw std::invalid_argument if the mode that is there cannot be told
+void checkMode(const EncodingRules& rules) {
+  const ModeField& mode = *rules.mode;
+  const std::string begin =
+      "encoding: the mode is told on '" + printable(mode.topic, kLongestQuote) + "'";
+  if (!isPrintable(mode.topic) || !isLegalTopic(mode.topic) || mode.topic[0] != '/') {
+    throw std::invalid_argument(begin + ", which is no name of a topic; it begins with a slash");
+  }
+  if (!isPrintable(mode.field) || mode.field.empty()) {
+    throw std::invalid_argument(begin + ", by no field; name one of its messages");
+  }
+  const NamePatterns include(rules.include_topics);
+  if ((!include.empty() && !include.match(mode.topic)) ||
+      NamePatterns(rules.exclude_topics).match(mode.topic)) {
+    throw std::invalid_argument(begin +
+                                ", which include_topics or exclude_topics leave out; let it in");
+  }
 }
 
 }  // namespace
@@ -67,23 +87,38 @@ void EncodingRules::validate() const {
                                   "' is no UTF-8, or has control characters");
     }
   }
+  if (mode) {
+    checkMode(*this);
+  }
 }
 
 bool operator==(const Rename& a, const Rename& b) {
   return a.pattern == b.pattern && a.name == b.name;
 }
 
+bool operator==(const ModeField& a, const ModeField& b) {
+  return a.topic == b.topic && a.field == b.field;
+}
+
 bool operator==(const EncodingRules& a, const EncodingRules& b) {
   const auto fields = [](const EncodingRules& rules) {
     return std::tie(rules.source, rules.renames, rules.include_topics, rules.exclude_topics,
-                    rules.include_sources, rules.exclude_sources, rules.type_fields);
+                    rules.include_sources, rules.exclude_sources, rules.type_fields, rules.mode);
   };
   return fields(a) == fields(b);
 }
 
 void checkEventTypes(const EncodingRules& rules, const core::Vocabulary& vocabulary) {
   std::map<std::string, std::size_t> types;  // by datatype
+  std::size_t modes = 0;
   for (const core::EventType& type : vocabulary.types()) {
+    if (core::tellsMode(type) && ++modes > kMostTypesOfField) {
+      throw std::invalid_argument(
+          "the field of the mode (" +
+          (rules.mode ? rules.mode->topic + ": " + rules.mode->field : std::string("not known")) +
+          ") has more than " + std::to_string(kMostTypesOfField) +
+          " values; name a field that says what the robot does");
+    }
     const std::size_t datatype_end = type.type.find('[');
     if (datatype_end == std::string::npos) {
       continue;
@@ -124,6 +159,10 @@ std::string whyLeftOut(const Connection& connection) {
              printable(connection.topic, kLongestQuote) + " is too long";
     }
   }
+  if (core::tellsMode({"", "", connection.datatype})) {  // nobody else makes modes up
+    return "the name '" + printable(connection.datatype, kLongestQuote) + "' on the topic " +
+           printable(connection.topic, kLongestQuote) + " is no name of a type";
+  }
   return whyLeftOut(connection.topic);
 }
 
@@ -152,16 +191,32 @@ core::EventId ConnectionEncoder::id() {
 }
 
 core::EventId ConnectionEncoder::id(const std::uint8_t* data, std::size_t size) {
-  const std::string value = field_->read(data, size);
-  const auto known = ids_by_value_.find(value);
-  if (known != ids_by_value_.end()) {
-    return known->second;
+  if (!field_) {
+    return id();
+  }
+  return idByValue(field_->read(data, size), ids_by_value_, [this](const std::string& value) {
+    return type_.type + "[" + field_name_ + "=" + value + "]";
+  });
+}
+
+core::EventId ConnectionEncoder::mode(const std::uint8_t* data, std::size_t size) {
+  return idByValue(mode_field_->read(data, size), ids_by_mode_, [this](const std::string& value) {
+    return core::typeOfMode(type_.type, value);
+  });
+}
+
+template <typename TypeOf>
+core::EventId ConnectionEncoder::idByValue(const std::string& value, Known& known,
+                                           const TypeOf& typeOf) {
+  const auto place = known.find(value);
+  if (place != known.end()) {
+    return place->second;
   }
   core::EventType type = type_;
-  type.type += "[" + field_name_ + "=" + value + "]";
+  type.type = typeOf(value);
   const core::EventId id = ids_(type);
-  if (ids_by_value_.size() < kMostTypesOfField) {
-    ids_by_value_.emplace(value, id);
+  if (known.size() < kMostTypesOfField) {
+    known.emplace(value, id);
   }
   return id;
 }
@@ -231,6 +286,14 @@ std::optional<ConnectionEncoder> Encoder::connect(const Connection& connection) 
     encoder.field_ = std::make_shared<const MessageField>(connection.definition,
                                                           connection.datatype, field->second);
     encoder.field_name_ = field->second;
+  }
+  if (rules_.mode && rules_.mode->topic == encoder.type_.scope) {
+    try {
+      encoder.mode_field_ = std::make_shared<const MessageField>(
+          connection.definition, connection.datatype, rules_.mode->field);
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument("the mode on " + rules_.mode->topic + ": " + error.what());
+    }
   }
   return encoder;
 }

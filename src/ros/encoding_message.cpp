@@ -24,6 +24,10 @@ self_awareness::Encoding toMessage(const EncodingRules& rules) {
     type_field.field = field;
     message.type_fields.push_back(type_field);
   }
+  if (rules.mode) {
+    message.mode_topic = rules.mode->topic;
+    message.mode_field = rules.mode->field;
+  }
   return message;
 }
 
@@ -45,6 +49,9 @@ EncodingRules fromMessage(const self_awareness::Encoding& message) {
     if (!rules.type_fields.emplace(type_field.datatype, type_field.field).second) {
       throw std::invalid_argument("its encoding has two type fields of " + type_field.datatype);
     }
+  }
+  if (!message.mode_topic.empty()) {
+    rules.mode = ModeField{message.mode_topic, message.mode_field};
   }
   rules.validate();
   return rules;

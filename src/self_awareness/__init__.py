@@ -21,6 +21,7 @@ from self_awareness._core import (  # noqa: F401
     LEAST_KNOWN,
     LONGEST_SILENCE,
     METHOD,
+    OTHER_MODE,
     RATE_SPAN,
     SHORTEST_WINDOW,
     USUAL_SHARES,

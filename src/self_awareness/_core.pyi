@@ -7,6 +7,7 @@ DEFAULT_WINDOW: int
 ENDING: int
 EVIDENCE_THRESHOLD: float
 HOURS_OF_ROBOTS: float
+OTHER_MODE: int
 LEAST_KNOWN: float
 LONGEST_SILENCE: int
 METHOD: int
@@ -197,6 +198,7 @@ class EncodingRules:
     exclude_topics: List[str]
     include_sources: List[str]
     include_topics: List[str]
+    mode: Optional[Tuple[str, str]]
     rename: List[Tuple[str, str]]
     source: str
     type_fields: Dict[str, str]
@@ -226,6 +228,8 @@ class EventType:
     def scope(self) -> str: ...
     @property
     def source(self) -> str: ...
+    @property
+    def tells_mode(self) -> bool: ...
     @property
     def type(self) -> str: ...
 

@@ -1,7 +1,7 @@
 """Reads an encoding file: how messages become events (config/encoding.yaml is an example)."""
 from __future__ import annotations
 
-from typing import Any, Dict, List, Tuple
+from typing import Any, Dict, List, Optional, Tuple
 
 from self_awareness import EncodingRules, yaml_file
 from self_awareness.yaml_section import Section, shown
@@ -30,6 +30,12 @@ def load(path: str) -> EncodingRules:
                 setattr(rules, key, _patterns(section, key, data[key]))
         if 'type_fields' in section:
             rules.type_fields = section.texts_by_key('type_fields')
+        if 'mode' in section:
+            rules.mode = _mode(section, data['mode'])
+            try:
+                rules.validate()
+            except ValueError as error:
+                section.fail('mode', str(error))
     return rules
 
 
@@ -37,7 +43,15 @@ def values(rules: EncodingRules) -> Dict[str, Any]:
     """Return rules by their keys in an encoding file."""
     return {'source': rules.source, 'rename': [list(rename) for rename in rules.rename],
             **{key: list(getattr(rules, key)) for key in _LISTS},
-            'type_fields': dict(rules.type_fields)}
+            'type_fields': dict(rules.type_fields),
+            'mode': dict(zip(('topic', 'field'), rules.mode or ()))}
+
+
+def _mode(section: Section, value: Any) -> Optional[Tuple[str, str]]:
+    if value == {}:
+        return None
+    with section.section('mode') as mode:
+        return mode.text('topic'), mode.text('field')
 
 
 def _renames(section: Section, value: Any) -> List[Tuple[str, str]]:

@@ -370,11 +370,21 @@ def _check(model: TrainedModel, recording: RecordingEvents, has_sources: bool) -
 
 
 def unknown_types(model: TrainedModel, recording: RecordingEvents) -> List[int]:
-    """Return the ids of event types that training knows in no way: nobody published them."""
+    """Return the ids of event types that training knows in no way: nobody published them.
+
+    A mode that it never saw is none of them.
+    """
     unheard = model.unheard
     return [index for index in recording.heard.tolist() if index >= len(model.event_types)
+            and not recording.event_types[index].tells_mode
             and (recording.event_types[index].source,
                  recording.event_types[index].scope) not in unheard]
+
+
+def unknown_modes(model: TrainedModel, recording: RecordingEvents) -> List[int]:
+    """Return the ids of modes of the robot that training never saw."""
+    return [index for index in recording.heard.tolist() if index >= len(model.event_types)
+            and recording.event_types[index].tells_mode]
 
 
 def _known(model: TrainedModel, recording: RecordingEvents) -> Tuple[int, int]:

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "await.h"
+#include "self_awareness/core/stream/mode.h"
 #include "self_awareness/ros/bag/event_log_reader.h"
 
 namespace self_awareness {
@@ -92,6 +93,32 @@ TEST_F(KeptLogsTest, AStretchIsKeptWhole) {
         ++events;
       });
   EXPECT_EQ(events, static_cast<std::size_t>(kStretch) + 1);
+}
+
+TEST_F(KeptLogsTest, EachStretchBeginsWithTheModeThatLasts) {
+  const core::EventId mode =
+      vocabulary_.intern({"/logic", "/state", core::typeOfMode("T", "DRIVING")});
+  logs().add({kStart, mode}, vocabulary_);
+  hear(0, 2 * kStretch + 2);
+  ASSERT_TRUE(awaitFiles(2));
+  for (const std::string& file : files()) {
+    std::vector<core::EventId> ids;
+    ros1::EventLogReader(file, 0).read(
+        source_.encoding, [&](const core::EventType& type) { return *vocabulary_.find(type); }, {},
+        [&](const core::Event& event) { ids.push_back(event.id); });
+    EXPECT_EQ(ids.front(), mode) << file;
+    EXPECT_EQ(std::count(ids.begin(), ids.end(), mode), 1) << file;
+  }
+  // Another model has other ids.
+  logs().setModel(model_, true);
+  logs().endStretch();
+  hear(2 * kStretch + 10, 2 * kStretch + 30);
+  logs().finish();
+  EXPECT_EQ(files().size(), 3U);
+  ros1::EventLogReader(files().back(), 0)
+      .read(
+          source_.encoding, [&](const core::EventType& type) { return *vocabulary_.find(type); },
+          {}, [&](const core::Event& event) { EXPECT_NE(event.id, mode); });
 }
 
 TEST_F(KeptLogsTest, WhatIsNotNormalIsNotKeptAndTheNextStretchIs) {

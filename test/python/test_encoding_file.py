@@ -1,6 +1,7 @@
 """Encoding files, and the example among the configurations."""
 from __future__ import annotations
 
+import pickle
 from pathlib import Path
 
 import pytest
@@ -18,7 +19,7 @@ def test_the_example_is_what_train_does_without_a_file() -> None:
 def test_the_example_shows_every_key() -> None:
     keys = set(yaml.safe_load(EXAMPLE.read_text()))
     assert keys == {'source', 'rename', 'include_topics', 'exclude_topics', 'include_sources',
-                    'exclude_sources', 'type_fields'}
+                    'exclude_sources', 'type_fields', 'mode'}
 
 
 @pytest.mark.parametrize('text', ['', '# nothing but a comment\n', '{}'])
@@ -32,14 +33,27 @@ def test_keys_are_read(tmp_path: Path) -> None:
     file = tmp_path / 'e.yaml'
     file.write_text('source: none\ninclude_topics: ["/a.*"]\nexclude_topics: []\n'
                     'include_sources: [/b]\nexclude_sources: []\ntype_fields: {a/B: c.d}\n'
-                    "rename: [['/r(.)/x', '/\\1'], [/a, /b]]\n")
+                    "rename: [['/r(.)/x', '/\\1'], [/a, /b]]\n"
+                    'mode: {topic: /a1, field: s.t}\n')
     rules = encoding_file.load(str(file))
     assert rules.source == 'none'
     assert (rules.include_topics, rules.exclude_topics) == (['/a.*'], [])
     assert (rules.include_sources, rules.exclude_sources) == (['/b'], [])
     assert rules.type_fields == {'a/B': 'c.d'}
+    assert rules.mode == ('/a1', 's.t')
+    assert encoding_file.values(rules)['mode'] == {'topic': '/a1', 'field': 's.t'}
+    assert pickle.loads(pickle.dumps(rules)) == rules
     assert rules.rename == [('/r(.)/x', '/\\1'), ('/a', '/b')]
     assert encoding_file.values(rules)['rename'] == [['/r(.)/x', '/\\1'], ['/a', '/b']]
+
+
+@pytest.mark.parametrize('text', ['', 'mode: {}'])
+def test_nobody_tells_a_mode_unless_a_file_says_so(tmp_path: Path, text: str) -> None:
+    file = tmp_path / 'e.yaml'
+    file.write_text(text)
+    rules = encoding_file.load(str(file))
+    assert rules.mode is None
+    assert encoding_file.values(rules)['mode'] == {}
 
 
 @pytest.mark.parametrize('text, key', [
@@ -56,6 +70,12 @@ def test_keys_are_read(tmp_path: Path) -> None:
     ('rename: [[/a, b]]', 'rename'),
     ('rename: [["/(a", /b]]', 'rename'),
     ('type_fields: {a/B: 1}', 'type_fields'),
+    ('mode: /state', 'mode'),
+    ('mode: {topic: /state}', 'mode.field'),
+    ('mode: {topic: /state, field: data, value: 1}', 'mode.value'),
+    ('mode: {topic: state, field: data}', 'mode'),
+    ('mode: {topic: /clock, field: clock}', 'mode'),
+    ('include_topics: [/a]\nmode: {topic: /b, field: data}', 'mode'),
 ])
 def test_an_error_names_the_file_and_the_key(tmp_path: Path, text: str, key: str) -> None:
     file = tmp_path / 'e.yaml'

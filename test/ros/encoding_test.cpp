@@ -6,6 +6,7 @@
 #include <rosgraph_msgs/Log.h>
 #include <sensor_msgs/JointState.h>
 #include <sensor_msgs/PointCloud2.h>
+#include <std_msgs/String.h>
 #include <visualization_msgs/Marker.h>
 #include <visualization_msgs/MarkerArray.h>
 
@@ -15,6 +16,7 @@
 #include <string>
 #include <vector>
 
+#include "self_awareness/core/stream/mode.h"
 #include "self_awareness/core/stream/vocabulary.h"
 #include "self_awareness/ros/message_field.h"
 #include "self_awareness/ros/stable_name.h"
@@ -185,6 +187,100 @@ TEST_F(EncoderTest, ATypeFieldTellsWhatAMessageDoes) {
   EXPECT_EQ(vocabulary_.at(added).type, "visualization_msgs/Marker[action=0]");
   EXPECT_EQ(vocabulary_.at(removed).type, "visualization_msgs/Marker[action=2]");
   EXPECT_EQ(encoder->id(add.data(), add.size()), added);
+}
+
+EncodingRules rulesOfMode(const std::string& topic, const std::string& field) {
+  EncodingRules rules = EncodingRules::defaults();
+  rules.mode = ModeField{topic, field};
+  return rules;
+}
+
+TEST_F(EncoderTest, AMessageOfTheModeIsAnEventAndTellsTheMode) {
+  std_msgs::String message;
+  Connection connection;
+  connection.callerid = "/logic";
+  connection.topic = "/r7/state";
+  connection.datatype = ros::message_traits::datatype(message);
+  connection.definition = ros::message_traits::definition(message);
+  connection.latching = true;
+  EncodingRules rules = rulesOfMode("/state", "data");
+  rules.renames = {{"/r[0-9]+/(.*)", "/\\1"}};
+  auto encoder = makeEncoder(rules).connect(connection);
+  ASSERT_TRUE(encoder);
+  EXPECT_TRUE(encoder->tellsMode());
+  EXPECT_TRUE(encoder->needsContent());
+  EXPECT_FALSE(encoder->accept()) << "what was latched is still no event but of the mode";
+  message.data = "DRIVING";
+  const std::vector<std::uint8_t> driving = serialize(message);
+  message.data = "DOCKED";
+  const std::vector<std::uint8_t> docked = serialize(message);
+  const core::EventId drives = encoder->mode(driving.data(), driving.size());
+  EXPECT_EQ(core::toString(vocabulary_.at(drives)),
+            "/logic /state std_msgs/String[mode: DRIVING]");
+  EXPECT_TRUE(vocabulary_.tellsMode(drives));
+  EXPECT_NE(encoder->mode(docked.data(), docked.size()), drives);
+  EXPECT_EQ(encoder->mode(driving.data(), driving.size()), drives);
+  const core::EventId plain = encoder->id(driving.data(), driving.size());
+  EXPECT_EQ(vocabulary_.at(plain).type, "std_msgs/String");
+  EXPECT_EQ(encoder->id(docked.data(), docked.size()), plain);
+  connection.topic = "/other";
+  EXPECT_FALSE(makeEncoder(rules).connect(connection)->tellsMode());
+}
+
+TEST_F(EncoderTest, AFieldOfTheModeThatIsNotThereIsNamed) {
+  Connection connection = scan();
+  connection.definition = "string data";
+  connection.datatype = "std_msgs/String";
+  try {
+    makeEncoder(rulesOfMode("/scan", "state")).connect(connection);
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("the mode on /scan: "), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("std_msgs/String: state"), std::string::npos);
+  }
+}
+
+TEST(EncodingRules, AModeThatCannotBeToldIsNamed) {
+  const auto why = [](const EncodingRules& rules) -> std::string {
+    try {
+      rules.validate();
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(why(rulesOfMode("/state", "data")), "");
+  for (const char* topic : {"state", "", "/a b", "~state"}) {
+    EXPECT_NE(why(rulesOfMode(topic, "data")).find("no name of a topic"), std::string::npos)
+        << topic;
+  }
+  EXPECT_NE(why(rulesOfMode("/state", "")).find("no field"), std::string::npos);
+  EXPECT_NE(why(rulesOfMode("/clock", "clock")).find("exclude_topics"), std::string::npos);
+  EncodingRules rules = rulesOfMode("/state", "data");
+  rules.include_topics = {"/scan"};
+  EXPECT_NE(why(rules).find("include_topics"), std::string::npos);
+  rules.include_topics.emplace_back("/sta.*");
+  EXPECT_EQ(why(rules), "");
+}
+
+TEST_F(EncoderTest, NobodyMakesUpAMode) {
+  Connection connection = scan();
+  connection.datatype = core::typeOfMode("a/B", "DRIVING");
+  EXPECT_FALSE(makeEncoder(EncodingRules()).connect(connection));
+  EXPECT_NE(whyLeftOut(connection).find("is no name of a type"), std::string::npos);
+}
+
+TEST(EventTypes, TooManyModesAreNamed) {
+  core::Vocabulary vocabulary;
+  for (std::size_t k = 0; k <= kMostTypesOfField; ++k) {
+    vocabulary.intern({"/logic", "/state", core::typeOfMode("a/B", std::to_string(k))});
+  }
+  try {
+    checkEventTypes(rulesOfMode("/state", "id"), vocabulary);
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what()).find("/state: id"), std::string::npos);
+  }
 }
 
 TEST_F(EncoderTest, SourcesMayBeLeftOut) {

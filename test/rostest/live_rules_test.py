@@ -2,7 +2,9 @@
 """The monitor at its edges: what it listens to, what it ignores, and what it says of bad input."""
 
 import os
+import random
 import re
+import signal
 import statistics
 import time
 from contextlib import ExitStack
@@ -129,6 +131,72 @@ class LiveRulesTest(MonitorCase):
             await_condition('the action is in the type', lambda: any(
                 x.type == 'visualization_msgs/Marker[action=0]'
                 for s in listener.statuses for x in s.suspects), 20)
+
+    # Who tells its mode
+
+    def mode_model(self) -> str:
+        """A model of three starts of a robot that drives for 30 s, and is docked for 60 s.
+
+        /planner plans while it drives; this node says so on /state; /imu comes all the time.
+        """
+        encoding = self_awareness.EncodingRules.defaults()
+        encoding.exclude_topics += ['/rosout']
+        encoding.mode = ('/state', 'data')
+        text = 'std_msgs/String'
+        types = [self_awareness.EventType(source, topic, kind) for source, topic, kind in (
+            (rospy.get_name(), '/state', text),
+            (rospy.get_name(), '/state', text + '[mode: DRIVING]'),
+            (rospy.get_name(), '/state', text + '[mode: DOCKED]'),
+            ('/planner', '/plan', text), ('/imu', '/imu', text))]
+        training = self_awareness.Training(encoding)
+        recordings = []
+        for seed in range(3):
+            rng = random.Random(seed)
+            events = [(0.1 * (i + 0.3 * rng.random()), 4) for i in range(2700)]
+            for begin in (0.0, 90.0, 180.0):
+                events += [(begin, 1), (begin, 0), (begin + 30.0, 2), (begin + 30.0, 0)]
+                events += [(begin + 0.5 + 0.1 * (i + 0.3 * rng.random()), 3) for i in range(294)]
+            stamps = [int((1e3 * (seed + 1) + at) * 1e9) for at, _ in sorted(events)]
+            ids = [event for _, event in sorted(events)]
+            recording = self_awareness.Recording()
+            recording.fingerprint = seed
+            training.add_events(types, stamps, ids, recording)
+            recordings.append((stamps, ids, seed))
+        model = training.model()
+        calibrator = self_awareness.Calibrator(model, 5 * 10**9)
+        for stamps, ids, fingerprint in recordings:
+            calibrator.add_trained_on(stamps, ids, fingerprint)
+        model.calibration = calibrator.find(0.5)
+        model.save(self.path('model'))
+        return self.path('model')
+
+    @again_if_clock_was_set
+    def test_a_mode_that_was_latched_tells_of_a_death(self) -> None:
+        state = rospy.Publisher('/state', String, latch=True, queue_size=1)
+        self.addCleanup(state.unregister)
+        state.publish('DRIVING')
+        with Process('rosrun', 'self_awareness', 'talker.py', '__name:=imu', '_output:=/imu',
+                     '_rate:=10'), \
+                Process('rosrun', 'self_awareness', 'talker.py', '__name:=planner',
+                        '_output:=/plan', '_rate:=10') as planner, \
+                self.monitor(self.mode_model(), detector='evidence', unknown='warn',
+                             settle_time=1), MonitorListener() as listener:
+            listener.await_settled()
+            await_condition('both are heard', lambda: all(
+                float(listener.value(name, 'events a second') or 0) > 5
+                for name in ('/planner', '/imu')), 30)
+            seen = len(listener.statuses)
+            state.publish('LOST')  # training never saw it
+            state.publish('DRIVING')
+            await_condition('both are told', lambda: sum(
+                s.events for s in listener.statuses[seen:]) > 40, 20)
+            self.call('/self_awareness/reset')  # the mode lasts
+            listener.await_settled()
+            planner.send(signal.SIGKILL)
+            alarm = listener.await_alarm(30)
+            self.assertEqual(alarm.suspects[0].source, '/planner')
+            self.assertIn('of the mode DRIVING (/state)', alarm.message)
+            self.assertEqual(sum(s.unknown_events for s in listener.statuses), 0)
 
     @again_if_clock_was_set
     def test_anonymous_names_are_one_source(self) -> None:

@@ -170,7 +170,8 @@ class RecordTest(unittest.TestCase):
         for number, (parameter, value) in enumerate((
                 ('encoding/exclude', '[/a]'), ('encoding/exclude_topics', '/a'),
                 ('encoding/include_topics', '["("]'), ('encoding/source', 'nobody'),
-                ('encoding/type_fields', '{std_msgs/String: 1}'), ('split', '0'))):
+                ('encoding/type_fields', '{std_msgs/String: 1}'),
+                ('encoding/mode', '{topic: /a}'), ('split', '0'))):
             name = 'wrong{}'.format(number)
             recorder = Process('rosrun', 'self_awareness', 'record_events', '__name:=' + name,
                                '_output:={}/run'.format(self.folder),

@@ -26,6 +26,14 @@ struct Rename {
 
 bool operator==(const Rename& a, const Rename& b);
 
+/// What tells the mode that the robot is in (docs/modes.md): a field of the messages on a topic.
+struct ModeField {
+  std::string topic;  ///< as the renames leave it
+  std::string field;  ///< an integer, a bool or a string, not in an array; nested ones with dots
+};
+
+bool operator==(const ModeField& a, const ModeField& b);
+
 /// How messages become events: the rules of the function f (paper, section IV-C; docs/method.md,
 /// section 1.1). The model holds them, so training and the monitor cannot disagree. Patterns are
 /// regular expressions of RE2 (github.com/google/re2/wiki/Syntax) that must match the whole name.
@@ -42,19 +50,22 @@ struct EncodingRules {
   std::vector<std::string> include_sources;  ///< empty: all; no effect for Source::kNone
   std::vector<std::string> exclude_sources;
   std::map<std::string, std::string> type_fields;  ///< field by datatype
+  std::optional<ModeField> mode;                   ///< none: nobody tells a mode
 
   /// Rules that suit most robots: everything but the monitor's own output, clocks, aggregated
   /// logs, bonds and tools that only look on.
   static EncodingRules defaults();
   /// @throw std::invalid_argument names the pattern that is no regular expression, the new name
-  /// that does not fit one, or what has control characters; or the patterns are too large together
+  /// that does not fit one, what has control characters, or the topic of the mode that is none or
+  /// is left out; or the patterns are too large together
   void validate() const;
 };
 
 bool operator==(const EncodingRules& a, const EncodingRules& b);
 
-/// Most event types that one type field may make. Every pair of event types has a histogram: a
-/// field with many values, such as an identifier, would fill the memory and teach nothing.
+/// Most event types that one type field, or the field of the mode, may make. Every pair of event
+/// types has a histogram: a field with many values, such as an identifier, would fill the memory
+/// and teach nothing.
 constexpr std::size_t kMostTypesOfField = 1000;
 
 /// Most event types of one robot: what is counted grows with their square, to some GB here.
@@ -108,15 +119,26 @@ class ConnectionEncoder {
   /// which latches, it is: there may be no other. Call it once for every message.
   bool accept();
   /// Whether messages must be read; if not, all on this connection have one id.
-  bool needsContent() const { return field_ != nullptr; }
+  bool needsContent() const { return field_ != nullptr || tellsMode(); }
   /// Id of a message if needsContent() is false.
   core::EventId id();
   /// Id of a message by its serialized content.
   /// @throw std::out_of_range if the message is shorter than its definition
   core::EventId id(const std::uint8_t* data, std::size_t size);
+  /// Whether each message tells the robot's mode, which is an event besides (core/stream/mode.h);
+  /// also one that accept() does not take: what was latched is what lasts.
+  bool tellsMode() const { return mode_field_ != nullptr; }
+  /// Id of that event by the message's content.
+  /// @throw std::out_of_range if the message is shorter than its definition
+  core::EventId mode(const std::uint8_t* data, std::size_t size);
 
  private:
   friend class Encoder;
+  using Known = std::unordered_map<std::string, core::EventId>;  // by value
+
+  /// @param typeOf the type that a value makes
+  template <typename TypeOf>
+  core::EventId idByValue(const std::string& value, Known& known, const TypeOf& typeOf);
 
   EventIds ids_;
   core::EventType type_;
@@ -124,7 +146,9 @@ class ConnectionEncoder {
   bool skip_next_ = false;
   std::shared_ptr<const MessageField> field_;
   std::string field_name_;
-  std::unordered_map<std::string, core::EventId> ids_by_value_;
+  Known ids_by_value_;
+  std::shared_ptr<const MessageField> mode_field_;
+  Known ids_by_mode_;
 };
 
 /// Encodes the messages of all connections of one system.
@@ -152,7 +176,8 @@ class Encoder {
   bool listens(const std::string& source) const;
   /// Encoder of the connection's messages; none if the rules or their names leave them out, or if
   /// they are of a type of this package.
-  /// @throw std::invalid_argument if a type field does not fit the message's definition
+  /// @throw std::invalid_argument if a type field, or the field of the mode, does not fit the
+  /// message's definition
   std::optional<ConnectionEncoder> connect(const Connection& connection) const;
 
  private:

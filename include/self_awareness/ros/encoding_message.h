@@ -7,7 +7,7 @@ namespace self_awareness::ros1 {
 
 /// The rules as models and event logs store them.
 self_awareness::Encoding toMessage(const EncodingRules& rules);
-/// @throw std::invalid_argument if the source is unknown, or a pattern is no regular expression
+/// @throw std::invalid_argument if the source is unknown, or as EncodingRules::validate()
 EncodingRules fromMessage(const self_awareness::Encoding& message);
 
 }  // namespace self_awareness::ros1

@@ -20,8 +20,8 @@ struct FileKind {
   std::uint32_t oldest_reader;  ///< the oldest format whose readers understand what is written
   std::uint32_t method;         ///< that what is in it was made by; 0: by none
 };
-inline constexpr FileKind kModelFile{"model", 4, 4, kMethod};
-inline constexpr FileKind kEventLogFile{"event log", 4, 4, 0};
+inline constexpr FileKind kModelFile{"model", 5, 5, kMethod};
+inline constexpr FileKind kEventLogFile{"event log", 5, 5, 0};
 inline constexpr FileKind kResultBag{"result bag", 2, 1, kMethod};
 inline constexpr FileKind kStandingAlarmFile{"standing alarm", 1, 1, 0};
 inline constexpr FileKind kIncidentsFile{"incidents", 1, 1, 0};

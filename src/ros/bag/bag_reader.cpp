@@ -159,7 +159,8 @@ void BagReader::read(const Encoder& encoder, const TimeRange& range, const Handl
         continue;
       }
       AttributeReader& reader = attributes[entry.connection];
-      const bool needs_content = accepted && connection_encoder->needsContent();
+      const bool tells_mode = connection_encoder->tellsMode();
+      const bool needs_content = tells_mode || (accepted && connection_encoder->needsContent());
       if (needs_content) {
         messages->read(entry, content);
         reader.begin(content.size());
@@ -168,6 +169,9 @@ void BagReader::read(const Encoder& encoder, const TimeRange& range, const Handl
         messages->pass(entry, reader);
       }
       const core::Attributes found = reader.end(entry.stamp);
+      if (tells_mode) {
+        handler({entry.stamp, connection_encoder->mode(content.data(), content.size())});
+      }
       if (accepted) {
         handler({entry.stamp,
                  needs_content ? connection_encoder->id(content.data(), content.size())

@@ -240,6 +240,9 @@ void EventLogReader::read(const EncodingRules& rules, const EventIds& ids, const
   EncodingRules recorded = *summary_.encoding;
   const bool rename = recorded.renames.empty() && !rules.renames.empty();
   recorded.renames = rename ? rules.renames : recorded.renames;
+  if (rename && recorded.mode) {
+    recorded.mode->topic = Encoder(rules, ids).scopeOf(recorded.mode->topic);
+  }
   if (!(rules == recorded)) {
     throw BagError(summary_.path +
                    ": the event log was recorded by another encoding than the one "

@@ -48,6 +48,7 @@ void LiveEvents::setEncoder(std::shared_ptr<const Encoder> encoder, OwnOutput ow
     live.held_until.reset();
   }
   encodeAgain();
+  mode_again_ = true;
 }
 
 void LiveEvents::setGraph(const Graph& graph) {
@@ -84,7 +85,32 @@ std::size_t LiveEvents::connections() const {
                     [](const auto& connection) { return connection.second.encoder.has_value(); }));
 }
 
+void LiveEvents::tellModeAgain() {
+  LiveConnection* last = nullptr;
+  for (auto& [key, live] : connections_) {
+    const bool tells = live.mode && live.encoder && live.encoder->tellsMode();
+    if (tells && (last == nullptr || live.mode_told > last->mode_told)) {
+      last = &live;
+    }
+  }
+  if (last != nullptr) {
+    tellMode(*last, now(), *last->mode, steadyNow());
+  }
+}
+
+void LiveEvents::tellMode(LiveConnection& live, std::int64_t stamp, const Content& content,
+                          std::int64_t steady_time) {
+  tell(live, {stamp, live.encoder->mode(content.data(), content.size())}, steady_time);
+}
+
+std::int64_t LiveEvents::now() const {
+  return handlers_.time ? handlers_.time(rosNow(), steadyNow()) : rosNow();
+}
+
 void LiveEvents::deliver() {
+  if (std::exchange(mode_again_, false)) {
+    tellModeAgain();
+  }
   const std::vector<Arrivals::Dropped> dropped = arrivals_.take(delivered_);
   for (const Arrival& arrival : delivered_) {
     onArrival(arrival);
@@ -111,7 +137,11 @@ void LiveEvents::onArrival(const Arrival& arrival) {
   }
   LiveConnection& live = connectionOf(arrival);
   std::optional<ConnectionEncoder>& encoder = live.encoder;
-  if (!encoder || !encoder->accept()) {
+  if (!encoder) {
+    return;
+  }
+  const bool accepted = encoder->accept();
+  if (!accepted && !encoder->tellsMode()) {
     return;
   }
   core::Event event{handlers_.time ? handlers_.time(arrival.stamp, arrival.steady) : arrival.stamp,
@@ -127,6 +157,14 @@ void LiveEvents::onArrival(const Arrival& arrival) {
     return;
   } else {
     try {
+      if (encoder->tellsMode()) {
+        tellMode(live, event.stamp, *arrival.content, arrival.steady);
+        live.mode = arrival.content;
+        live.mode_told = arrival.steady;
+      }
+      if (!accepted) {
+        return;
+      }
       event.id = encoder->id(arrival.content->data(), arrival.content->size());
       if (handlers_.on_content) {
         handlers_.on_content(event.id, *arrival.content);
@@ -137,7 +175,11 @@ void LiveEvents::onArrival(const Arrival& arrival) {
       return;
     }
   }
-  if (!hold(live, event, arrival.steady)) {
+  tell(live, event, arrival.steady);
+}
+
+void LiveEvents::tell(LiveConnection& live, const core::Event& event, std::int64_t steady_time) {
+  if (!hold(live, event, steady_time)) {
     handlers_.on_event(event);
   }
 }
@@ -167,8 +209,7 @@ void LiveEvents::release() {
     return;
   }
   const std::int64_t steady_now = steadyNow();
-  const std::int64_t ros_now = rosNow();
-  const std::int64_t now = handlers_.time ? handlers_.time(ros_now, steady_now) : ros_now;
+  const std::int64_t now = this->now();
   holds_ = false;
   for (auto& [key, live] : connections_) {
     if (!live.held.empty() && steady_now >= *live.held_until) {

@@ -36,7 +36,9 @@ void ReplayedMonitor::onEvent(const core::Event& event, bool same_clock) {
     heard_.onClockStep();
     announcer_.standDown(kClockWasSet, now_);
   }
-  heard_.add(event);
+  if (!vocabulary_.tellsMode(event.id)) {  // else its message is another event
+    heard_.add(event);
+  }
 }
 
 void ReplayedMonitor::writeDiagnostics() {

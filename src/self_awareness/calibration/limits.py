@@ -11,7 +11,8 @@ from typing import Any, Iterable, List, Optional, Sequence, Tuple
 
 import numpy as np
 
-from self_awareness import Calibration, Calibrator, LimitFindings, TrainedModel, recordings
+from self_awareness import (OTHER_MODE, Calibration, Calibrator, LimitFindings, TrainedModel,
+                            recordings)
 from self_awareness.calibration.holes import Silences
 from self_awareness.recordings import BagPart, RecordingEvents
 from self_awareness.workers import InProcess, Workers
@@ -93,12 +94,20 @@ def held_out(trained: TrainedModel, found_in: Iterable[RecordingEvents], settle_
     """
     found_in = list(found_in)
     found = find(trained, settle_time, budgets,
-                 [HeldOut(recording.stamps, recording.ids, recording.robot_start,
+                 [HeldOut(recording.stamps, _ids(trained, recording), recording.robot_start,
                           recording.clock_steps, recording.robot, recording.attributes)
                   for recording in found_in])
     for calibration in found:
         calibration.recordings = [recording.recording for recording in found_in]
     return found
+
+
+def _ids(trained: TrainedModel, recording: RecordingEvents) -> np.ndarray:
+    """Return the ids of a recording's events: modes that training never saw are one."""
+    other = [index for index in recording.heard.tolist() if index >= len(trained.event_types)
+             and recording.event_types[index].tells_mode]
+    return (np.where(np.isin(recording.ids, other), OTHER_MODE, recording.ids).astype(np.uint32)
+            if other else recording.ids)
 
 
 def cross_fit(trained: TrainedModel, trained_on: Sequence[TrainedOn], settle_time: int,

@@ -16,7 +16,8 @@ from self_awareness.commands import cli
 from self_awareness.judging import evidence_judge, paper_judge
 from self_awareness.output_files import (PAGE, PICTURE, RESULT_BAG, TABLE, VALUES, check_outputs,
                                          replacing)
-from self_awareness.recordings import BagPart, RecordingEvents, expand, unknown_types
+from self_awareness.recordings import (BagPart, RecordingEvents, expand, unknown_modes,
+                                       unknown_types)
 from self_awareness.reporting import coverage_text, csv_text
 from self_awareness.reporting.plots import NamedAlarm, ScorePlot, save_scores
 from self_awareness.reporting.report import neighbours
@@ -156,14 +157,16 @@ def _print_unknown(recording: RecordingEvents, trained: TrainedModel) -> None:
     known = len(trained.event_types)
     counts = np.bincount(recording.ids, minlength=known)
     new = set(unknown_types(trained, recording))
+    modes = set(unknown_modes(trained, recording))
     for said, kinds in (
-            ('never seen in training', new),
-            ('that nobody subscribed to in training: they are not judged',
-             set(range(known, len(counts))) - new)):
+            ('event types never seen in training', new),
+            ('modes never seen in training: they say nothing', modes),
+            ('event types that nobody subscribed to in training: they are not judged',
+             set(range(known, len(counts))) - new - modes)):
         found = sorted((-int(counts[kind]), str(recording.event_types[kind])) for kind in kinds
                        if counts[kind])
         if found:
-            print(f'  event types {said}:')
+            print(f'  {said}:')
         for count, name in found:
             print(f'    {name}: {-count}')
 

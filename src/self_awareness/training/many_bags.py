@@ -59,6 +59,9 @@ class Counting:
         """Return a copy of an encoding that renames what is to be renamed, too."""
         renamed = copy.copy(encoding)
         renamed.rename = [*encoding.rename, *self.rename]
+        if encoding.mode is not None:
+            topic, name = encoding.mode
+            renamed.mode = (renamed.scopes_of({topic})[topic], name)
         return renamed
 
     @classmethod

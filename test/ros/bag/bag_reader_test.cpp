@@ -111,6 +111,25 @@ TEST_F(BagReaderTest, EventsComeInOrderWithoutTheLatchedFirstMessage) {
   }
 }
 
+TEST_F(BagReaderTest, TheLatchedFirstMessageTellsTheMode) {
+  rules_.mode = ModeField{"/state", "data"};
+  const std::string bag = writeBag("a.bag");
+  std::vector<core::Event> modes;
+  std::size_t others = 0;
+  for (const core::Event& event : read(bag)) {
+    if (vocabulary_.tellsMode(event.id)) {
+      modes.push_back(event);
+    } else {
+      ++others;
+    }
+  }
+  EXPECT_EQ(others, 111U) << "nothing else changes";
+  ASSERT_EQ(modes.size(), 2U);
+  EXPECT_LT(modes[0].stamp, modes[1].stamp);
+  EXPECT_EQ(modes[1].stamp, 105 * core::kNanosecondsPerSecond);
+  EXPECT_EQ(vocabulary_.at(modes[0].id).scope, "/state");
+}
+
 TEST_F(BagReaderTest, EqualStampsKeepTheOrderOfTheRecording) {
   std_msgs::String message;
   rosbag::Bag bag(path("equal.bag"), rosbag::bagmode::Write);

@@ -14,6 +14,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <thread>
@@ -64,10 +65,11 @@ class LiveEventsTest : public testing::Test {
     encode({});
   }
 
-  void encode(const std::map<std::string, std::string>& type_fields,
-              std::int64_t window = kWindow) {
+  void encode(const std::map<std::string, std::string>& type_fields, std::int64_t window = kWindow,
+              const std::optional<ModeField>& mode = {}) {
     EncodingRules rules;
     rules.type_fields = type_fields;
+    rules.mode = mode;
     live_events_->setEncoder(
         std::make_shared<Encoder>(
             rules, [this](const core::EventType& type) { return vocabulary_.intern(type); }),
@@ -143,6 +145,21 @@ TEST_F(LiveEventsTest, ReadsAMessageFromTheFirstOnWhereTheEncodingNeedsIt) {
   publish(publisher, message("on"));
   publish(publisher, message("off"));
   EXPECT_EQ(delivered(), (Types{"std_msgs/String[data=on]", "std_msgs/String[data=off]"}));
+}
+
+TEST_F(LiveEventsTest, WhatWasLatchedTellsTheModeThatLasts) {
+  encode({}, kWindow, ModeField{"/latched", "data"});
+  ros::Publisher publisher = node_handle_.advertise<std_msgs::String>("/latched", 0, true);
+  publisher.publish(message("DRIVING"));
+  subscriptions_->listen(ownTopic("/latched"));
+  await([&] { return live_events_->arrivals().arrived() == 1; });
+  EXPECT_EQ(delivered(), Types{"std_msgs/String[mode: DRIVING]"});
+  publish(publisher, message("DOCKED"));
+  EXPECT_EQ(delivered(), (Types{"std_msgs/String[mode: DOCKED]", "std_msgs/String"}));
+  // Another model, for which nobody says it again.
+  encode({}, kWindow, ModeField{"/latched", "data"});
+  EXPECT_EQ(delivered(), Types{"std_msgs/String[mode: DOCKED]"});
+  EXPECT_EQ(delivered(), Types{});
 }
 
 TEST_F(LiveEventsTest, WhereRosTimeDoesNotCountAttributesAreNotKnown) {

@@ -86,7 +86,8 @@ class BagReader {
   const BagSummary& summary() const { return summary_; }
   /// Calls the handler with every event of the range, in the order of the recording.
   /// @throw BagError if the range holds no time of the recording or a message cannot be read
-  /// @throw std::invalid_argument if a type field does not fit a message's definition
+  /// @throw std::invalid_argument if a type field, or the field of the mode, does not fit a
+  /// message's definition
   void read(const Encoder& encoder, const TimeRange& range, const Handler& handler,
             const Progress& progress = nullptr) const;
 

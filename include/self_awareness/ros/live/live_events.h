@@ -62,7 +62,7 @@ class LiveEvents {
   Arrivals& arrivals() { return arrivals_; }
 
   /// Encodes from now on with this encoder. Connections that were heard are no new ones: the next
-  /// message on a latching one is an event.
+  /// message on a latching one is an event. The mode that was told last is told again.
   /// @param own_output left out
   /// @param window length [ns]
   /// @param hold for so long what a publisher says that may be left out once the graph is known
@@ -92,11 +92,21 @@ class LiveEvents {
     // steady time], and what it said.
     std::optional<std::int64_t> held_until;
     std::vector<core::Event> held;
+    std::shared_ptr<const Content> mode;  // the last message that told one; none: it did not
+    std::int64_t mode_told = 0;           // then [ns of steady time]
   };
 
   /// Chooses anew what is left out, of connections that were heard.
   void encodeAgain();
   void onArrival(const Arrival& arrival);
+  void tellModeAgain();
+  /// @throw std::out_of_range if the message is too short
+  void tellMode(LiveConnection& live, std::int64_t stamp, const Content& content,
+                std::int64_t steady_time);
+  /// The time that events of now are stamped with [ns].
+  std::int64_t now() const;
+  /// Hands an event on, or keeps it back.
+  void tell(LiveConnection& live, const core::Event& event, std::int64_t steady_time);
   /// Keeps an event back, if it is to be.
   bool hold(LiveConnection& live, const core::Event& event, std::int64_t steady_time);
   /// Hands on what was kept back for long enough.
@@ -114,8 +124,9 @@ class LiveEvents {
   Arrivals arrivals_;
   std::shared_ptr<const Encoder> encoder_;
   OwnOutput own_output_;
-  std::int64_t hold_ = 0;  // [ns]
-  bool holds_ = false;     // some connections have something held
+  std::int64_t hold_ = 0;    // [ns]
+  bool holds_ = false;       // some connections have something held
+  bool mode_again_ = false;  // the mode that was told last has to be told to another encoder
   // All messages of a connection share one header object.
   std::unordered_map<const ros::M_string*, LiveConnection> connections_;
   std::vector<Arrival> delivered_;  // kept for its memory

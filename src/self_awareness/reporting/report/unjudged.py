@@ -4,11 +4,11 @@ from __future__ import annotations
 import math
 from collections import Counter
 from dataclasses import dataclass
-from typing import List, Sequence
+from typing import List, Sequence, Set
 
 import numpy as np
 
-from self_awareness.recordings import unknown_types
+from self_awareness.recordings import unknown_modes, unknown_types
 from self_awareness.reporting.report.judged import Judged
 from self_awareness.stamps import SECOND_NS
 
@@ -70,15 +70,18 @@ def _unknown(judged: Judged, counts: np.ndarray) -> List[Unjudged]:
     known = len(judged.by.trained.event_types)
     order = sorted(range(known, len(counts)), key=lambda kind: -counts[kind])
     new = set(unknown_types(judged.by.trained, judged.recording))
+    modes = set(unknown_modes(judged.by.trained, judged.recording))
 
-    def names(of_new: bool) -> List[str]:
+    def names(kinds: Set[int]) -> List[str]:
         return [f'{judged.recording.event_types[kind]}: {counts[kind]}' for kind in order
-                if (kind in new) is of_new and counts[kind]]
+                if kind in kinds and counts[kind]]
     return (_listed('that training never saw',
-                    'nothing is known of them; with each their number of events', names(True))
+                    'nothing is known of them; with each their number of events', names(new))
+            + _listed('of modes that training never saw',
+                      'such a mode says nothing; with each how often it was told', names(modes))
             + _listed('that nobody subscribed to in training',
                       'they were published then, and not recorded; with each their number of '
-                      'events', names(False)))
+                      'events', names(set(order) - new - modes)))
 
 
 def _silent(judged: Judged, counts: np.ndarray) -> List[Unjudged]:
