@@ -60,6 +60,10 @@ void addFields(const std::string& name, const std::string& prefix, XmlRpcValue& 
     fail(name, "fields by datatype");
   }
   for (auto& [key, field] : value) {
+    if (field.getType() == XmlRpcValue::TypeStruct && field.hasMember("classes")) {
+      fail(name + "/" + prefix + key,
+           "a field alone: its classes are learned from bags, by train; record bags");
+    }
     if (field.getType() == XmlRpcValue::TypeString) {
       fields[prefix + key] = static_cast<std::string>(field);
     } else {

@@ -135,10 +135,11 @@ RecordedEvents readEvents(const std::string& path, const InLog& recording,
 using EventTypeState = std::tuple<std::string, std::string, std::string>;
 using RenameState = std::pair<std::string, std::string>;
 using ModeState = std::pair<std::string, std::string>;  // topic, field
+using ClassesState = std::map<std::string, std::pair<std::size_t, std::vector<double>>>;
 using EncodingState =
     std::tuple<bool, std::vector<RenameState>, std::vector<std::string>, std::vector<std::string>,
                std::vector<std::string>, std::vector<std::string>,
-               std::map<std::string, std::string>, std::optional<ModeState>>;
+               std::map<std::string, std::string>, std::optional<ModeState>, ClassesState>;
 
 std::vector<RenameState> renamesOf(const ros1::EncodingRules& rules) {
   std::vector<RenameState> renames;
@@ -164,6 +165,21 @@ void setMode(ros1::EncodingRules& rules, const std::optional<ModeState>& mode) {
   rules.mode = mode ? std::optional(ros1::ModeField{mode->first, mode->second}) : std::nullopt;
 }
 
+ClassesState classesOf(const ros1::EncodingRules& rules) {
+  ClassesState state;
+  for (const auto& [datatype, classes] : rules.classes) {
+    state[datatype] = {classes.number, classes.bounds};
+  }
+  return state;
+}
+
+void setClasses(ros1::EncodingRules& rules, const ClassesState& state) {
+  rules.classes.clear();
+  for (const auto& [datatype, classes] : state) {
+    rules.classes[datatype] = {classes.first, classes.second};
+  }
+}
+
 using Names = std::set<std::string>;
 
 template <typename Rename>
@@ -183,7 +199,8 @@ EncodingState stateOf(const ros1::EncodingRules& rules) {
           rules.include_sources,
           rules.exclude_sources,
           rules.type_fields,
-          modeOf(rules)};
+          modeOf(rules),
+          classesOf(rules)};
 }
 
 ros1::EncodingRules fromState(const EncodingState& state) {
@@ -191,10 +208,12 @@ ros1::EncodingRules fromState(const EncodingState& state) {
   bool none = false;
   std::vector<RenameState> renames;
   std::optional<ModeState> mode;
+  ClassesState classes;
   std::tie(none, renames, rules.include_topics, rules.exclude_topics, rules.include_sources,
-           rules.exclude_sources, rules.type_fields, mode) = state;
+           rules.exclude_sources, rules.type_fields, mode, classes) = state;
   setRenames(rules, renames);
   setMode(rules, mode);
+  setClasses(rules, classes);
   rules.source =
       none ? ros1::EncodingRules::Source::kNone : ros1::EncodingRules::Source::kCallerId;
   return rules;
@@ -254,6 +273,10 @@ void bindEncoding(py::module& m) {
       .def_readwrite("include_sources", &ros1::EncodingRules::include_sources)
       .def_readwrite("exclude_sources", &ros1::EncodingRules::exclude_sources)
       .def_readwrite("type_fields", &ros1::EncodingRules::type_fields)
+      .def_property(
+          "classes", &classesOf, &setClasses,
+          "of the values of type fields, by datatype: how many, and the bounds that were "
+          "learned")
       .def_property("mode", &modeOf, &setMode,
                     "what tells the mode of the robot: its topic, and a field of its messages")
       .def(
@@ -423,6 +446,21 @@ void bindBags(py::module& m) {
       .def_readonly("waiting", &RecordedEvents::waiting,
                     "how the machine was: a Waiting for each stretch of time; empty: not known");
   m.def(
+      "read_numbers",
+      [](const std::string& path, const ros1::EncodingRules& encoding, std::optional<double> start,
+         std::optional<double> end) {
+        std::map<std::string, py::array_t<double>> arrays;
+        for (const auto& [datatype, numbers] :
+             ros1::BagReader(path).readNumbers(encoding, timeRange(start, end))) {
+          arrays[datatype] = toArray(numbers);
+        }
+        return arrays;
+      },
+      py::arg("path"), py::arg("encoding"), py::arg("start") = py::none(),
+      py::arg("end") = py::none(),
+      "The values in a bag of the fields that the encoding has classes for, by datatype; NaN: no\n"
+      "number. start, end: as for read_events(). Raises BagError.");
+  m.def(
       "read_events",
       [](const std::string& path, const ros1::EncodingRules& encoding,
          const std::vector<core::EventType>& event_types, std::optional<double> start,
@@ -459,6 +497,8 @@ void bindRecordings(py::module& m) {
         "[bytes];\n"
         "steps: of their numbers (header.seq) since the message before, -1: not known; same: the\n"
         "bytes behind the header are those of the message before.");
+  m.attr("FEWEST_CLASSES") = ros1::ValueClasses::kFewest;
+  m.attr("MOST_CLASSES") = ros1::ValueClasses::kMost;
   bindEncoding(m);
   bindBags(m);
 }

@@ -3,6 +3,10 @@
 #include <ros/names.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <functional>
 #include <stdexcept>
 #include <tuple>
 #include <utility>
@@ -34,6 +38,40 @@ bool isLegalTopic(const std::string& name) {
   std::string error;
   return !name.empty() && name.size() <= kLongestName && ros::names::validate(name, error) &&
          name[0] != '~';
+}
+
+/// @throw std::invalid_argument if the classes of a datatype cannot be
+void checkClasses(const EncodingRules& rules, const std::string& datatype,
+                  const ValueClasses& classes) {
+  const std::string begin =
+      "encoding: the classes of " + printable(datatype, kLongestQuote) + " must be ";
+  if (rules.type_fields.count(datatype) == 0) {
+    throw std::invalid_argument(begin + "those of one of its fields (type_fields)");
+  }
+  if (classes.number < ValueClasses::kFewest || classes.number > ValueClasses::kMost) {
+    throw std::invalid_argument(begin + std::to_string(ValueClasses::kFewest) + " to " +
+                                std::to_string(ValueClasses::kMost) + ", not " +
+                                std::to_string(classes.number));
+  }
+  const std::vector<double>& bounds = classes.bounds;
+  if (bounds.size() >= classes.number ||
+      !std::all_of(bounds.begin(), bounds.end(),
+                   [](double bound) { return std::isfinite(bound); }) ||
+      std::adjacent_find(bounds.begin(), bounds.end(), std::greater_equal<>()) != bounds.end()) {
+    throw std::invalid_argument(begin + "parted by finite bounds that ascend, one fewer at most");
+  }
+}
+
+/// With as few digits as tell it from all other numbers.
+std::string inShort(double value) {
+  char text[32];
+  for (int digits = 1; digits <= 17; ++digits) {
+    std::snprintf(text, sizeof text, "%.*g", digits, value);
+    if (std::strtod(text, nullptr) == value) {
+      break;
+    }
+  }
+  return text;
 }
 
 /// @throw std::invalid_argument if the mode that is there cannot be told
@@ -87,9 +125,31 @@ void EncodingRules::validate() const {
                                   "' is no UTF-8, or has control characters");
     }
   }
+  for (const auto& [datatype, its] : classes) {
+    checkClasses(*this, datatype, its);
+  }
   if (mode) {
     checkMode(*this);
   }
+}
+
+bool operator==(const ValueClasses& a, const ValueClasses& b) {
+  return a.number == b.number && a.bounds == b.bounds;
+}
+
+std::vector<std::string> namesOfClasses(const std::vector<double>& bounds) {
+  std::vector<std::string> names{"below " + inShort(bounds.front())};
+  for (std::size_t k = 0; k + 1 < bounds.size(); ++k) {
+    names.push_back(inShort(bounds[k]) + " to " + inShort(bounds[k + 1]));
+  }
+  names.push_back(inShort(bounds.back()) + " or more");
+  names.emplace_back("NaN");
+  return names;
+}
+
+std::size_t classOf(double value, const std::vector<double>& bounds) {
+  const auto next = std::upper_bound(bounds.begin(), bounds.end(), value);
+  return std::isnan(value) ? bounds.size() + 1 : static_cast<std::size_t>(next - bounds.begin());
 }
 
 bool operator==(const Rename& a, const Rename& b) {
@@ -103,7 +163,8 @@ bool operator==(const ModeField& a, const ModeField& b) {
 bool operator==(const EncodingRules& a, const EncodingRules& b) {
   const auto fields = [](const EncodingRules& rules) {
     return std::tie(rules.source, rules.renames, rules.include_topics, rules.exclude_topics,
-                    rules.include_sources, rules.exclude_sources, rules.type_fields, rules.mode);
+                    rules.include_sources, rules.exclude_sources, rules.type_fields, rules.classes,
+                    rules.mode);
   };
   return fields(a) == fields(b);
 }
@@ -194,7 +255,10 @@ core::EventId ConnectionEncoder::id(const std::uint8_t* data, std::size_t size) 
   if (!field_) {
     return id();
   }
-  return idByValue(field_->read(data, size), ids_by_value_, [this](const std::string& value) {
+  const std::string found = bounds_.empty()
+                                ? field_->read(data, size)
+                                : class_names_[classOf(field_->number(data, size), bounds_)];
+  return idByValue(found, ids_by_value_, [this](const std::string& value) {
     return type_.type + "[" + field_name_ + "=" + value + "]";
   });
 }
@@ -283,9 +347,20 @@ std::optional<ConnectionEncoder> Encoder::connect(const Connection& connection) 
   }
   const auto field = rules_.type_fields.find(connection.datatype);
   if (field != rules_.type_fields.end()) {
-    encoder.field_ = std::make_shared<const MessageField>(connection.definition,
-                                                          connection.datatype, field->second);
+    const auto classes = rules_.classes.find(connection.datatype);
+    const bool numeric = classes != rules_.classes.end();
+    encoder.field_ = std::make_shared<const MessageField>(
+        connection.definition, connection.datatype, field->second,
+        numeric ? MessageField::Kind::kNumber : MessageField::Kind::kText);
     encoder.field_name_ = field->second;
+    if (numeric && classes->second.bounds.empty()) {
+      throw std::invalid_argument("the classes of " + connection.datatype + ": " + field->second +
+                                  " are not learned yet: train learns them from bags");
+    }
+    if (numeric) {
+      encoder.bounds_ = classes->second.bounds;
+      encoder.class_names_ = namesOfClasses(encoder.bounds_);
+    }
   }
   if (rules_.mode && rules_.mode->topic == encoder.type_.scope) {
     try {

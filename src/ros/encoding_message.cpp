@@ -22,6 +22,10 @@ self_awareness::Encoding toMessage(const EncodingRules& rules) {
     self_awareness::TypeField type_field;
     type_field.datatype = datatype;
     type_field.field = field;
+    if (const auto classes = rules.classes.find(datatype); classes != rules.classes.end()) {
+      type_field.classes = static_cast<std::uint8_t>(classes->second.number);
+      type_field.bounds = classes->second.bounds;
+    }
     message.type_fields.push_back(type_field);
   }
   if (rules.mode) {
@@ -48,6 +52,9 @@ EncodingRules fromMessage(const self_awareness::Encoding& message) {
   for (const self_awareness::TypeField& type_field : message.type_fields) {
     if (!rules.type_fields.emplace(type_field.datatype, type_field.field).second) {
       throw std::invalid_argument("its encoding has two type fields of " + type_field.datatype);
+    }
+    if (type_field.classes > 0) {
+      rules.classes[type_field.datatype] = {type_field.classes, type_field.bounds};
     }
   }
   if (!message.mode_topic.empty()) {

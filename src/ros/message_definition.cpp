@@ -180,7 +180,7 @@ const MessageDefinition::Lines& MessageDefinition::linesOf(const std::string& ty
   return lines->second;
 }
 
-MessageDefinition::Field MessageDefinition::field(const std::string& path) const {
+MessageDefinition::Field MessageDefinition::field(const std::string& path, bool numbers) const {
   Field found;
   found.type = datatype_;
   Expansion expansion(*this);
@@ -205,7 +205,11 @@ MessageDefinition::Field MessageDefinition::field(const std::string& path) const
   if (types_.count(found.type) > 0) {
     fail("is a message itself; name one of its fields");
   }
-  if (!readable(found.type)) {
+  if (numbers && (!isBuiltIn(found.type) || found.type == "string" || found.type == "time" ||
+                  found.type == "duration")) {
+    fail("is a " + printable(found.type, kLongestQuote) + "; only numbers have classes");
+  }
+  if (!numbers && !readable(found.type)) {
     fail("is a " + printable(found.type, kLongestQuote) +
          "; only integers, bool and string tell what a message does");
   }

@@ -68,12 +68,14 @@ class MessageDefinition {
 
   struct Field {
     MessageSteps before;  ///< what lies before it
-    std::string type;     ///< an integer, bool or string
+    std::string type;     ///< an integer, bool or string, or another number
   };
   /// @param path e.g. "action" or "header.frame_id"
   /// @throw std::invalid_argument if there is no such field, it is of another type or in an array,
   /// or a bound is exceeded; says what is wrong
-  Field field(const std::string& path) const;
+  /// @param numbers whether it must be a number or a bool; else it must be an integer, bool or
+  /// string
+  Field field(const std::string& path, bool numbers = false) const;
   /// The steps across the whole message.
   /// @throw std::invalid_argument if a bound is exceeded, or the definition of a type is missing
   MessageSteps whole() const;

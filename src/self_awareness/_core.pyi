@@ -6,7 +6,9 @@ import numpy as np
 DEFAULT_WINDOW: int
 ENDING: int
 EVIDENCE_THRESHOLD: float
+FEWEST_CLASSES: int
 HOURS_OF_ROBOTS: float
+MOST_CLASSES: int
 OTHER_MODE: int
 LEAST_KNOWN: float
 LONGEST_SILENCE: int
@@ -194,6 +196,7 @@ class DriftSamples:
 
 
 class EncodingRules:
+    classes: Dict[str, Tuple[int, List[float]]]
     exclude_sources: List[str]
     exclude_topics: List[str]
     include_sources: List[str]
@@ -738,6 +741,8 @@ def read_events(path: str, encoding: EncodingRules, event_types: Sequence[EventT
                 progress: Optional[Callable[[int, int], Any]] = ...,
                 recording: Optional[int] = ...) -> RecordedEvents: ...
 def read_incidents(path: str) -> Optional[List[KeptIncident]]: ...
+def read_numbers(path: str, encoding: EncodingRules, start: Optional[float] = ...,
+                 end: Optional[float] = ...) -> Dict[str, np.ndarray]: ...
 def recordings_in_event_log(path: str) -> Optional[int]: ...
 def stable_name(name: str) -> str: ...
 def summarise_bag(path: str, recording: Optional[int] = ...) -> BagSummary: ...

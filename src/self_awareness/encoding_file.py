@@ -3,8 +3,11 @@ from __future__ import annotations
 
 from typing import Any, Dict, List, Optional, Tuple
 
-from self_awareness import EncodingRules, yaml_file
+from self_awareness import FEWEST_CLASSES, MOST_CLASSES, EncodingRules, yaml_file
 from self_awareness.yaml_section import Section, shown
+
+Classes = Dict[str, Tuple[int, List[float]]]
+"""Number of the classes of a field's values, and their bounds, by datatype."""
 
 _LISTS = ('include_topics', 'exclude_topics', 'include_sources', 'exclude_sources')
 
@@ -29,7 +32,7 @@ def load(path: str) -> EncodingRules:
             if key in section:
                 setattr(rules, key, _patterns(section, key, data[key]))
         if 'type_fields' in section:
-            rules.type_fields = section.texts_by_key('type_fields')
+            rules.type_fields, rules.classes = _fields(section, data['type_fields'])
         if 'mode' in section:
             rules.mode = _mode(section, data['mode'])
             try:
@@ -43,8 +46,38 @@ def values(rules: EncodingRules) -> Dict[str, Any]:
     """Return rules by their keys in an encoding file."""
     return {'source': rules.source, 'rename': [list(rename) for rename in rules.rename],
             **{key: list(getattr(rules, key)) for key in _LISTS},
-            'type_fields': dict(rules.type_fields),
+            'type_fields': {datatype: _field(name, rules.classes.get(datatype))
+                            for datatype, name in rules.type_fields.items()},
             'mode': dict(zip(('topic', 'field'), rules.mode or ()))}
+
+
+def _fields(section: Section, value: Any) -> Tuple[Dict[str, str], Classes]:
+    """Return the fields by datatype, and the classes of those that have some."""
+    if not isinstance(value, dict) or not all(
+            isinstance(datatype, str) and isinstance(of_type, (str, dict))
+            for datatype, of_type in value.items()):
+        section.fail('type_fields', 'expected datatypes, each with a field, or with a field and '
+                                    f'classes, found {shown(value)}')
+    names: Dict[str, str] = {}
+    classes: Classes = {}
+    with section.section('type_fields') as fields:
+        for datatype, of_type in value.items():
+            if isinstance(of_type, str):
+                names[datatype] = fields.text(datatype)
+                continue
+            with fields.section(datatype) as numeric:
+                names[datatype] = numeric.text('field')
+                number = numeric.integer('classes', FEWEST_CLASSES)
+                if number > MOST_CLASSES:
+                    numeric.fail('classes', f'expected {MOST_CLASSES} at most, found {number}')
+                classes[datatype] = (number, [])
+    return names, classes
+
+
+def _field(name: str, classes: Optional[Tuple[int, List[float]]]) -> Any:
+    if classes is None:
+        return name
+    return {'field': name, 'classes': classes[0], 'bounds': list(classes[1])}
 
 
 def _mode(section: Section, value: Any) -> Optional[Tuple[str, str]]:

@@ -47,6 +47,17 @@ def test_keys_are_read(tmp_path: Path) -> None:
     assert encoding_file.values(rules)['rename'] == [['/r(.)/x', '/\\1'], ['/a', '/b']]
 
 
+def test_a_field_may_have_classes(tmp_path: Path) -> None:
+    file = tmp_path / 'e.yaml'
+    file.write_text('type_fields: {a/B: c.d, e/F: {field: g, classes: 4}}\n')
+    rules = encoding_file.load(str(file))
+    assert rules.type_fields == {'a/B': 'c.d', 'e/F': 'g'}
+    assert rules.classes == {'e/F': (4, [])}
+    assert encoding_file.values(rules)['type_fields'] == {
+        'a/B': 'c.d', 'e/F': {'field': 'g', 'classes': 4, 'bounds': []}}
+    assert pickle.loads(pickle.dumps(rules)) == rules
+
+
 @pytest.mark.parametrize('text', ['', 'mode: {}'])
 def test_nobody_tells_a_mode_unless_a_file_says_so(tmp_path: Path, text: str) -> None:
     file = tmp_path / 'e.yaml'
@@ -70,6 +81,12 @@ def test_nobody_tells_a_mode_unless_a_file_says_so(tmp_path: Path, text: str) ->
     ('rename: [[/a, b]]', 'rename'),
     ('rename: [["/(a", /b]]', 'rename'),
     ('type_fields: {a/B: 1}', 'type_fields'),
+    ('type_fields: {a/B: {field: c}}', 'type_fields.a/B.classes'),
+    ('type_fields: {a/B: {classes: 4}}', 'type_fields.a/B.field'),
+    ('type_fields: {a/B: {field: c, classes: 1}}', 'type_fields.a/B.classes'),
+    ('type_fields: {a/B: {field: c, classes: 17}}', 'type_fields.a/B.classes'),
+    ('type_fields: {a/B: {field: c, classes: 2.5}}', 'type_fields.a/B.classes'),
+    ('type_fields: {a/B: {field: c, classes: 4, bounds: [1]}}', 'type_fields.a/B.bounds'),
     ('mode: /state', 'mode'),
     ('mode: {topic: /state}', 'mode.field'),
     ('mode: {topic: /state, field: data, value: 1}', 'mode.value'),

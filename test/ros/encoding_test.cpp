@@ -11,9 +11,12 @@
 #include <visualization_msgs/MarkerArray.h>
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "self_awareness/core/stream/mode.h"
@@ -187,6 +190,72 @@ TEST_F(EncoderTest, ATypeFieldTellsWhatAMessageDoes) {
   EXPECT_EQ(vocabulary_.at(added).type, "visualization_msgs/Marker[action=0]");
   EXPECT_EQ(vocabulary_.at(removed).type, "visualization_msgs/Marker[action=2]");
   EXPECT_EQ(encoder->id(add.data(), add.size()), added);
+}
+
+Connection loads() {
+  Connection connection;
+  connection.callerid = "/arm";
+  connection.topic = "/load";
+  connection.datatype = "a/Load";
+  connection.definition = "uint8 number\nfloat32 force\nint16 level\nstring text";
+  return connection;
+}
+
+std::vector<std::uint8_t> loadOf(float force, std::int16_t level) {
+  std::vector<std::uint8_t> bytes(1 + sizeof force + sizeof level + 4, 0);
+  std::memcpy(bytes.data() + 1, &force, sizeof force);
+  std::memcpy(bytes.data() + 1 + sizeof force, &level, sizeof level);
+  return bytes;
+}
+
+EncodingRules rulesOfClasses(const std::string& field, std::vector<double> bounds) {
+  EncodingRules rules;
+  rules.type_fields = {{"a/Load", field}};
+  rules.classes = {{"a/Load", {4, std::move(bounds)}}};
+  return rules;
+}
+
+TEST_F(EncoderTest, ValuesArePutIntoClasses) {
+  const auto typeOf = [&](const EncodingRules& rules, float force, std::int16_t level) {
+    auto encoder = makeEncoder(rules).connect(loads());
+    const std::vector<std::uint8_t> bytes = loadOf(force, level);
+    return vocabulary_.at(encoder->id(bytes.data(), bytes.size())).type;
+  };
+  const EncodingRules force = rulesOfClasses("force", {-0.5, 0.25, 1e6});
+  EXPECT_EQ(typeOf(force, -3, 0), "a/Load[force=below -0.5]");
+  EXPECT_EQ(typeOf(force, -0.5F, 0), "a/Load[force=-0.5 to 0.25]");
+  EXPECT_EQ(typeOf(force, 0.25F, 0), "a/Load[force=0.25 to 1e+06]");
+  EXPECT_EQ(typeOf(force, INFINITY, 0), "a/Load[force=1e+06 or more]");
+  EXPECT_EQ(typeOf(force, -INFINITY, 0), "a/Load[force=below -0.5]");
+  EXPECT_EQ(typeOf(force, NAN, 0), "a/Load[force=NaN]");
+  const EncodingRules level = rulesOfClasses("level", {7});
+  EXPECT_EQ(typeOf(level, 0, 6), "a/Load[level=below 7]");
+  EXPECT_EQ(typeOf(level, 0, 7), "a/Load[level=7 or more]");
+}
+
+TEST_F(EncoderTest, ClassesThatCannotBeAreNamed) {
+  const auto why = [&](const EncodingRules& rules) -> std::string {
+    try {
+      rules.validate();
+      makeEncoder(rules).connect(loads());
+    } catch (const std::invalid_argument& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(why(rulesOfClasses("force", {1, 2, 3})), "");
+  EXPECT_NE(why(rulesOfClasses("force", {})).find("a/Load: force are not learned yet"),
+            std::string::npos);
+  EXPECT_NE(why(rulesOfClasses("text", {1})).find("only numbers have classes"), std::string::npos);
+  for (const std::vector<double>& bounds :
+       {std::vector<double>{1, 2, 3, 4}, {2, 1}, {1, 1}, {NAN}, {INFINITY}}) {
+    EXPECT_NE(why(rulesOfClasses("force", bounds)).find("bounds that ascend"), std::string::npos);
+  }
+  EncodingRules rules = rulesOfClasses("force", {1});
+  rules.classes["a/Load"].number = 17;
+  EXPECT_NE(why(rules).find("2 to 16, not 17"), std::string::npos);
+  rules.type_fields.clear();
+  EXPECT_NE(why(rules).find("a/Load"), std::string::npos);
 }
 
 EncodingRules rulesOfMode(const std::string& topic, const std::string& field) {

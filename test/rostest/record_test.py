@@ -171,6 +171,7 @@ class RecordTest(unittest.TestCase):
                 ('encoding/exclude', '[/a]'), ('encoding/exclude_topics', '/a'),
                 ('encoding/include_topics', '["("]'), ('encoding/source', 'nobody'),
                 ('encoding/type_fields', '{std_msgs/String: 1}'),
+                ('encoding/type_fields', '{std_msgs/Float32: {field: data, classes: 4}}'),
                 ('encoding/mode', '{topic: /a}'), ('split', '0'))):
             name = 'wrong{}'.format(number)
             recorder = Process('rosrun', 'self_awareness', 'record_events', '__name:=' + name,

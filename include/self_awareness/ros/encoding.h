@@ -26,6 +26,23 @@ struct Rename {
 
 bool operator==(const Rename& a, const Rename& b);
 
+/// Classes that the values of a numeric type field are put into (docs/encoding.md). A value that
+/// is no number has one of its own.
+struct ValueClasses {
+  static constexpr std::size_t kFewest = 2;
+  static constexpr std::size_t kMost = 16;
+
+  std::size_t number = kFewest;  ///< that are wanted; there are fewer where values are the same
+  std::vector<double> bounds;    ///< that a class begins with, ascending; empty: not learned yet
+};
+
+bool operator==(const ValueClasses& a, const ValueClasses& b);
+
+/// Classes in words: "below 0.5", "0.5 to 2.1", "2.1 or more" and "NaN".
+std::vector<std::string> namesOfClasses(const std::vector<double>& bounds);
+/// The class of a value, by its place among them.
+std::size_t classOf(double value, const std::vector<double>& bounds);
+
 /// What tells the mode that the robot is in (docs/modes.md): a field of the messages on a topic.
 struct ModeField {
   std::string topic;  ///< as the renames leave it
@@ -50,14 +67,15 @@ struct EncodingRules {
   std::vector<std::string> include_sources;  ///< empty: all; no effect for Source::kNone
   std::vector<std::string> exclude_sources;
   std::map<std::string, std::string> type_fields;  ///< field by datatype
+  std::map<std::string, ValueClasses> classes;     ///< of some type fields, by datatype
   std::optional<ModeField> mode;                   ///< none: nobody tells a mode
 
   /// Rules that suit most robots: everything but the monitor's own output, clocks, aggregated
   /// logs, bonds and tools that only look on.
   static EncodingRules defaults();
   /// @throw std::invalid_argument names the pattern that is no regular expression, the new name
-  /// that does not fit one, what has control characters, or the topic of the mode that is none or
-  /// is left out; or the patterns are too large together
+  /// that does not fit one, what has control characters, classes that cannot be, or the topic of
+  /// the mode that is none or is left out; or the patterns are too large together
   void validate() const;
 };
 
@@ -146,6 +164,8 @@ class ConnectionEncoder {
   bool skip_next_ = false;
   std::shared_ptr<const MessageField> field_;
   std::string field_name_;
+  std::vector<double> bounds_;  // of the classes of its values; empty: each is one
+  std::vector<std::string> class_names_;
   Known ids_by_value_;
   std::shared_ptr<const MessageField> mode_field_;
   Known ids_by_mode_;
@@ -177,7 +197,7 @@ class Encoder {
   /// Encoder of the connection's messages; none if the rules or their names leave them out, or if
   /// they are of a type of this package.
   /// @throw std::invalid_argument if a type field, or the field of the mode, does not fit the
-  /// message's definition
+  /// message's definition, or classes of its values are not learned yet
   std::optional<ConnectionEncoder> connect(const Connection& connection) const;
 
  private:

@@ -13,6 +13,7 @@
 #include "event_log_file.h"
 #include "open_bag.h"
 #include "self_awareness/ros/attribute_reader.h"
+#include "self_awareness/ros/message_field.h"
 #include "self_awareness/ros/siblings.h"
 
 namespace self_awareness::ros1 {
@@ -143,8 +144,7 @@ void BagReader::read(const Encoder& encoder, const TimeRange& range, const Handl
   }
   std::vector<std::uint8_t> content;
   std::uint64_t done = 0;
-  try {
-    const std::unique_ptr<BagMessages> messages = BagMessages::open(summary_.path, *index_);
+  withMessages([&](BagMessages& messages) {
     for (const BagIndexEntry& entry : index_->entries) {
       if (progress && done % kMessagesPerProgress == 0) {
         progress(done, summary_.messages);
@@ -162,11 +162,11 @@ void BagReader::read(const Encoder& encoder, const TimeRange& range, const Handl
       const bool tells_mode = connection_encoder->tellsMode();
       const bool needs_content = tells_mode || (accepted && connection_encoder->needsContent());
       if (needs_content) {
-        messages->read(entry, content);
+        messages.read(entry, content);
         reader.begin(content.size());
         reader.add(content.data(), content.size());
       } else {
-        messages->pass(entry, reader);
+        messages.pass(entry, reader);
       }
       const core::Attributes found = reader.end(entry.stamp);
       if (tells_mode) {
@@ -179,6 +179,57 @@ void BagReader::read(const Encoder& encoder, const TimeRange& range, const Handl
                  found});
       }
     }
+  });
+  if (progress) {
+    progress(done, summary_.messages);
+  }
+}
+
+std::map<std::string, std::vector<double>> BagReader::readNumbers(const EncodingRules& rules,
+                                                                  const TimeRange& range) const {
+  const auto [from, to] = limitsIn(summary_, range);
+  EncodingRules plain = rules;  // whose events are those of the same messages
+  plain.type_fields.clear();
+  plain.classes.clear();
+  plain.mode.reset();
+  const Encoder encoder(plain, nullptr);
+  struct Read {
+    ConnectionEncoder encoder;
+    MessageField field;
+    std::vector<double>& numbers;
+  };
+  std::map<std::string, std::vector<double>> numbers;
+  std::vector<std::optional<Read>> reads;
+  for (const Connection& connection : index_->connections) {
+    const auto classes = rules.classes.find(connection.datatype);
+    std::optional<ConnectionEncoder> connected =
+        classes == rules.classes.end() ? std::nullopt : encoder.connect(connection);
+    reads.emplace_back();
+    if (connected) {
+      reads.back().emplace(Read{
+          *connected,
+          MessageField(connection.definition, connection.datatype,
+                       rules.type_fields.at(connection.datatype), MessageField::Kind::kNumber),
+          numbers[connection.datatype]});
+    }
+  }
+  std::vector<std::uint8_t> content;
+  withMessages([&](BagMessages& messages) {
+    for (const BagIndexEntry& entry : index_->entries) {
+      std::optional<Read>& read = reads[entry.connection];
+      if (read && read->encoder.accept() && from <= entry.stamp && entry.stamp <= to) {
+        messages.read(entry, content);
+        read->numbers.push_back(read->field.number(content.data(), content.size()));
+      }
+    }
+  });
+  return numbers;
+}
+
+template <typename Use>
+void BagReader::withMessages(const Use& use) const {
+  try {
+    use(*BagMessages::open(summary_.path, *index_));
   } catch (const rosbag::BagException& error) {
     throw BagError(summary_.path + ": a message cannot be read (" + error.what() + ")" +
                    reindexHint(summary_.path));
@@ -187,9 +238,6 @@ void BagReader::read(const Encoder& encoder, const TimeRange& range, const Handl
   } catch (const std::bad_alloc&) {
     throw BagError(summary_.path + ": the bag is damaged, or there is too little memory" +
                    reindexHint(summary_.path));
-  }
-  if (progress) {
-    progress(done, summary_.messages);
   }
 }
 

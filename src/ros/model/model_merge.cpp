@@ -42,6 +42,7 @@ void requireSameEncoding(const EncodingRules& one, const EncodingRules& other) {
   require("include_sources", one.include_sources == other.include_sources);
   require("exclude_sources", one.exclude_sources == other.exclude_sources);
   require("type_fields", one.type_fields == other.type_fields);
+  require("the classes of type_fields", one.classes == other.classes);
   require("mode", one.mode == other.mode);
 }
 

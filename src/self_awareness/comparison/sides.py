@@ -163,7 +163,7 @@ def _ends(recording: RecordingEvents) -> Iterator[Tuple[Kind, End]]:
 
 def _check(before: Side, after: Side) -> None:
     for name in ('source', 'include_topics', 'exclude_topics', 'include_sources',
-                 'exclude_sources', 'type_fields', 'mode'):
+                 'exclude_sources', 'type_fields', 'classes', 'mode'):
         if getattr(before.model.encoding, name) != getattr(after.model.encoding, name):
             raise ValueError(f'{before.name} and {after.name}: they were trained with another '
                              f'encoding each ({name}, info shows it): their event types are not '

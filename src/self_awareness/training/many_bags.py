@@ -23,6 +23,7 @@ from self_awareness.calibration.limits import TrainedOn
 from self_awareness.judging import BOTH, EVIDENCE, PAPER
 from self_awareness.recordings import BagPart, RecordingEvents, check_windows, overlap
 from self_awareness.stamps import SECOND_NS
+from self_awareness.training import value_classes
 from self_awareness.training.robot_graph import RobotGraph, graph_file
 from self_awareness.workers import InProcess, Workers
 
@@ -104,6 +105,11 @@ def train(parts: Sequence[BagPart], counting: Counting, workers: Optional[Worker
             named twice, or is in the base already; some bags name senders, and some do not.
     """
     workers = workers or InProcess()
+    if counting.encoding is not None:
+        encoding = copy.copy(counting.encoding)
+        encoding.classes = value_classes.learned(counting.renamed(encoding), parts, workers,
+                                                 skip_bad).classes
+        counting = replace(counting, encoding=encoding)
     how = _How(counting, skip_bad, _MOST_EVENTS_OF_BATCH if workers.near else 0)
     number = workers.batches(len(parts))
     cuts = [len(parts) * batch // number for batch in range(number + 1)]

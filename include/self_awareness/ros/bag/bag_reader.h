@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -90,8 +91,18 @@ class BagReader {
   /// message's definition
   void read(const Encoder& encoder, const TimeRange& range, const Handler& handler,
             const Progress& progress = nullptr) const;
+  /// The values of the fields that have classes (EncodingRules::classes), learned or not, of all
+  /// messages of the range that are events, by datatype.
+  /// @throw as read()
+  std::map<std::string, std::vector<double>> readNumbers(const EncodingRules& rules,
+                                                         const TimeRange& range) const;
 
  private:
+  /// Calls use() with what reads messages.
+  /// @throw BagError for all that may go wrong with them
+  template <typename Use>
+  void withMessages(const Use& use) const;
+
   std::unique_ptr<const BagIndex> index_;
   BagSummary summary_;
 };
