@@ -32,7 +32,11 @@ NewMode::NewMode(std::shared_ptr<const Model> model, std::shared_ptr<const Sourc
 std::optional<Silent> NewMode::excuse(std::vector<double>& shares, const Limits& limits,
                                       const Scorer& scorer,
                                       const std::vector<bool>& may_be_silent) {
-  const std::set<EventId> stopped = find(shares, limits, scorer, may_be_silent);
+  if (graph_->empty()) {
+    return std::nullopt;
+  }
+  const Heard& heard = scorer.heard();
+  const std::set<EventId> stopped = find(silent(limits, heard, may_be_silent), shares, heard);
   if (stopped.empty()) {
     return std::nullopt;
   }
@@ -41,7 +45,7 @@ std::optional<Silent> NewMode::excuse(std::vector<double>& shares, const Limits&
   found.others_go_on = true;
   found.components = namesOf(stopped);
   for (const EventId id : stopped) {
-    found.since = std::max(found.since, *scorer.heard().lastSeen(id));
+    found.since = std::max(found.since, *heard.lastSeen(id));
   }
   return found;
 }
@@ -52,15 +56,14 @@ std::vector<std::string> NewMode::excuseAccepted(std::vector<double>& shares, co
   if (accepted_.list().empty() || graph_->empty()) {
     return {};
   }
-  std::set<EventId> stopped = find(shares, limits, scorer, may_be_silent);
+  const Heard& heard = scorer.heard();
+  const std::vector<EventId> silent = this->silent(limits, heard, may_be_silent);
+  std::set<EventId> stopped = find(silent, shares, heard);
   if (!stopped.empty() && !accepted_.coversMode(namesOf(stopped))) {
     return {};
   }
-  const std::vector<EventId> silent = this->silent(limits, scorer, may_be_silent);
   for (const Acceptance& mode : accepted_.list()) {
-    if (mode.extent() == Acceptance::Extent::kMode) {
-      stopped.merge(offIn(mode, silent, scorer.heard()));
-    }
+    stopped.merge(offIn(mode, silent, heard));
   }
   takeBack(stopped, shares);
   return namesOf(stopped);
@@ -93,15 +96,20 @@ std::set<EventId> NewMode::offIn(const Acceptance& mode, const std::vector<Event
   return off;
 }
 
-std::set<EventId> NewMode::find(const std::vector<double>& shares, const Limits& limits,
-                                const Scorer& scorer, const std::vector<bool>& may_be_silent) {
-  if (graph_->empty()) {
-    return {};
+void NewMode::accept(const Acceptances& accepted) {
+  accepted_ = {};
+  for (const Acceptance& each : accepted.list()) {
+    if (each.extent() == Acceptance::Extent::kMode) {
+      accepted_.add(each);
+    }
   }
+}
+
+std::set<EventId> NewMode::find(const std::vector<EventId>& silent,
+                                const std::vector<double>& shares, const Heard& heard) {
   lookAtGraph();
-  const std::int64_t now = scorer.heard().windowEnd();
-  const std::vector<EventId> silent = this->silent(limits, scorer, may_be_silent);
-  std::set<EventId> stopped = this->stopped(silent, shares, scorer.heard());
+  const std::int64_t now = heard.windowEnd();
+  std::set<EventId> stopped = this->stopped(silent, shares, heard);
   // They do not come back all at once.
   for (const EventId id : silent) {
     if (stopped.count(id) > 0) {
@@ -149,15 +157,15 @@ void NewMode::restart() {
   std::fill(excused_until_.begin(), excused_until_.end(), 0);
 }
 
-std::vector<EventId> NewMode::silent(const Limits& limits, const Scorer& scorer,
+std::vector<EventId> NewMode::silent(const Limits& limits, const Heard& heard,
                                      const std::vector<bool>& may_be_silent) const {
   const double rare = std::log(model_->tuning().rare_silence);
   std::vector<EventId> silent;
   for (std::size_t track = 0; track < model_->tracks().size(); ++track) {
     const EventId id = model_->tracks()[track].to;
     if (model_->finding(track) == Finding::kSilent && !std::isnan(limits.tracks[track]) &&
-        !may_be_silent[id] && scorer.heard().hasSeen(id) &&
-        model_->logSurvival(id, scorer.heard().silence(id)) < rare) {
+        !may_be_silent[id] && heard.hasSeen(id) &&
+        model_->logSurvival(id, heard.silence(id)) < rare) {
       silent.push_back(id);
     }
   }

@@ -37,14 +37,14 @@ class NewMode {
   std::vector<std::string> excuseAccepted(std::vector<double>& shares, const Limits& limits,
                                           const Scorer& scorer,
                                           const std::vector<bool>& may_be_silent);
-  /// Takes what is accepted, in place of what was before.
-  void accept(const Acceptances& accepted) { accepted_ = accepted; }
+  /// Takes the modes that are accepted, in place of those of before.
+  void accept(const Acceptances& accepted);
   void restart();
 
  private:
-  /// Who stopped in that way, or did so and is not back yet; empty: nobody.
-  std::set<EventId> find(const std::vector<double>& shares, const Limits& limits,
-                         const Scorer& scorer, const std::vector<bool>& may_be_silent);
+  /// Who of the silent ones stopped in that way, or did so and is not back yet; empty: nobody.
+  std::set<EventId> find(const std::vector<EventId>& silent, const std::vector<double>& shares,
+                         const Heard& heard);
   /// Who of an accepted mode is silent since none of it was heard: it has begun, though it is too
   /// early to miss all of them. Who died alone is not off: the others were heard since.
   std::set<EventId> offIn(const Acceptance& mode, const std::vector<EventId>& silent,
@@ -54,7 +54,7 @@ class NewMode {
   /// The names of their components, in order.
   std::vector<std::string> namesOf(const std::set<EventId>& ids) const;
   /// Event types that should have come by now.
-  std::vector<EventId> silent(const Limits& limits, const Scorer& scorer,
+  std::vector<EventId> silent(const Limits& limits, const Heard& heard,
                               const std::vector<bool>& may_be_silent) const;
   /// Those of them that stopped as in a new mode, while one was beyond its limit.
   std::set<EventId> stopped(const std::vector<EventId>& silent, const std::vector<double>& shares,
@@ -78,7 +78,7 @@ class NewMode {
   std::vector<std::vector<bool>> upstream_;  // whether a component is of another one
   std::size_t edges_ = 0;                    // of the graph that this was computed of
   std::vector<std::int64_t> excused_until_;  // [ns], by id
-  Acceptances accepted_;
+  Acceptances accepted_;                     // modes alone
 };
 
 }  // namespace self_awareness::core::evidence
