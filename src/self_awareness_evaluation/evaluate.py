@@ -3,7 +3,6 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import os
 import shlex
 import signal
 import sys
@@ -367,20 +366,14 @@ def _add_simulated(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--faults', nargs='+', metavar='FAULT',
                         help='kinds of faults (default: all, and every regular component crashed '
                         'in turn)')
-    parser.add_argument('--jobs', type=cli.count, default=os.cpu_count(), metavar='N',
-                        help='seeds at a time (default: as many as there are cores)')
+    options.add_jobs(parser, 'seeds at a time')
 
 
 def _add_families(parser: argparse.ArgumentParser) -> None:
     parser.set_defaults(work=_families)
     options.add_output(
         parser, f'the page, its figures and, in the folder {report.FULL}, all numbers')
-    parser.add_argument('--families', nargs='+', choices=FAMILIES, default=list(FAMILIES),
-                        metavar='FAMILY', help='evaluate robots of these only: '
-                        f'{", ".join(FAMILIES)} (default: all)')
-    parser.add_argument('--robots', type=cli.count, default=3, metavar='N',
-                        help='robots of each family, each with the next seed (default: 3)')
-    parser.add_argument('--seed', type=cli.count, default=1, help='the first seed (default: 1)')
+    options.add_robots(parser, list(FAMILIES))
     parser.add_argument('--starts', type=options.starts, nargs='+', default=[1, 2, 4, 8],
                         metavar='N', help='starts to train on, in turn; half as many, but one at '
                         'least, are calibrated on (default: 1 2 4 8)')
@@ -402,5 +395,4 @@ def _add_families(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--faults', nargs='*', choices=_FAULTS, default=_FAULTS, metavar='FAULT',
                         help=f'kinds of faults: {", ".join(_FAULTS)}; none at all if no name '
                         'follows (default: all)')
-    parser.add_argument('--jobs', type=cli.count, default=os.cpu_count(), metavar='N',
-                        help='robots at a time (default: as many as there are cores)')
+    options.add_jobs(parser, 'robots at a time')

@@ -2,7 +2,9 @@
 from __future__ import annotations
 
 import argparse
+import os
 from pathlib import Path
+from typing import Sequence
 
 from self_awareness.commands import cli
 from self_awareness_evaluation.families.protocol import MOST_STARTS
@@ -12,6 +14,22 @@ def add_output(parser: argparse.ArgumentParser, written: str) -> None:
     """Add the option that says where results go; written: what they are."""
     parser.add_argument('-o', '--output', type=Path, default=Path('docs/evaluation'),
                         metavar='DIR', help=f'where {written} go (default: docs/evaluation)')
+
+
+def add_robots(parser: argparse.ArgumentParser, families: Sequence[str]) -> None:
+    """Add the options that say which robots of which families there are."""
+    parser.add_argument('--families', nargs='+', choices=families, default=list(families),
+                        metavar='FAMILY', help='evaluate robots of these only: '
+                        f'{", ".join(families)} (default: all)')
+    parser.add_argument('--robots', type=cli.count, default=3, metavar='N',
+                        help='robots of each family, each with the next seed (default: 3)')
+    parser.add_argument('--seed', type=cli.count, default=1, help='the first seed (default: 1)')
+
+
+def add_jobs(parser: argparse.ArgumentParser, what: str) -> None:
+    """Add the option that says how many processes work; what: they do."""
+    parser.add_argument('--jobs', type=cli.count, default=os.cpu_count(), metavar='N',
+                        help=f'{what} (default: as many as there are cores)')
 
 
 @cli.checked

@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import argparse
-import os
 from pathlib import Path
 from typing import Tuple
 
@@ -58,8 +57,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--kinds', nargs='+', choices=KINDS, default=KINDS, metavar='KIND',
                         help=f'variants of these only: {", ".join(KINDS)}, where a rule is '
                         'switched off by a number (default: all)')
-    parser.add_argument('--jobs', type=cli.count, default=os.cpu_count(), metavar='N',
-                        help='variants at a time (default: as many as there are cores)')
+    options.add_jobs(parser, 'variants at a time')
 
 
 def _work(arguments: argparse.Namespace, command: str) -> None:

@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import argparse
-import os
 from contextlib import closing
 from typing import ContextManager
 
@@ -36,9 +35,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--budget', type=options.budget, default=BUDGET, metavar='B',
                         help='false alarms an hour that limits are made for '
                         f'(default: {BUDGET:g})')
-    parser.add_argument('--jobs', type=cli.count, default=os.cpu_count(), metavar='N',
-                        help='processes that count and judge (default: as many as there are '
-                        'cores)')
+    options.add_jobs(parser, 'processes that count and judge')
     parser.add_argument('--dask', action='store_true', help='they are the workers of a cluster of '
                         'dask.distributed that is started on this machine; the results are the '
                         'same')

@@ -2,9 +2,7 @@
 from __future__ import annotations
 
 import argparse
-import os
 
-from self_awareness.commands import cli
 from self_awareness_evaluation import options
 from self_awareness_evaluation.families.protocol import Learning
 from self_awareness_evaluation.families.report import FULL
@@ -15,13 +13,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     """Add the arguments."""
     parser.set_defaults(work=_work)
     options.add_output(parser, f'the page and, in the folder {FULL}, all rows')
-    parser.add_argument('--families', nargs='+', choices=experiment.FAMILIES,
-                        default=list(experiment.FAMILIES), metavar='FAMILY',
-                        help='evaluate robots of these only: '
-                        f'{", ".join(experiment.FAMILIES)} (default: all)')
-    parser.add_argument('--robots', type=cli.count, default=3, metavar='N',
-                        help='robots of each family, each with the next seed (default: 3)')
-    parser.add_argument('--seed', type=cli.count, default=1, help='the first seed (default: 1)')
+    options.add_robots(parser, experiment.FAMILIES)
     parser.add_argument('--starts', type=options.starts, default=4, metavar='N',
                         help='starts to train on; half as many, but one at least, are calibrated '
                         'on (default: 4)')
@@ -29,8 +21,7 @@ def add(parser: argparse.ArgumentParser) -> None:
                         help='length of the recording of each start [s] (default: 600)')
     parser.add_argument('--hours', type=options.hours, default=6.0, metavar='H',
                         help='normal operation that is watched, for each robot (default: 6)')
-    parser.add_argument('--jobs', type=cli.count, default=os.cpu_count(), metavar='N',
-                        help='robots at a time (default: as many as there are cores)')
+    options.add_jobs(parser, 'robots at a time')
 
 
 def _work(arguments: argparse.Namespace, command: str) -> None:

@@ -2,7 +2,6 @@
 from __future__ import annotations
 
 import argparse
-import os
 
 from self_awareness.commands import cli
 from self_awareness_evaluation import options
@@ -20,8 +19,7 @@ def add(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--seeds', type=cli.count, default=10, metavar='N',
                         help='number of repetitions, each with the next seed (default: 10)')
     parser.add_argument('--seed', type=int, default=1, help='the first seed (default: 1)')
-    parser.add_argument('--jobs', type=cli.count, default=os.cpu_count(), metavar='N',
-                        help='seeds at a time (default: as many as there are cores)')
+    options.add_jobs(parser, 'seeds at a time')
 
 
 def _work(arguments: argparse.Namespace, command: str) -> None:
