@@ -23,12 +23,15 @@ class Fault:
         component: that is to blame for it, or abnormal besides.
         kind: what is wrong with it.
         stands: it is abnormal at this moment; false: the alarm is only held, or waits.
+        since: of one that has died, when it was first known that it does not come [s]; each time
+            that it comes, this begins anew. Other kinds come and go: it is not known.
     """
 
     incident: int
     component: str
     kind: str
     stands: bool
+    since: float = float('-inf')
 
 
 @dataclass(frozen=True)
@@ -100,10 +103,11 @@ class _Hour:
 class Ladder:
     """Decides on one step after the other; times are steady [s], and never go back.
 
-    A fault has to stand for `delay` before the first step. A step that did not help in time is
-    followed by the next one, the last one by itself; each has twice the time of the one before. A
-    rule that has done its steps of an hour gives up, until the fault is healed: gone for `delay`,
-    and for SHORTEST_HEALING_S at least, without interruption.
+    A fault has to stand for `delay` before the first step, and who has died must not come within
+    the `delay` before any step. A step that did not help in time is followed by the next one,
+    the last one by itself; each has twice the time of the one before. A rule that has done its
+    steps of an hour gives up, until the fault is healed: gone for `delay`, and for
+    SHORTEST_HEALING_S at least, without interruption.
 
     Args:
         rules: what may be done.
@@ -186,6 +190,9 @@ class Ladder:
             if climb.gone_since is not None:
                 climb.gone_since = None
                 climb.next_at = max(climb.next_at, now + self._rules.delay)
+            fault = _fault_of(rule, faults)
+            if fault is not None:
+                climb.next_at = max(climb.next_at, fault.since + self._rules.delay)
         elif self._busy is None or self._busy.rule is not rule:
             if climb.gone_since is None:
                 climb.gone_since = now

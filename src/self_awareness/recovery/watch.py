@@ -2,10 +2,12 @@
 """
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any, Dict, List, Mapping, Optional, Sequence, Set
 
 from self_awareness.recovery.ladder import Fault
+from self_awareness.stamps import nanoseconds
 
 FRESH_S = 2.0
 """A monitor that says nothing for so long is not believed any more [s]."""
@@ -16,6 +18,7 @@ _ABNORMAL_S = 0.5
 """Who was abnormal so recently is so now [s]: not every window of a slow node is."""
 
 _ERROR = 2  # of SelfAwareness
+_DIED = 'died'
 _NOBODY_IS_TO_BLAME = ('busy machine', 'all silent')
 
 
@@ -26,6 +29,7 @@ class _Named:
     Args:
         since, at: when they named it first and last, without a pause of _ABNORMAL_S [s].
         kinds: what is wrong with it, the most likely first; of the last such window.
+        dead_since: what has died, if something has, is known not to have come since then [s].
         later: the alarm named it after it was raised, which it only does with those that are
             abnormal by themselves.
     """
@@ -33,7 +37,21 @@ class _Named:
     since: float
     at: float
     kinds: List[str]
+    dead_since: float
     later: bool
+
+
+@dataclass(frozen=True)
+class _Silence:
+    """An event type of a component has died, and did not come again.
+
+    Args:
+        stamp: of the first window that names it [ns].
+        since: when that was [s].
+    """
+
+    stamp: int
+    since: float
 
 
 class Watch:
@@ -48,6 +66,7 @@ class Watch:
         self._heard_at = float('-inf')
         self._status: Any = None
         self._named: Dict[str, _Named] = {}
+        self._silences: Dict[str, _Silence] = {}  # by component
 
     @property
     def heard(self) -> bool:
@@ -63,21 +82,21 @@ class Watch:
         self._heard_at = now
         if self._status is not None and self._status.alarm != status.alarm:
             self._named.clear()
+            self._silences.clear()
         self._status = status
         if status.level != _ERROR or not status.abnormal:
             return
-        kinds: Dict[str, List[str]] = {}
-        later: Set[str] = set()
+        self._named = {name: each for name, each in self._named.items()
+                       if now - each.at <= _ABNORMAL_S}
+        suspects: Dict[str, List[Any]] = {}
         for suspect in status.suspects:
-            kinds.setdefault(suspect.component, []).append(suspect.kind)
+            suspects.setdefault(suspect.component, []).append(suspect)
+        for name, its in suspects.items():
+            since = self._named[name].since if name in self._named else now
             # The id of an alarm is the time when it was raised.
-            if suspect.since.to_nsec() > status.alarm:
-                later.add(suspect.component)
-        before = {name: each for name, each in self._named.items()
-                  if now - each.at <= _ABNORMAL_S}
-        self._named = {**before, **{
-            name: _Named(before[name].since if name in before else now, now, kinds[name],
-                         name in later) for name in kinds}}
+            later = any(each.since.to_nsec() > status.alarm for each in its)
+            self._named[name] = _Named(since, now, [each.kind for each in its],
+                                       self._dead_since(now, name, its, since), later)
 
     def why_blind(self, now: float) -> str:
         """Return why nothing is known of what there is to mend; empty: it is known."""
@@ -114,19 +133,48 @@ class Watch:
         incident = self._incident()
         number = status.alarm if incident is None else incident.id
         named = self._named.get(status.component)
-        faults = [Fault(number, status.component, self._kind(status.component, status.kind),
-                        named is not None and now - named.at <= _ABNORMAL_S)]
+        faults = [self._fault(number, status.component, status.kind,
+                              named is not None and now - named.at <= _ABNORMAL_S)]
         if incident is None or listeners is None:
             return faults
-        return faults + [Fault(number, name, self._kind(name, ''), True)
+        return faults + [self._fault(number, name, '', True)
                          for name in self.beside(now)
                          if name not in incident.victims
                          and not self._hears_one(name, listeners)]
+
+    def _dead_since(self, now: float, name: str, suspects: Sequence[Any], named: float) -> float:
+        """Return since when what has died of a component is known not to have come [s].
+
+        Who works at half its rate has died at the end of every gap, and comes again.
+
+        Args:
+            now: [s].
+            name: of the component.
+            suspects: that a window names of it.
+            named: since when windows name it [s]; it counts where a silence is not known.
+        """
+        died = [each for each in suspects if each.kind == _DIED]
+        silent = [each.silence for each in died if not math.isnan(each.silence)]
+        stamp = self._status.header.stamp.to_nsec()
+        before = self._silences.get(name)
+        if silent and (before is None or stamp - nanoseconds(max(silent)) > before.stamp):
+            self._silences[name] = _Silence(stamp, now)
+        if not silent:
+            return named
+        since = self._silences[name].since
+        return since if len(silent) == len(died) else min(since, named)
 
     def _incident(self) -> Any:
         """Return the incident of the alarm that stands; None: it is not known yet."""
         return next((each for each in reversed(self._incidents or ())
                      if not each.over and self._status.alarm in (each.id, each.last)), None)
+
+    def _fault(self, incident: int, component: str, of_alarm: str, stands: bool) -> Fault:
+        kind = self._kind(component, of_alarm)
+        named = self._named.get(component)
+        if named is None or kind != _DIED:
+            return Fault(incident, component, kind, stands)
+        return Fault(incident, component, kind, stands, named.dead_since)
 
     def _kind(self, component: str, of_alarm: str) -> str:
         """Return what is wrong with a component now, which may be another thing than at first."""

@@ -71,6 +71,27 @@ def test_an_alarm_that_is_only_held_is_no_reason() -> None:
     assert climb(tested, 100.0, 101.0) == [(100.0, 'call /player/reset')]
 
 
+def test_who_comes_again_within_the_delay_is_left_alone() -> None:
+    """It works, but slowly: every gap of it is a death to the monitor."""
+    tested = ladder()
+    for tick in range(200):
+        now = tick * TICK
+        gap_begin = now - now % (DELAY - TICK)
+        dead = Fault(1, '/player', 'died', True, since=gap_begin)
+        assert tested.advance(now, [dead]) is None
+    assert climb(tested, 100.0, 101.0 + DELAY, [Fault(1, '/player', 'died', True, since=100.0)]
+                 ) == [(100.0 + DELAY, 'call /player/reset')]
+
+
+def test_it_is_left_alone_between_two_steps_too() -> None:
+    tested = ladder()
+    assert climb(tested, 0.0, DELAY + 1.0) == [(DELAY, 'call /player/reset')]
+    begin = DELAY + WAIT - 1.0
+    assert climb(tested, begin, begin + DELAY + 1.0,
+                 [Fault(1, '/player', 'died', True, since=begin)]
+                 ) == [(begin + DELAY, 'stop /player')]
+
+
 def test_nothing_else_is_done_while_a_step_is_done() -> None:
     tested = ladder(PLAYER, SLAM, delay=0.0)
     both = [fault(), fault('/slam', incident=2)]

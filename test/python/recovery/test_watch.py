@@ -1,6 +1,7 @@
 """What a recovery takes from the messages of a monitor."""
 from __future__ import annotations
 
+import math
 from typing import Any, Dict, Iterable, List, Optional, Set
 
 import pytest
@@ -20,8 +21,9 @@ def incident(component: str = '/player', kind: str = 'died', **fields: Any) -> I
                        'component': component, 'kind': kind, **fields})
 
 
-def suspect(component: str, kind: str = 'died', since: int = 100) -> Suspect:
-    return Suspect(component=component, kind=kind, since=rospy.Time(since))
+def suspect(component: str, kind: str = 'died', since: int = 100, silence: float = math.nan
+            ) -> Suspect:
+    return Suspect(component=component, kind=kind, since=rospy.Time(since), silence=silence)
 
 
 def status(*suspects: Any, **fields: Any) -> SelfAwareness:
@@ -38,13 +40,17 @@ def watch(incidents: Iterable[Incident] = (incident(),), said: Any = status('/pl
     return made
 
 
+def died(component: str, since: float = 0.0, incident: int = 7) -> Fault:
+    return Fault(incident, component, 'died', True, since)
+
+
 def faults(tested: Watch, now: float, listeners: Optional[Listeners] = None) -> List[str]:
     return [f'{each.component} {each.kind}' for each in tested.faults(now, listeners) or []
             if each.stands]
 
 
 def test_the_alarm_that_stands_is_a_fault() -> None:
-    assert watch().faults(0.0) == [Fault(7, '/player', 'died', True)]
+    assert watch().faults(0.0) == [died('/player')]
 
 
 @pytest.mark.parametrize('said', [
@@ -60,25 +66,25 @@ def test_the_alarm_says_what_is_wrong_and_not_the_incident_that_it_has_opened_ag
         then: str, now: str) -> None:
     again = incident(kind=then)
     said = status(suspect('/player', now), kind=now)
-    assert watch([again], said).faults(0.0) == [Fault(7, '/player', now, True)]
+    assert faults(watch([again], said), 0.0) == [f'/player {now}']
 
 
 @pytest.mark.parametrize('then, now', [('died', 'slow'), ('slow', 'died')])
 def test_what_is_wrong_may_change_while_the_alarm_stands(then: str, now: str) -> None:
     said = status(suspect('/player', now), kind=then)
-    assert watch(said=said).faults(0.0) == [Fault(7, '/player', now, True)]
+    assert faults(watch(said=said), 0.0) == [f'/player {now}']
     both = status(suspect('/player', now), suspect('/player', then), kind=then)
-    assert watch(said=both).faults(0.0) == [Fault(7, '/player', then, True)]
+    assert faults(watch(said=both), 0.0) == [f'/player {then}']
 
 
 def test_who_is_to_blame_is_told_by_the_alarm() -> None:
     said = status('/slam', component='/slam')
-    assert watch(said=said).faults(0.0) == [Fault(7, '/slam', 'died', True)]
+    assert watch(said=said).faults(0.0) == [died('/slam')]
 
 
 def test_an_alarm_whose_incident_is_not_known_yet_has_its_own_id() -> None:
     for others in ([], [incident(last=1)], [incident(over=True)]):
-        assert watch(others).faults(0.0) == [Fault(RAISED, '/player', 'died', True)]
+        assert watch(others).faults(0.0) == [died('/player', incident=RAISED)]
 
 
 @pytest.mark.parametrize('said', [status('/slam'), status('/player', abnormal=False), status()])
@@ -135,7 +141,7 @@ def test_who_fails_while_an_alarm_stands_is_a_fault_besides() -> None:
     tested = beside(LATER)
     assert tested.beside(BESIDE_S) == ['/camera']
     assert tested.faults(BESIDE_S, NOBODY_LISTENS) == [
-        Fault(7, '/player', 'died', True), Fault(7, '/camera', 'died', True)]
+        died('/player'), died('/camera')]
     assert faults(tested, BESIDE_S + 0.6, NOBODY_LISTENS) == [], 'neither is abnormal any more'
 
 
@@ -178,3 +184,45 @@ def test_another_alarm_begins_anew() -> None:
     tested = beside(LATER)
     tested.on_status(BESIDE_S, status('/player', LATER, alarm=RAISED + 1))
     assert tested.beside(BESIDE_S) == []
+
+
+def at(now: float, *suspects: Suspect) -> SelfAwareness:
+    said = status(*suspects)
+    said.header.stamp = rospy.Time.from_sec(200.0 + now)
+    return said
+
+
+def test_who_has_died_and_comes_again_dies_anew() -> None:
+    """At half its rate of 10 Hz, /player is silent for longer than usual in every second gap."""
+    tested = watch(said=at(0.0, suspect('/player', silence=0.15)))
+    assert tested.faults(0.0) == [died('/player')]
+    for tenth in range(2, 20, 2):
+        tested.on_status(tenth / 10.0, at(tenth / 10.0, suspect('/player', silence=0.15)))
+        assert tested.faults(tenth / 10.0) == [died('/player', since=tenth / 10.0)]
+
+
+def test_who_does_not_come_is_dead_since_it_was_named_also_with_pauses() -> None:
+    tested = watch(said=at(0.0, suspect('/player', silence=0.15)))
+    tested.on_status(0.1, status(abnormal=False))
+    tested.on_status(2.0, at(2.0, suspect('/player', 'slow'), suspect('/player', silence=2.15)))
+    assert tested.faults(2.0) == [died('/player')]
+
+
+def test_of_many_things_that_have_died_the_one_counts_that_has_for_the_longest_time() -> None:
+    tested = watch(said=at(0.0, suspect('/player', silence=0.15)))
+    tested.on_status(1.0, at(1.0, suspect('/player', silence=0.2),
+                             suspect('/player', silence=1.15)))
+    assert tested.faults(1.0) == [died('/player')]
+
+
+def test_where_a_silence_is_not_known_it_has_died_since_windows_name_it() -> None:
+    tested = watch(said=at(0.0, suspect('/player')))
+    tested.on_status(0.3, at(0.3, suspect('/player'), suspect('/player', silence=0.1)))
+    assert tested.faults(0.3) == [died('/player')]
+    tested.on_status(1.0, at(1.0, suspect('/player')))
+    assert tested.faults(1.0) == [died('/player', since=1.0)], 'it was not named for 0.7 s'
+
+
+def test_who_is_slow_need_not_be_so_without_a_pause() -> None:
+    tested = watch(said=status(suspect('/player', 'slow'), kind='slow'))
+    assert tested.faults(0.0) == [Fault(7, '/player', 'slow', True)]
