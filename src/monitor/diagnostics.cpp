@@ -109,6 +109,9 @@ void Diagnostics::tellMonitor(const MonitorState& state, Status& status) {
   status.add("event types that the model does not know", heard.unknown_types);
   status.add("publishers heard", state.connections);
   status.add("share of a core spent", number(heard.cpu_share));
+  if (!state.mode.empty()) {
+    status.add("mode", state.mode);
+  }
   if (!state.taken_back.empty()) {
     status.add("alarm taken back", state.taken_back);
   }

@@ -23,6 +23,7 @@ struct MonitorState {
   std::size_t subscriptions = 0;
   std::size_t connections = 0;
   std::size_t left_out_topics = 0;  ///< there were too many
+  std::string mode;                 ///< of the robot, in words; empty: nobody tells it
   bool full_of_unknown = false;     ///< further unknown event types are not told apart
   bool master_answers = true;
   std::vector<ros1::Unheard> unheard;       ///< publishers that the master names

@@ -46,6 +46,7 @@ void Monitor::onReport() {
   state.connections = live_->events().connections();
   state.left_out_topics = discovered.left_out;
   state.full_of_unknown = session_ && session_->full();
+  state.mode = session_ ? session_->mode(moment.ros) : "";
   state.ros_now = moment.ros;
   state.clock_stands_still_for = live_->clock().standsStillFor();
   state.longest_pause = core::toSeconds(std::exchange(longest_pause_, 0));

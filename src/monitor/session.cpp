@@ -4,12 +4,22 @@
 #include <utility>
 
 #include "ros/content_digest.h"
+#include "ros/text.h"
 #include "self_awareness/core/paper/judge.h"
 #include "self_awareness/core/stream/mode.h"
 #include "self_awareness/core/verdict/name_pattern.h"
 #include "self_awareness/ros/file_version.h"
 
 namespace self_awareness {
+namespace {
+
+/// A text of a message, as short as a line of the diagnostics has to be.
+std::string quoted(const std::string& text) {
+  constexpr std::size_t kMost = 60;  // [bytes]
+  return ros1::printable(text, kMost) + (text.size() > kMost ? "..." : "");
+}
+
+}  // namespace
 
 Session::Session(ros1::TrainedModel trained, const MonitorParameters& parameters,
                  core::Detector::Handler handler)
@@ -164,6 +174,20 @@ std::vector<std::string> Session::strangers() const {
                     std::to_string(events));
   }
   return words;
+}
+
+std::string Session::mode(std::int64_t now) const {
+  if (!trained_.encoding.mode || !model_) {
+    return "";
+  }
+  const std::string topic = " (" + quoted(trained_.encoding.mode->topic) + ")";
+  const std::optional<core::LastingMode> mode = detector_.mode(now);
+  if (!mode) {
+    return "not known" + topic;
+  }
+  return quoted(core::modeOf(vocabulary_->at(mode->id))) + topic + ", for " +
+         std::to_string(mode->lasted / core::kNanosecondsPerSecond) + " s" +
+         (model_->knows(mode->id) ? "" : ", not seen in training");
 }
 
 std::set<std::string> Session::topics() const {

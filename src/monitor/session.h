@@ -86,6 +86,10 @@ class Session {
   /// what is accepted.
   std::vector<std::string> strangers() const;
 
+  /// The mode that the robot is in, up to now [ns], in words; empty: nobody tells it by the
+  /// encoding, or this detector knows no modes.
+  std::string mode(std::int64_t now) const;
+
   /// Takes note that a source was started again.
   void onRestarted(const std::string& source);
   /// Whether an event is the first of its type since its node was started again.

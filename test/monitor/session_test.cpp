@@ -6,6 +6,9 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <vector>
+
+#include "self_awareness/core/evidence/count/trainer.h"
 
 namespace self_awareness {
 namespace {
@@ -22,6 +25,29 @@ ros1::TrainedModel model() {
   return model;
 }
 
+constexpr std::int64_t kSecond = core::kNanosecondsPerSecond;
+
+/// Of a robot that tells its mode.
+ros1::TrainedModel modelWithModes() {
+  ros1::TrainedModel model;
+  model.encoding.mode = ros1::ModeField{"/state", "data"};
+  const core::EventId scan = model.statistics.intern({"/player", "/scan", "std_msgs/String"});
+  const core::EventId mode =
+      model.statistics.intern({"/logic", "/state", "std_msgs/String[mode: DOCKED]"});
+  for (core::evidence::Statistics& half : model.evidence) {
+    half.intern(model.statistics.vocabulary().at(scan));
+    half.intern(model.statistics.vocabulary().at(mode));
+    core::evidence::Trainer trainer(half, model.window);
+    trainer.add({0, mode});
+    for (int i = 0; i < 150; ++i) {
+      trainer.add({i * kSecond / 10, scan});
+    }
+    trainer.finish();
+  }
+  model.watch();
+  return model;
+}
+
 MonitorParameters byPaper() {
   MonitorParameters parameters;
   parameters.method = MonitorParameters::Method::kPaper;
@@ -34,11 +60,15 @@ ros1::ConnectionEncoder connect(const Session& session, const std::string& topic
       .value();
 }
 
+std::string serialized(const std::string& data) {
+  std::string bytes = std::string("\0\0\0\0", 4) + data;
+  bytes[0] = static_cast<char>(data.size());
+  return bytes;
+}
+
 core::EventId encode(ros1::ConnectionEncoder& connection, const std::string& data) {
-  std::string serialized = std::string("\0\0\0\0", 4) + data;
-  serialized[0] = static_cast<char>(data.size());
-  return connection.id(reinterpret_cast<const std::uint8_t*>(serialized.data()),
-                       serialized.size());
+  const std::string bytes = serialized(data);
+  return connection.id(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
 }
 
 TEST(Session, KnowsTheModelsTopicsAndWhatItsOwnProcessPublishes) {
@@ -86,6 +116,42 @@ TEST(Session, JudgesItsWindowsInTurn) {
   session.detector().add({0, 0});
   session.detector().advance(2 * session.window());
   EXPECT_EQ(starts, (std::vector<std::int64_t>{0, session.window()}));
+}
+
+TEST(Session, SaysTheModeThatTheRobotTells) {
+  Session session(modelWithModes(), MonitorParameters(), [](const core::Verdict&) {});
+  ros1::ConnectionEncoder logic =
+      session.encoder()
+          ->connect({"/logic", "/state", "std_msgs/String", "string data", false, ""})
+          .value();
+  const auto tell = [&](std::int64_t stamp, const std::string& mode) {
+    const std::string bytes = serialized(mode);
+    session.detector().add(
+        {stamp, logic.mode(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size())});
+  };
+  EXPECT_EQ(session.mode(0), "not known (/state)");
+  tell(10 * kSecond, "DOCKED");
+  EXPECT_EQ(session.mode(10 * kSecond), "DOCKED (/state), for 0 s");
+  tell(12 * kSecond, "DOCKED");
+  EXPECT_EQ(session.mode(15 * kSecond), "DOCKED (/state), for 5 s")
+      << "told again, it is the same";
+  tell(15 * kSecond, "LO\x1b" + std::string(60, 'S'));
+  EXPECT_EQ(session.mode(17 * kSecond),
+            "LO\uFFFD" + std::string(55, 'S') + "... (/state), for 2 s, not seen in training");
+  session.detector().restart();
+  tell(20 * kSecond, "DOCKED");
+  session.detector().onMissed(session.typesOf({"/logic", "/state"}), 21 * kSecond);
+  EXPECT_EQ(session.mode(22 * kSecond), "not known (/state)") << "another one may have been told";
+}
+
+TEST(Session, SaysNoModeWhereNobodyTellsIt) {
+  ros1::TrainedModel without = modelWithModes();
+  without.encoding.mode.reset();
+  EXPECT_EQ(Session(without, MonitorParameters(), [](const core::Verdict&) {}).mode(0), "");
+  ros1::TrainedModel of_paper = model();
+  of_paper.encoding.mode = ros1::ModeField{"/state", "data"};
+  EXPECT_EQ(Session(of_paper, byPaper(), [](const core::Verdict&) {}).mode(0), "")
+      << "the paper knows no modes";
 }
 
 TEST(Session, EverNewEventTypesDoNotFillTheMemory) {

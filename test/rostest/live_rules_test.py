@@ -24,6 +24,7 @@ from live_system import (MonitorListener, Process, again_if_clock_was_set, await
                          pid_of)
 from monitor_case import MonitorCase, Talker, forget_parameters, subscribers
 from self_awareness.msg import SelfAwareness
+from top_test import top
 
 
 def cpu_s(pid: int) -> float:
@@ -170,6 +171,10 @@ class LiveRulesTest(MonitorCase):
         model.save(self.path('model'))
         return self.path('model')
 
+    def await_mode(self, listener: MonitorListener, pattern: str) -> None:
+        await_condition('mode: ' + pattern, lambda: re.fullmatch(
+            pattern, listener.value('monitor', 'mode') or ''), 20)
+
     @again_if_clock_was_set
     def test_a_mode_that_was_latched_tells_of_a_death(self) -> None:
         state = rospy.Publisher('/state', String, latch=True, queue_size=1)
@@ -185,9 +190,15 @@ class LiveRulesTest(MonitorCase):
             await_condition('both are heard', lambda: all(
                 float(listener.value(name, 'events a second') or 0) > 5
                 for name in ('/planner', '/imu')), 30)
+            self.await_mode(listener, r'DRIVING \(/state\), for [0-9]+ s')
             seen = len(listener.statuses)
-            state.publish('LOST')  # training never saw it
-            state.publish('DRIVING')
+            state.publish('LOST')
+            with top() as terminal:
+                self.await_mode(listener, r'LOST \(/state\), for [0-9]+ s, not seen in training')
+                terminal.await_text('mode: LOST (/state), for ')
+                state.publish('DRIVING')
+                self.await_mode(listener, r'DRIVING \(/state\), for [0-9]+ s')
+                terminal.await_text('mode: DRIVING (/state), for ')
             await_condition('both are told', lambda: sum(
                 s.events for s in listener.statuses[seen:]) > 40, 20)
             self.call('/self_awareness/reset')  # the mode lasts

@@ -58,6 +58,9 @@ class Judge : public core::Judge {
     }
     return ObservedEvent{event, unknown, gap};
   }
+  std::optional<LastingMode> mode(std::int64_t now) const override {
+    return scorer_.heard().lasting(now);
+  }
   void hear(const Waiting& waiting) override { scorer_.hear(waiting); }
   void accept(const Acceptances& accepted) override {
     excused_.accept(accepted);

@@ -47,11 +47,18 @@ void ModeTime::restart() {
   of_.clear();
 }
 
+std::optional<LastingMode> ModeTime::lasting(std::int64_t now) const {
+  if (!mode_) {
+    return std::nullopt;
+  }
+  // A late event does not turn time back.
+  return LastingMode{*mode_, since_ ? std::max<std::int64_t>(now - *since_, 0) : 0};
+}
+
 std::int64_t ModeTime::lasted(EventId mode, std::int64_t now) const {
   const auto known = of_.find(mode);
   const std::int64_t before = known == of_.end() ? 0 : known->second.before;
-  // A late event does not turn time back.
-  return before + (mode == mode_ && since_ ? std::max<std::int64_t>(now - *since_, 0) : 0);
+  return before + (mode == mode_ ? lasting(now)->lasted : 0);
 }
 
 std::optional<Event> ModeTime::tickUntil(std::int64_t now) {

@@ -31,6 +31,8 @@ def head(said: Said, width: int, paused: bool) -> List[Line]:
                               f'{said.curve(max(width - 40, 10))}  {state}', width)))
     if said.itself:
         lines.append(('faint', cut(f'monitor: {said.itself}', width)))
+    if said.told_mode:
+        lines.append(('', cut(f'mode: {said.told_mode}', width)))
     if said.not_watched:
         lines.append(('faint', cut(f'not watched: {said.not_watched}', width)))
     if said.mode:

@@ -157,6 +157,11 @@ class Said:
         return self._list(_WHOLE, 'off together, as is accepted')
 
     @property
+    def told_mode(self) -> str:
+        """The mode that the robot tells, and for how long; empty: nobody tells it."""
+        return self._value(_ITSELF, 'mode')
+
+    @property
     def standing(self) -> int:
         """Id of the alarm or suspicion that stands, muted or not; 0: nothing does."""
         stands = self.verdict is not None and self.verdict.level != 0

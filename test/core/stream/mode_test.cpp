@@ -62,6 +62,22 @@ TEST(ModeTime, AModeLastsUntilAnotherOneIsTold) {
   EXPECT_FALSE(mode.mode());
 }
 
+TEST(ModeTime, LastsSinceItWasToldWithoutABreak) {
+  ModeTime mode;
+  EXPECT_FALSE(mode.lasting(100));
+  mode.enter(kDriving, 100);
+  mode.enter(kDocked, 200);
+  mode.enter(kDriving, 300);
+  mode.enter(kDriving, 340);
+  EXPECT_EQ(mode.lasting(350)->id, kDriving);
+  EXPECT_EQ(mode.lasting(350)->lasted, 50);
+  EXPECT_EQ(mode.lasting(290)->lasted, 0);
+  mode.restart();
+  EXPECT_EQ(mode.lasting(400)->lasted, 0) << "no event of the recording has come";
+  mode.enter(std::nullopt, 500);
+  EXPECT_FALSE(mode.lasting(600));
+}
+
 TEST(ModeTime, ALateEventTurnsNothingBack) {
   ModeTime mode;
   mode.enter(kDriving, 100);

@@ -119,6 +119,18 @@ def test_it_shows_who_is_off_together_as_is_accepted() -> None:
     assert shown({}) == []
 
 
+def test_it_shows_the_mode_that_the_robot_tells() -> None:
+    def shown(values: Dict[str, str]) -> List[str]:
+        of = Said('/watch')
+        of.on_diagnostics(diagnostics(status('watch: monitor', 0, 'listening', **values)))
+        return [line for _, line in lines.head(of, 40, False) if line.startswith('mode: ')]
+
+    assert shown({'mode': 'DRIVING (/state), for 42 s'}) == ['mode: DRIVING (/state), for 42 s']
+    assert shown({'mode': 'LO\x1bST (/state), for 42 s, not seen in training'}) == [
+        'mode: LO\ufffdST (/state), for 42 s, not see…']
+    assert shown({}) == []
+
+
 def test_who_was_never_heard_comes_first_by_age() -> None:
     of = Said('/watch')
     of.on_diagnostics(SimpleNamespace(status=[of_component('/a', 0, '1', '9'),

@@ -19,6 +19,12 @@ std::string modeOf(const EventType& type);
 /// Whether it tells one.
 bool tellsMode(const EventType& type);
 
+/// The mode that the robot is in.
+struct LastingMode {
+  EventId id = 0;           ///< of what told it
+  std::int64_t lasted = 0;  ///< since it was told, or, if that is later, the recording began [ns]
+};
+
 /// How long each mode has lasted in a recording. To whom a mode is as good as somebody who
 /// publishes all the time, it ticks.
 class ModeTime {
@@ -38,6 +44,8 @@ class ModeTime {
 
   /// The mode that lasts; none: it is not known.
   const std::optional<EventId>& mode() const { return mode_; }
+  /// The same, and for how long without a break up to now [ns].
+  std::optional<LastingMode> lasting(std::int64_t now) const;
   /// How long a mode has lasted up to now [ns].
   std::int64_t lasted(EventId mode, std::int64_t now) const;
   /// The next tick of the mode that lasts, as an event; none: it comes later than now [ns].

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "self_awareness/core/stream/mode.h"
 #include "self_awareness/core/stream/windows.h"
 #include "self_awareness/core/verdict/busy.h"
 #include "self_awareness/core/verdict/judge.h"
@@ -109,6 +110,8 @@ class Detector : private WindowObserver {
 
   /// Whether an event has come since the start.
   bool started() const { return windows_.lastStamp().has_value(); }
+  /// The mode that the robot is in, up to now [ns]; none: as Judge::mode().
+  std::optional<LastingMode> mode(std::int64_t now) const { return judge_->mode(now); }
   /// Events since the start that training never saw, by id; without what is accepted.
   std::map<EventId, std::uint64_t> unknown() const;
 

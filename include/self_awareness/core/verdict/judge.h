@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "self_awareness/core/stream/mode.h"
 #include "self_awareness/core/stream/waiting.h"
 #include "self_awareness/core/stream/windows.h"
 #include "self_awareness/core/verdict/acceptance.h"
@@ -60,6 +61,9 @@ class Judge {
   /// Takes note that events of these types were missed: what is unusual of them up to `until` [ns]
   /// says nothing of who sends them. If they tell a mode, it is not known any more.
   virtual void leaveOut(const std::vector<EventId>& ids, std::int64_t until) = 0;
+  /// The mode that the robot is in, up to now [ns], whether the model knows it or not; none: it is
+  /// not known, or this judge knows no modes.
+  virtual std::optional<LastingMode> mode(std::int64_t /*now*/) const { return std::nullopt; }
   /// Takes note of how the machine was in a stretch of time, one after the other. Who does not
   /// judge by time has no use for it.
   virtual void hear(const Waiting& /*waiting*/) {}

@@ -45,9 +45,7 @@ class Scorer {
     return gap;
   }
   /// Takes in that a mode of the robot is told (stream/mode.h), whether the model knows it or not.
-  void enter(const Event& event) {
-    heard_.enter(model_->knows(event.id) ? std::optional(event.id) : std::nullopt, event.stamp);
-  }
+  void enter(const Event& event) { heard_.enter(event); }
   /// Takes in that the mode is not known any more, since the last window.
   void loseMode() { heard_.loseMode(); }
   /// Takes in which mode lasts when the recording begins.

@@ -67,12 +67,11 @@ class Heard {
     stamps_[arrival.id] = arrival.stamp;
     numbers_[arrival.id] = ++number_;
   }
-  /// A mode of the robot is told (stream/mode.h).
-  /// @param mode none: the model does not know it
-  void enter(std::optional<EventId> mode, std::int64_t stamp) {
-    note(stamp);
+  /// A mode of the robot is told (stream/mode.h), whether the model knows it or not.
+  void enter(const Event& mode) {
+    note(mode.stamp);
     ++number_;
-    mode_.enter(mode, stamp);
+    mode_.enter(mode.id, mode.stamp);
   }
   void closeWindow(std::int64_t end);
   /// Forgets what was heard, but for the mode: a new recording starts, or the clock was set.
@@ -94,6 +93,8 @@ class Heard {
   std::int64_t windowEnd() const { return window_end_; }
   /// The mode that the robot is in; none: it is not known.
   const std::optional<EventId>& mode() const { return mode_.mode(); }
+  /// The same, and for how long up to now [ns].
+  std::optional<LastingMode> lasting(std::int64_t now) const { return mode_.lasting(now); }
   /// How long a mode has lasted since the start, up to a stamp [ns].
   std::int64_t lasted(EventId mode, std::int64_t stamp) const { return mode_.lasted(mode, stamp); }
   /// Time since the last event of a type, at the end of the last window [ns]; 0 before the first.
