@@ -33,11 +33,13 @@ def accept(**what: Any) -> AcceptResponse:
 class TrainedCase(MonitorCase):
     """With a model of /driver and /base."""
 
+    components = [('/driver', '/scan', 0.08), ('/base', '/odom', 0.1)]
+    """Source, topic and mean period [s] of each."""
+
     def setUp(self) -> None:
         super().setUp()
-        self.bags = [write_bag(self.path('{}.bag'.format(seed)), operation(
-            [('/driver', '/scan', 0.08), ('/base', '/odom', 0.1)], 120, seed))
-            for seed in (1, 2)]
+        self.bags = [write_bag(self.path('{}.bag'.format(seed)),
+                               operation(self.components, 120, seed)) for seed in (1, 2)]
         self.train()
 
     def train(self) -> str:

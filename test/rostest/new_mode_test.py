@@ -1,0 +1,85 @@
+#!/usr/bin/python3
+"""A mode that training never saw is a suspicion, and normal once it is accepted."""
+
+import signal
+from contextlib import ExitStack
+from typing import List
+
+import rospy
+import rostest
+
+from accept_test import TrainedCase, accept, talker
+from live_system import MonitorListener, Process, again_if_clock_was_set, await_condition
+from self_awareness.msg import SelfAwareness
+
+
+class NewModeTest(TrainedCase):
+    """Of four that do not hear each other, and three others, one of which hears another one."""
+
+    off = ['/arm', '/base', '/camera', '/lidar']
+    components = [*((name, name + '_out', 0.1) for name in off), ('/driver', '/scan', 0.1),
+                  ('/imu', '/imu_out', 0.1), ('/slam', '/pose', 0.1)]
+
+    def await_off(self, listener: MonitorListener, *names: str) -> None:
+        await_condition('off: {}'.format(names), lambda: (
+            listener.value('communication', 'off together, as is accepted') or ''
+            ) == ', '.join(names), 30)
+
+    def await_all_heard(self, listener: MonitorListener) -> None:
+        def are_heard() -> bool:
+            return all(float(listener.value(name, 'last heard [s ago]') or 9) < 1
+                       for name, _, _ in self.components)
+        await_condition('all are heard', are_heard, 30)
+        listener.await_settled()
+
+    @staticmethod
+    def of_those_off(listener: MonitorListener, after: int) -> List[str]:
+        """What was told since so many windows of those who are off together."""
+        return [status.message for status in listener.statuses[after:] if status.level and (
+            status.kind == SelfAwareness.NEW_MODE or status.component in NewModeTest.off)]
+
+    @again_if_clock_was_set
+    def test_a_mode_is_accepted_and_deaths_are_found_in_it(self) -> None:
+        with ExitStack() as robot:
+            nodes = {name: robot.enter_context(talker(name[1:], topic, 1 / period))
+                     for name, topic, period in self.components if name != '/slam'}
+            # Without a subscription, nobody would know who hears whom.
+            robot.enter_context(Process('rosrun', 'self_awareness', 'talker.py', '__name:=slam',
+                                        '_output:=/pose', '_input:=/scan'))
+
+            def send(number: int) -> None:
+                for name in self.off:
+                    nodes[name].send(number)
+
+            with self.trained_monitor(diagnostic_bytes=100000), MonitorListener() as listener:
+                self.await_all_heard(listener)
+                send(signal.SIGSTOP)
+                told = await_condition('the new mode', lambda: next((
+                    alarm for alarm in listener.alarms if alarm.kind == SelfAwareness.NEW_MODE),
+                    None), 30)
+                self.assertEqual((told.level, told.component), (SelfAwareness.WARN, ''))
+                said = accept()
+                self.assertTrue(said.success, said.message)
+                self.assertIn('/arm /base /camera /lidar (new mode)', said.message)
+                await_condition('the suspicion is over', lambda: (
+                    listener.alarms[-1].level == SelfAwareness.OK), 20)
+                self.await_off(listener, *self.off)
+                send(signal.SIGCONT)
+                self.await_off(listener)
+                self.await_all_heard(listener)
+                off_again_at = len(listener.statuses)
+                send(signal.SIGSTOP)
+                self.await_off(listener, *self.off)
+                seen = len(listener.statuses)
+                await_condition('windows', lambda: len(listener.statuses) > seen + 50, 30)
+                self.assertEqual(self.of_those_off(listener, off_again_at), [])
+                nodes['/imu'].send(signal.SIGKILL)
+                await_condition('a death that is found', lambda: any(
+                    alarm.level == SelfAwareness.ERROR and alarm.kind == SelfAwareness.DIED
+                    and alarm.component == '/imu' for alarm in listener.alarms), 30)
+                self.assertEqual(self.of_those_off(listener, off_again_at), [])
+
+
+if __name__ == '__main__':
+    rospy.init_node('new_mode_test')
+    rostest.rosrun('self_awareness', 'new_mode', NewModeTest)
