@@ -40,6 +40,11 @@ replace /usr/bin/cmake "$(/usr/bin/python3 -c 'import cmake; print(cmake.CMAKE_B
 headers=$(/usr/bin/python3 -c 'import pybind11; print(pybind11.get_include())')
 [ -e "$headers/pybind11/pybind11.h" ] || { echo "near_noetic.sh: error: no $headers" >&2; exit 1; }
 export CPLUS_INCLUDE_PATH=$headers
+# Python 3.9 has dropped what rospy 1.15.9 calls when a node ends; that of Noetic has it.
+packages=$(/usr/bin/python3 -c 'import site; print(site.getsitepackages()[0])')
+mkdir -p "$packages"
+echo 'import threading; threading.Thread.isAlive = threading.Thread.is_alive' \
+  > "$packages/threads_of_python_3_8.pth"
 
 say "Python 3.8"
 grep -lE '^#!/usr/bin/python3' nodes/* scripts/* |

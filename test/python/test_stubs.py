@@ -48,6 +48,8 @@ def test_arguments_are_called_as_in_the_module() -> None:
     """The module tells them in its docstrings only."""
     compared = 0
     for name, arguments in _stub():
+        if name == 'UnknownEvents.value' and not hasattr(_core.UnknownEvents, 'value'):
+            continue  # pybind11 2.4 gives an enum none
         bound = _core
         for part in name.split('.'):
             bound = getattr(bound, part)

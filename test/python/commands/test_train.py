@@ -207,6 +207,9 @@ def test_only_the_master_is_asked_for_the_graph(robot_bags: Bags, tmp_path, monk
 
 @pytest.mark.parametrize('program', [['train'], ['calibrate', '--model', 'm', '--normal']])
 def test_the_robots_nodes_go_first(program: List[str], model_file: str, tmp_path) -> None:
+    own = os.getpriority(os.PRIO_PROCESS, 0)
+    if own == 19:
+        pytest.skip('these tests run at the lowest priority')
     bag = tmp_path / 'never_ends.bag'
     os.mkfifo(bag)  # who opens it waits
     script = Path(__file__).resolve().parents[3] / 'scripts' / program[0]
@@ -214,7 +217,6 @@ def test_the_robots_nodes_go_first(program: List[str], model_file: str, tmp_path
     with subprocess.Popen([sys.executable, str(script), *arguments, str(bag), '-o',
                            str(tmp_path / 'm')], stderr=subprocess.DEVNULL) as process:
         try:
-            own = os.getpriority(os.PRIO_PROCESS, 0)
             wait_until(lambda: os.getpriority(os.PRIO_PROCESS, process.pid) > own, 'stands back')
         finally:
             process.kill()

@@ -228,7 +228,7 @@ def test_models_add_up_to_that_of_one_training(first: List[List[Event]],
 
 @examples
 @given(st.lists(st.tuples(long_recordings(), st.integers(0, 2 ** 64 - 1)), min_size=2,
-                max_size=4), st.randoms(use_true_random=False))
+                max_size=4), st.randoms())
 def test_the_order_of_recordings_changes_nothing(
         of_robot: List[Tuple[List[Event], int]], chance: random.Random) -> None:
     shuffled = chance.sample(of_robot, len(of_robot))

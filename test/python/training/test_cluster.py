@@ -117,13 +117,12 @@ def test_a_worker_is_killed_and_the_result_is_right(cluster: Cluster, bags: List
     for name in ('one', 'other'):
         cluster.add_worker(name)
     victim, process = cluster.address_of('other'), cluster.workers['other']
+    # What it gets it will never finish; the scheduler cannot know.
+    os.kill(process.pid, signal.SIGSTOP)
     training = subprocess.Popen([sys.executable, str(SCRIPT), *bags, '-o', str(tmp_path / 'm'),
                                  '--scheduler', cluster.address], stdout=subprocess.PIPE,
                                 stderr=subprocess.PIPE, text=True)
     wait_until(lambda: cluster.client.processing()[victim], 'the worker gets a task')
-    # What it has now it will never finish; the scheduler cannot know.
-    os.kill(process.pid, signal.SIGSTOP)
-    wait_until(lambda: len(cluster.client.processing()[victim]) > 0, 'tasks that are its own')
     lost = cluster.client.processing()[victim]
     os.kill(process.pid, signal.SIGKILL)
     out, err = training.communicate(timeout=DEADLINE_S)
