@@ -48,6 +48,7 @@ class NormalRow:
         expected: false alarms an hour that the calibration told; None: it did not say.
         watched: components of the robot that the system watches; None: it judges all together.
         components: of the robot; None: not noted.
+        suspicions: what raised each suspicion that was no alarm, in the system's words.
     """
 
     subject: Subject
@@ -59,6 +60,7 @@ class NormalRow:
     expected: Optional[float]
     watched: Optional[int] = None
     components: Optional[int] = None
+    suspicions: Tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -93,7 +95,7 @@ def normal_row(subject: Subject, judged: Judged, expected: Optional[float],
     return NormalRow(subject, _hours(counted), len(judged.alarms),
                      _hours(judged.standing & counted), beginnings(judged.noticed),
                      tuple(alarm.evidence for alarm in judged.alarms), expected, watched,
-                     components)
+                     components, tuple(each.evidence for each in judged.suspicions))
 
 
 def fault_row(subject: Subject, record: FaultRecord, judged: Judged) -> FaultRow:

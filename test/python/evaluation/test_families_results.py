@@ -4,6 +4,7 @@ from __future__ import annotations
 import csv
 import math
 import re
+from dataclasses import replace
 from pathlib import Path
 from typing import List, Optional, Set, Tuple
 
@@ -104,11 +105,14 @@ def at(window: int) -> int:
 
 
 def test_measures_of_normal_operation() -> None:
-    row = normal_row(SUBJECT, judged([SystemAlarm(at(60), at(70), True, ['/a'], 'answers')],
-                                     [80, 81, 90]), 0.4)
+    found = judged([SystemAlarm(at(60), at(70), True, ['/a'], 'answers')], [80, 81, 90])
+    row = normal_row(SUBJECT, replace(found, suspicions=[
+        SystemAlarm(at(80), at(82), True, [], 'new mode'),
+        SystemAlarm(at(90), at(91), True, ['/a'], 'pairs')]), 0.4)
     assert row.hours == pytest.approx(5.0 / 3600.0)
     assert row.standing_hours == pytest.approx(1.0 / 3600.0)
     assert (row.alarms, row.warnings, row.evidence, row.expected) == (1, 3, ('answers',), 0.4)
+    assert row.suspicions == ('new mode', 'pairs')
 
 
 def fault_at(window: int, kind: str = CRASH) -> FaultRecord:
