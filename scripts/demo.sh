@@ -39,7 +39,9 @@ for _ in waiting($2, '$1'): pass" &
   wait $bar
 }
 
-rm -f "$out"/*.bag "$out"/*.active "$out"/*.model "$out"/*.yaml "$out"/*.png "$out"/*.html
+# Of another demo; nothing else that may lie in the folder.
+rm -f "$out"/fault.bag{,.active} "$out"/{trained,calibrated}.model "$out"/{roc,score}.png \
+  "$out"/report.html
 
 say "Starting the simulated robot (launch/follow_me.launch)"
 start roscore.log roscore -p "$port"

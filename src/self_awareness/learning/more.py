@@ -7,7 +7,7 @@ import shutil
 from typing import List, Sequence
 
 from self_awareness import Recording, TrainedModel, accepted_file
-from self_awareness.learning.age import INCIDENT, LEARNED, Age, Heard
+from self_awareness.learning.age import LEARNED, Age, Heard
 from self_awareness.learning.division import Division, divide
 from self_awareness.learning.logs import Log
 from self_awareness.output_files import replacing
@@ -30,7 +30,7 @@ def divided(trained: TrainedModel, age: Age, start_up: float) -> Division:
     """
     new = [Log(each.part, (each.recording.end - each.origin) / SECOND_NS,
                each.recording.robot_start or each.origin)
-           for each in age.heard if each.left_out not in (LEARNED, INCIDENT)]
+           for each in age.heard if not each.left_out]
     division = divide(new, start_up)
     known = [] if trained.calibration is None else trained.calibration.recordings
     again = [part for each in age.heard if each.left_out == LEARNED

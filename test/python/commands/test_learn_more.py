@@ -186,8 +186,10 @@ def test_bad_input_is_one_line(program, model: str, model_file: str,
 
 
 def test_nothing_to_learn_from_is_an_error(model: str, learned: Tuple[str, List[str]],
-                                           capsys) -> None:
-    assert learn_more.main(['--model', model, learned[1][0]]) == 1
+                                           tmp_path: Path, capsys) -> None:
+    # Too short to be judged: whether it is normal is not known.
+    short = _log(tmp_path / 'short.bag', _robot(_DAY_S * 11, 2, length=50.0))
+    assert learn_more.main(['--model', model, learned[1][0], short]) == 1
     assert 'no recording is left to learn from' in capsys.readouterr().err
     assert not Path(f'{model}.new').exists()
 
