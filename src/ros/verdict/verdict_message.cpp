@@ -1,5 +1,7 @@
 #include "verdict_message.h"
 
+#include <cmath>
+
 #include "self_awareness/SelfAwareness.h"
 #include "self_awareness/ros/ros_time.h"
 
@@ -7,12 +9,17 @@ namespace self_awareness::ros1 {
 
 namespace {
 
-/// Whether the value is the time without an event.
-bool isSilence(const core::Reason& reason) {
+/// The time without an event [s]; NaN: that is not the reason, or not known.
+double silenceOf(const core::Reason& reason) {
   using core::Kind;
-  return reason.unit == core::unit::kSeconds &&
-         (reason.kind == Kind::kDied || reason.kind == Kind::kNeverCame ||
-          reason.kind == Kind::kStranger || (reason.kind == Kind::kLate && reason.after.empty()));
+  if (!std::isnan(reason.silence)) {
+    return reason.silence;
+  }
+  const bool is_silence =
+      reason.unit == core::unit::kSeconds &&
+      (reason.kind == Kind::kDied || reason.kind == Kind::kNeverCame ||
+       reason.kind == Kind::kStranger || (reason.kind == Kind::kLate && reason.after.empty()));
+  return is_silence ? reason.value : core::Reason::kNone;
 }
 
 }  // namespace
@@ -35,7 +42,7 @@ std::vector<self_awareness::Suspect> toMessages(const std::vector<core::Suspect>
     message.value = reason.value;
     message.usual = reason.usual;
     message.since = toRosTime(suspect.since);
-    message.silence = isSilence(reason) ? reason.value : core::Reason::kNone;
+    message.silence = silenceOf(reason);
     const bool in_seconds = reason.unit == core::unit::kSeconds;
     message.usual_shortest = in_seconds ? reason.usual_shortest : core::Reason::kNone;
     message.usual_longest = in_seconds ? reason.usual_longest : core::Reason::kNone;

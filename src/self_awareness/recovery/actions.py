@@ -182,8 +182,11 @@ class Actions:
         self._check_hold()  # to find it may have taken a while
         try:
             self._calls.shut_down(node, found.address, 'stopped by the recovery')
-        except NoAnswer:
-            pass  # then by signals
+        except NoAnswer as error:
+            if process is None:
+                raise ActionError(f'{node} was asked to end, on another machine, and did not '
+                                  f'answer: {error}') from error
+            # else by signals
         if process is None:
             return 'asked to end, on another machine'
         if process.ends_within(self._grace, self._check_hold):

@@ -170,9 +170,13 @@ class Ladder:
     def done(self, now: float) -> None:
         """The step that was ordered is done, or has failed."""
         assert self._busy is not None
-        rule, self._busy = self._busy.rule, None
-        climb = self._climbs[rule]
-        climb.next_at = now + self._rules.wait * 2.0 ** min(climb.tried - 1, _MOST_DOUBLINGS)
+        order, self._busy = self._busy, None
+        climb = self._climbs[order.rule]
+        waits_until = now + self._rules.wait * 2.0 ** min(climb.tried - 1, _MOST_DOUBLINGS)
+        for rule, each in self._climbs.items():
+            if rule.component == order.rule.component:
+                each.next_at = max(each.next_at, waits_until)
+        self._note_restarts(now, order)
 
     def standings(self, now: float) -> List[Standing]:
         """Return how the rules are that have something to mend."""
@@ -185,7 +189,10 @@ class Ladder:
         if climb is None:
             # Who is silent because the step of another rule has stopped it is no new fault.
             if _fault_of(rule, faults) and self._restarting.get(rule.component, now) <= now:
-                self._climbs[rule] = _Climb(now + self._rules.delay)
+                # A step of another rule for the same component has its time, too.
+                self._climbs[rule] = _Climb(max([now + self._rules.delay, *(
+                    each.next_at for other, each in self._climbs.items()
+                    if other.component == rule.component)]))
         elif any(fault.component == rule.component for fault in faults):
             if climb.gone_since is not None:
                 climb.gone_since = None
@@ -219,11 +226,21 @@ class Ladder:
         climb.tried += 1
         self._steps_of[rule].add(now)
         self._steps_of_all.add(now)
-        if isinstance(step, Stop):
-            self._restarting.update((node, now + self._rules.wait) for node in step.nodes
-                                    if node != rule.component)
         self._busy = Order(rule, at + 1, step, fault)
+        self._note_restarts(now, self._busy)
         return self._busy
+
+    def _note_restarts(self, now: float, order: Order) -> None:
+        """Let the nodes that a step stops for another one have the time to start."""
+        if not isinstance(order.step, Stop):
+            return
+        until = now + self._rules.wait
+        for node in order.step.nodes:
+            if node != order.rule.component:
+                self._restarting[node] = until
+                for rule, climb in self._climbs.items():
+                    if rule.component == node:
+                        climb.next_at = max(climb.next_at, until)
 
 
 def _fault_of(rule: Rule, faults: Iterable[Fault]) -> Optional[Fault]:

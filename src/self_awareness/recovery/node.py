@@ -10,6 +10,7 @@ from typing import Dict, Optional, Set, Tuple
 import rospy
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 
+from self_awareness import printable
 from self_awareness.msg import Incidents, RecoveryAction, RecoveryActions, SelfAwareness
 from self_awareness.recovery import history, words
 from self_awareness.recovery.actions import ActionError, Actions
@@ -25,6 +26,7 @@ LONGEST_HOLD_S = 86400.0
 _TICK_S = 0.1
 _HEARTBEAT_S = 1.0
 _LOOK_EVERY_S = 1.0
+_LONGEST_NAME = 200
 _DIRECTORY = '$ROS_HOME/self_awareness/$NAME'  # the monitor's default
 
 
@@ -195,13 +197,12 @@ class Recovery:
     def _look(self) -> None:
         wait = threading.Event()
         while not rospy.is_shutdown():
-            try:
-                self._find_path()
-                self._actions.look()
-                self._ask_listeners()
-            except Exception:  # whatever a node answers, the others are looked at again
-                rospy.logerr_throttle(60.0, 'a look at the nodes failed unexpectedly:\n'
-                                      + traceback.format_exc())
+            for look in (self._find_path, self._actions.look, self._ask_listeners):
+                try:
+                    look()
+                except Exception:  # whatever a node answers, the others are looked at again
+                    rospy.logerr_throttle(60.0, 'a look at the nodes failed unexpectedly:\n'
+                                          + traceback.format_exc())
             wait.wait(_LOOK_EVERY_S)
 
     def _find_path(self) -> None:
@@ -248,13 +249,15 @@ class Recovery:
         if request.duration != 0.0 and not 1.0 <= request.duration <= LONGEST_HOLD_S:
             return MaintenanceResponse(False, f'duration: {request.duration:g}; it must be from 1 '
                                        f'to {LONGEST_HOLD_S:g} s, or 0 to go on')
-        by = request._connection_header.get('callerid', 'nobody')
+        by = printable(request._connection_header.get('callerid', 'nobody'))[:_LONGEST_NAME]
         hold = _Hold(time.time_ns() + nanoseconds(request.duration),
                      time.monotonic_ns() + nanoseconds(request.duration), f', by {by}')
         with self._lock:
             self._held = self._hold = hold
             self._ladder.hold(hold.steady / SECOND_NS)
         answer = (f'does nothing until {_shown(hold.until)}' if request.duration else 'goes on')
+        if request.duration and not self._path:
+            answer += '; not kept yet, so another start of the recovery would not know it'
         under_way = [words.what(each) for each in self._history.actions[-1:] if not each.over]
         if request.duration and under_way:
             answer += f'; still ends what it does: {under_way[0]}'

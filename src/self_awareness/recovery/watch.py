@@ -93,8 +93,10 @@ class Watch:
             suspects.setdefault(suspect.component, []).append(suspect)
         for name, its in suspects.items():
             since = self._named[name].since if name in self._named else now
-            # The id of an alarm is the time when it was raised.
-            later = any(each.since.to_nsec() > status.alarm for each in its)
+            # The id of an alarm is the time when it was raised. Who is not abnormal by itself is
+            # named since the end of each window anew.
+            later = any(status.alarm < each.since.to_nsec() < status.header.stamp.to_nsec()
+                        for each in its)
             self._named[name] = _Named(since, now, [each.kind for each in its],
                                        self._dead_since(now, name, its, since), later)
 
@@ -104,6 +106,10 @@ class Watch:
             return 'the monitor is not heard'
         if self._status.settling:
             return 'the monitor has not settled'
+        window_s = self._status.window.to_sec()
+        if window_s > _ABNORMAL_S:
+            return (f'the monitor judges by windows of {window_s:g} s; a recovery takes '
+                    f'{_ABNORMAL_S:g} s at most')
         if self._status.level == _ERROR and self._status.kind in _NOBODY_IS_TO_BLAME:
             return 'the machine is busy, or all are silent: no component is to blame'
         return ''

@@ -61,5 +61,7 @@ def what(action: Action) -> str:
 
 def _waiting(standing: Standing) -> str:
     number = min(standing.tried + 1, len(standing.rule.steps))
+    when = (f'in {standing.due_in:.0f} s, if it does not recover' if standing.due_in > 0.0
+            else 'as soon as it fails so again')
     return (f'{standing.rule.component} is to be mended by step {number} of '
-            f'{len(standing.rule.steps)} in {standing.due_in:.0f} s, if it does not recover')
+            f'{len(standing.rule.steps)} {when}')

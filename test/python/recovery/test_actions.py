@@ -159,6 +159,18 @@ def test_on_another_machine_it_can_only_be_asked() -> None:
         stop(robot, '/player')
 
 
+def test_on_another_machine_no_answer_is_a_failure() -> None:
+    class Deaf(Robot):
+
+        def shut_down(self, node: str, address: str, reason: str) -> None:
+            raise NoAnswer(f'{node} does not answer')
+
+    robot = Deaf(player=1)
+    robot.addresses['/player'] = THERE
+    with pytest.raises(ActionError, match='on another machine, and did not answer'):
+        stop(robot, '/player')
+
+
 def test_nodes_of_this_package_are_refused_whatever_their_names(tmp_path: Path) -> None:
     with launched(tmp_path, '__name:=watch') as pid:
         robot = Robot(watch=pid)

@@ -198,6 +198,29 @@ def test_who_is_silent_because_it_was_stopped_for_another_is_no_fault() -> None:
     assert climb(tested, WAIT, WAIT + TICK, of_slam) == [(WAIT, 'stop /slam')], 'not back'
 
 
+def test_a_step_that_takes_long_leaves_others_their_time_from_its_end() -> None:
+    stop_both = Rule('/player', ('died',), (Stop(('/player', '/slam')),))
+    tested = ladder(stop_both, SLAM, delay=0.0)
+    both = [fault(), fault('/slam', incident=2)]
+    order = tested.advance(0.0, both)
+    assert order is not None and order.rule is stop_both
+    tested.done(15.0)
+    of_slam = both[1:]
+    assert climb(tested, 15.0, 15.0 + WAIT, of_slam) == [], 'it was a fault of its own before'
+    assert climb(tested, 15.0 + WAIT, 16.0 + WAIT, of_slam) == [(15.0 + WAIT, 'stop /slam')]
+
+
+def test_rules_of_one_component_have_one_time() -> None:
+    reset = Rule('/player', ('slow',), (Call('/player/reset'),))
+    tested = ladder(reset, PLAYER)
+    assert climb(tested, 0.0, DELAY + TICK, [fault(kind='slow')]) == [
+        (DELAY, 'call /player/reset')]
+    # It is silent while it resets itself.
+    assert climb(tested, DELAY + TICK, DELAY + WAIT) == []
+    assert climb(tested, DELAY + WAIT, DELAY + WAIT + TICK) == [
+        (DELAY + WAIT, 'call /player/reset')]
+
+
 _COMPONENTS = ('/player', '/slam')
 _MOMENTS = strategies.lists(
     strategies.tuples(

@@ -94,6 +94,20 @@ def test_a_hold_counts_before_it_is_known_where_it_is_kept(recovery: Recovery,
     assert history.load(str(path(tmp_path))).held_until <= time.time_ns()
 
 
+def test_a_hold_that_is_not_kept_yet_says_so(recovery: Recovery) -> None:
+    assert 'not kept yet' in hold(recovery, 60.0)
+    recovery._find_path()
+    recovery._advance(0.0)
+    assert 'not kept' not in hold(recovery, 60.0)
+
+
+def test_who_holds_it_is_shown_in_short(recovery: Recovery) -> None:
+    recovery._on_hold(SimpleNamespace(duration=60.0, _connection_header={
+        'callerid': '/\x1b[31m' + 5000 * 'x'}))
+    why = recovery._why_held()
+    assert '\x1b' not in why and len(why) < 300
+
+
 def test_a_hold_outlives_steps_of_the_clock(recovery: Recovery, tmp_path: Path) -> None:
     now = time.monotonic_ns()
     History([], 1, now + 600 * SECOND).save(str(path(tmp_path)))

@@ -21,6 +21,8 @@ def test_what_is_done_and_what_will_be_is_told() -> None:
     waiting = Standing(RULE, 1, '', 12.4)
     assert words.status(1, [waiting], [DONE], '', '') == (
         words.WARN, '/player is to be mended by step 2 of 2 in 12 s, if it does not recover')
+    assert words.status(1, [Standing(RULE, 1, '', 0.0)], [DONE], '', '')[1] == (
+        '/player is to be mended by step 2 of 2 as soon as it fails so again')
     assert words.status(1, [waiting], [DONE, DOING], '', '') == (
         words.WARN, 'stop /player, /slam (step 2 of 2), since /player: died')
 

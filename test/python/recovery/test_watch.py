@@ -12,6 +12,7 @@ from self_awareness.recovery.ladder import Fault
 from self_awareness.recovery.watch import BESIDE_S, FRESH_S, Watch
 
 RAISED = 100 * 10 ** 9  # [ns], the id of the alarm
+NOW = 1000  # [s], the end of a window
 Listeners = Dict[str, Set[str]]
 NOBODY_LISTENS: Listeners = {'/player': set(), '/camera': set(), '/slam': set()}
 
@@ -29,8 +30,10 @@ def suspect(component: str, kind: str = 'died', since: int = 100, silence: float
 def status(*suspects: Any, **fields: Any) -> SelfAwareness:
     values = {'level': SelfAwareness.ERROR, 'abnormal': True, 'alarm': RAISED,
               'component': '/player', 'kind': 'died', **fields}
-    return SelfAwareness(suspects=[suspect(each) if isinstance(each, str) else each
+    said = SelfAwareness(suspects=[suspect(each) if isinstance(each, str) else each
                                    for each in suspects], **values)
+    said.header.stamp = rospy.Time(NOW)
+    return said
 
 
 def watch(incidents: Iterable[Incident] = (incident(),), said: Any = status('/player')) -> Watch:
@@ -117,6 +120,15 @@ def test_nothing_is_known_from_a_monitor_that_is_gone_or_has_not_settled() -> No
     assert tested.faults(10.0) is None and 'settled' in tested.why_blind(10.0)
 
 
+def test_windows_may_be_too_long() -> None:
+    tested = watch(said=status('/player', window=rospy.Duration(0.5)))
+    assert tested.why_blind(0.0) == ''
+    tested.on_status(1.0, status('/player', window=rospy.Duration(2)))
+    assert tested.faults(1.0) is None
+    assert tested.why_blind(1.0) == (
+        'the monitor judges by windows of 2 s; a recovery takes 0.5 s at most')
+
+
 @pytest.mark.parametrize('kind', [SelfAwareness.BUSY_MACHINE, SelfAwareness.ALL_SILENT])
 def test_nobody_is_restarted_while_the_machine_is_to_blame(kind: str) -> None:
     tested = watch(said=status('/player', '/slam', component='', kind=kind))
@@ -155,6 +167,11 @@ def test_it_is_none_if_it_is_not_known_who_hears_whom() -> None:
 
 def test_who_was_named_when_the_alarm_was_raised_need_not_be_abnormal_by_itself() -> None:
     assert faults(beside(suspect('/camera', since=100)), BESIDE_S, NOBODY_LISTENS) == [
+        '/player died']
+
+
+def test_who_is_not_abnormal_by_itself_is_named_anew_in_every_window() -> None:
+    assert faults(beside(suspect('/camera', since=NOW)), BESIDE_S, NOBODY_LISTENS) == [
         '/player died']
 
 

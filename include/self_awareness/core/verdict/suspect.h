@@ -80,6 +80,8 @@ struct Reason {
   std::size_t times = 0;          ///< of them, unusual
   std::string words;              ///< "silent for 2.31 s, usually every 0.083 s, at most 0.104 s"
   std::vector<std::string> topics;  ///< that it does not subscribe to, of kUnsubscribed
+  /// Of one that died, time without such an event [s], whatever the value is of; NaN: not known.
+  double silence = kNone;
 };
 
 /// Why a stranger is one that came in the window.

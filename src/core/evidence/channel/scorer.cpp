@@ -91,6 +91,9 @@ bool Scorer::isCertain(std::size_t track, double limit) const {
 
 void Scorer::explain(std::size_t track, const RecentEvents& events, Suspect& suspect) const {
   stateOf(track).explain(track, heard_, events, suspect);
+  if (suspect.reason.kind == Kind::kDied && heard_.hasSeen(suspect.id)) {
+    suspect.reason.silence = toSeconds(heard_.silence(suspect.id));
+  }
 }
 
 }  // namespace self_awareness::core::evidence

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <memory>
 
 #include "../recordings.h"
@@ -49,6 +50,7 @@ TEST_F(OwedTest, RareRequestsAreCountedInSecondsSinceTheFirst) {
   EXPECT_DOUBLE_EQ(evidenceAt(36 * kSecond), 6) << "since the first one without an answer";
   EXPECT_EQ(suspect().reason.kind, Kind::kDied);
   EXPECT_DOUBLE_EQ(suspect().reason.value, 6);
+  EXPECT_DOUBLE_EQ(suspect().reason.silence, 16) << "since the last B";
   EXPECT_EQ(suspect().reason.words, "has not come for 6.00 s after /a /x T");
   EXPECT_DOUBLE_EQ(evidenceAt(50 * kSecond), 20) << "judged on a timer, not at the next request";
   scorer_->add({50 * kSecond, kB});
@@ -72,6 +74,7 @@ TEST_F(OwedTest, WhoWasNeverHeardMayBeStartingForAMinute) {
   scorer_->add({5 * kSecond, kA});
   EXPECT_EQ(evidenceAt(60 * kSecond), 0);
   EXPECT_DOUBLE_EQ(evidenceAt(65 * kSecond), 60);
+  EXPECT_TRUE(std::isnan(suspect().reason.silence)) << "there was no B";
   scorer_->restart();
   scorer_->add({100 * kSecond, kA});
   EXPECT_EQ(evidenceAt(150 * kSecond), 0);
