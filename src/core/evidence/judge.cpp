@@ -68,7 +68,7 @@ class Judge : public core::Judge {
     unsubscribed_.accept(accepted);
     new_mode_.accept(accepted);
   }
-  bool isAccepted(EventId id, Kind kind) const override { return excused_.isAccepted(id, kind); }
+  bool isAccepted(EventId id, Kind kind) const override { return excused_.isExcused(id, kind); }
   void setOptional(const std::vector<std::string>& patterns) override {
     excused_.setOptional(patterns);
     never_heard_.excuse(excused_.mayBeSilent());

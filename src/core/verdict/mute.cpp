@@ -60,6 +60,8 @@ std::vector<Mute> Mutes::onStanding(const std::optional<Alarm>& standing,
     active_.reset();
   } else if (!(was_muted && standing->suspects.empty() && standing->culprit == culprit_)) {
     active_ = muteOf(*standing, vocabulary, graph);
+  } else if (!areMuted(standing->later, *standing, vocabulary, graph)) {
+    active_.reset();
   }  // else it is what is left of the one before
   culprit_ = standing ? standing->culprit : "";
   std::vector<Mute> over;
@@ -96,29 +98,37 @@ std::optional<std::size_t> Mutes::muteOf(const std::string& component, const std
   return found == mutes_.end() ? std::nullopt : std::optional<std::size_t>(found - mutes_.begin());
 }
 
+std::optional<std::size_t> Mutes::muteOf(const Suspect& suspect,
+                                         const Vocabulary& vocabulary) const {
+  return muteOf(suspect.component,
+                suspect.id < vocabulary.size() ? vocabulary.at(suspect.id).scope : "",
+                suspect.reason.kind);
+}
+
 std::optional<std::size_t> Mutes::muteOf(const Alarm& alarm, const Vocabulary& vocabulary,
                                          const SourceGraph& graph) const {
   std::vector<Suspect> suspects = alarm.suspects;
   suspects.insert(suspects.end(), alarm.later.begin(), alarm.later.end());
-  const auto muteOfSuspect = [&](const Suspect& suspect) {
-    return muteOf(suspect.component,
-                  suspect.id < vocabulary.size() ? vocabulary.at(suspect.id).scope : "",
-                  suspect.reason.kind);
-  };
   const auto culprit = std::find_if(suspects.begin(), suspects.end(), [&](const Suspect& suspect) {
     return !alarm.culprit.empty() && suspect.component == alarm.culprit;
   });
-  if (culprit == suspects.end()) {
-    // Of an alarm of before the start, the suspects are not known.
-    return muteOf(alarm.culprit, "", alarm.kind);
+  // Of an alarm of before the start, the suspects of then are not known.
+  const std::optional<std::size_t> muted = culprit == suspects.end()
+                                               ? muteOf(alarm.culprit, "", alarm.kind)
+                                               : muteOf(*culprit, vocabulary);
+  return areMuted(suspects, alarm, vocabulary, graph) ? muted : std::nullopt;
+}
+
+bool Mutes::areMuted(const std::vector<Suspect>& suspects, const Alarm& alarm,
+                     const Vocabulary& vocabulary, const SourceGraph& graph) const {
+  if (alarm.culprit.empty()) {
+    return true;
   }
-  const std::optional<std::size_t> muted = muteOfSuspect(*culprit);
   const std::set<std::string> dependent = dependentsOf(graph, alarm.culprit);
-  const bool all = std::all_of(suspects.begin(), suspects.end(), [&](const Suspect& suspect) {
+  return std::all_of(suspects.begin(), suspects.end(), [&](const Suspect& suspect) {
     return !suspect.abnormal || suspect.component == alarm.culprit ||
-           dependent.count(suspect.component) > 0 || muteOfSuspect(suspect);
+           dependent.count(suspect.component) > 0 || muteOf(suspect, vocabulary);
   });
-  return all ? muted : std::nullopt;
 }
 
 }  // namespace self_awareness::core

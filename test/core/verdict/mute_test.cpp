@@ -73,6 +73,18 @@ TEST_F(MutesTest, WhoIsNamedLaterIsToldAgain) {
   EXPECT_FALSE(stands(grows));
 }
 
+TEST_F(MutesTest, WhoFailsBesideAnAlarmOfBeforeTheStartIsTold) {
+  mutes_.add(mute("/player"));
+  std::optional<Alarm> resumed = alarm({});
+  resumed->culprit = "/player";
+  EXPECT_TRUE(stands(resumed));
+  resumed->later = alarm({1})->suspects;
+  EXPECT_TRUE(stands(resumed)) << "a victim";
+  resumed->later = alarm({2})->suspects;
+  EXPECT_FALSE(stands(resumed));
+  EXPECT_FALSE(stands(resumed)) << "the same again";
+}
+
 TEST_F(MutesTest, ATopicOrAKindIsMuted) {
   mutes_.add(mute("", "/scan"));
   EXPECT_TRUE(stands(alarm({0})));

@@ -70,7 +70,7 @@ class Judge {
   /// Takes what is accepted as normal from now on, in place of what was before. Who knows no event
   /// type of its own has no use for it.
   virtual void accept(const Acceptances& /*accepted*/) {}
-  /// Whether something that an event type does is accepted.
+  /// Whether something that an event type does is accepted, or it may be absent and is.
   virtual bool isAccepted(EventId /*id*/, Kind /*kind*/) const { return false; }
   /// Takes note of who may be absent: names of components or topics, or their begins and a `*`.
   /// What is unusual of them while they are there is judged.

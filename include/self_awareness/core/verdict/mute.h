@@ -72,9 +72,14 @@ class Mutes {
   /// Index of the mute of a suspect; none: it is not muted.
   std::optional<std::size_t> muteOf(const std::string& component, const std::string& topic,
                                     Kind kind) const;
+  std::optional<std::size_t> muteOf(const Suspect& suspect, const Vocabulary& vocabulary) const;
   /// Index of the mute of an alarm; none: it is not muted.
   std::optional<std::size_t> muteOf(const Alarm& alarm, const Vocabulary& vocabulary,
                                     const SourceGraph& graph) const;
+  /// Whether nobody of them has to be told beside the culprit: who is abnormal by itself depends
+  /// on it, or is muted; or there is no culprit.
+  bool areMuted(const std::vector<Suspect>& suspects, const Alarm& alarm,
+                const Vocabulary& vocabulary, const SourceGraph& graph) const;
 
   std::vector<Mute> mutes_;
   std::optional<std::size_t> active_;

@@ -74,11 +74,14 @@ void Excused::leaveOut(std::vector<Suspect>& suspects) const {
   const auto isExcused = [this](const Suspect& suspect) {
     const Kind kind = suspect.reason.kind;
     // What is not subscribed to is no topic of an event type: Unsubscribed leaves it out.
-    return (kind != Kind::kUnsubscribed && isAccepted(suspect.id, kind)) ||
-           (model_->knows(suspect.id) && is_optional_[suspect.id] &&
-            (kind == Kind::kDied || kind == Kind::kNeverCame));
+    return kind != Kind::kUnsubscribed && this->isExcused(suspect.id, kind);
   };
   suspects.erase(std::remove_if(suspects.begin(), suspects.end(), isExcused), suspects.end());
+}
+
+bool Excused::isExcused(EventId id, Kind kind) const {
+  return isAccepted(id, kind) || (model_->knows(id) && is_optional_[id] &&
+                                  (kind == Kind::kDied || kind == Kind::kNeverCame));
 }
 
 bool Excused::isAccepted(EventId id, Kind kind) const {

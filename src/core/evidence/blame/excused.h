@@ -39,8 +39,8 @@ class Excused {
   }
   /// Whether an event type that the model does not know is accepted.
   bool isAcceptedStranger(EventId id);
-  /// Whether something that an event type does is accepted.
-  bool isAccepted(EventId id, Kind kind) const;
+  /// Whether something that an event type does is accepted, or it may be absent and is.
+  bool isExcused(EventId id, Kind kind) const;
   /// Whether an event type of the model may be silent, by id.
   const std::vector<bool>& mayBeSilent() const { return may_be_silent_; }
   /// Takes back what tracks say of what is accepted, or of who is absent and may be.
@@ -49,6 +49,7 @@ class Excused {
   void leaveOut(std::vector<Suspect>& suspects) const;
 
  private:
+  bool isAccepted(EventId id, Kind kind) const;
   /// Whether what a track says is accepted.
   bool covers(const Track& track) const;
   void update();

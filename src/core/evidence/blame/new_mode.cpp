@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <map>
 #include <utility>
 
@@ -37,10 +38,10 @@ std::optional<Silent> NewMode::excuse(std::vector<double>& shares, const Limits&
   }
   const Heard& heard = scorer.heard();
   const std::set<EventId> stopped = find(silent(limits, heard, may_be_silent), shares, heard);
-  if (stopped.empty()) {
+  if (stopped.empty() || accepted_.coversMode(namesOf(stopped))) {  // that is no news
     return std::nullopt;
   }
-  takeBack(stopped, shares);
+  takeBack(stopped, shares, heard, std::numeric_limits<std::int64_t>::max());
   Silent found;
   found.others_go_on = true;
   found.components = namesOf(stopped);
@@ -65,7 +66,8 @@ std::vector<std::string> NewMode::excuseAccepted(std::vector<double>& shares, co
   for (const Acceptance& mode : accepted_.list()) {
     stopped.merge(offIn(mode, silent, heard));
   }
-  takeBack(stopped, shares);
+  const std::int64_t begun = lastOf({stopped.begin(), stopped.end()}, heard);
+  takeBack(stopped, shares, heard, begun + toNanoseconds(model_->tuning().start_time));
   return namesOf(stopped);
 }
 
@@ -121,7 +123,8 @@ std::set<EventId> NewMode::find(const std::vector<EventId>& silent,
   return stopped;
 }
 
-void NewMode::takeBack(const std::set<EventId>& stopped, std::vector<double>& shares) const {
+void NewMode::takeBack(const std::set<EventId>& stopped, std::vector<double>& shares,
+                       const Heard& heard, std::int64_t until) const {
   const std::set<std::size_t> components = componentsOf({stopped.begin(), stopped.end()});
   const auto hearsThem = [&](EventId id) {
     return std::any_of(components.begin(), components.end(), [&](std::size_t component) {
@@ -131,7 +134,8 @@ void NewMode::takeBack(const std::set<EventId>& stopped, std::vector<double>& sh
   for (std::size_t track = 0; track < shares.size(); ++track) {
     const EventId id = model_->tracks()[track].to;
     if (shares[track] > 0 &&
-        (stopped.count(id) > 0 || (isOfSilence(model_->finding(track)) && hearsThem(id)))) {
+        (stopped.count(id) > 0 ||
+         (isOfSilence(model_->finding(track)) && heard.stamps()[id] <= until && hearsThem(id)))) {
       shares[track] = 0;
     }
   }

@@ -29,7 +29,7 @@ class NewMode {
   /// @param limits of the model's tracks
   /// @param scorer that has closed the window
   /// @param may_be_silent event types of the model whose silence says nothing, by id
-  /// @return who stopped; none: nobody has in that way
+  /// @return who stopped; none: nobody has in that way, or that is accepted
   std::optional<Silent> excuse(std::vector<double>& shares, const Limits& limits,
                                const Scorer& scorer, const std::vector<bool>& may_be_silent);
   /// The same, if all who stopped are of one mode that is accepted, or it begins: that is normal.
@@ -49,8 +49,10 @@ class NewMode {
   /// early to miss all of them. Who died alone is not off: the others were heard since.
   std::set<EventId> offIn(const Acceptance& mode, const std::vector<EventId>& silent,
                           const Heard& heard) const;
-  /// Takes back the evidence against them, and against who hears them.
-  void takeBack(const std::set<EventId>& stopped, std::vector<double>& shares) const;
+  /// Takes back the evidence against them, and against who hears them and was not heard later than
+  /// `until` [ns]: who goes on does not wait for them.
+  void takeBack(const std::set<EventId>& stopped, std::vector<double>& shares, const Heard& heard,
+                std::int64_t until) const;
   /// The names of their components, in order.
   std::vector<std::string> namesOf(const std::set<EventId>& ids) const;
   /// Event types that should have come by now.

@@ -112,5 +112,14 @@ TEST_F(ExcusedTest, OnlySuspectsOfThatKindAreDropped) {
   EXPECT_EQ(suspects[0].reason.kind, Kind::kDied);
 }
 
+TEST_F(ExcusedTest, WhoIsOptionalMayBeMissing) {
+  EXPECT_FALSE(excused_.isExcused(kB, Kind::kDied));
+  excused_.setOptional({"/b"});
+  EXPECT_TRUE(excused_.isExcused(kB, Kind::kDied));
+  EXPECT_TRUE(excused_.isExcused(kB, Kind::kNeverCame));
+  EXPECT_FALSE(excused_.isExcused(kB, Kind::kSlow));
+  EXPECT_FALSE(excused_.isExcused(kA, Kind::kDied));
+}
+
 }  // namespace
 }  // namespace self_awareness::core::evidence

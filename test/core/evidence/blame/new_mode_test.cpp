@@ -161,6 +161,25 @@ TEST_F(NewModeTest, WhatIsAcceptedIsNormal) {
   EXPECT_EQ(share(0), 0);
 }
 
+TEST_F(NewModeTest, WhoGoesOnInAnAcceptedModeIsJudged) {
+  constexpr std::int64_t kBegan = 90 * kSecond;
+  accept({"/arm", "/laser", "/lidar", "/wheels"});
+  EXPECT_TRUE(isNormal({kBegan, kBegan, kBegan, kBegan, 40 * kSecond, 0}));
+  EXPECT_EQ(share(kSlam), 0) << "it hears /laser, and has stopped within a minute";
+  EXPECT_TRUE(isNormal({kBegan, kBegan, kBegan, kBegan, 5 * kSecond, 0}));
+  EXPECT_EQ(share(kSlam), 2) << "it went on without /laser";
+  EXPECT_EQ(share(0), 0);
+}
+
+TEST_F(NewModeTest, AnotherFaultInAnAcceptedModeIsNoNewMode) {
+  accept({"/arm", "/laser", "/lidar", "/wheels"});
+  const std::vector<std::int64_t> imu_died{kAgo, kAgo, kAgo, kAgo, 0, kAgo / 2};
+  EXPECT_TRUE(isNormal(imu_died));
+  EXPECT_EQ(share(kImu), 2);
+  EXPECT_FALSE(excuse(imu_died));
+  EXPECT_EQ(share(kImu), 2);
+}
+
 TEST_F(NewModeTest, WhenAnAcceptedModeBeginsTheFirstOneMissedIsNotDead) {
   constexpr std::int64_t kGap = 100 * kMillisecond;
   accept({"/arm", "/laser", "/lidar", "/wheels"});
