@@ -104,7 +104,8 @@ bool AcceptCalls::onAccept(Call& call) {
   if (!calls_.mayServe("accept", call, steadyNow())) {
     return true;
   }
-  const std::string caller = ros1::printable(call.getCallerName(), ros1::kLongestName);
+  // What does not belong in a text takes three bytes, and a longer name could not be read again.
+  const std::string caller = ros1::printable(call.getCallerName(), ros1::kLongestName / 3);
   call.getResponse() = serve(call.getRequest(), caller);
   return true;
 }

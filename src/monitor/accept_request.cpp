@@ -7,6 +7,7 @@
 
 #include "ros/text.h"
 #include "self_awareness/core/verdict/incident.h"
+#include "self_awareness/core/verdict/name_pattern.h"
 
 namespace self_awareness {
 namespace {
@@ -283,11 +284,12 @@ std::string inWordsOf(const std::vector<core::Acceptance>& all) {
 }
 
 bool concerns(const core::Acceptance& acceptance, const core::EventType& type) {
-  core::Acceptance named = acceptance;
+  const std::string& component = core::componentOf(type.source, type.scope);
   if (acceptance.kind == core::Kind::kUnsubscribed && !acceptance.component.empty()) {
-    named.topic.clear();  // it is none that its component sends
+    // Its topic is none that its component sends.
+    return core::matchesPattern(acceptance.component, component);
   }
-  return named.isAbout(core::componentOf(type.source, type.scope), type.scope);
+  return acceptance.isAbout(component, type.scope);
 }
 
 bool isKnown(const core::Acceptance& acceptance, const core::Vocabulary& vocabulary) {

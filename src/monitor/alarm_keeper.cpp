@@ -21,10 +21,11 @@ AlarmKeeper::AlarmKeeper(RecorderFolder folder, std::string run_id)
       run_id_(std::move(run_id)),
       writer_(kPause) {}
 
-std::optional<self_awareness::StandingAlarm> AlarmKeeper::read() const {
+std::optional<self_awareness::StandingAlarm> AlarmKeeper::read() {
   try {
     std::optional<self_awareness::StandingAlarm> standing = ros1::readStandingAlarm(path_);
     if (standing && standing->run_id == run_id_) {
+      stands_ = true;
       return standing;
     }
   } catch (const std::exception& error) {

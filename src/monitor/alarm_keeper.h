@@ -22,8 +22,8 @@ class AlarmKeeper {
 
   /// What stood when the monitor ended. A file that is damaged is named in the log, and stays.
   /// @return none: nothing, or it was another start of the robot
-  std::optional<self_awareness::StandingAlarm> read() const;
-  /// The alarm has changed.
+  std::optional<self_awareness::StandingAlarm> read();
+  /// The alarm has changed, or nobody watched for what stood.
   /// @param alarm as it is published; of another level than ERROR: nothing stands
   /// @param since end of the window that raised it [ns]
   /// @param recording file with its events

@@ -412,6 +412,8 @@ bool Monitor::onReload(Call& call) {
     return true;
   }
   standDownFor(call, "reload", "settling: model loaded");
+  // What stood before the start, when there was no model, may have been over for long.
+  keeper_.keep(announcer_.alarm().message(), announcer_.alarm().since(), alarm_file_);
   response.success = 1U;
   response.message = "loaded " + parameters_.model;
   return true;

@@ -19,6 +19,7 @@ void Monitor::onMasterRestart(std::int64_t /*now*/) {
 void Monitor::onGraph(const ros1::Graph& graph) {
   session_->addEdges(graph, ros::this_node::getName());
   const std::int64_t now = live_->now();
+  auto id = static_cast<std::uint64_t>(now);  // one for each: by it, incidents are told apart
   for (const std::string& source :
        restarts_.see(graph.addresses, *session_->encoder(), now, ros1::utc(wallNow()))) {
     session_->onRestarted(source);
@@ -34,7 +35,7 @@ void Monitor::onGraph(const ros1::Graph& graph) {
     if (restarts_.count(source, now) >= Restarts::kMany && muted.empty() &&
         !announcer_.alarm().standing()) {
       core::Alarm near_miss;
-      near_miss.id = static_cast<std::uint64_t>(now);
+      near_miss.id = id++;
       near_miss.begin = near_miss.end = now;
       near_miss.over = true;
       near_miss.culprit = source;
