@@ -112,7 +112,9 @@ def files(path: str) -> List[str]:
     """
     if not os.path.isdir(path):
         return [path]
-    found = sorted(name for name in os.listdir(path) if name.endswith('.bag'))
+    # What begins with a dot is still being written, or was when somebody ended.
+    found = sorted(name for name in os.listdir(path)
+                   if name.endswith('.bag') and not name.startswith('.'))
     if not found:
         raise ValueError(f'{path}: a folder without bags (*.bag)')
     return [os.path.join(path, name) for name in found]

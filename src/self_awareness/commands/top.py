@@ -19,12 +19,13 @@ from self_awareness.srv import Accept, Mute
 
 _EPILOG = """\
 Keys: q quit, s sort by another column, f filter by a part of the name, p pause, m mute the
-selected component for 10 minutes, a accept what stands (after y, if that is a death), or, if
-nothing does, who is new, c clear the alarm, d write the flight recorder's file. 80 columns are
+selected component for 10 minutes, a accept what stands, or, if nothing does, who is new (after
+y), c clear the alarm, d write the flight recorder's file. 80 columns are
 enough. A monitor that was not heard for 5 s is STALE. It ends when the master is gone.
 """
 
 _MASTER_EVERY_S = 1.0
+_GOODBYE_S = 2.0
 
 
 def main(argv: Optional[Sequence[str]] = None) -> int:
@@ -51,7 +52,10 @@ def _top(arguments: argparse.Namespace) -> None:
     try:
         screen.run()
     finally:
-        rospy.signal_shutdown('')
+        # A master whose machine is gone would not answer for a minute.
+        goodbye = threading.Thread(target=rospy.signal_shutdown, args=('',), daemon=True)
+        goodbye.start()
+        goodbye.join(_GOODBYE_S)
     if screen.why:
         raise ValueError(screen.why)
 

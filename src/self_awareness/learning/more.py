@@ -65,9 +65,14 @@ def take(new: str, model: str) -> str:
 
     Raises:
         ModelFileError: the new one is damaged, or no model.
+        ValueError: it has no limits.
         OSError: a file cannot be written; the old model is in its place.
     """
-    _, left = accepted_file.learned(accepted_file.beside(model), TrainedModel.load(new))
+    taken = TrainedModel.load(new)
+    if taken.calibration is None:
+        raise ValueError(f'{new}: it has no limits, so a monitor would never raise an alarm by it; '
+                         'find them with rosrun self_awareness calibrate')
+    _, left = accepted_file.learned(accepted_file.beside(model), taken)
     before = _free_name(model)
     with replacing(before) as temporary:
         shutil.copyfile(model, temporary)

@@ -21,7 +21,8 @@ def head(said: Said, width: int, paused: bool) -> List[Line]:
         return [('head', 'waiting for the monitor ...')]
     verdict = said.verdict
     level = LEVELS[said.level]
-    lines = [(level, cut(f'{level}  {said.message}', width))]
+    lines = [(level, cut(f'{level}  {said.message}', width)) if said.told
+             else ('head', 'waiting for the monitor on /diagnostics ...')]
     if said.silent_for > STALE_S:
         lines = [('STALE', cut('STALE  the monitor has not been heard for '
                                f'{said.silent_for:.0f} s; it said: {said.message}', width))]
@@ -30,7 +31,8 @@ def head(said: Said, width: int, paused: bool) -> List[Line]:
         lines.append(('', cut(f'score {said.score:5.2f} of its limit  '
                               f'{said.curve(max(width - 40, 10))}  {state}', width)))
     if said.itself:
-        lines.append(('faint', cut(f'monitor: {said.itself}', width)))
+        style = LEVELS[said.level_of_itself] if said.level_of_itself else 'faint'
+        lines.append((style, cut(f'monitor: {said.itself}', width)))
     if said.told_mode:
         lines.append(('', cut(f'mode: {said.told_mode}', width)))
     if said.not_watched:

@@ -22,7 +22,10 @@ _DEATHS = ('died', 'never came')
 # Components take turns of 50 s; the aggregator waits for 60 s.
 _STALE_COMPONENT_S, _FORGOTTEN_COMPONENT_S = 60.0, 120.0
 _COUNTED = re.compile(r'[0-9]+, listed every 20 s')
-_RATES = re.compile(r'([0-9.e+-]+) of ([0-9.e+-]+) Hz')
+_NUMBER = r'([0-9]+(?:\.[0-9]+)?(?:e[+-]?[0-9]+)?)'
+_RATES = re.compile(f'{_NUMBER} of {_NUMBER} Hz')
+# A sender has no name that is a pattern, whatever it calls itself.
+_STRANGER = re.compile(r'(?:([^ ,*]+) on )?([^ ,*]+): [0-9]+')
 
 
 @dataclass(frozen=True)
@@ -115,9 +118,14 @@ class Said:
         return 0.0 if self.heard_at is None else self._clock() - self.heard_at
 
     @property
+    def told(self) -> bool:
+        """Whether the monitor has said on /diagnostics how the whole is."""
+        return _WHOLE in self._statuses
+
+    @property
     def level(self) -> int:
         """Of the whole, as /diagnostics has it: what is muted is OK."""
-        return int(self._statuses[_WHOLE].level) if _WHOLE in self._statuses else 0
+        return _level(self._statuses[_WHOLE]) if self.told else 0
 
     @property
     def message(self) -> str:
@@ -148,8 +156,8 @@ class Said:
     def strangers(self) -> List[Tuple[str, str]]:
         """Who is heard, and where, whom training never saw and nobody has accepted."""
         told = self._list(_WHOLE, 'not accepted, events so far')
-        pairs = [each.rpartition(': ')[0].rpartition(' on ') for each in told.split(', ') if each]
-        return [(source, topic) for source, _, topic in pairs]
+        found = (_STRANGER.fullmatch(each) for each in told.split(', '))
+        return [(each[1] or '', each[2]) for each in found if each]
 
     @property
     def mode(self) -> str:
@@ -188,6 +196,11 @@ class Said:
         return self._all_mutes
 
     @property
+    def level_of_itself(self) -> int:
+        """How the monitor says that it is itself."""
+        return _level(self._statuses[_ITSELF]) if _ITSELF in self._statuses else 0
+
+    @property
     def itself(self) -> str:
         """What the monitor says of itself."""
         status = self._statuses.get(_ITSELF)
@@ -217,7 +230,7 @@ class Said:
 
     def _component(self, name: str) -> Component:
         status = self._statuses[name]
-        level, message = int(status.level), status.message
+        level, message = _level(status), status.message
         untold = max(self._said_at.values()) - self._said_at[name]
         if untold > _STALE_COMPONENT_S:
             level, message = LEVELS.index('STALE'), f'not told for {untold:.0f} s'
@@ -245,7 +258,8 @@ class Said:
                 self._lists[_WHOLE, key] = value
         values = self._values(_ITSELF)
         told = tuple(value for key, value in values.items() if re.fullmatch('mute [0-9]+', key))
-        number = len(told) + int(_number(values.get('further mute', '')) or 0)
+        further = values.get('further mute', '')
+        number = len(told) + (int(further) if further.isdecimal() else 0)
         if len(told) >= len(self._mutes) or number != self._all_mutes:
             self._mutes = told
         self._all_mutes = number
@@ -260,6 +274,11 @@ class Said:
     def _values(self, name: str) -> Mapping[str, str]:
         status = self._statuses.get(name)
         return {} if status is None else {pair.key: pair.value for pair in status.values}
+
+
+def _level(status: Any) -> int:
+    """Return an index in LEVELS, whatever somebody has published."""
+    return min(int(status.level), len(LEVELS) - 1)
 
 
 def _number(text: str) -> Optional[float]:

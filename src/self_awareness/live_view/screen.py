@@ -122,13 +122,17 @@ class Screen:
         def accept() -> str:
             return self._calls['a'](alarm, strangers)
 
-        if self._shown.deaths:
-            self._if_yes = accept
-            self._say(f'accept it? {", ".join(self._shown.deaths)} may then die unseen (y/n)')
-        elif alarm or strangers:
-            self._say(accept())
-        else:
+        if not alarm and not strangers:
             self._say('nothing stands, and nobody is new')
+            return
+        # What is shown may change before the key is seen, and an alarm has named more than its
+        # last window does.
+        self._if_yes = accept
+        if not alarm:
+            self._say(f'accept {len(strangers)} that are new? (y/n)')
+            return
+        who = ', '.join(self._shown.deaths) or 'who has died since it was raised'
+        self._say(f'accept it? {who} may then die unseen (y/n)')
 
     def _on_filter(self, key: str) -> None:
         if key in ('enter', 'esc'):

@@ -167,6 +167,14 @@ def test_what_is_no_model_is_not_taken(model: str, tmp_path: Path, capsys) -> No
     assert Path(model).read_bytes() == before and not Path(f'{model}.before').exists()
 
 
+def test_what_has_no_limits_is_not_taken(model: str, model_file: str, capsys) -> None:
+    before = Path(model).read_bytes()
+    Path(f'{model}.new').write_bytes(Path(model_file).read_bytes())
+    assert learn_more.main(['--model', model, '--take']) == 1
+    assert 'robot.model.new: it has no limits' in capsys.readouterr().err
+    assert Path(model).read_bytes() == before and not Path(f'{model}.before').exists()
+
+
 @pytest.mark.parametrize('program', [info, learn_more])
 def test_bad_input_is_one_line(program, model: str, model_file: str,
                                learned: Tuple[str, List[str]], tmp_path: Path, capsys) -> None:

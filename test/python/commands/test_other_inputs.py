@@ -69,6 +69,7 @@ def test_a_bag_of_a_folder_is_not_overwritten(folder: Path, model_file: str, cap
 
 
 def test_a_folder_without_bags_is_named(tmp_path: Path, capsys) -> None:
+    (tmp_path / '.self_awareness_part1_0.normal.bag').touch()  # somebody is writing it
     for program in ('train', 'convert'):
         error = error_of(program, [str(tmp_path), '-o', str(tmp_path / 'out')], capsys)
         assert f'{tmp_path}: a folder without bags' in error

@@ -131,6 +131,38 @@ def test_it_shows_the_mode_that_the_robot_tells() -> None:
     assert shown({}) == []
 
 
+def test_nothing_is_green_that_nobody_has_said() -> None:
+    of = Said('/watch')
+    of.on_status(verdict(-0.5))
+    assert lines.head(of, 80, False)[0] == ('head', 'waiting for the monitor on /diagnostics ...')
+    of.on_diagnostics(diagnostics(status('watch: communication', 0, 'normal')))
+    assert lines.head(of, 80, False)[0] == ('OK', 'OK  normal')
+
+
+@pytest.mark.parametrize('level, style', [(0, 'faint'), (1, 'WARN'), (2, 'ERROR')])
+def test_what_the_monitor_says_of_itself_has_its_level(level: int, style: str) -> None:
+    of = Said('/watch')
+    of.on_diagnostics(diagnostics(status('watch: monitor', level, 'messages dropped')))
+    assert [each for each, text in lines.head(of, 80, False)
+            if text.startswith('monitor: messages dropped')] == [style]
+
+
+def test_no_name_is_a_pattern() -> None:
+    of = Said('/watch')
+    of.on_diagnostics(diagnostics(status('watch: communication', 1, '', **{
+        'not accepted, events so far': '/a on /b: 1, /x: 1, /* on /*: 1, /y on /z: 3, ...'})))
+    assert of.strangers == [('/a', '/b'), ('', '/x'), ('/y', '/z')]
+
+
+def test_whatever_a_stranger_publishes_it_goes_on() -> None:
+    of = Said('/watch')
+    of.on_diagnostics(diagnostics(
+        status('watch: communication', 7), status('watch: monitor', 9, **{'further mute': 'inf'}),
+        status('watch: /a', 200, **{'/t': '- of - Hz'})))
+    assert of.components('level', '')[0].rate is None
+    assert lines.head(of, 80, False)[0][0] == 'STALE'
+
+
 def test_who_was_never_heard_comes_first_by_age() -> None:
     of = Said('/watch')
     of.on_diagnostics(SimpleNamespace(status=[of_component('/a', 0, '1', '9'),

@@ -43,6 +43,12 @@ class Shown:
             kind=kind, suspects=[SimpleNamespace(component='/player', kind=kind),
                                  SimpleNamespace(component='/slam', kind=suspect)]))
 
+    def told_new(self, number: int) -> None:
+        told = ', '.join(f'/n{k} on /t{k}: 3' for k in range(number))
+        self.said.on_diagnostics(SimpleNamespace(status=[SimpleNamespace(
+            name='watch: communication', level=0, message='', values=[SimpleNamespace(
+                key='not accepted, events so far', value=told)])]))
+
 
 @pytest.fixture()
 def shown() -> Shown:
@@ -59,17 +65,32 @@ def test_a_death_is_accepted_after_yes_only(shown: Shown) -> None:
     assert shown.called == [(7, [])]
 
 
-def test_what_is_no_death_is_accepted_at_once_by_its_id(shown: Shown) -> None:
+def test_what_names_no_death_now_may_have_been_raised_by_one(shown: Shown) -> None:
     shown.stands('slow', 'late')
-    assert shown.press('a') == 'done' and shown.called == [(7, [])]
+    assert shown.press('a') == (
+        'accept it? who has died since it was raised may then die unseen (y/n)')
+    assert shown.press('y') == 'done' and shown.called == [(7, [])]
 
 
-def test_a_pause_keeps_what_is_shown(shown: Shown) -> None:
+@pytest.mark.parametrize('paused', [True, False])
+def test_a_pause_keeps_what_is_shown(shown: Shown, paused: bool) -> None:
     shown.stands('slow', 'late')
-    shown.press('p')
+    shown._screen._on_time()
+    shown.press(*(['p'] if paused else []))
     shown.said = Said('/watch')  # it is over meanwhile
-    shown.press('a')
-    assert shown.called == [(7, [])], 'the monitor refuses it'
+    shown._screen._on_time()
+    shown.press('a', 'y')
+    assert shown.called == ([(7, [])] if paused else []), 'the monitor refuses it'
+
+
+def test_what_comes_after_the_question_is_not_accepted(shown: Shown) -> None:
+    shown.told_new(1)
+    shown._screen._on_time()
+    assert shown.press('a') == 'accept 1 that are new? (y/n)'
+    shown.told_new(9)
+    shown._screen._on_time()
+    shown.press('y')
+    assert shown.called == [(0, [('/n0', '/t0')])]
 
 
 def test_a_warning_of_which_nothing_stands_is_not_accepted(shown: Shown) -> None:
@@ -79,9 +100,7 @@ def test_a_warning_of_which_nothing_stands_is_not_accepted(shown: Shown) -> None
 
 
 def test_all_who_are_new_are_accepted_in_one_call(shown: Shown) -> None:
-    told = ', '.join(f'/n{k} on /t{k}: 3' for k in range(9))
-    shown.said.on_diagnostics(SimpleNamespace(status=[SimpleNamespace(
-        name='watch: communication', level=0, message='', values=[SimpleNamespace(
-            key='not accepted, events so far', value=told)])]))
-    assert shown.press('a') == 'done'
+    shown.told_new(9)
+    assert shown.press('a') == 'accept 9 that are new? (y/n)'
+    assert shown.press('y') == 'done'
     assert shown.called == [(0, [(f'/n{k}', f'/t{k}') for k in range(9)])]
