@@ -15,6 +15,7 @@
 #include "not_heard.h"
 #include "parameter_reader.h"
 #include "ros/now.h"
+#include "ros/text.h"
 #include "ros/verdict/diagnostic_status.h"
 #include "self_awareness/ros/bag/bag_reader.h"
 #include "self_awareness/ros/output_file.h"
@@ -41,7 +42,10 @@ EventRecorder::Parameters EventRecorder::Parameters::load(
   parameters.min_space = reader.number("min_space", parameters.min_space, {0, 1e15}, "MB");
   parameters.robot_start =
       reader.seconds("robot_start", ros::WallTime::now().toSec(), {0, kLatestTime});
+  // A file that a launch file reads may end its line: with that, no log could be read again.
   parameters.robot = reader.text("robot", parameters.robot);
+  parameters.robot.erase(parameters.robot.find_last_not_of(" \t\r\n") + 1);
+  parameters.robot = ros1::printable(parameters.robot);
   parameters.live.subscribe = reader.choice<SubscribePolicy>(
       "subscribe", "used", {{"used", SubscribePolicy::kUsed}, {"all", SubscribePolicy::kAll}});
   parameters.live.poll_interval =

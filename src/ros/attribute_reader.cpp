@@ -25,7 +25,8 @@ bool beginsWithHeader(const std::string& definition, const std::string& datatype
 }  // namespace
 
 AttributeReader::AttributeReader(const std::string& definition, const std::string& datatype)
-    : has_header_(beginsWithHeader(definition, datatype)) {}
+    : has_header_(beginsWithHeader(definition, datatype)),
+      is_read_(datatype != "rosgraph_msgs/Log") {}
 
 void AttributeReader::begin(std::uint64_t size) {
   size_ = size;
@@ -36,6 +37,9 @@ void AttributeReader::begin(std::uint64_t size) {
 }
 
 void AttributeReader::add(const std::uint8_t* data, std::size_t size) {
+  if (!is_read_) {
+    return;
+  }
   std::uint64_t skipped = 0;
   if (has_header_ && position_ < kHeader) {
     skipped = std::min<std::uint64_t>(kHeader - position_, size);
@@ -62,6 +66,9 @@ void AttributeReader::forEachSample(Function function) const {
 }
 
 AttributeReader::Part AttributeReader::next() const {
+  if (!is_read_) {
+    return {size_, size_};
+  }
   if (has_header_ && position_ < kHeader) {
     return {position_, std::min<std::uint64_t>(kHeader, size_)};
   }
@@ -87,6 +94,9 @@ void AttributeReader::sample(const std::uint8_t* data, std::uint64_t size) {
 
 core::Attributes AttributeReader::end(std::int64_t now) {
   core::Attributes attributes;
+  if (!is_read_) {
+    return attributes;
+  }
   attributes.size = core::sizeClass(size_);
   const std::uint64_t content = size_ - content_;
   attributes.same = last_content_ == content && sample_ == last_sample_;

@@ -41,6 +41,19 @@ void addNodes(XmlRpc::XmlRpcValue& entries, std::set<std::string> Graph::Topic::
   }
 }
 
+std::set<core::SourceGraph::Subscription> subscriptionsOf(const Graph& graph,
+                                                          const Encoder& encoder) {
+  std::set<core::SourceGraph::Subscription> subscriptions;
+  for (const auto& [name, topic] : graph.topics) {
+    for (const std::string& node : topic.subscribers) {
+      if (encoder.includesTopic(name) && encoder.listens(stableName(node))) {
+        subscriptions.emplace(encoder.sourceOf(node), encoder.scopeOf(name));
+      }
+    }
+  }
+  return subscriptions;
+}
+
 }  // namespace
 
 bool operator==(const Graph& a, const Graph& b) {
@@ -153,15 +166,7 @@ std::set<core::SourceGraph::Publication> unheardIn(const Graph& graph, const Enc
 
 std::set<core::SourceGraph::Subscription> subscriptionsIn(const Graph& graph,
                                                           const Encoder& encoder) {
-  std::set<core::SourceGraph::Subscription> subscriptions;
-  for (const auto& [name, topic] : withoutSiblings(graph).topics) {
-    for (const std::string& node : topic.subscribers) {
-      if (encoder.includesTopic(name) && encoder.listens(stableName(node))) {
-        subscriptions.emplace(encoder.sourceOf(node), encoder.scopeOf(name));
-      }
-    }
-  }
-  return subscriptions;
+  return subscriptionsOf(withoutSiblings(graph), encoder);
 }
 
 std::set<core::SourceGraph::Subscription> missingIn(
@@ -179,7 +184,8 @@ std::set<core::SourceGraph::Subscription> missingIn(
       }
     }
   }
-  const std::set<core::SourceGraph::Subscription> present = subscriptionsIn(graph, encoder);
+  // A monitor in a manager of the robot has its name: what is there is there.
+  const std::set<core::SourceGraph::Subscription> present = subscriptionsOf(graph, encoder);
   std::copy_if(expected.begin(), expected.end(), std::inserter(missing, missing.end()),
                [&](const core::SourceGraph::Subscription& each) {
                  return sources.count(each.first) > 0 && present.count(each) == 0;

@@ -12,7 +12,7 @@ import numpy as np
 
 from self_awareness import (LEAST_KNOWN, LONGEST_SILENCE, BagError, EncodingRules, EventType,
                             ModelFileError, RecordedEvents, Recording, ResultBag, TrainedModel,
-                            Waiting, find_clock_steps, missing_subscriptions, progress,
+                            Waiting, find_clock_steps, missing_subscriptions, printable, progress,
                             read_events, recordings_in_event_log, summarise_bag)
 from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness.training.robot_graph import RobotGraph
@@ -100,8 +100,8 @@ def expand(parts: Iterable[BagPart]) -> List[BagPart]:
 
 def by_folder(parts: Iterable[BagPart]) -> List[BagPart]:
     """Return recordings as those of the robots that their folders are called after."""
-    return [replace(part, robot=os.path.basename(os.path.dirname(os.path.abspath(part.path))))
-            for part in parts]
+    return [replace(part, robot=printable(os.path.basename(os.path.dirname(
+        os.path.abspath(part.path))))) for part in parts]
 
 
 def files(path: str) -> List[str]:

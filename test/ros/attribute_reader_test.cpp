@@ -87,6 +87,15 @@ TEST(AttributeReader, ReadsAgeNumberSizeAndContent) {
   }
 }
 
+TEST(AttributeReader, OfLinesForPeopleNothingIsKnown) {
+  AttributeReader reader(ros::message_traits::definition<sensor_msgs::Image>(),
+                         "rosgraph_msgs/Log");
+  const std::vector<std::uint8_t> bytes = bytesOf(image(1, 0.02));
+  EXPECT_EQ(read(reader, bytes), Attributes{});
+  reader.begin(bytes.size());
+  EXPECT_EQ(reader.next().begin, reader.next().end) << "nothing is to be read";
+}
+
 TEST(AttributeReader, AStampOfZeroIsNone) {
   AttributeReader reader = readerOf<sensor_msgs::Image>();
   sensor_msgs::Image message = image(1, 0);

@@ -60,6 +60,14 @@ TEST(GraphOfTheRobot, WhoRunsAndDoesNotSubscribeIsMissing) {
   EXPECT_TRUE(missingIn(repaired, encoder, expected).empty());
 }
 
+TEST(GraphOfTheRobot, AMonitorInAManagerOfTheRobotHidesNoSubscription) {
+  Graph graph;
+  graph.topics["/image"] = {"T", {"/camera"}, {"/manager"}};
+  graph.topics["/watch/status"] = {"self_awareness/SelfAwareness", {"/manager"}, {}};
+  const Encoder encoder(EncodingRules::defaults(), nullptr);
+  EXPECT_TRUE(missingIn(graph, encoder, {{"/manager", "/image"}}).empty());
+}
+
 TEST(GraphOfTheRobot, IsKnownFromEachChangeOn) {
   std::vector<std::pair<std::int64_t, std::size_t>> seen;
   forEachGraph({{1, {{"/a", {"", {"/x"}, {}}}, {"/b", {"", {"/x"}, {"/y"}}}}},

@@ -22,6 +22,8 @@ class AttributeReader {
 
   /// @param definition of the messages, as in bags and in the headers of connections; one that
   /// does not begin with a std_msgs/Header is one without
+  /// @param datatype of rosgraph_msgs/Log, nothing is known: its lines are for people, of any
+  /// length, and the same one may come again and again
   AttributeReader(const std::string& definition, const std::string& datatype);
 
   /// Begins a message.
@@ -57,6 +59,7 @@ class AttributeReader {
   void readHeader(std::int64_t now, core::Attributes& attributes);
 
   bool has_header_ = false;
+  bool is_read_ = true;
   std::uint64_t size_ = 0;      // of the message [bytes]
   std::uint64_t position_ = 0;  // in it [bytes]
   std::uint64_t content_ = 0;   // where its header has ended [bytes]

@@ -60,7 +60,8 @@ class Counting:
         """Return a copy of an encoding that renames what is to be renamed, too."""
         renamed = copy.copy(encoding)
         renamed.rename = [*encoding.rename, *self.rename]
-        if encoding.mode is not None:
+        # As the renames leave it: where there are some already, it is renamed.
+        if encoding.mode is not None and self.rename and not encoding.rename:
             topic, name = encoding.mode
             renamed.mode = (renamed.scopes_of({topic})[topic], name)
         return renamed

@@ -11,6 +11,7 @@ from conftest import Message, jittery_robot, write_bag
 from self_awareness import EncodingRules, TrainedModel, read_events
 from self_awareness.commands import calibrate, convert, info, merge, score, train
 from self_awareness.recordings import BagPart, by_folder, expand
+from self_awareness.training.many_bags import Counting
 from self_awareness.training.robot_graph import RobotGraph, graph_file
 
 LENGTH_S = 60.0
@@ -157,3 +158,19 @@ def test_the_rules_of_a_model_stay_when_it_learns_more(folder: Path, fleet: str,
 def test_a_recording_is_of_the_robot_that_its_folder_is_called_after(folder: Path) -> None:
     parts = by_folder(expand([BagPart.parse(str(folder / 'r3'))]))
     assert {part.robot for part in parts} == {'r3'}
+
+
+def test_the_topic_of_the_mode_is_as_the_renames_leave_it() -> None:
+    written = EncodingRules.defaults()
+    written.rename = [('/[^/]+/(.*)', '/\\1')]
+    written.mode = ('/logic/state', 'data')
+    assert Counting(written).renamed(written).mode == ('/logic/state', 'data')
+    robots_own = EncodingRules.defaults()
+    robots_own.mode = ('/r1/state', 'data')
+    counting = Counting(robots_own, rename=(('/r[0-9]+/(.*)', '/\\1'),))
+    assert counting.renamed(robots_own).mode == ('/state', 'data')
+
+
+def test_a_folder_may_have_any_name() -> None:
+    part, = by_folder([BagPart('/data/r\x1b1/monday.bag')])
+    assert part.robot == 'r\ufffd1'

@@ -1,13 +1,29 @@
 #include "core/evidence/count/age_level.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "self_awareness/core/stream/event.h"
 
 namespace self_awareness::core::evidence {
+namespace {
+
+// Ages come in classes (stream/attributes.h), old ones in wide ones. Who is in the next class may
+// be hardly older: of an age, so much; and of a stamp in the future, to be older, or further
+// ahead.
+constexpr double kClass = 0.091;
+constexpr double kClassBack = 0.16;
+constexpr double kClassAhead = 0.19;
+// What is remembered has to be longer than two classes: a stamp that stands still is ever older.
+constexpr double kSpanOfAge = 0.2;
+
+}  // namespace
 
 double AgeLevel::add(std::int64_t now, double age, double usual) {
-  if (!begun_ || now - begin_ >= kSpan) {
+  const std::int64_t span = std::max(kSpan, toNanoseconds(kSpanOfAge * std::abs(age)));
+  if (!begun_ || now - begin_ >= span) {
     before_ = kNone;
-    if (begun_ && now - begin_ < 2 * kSpan) {
+    if (begun_ && now - begin_ < 2 * span) {
       before_ = youngest_;
     }
     youngest_ = kNone;
@@ -15,11 +31,13 @@ double AgeLevel::add(std::int64_t now, double age, double usual) {
     begun_ = true;
   }
   const double known = std::min(youngest_, before_);
-  if (age < std::min(usual, 0.0) && known < kNone && known - age > kAhead) {
+  if (age < std::min(usual, 0.0) && known < kNone &&
+      known - age > kAhead + kClassAhead * std::abs(known)) {
     return known - age;  // it does not say what is usual, unless all are so
   }
   youngest_ = std::min(youngest_, age);
-  return age - std::min(youngest_, before_);
+  const double level = std::min(youngest_, before_);
+  return std::max(age - level - (level < 0 ? kClassBack : kClass) * std::abs(level), 0.0);
 }
 
 }  // namespace self_awareness::core::evidence

@@ -7,10 +7,11 @@ namespace self_awareness::core::evidence {
 
 /// By how much the messages of one event type are older than they have been of late
 /// (docs/attributes.md). The clocks of two computers may differ, and drift apart: so only what
-/// changes within a minute or two counts.
+/// changes within a minute or two counts; and as ages come in classes, no step to the next one.
 class AgeLevel {
  public:
-  /// What is remembered of ages: those of the last span, and of the one before [ns].
+  /// What is remembered of ages: those of the last span, and of the one before [ns]; of old ages,
+  /// longer spans.
   static constexpr std::int64_t kSpan = 60000000000;
   /// A stamp that is further ahead of the clock than before, by more than this [s], is wrong.
   static constexpr double kAhead = 0.5;
@@ -19,7 +20,8 @@ class AgeLevel {
   /// @param now when it came [ns]
   /// @param age since its stamp [s]; negative: it is of the future
   /// @param usual youngest age in training [s]: who comes back to it is not ahead
-  /// @return how much older it is than the youngest of late, or how much further ahead [s]
+  /// @return how much older it is than the class of the youngest of late, or how much further
+  /// ahead [s]
   double add(std::int64_t now, double age, double usual = 0);
 
  private:

@@ -213,7 +213,8 @@ TEST(Age, AStampThatIsMissingIsFound) {
 
 TEST(Age, AClockThatIsWrongByHoursOrDriftsIsNoFault) {
   const auto model = learned(Source{});
-  for (const double offset : {-30.0, 5.0, 900.0}) {
+  for (const double offset :
+       {-30.0, -3.5, 5.0, 30.0, 900.0}) {  // -3.44 s and 30.05 s begin classes
     const Events events = robot({}, 10, 1000 * kSecond);
     const std::int64_t start = events.front().stamp;
     Events shifted = events;

@@ -14,16 +14,19 @@ using Step = Attributes::Step;
 TEST(AgeLevel, WhatIsOlderThanOfLateIsARise) {
   AgeLevel level;
   EXPECT_EQ(level.add(0, 5), 0);  // clocks of two computers may differ
-  EXPECT_EQ(level.add(kSecond, 5.5), 0.5);
+  EXPECT_EQ(level.add(kSecond, 5.4), 0) << "that is the next class of ages";
+  EXPECT_NEAR(level.add(kSecond, 6.5), 1.5 - 0.091 * 5, 1e-9);
   EXPECT_EQ(level.add(2 * kSecond, 4.5), 0);
-  EXPECT_EQ(level.add(3 * kSecond, 5), 0.5);
+  EXPECT_NEAR(level.add(3 * kSecond, 5.5), 1 - 0.091 * 4.5, 1e-9);
 }
 
 TEST(AgeLevel, AStampThatStandsStillIsEverOlder) {
   AgeLevel level;
   level.add(0, 0.02);
-  for (int second = 1; second < 600; ++second) {
-    EXPECT_GT(level.add(second * kSecond, 0.02 + second), std::min(second, 60) - 0.1) << second;
+  for (int second = 1; second < 1900; ++second) {
+    const std::int64_t age = 20 * kMillisecond + second * kSecond;
+    EXPECT_GT(level.add(second * kSecond, ageOf(ageClass(age))), std::min(0.9 * second - 0.1, 5.0))
+        << second;
   }
 }
 
@@ -52,7 +55,8 @@ TEST(AgeLevel, WhoWasLateAndComesBackToWhatIsUsualIsNotAhead) {
   AgeLevel level;
   level.add(0, -12.5, -15);  // its clock is 15 s ahead, and the message had waited
   EXPECT_EQ(level.add(kSecond, -15, -15), 0);
-  EXPECT_EQ(level.add(2 * kSecond, -18, -15), 3);
+  EXPECT_EQ(level.add(2 * kSecond, -17.8, -15), 0) << "the next class";
+  EXPECT_EQ(level.add(3 * kSecond, -25, -15), 25 - 17.8);
 }
 
 TEST(AttributeCounts, CountsWhatMessagesAre) {
