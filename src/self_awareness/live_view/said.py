@@ -259,7 +259,7 @@ class Said:
         values = self._values(_ITSELF)
         told = tuple(value for key, value in values.items() if re.fullmatch('mute [0-9]+', key))
         further = values.get('further mute', '')
-        number = len(told) + (int(further) if further.isdecimal() else 0)
+        number = len(told) + (int(further) if re.fullmatch('[0-9]{1,9}', further) else 0)
         if len(told) >= len(self._mutes) or number != self._all_mutes:
             self._mutes = told
         self._all_mutes = number
@@ -277,8 +277,9 @@ class Said:
 
 
 def _level(status: Any) -> int:
-    """Return an index in LEVELS, whatever somebody has published."""
-    return min(int(status.level), len(LEVELS) - 1)
+    """Return an index in LEVELS, whatever somebody has published: bytes have a sign in rospy."""
+    level = int(status.level)
+    return level if 0 <= level < len(LEVELS) else LEVELS.index('STALE')
 
 
 def _number(text: str) -> Optional[float]:

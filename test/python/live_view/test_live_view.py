@@ -158,8 +158,9 @@ def test_whatever_a_stranger_publishes_it_goes_on() -> None:
     of = Said('/watch')
     of.on_diagnostics(diagnostics(
         status('watch: communication', 7), status('watch: monitor', 9, **{'further mute': 'inf'}),
-        status('watch: /a', 200, **{'/t': '- of - Hz'})))
-    assert of.components('level', '')[0].rate is None
+        status('watch: /a', -56, **{'/t': '- of - Hz'})))
+    found, = of.components('level', '')
+    assert found.rate is None and lines.component(found, 80)[0] == 'STALE'
     assert lines.head(of, 80, False)[0][0] == 'STALE'
 
 
