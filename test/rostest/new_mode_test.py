@@ -32,9 +32,12 @@ class NewModeTest(TrainedCase):
         await_condition('all are heard', are_heard, 30)
         seen = len(listener.statuses)
         # Who came back is excused for as long as rates are counted.
-        await_condition('normal windows', lambda: (
-            len(listener.statuses) > seen + 40
-            and not any(status.level or status.settling for status in listener.statuses[-20:])), 40)
+
+        def are_normal() -> bool:
+            last = listener.statuses[-20:]
+            return (len(listener.statuses) > seen + 40
+                    and not any(status.level or status.settling for status in last))
+        await_condition('normal windows', are_normal, 40)
 
     @staticmethod
     def of_those_off(listener: MonitorListener, after: int) -> List[str]:

@@ -56,13 +56,13 @@ std::vector<Mute> Mutes::advance(std::int64_t now) {
 std::vector<Mute> Mutes::onStanding(const std::optional<Alarm>& standing,
                                     const Vocabulary& vocabulary, const SourceGraph& graph) {
   const bool was_muted = active_.has_value();
-  if (!standing) {
+  const bool is_left = standing && was_muted && standing->suspects.empty() &&
+                       standing->culprit == culprit_;  // of the one before
+  if (!standing || (is_left && !areMuted(standing->later, *standing, vocabulary, graph))) {
     active_.reset();
-  } else if (!(was_muted && standing->suspects.empty() && standing->culprit == culprit_)) {
+  } else if (!is_left) {
     active_ = muteOf(*standing, vocabulary, graph);
-  } else if (!areMuted(standing->later, *standing, vocabulary, graph)) {
-    active_.reset();
-  }  // else it is what is left of the one before
+  }
   culprit_ = standing ? standing->culprit : "";
   std::vector<Mute> over;
   if (active_ && std::exchange(counted_, standing->id) != standing->id) {

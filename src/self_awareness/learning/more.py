@@ -70,7 +70,7 @@ def take(new: str, model: str) -> str:
     """
     taken = TrainedModel.load(new)
     if taken.calibration is None:
-        raise ValueError(f'{new}: it has no limits, so a monitor would never raise an alarm by it; '
+        raise ValueError(f'{new}: it has no limits, so no monitor would raise an alarm by it; '
                          'find them with rosrun self_awareness calibrate')
     _, left = accepted_file.learned(accepted_file.beside(model), taken)
     before = _free_name(model)
