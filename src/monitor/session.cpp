@@ -13,11 +13,7 @@
 namespace self_awareness {
 namespace {
 
-/// A text of a message, as short as a line of the diagnostics has to be.
-std::string quoted(const std::string& text) {
-  constexpr std::size_t kMost = 60;  // [bytes]
-  return ros1::printable(text, kMost) + (text.size() > kMost ? "..." : "");
-}
+constexpr std::size_t kMostOfText = 60;  // of a message, in a line of the diagnostics [bytes]
 
 }  // namespace
 
@@ -180,12 +176,13 @@ std::string Session::mode(std::int64_t now) const {
   if (!trained_.encoding.mode || !model_) {
     return "";
   }
-  const std::string topic = " (" + quoted(trained_.encoding.mode->topic) + ")";
+  const std::string topic =
+      " (" + ros1::shortened(trained_.encoding.mode->topic, kMostOfText) + ")";
   const std::optional<core::LastingMode> mode = detector_.mode(now);
   if (!mode) {
     return "not known" + topic;
   }
-  return quoted(core::modeOf(vocabulary_->at(mode->id))) + topic + ", for " +
+  return ros1::shortened(core::modeOf(vocabulary_->at(mode->id)), kMostOfText) + topic + ", for " +
          std::to_string(mode->lasted / core::kNanosecondsPerSecond) + " s" +
          (model_->knows(mode->id) ? "" : ", not seen in training");
 }

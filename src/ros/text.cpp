@@ -123,6 +123,10 @@ std::string printable(std::string_view bytes, std::size_t most) {
   return text;
 }
 
+std::string shortened(std::string_view bytes, std::size_t most) {
+  return printable(bytes, most) + (bytes.size() > most ? "..." : "");
+}
+
 std::string utc(std::int64_t time) {
   const std::time_t seconds = time / core::kNanosecondsPerSecond;
   std::tm parts{};

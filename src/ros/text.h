@@ -15,6 +15,9 @@ bool isPrintable(std::string_view bytes);
 /// @param most so many bytes are read; a character that this cuts is left out
 std::string printable(std::string_view bytes, std::size_t most = std::string_view::npos);
 
+/// The same, with "..." at its end if bytes were left out.
+std::string shortened(std::string_view bytes, std::size_t most);
+
 /// Date and time in UTC of a time since 1970 [ns].
 std::string utc(std::int64_t time);
 

@@ -56,5 +56,11 @@ TEST(Text, CutsBetweenCharacters) {
   EXPECT_EQ(printable("\xC3x", 1), "\xEF\xBF\xBD") << "it was broken before the cut";
 }
 
+TEST(Text, SaysWhatIsCut) {
+  EXPECT_EQ(shortened("/laser", 6), "/laser");
+  EXPECT_EQ(shortened("/laser2", 6), "/laser...");
+  EXPECT_EQ(shortened("/\x1B", 6), "/\xEF\xBF\xBD");
+}
+
 }  // namespace
 }  // namespace self_awareness::ros1

@@ -29,7 +29,7 @@ std::size_t fitting(const std::vector<std::string>& list, std::size_t most) {
 
 // An item may be as long as a stranger's name.
 std::string cut(const std::string& item) {
-  return item.size() <= kMostBytes ? item : printable(item, kMostBytes) + "...";
+  return shortened(item, kMostBytes);
 }
 
 }  // namespace
