@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # fuzz.sh [SECONDS]: lets libFuzzer look for input that crashes, hangs or bloats what reads bags,
-# event logs, models, standing alarms, messages and encodings. Each fuzzer runs that long (default: 60). It ends with
-# an error if one finds something, and says where the input lies.
+# event logs, models, standing alarms, messages and encodings. Each fuzzer runs that long (default: 60),
+# as many at once as there are processors. It ends with an error if one finds something, and says where
+# the input lies.
 
 source "$(dirname "${BASH_SOURCE[0]}")/prepare.sh"
 
@@ -31,18 +32,25 @@ rm -rf "$seeds"
 
 export LSAN_OPTIONS=suppressions=$checkout/test/fuzz/leaks.supp:print_suppressions=0
 
-status=0
-# A bag of format 1.2 takes ten times as long, since rosbag reads it: it has a corpus of its own.
-for corpus in message_field message_upgrade encoding bag former_bag event_log model standing_alarm; do
-  say "Fuzzing: $corpus, $seconds s"
+# fuzz CORPUS: for its time; what the fuzzer prints is in a log, and shown where it found something.
+fuzz() {
+  local corpus=$1
+  local log=$workspace/$corpus.log
   mkdir -p "$workspace/corpus/$corpus"
-  program=$programs/fuzz_${corpus#former_}
   # The largest allocation is a chunk of a bag that is unpacked; 10 s are a hang.
-  if ! "$program" -max_total_time="$seconds" -timeout=10 -malloc_limit_mb=1100 \
+  if ! "$programs/fuzz_${corpus#former_}" -max_total_time="$seconds" -timeout=10 -malloc_limit_mb=1100 \
       -rss_limit_mb=3000 -max_len=65536 -print_final_stats=1 -print_funcs=0 -verbosity=0 \
-      -artifact_prefix="$found/$corpus-" "$workspace/corpus/$corpus" "$seeds/$corpus"; then
-    status=1
+      -artifact_prefix="$found/$corpus-" "$workspace/corpus/$corpus" "$seeds/$corpus" > "$log" 2>&1; then
+    tail -n 100 "$log"
+    echo "$corpus: found something, see $found"
+    return 1
   fi
-done
-[ "$status" -eq 0 ] || echo "found: see $found"
-exit "$status"
+  echo "$corpus: nothing found in $(sed -n 's/^stat::number_of_executed_units: *//p' "$log") runs"
+}
+export -f fuzz
+export workspace programs seeds found seconds
+
+say "Fuzzing, $seconds s each, as many at once as there are processors"
+# A bag of format 1.2 takes ten times as long, since rosbag reads it: it has a corpus of its own.
+printf '%s\n' message_field message_upgrade encoding bag former_bag event_log model standing_alarm |
+  xargs --max-procs="$(nproc)" -I CORPUS bash -c 'fuzz CORPUS'

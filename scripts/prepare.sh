@@ -1,4 +1,4 @@
-# Sourced by benchmark, demo.sh and test.sh: installs what is missing, builds in a workspace of its
+# Sourced by the scripts beside it: installs what is missing, builds in a workspace of its
 # own, and sets up the environment. It may run again at any time.
 #
 # SELF_AWARENESS_WORKSPACE  the catkin workspace; by default a folder of its own for every checkout
