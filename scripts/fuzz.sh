@@ -30,7 +30,7 @@ seeds=$workspace/seeds
 rm -rf "$seeds"
 "$programs/fuzz_seeds" "$seeds"
 
-export LSAN_OPTIONS=suppressions=$checkout/test/fuzz/leaks.supp:print_suppressions=0
+export LSAN_OPTIONS=suppressions=$checkout/test/sanitizers/leaks.supp:print_suppressions=0
 
 # fuzz CORPUS: for its time; what the fuzzer prints is in a log, and shown where it found something.
 fuzz() {

@@ -9,7 +9,7 @@
 #   valgrind  memcheck, on programs as they are otherwise built: their start and stop
 #
 # Each sanitizer builds in a workspace of its own, in the folder of its name in that of the checkout.
-# Races in libraries that are not ours are suppressed by name: test/sanitizers/races.supp.
+# What libraries do that are not ours is suppressed by name: test/sanitizers/*.supp.
 
 source "$(dirname "${BASH_SOURCE[0]}")/prepare.sh"
 
@@ -32,6 +32,7 @@ build  # the programs in Python that the tests use
 use_loopback
 tests=$checkout/test/sanitizers
 export ASAN_OPTIONS=detect_stack_use_after_return=1:strict_string_checks=1
+export LSAN_OPTIONS=suppressions=$tests/leaks.supp:print_suppressions=0
 export UBSAN_OPTIONS=print_stacktrace=1
 export TSAN_OPTIONS=suppressions=$tests/races.supp:second_deadlock_stack=1
 
@@ -48,12 +49,17 @@ run_gtests() {
   for name in "${gtests[@]}"; do
     say "$1: $name"
     unfinished "$1/$name"
-    "$bin/$name" --gtest_output="xml:$results/$1/$name.xml" > "$results/$1/$name.log" 2>&1 ||
+    # What the tool reports at the end is in no result of a test: the exit code says it.
+    "$bin/$name" --gtest_output="xml:$results/$1/$name.xml" > "$results/$1/$name.log" 2>&1 || {
       tail -n 100 "$results/$1/$name.log"
+      unfinished "$1/$name.exit_code"
+    }
   done
   for name in "${live_gtests[@]}"; do
     say "$1: $name"
-    ROS_TEST_RESULTS_DIR=$results/$1 rostest "$checkout/test/$name.test" || true
+    # Some of these tests look at the memory of the process: what was freed is soon reused.
+    ASAN_OPTIONS=$ASAN_OPTIONS:quarantine_size_mb=1 ROS_TEST_RESULTS_DIR=$results/$1 \
+      rostest "$checkout/test/$name.test" || true
   done
 }
 

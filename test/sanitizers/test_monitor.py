@@ -25,6 +25,7 @@ from self_awareness_evaluation.live.processes import free_port
 
 TOOL = os.environ['SELF_AWARENESS_TOOL']
 BUILT_IN = Path(os.environ['SELF_AWARENESS_BUILT_IN'])
+RE2 = Path(__file__).with_name('re2.supp')
 
 COMPONENTS = {'player': ('/scan', 100), 'base': ('/odom', 400), 'battery': ('/battery', 2),
               'camera': ('/image', 30), 'arm': ('/joints', 200)}
@@ -54,7 +55,7 @@ class Programs:
             command.append(f'LD_PRELOAD={preload}')
         if TOOL == 'valgrind':
             command += ['valgrind', '--error-exitcode=99', '--leak-check=full',
-                        '--errors-for-leak-kinds=definite',
+                        '--errors-for-leak-kinds=definite', f'--suppressions={RE2}',
                         f'--log-file={self._reports / program}.%p']
         path = BUILT_IN / 'devel' / 'lib' / 'self_awareness' / program
         command.append(str(path) if path.exists() else find_program(program))
@@ -191,7 +192,8 @@ def test_load_and_alarms_and_services(programs: Programs, robot: Dict[str, Proce
                 of_nodelet.await_settled(SLOWLY_S)
                 for name in ('/node', '/nodelet'):
                     call(f'{name}/reload')
-                    call(f'{name}/dump')
+                    await_condition('something is heard again, and written', lambda: (
+                        rospy.ServiceProxy(f'{name}/dump', Trigger)().success), SLOWLY_S)
         with nodelet(model, tmp_path):
             for listener in (of_node, of_nodelet):
                 listener.await_settled(SLOWLY_S)
