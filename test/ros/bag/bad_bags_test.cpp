@@ -37,7 +37,9 @@ class MemoryLimit {
     setrlimit(RLIMIT_AS, &limit);
 #endif
   }
-  ~MemoryLimit() { setrlimit(RLIMIT_AS, &before_); }
+  ~MemoryLimit() {
+    setrlimit(RLIMIT_AS, &before_);
+  }
   MemoryLimit(const MemoryLimit&) = delete;
   MemoryLimit& operator=(const MemoryLimit&) = delete;
 
