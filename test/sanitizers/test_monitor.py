@@ -47,7 +47,7 @@ class Programs:
 
     def start(self, program: str, *arguments: str, preload: str = '', **parameters: object
               ) -> Process:
-        """Start one; `preload` is the tool's library, for a program that is not built with it."""
+        """Start one; `preload` are libraries, for a program that is not built with the tool."""
         command = [str(BUILT_IN / 'devel' / 'env.sh'), 'env']
         command += [f'{name}={os.environ.get(name, "")}:log_path={self._reports / program}'
                     for name in ('ASAN_OPTIONS', 'TSAN_OPTIONS', 'UBSAN_OPTIONS')]
@@ -82,10 +82,15 @@ def find_program(name: str) -> str:
 
 
 def runtime() -> str:
-    """Return the path of the sanitizer's library."""
+    """Return what a program has to load first: the sanitizer's library, and ours.
+
+    The sanitizer knows no functions of a library that is loaded after its first report, and so
+    cannot tell what is suppressed.
+    """
     name = {'address': 'libasan.so', 'thread': 'libtsan.so'}[TOOL]
-    return subprocess.run(['g++', f'-print-file-name={name}'], stdout=subprocess.PIPE, text=True,
-                          check=True).stdout.strip()
+    sanitizer = subprocess.run(['g++', f'-print-file-name={name}'], stdout=subprocess.PIPE,
+                               text=True, check=True).stdout.strip()
+    return f'{sanitizer} {BUILT_IN / "devel" / "lib" / "libself_awareness_monitor.so"}'
 
 
 @pytest.fixture(name='master', scope='module', autouse=True)
