@@ -92,15 +92,14 @@ void TimeRange::validate() const {
   }
 }
 
-std::pair<std::int64_t, std::int64_t> limitsIn(const BagSummary& summary, const TimeRange& range) {
+StampRange::StampRange(const BagSummary& summary, const TimeRange& range) {
   range.validate();
-  const std::int64_t start = summary.start + fromSeconds(range.start.value_or(0));
-  if (start > summary.end) {
+  first = summary.start + fromSeconds(range.start.value_or(0));
+  last = range.end ? std::min(summary.start + fromSeconds(*range.end), summary.end) : summary.end;
+  if (first > summary.end) {
     throw BagError(summary.path + ": the time range begins after the recording's end (" +
                    std::to_string(core::toSeconds(summary.end - summary.start)) + " s)");
   }
-  return {start, range.end ? std::min(summary.start + fromSeconds(*range.end), summary.end)
-                           : summary.end};
 }
 
 BagReader::BagReader(const std::string& path, const Progress& progress)
@@ -130,7 +129,7 @@ BagReader::~BagReader() = default;
 
 void BagReader::read(const Encoder& encoder, const TimeRange& range, const Handler& handler,
                      const Progress& progress) const {
-  const auto [from, to] = limitsIn(summary_, range);
+  const StampRange stamps(summary_, range);
   std::vector<std::optional<ConnectionEncoder>> encoders;
   encoders.reserve(index_->connections.size());
   std::vector<AttributeReader> attributes;
@@ -155,7 +154,7 @@ void BagReader::read(const Encoder& encoder, const TimeRange& range, const Handl
         continue;
       }
       const bool accepted = connection_encoder->accept();
-      if (entry.stamp < from || entry.stamp > to) {
+      if (!stamps.holds(entry.stamp)) {
         continue;
       }
       AttributeReader& reader = attributes[entry.connection];
@@ -187,7 +186,7 @@ void BagReader::read(const Encoder& encoder, const TimeRange& range, const Handl
 
 std::map<std::string, std::vector<double>> BagReader::readNumbers(const EncodingRules& rules,
                                                                   const TimeRange& range) const {
-  const auto [from, to] = limitsIn(summary_, range);
+  const StampRange stamps(summary_, range);
   EncodingRules plain = rules;  // whose events are those of the same messages
   plain.type_fields.clear();
   plain.classes.clear();
@@ -217,7 +216,7 @@ std::map<std::string, std::vector<double>> BagReader::readNumbers(const Encoding
   withMessages([&](BagMessages& messages) {
     for (const BagIndexEntry& entry : index_->entries) {
       std::optional<Read>& read = reads[entry.connection];
-      if (read && read->encoder.accept() && from <= entry.stamp && entry.stamp <= to) {
+      if (read && read->encoder.accept() && stamps.holds(entry.stamp)) {
         messages.read(entry, content);
         read->numbers.push_back(read->field.number(content.data(), content.size()));
       }

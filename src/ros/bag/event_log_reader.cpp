@@ -248,7 +248,7 @@ void EventLogReader::read(const EncodingRules& rules, const EventIds& ids, const
                    ": the event log was recorded by another encoding than the one "
                    "that is wanted; use its own, or convert or record it again by the wanted one");
   }
-  const auto [from, to] = limitsIn(summary_, range);
+  const StampRange stamps(summary_, range);
   const Encoder encoder(rules, ids);
   LogMessages messages(summary_.path, file_->content_->index);
   std::vector<std::optional<core::EventType>> types;  // by id in the log; none: left out
@@ -279,7 +279,7 @@ void EventLogReader::read(const EncodingRules& rules, const EventIds& ids, const
     }
     if (waiting) {
       for (const core::Waiting& each : waitingIn(part, messages)) {
-        if (each.from >= from && each.to <= to) {
+        if (stamps.holds(each.from) && stamps.holds(each.to)) {
           waiting(each);
         }
       }
@@ -297,7 +297,7 @@ void EventLogReader::read(const EncodingRules& rules, const EventIds& ids, const
       if (event.id >= known.size()) {
         messages.fail("an event of a type that it does not name");
       }
-      if (event.stamp < from || event.stamp > to || !types[event.id]) {
+      if (!stamps.holds(event.stamp) || !types[event.id]) {
         continue;
       }
       std::optional<core::EventId>& id = known[event.id];

@@ -7,7 +7,6 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "self_awareness/core/stream/event.h"
@@ -64,8 +63,15 @@ struct BagSummary {
 };
 
 /// First and last stamp [ns] of a range of a recording.
-/// @throw std::invalid_argument if the range is not valid
-std::pair<std::int64_t, std::int64_t> limitsIn(const BagSummary& summary, const TimeRange& range);
+struct StampRange {
+  /// @throw std::invalid_argument if `range` is not valid
+  StampRange(const BagSummary& summary, const TimeRange& range);
+
+  bool holds(std::int64_t stamp) const { return first <= stamp && stamp <= last; }
+
+  std::int64_t first;
+  std::int64_t last;
+};
 
 struct BagIndex;
 
