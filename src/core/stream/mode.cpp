@@ -1,17 +1,19 @@
 #include "self_awareness/core/stream/mode.h"
 
 #include <algorithm>
+#include <string_view>
 
 namespace self_awareness::core {
 namespace {
 
 // No type field makes such a type: a field has no blank in its name.
-const std::string kBegin = "[mode: ";
+// Not a string: that is not ready yet where another file's constants have types of modes.
+constexpr std::string_view kBegin = "[mode: ";
 
 }  // namespace
 
 std::string typeOfMode(const std::string& datatype, const std::string& mode) {
-  return datatype + kBegin + mode + "]";
+  return datatype + std::string(kBegin) + mode + "]";
 }
 
 std::string modeOf(const EventType& type) {
