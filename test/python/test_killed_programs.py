@@ -247,7 +247,8 @@ def test_ctrl_c_ends_a_training_within_two_seconds(four_bags: List[str], tmp_pat
             _, said = process.communicate(timeout=10.0)
             longest_s = max(longest_s, time.monotonic() - begin)
         # At its very end, Python does not look at signals any more: they end it.
-        assert process.returncode in (130, 0, -signal.SIGINT) and said == ''
+        assert process.returncode in (130, 0, -signal.SIGINT), said
+        assert said == ''
         ended_by_it += process.returncode != 0
         wait_until(lambda: not group_lives(process.pid), 'all processes end', 2.0)
         assert model(output)

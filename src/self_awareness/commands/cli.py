@@ -5,8 +5,10 @@ import argparse
 import math
 import os
 import re
+import signal
 import sys
-from typing import Callable, Optional, Sequence, TypeVar
+from types import FrameType
+from typing import Callable, List, Optional, Sequence, TypeVar
 
 from self_awareness import (SHORTEST_WINDOW, VERSION, BagError, DetectorParameters, ModelFileError,
                             TrainedModel, UnknownEvents, printable, recordings)
@@ -18,6 +20,7 @@ _Value = TypeVar('_Value')
 PLOT_ENDINGS = ('.png', '.pdf', '.svg')
 """Of files of pictures: the ending says the format."""
 
+_INTERRUPTED = 130
 _LONGEST_S = 86400.0
 _UNKNOWN = {'ignore': UnknownEvents.IGNORE, 'warn': UnknownEvents.WARN,
             'error': UnknownEvents.ERROR}
@@ -35,6 +38,16 @@ def run(parser: argparse.ArgumentParser, work: Callable[[argparse.Namespace], No
         0 on success, 1 after an error, 2 after wrong usage, 130 after Ctrl-C.
     """
     parser.add_argument('--version', action='version', version=f'self_awareness {VERSION}')
+    if argv is not None:
+        return _run(parser, work, argv)
+    _say_nothing_of_ctrl_c()
+    code = _run(parser, work, argv)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # nothing is left to be ended
+    return code
+
+
+def _run(parser: argparse.ArgumentParser, work: Callable[[argparse.Namespace], None],
+         argv: Optional[Sequence[str]]) -> int:
     try:
         _check_texts(sys.argv[1:] if argv is None else argv)
         work(parser.parse_args(argv))
@@ -42,7 +55,7 @@ def run(parser: argparse.ArgumentParser, work: Callable[[argparse.Namespace], No
     except SystemExit as stop:  # of argparse: after --help, or after wrong usage
         return int(stop.code or 0)
     except KeyboardInterrupt:
-        return 130
+        return _INTERRUPTED
     except BrokenPipeError:  # the reader has seen enough, as `head` has
         _drop_output()
         return 1
@@ -54,6 +67,29 @@ def run(parser: argparse.ArgumentParser, work: Callable[[argparse.Namespace], No
         file = f'{error.filename}: ' if error.filename else ''
         return _fail(parser.prog, _output_problem() or f'{file}{error.strerror or error}')
     return 0
+
+
+def _say_nothing_of_ctrl_c() -> None:
+    """Let Ctrl-C end the program without a word even where an object is destroyed.
+
+    There, Python would print the KeyboardInterrupt, drop it and go on; so it does with what an
+    object lacks that was interrupted while it was made.
+    """
+    came: List[int] = []
+
+    def interrupt(number: int, frame: Optional[FrameType]) -> None:
+        came.append(number)
+        signal.default_int_handler(number, frame)
+
+    def drop(dropped: sys.UnraisableHookArgs) -> None:
+        if not came:
+            sys.__unraisablehook__(dropped)
+        elif issubclass(dropped.exc_type, KeyboardInterrupt):
+            os._exit(_INTERRUPTED)  # as if it were killed: what it writes has a temporary name
+
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        signal.signal(signal.SIGINT, interrupt)
+        sys.unraisablehook = drop
 
 
 def _check_texts(argv: Sequence[str]) -> None:
