@@ -91,7 +91,7 @@ def measure() -> Dict[str, Any]:
         text = Path(report).read_text(encoding='utf-8')
         data, = re.findall(r'<script type="application/json" id="data">(.*?)</script>', text)
         result['data_bytes'] = len(data)
-        result['intervals'] = len(json.loads(data)['sections'][0]['intervals'])
+        result['incidents'] = len(json.loads(data)['sections'][0]['incidents'])
     return result
 
 
@@ -113,7 +113,7 @@ def markdown(result: Dict[str, Any]) -> str:
         ['without plotly.js, data alone', f'{result["data_bytes"] / 1e6:.2f} MB'],
         ['loaded and drawn by Chromium in', f'{median("load_s"):.1f} s']]
     return (f'{result["messages"]:,} messages of {result["types"]} event types in '
-            f'{result["seconds"] / 60:.0f} minutes, {result["intervals"]} alarms and suspicions; '
+            f'{result["seconds"] / 60:.0f} minutes, {result["incidents"]} incidents; '
             f'median of {result["runs"]} runs.\n\n' + page.table(('', ''), rows))
 
 
