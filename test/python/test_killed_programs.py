@@ -256,6 +256,27 @@ def test_ctrl_c_ends_a_training_within_two_seconds(four_bags: List[str], tmp_pat
     assert ended_by_it > 0 and longest_s < 2.0
 
 
+def test_ctrl_c_says_nothing_where_an_object_is_destroyed() -> None:
+    program = """
+import argparse, signal, sys
+from self_awareness.commands import cli
+
+class Destroyed:
+    def __del__(self):
+        signal.raise_signal(signal.SIGINT)
+
+def work(_):
+    Destroyed()
+    print('it went on')
+
+sys.exit(cli.run(argparse.ArgumentParser(), work, None))
+"""
+    done = subprocess.run(
+        [sys.executable, '-c', program], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
+        check=False, preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL))
+    assert (done.returncode, done.stdout, done.stderr) == (130, '', '')
+
+
 def test_a_training_goes_on_where_its_processes_are_killed(four_bags: List[str],
                                                            tmp_path: Path) -> None:
     chance = random.Random(3)

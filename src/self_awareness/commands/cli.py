@@ -32,7 +32,8 @@ def run(parser: argparse.ArgumentParser, work: Callable[[argparse.Namespace], No
         argv: Optional[Sequence[str]]) -> int:
     """Parse the arguments, do the work, and turn what goes wrong into one line.
 
-    The parser gets the option --version.
+    The parser gets the option --version. Without `argv`, this is the whole program: its
+    arguments are those of the command line, and Ctrl-C ends it without a word.
 
     Returns:
         0 on success, 1 after an error, 2 after wrong usage, 130 after Ctrl-C.
