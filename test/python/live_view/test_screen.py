@@ -19,6 +19,8 @@ class Shown:
         self.said = Said('/watch')
         self.called: List[Any] = []
         self._screen = screen.Screen(lambda: self.said, lambda: '', {'a': self._accept})
+        # Without a terminal, urwid 2.6 takes the rows for the columns.
+        self._screen._loop.screen.get_cols_rows = lambda: (80, 24)
 
     def press(self, *keys: str) -> str:
         """Press keys; return the last line but that of the keys."""
