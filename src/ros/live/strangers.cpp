@@ -1,6 +1,5 @@
 #include "self_awareness/ros/live/strangers.h"
 
-#include <dirent.h>
 #include <fcntl.h>
 #include <linux/tcp.h>
 #include <netinet/in.h>
@@ -12,46 +11,34 @@
 #include <cstdlib>
 #include <memory>
 #include <optional>
-#include <utility>
 #include <vector>
 
 namespace self_awareness::ros1 {
-namespace {
 
-/// A file of this process that nobody else closes meanwhile: its number may be in use for another
-/// one as soon as it is looked at.
-class OwnFile {
+/// One file of this process that nobody else closes meanwhile: its number may be in use for
+/// another one as soon as it is looked at. It needs no free number for that.
+class Strangers::HeldFile {
  public:
-  explicit OwnFile(int number) : number_(fcntl(number, F_DUPFD_CLOEXEC, 0)) {}
-  ~OwnFile() {
-    if (number_ >= 0) {
-      close(number_);
-    }
+  HeldFile() : none_(open("/dev/null", O_RDONLY | O_CLOEXEC)), held_(dup(none_)) { letGo(); }
+  ~HeldFile() {
+    close(none_);
+    close(held_);
   }
-  OwnFile(OwnFile&& other) noexcept : number_(std::exchange(other.number_, -1)) {}
-  OwnFile& operator=(OwnFile&& other) noexcept {
-    std::swap(number_, other.number_);
-    return *this;
-  }
-  OwnFile(const OwnFile&) = delete;
-  OwnFile& operator=(const OwnFile&) = delete;
+  HeldFile(const HeldFile&) = delete;
+  HeldFile& operator=(const HeldFile&) = delete;
 
-  int number() const { return number_; }
+  /// Holds a file instead of the one before.
+  /// @return its number here; -1: there is no such file
+  int hold(int number) { return dup3(number, held_, O_CLOEXEC); }
+  /// Whoever it belongs to can close it for good.
+  void letGo() { dup3(none_, held_, O_CLOEXEC); }
 
  private:
-  int number_;
+  int none_;
+  int held_;
 };
 
-std::vector<int> openFiles() {
-  std::vector<int> files;
-  const std::unique_ptr<DIR, int (*)(DIR*)> folder(opendir("/proc/self/fd"), closedir);
-  while (const dirent* const entry = folder ? readdir(folder.get()) : nullptr) {
-    if (entry->d_name[0] != '.') {
-      files.push_back(std::atoi(entry->d_name));
-    }
-  }
-  return files;
-}
+namespace {
 
 int portOf(const sockaddr_storage& address) {
   if (address.ss_family == AF_INET6) {
@@ -91,23 +78,46 @@ std::optional<Socket> socketOf(int file, int slave_port, int data_port) {
 }
 
 // What it reads from it ends there, and roscpp closes it.
-void end(const OwnFile& file) {
-  shutdown(file.number(), SHUT_RDWR);
+void end(int file) {
+  shutdown(file, SHUT_RDWR);
 }
 
+struct Caller {
+  std::uint32_t silent_for;  // [ms]
+  int number;                // of the file
+  std::string ends;
+};
+
 }  // namespace
+
+Strangers::Strangers() : folder_(opendir("/proc/self/fd")), held_(std::make_unique<HeldFile>()) {}
+
+Strangers::~Strangers() = default;
+
+std::vector<int> Strangers::openFiles() {
+  std::vector<int> files;
+  if (folder_) {
+    rewinddir(folder_.get());
+  }
+  while (const dirent* const entry = folder_ ? readdir(folder_.get()) : nullptr) {
+    if (entry->d_name[0] != '.') {
+      files.push_back(std::atoi(entry->d_name));
+    }
+  }
+  return files;
+}
 
 Strangers::Seen Strangers::look(std::int64_t now, int slave_port, int data_port) {
   Seen seen;
   std::map<std::string, Connection> all;
-  std::vector<std::pair<std::uint32_t, OwnFile>> callers;  // by how long they said nothing [ms]
+  std::vector<Caller> callers;
   for (const int number : openFiles()) {
     if (!socketOf(number, slave_port, data_port)) {
       continue;
     }
-    OwnFile file(number);
-    const std::optional<Socket> socket = socketOf(file.number(), slave_port, data_port);
-    if (!socket || all.count(socket->ends) > 0) {  // one of ours may have the number of another
+    const int file = held_->hold(number);
+    const std::optional<Socket> socket = socketOf(file, slave_port, data_port);
+    if (!socket) {
       continue;
     }
     const auto known = known_.find(socket->ends);
@@ -130,19 +140,24 @@ Strangers::Seen Strangers::look(std::int64_t now, int slave_port, int data_port)
       end(file);
       ++seen.closed;
     } else if (to_slave) {
-      callers.emplace_back(socket->info.tcpi_last_data_recv, std::move(file));
+      callers.push_back({socket->info.tcpi_last_data_recv, number, socket->ends});
     }
     all[socket->ends] = connection;
   }
   known_ = std::move(all);
   if (callers.size() > kMost) {
     std::sort(callers.begin(), callers.end(),
-              [](const auto& a, const auto& b) { return a.first > b.first; });
+              [](const auto& a, const auto& b) { return a.silent_for > b.silent_for; });
     for (std::size_t i = 0; i < callers.size() - kMost; ++i) {
-      end(callers[i].second);
-      ++seen.closed;
+      const int file = held_->hold(callers[i].number);
+      const std::optional<Socket> socket = socketOf(file, slave_port, data_port);
+      if (socket && socket->ends == callers[i].ends) {
+        end(file);
+        ++seen.closed;
+      }
     }
   }
+  held_->letGo();
   return seen;
 }
 

@@ -1,11 +1,15 @@
 #include "self_awareness/ros/live/strangers.h"
 
 #include <arpa/inet.h>
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <netinet/in.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -86,6 +90,25 @@ TEST_F(StrangersTest, WhoSaysNothingIsCutOff) {
   EXPECT_TRUE(isClosed(idle.there));
   EXPECT_EQ(look(1000).closed, 1U) << "this side has not closed it yet";
   EXPECT_FALSE(isClosed(answered.there));
+}
+
+// roscpp of Debian 13 accepts connections until there is no file left.
+TEST_F(StrangersTest, WhereNoFileIsLeftTheyAreCutOffAllTheSame) {
+  const Pair idle = connection();
+  look(0);
+  rlimit limit{};
+  ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &limit), 0);
+  const rlimit few{static_cast<rlim_t>(idle.here) + 50, limit.rlim_max};
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &few), 0);
+  std::vector<int> files;
+  for (int file = 0; file >= 0; file = open("/dev/null", O_RDONLY | O_CLOEXEC)) {
+    files.push_back(file);
+  }
+  const std::size_t closed = look(5.1).closed;
+  std::for_each(std::next(files.begin()), files.end(), close);
+  ASSERT_EQ(setrlimit(RLIMIT_NOFILE, &limit), 0);
+  EXPECT_EQ(closed, 1U);
+  EXPECT_TRUE(isClosed(idle.there));
 }
 
 TEST_F(StrangersTest, WhoSaysTooMuchWithoutAnAnswerIsCutOff) {

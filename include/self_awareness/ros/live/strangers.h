@@ -1,9 +1,13 @@
 #pragma once
 
+#include <dirent.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <string>
+#include <vector>
 
 namespace self_awareness::ros1 {
 
@@ -15,6 +19,12 @@ namespace self_awareness::ros1 {
 /// Belongs to one thread. Times are steady [ns].
 class Strangers {
  public:
+  /// Opens three files, by which it can look when there is none left to open.
+  Strangers();
+  ~Strangers();
+  Strangers(const Strangers&) = delete;
+  Strangers& operator=(const Strangers&) = delete;
+
   /// So long may a connection be without being answered.
   static constexpr std::int64_t kPatience = 5000000000;
   /// So much may it send meanwhile [bytes].
@@ -39,7 +49,17 @@ class Strangers {
     std::uint64_t received_until = 0;  // it was answered last [bytes]
   };
 
+  class HeldFile;
+  struct CloseFolder {
+    void operator()(DIR* folder) const { closedir(folder); }
+  };
+
+  /// The numbers of all open files of this process.
+  std::vector<int> openFiles();
+
   std::map<std::string, Connection> known_;  // by both ends
+  std::unique_ptr<DIR, CloseFolder> folder_;
+  std::unique_ptr<HeldFile> held_;
 };
 
 }  // namespace self_awareness::ros1
