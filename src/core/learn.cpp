@@ -86,8 +86,13 @@ std::unique_ptr<Calibrator> Calibrator::part() const {
 void Calibrator::judge(const Recording& recording, std::size_t begin, std::size_t end,
                        std::optional<std::size_t> half) {
   finder_.startRecording(models_->judging(half), recording.robot_start, recording.robot);
+  auto waiting = recording.waiting.begin();
   forEachEvent(
-      recording, begin, end, [this](const Event& event) { finder_.add(event); },
+      recording, begin, end,
+      [&](const Event& event) {
+        waiting = hearUntil(event.stamp, waiting, recording.waiting.end(), finder_);
+        finder_.add(event);
+      },
       [this] { finder_.restart(); });
   finder_.finish();
 }

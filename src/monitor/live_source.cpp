@@ -5,12 +5,6 @@
 #include "ros/now.h"
 
 namespace self_awareness {
-namespace {
-
-// Ticks of a busy machine are late by less.
-constexpr std::int64_t kLongestPause = core::kNanosecondsPerSecond / 2;
-
-}  // namespace
 
 LiveSource::LiveSource(ros::CallbackQueue& queue, const ros::NodeHandle& node_handle,
                        const LiveParameters& parameters, std::vector<std::string> services,
@@ -104,7 +98,7 @@ std::int64_t LiveSource::watchClock() {
   if (clock_watch_.look(now, steadyNow(), ros::Time::isSimTime())) {
     processor_watch_.restart();
     listener_.onClockSet(now);
-  } else if (clock_watch_.pause() > kLongestPause + tick_.toNSec()) {
+  } else if (clock_watch_.pause() > core::Waiting::kStoodStill + tick_.toNSec()) {
     listener_.onPause(now, clock_watch_.pause());
   }
   return now;

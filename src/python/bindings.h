@@ -150,9 +150,7 @@ inline void judgeRecording(core::Detector& detector, const Stamps& stamps, const
   auto next = waiting.begin();
   auto next_missing = missing.begin();
   const auto wait = [&](std::int64_t until) {
-    for (; next != waiting.end() && next->to <= until; ++next) {
-      detector.hear(*next);
-    }
+    next = core::hearUntil(until, next, waiting.end(), detector);
     for (; next_missing != missing.end() && next_missing->first <= until; ++next_missing) {
       detector.setMissing(next_missing->second);
     }

@@ -62,7 +62,8 @@ Findings fromState(const FindingsState& state) {
 
 core::Recording recordingOf(const Stamps& stamps, const Ids& ids, std::int64_t robot_start,
                             std::vector<std::int64_t> clock_steps, std::string robot,
-                            const MessageAttributes& attributes) {
+                            const MessageAttributes& attributes,
+                            std::vector<core::Waiting> waiting = {}) {
   core::Recording recording;
   recording.events.reserve(static_cast<std::size_t>(stamps.size()));
   forEachEvent(stamps, ids, attributes,
@@ -70,6 +71,7 @@ core::Recording recordingOf(const Stamps& stamps, const Ids& ids, std::int64_t r
   recording.robot_start = robot_start;
   recording.clock_steps = core::ClockSteps(std::move(clock_steps));
   recording.robot = std::move(robot);
+  recording.waiting = std::move(waiting);
   return recording;
 }
 
@@ -98,34 +100,37 @@ void bindCalibration(py::module& m) {
           "add_trained_on",
           [](Calibrator& self, const Stamps& stamps, const Ids& ids, std::uint64_t fingerprint,
              std::int64_t robot_start, std::vector<std::int64_t> clock_steps, std::string robot,
-             const MessageAttributes& attributes) {
-            core::Recording recording = recordingOf(
-                stamps, ids, robot_start, std::move(clock_steps), std::move(robot), attributes);
+             const MessageAttributes& attributes, std::vector<core::Waiting> waiting) {
+            core::Recording recording =
+                recordingOf(stamps, ids, robot_start, std::move(clock_steps), std::move(robot),
+                            attributes, std::move(waiting));
             recording.fingerprint = fingerprint;
             const py::gil_scoped_release release;
             self.addTrainedOn(recording);
           },
           py::arg("stamps"), py::arg("ids"), py::arg("fingerprint"), py::arg("robot_start") = 0,
           py::arg("clock_steps") = std::vector<std::int64_t>(), py::arg("robot") = "",
-          py::arg("attributes") = py::none(),
+          py::arg("attributes") = py::none(), py::arg("waiting") = std::vector<core::Waiting>(),
           "Takes in a recording of the training: it is judged by what the other half says.\n"
           "fingerprint: that the training knows it by; robot_start: of the robot [ns], 0: not\n"
           "known; clock_steps: with which the clock was set forward (find_clock_steps); robot:\n"
           "its name, empty: not known; attributes: of the messages\n"
-          "(RecordedEvents.attributes), None: not known.")
+          "(RecordedEvents.attributes), None: not known; waiting: how the machine was, in the\n"
+          "order of time (RecordedEvents.waiting), empty: not known.")
       .def(
           "add_held_out",
           [](Calibrator& self, const Stamps& stamps, const Ids& ids, std::int64_t robot_start,
              std::vector<std::int64_t> clock_steps, std::string robot,
-             const MessageAttributes& attributes) {
-            const core::Recording recording = recordingOf(
-                stamps, ids, robot_start, std::move(clock_steps), std::move(robot), attributes);
+             const MessageAttributes& attributes, std::vector<core::Waiting> waiting) {
+            const core::Recording recording =
+                recordingOf(stamps, ids, robot_start, std::move(clock_steps), std::move(robot),
+                            attributes, std::move(waiting));
             const py::gil_scoped_release release;
             self.addHeldOut(recording);
           },
           py::arg("stamps"), py::arg("ids"), py::arg("robot_start") = 0,
           py::arg("clock_steps") = std::vector<std::int64_t>(), py::arg("robot") = "",
-          py::arg("attributes") = py::none(),
+          py::arg("attributes") = py::none(), py::arg("waiting") = std::vector<core::Waiting>(),
           "Takes in a recording that was not trained on.\n"
           "The id OTHER_MODE tells a mode that the model does not know.")
       .def("part", &Calibrator::part, "A calibrator without findings, for the same model.")

@@ -11,6 +11,7 @@
 #include "self_awareness/core/model.h"
 #include "self_awareness/core/stream/clock_steps.h"
 #include "self_awareness/core/stream/event.h"
+#include "self_awareness/core/stream/waiting.h"
 #include "self_awareness/core/training.h"
 
 namespace self_awareness::core {
@@ -26,6 +27,8 @@ struct Recording {
   std::string robot{};           ///< its name; empty: not known
   /// With which the clock was set forward, which the stamps do not say by themselves.
   ClockSteps clock_steps{};
+  /// How the machine was, one stretch of time after the other; empty: not known.
+  std::vector<Waiting> waiting{};
 };
 
 /// Where the second part of a recording begins [ns]: each part is learned from by itself as long

@@ -53,6 +53,13 @@ void Detector::accept(const Acceptances& accepted) {
   }
 }
 
+void Detector::hear(const Waiting& waiting) {
+  judge_->hear(waiting);
+  if (waiting.stoodStill()) {
+    onPause(waiting.to);
+  }
+}
+
 void Detector::onMissed(const std::vector<EventId>& ids, std::int64_t now) {
   judge_->leaveOut(ids, now + std::max(parameters_.settle_time, kBacklog));
 }

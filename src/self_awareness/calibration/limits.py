@@ -12,7 +12,7 @@ from typing import Any, Iterable, List, Optional, Sequence, Tuple
 import numpy as np
 
 from self_awareness import (OTHER_MODE, Calibration, Calibrator, LimitFindings, TrainedModel,
-                            recordings)
+                            Waiting, recordings)
 from self_awareness.calibration.holes import Silences
 from self_awareness.recordings import BagPart, RecordingEvents
 from self_awareness.workers import InProcess, Workers
@@ -30,6 +30,7 @@ class HeldOut:
         clock_steps: where the clock was set forward [ns].
         robot: its name; empty: not known.
         attributes: of the messages; None: not known.
+        waiting: how the machine was, one stretch of time after the other; empty: not known.
     """
 
     stamps: np.ndarray
@@ -38,11 +39,12 @@ class HeldOut:
     clock_steps: Sequence[int] = ()
     robot: str = ''
     attributes: Optional[np.ndarray] = None
+    waiting: Sequence[Waiting] = ()
 
     def judge(self, _: TrainedModel, calibrator: Calibrator) -> None:
         """Let it be judged."""
         calibrator.add_held_out(self.stamps, self.ids, self.robot_start, list(self.clock_steps),
-                                self.robot, self.attributes)
+                                self.robot, self.attributes, list(self.waiting))
 
 
 @dataclass(frozen=True)
@@ -76,7 +78,7 @@ class TrainedOn:
             ids = np.array([known[kind] for kind in events.event_types], np.uint32)[events.ids]
         calibrator.add_trained_on(events.stamps, ids, self.fingerprint, events.robot_start,
                                   list(events.clock_steps), events.robot,
-                                  events.attributes)
+                                  events.attributes, list(events.waiting))
 
 
 def held_out(trained: TrainedModel, found_in: Iterable[RecordingEvents], settle_time: int,
@@ -95,7 +97,8 @@ def held_out(trained: TrainedModel, found_in: Iterable[RecordingEvents], settle_
     found_in = list(found_in)
     found = find(trained, settle_time, budgets,
                  [HeldOut(recording.stamps, _ids(trained, recording), recording.robot_start,
-                          recording.clock_steps, recording.robot, recording.attributes)
+                          recording.clock_steps, recording.robot, recording.attributes,
+                          recording.waiting)
                   for recording in found_in])
     for calibration in found:
         calibration.recordings = [recording.recording for recording in found_in]

@@ -136,6 +136,20 @@ TEST_F(DetectorLevelsTest, AfterAPauseNothingIsSaidUntilAllHasSettled) {
   EXPECT_FALSE(window().settling);
 }
 
+TEST_F(DetectorLevelsTest, WhoMeasuredAndStoodStillItselfSaysNothing) {
+  start();
+  const std::int64_t begin = now_;
+  detector_->hear({begin, begin + kSecond, Waiting::kStoodStill});
+  abnormalWindow();
+  EXPECT_FALSE(verdict_.settling) << "it went on";
+  detector_->hear({begin + kSecond, begin + 2 * kSecond, Waiting::kStoodStill + 1});
+  while (now_ < begin + 5 * kSecond) {
+    abnormalWindow();
+    EXPECT_TRUE(verdict_.settling);
+  }
+  EXPECT_FALSE(window().settling);
+}
+
 TEST_F(DetectorLevelsTest, AnAlarmThatStandsOutlastsAPause) {
   start();
   EXPECT_TRUE(alarmWindow({suspect("/a", 0)}).alarm);

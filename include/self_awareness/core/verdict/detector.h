@@ -74,8 +74,8 @@ class Detector : private WindowObserver {
   /// @return false if the clock was set
   bool add(const Event& event);
   /// Takes note of how the machine was in a stretch of time, one after the other; at the latest
-  /// before a window is judged that ends after it.
-  void hear(const Waiting& waiting) { judge_->hear(waiting); }
+  /// before a window is judged that ends after its begin. Who measured it may have stood still.
+  void hear(const Waiting& waiting);
   /// Takes note of who may be absent. What is unusual of them while they are there is judged.
   /// @param patterns names of components or topics, or their begins and a `*`
   void setOptional(const std::vector<std::string>& patterns) { judge_->setOptional(patterns); }

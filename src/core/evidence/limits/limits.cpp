@@ -54,12 +54,20 @@ void LimitFinder::startScoring() {
   scorer_->leaveOut(Finding::kSilent);  // the longest gaps say it
   settled_at_.assign(model_->size(), kNever);
   settling_.clear();
+  stood_still_until_ = 0;
   recording_ = {};
   recording_.robot_start = robot_start_;
   recording_.robot = robot_;
   recording_.trained_on = judging_ != model_;
   part_windows_ = static_cast<std::uint64_t>(std::max<std::int64_t>(
       toNanoseconds(model_->tuning().shortest_part) / parameters_.window, 1));
+}
+
+void LimitFinder::hear(const Waiting& waiting) {
+  scorer_->hear(waiting);
+  if (waiting.stoodStill()) {
+    stood_still_until_ = waiting.to;
+  }
 }
 
 void LimitFinder::add(const Event& event) {
@@ -86,7 +94,7 @@ std::optional<ObservedEvent> LimitFinder::observe(const Event& event) {
   }
   const ObservedEvent observed{event, !model_->knows(event.id), scorer_->add(event)};
   if (!observed.unknown) {
-    if (observed.gap) {
+    if (observed.gap && hasSettled(event.stamp)) {
       std::int64_t& longest = recording_.parts.back().longest_gaps[event.id];
       longest = std::max(longest, *observed.gap);
     }
@@ -166,7 +174,8 @@ void LimitFinder::close(const Window& window, std::int64_t end) {
   }
   forgetStarts(window.start);
   const std::vector<double>& evidence = scorer_->closeWindow(end);
-  if (end - parameters_.window < *first_stamp_ + parameters_.settle_time) {
+  if (end - parameters_.window < *first_stamp_ + parameters_.settle_time ||
+      !hasSettled(end - parameters_.window)) {
     return;
   }
   if (recording_.parts.back().windows == part_windows_) {

@@ -8,6 +8,7 @@
 
 #include "self_awareness/core/evidence/channel/model.h"
 #include "self_awareness/core/evidence/watch/relation.h"
+#include "self_awareness/core/stream/waiting.h"
 #include "self_awareness/core/stream/windows.h"
 #include "self_awareness/core/verdict/source_graph.h"
 
@@ -72,6 +73,9 @@ class LimitFinder : private WindowObserver {
                       std::string robot = {});
   /// Takes in the next event of the recording.
   void add(const Event& event);
+  /// Takes in how the machine was in a stretch of time; as Detector::hear(). After who measured it
+  /// stood still, nothing counts for settle_time.
+  void hear(const Waiting& waiting);
   /// The clock was set, which the stamps do not say by themselves (stream/clock_steps.h).
   void restart();
   /// Ends the recording.
@@ -116,6 +120,10 @@ class LimitFinder : private WindowObserver {
   /// The latest of the first events, of all recordings that were not trained on; as in Limits.
   std::vector<std::int64_t> latestFirsts() const;
   void startScoring();
+  /// Whether all has settled since who recorded it stood still. @param stamp [ns]
+  bool hasSettled(std::int64_t stamp) const {
+    return stood_still_until_ == 0 || stamp >= stood_still_until_ + parameters_.settle_time;
+  }
   /// Forgets attributes of event types that have settled, as the detector does: their first
   /// messages may be odd.
   /// @param now start of the window [ns]
@@ -134,6 +142,7 @@ class LimitFinder : private WindowObserver {
   std::int64_t robot_start_ = 0;             // of the recording [ns]; 0: not known
   std::string robot_;                        // of the recording; empty: not known
   std::optional<std::int64_t> first_stamp_;  // of the recording, or since a step of the clock [ns]
+  std::int64_t stood_still_until_ = 0;       // who recorded it [ns]; 0: it never did
   std::vector<std::int64_t> firsts_;         // of the recording, as in Recording
   std::vector<std::int64_t> settled_at_;     // when an event type has settled [ns], by id
   std::vector<EventId> settling_;            // those that have not

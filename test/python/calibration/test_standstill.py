@@ -1,0 +1,89 @@
+"""The recorder and its machine stood still: that says nothing of the robot."""
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any, List, Sequence
+
+import pytest
+from conftest import Message, jittery_robot, write_bag
+
+from self_awareness import DetectorParameters, TrainedModel, Waiting, recordings
+from self_awareness.calibration import limits
+from self_awareness.calibration.limits import HeldOut
+from self_awareness.commands import calibrate, train
+from self_awareness.judging import evidence_judge
+from self_awareness.recordings import BagPart
+from self_awareness.stamps import SECOND_NS
+
+LENGTH_S = 120.0
+FROM_S, UNTIL_S = 60.0, 61.5
+
+
+def normal(begin: float) -> List[Message]:
+    return list(jittery_robot(begin, LENGTH_S, int(begin)))
+
+
+def stood_still(begin: float) -> List[Message]:
+    """All that was to happen meanwhile happens at once, right afterwards."""
+    return sorted(((begin + UNTIL_S + (stamp - begin - FROM_S) * 1e-3
+                    if FROM_S <= stamp - begin < UNTIL_S else stamp), *rest)
+                  for stamp, *rest in normal(begin))
+
+
+@pytest.fixture(scope='module', name='model')
+def _model(tmp_path_factory: pytest.TempPathFactory) -> str:
+    folder = tmp_path_factory.mktemp('normal')
+    bags = [write_bag(folder / f'{number}.bag', normal(1000.0 * number)) for number in (1, 2, 3)]
+    output = str(folder / 'm')
+    assert train.main([*bags[:2], '-o', output]) == 0
+    assert calibrate.main(['--model', output, '--normal', bags[2], '-o', output]) == 0
+    return output
+
+
+@pytest.fixture(name='recording')
+def _recording(model: str, tmp_path: Path) -> Any:
+    return recordings.read(TrainedModel.load(model), BagPart(
+        write_bag(tmp_path / 'stood.bag', stood_still(5000.0))))
+
+
+def measured(recording: Any) -> List[Waiting]:
+    """What the recorder measured. It looked last a little before, and then only after some
+    messages had come."""
+    begin = recording.origin + int((FROM_S - 0.01) * SECOND_NS)
+    end = recording.origin + int((UNTIL_S + 0.01) * SECOND_NS)
+    return [Waiting(recording.origin, begin, 0), Waiting(begin, end, end - begin - 1)]
+
+
+def alarms(model: str, recording: Any, waiting: Sequence[Waiting]) -> List[Any]:
+    judge = evidence_judge(TrainedModel.load(model), DetectorParameters())
+    found = judge(recording.stamps, recording.ids, recording.end, waiting=waiting)
+    return list(found.alarms) + list(found.suspicions)
+
+
+def test_nobody_is_to_blame(model: str, recording: Any) -> None:
+    assert alarms(model, recording, []), 'nobody knows who stood still'
+    assert not alarms(model, recording, measured(recording))
+
+
+def test_a_death_afterwards_is_found(model: str, recording: Any) -> None:
+    dead = recording.origin + int((UNTIL_S + 10.0) * SECOND_NS)
+    lives = [not (stamp > dead and recording.event_types[id_].source == '/laser')
+             for stamp, id_ in zip(recording.stamps, recording.ids)]
+    left = replace(recording, stamps=recording.stamps[lives], ids=recording.ids[lives])
+    found = alarms(model, left, measured(left))[0]
+    assert recording.event_types[found.suspects[0].id].source == '/laser'
+
+
+def test_it_is_no_silence_that_a_limit_must_allow(model: str, recording: Any) -> None:
+    trained = TrainedModel.load(model)
+
+    def found_after(waiting: Sequence[Waiting]) -> List[float]:
+        trained.calibration, = limits.find(
+            trained, DetectorParameters().settle_time, [limits.BUDGET],
+            [HeldOut(recording.stamps, recording.ids, waiting=waiting)])
+        return [each.death_found_after for each in trained.coverage()]
+
+    usual = [each.death_found_after for each in TrainedModel.load(model).coverage()]
+    assert min(found_after([])) > UNTIL_S - FROM_S
+    assert found_after(measured(recording)) == pytest.approx(usual, rel=0.25)
