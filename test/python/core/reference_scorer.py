@@ -18,6 +18,7 @@ MOST_BEHIND = 3.0
 MOST_EVIDENCE = 200.0
 MOST_OF_LIMIT = 1.5
 ACCEPT_AFTER = 60 * SECOND
+MOMENT = SECOND
 START_TIME = 60 * SECOND
 REGIME = 120 * SECOND
 LONGEST_STALL = 700 * MS
@@ -77,7 +78,7 @@ class Watch:
 class ReferenceScorer:
     """Evidence of one recording: `rows` holds that of all tracks for every window.
 
-    It also counts the stalls of the whole robot, and how often a change was accepted.
+    It also counts the stalls of the whole robot, and how often what was armed failed.
 
     Args:
         model: that judges.
@@ -108,7 +109,7 @@ class ReferenceScorer:
         self._newest: Optional[int] = None
         self._stall: Optional[Tuple[int, int]] = None  # the last one that is over
         self.stalls = 0
-        self.accepted = 0
+        self.failed = 0
         self.rows: List[List[float]] = []
         self._first = index = events[0][0] // window
         for number, (t, kind) in enumerate(events):
@@ -134,6 +135,8 @@ class ReferenceScorer:
                     and (self._stall is None or t - self._stall[1] > BETWEEN_STALLS)):
                 self._stall = (self._newest, t)
                 self.stalls += 1
+                for watch in self._watches.values():
+                    watch.disarm()
         self._newest = max(t, self._newest or t)
 
     def _has_waited(self, t: int) -> bool:
@@ -170,33 +173,34 @@ class ReferenceScorer:
         if before is None or (own is not None and before[1] < own[1]):
             return
         surprise = self._model.surprise(track, t - before[0])
-        if not self._has_waited(t):
-            makes_up = channel == 'own gaps' and catches_up and surprise > 0.0
-            step = surprise - max(watch.regime, 0.0) - DRIFT
-            watch.add(-step if makes_up else step)
-            elapsed = min(max(t - own[0], 0), REGIME) if own is not None else 0
-            watch.regime += (surprise - watch.regime) * elapsed / REGIME
+        if self._has_waited(t):
+            return
+        makes_up = channel == 'own gaps' and catches_up and surprise > 0.0
+        step = surprise - max(watch.regime, 0.0) - DRIFT
+        watch.add(-step if makes_up else step)
+        elapsed = min(max(t - own[0], 0), REGIME) if own is not None else 0
+        watch.regime += (surprise - watch.regime) * elapsed / REGIME
         if channel == 'own gaps' and watch.arming.failures == 0:
             watch.arming.armed = True
         else:
             watch.arming.add(surprise)
 
-    def _accept(self, end: int) -> None:
+    def _fail(self, end: int) -> None:
         for watch in self._watches.values():
             since = watch.abnormal_since
-            if not watch.arming.armed or watch.sum <= 0.0:
-                watch.abnormal_since = None
-            elif since is None:
+            if since is None:
                 watch.abnormal_since = end if watch.is_abnormal() else None
-            elif end - since >= ACCEPT_AFTER:
+            elif watch.sum <= 0.0 and end - since < MOMENT:
+                watch.abnormal_since = None
+            elif watch.sum <= 0.0 or end - since >= ACCEPT_AFTER:
                 watch.arming.failures += 1
                 watch.disarm()
-                self.accepted += 1
+                self.failed += 1
 
     def _row(self, index: int) -> List[float]:
         end = (index + 1) * self._window
         if self._has_limits:
-            self._accept(end)
+            self._fail(end)
         silence = end - self._newest if self._newest is not None else 0
         stall = silence if self._usual_silence < silence <= self._longest_stall else 0
         stalled = stall > 0 or self._has_waited(end - 2 * SECOND)

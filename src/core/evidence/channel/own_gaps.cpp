@@ -29,7 +29,7 @@ class OwnGapsState : public ChannelState {
     OfType& own = gaps_[number];
     const std::int64_t gap = arrival.stamp - arrival.last_stamp;
     const double surprise = step(own.sum, own.catching_up, number, gap, arrival.stalled).surprise;
-    if (own.arming.armed()) {
+    if (own.arming.armed() || arrival.stalled) {
       return;
     }
     if (own.arming.failed()) {
@@ -48,6 +48,7 @@ class OwnGapsState : public ChannelState {
   void forget(EventId id) override {
     if (number_of_[id] != kNone) {
       gaps_[number_of_[id]].sum.value = 0;
+      gaps_[number_of_[id]].arming.forget();
     }
   }
   void restart() override;
@@ -118,8 +119,8 @@ void OwnGapsState::capAt(const std::vector<double>& limits) {
 void OwnGapsState::closeWindow(const Heard& heard, std::vector<double>& evidence) {
   for (std::size_t number = 0; number < gaps_.size(); ++number) {
     OfType& own = gaps_[number];
-    if (has_limits_ && own.arming.accepts(own.sum.isAbnormal(numbers_), own.sum.value <= 0,
-                                          heard.windowEnd(), arming_)) {
+    if (has_limits_ && own.arming.fails(own.sum.isAbnormal(numbers_), own.sum.value <= 0,
+                                        heard.windowEnd(), arming_)) {
       own.sum.clear();
     }
     evidence[expected_.tracks()[number]] = own.arming.armed() ? own.sum.value : 0;

@@ -36,7 +36,7 @@ class PairsState : public ChannelState {
       const double surprise = (*pair.surprise)(arrival.stamp - stamps[pair.from]);
       pair.sum.add(surprise, first && !arrival.stalled ? 1.0 : 0.0, 1.0, share, numbers_);
       if (!pair.armed) {
-        arm(number, numbers[pair.from] > 0, first, surprise);
+        arm(number, numbers[pair.from] > 0, first && !arrival.stalled, surprise);
       }
     }
   }
@@ -49,6 +49,7 @@ class PairsState : public ChannelState {
   void forget(EventId id) override {
     for (const std::uint32_t number : with_[id]) {
       pairs_[number].sum.value = 0;
+      arming_[number].forget();
     }
   }
   void restart() override;
@@ -146,8 +147,8 @@ void PairsState::capAt(const std::vector<double>& limits) {
 void PairsState::closeWindow(const Heard& heard, std::vector<double>& evidence) {
   for (std::uint32_t number = 0; number < pairs_.size(); ++number) {
     Pair& pair = pairs_[number];
-    if (has_limits_ && arming_[number].accepts(pair.sum.isAbnormal(numbers_), pair.sum.value <= 0,
-                                               heard.windowEnd(), arming_numbers_)) {
+    if (has_limits_ && arming_[number].fails(pair.sum.isAbnormal(numbers_), pair.sum.value <= 0,
+                                             heard.windowEnd(), arming_numbers_)) {
       clear(number);
     }
     evidence[track_of_[number]] = pair.armed ? pair.sum.value : 0;

@@ -62,6 +62,13 @@ void Scorer::disarm(EventId id) {
   }
 }
 
+// Loops that begin anew after a standstill have other phases.
+void Scorer::disarmAll() {
+  for (EventId id = 0; id < model_->size(); ++id) {
+    disarm(id);
+  }
+}
+
 void Scorer::forget(EventId id) {
   for (const auto& state : states_) {
     state->forget(id);

@@ -31,6 +31,7 @@ class Scorer {
     }
     const Heard::Arrival arrival = heard_.begin(event);
     stalled_ = arrival.stalled;
+    noteStandstill(event.stamp);
     for (ChannelState* const channel : listening_) {
       channel->add(arrival, heard_);
     }
@@ -45,13 +46,21 @@ class Scorer {
     return gap;
   }
   /// Takes in that a mode of the robot is told (stream/mode.h), whether the model knows it or not.
-  void enter(const Event& event) { heard_.enter(event); }
+  void enter(const Event& event) {
+    heard_.enter(event);
+    noteStandstill(event.stamp);
+  }
   /// Takes in that the mode is not known any more, since the last window.
   void loseMode() { heard_.loseMode(); }
   /// Takes in which mode lasts when the recording begins.
   void enterBefore(std::optional<EventId> mode) { heard_.enterBefore(mode); }
   /// Takes in how the machine was.
-  void hear(const Waiting& waiting) { heard_.hear(waiting); }
+  void hear(const Waiting& waiting) {
+    heard_.hear(waiting);
+    if (waiting.stoodStill()) {
+      disarmAll();
+    }
+  }
   /// Closes a window.
   /// @param end of the window [ns]
   /// @return evidence by track; 0: none. What the caller changes lasts until the next window.
@@ -75,6 +84,12 @@ class Scorer {
 
  private:
   void disarm(EventId id);
+  void disarmAll();
+  void noteStandstill(std::int64_t stamp) {
+    if (heard_.stoodStillUntil(stamp)) {
+      disarmAll();
+    }
+  }
   const ChannelState& stateOf(std::size_t track) const { return *states_[state_of_[track]]; }
 
   std::shared_ptr<const Model> model_;

@@ -10,13 +10,14 @@ namespace self_awareness::core::evidence {
 
 /// Whether what is watched counts (docs/method.md, section 3.7). Independent timers keep one phase
 /// as long as they run, and have another one in every run: training may have met the same one by
-/// chance every time. So a relation counts only after it has once been as in training. What is
-/// different for long, and stable, has changed: it is news once, and then must be as in training
-/// again.
+/// chance every time. So a relation counts only after it has once been as in training. What was
+/// abnormal, or is different for long, is news once, and then must be as in training again.
 class Arming {
  public:
   /// So many failures double the events: a day of them at 1 Hz would not do.
   static constexpr std::uint32_t kMostDoublings = 10;
+  /// What lasts less long [ns] is no failure.
+  static constexpr std::int64_t kMoment = kNanosecondsPerSecond;
 
   /// The numbers that all have in common.
   struct Numbers {
@@ -48,23 +49,32 @@ class Arming {
     excess_ = 0;
     events_ = 0;
   }
-  /// It must be as in training once more: one of its event types was gone.
+  /// It must be as in training once more: one of its event types was gone, or the machine stood
+  /// still.
   void disarm() { *this = Arming(failures_); }
+  /// What was abnormal so far was a start, and is no failure.
+  void forget() { abnormal_since_ = 0; }
   /// Takes in a window.
   /// @param abnormal whether it is beyond its limit
-  /// @param calm whether nothing unusual is left of it: in between, it is as it was
+  /// @param calm whether nothing unusual is left of it
   /// @param end of the window [ns]
-  /// @return whether it has changed for good: it is disarmed
-  bool accepts(bool abnormal, bool calm, std::int64_t end, const Numbers& numbers) {
-    if (!armed_ || calm) {
-      abnormal_since_ = 0;
-    } else if (abnormal_since_ == 0) {
-      abnormal_since_ = abnormal ? end : 0;
-    } else if (end - abnormal_since_ >= numbers.accept_after) {
-      *this = Arming(failures_ + 1);
-      return true;
+  /// @return whether it has failed: what was abnormal for more than a moment is over, or has
+  /// lasted for so long that it has changed for good. Then it is disarmed.
+  bool fails(bool abnormal, bool calm, std::int64_t end, const Numbers& numbers) {
+    if (abnormal_since_ == 0) {
+      abnormal_since_ = armed_ && abnormal ? end : 0;
+      return false;
     }
-    return false;
+    const std::int64_t lasted = end - abnormal_since_;
+    if (calm && lasted < kMoment) {
+      forget();
+      return false;
+    }
+    if (!calm && lasted < numbers.accept_after) {
+      return false;
+    }
+    *this = Arming(failures_ + 1);
+    return true;
   }
 
   Arming() = default;

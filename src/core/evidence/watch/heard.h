@@ -109,6 +109,8 @@ class Heard {
   std::int64_t stoodStillSince(std::int64_t stamp) const {
     return std::max(stalls_.standstillSince(stamp, window_end_), starvedSince(stamp));
   }
+  /// Whether the whole robot stood still until a stamp [ns].
+  bool stoodStillUntil(std::int64_t stamp) const { return stalls_.endedAt(stamp); }
   /// How long processes waited since a stamp [ns], at the end of the last window; at most for as
   /// long as a stall lasts [ns].
   std::int64_t starvedSince(std::int64_t stamp) const {

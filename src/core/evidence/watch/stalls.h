@@ -29,6 +29,8 @@ class Stalls {
   }
   /// Whether an event of now [ns] may have waited for the end of a stall.
   bool holdsBack(std::int64_t stamp) const { return stamp < until_; }
+  /// Whether a stall ended with an event of now [ns].
+  bool endedAt(std::int64_t stamp) const { return at_ == stamp; }
   /// @param end of the window [ns]
   /// @param heard whether there was an event
   void closeWindow(std::int64_t end, bool heard);

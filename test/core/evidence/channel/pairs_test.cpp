@@ -183,7 +183,7 @@ TEST_F(PairsTest, WhatIsUsualAgainInBetweenIsNewsAgain) {
   for (int times = 0; times < 3; ++times) {
     abnormal += abnormalFor(kAccepted * 2 / 3, kAlwaysLate);
     EXPECT_GT(evidence(), kLimit) << times;
-    askUsually(100);
+    askUsually(kArming << (times + 2));  // also to come down from the cap
     EXPECT_EQ(evidence(), 0) << times;
   }
   EXPECT_GT(abnormal, kAccepted * 3 / 2);

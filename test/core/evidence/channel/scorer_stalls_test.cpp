@@ -93,6 +93,29 @@ TEST_F(ScorerStallsTest, AMomentWithoutAnyEventIsNobodysFault) {
   EXPECT_TRUE(unusual(largestEvidence(lost)).empty());
 }
 
+TEST_F(ScorerStallsTest, PhasesMayBeOthersAfterwards) {
+  const auto shifted = [](std::int64_t stall) {
+    Events events = robot(2 * kFault);
+    events.erase(std::remove_if(events.begin(), events.end(),
+                                [&](const Event& event) {
+                                  return event.stamp >= kFault && event.stamp < kFault + stall;
+                                }),
+                 events.end());
+    for (Event& event : events) {
+      event.stamp += event.id == kB && event.stamp >= kFault + stall ? kPeriod / 4 : 0;
+    }
+    return together({events});
+  };
+  const auto unusual_pairs = [&](std::int64_t stall) {
+    const std::vector<std::size_t> tracks = unusual(largestEvidence(shifted(stall)));
+    return std::count_if(tracks.begin(), tracks.end(), [&](std::size_t track) {
+      return channelName(model_->tracks()[track]) == kPairs;
+    });
+  };
+  EXPECT_GT(unusual_pairs(0), 0);
+  EXPECT_EQ(unusual_pairs(kStall), 0);
+}
+
 TEST_F(ScorerStallsTest, WhatIsSilentAloneIsMissing) {
   for (const EventId gone : {kA, kB, kC}) {
     Events events = robot(2 * kFault);

@@ -66,44 +66,55 @@ TEST(Arming, WhatWasGoneIsArmedAsBefore) {
   EXPECT_EQ(addUntilArmed(arming, kUsual, 1000), 2 * kNumbers.events);
 }
 
-TEST(Arming, WhatIsAbnormalForLongIsAcceptedOnce) {
+TEST(Arming, WhatIsAbnormalForLongHasFailed) {
   Arming arming;
   arming.arm();
   std::int64_t end = 7 * kSecond;
   const std::int64_t since = end;
   for (; end < since + kNumbers.accept_after; end += kSecond) {
-    EXPECT_FALSE(arming.accepts(true, false, end, kNumbers));
+    EXPECT_FALSE(arming.fails(true, false, end, kNumbers));
   }
-  EXPECT_TRUE(arming.accepts(true, false, end, kNumbers));
+  EXPECT_TRUE(arming.fails(true, false, end, kNumbers));
   EXPECT_FALSE(arming.armed());
   EXPECT_TRUE(arming.failed());
-  EXPECT_FALSE(arming.accepts(true, false, end + 1000 * kSecond, kNumbers)) << "it does not count";
+  EXPECT_FALSE(arming.fails(true, false, end + 1000 * kSecond, kNumbers)) << "it does not count";
   EXPECT_EQ(addUntilArmed(arming, kUsual, 1000), 2 * kNumbers.events);
 }
 
-TEST(Arming, WhatIsNormalInBetweenIsNotAccepted) {
+TEST(Arming, WhatWasAbnormalForAMomentHasNotFailed) {
   Arming arming;
   arming.arm();
-  for (std::int64_t end = kSecond; end < 10 * kNumbers.accept_after; end += kSecond) {
-    const bool calm = end % (50 * kSecond) == 0;
-    EXPECT_FALSE(arming.accepts(!calm, calm, end, kNumbers));
+  for (std::int64_t end = kSecond; end < 1000 * kSecond; end += kSecond) {
+    EXPECT_FALSE(arming.fails(true, false, end, kNumbers));
+    EXPECT_FALSE(arming.fails(false, true, end + Arming::kMoment - 1, kNumbers));
   }
   EXPECT_TRUE(arming.armed());
+}
+
+TEST(Arming, WhatIsOverHasFailed) {
+  Arming arming;
+  arming.arm();
+  EXPECT_FALSE(arming.fails(true, false, kSecond, kNumbers));
+  EXPECT_FALSE(arming.fails(false, false, 2 * kSecond, kNumbers)) << "something is left of it";
+  EXPECT_TRUE(arming.fails(false, true, 3 * kSecond, kNumbers));
+  EXPECT_FALSE(arming.armed());
+  EXPECT_EQ(addUntilArmed(arming, kUsual, 1000), 2 * kNumbers.events);
+  EXPECT_FALSE(arming.fails(false, true, 1000 * kSecond, kNumbers)) << "it is new again";
 }
 
 TEST(Arming, WhatGoesOnBelowItsLimitIsNotOver) {
   Arming arming;
   arming.arm();
-  EXPECT_FALSE(arming.accepts(true, false, kSecond, kNumbers));
-  EXPECT_FALSE(arming.accepts(false, false, kNumbers.accept_after, kNumbers));
-  EXPECT_TRUE(arming.accepts(false, false, kNumbers.accept_after + kSecond, kNumbers));
+  EXPECT_FALSE(arming.fails(true, false, kSecond, kNumbers));
+  EXPECT_FALSE(arming.fails(false, false, kNumbers.accept_after, kNumbers));
+  EXPECT_TRUE(arming.fails(false, false, kNumbers.accept_after + kSecond, kNumbers));
 }
 
-TEST(Arming, WhatNeverWasAbnormalIsNotAccepted) {
+TEST(Arming, WhatNeverWasAbnormalHasNotFailed) {
   Arming arming;
   arming.arm();
   for (std::int64_t end = kSecond; end < 10 * kNumbers.accept_after; end += kSecond) {
-    EXPECT_FALSE(arming.accepts(false, false, end, kNumbers));
+    EXPECT_FALSE(arming.fails(false, false, end, kNumbers));
   }
   EXPECT_TRUE(arming.armed());
 }
