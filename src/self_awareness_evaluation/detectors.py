@@ -97,7 +97,7 @@ class Evidence:
         trained.calibration, = limits.find(
             trained, DetectorParameters().settle_time, [self._budget],
             [HeldOut(recording.stamps, recording.ids, robot=recording.robot,
-                     attributes=recording.attributes)
+                     attributes=recording.attributes, waiting=recording.waiting)
              for recording in encoded])
 
     def judge(self, recording: WindowedEvents) -> Judged:
@@ -129,6 +129,7 @@ class Evidence:
                                  encoded.ids, encoded.end - 1, encoded.event_types,
                                  missing=[(stamp, expected - present)
                                           for stamp, present in encoded.subscriptions],
+                                 waiting=list(encoded.waiting),
                                  attributes=encoded.attributes)
 
     def __getstate__(self) -> Dict[str, Any]:

@@ -10,7 +10,7 @@ from typing import Callable, Dict, FrozenSet, Hashable, List, Optional, Sequence
 
 import numpy as np
 
-from self_awareness import DEFAULT_WINDOW, EventType
+from self_awareness import DEFAULT_WINDOW, EventType, Waiting
 
 _Key = TypeVar('_Key', bound=Hashable)
 
@@ -30,6 +30,8 @@ class WindowedEvents:
         robot: its name; empty: there is one only.
         attributes: of the messages, uint32, one for each stamp; None: not known.
         subscriptions: what there was from a time [ns] on, in the order of time; empty: not known.
+        waiting: how the recorder's machine was, one stretch of time after the other; empty: not
+            known.
     """
 
     event_types: Sequence[EventType]
@@ -39,6 +41,7 @@ class WindowedEvents:
     robot: str = ''
     attributes: Optional[np.ndarray] = None
     subscriptions: Sequence[Tuple[int, Subscriptions]] = ()
+    waiting: Sequence[Waiting] = ()
 
     def encoded(self, vocabulary: Sequence[EventType]) -> WindowedEvents:
         """Return the same recording with the types of a vocabulary first, as the bag reader does.
@@ -72,7 +75,8 @@ class WindowedEvents:
         return replace(
             self, stamps=self.stamps[inside], ids=self.ids[inside], end=end,
             attributes=None if self.attributes is None else self.attributes[inside],
-            subscriptions=[each for each in self.subscriptions if each[0] < end])
+            subscriptions=[each for each in self.subscriptions if each[0] < end],
+            waiting=[each for each in self.waiting if each.end <= end])
 
 
 def vocabulary(recordings: Sequence[WindowedEvents]) -> List[EventType]:

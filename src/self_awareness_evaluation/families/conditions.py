@@ -49,7 +49,8 @@ class Conditions:
         heavy: share of delays over the wireless link that are ten times as long.
         load_period_s: time in which the load rises and falls once [s]; 0: it does not.
         most_load: by how much longer work takes at the most, 1 or more.
-        stalls_an_hour: how often the host stalls; everything waits then, and comes at once.
+        stalls_an_hour: how often the host stalls; everything waits then, also the recorder, and
+            comes at once.
         stall_s: for how long, at least and at most [s].
     """
 

@@ -45,7 +45,9 @@ component that speaks only when it is asked dies ({death_s:g} s; the latency cou
 message that is missing); and so does who speaks when something happens (three times its longest
 pause within an hour). With every start all timers have new phases; where a family is recorded
 or watched in one start, its line says so. All systems judge the same recordings; the first
-{settle_s:g} s of each, while a detector settles, are left out.
+{settle_s:g} s of each, while a detector settles, are left out. A host that stalls is that of the
+recorder and the monitor, too, and the recordings say for how long it did; that a CPU is starved
+they do not say.
 
 The table is about `{system}` with limits for a budget of {budget:g} false alarms an hour. It
 begins with the false alarms an hour by what was learned from, with their 95 % interval (alarms

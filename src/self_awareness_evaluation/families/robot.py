@@ -6,7 +6,7 @@ from typing import Dict, FrozenSet, Iterable, List, Optional, Set, Tuple
 
 import numpy as np
 
-from self_awareness import EventType
+from self_awareness import EventType, Waiting
 from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness_evaluation.families import messages
 from self_awareness_evaluation.families.conditions import Activity, Conditions, in_order
@@ -172,7 +172,8 @@ class Robot:
                       for index, (output, (times, numbers))
                       in enumerate(zip(self.outputs, recorded))]
         origin = (_FIRST_START_S + start_seed * _BETWEEN_STARTS_S) * SECOND_NS
-        return self._merged(heard, attributes, begin_s, begin_s + seconds, origin)
+        return replace(self._merged(heard, attributes, begin_s, begin_s + seconds, origin),
+                       waiting=_waiting(scene, begin_s, origin))
 
     def _check(self, fault: Fault) -> None:
         of_robot = fault.kind in (STARVED, SILENT)
@@ -254,6 +255,20 @@ def _missed(times: np.ndarray, scene: Scene, fault: Fault) -> np.ndarray:
     edges = scene.begin + np.cumsum(np.column_stack(
         [rng.exponential(_BETWEEN_MISSES_S, number), np.full(number, _MISSED_S)]).ravel())
     return np.searchsorted(edges, times, side='right') % 2 == 1
+
+
+def _waiting(scene: Scene, begin: float, origin: int) -> List[Waiting]:
+    """Return what a recorder on the host measures, from `begin` on: it stalls with all others."""
+    stretches = []
+    until = origin + nanoseconds(begin)
+    for start, length in zip(*scene.stalls()):
+        end = origin + nanoseconds(start + length)
+        stalled_at = max(origin + nanoseconds(start), until)
+        if end > stalled_at:
+            stretches += [Waiting(until, stalled_at, 0),
+                          Waiting(stalled_at, end, end - stalled_at)]
+            until = end
+    return stretches
 
 
 def _distinct(sources: Iterable[str]) -> List[str]:

@@ -38,4 +38,4 @@ def judge(session: Session) -> List[Sample]:
 def _read(model: TrainedModel, path: Path) -> WindowedEvents:
     events = recordings.read(model, BagPart(str(path)))
     return WindowedEvents(events.event_types, events.stamps, events.ids, events.end + 1,
-                          attributes=events.attributes)
+                          attributes=events.attributes, waiting=events.waiting)

@@ -307,6 +307,22 @@ def test_stalls_let_all_wait_and_come_at_once() -> None:
             assert np.median(turn) == pytest.approx(0.2, abs=0.005)
 
 
+def test_the_recorder_stalls_with_its_host() -> None:
+    robot = draw('second_stalls', 3)
+    recording = robot.start(5, 3600.0)
+    stalls = [each for each in recording.waiting if each.waited]
+    assert stalls and len(recording.waiting) == 2 * len(stalls)
+    for stall in stalls:
+        assert 0.8 <= stall.waited / SECOND_NS <= 1.5
+        inside = (recording.stamps > stall.begin) & (recording.stamps < stall.end)
+        assert not inside.any()
+        assert ((recording.stamps >= stall.end)
+                & (recording.stamps < stall.end + SECOND_NS // 100)).any()
+    edges = [edge for each in recording.waiting for edge in (each.begin, each.end)]
+    assert edges == sorted(edges)
+    assert not draw('timers', 3).start(5, 60.0).waiting
+
+
 def test_loops_have_a_new_phase_after_a_stall() -> None:
     robot, loops = draw('stalls', 1), draw('stalled_loops', 1)
     moved = [(output.topic, output.emission.period_s) for output in loops.outputs
