@@ -114,16 +114,17 @@ def check_same(path: Path, expected: TrainedModel) -> None:
 def test_a_worker_is_killed_and_the_result_is_right(cluster: Cluster, bags: List[str],
                                                     expected: TrainedModel,
                                                     tmp_path: Path) -> None:
-    for name in ('one', 'other'):
-        cluster.add_worker(name)
+    cluster.add_worker('other')
     victim, process = cluster.address_of('other'), cluster.workers['other']
-    # What it gets it will never finish; the scheduler cannot know.
+    # What it gets it will never finish; the scheduler cannot know. As long as it is alone, it gets
+    # the first task: between two, the scheduler of Debian 11 may give all to the one that is done.
     os.kill(process.pid, signal.SIGSTOP)
     training = subprocess.Popen([sys.executable, str(SCRIPT), *bags, '-o', str(tmp_path / 'm'),
                                  '--scheduler', cluster.address], stdout=subprocess.PIPE,
                                 stderr=subprocess.PIPE, text=True)
     wait_until(lambda: cluster.client.processing()[victim], 'the worker gets a task')
     lost = cluster.client.processing()[victim]
+    cluster.add_worker('one')
     os.kill(process.pid, signal.SIGKILL)
     out, err = training.communicate(timeout=DEADLINE_S)
     assert training.returncode == 0 and not err, err
