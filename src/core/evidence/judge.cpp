@@ -91,6 +91,14 @@ class Judge : public core::Judge {
   void forgetStarts(std::int64_t now);
   /// Takes back what the tracks say of event types that settle.
   void leaveOutNew(std::int64_t now, std::vector<double>& evidence) const;
+  /// Finds the shares of a window, without what is not judged now.
+  /// @param evidence by track
+  void weigh(const Window& window, std::int64_t end, std::vector<double>& evidence);
+  /// Takes back shares that are no fault of the component: all are silent, or a mode explains it.
+  /// Tells what is left of them, but for a mode that training never saw.
+  void excuse(const Window& window, std::int64_t end, Judgement& judgement);
+  /// The channels that speak against somebody, as Judgement::evidence.
+  std::string evidenceOf(const Judgement& judgement) const;
   /// Whether a track beyond its limit is so beyond all doubt.
   bool isCertain() const;
   /// The suspects of a window with evidence of known event types.
@@ -223,68 +231,24 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
   if (!limits_) {
     return judgement;
   }
-  if (end < window.start + window_) {
-    leaveOutFewer(evidence);
-  }
-  leaveOutNew(window.start, evidence);
-  excused_.leaveOut(scorer_.heard(), evidence);
-  for (std::size_t track = 0; track < evidence.size(); ++track) {
-    // Most tracks say nothing most of the time, and a division takes its time.
-    const double share = evidence[track] > 0 ? evidence[track] / limits_->tracks[track] : 0;
-    shares_[track] = std::isnan(share) ? 0 : share;
-  }
+  weigh(window, end, evidence);
   never_heard_.closeWindow(end, settle_time_);
   unsubscribed_.closeWindow(end);
-  double largest = largestOf(shares_);
-  if (largest > 1) {
-    judgement.silent = silent_together_.find(shares_, *limits_, scorer_, strangers_.silences(end));
-    if (!judgement.silent) {
-      judgement.mode =
-          new_mode_.excuseAccepted(shares_, *limits_, scorer_, excused_.mayBeSilent());
-      largest = largestOf(shares_);
-    }
-  }
-  if (tell_shares_) {  // what is accepted is no evidence, also to who listens
-    tell_shares_(window, {shares_, never_heard_.shares()});
-  }
-  std::set<std::string> channels;
-  if (largest > 1 && !judgement.silent) {
-    judgement.silent = new_mode_.excuse(shares_, *limits_, scorer_, excused_.mayBeSilent());
-    largest = largestOf(shares_);
-  }
-  for (std::size_t track = 0; track < shares_.size() && largest > 1; ++track) {
-    if (shares_[track] > 1) {
-      channels.insert(channelLabel(model_->tracks()[track]));
-    }
-  }
+  excuse(window, end, judgement);
+  const double largest = largestOf(shares_);
   judgement.score = -std::max(largest, never_heard_.share());
   judgement.threshold = kThreshold;
   judgement.busy = busy_machine_.closeWindow(shares_, scorer_, *judgement.score < kThreshold);
-  if (judgement.busy) {
-    if (judgement.busy->late > 0 ||
-        judgement.busy->starved > model_->tuning().longest_starvation) {
-      // An alarm lasts as long as its cause, though none of the sums may be beyond its limit now.
-      judgement.score = std::min(*judgement.score, kStillBusy);
-    }
-    channels.insert("busy");
+  if (judgement.busy && (judgement.busy->late > 0 ||
+                         judgement.busy->starved > model_->tuning().longest_starvation)) {
+    // An alarm lasts as long as its cause, though none of the sums may be beyond its limit now.
+    judgement.score = std::min(*judgement.score, kStillBusy);
   }
   judgement.abnormal = *judgement.score < kThreshold;
   judgement.certain = never_heard_.share() > 1 || (largest > 1 && isCertain());
-  const bool new_mode = judgement.silent && judgement.silent->others_go_on;
-  judgement.suspicious =
-      never_heard_.share() > 0 || unsubscribed_.any() || judgement.busy.has_value() || new_mode;
-  if (new_mode) {
-    channels.insert("new mode");
-  }
-  if (never_heard_.share() > 0) {
-    channels.insert("never heard");
-  }
-  if (unsubscribed_.any()) {
-    channels.insert("connections");
-  }
-  for (const std::string& channel : channels) {
-    judgement.evidence += (judgement.evidence.empty() ? "" : ", ") + channel;
-  }
+  judgement.suspicious = never_heard_.share() > 0 || unsubscribed_.any() || judgement.busy ||
+                         (judgement.silent && judgement.silent->others_go_on);
+  judgement.evidence = evidenceOf(judgement);
   const bool somebody = largest > 1 || never_heard_.share() > 0 || unsubscribed_.any() ||
                         (judgement.busy && judgement.busy->late > 0);
   if (suspects != NameSuspects::kNever && somebody) {
@@ -295,6 +259,61 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
   }
   excused_.leaveOut(judgement.suspects);
   return judgement;
+}
+
+void Judge::weigh(const Window& window, std::int64_t end, std::vector<double>& evidence) {
+  if (end < window.start + window_) {
+    leaveOutFewer(evidence);
+  }
+  leaveOutNew(window.start, evidence);
+  excused_.leaveOut(scorer_.heard(), evidence);
+  for (std::size_t track = 0; track < evidence.size(); ++track) {
+    // Most tracks say nothing most of the time, and a division takes its time.
+    const double share = evidence[track] > 0 ? evidence[track] / limits_->tracks[track] : 0;
+    shares_[track] = std::isnan(share) ? 0 : share;
+  }
+}
+
+void Judge::excuse(const Window& window, std::int64_t end, Judgement& judgement) {
+  if (largestOf(shares_) > 1) {
+    judgement.silent = silent_together_.find(shares_, *limits_, scorer_, strangers_.silences(end));
+    if (!judgement.silent) {
+      judgement.mode =
+          new_mode_.excuseAccepted(shares_, *limits_, scorer_, excused_.mayBeSilent());
+    }
+  }
+  if (tell_shares_) {  // what is accepted is no evidence, also to who listens
+    tell_shares_(window, {shares_, never_heard_.shares()});
+  }
+  if (largestOf(shares_) > 1 && !judgement.silent) {
+    judgement.silent = new_mode_.excuse(shares_, *limits_, scorer_, excused_.mayBeSilent());
+  }
+}
+
+std::string Judge::evidenceOf(const Judgement& judgement) const {
+  std::set<std::string> channels;
+  for (std::size_t track = 0; track < shares_.size(); ++track) {
+    if (shares_[track] > 1) {
+      channels.insert(channelLabel(model_->tracks()[track]));
+    }
+  }
+  if (judgement.busy) {
+    channels.insert("busy");
+  }
+  if (judgement.silent && judgement.silent->others_go_on) {
+    channels.insert("new mode");
+  }
+  if (never_heard_.share() > 0) {
+    channels.insert("never heard");
+  }
+  if (unsubscribed_.any()) {
+    channels.insert("connections");
+  }
+  std::string evidence;
+  for (const std::string& channel : channels) {
+    evidence += (evidence.empty() ? "" : ", ") + channel;
+  }
+  return evidence;
 }
 
 std::vector<Suspect> Judge::namedIn(const Window& window, bool silent_first) const {
@@ -322,9 +341,7 @@ std::vector<Suspect> Judge::namedIn(const Window& window, bool silent_first) con
   };
   // A stranger explains what is unusual, but for a death. However many there are, they do not hide
   // who is to blame.
-  const auto died = [](const Suspect& suspect) {
-    return suspect.reason.kind == Kind::kDied || suspect.reason.kind == Kind::kNeverCame;
-  };
+  const auto died = [](const Suspect& suspect) { return isAbsence(suspect.reason.kind); };
   if (!first.empty() && died(first.front()) &&
       std::any_of(first.begin(), first.end(),
                   [&](const Suspect& suspect) { return suspect.abnormal && died(suspect); })) {

@@ -53,8 +53,11 @@ std::optional<Kind> kindOf(const std::string& name) {
 }
 
 bool isMissing(Kind kind) {
-  return kind == Kind::kDied || kind == Kind::kNeverCame || kind == Kind::kSlow ||
-         kind == Kind::kLate;
+  return isAbsence(kind) || kind == Kind::kSlow || kind == Kind::kLate;
+}
+
+bool isAbsence(Kind kind) {
+  return kind == Kind::kDied || kind == Kind::kNeverCame;
 }
 
 Reason strangerIn(std::size_t events) {

@@ -15,10 +15,9 @@ double silenceOf(const core::Reason& reason) {
   if (!std::isnan(reason.silence)) {
     return reason.silence;
   }
-  const bool is_silence =
-      reason.unit == core::unit::kSeconds &&
-      (reason.kind == Kind::kDied || reason.kind == Kind::kNeverCame ||
-       reason.kind == Kind::kStranger || (reason.kind == Kind::kLate && reason.after.empty()));
+  const bool is_silence = reason.unit == core::unit::kSeconds &&
+                          (isAbsence(reason.kind) || reason.kind == Kind::kStranger ||
+                           (reason.kind == Kind::kLate && reason.after.empty()));
   return is_silence ? reason.value : core::Reason::kNone;
 }
 

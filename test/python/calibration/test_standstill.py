@@ -26,9 +26,11 @@ def normal(begin: float) -> List[Message]:
 
 def stood_still(begin: float) -> List[Message]:
     """All that was to happen meanwhile happens at once, right afterwards."""
-    return sorted(((begin + UNTIL_S + (stamp - begin - FROM_S) * 1e-3
-                    if FROM_S <= stamp - begin < UNTIL_S else stamp), *rest)
-                  for stamp, *rest in normal(begin))
+    def moved(stamp: float) -> float:
+        after = stamp - begin - FROM_S
+        return begin + UNTIL_S + after * 1e-3 if 0 <= after < UNTIL_S - FROM_S else stamp
+
+    return sorted((moved(stamp), topic, text) for stamp, topic, text in normal(begin))
 
 
 @pytest.fixture(scope='module', name='model')

@@ -18,7 +18,8 @@ MOST_BEHIND = 3.0
 MOST_EVIDENCE = 200.0
 MOST_OF_LIMIT = 1.5
 ACCEPT_AFTER = 60 * SECOND
-MOMENT = SECOND
+NEWS = 3
+"""Windows."""
 START_TIME = 60 * SECOND
 REGIME = 120 * SECOND
 LONGEST_STALL = 700 * MS
@@ -58,6 +59,7 @@ class Watch:
         self.arming = Arming()
         self.regime = 0.0
         self.abnormal_since: Optional[int] = None
+        self.abnormal_windows = 0
 
     def add(self, step: float) -> None:
         """Add to the sum, which stays between 0 and its cap."""
@@ -69,6 +71,7 @@ class Watch:
         self.arming.disarm()
         self.regime = 0.0
         self.abnormal_since = None
+        self.abnormal_windows = 0
 
     def is_abnormal(self) -> bool:
         """Whether the sum is above its limit."""
@@ -187,12 +190,17 @@ class ReferenceScorer:
 
     def _fail(self, end: int) -> None:
         for watch in self._watches.values():
-            since = watch.abnormal_since
-            if since is None:
-                watch.abnormal_since = end if watch.is_abnormal() else None
-            elif watch.sum <= 0.0 and end - since < MOMENT:
+            if watch.is_abnormal():
+                watch.abnormal_windows += 1
+                if watch.abnormal_since is None:
+                    watch.abnormal_since = end
+            if watch.abnormal_since is None:
+                continue
+            calm = watch.sum <= 0.0
+            if calm and watch.abnormal_windows < NEWS:
                 watch.abnormal_since = None
-            elif watch.sum <= 0.0 or end - since >= ACCEPT_AFTER:
+                watch.abnormal_windows = 0
+            elif calm or end - watch.abnormal_since >= ACCEPT_AFTER:
                 watch.arming.failures += 1
                 watch.disarm()
                 self.failed += 1

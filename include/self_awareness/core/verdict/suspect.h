@@ -53,6 +53,8 @@ std::string toString(Kind kind);
 std::optional<Kind> kindOf(const std::string& name);
 /// Whether it is that something has not come, or comes too late or too seldom.
 bool isMissing(Kind kind);
+/// Whether it is that something has not come.
+bool isAbsence(Kind kind);
 
 /// Units of a reason's values; a channel may have others.
 namespace unit {

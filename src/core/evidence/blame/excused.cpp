@@ -80,8 +80,7 @@ void Excused::leaveOut(std::vector<Suspect>& suspects) const {
 }
 
 bool Excused::isExcused(EventId id, Kind kind) const {
-  return isAccepted(id, kind) || (model_->knows(id) && is_optional_[id] &&
-                                  (kind == Kind::kDied || kind == Kind::kNeverCame));
+  return isAccepted(id, kind) || (model_->knows(id) && is_optional_[id] && isAbsence(kind));
 }
 
 bool Excused::isAccepted(EventId id, Kind kind) const {

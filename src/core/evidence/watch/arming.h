@@ -16,8 +16,8 @@ class Arming {
  public:
   /// So many failures double the events: a day of them at 1 Hz would not do.
   static constexpr std::uint32_t kMostDoublings = 10;
-  /// What lasts less long [ns] is no failure.
-  static constexpr std::int64_t kMoment = kNanosecondsPerSecond;
+  /// With fewer abnormal windows, it was no news: no alarm is raised by them.
+  static constexpr std::uint32_t kNews = 3;
 
   /// The numbers that all have in common.
   struct Numbers {
@@ -53,24 +53,24 @@ class Arming {
   /// still.
   void disarm() { *this = Arming(failures_); }
   /// What was abnormal so far was a start, and is no failure.
-  void forget() { abnormal_since_ = 0; }
+  void forget() { abnormal_windows_ = 0; }
   /// Takes in a window.
   /// @param abnormal whether it is beyond its limit
   /// @param calm whether nothing unusual is left of it
   /// @param end of the window [ns]
-  /// @return whether it has failed: what was abnormal for more than a moment is over, or has
+  /// @return whether it has failed: what was news is over, or has
   /// lasted for so long that it has changed for good. Then it is disarmed.
   bool fails(bool abnormal, bool calm, std::int64_t end, const Numbers& numbers) {
-    if (abnormal_since_ == 0) {
-      abnormal_since_ = armed_ && abnormal ? end : 0;
+    if (abnormal_windows_ == 0 && !(armed_ && abnormal)) {
       return false;
     }
-    const std::int64_t lasted = end - abnormal_since_;
-    if (calm && lasted < kMoment) {
+    abnormal_since_ = abnormal_windows_ == 0 ? end : abnormal_since_;
+    abnormal_windows_ += abnormal ? 1 : 0;
+    if (calm && abnormal_windows_ < kNews) {
       forget();
       return false;
     }
-    if (!calm && lasted < numbers.accept_after) {
+    if (!calm && end - abnormal_since_ < numbers.accept_after) {
       return false;
     }
     *this = Arming(failures_ + 1);
@@ -86,7 +86,8 @@ class Arming {
   std::uint32_t events_ = 0;
   std::uint32_t failures_ = 0;
   bool armed_ = false;
-  std::int64_t abnormal_since_ = 0;  // [ns]; 0: it is normal
+  std::uint32_t abnormal_windows_ = 0;  // since it was calm; 0: it is normal
+  std::int64_t abnormal_since_ = 0;     // the first of them [ns]
 };
 
 }  // namespace self_awareness::core::evidence

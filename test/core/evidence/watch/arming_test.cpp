@@ -81,25 +81,23 @@ TEST(Arming, WhatIsAbnormalForLongHasFailed) {
   EXPECT_EQ(addUntilArmed(arming, kUsual, 1000), 2 * kNumbers.events);
 }
 
-TEST(Arming, WhatWasAbnormalForAMomentHasNotFailed) {
-  Arming arming;
-  arming.arm();
-  for (std::int64_t end = kSecond; end < 1000 * kSecond; end += kSecond) {
-    EXPECT_FALSE(arming.fails(true, false, end, kNumbers));
-    EXPECT_FALSE(arming.fails(false, true, end + Arming::kMoment - 1, kNumbers));
+TEST(Arming, WhatIsOverHasFailedIfItWasNews) {
+  for (const std::uint32_t windows : {Arming::kNews - 1, Arming::kNews}) {
+    Arming arming;
+    arming.arm();
+    std::int64_t end = 0;
+    for (std::uint32_t k = 0; k < windows; ++k) {
+      EXPECT_FALSE(arming.fails(true, false, end += kSecond, kNumbers));
+      EXPECT_FALSE(arming.fails(false, false, end += kSecond, kNumbers)) << "something is left";
+    }
+    const bool failed = arming.fails(false, true, end += kSecond, kNumbers);
+    EXPECT_EQ(failed, windows == Arming::kNews);
+    EXPECT_EQ(arming.armed(), !failed);
+    EXPECT_EQ(arming.failed(), failed);
+    // Each episode counts by itself.
+    EXPECT_FALSE(arming.fails(true, false, end += kSecond, kNumbers));
+    EXPECT_FALSE(arming.fails(false, true, end += kSecond, kNumbers));
   }
-  EXPECT_TRUE(arming.armed());
-}
-
-TEST(Arming, WhatIsOverHasFailed) {
-  Arming arming;
-  arming.arm();
-  EXPECT_FALSE(arming.fails(true, false, kSecond, kNumbers));
-  EXPECT_FALSE(arming.fails(false, false, 2 * kSecond, kNumbers)) << "something is left of it";
-  EXPECT_TRUE(arming.fails(false, true, 3 * kSecond, kNumbers));
-  EXPECT_FALSE(arming.armed());
-  EXPECT_EQ(addUntilArmed(arming, kUsual, 1000), 2 * kNumbers.events);
-  EXPECT_FALSE(arming.fails(false, true, 1000 * kSecond, kNumbers)) << "it is new again";
 }
 
 TEST(Arming, WhatGoesOnBelowItsLimitIsNotOver) {
