@@ -37,6 +37,7 @@ void Monitor::onReport() {
     }
     state.communication.optional = session_->optional();
     state.communication.strangers = session_->strangers();
+    state.communication.disarmed = session_->disarmed();
     accepts_.tell(session_->types(), state.communication);
     state.communication.mode = mode_;
   }

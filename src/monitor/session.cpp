@@ -162,12 +162,24 @@ bool Session::isFirstOfRestarted(core::EventId id) {
   return first;
 }
 
+std::string Session::sourceAndTopic(core::EventId id) const {
+  const core::EventType& type = vocabulary_->at(id);
+  return (type.source.empty() ? "" : type.source + " on ") + type.scope;
+}
+
 std::vector<std::string> Session::strangers() const {
   std::vector<std::string> words;
   for (const auto& [id, events] : detector_.unknown()) {
-    const core::EventType& type = vocabulary_->at(id);
-    words.push_back((type.source.empty() ? "" : type.source + " on ") + type.scope + ": " +
-                    std::to_string(events));
+    words.push_back(sourceAndTopic(id) + ": " + std::to_string(events));
+  }
+  return words;
+}
+
+std::vector<std::string> Session::disarmed() const {
+  std::vector<std::string> words;
+  for (const core::Disarmed& each : detector_.disarmed()) {
+    words.push_back(sourceAndTopic(each.id) +
+                    (each.after ? " after " + sourceAndTopic(*each.after) : ""));
   }
   return words;
 }

@@ -86,6 +86,9 @@ class Session {
   /// what is accepted.
   std::vector<std::string> strangers() const;
 
+  /// Whose delays are not watched now, and after whom, in words.
+  std::vector<std::string> disarmed() const;
+
   /// The mode that the robot is in, up to now [ns], in words; empty: nobody tells it by the
   /// encoding, or this detector knows no modes.
   std::string mode(std::int64_t now) const;
@@ -110,6 +113,8 @@ class Session {
   /// Takes in what a window says of components.
   void onShares(const core::evidence::Shares& shares);
   core::EventId intern(const core::EventType& type);
+  /// An event type as people read it, without its datatype.
+  std::string sourceAndTopic(core::EventId id) const;
   std::unique_ptr<core::Judge> makeJudge(const MonitorParameters& parameters);
 
   ros1::TrainedModel trained_;

@@ -2,12 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <optional>
 #include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "../core/evidence/recordings.h"
 #include "self_awareness/core/evidence/count/trainer.h"
 
 namespace self_awareness {
@@ -45,6 +47,27 @@ ros1::TrainedModel modelWithModes() {
     trainer.finish();
   }
   model.watch();
+  return model;
+}
+
+/// Of a robot whose /b answers /a, with limits.
+ros1::TrainedModel modelOfAnswers() {
+  namespace evidence = core::evidence;
+  ros1::TrainedModel model;
+  for (const evidence::EventId id : {evidence::kA, evidence::kB}) {
+    model.statistics.intern(evidence::kTypes[id]);
+  }
+  for (unsigned half = 0; half < 2; ++half) {
+    const evidence::Events asked =
+        evidence::irregular(evidence::kA, 0, 100 * kSecond, kSecond / 5, half);
+    model.evidence[half] = evidence::countsOf(
+        {evidence::later(
+            evidence::together({asked, evidence::answers(evidence::kB, asked, kSecond / 50)}),
+            (half + 1) * evidence::kStart)},
+        2);
+  }
+  model.watch();
+  model.calibration.emplace().limits.tracks.assign(model.watched.tracks.size(), 14);
   return model;
 }
 
@@ -116,6 +139,13 @@ TEST(Session, JudgesItsWindowsInTurn) {
   session.detector().add({0, 0});
   session.detector().advance(2 * session.window());
   EXPECT_EQ(starts, (std::vector<std::int64_t>{0, session.window()}));
+}
+
+TEST(Session, SaysWhoseDelaysAreNotWatchedNow) {
+  Session session(modelOfAnswers(), MonitorParameters(), [](const core::Verdict&) {});
+  const std::vector<std::string> words = session.disarmed();
+  EXPECT_NE(std::find(words.begin(), words.end(), "/b on /y after /a on /x"), words.end());
+  EXPECT_TRUE(Session(model(), byPaper(), [](const core::Verdict&) {}).disarmed().empty());
 }
 
 TEST(Session, SaysTheModeThatTheRobotTells) {

@@ -61,6 +61,7 @@ class Judge : public core::Judge {
   std::optional<LastingMode> mode(std::int64_t now) const override {
     return scorer_.heard().lasting(now);
   }
+  std::vector<Disarmed> disarmed() const override;
   void hear(const Waiting& waiting) override { scorer_.hear(waiting); }
   void accept(const Acceptances& accepted) override {
     excused_.accept(accepted);
@@ -288,6 +289,20 @@ void Judge::excuse(const Window& window, std::int64_t end, Judgement& judgement)
   if (largestOf(shares_) > 1 && !judgement.silent) {
     judgement.silent = new_mode_.excuse(shares_, *limits_, scorer_, excused_.mayBeSilent());
   }
+}
+
+std::vector<Disarmed> Judge::disarmed() const {
+  std::vector<Disarmed> disarmed;
+  for (const std::size_t index : scorer_.disarmed()) {
+    if (limits_ && !std::isnan(limits_->tracks[index])) {
+      const Track& track = model_->tracks()[index];
+      disarmed.push_back({track.to, std::nullopt});
+      if (track.from != track.to) {
+        disarmed.back().after = track.from;
+      }
+    }
+  }
+  return disarmed;
 }
 
 std::string Judge::evidenceOf(const Judgement& judgement) const {

@@ -135,6 +135,7 @@ std::string deathFoundAfter(const core::evidence::Coverage& component) {
 std::vector<std::pair<std::string, std::vector<std::string>>> listsOf(
     const CommunicationState& state) {
   return {{"not watched", notWatched(state)},
+          {"delays not watched now", state.disarmed},
           {"nobody subscribed in training", unheard(state)},
           {"not accepted, events so far", state.strangers},
           {"accepted", state.accepted},

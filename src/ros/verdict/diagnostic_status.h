@@ -38,6 +38,8 @@ struct CommunicationState {
   std::string muted;
   /// What is heard that training never saw, and is not accepted, with how often it came, in words.
   std::vector<std::string> strangers;
+  /// Whose delays are not watched now, and after whom, in words.
+  std::vector<std::string> disarmed;
   std::vector<std::string> accepted;  ///< as normal, in words
   std::vector<std::string> mode;      ///< components that are off together now, as is accepted
   /// What is accepted of components that the model knows, in words.

@@ -37,6 +37,8 @@ def head(said: Said, width: int, paused: bool) -> List[Line]:
         lines.append(('', cut(f'mode: {said.told_mode}', width)))
     if said.not_watched:
         lines.append(('faint', cut(f'not watched: {said.not_watched}', width)))
+    if said.disarmed:
+        lines.append(('faint', cut(f'delays not watched now: {said.disarmed}', width)))
     if said.mode:
         lines.append(('', cut(f'off together, as is accepted: {said.mode}', width)))
     if said.strangers:

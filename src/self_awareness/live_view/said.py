@@ -153,6 +153,11 @@ class Said:
                 or told)
 
     @property
+    def disarmed(self) -> str:
+        """Whose delays must be as in training before they are watched; empty: all are."""
+        return self._list(_WHOLE, 'delays not watched now')
+
+    @property
     def strangers(self) -> List[Tuple[str, str]]:
         """Who is heard, and where, whom training never saw and nobody has accepted."""
         told = self._list(_WHOLE, 'not accepted, events so far')

@@ -9,6 +9,7 @@
 #include <set>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "recordings.h"
@@ -76,6 +77,24 @@ TEST_F(EvidenceJudgeTest, TheScoreIsTheLargestShareOfALimit) {
     EXPECT_FALSE(judgement.certain);
     EXPECT_FALSE(judgement.suspicious);
   }
+}
+
+TEST_F(EvidenceJudgeTest, SaysWhatIsNotWatchedNow) {
+  const auto pairs_of = [](const core::Judge& judge) {
+    std::vector<std::pair<EventId, std::optional<EventId>>> pairs;
+    for (const Disarmed& each : judge.disarmed()) {
+      pairs.emplace_back(each.id, each.after);
+    }
+    return pairs;
+  };
+  EXPECT_TRUE(pairs_of(*newJudge(std::nullopt)).empty()) << "nothing is judged";
+  EXPECT_TRUE(pairs_of(*newJudge(limits_)).empty()) << "no limit, not judged";
+  limits_.tracks[track(kPairs, kB, kA)] = 14;
+  const std::unique_ptr<core::Judge> judge = newJudge(limits_);
+  const std::vector<std::pair<EventId, std::optional<EventId>>> b_after_a{{kB, kA}};
+  EXPECT_EQ(pairs_of(*judge), b_after_a);
+  feed(*judge, 0);
+  EXPECT_TRUE(pairs_of(*judge).empty());
 }
 
 TEST_F(EvidenceJudgeTest, ASilenceThatHasLastedIsCertain) {

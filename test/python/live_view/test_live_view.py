@@ -108,14 +108,16 @@ def test_it_shows_how_soon_a_death_is_found_also_while_it_is_needed() -> None:
     assert found('not watched: accepted') == 'not watche'
 
 
-def test_it_shows_who_is_off_together_as_is_accepted() -> None:
+@pytest.mark.parametrize('key, told', [
+    ('off together, as is accepted', '/arm, /base'),
+    ('delays not watched now', '/b on /y after /a on /x')])
+def test_it_shows_who_is_not_judged_as_usual(key: str, told: str) -> None:
     def shown(values: Dict[str, str]) -> List[str]:
         of = Said('/watch')
         of.on_diagnostics(diagnostics(status('watch: communication', 0, 'normal', **values)))
-        return [line for _, line in lines.head(of, 80, False) if 'off together' in line]
+        return [line for _, line in lines.head(of, 80, False) if key in line]
 
-    assert shown({'off together, as is accepted': '/arm, /base'}) == [
-        'off together, as is accepted: /arm, /base']
+    assert shown({key: told}) == [f'{key}: {told}']
     assert shown({}) == []
 
 

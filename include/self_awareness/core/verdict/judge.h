@@ -38,6 +38,12 @@ struct Judgement {
   std::vector<Suspect> suspects;
 };
 
+/// Delays that do not count until they have been as in training (docs/method.md, section 3.7).
+struct Disarmed {
+  EventId id = 0;                ///< the event type that comes after a delay
+  std::optional<EventId> after;  ///< the other one; none: its own gaps
+};
+
 /// Of which windows a judge names suspects: naming them takes time.
 enum class NameSuspects {
   kNever,
@@ -64,6 +70,8 @@ class Judge {
   /// The mode that the robot is in, up to now [ns], whether the model knows it or not; none: it is
   /// not known, or this judge knows no modes.
   virtual std::optional<LastingMode> mode(std::int64_t /*now*/) const { return std::nullopt; }
+  /// What the judge does not watch now, though it did, or will. Who judges all the time has none.
+  virtual std::vector<Disarmed> disarmed() const { return {}; }
   /// Takes note of how the machine was in a stretch of time, one after the other. Who does not
   /// judge by time has no use for it.
   virtual void hear(const Waiting& /*waiting*/) {}

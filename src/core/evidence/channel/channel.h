@@ -65,6 +65,8 @@ class ChannelState {
   /// Sets the evidence of its tracks at the end of a window; 0: none.
   /// @param evidence by track of the model
   virtual void closeWindow(const Heard& heard, std::vector<double>& evidence) = 0;
+  /// Adds those of its tracks that do not count until they have been as in training.
+  virtual void addDisarmed(std::vector<std::size_t>& /*tracks*/) const {}
   /// Whether further windows would say nothing new of a track that is beyond its limit.
   virtual bool isCertain(std::size_t /*track*/, double /*limit*/, const Heard& /*heard*/) const {
     return false;

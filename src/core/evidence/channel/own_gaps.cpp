@@ -54,6 +54,13 @@ class OwnGapsState : public ChannelState {
   void restart() override;
   void capAt(const std::vector<double>& limits) override;
   void closeWindow(const Heard& heard, std::vector<double>& evidence) override;
+  void addDisarmed(std::vector<std::size_t>& tracks) const override {
+    for (std::size_t number = 0; number < gaps_.size(); ++number) {
+      if (gaps_[number].arming.failed() && !gaps_[number].arming.armed()) {
+        tracks.push_back(expected_.tracks()[number]);
+      }
+    }
+  }
   void explain(std::size_t track, const Heard& heard, const RecentEvents& events,
                Suspect& suspect) const override;
 

@@ -55,6 +55,13 @@ class PairsState : public ChannelState {
   void restart() override;
   void capAt(const std::vector<double>& limits) override;
   void closeWindow(const Heard& heard, std::vector<double>& evidence) override;
+  void addDisarmed(std::vector<std::size_t>& tracks) const override {
+    for (std::uint32_t number = 0; number < pairs_.size(); ++number) {
+      if (!pairs_[number].armed) {
+        tracks.push_back(track_of_[number]);
+      }
+    }
+  }
   void explain(std::size_t track, const Heard& heard, const RecentEvents& events,
                Suspect& suspect) const override;
 

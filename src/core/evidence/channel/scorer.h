@@ -77,6 +77,8 @@ class Scorer {
   /// Whether the event that was added last may have waited while the whole robot stood still, or
   /// the machine had no time.
   bool stalled() const { return stalled_; }
+  /// Tracks that do not count until they have been as in training.
+  std::vector<std::size_t> disarmed() const;
   /// Whether a track that is beyond its limit is so beyond all doubt.
   bool isCertain(std::size_t track, double limit) const;
   /// Why an event type is a suspect, as a track says it.

@@ -116,6 +116,7 @@ TEST_F(OwnGapsTest, AfterARestartOfTheComponentTheSumIsForgotten) {
 
 TEST_F(OwnGapsTest, ANewPeriodIsNewsOnceAndThenAccepted) {
   useLimits();
+  EXPECT_TRUE(scorer_.disarmed().empty()) << "gaps count from the first one on";
   add({now_, kA});
   waitUsually(10);
   const std::int64_t since = now_;
@@ -124,10 +125,12 @@ TEST_F(OwnGapsTest, ANewPeriodIsNewsOnceAndThenAccepted) {
   } while (evidence() > 0);
   EXPECT_GE(now_ - since, kAccepted);
   EXPECT_LT(now_ - since, kAccepted + 5 * kSecond);
+  EXPECT_EQ(scorer_.disarmed().size(), 1U);
   waitUsually(2 * kArming - 2);
   wait(kLong);
   EXPECT_EQ(evidence(), 0) << "it must be as in training again, for twice as many gaps";
   waitUsually(2);
+  EXPECT_TRUE(scorer_.disarmed().empty());
   wait(kLong);
   EXPECT_GT(evidence(), 0);
 }

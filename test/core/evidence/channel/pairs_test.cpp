@@ -33,6 +33,11 @@ class PairsTest : public FollowedTest {
     return abnormal;
   }
 
+  bool isWatched() const {
+    const std::vector<std::size_t> disarmed = scorer_.disarmed();
+    return std::find(disarmed.begin(), disarmed.end(), pair_) == disarmed.end();
+  }
+
   std::size_t pair_ = track(kPairs, kB, kA);
 };
 
@@ -158,14 +163,19 @@ TEST_F(PairsTest, LateAnswersAreNewsOnceAndThenAccepted) {
 
 TEST_F(PairsTest, WhatWasAcceptedIsHarderToArmAgain) {
   useLimits();
+  EXPECT_FALSE(isWatched()) << "it has not been as in training yet";
   askUsually(kArming);
+  EXPECT_TRUE(isWatched());
   do {
     ask(kUnusual);
   } while (evidence() > 0);
+  EXPECT_FALSE(isWatched());
   askUsually(2 * kArming - 2);
   ask(kUnusual);
   EXPECT_EQ(evidence(), 0) << "as many as at the start are not enough";
+  EXPECT_FALSE(isWatched());
   askUsually(2);
+  EXPECT_TRUE(isWatched());
   ask(kUnusual);
   EXPECT_GT(evidence(), 0);
 }
