@@ -37,7 +37,7 @@ void checkName(const std::string& name, const char* field, bool known) {
     throw std::invalid_argument(std::string(field) + ": " + why);
   };
   if (name.size() > ros1::kLongestName || !ros1::isPrintable(name)) {
-    wrong("it is no name");
+    wrong("not a name: too long, or not printable");
   }
   if (name.empty() || known) {
     return;
@@ -57,7 +57,7 @@ std::optional<core::Kind> kindIn(const std::string& name) {
   const std::optional<core::Kind> kind = core::kindOf(name);
   if (!kind) {
     throw std::invalid_argument("kind: " + ros1::printable(name, ros1::kLongestName) +
-                                " is none; ~alarm tells the kind of what stands");
+                                " is not a kind; ~alarm shows the kind of what stands");
   }
   core::Acceptance of_kind;
   of_kind.kind = kind;
@@ -154,7 +154,8 @@ std::vector<core::Acceptance> ofIncident(const self_awareness::Incident& inciden
   if (incident.kind == core::toString(core::Kind::kNewMode)) {
     if (incident.together.empty() || incident.together.size() == core::Incident::kMostNamed) {
       throw std::invalid_argument(
-          "not all who were off are known any more; accept the mode while it stands: {}");
+          "not all components that were off are known any more; accept the mode while it stands: "
+          "{}");
     }
     return {ofMode(incident.together)};
   }
@@ -223,7 +224,8 @@ WantedAcceptances ofNames(const Accept::Request& request, const Acceptable& acce
     try {
       if (each.component.empty() && each.topic.empty() &&
           (request.undo == 0U || each.kind.empty())) {
-        throw std::invalid_argument("name a component or a topic: a kind alone is everybody's");
+        throw std::invalid_argument(
+            "name a component or a topic: a kind alone would be that of all components");
       }
       result.asked.push_back(
           ofNames(each.component, each.topic, each.kind, names, acceptable.encoder));
@@ -254,7 +256,7 @@ WantedAcceptances requestOf(const Accept::Request& request, const Acceptable& ac
                    static_cast<int>(request.alarm != 0);
   if (ways > 1) {
     throw std::invalid_argument(
-        "an alarm or an incident: name it alone, without component, topic and kind");
+        "give an alarm or an incident alone, without component, topic, kind and more");
   }
   if (names) {
     return ofNames(request, acceptable, accepted);

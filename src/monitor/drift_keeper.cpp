@@ -57,7 +57,7 @@ void DriftKeeper::read() {
     if (kept && kept->model == judged_.model && kept->components == judged_.components) {
       restore(*kept);
     } else if (kept) {
-      ROS_INFO("%s is of another content of the model: the drift begins anew", path_.c_str());
+      ROS_INFO("%s is of another model: the drift begins anew", path_.c_str());
     }
   } catch (const std::exception& error) {
     ROS_ERROR("%s; the drift begins anew", error.what());

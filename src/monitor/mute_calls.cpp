@@ -48,7 +48,7 @@ std::string reasonOf(const core::Mute* mute) {
 
 std::string pattern(const std::string& name, const char* field) {
   if (name.size() > ros1::kLongestName || !ros1::isPrintable(name)) {
-    throw std::invalid_argument(std::string(field) + ": it is no name");
+    throw std::invalid_argument(std::string(field) + ": not a name: too long, or not printable");
   }
   return name;
 }
@@ -62,7 +62,7 @@ core::Mute muteOf(const Mute::Request& request) {
     mute.kind = core::kindOf(request.kind);
     if (!mute.kind) {
       throw std::invalid_argument("kind: " + ros1::printable(request.kind, ros1::kLongestName) +
-                                  " is none; ~alarm tells the kind of what stands");
+                                  " is not a kind; ~alarm shows the kind of what stands");
     }
   }
   if (mute.mutesAll()) {
@@ -86,7 +86,7 @@ std::vector<ros::ServiceServer> MuteCalls::advertise(ros::NodeHandle& private_no
 void MuteCalls::advance(std::int64_t now) {
   const std::vector<core::Mute> over = mutes_.advance(now);
   for (const core::Mute& mute : over) {
-    ROS_WARN("told again, since its time is over: %s; %s", what(mute).c_str(),
+    ROS_WARN("mute ended, since its time is over: %s; %s", what(mute).c_str(),
              counts(mute).c_str());
   }
   if (!over.empty()) {
@@ -97,7 +97,8 @@ void MuteCalls::advance(std::int64_t now) {
 bool MuteCalls::onStanding(const std::optional<core::Alarm>& standing, const Session& session) {
   for (const core::Mute& mute :
        mutes_.onStanding(standing, session.vocabulary(), session.graph())) {
-    ROS_WARN("told again, since it is over: %s; %s", what(mute).c_str(), counts(mute).c_str());
+    ROS_WARN("mute ended, since all is normal again: %s; %s", what(mute).c_str(),
+             counts(mute).c_str());
   }
   const bool was_muted = std::exchange(muted_, mutes_.active() != nullptr);
   return standing && was_muted && !muted_;

@@ -67,9 +67,10 @@ void tellUnheard(const std::vector<ros1::Unheard>& unheard, ros1::ListsAre lists
 void tellStrangers(std::size_t closed, std::size_t newly,
                    diagnostic_updater::DiagnosticStatusWrapper& status) {
   if (newly > 0) {
-    status.mergeSummary(diagnostic_msgs::DiagnosticStatus::WARN,
-                        std::to_string(newly) +
-                            " connections to this node were closed: nothing sensible was said");
+    status.mergeSummary(
+        diagnostic_msgs::DiagnosticStatus::WARN,
+        std::to_string(newly) +
+            " connections to this node were closed: they sent nothing that ROS knows");
   }
   status.add("connections of strangers closed", closed);
 }

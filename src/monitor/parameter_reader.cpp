@@ -60,7 +60,7 @@ bool ParameterReader::flag(const std::string& name, bool otherwise) {
 
 std::vector<std::string> ParameterReader::names(const std::string& name) {
   constexpr char kMustBe[] =
-      "a list of names of nodes or topics, each with its first / and, at its end only, a *";
+      "a list of names of nodes or topics; each begins with a /, and may end with a *";
   known_.insert(name);
   std::vector<std::string> names;
   XmlRpcValue value;

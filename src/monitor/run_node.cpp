@@ -88,7 +88,7 @@ class Leaving {
     while (!await(may_go, kAnyTime)) {
     }
     if (!await([](const Life& life) { return life.gone; }, kGoodbye)) {
-      std::fputs("the master does not answer: this node ends without its leave\n", stderr);
+      std::fputs("the master does not answer: this node ends without unregistering\n", stderr);
       std::fflush(stdout);
       std::_Exit(life_.lock()->exit_code);
     }

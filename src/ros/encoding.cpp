@@ -58,7 +58,8 @@ void checkClasses(const EncodingRules& rules, const std::string& datatype,
       !std::all_of(bounds.begin(), bounds.end(),
                    [](double bound) { return std::isfinite(bound); }) ||
       std::adjacent_find(bounds.begin(), bounds.end(), std::greater_equal<>()) != bounds.end()) {
-    throw std::invalid_argument(begin + "parted by finite bounds that ascend, one fewer at most");
+    throw std::invalid_argument(begin +
+                                "separated by finite, ascending bounds, fewer than classes");
   }
 }
 
@@ -80,10 +81,11 @@ void checkMode(const EncodingRules& rules) {
   const std::string begin =
       "encoding: the mode is told on '" + printable(mode.topic, kLongestQuote) + "'";
   if (!isPrintable(mode.topic) || !isLegalTopic(mode.topic) || mode.topic[0] != '/') {
-    throw std::invalid_argument(begin + ", which is no name of a topic; it begins with a slash");
+    throw std::invalid_argument(begin +
+                                ", which is not the name of a topic; it begins with a slash");
   }
   if (!isPrintable(mode.field) || mode.field.empty()) {
-    throw std::invalid_argument(begin + ", by no field; name one of its messages");
+    throw std::invalid_argument(begin + ", but no field is named; name one of its messages");
   }
   const NamePatterns include(rules.include_topics);
   if ((!include.empty() && !include.match(mode.topic)) ||

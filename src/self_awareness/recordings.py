@@ -284,8 +284,8 @@ def clock_steps(recording: RecordingEvents) -> Optional[str]:
     steps = ', '.join(
         f'{(recording.stamps[i] - recording.stamps[i - 1]) / SECOND_NS:.1f} s before '
         f'{(recording.stamps[i] - recording.origin) / SECOND_NS:.1f} s' for i in after)
-    return (f'{recording.part}: the clock was set forward by {steps}: all went on as if the time '
-            'between had not been. The recording is cut there, and nobody is late')
+    return (f'{recording.part}: the clock was set forward by {steps}, but the nodes went on '
+            'without a pause. The recording is cut there; nothing counts as late')
 
 
 def merged_senders(model: TrainedModel, recording: RecordingEvents) -> Optional[str]:
@@ -305,8 +305,8 @@ def merged_senders(model: TrainedModel, recording: RecordingEvents) -> Optional[
               for topic in sorted(heard) if are_merged(topic)]
     if not merged:
         return None
-    return (f'{recording.part}: keeps only one sender of a topic, under whose name are all '
-            f'messages, as copies by rosbag filter, compress and decompress do: '
+    return (f'{recording.part}: this bag names only one sender for each topic, as copies do that '
+            f'rosbag filter, compress or decompress made: '
             f'{", ".join(merged)}; use the bag as it was recorded')
 
 

@@ -81,5 +81,5 @@ def check_libraries(names: Sequence[str]) -> None:
     if missing:
         libraries = ' and '.join(dict.fromkeys(_LIBRARIES[name] for name in missing))
         raise ValueError(f'the Python library {libraries} is not installed: let '
-                         'scripts/evaluation_env.sh install it and run this program, or leave '
-                         f'the peers out (--without-systems {" ".join(missing)})')
+                         'scripts/evaluation_env.sh install it and run this program, or evaluate '
+                         f'without {" and ".join(missing)} (--systems)')

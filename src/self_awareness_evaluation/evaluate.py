@@ -283,8 +283,9 @@ def _add_live(parser: argparse.ArgumentParser) -> None:
     parser.add_argument('--rounds', type=cli.count, default=5, metavar='N',
                         help='how often each fault is induced (default: 5)')
     parser.add_argument('--training', type=options.calibration_s, nargs='+',
-                        default=(60.0, 60.0), metavar='S',
-                        help='lengths of the recordings to learn from [s] (default: 60 60)')
+                        default=(60.0, 60.0, 60.0), metavar='S',
+                        help='lengths of the recordings to learn from [s], each of another start '
+                        'of the robot (default: 60 60 60)')
     parser.add_argument('--calibration', type=options.calibration_s, default=240.0,
                         metavar='S', help='length of the recording that the limits are found by '
                         '[s] (default: 240)')
@@ -328,7 +329,7 @@ def _add_soak(parser: argparse.ArgumentParser) -> None:
                         help='how long the monitor runs (default: 60)')
     parser.add_argument('--seed', type=cli.count, default=1, help='of the faults and the robot '
                         '(default: 1)')
-    parser.add_argument('--speed', type=cli.above_zero('times the speed'), default=10.0,
+    parser.add_argument('--speed', type=cli.above_zero('a factor of the speed'), default=10.0,
                         metavar='N', help='times the usual speed of the robot (default: 10)')
     parser.add_argument('--starts', type=cli.count, default=4, metavar='N',
                         help='starts of the robot to learn from (default: 4)')

@@ -73,7 +73,10 @@ hours = cli.checked(_in_hours)
 @cli.checked
 def minutes(text: str) -> float:
     """Argument type: how long something is watched [min]."""
-    return 60.0 * _in_hours(str(float(text) / 60.0))
+    value = float(text)
+    if not 1.0 <= value <= 60000.0:
+        raise ValueError(f'expected minutes from 1 to 60000, not {text}')
+    return value
 
 
 @cli.checked

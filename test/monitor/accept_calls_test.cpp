@@ -152,7 +152,8 @@ TEST_F(AcceptCallsTest, AModeIsTakenWhileItStandsOrByItsIncidentAndTakenBack) {
   incidents_.incidents = {incident};
   Accept::Request request;
   request.incident = 3;
-  EXPECT_NE(call(request, false).find("not all who were off are known"), std::string::npos);
+  EXPECT_NE(call(request, false).find("not all components that were off are known"),
+            std::string::npos);
   incidents_.incidents[0].together = {"/base", "/camera", "/driver", "/imu"};
   call(request);
   EXPECT_EQ(accepted(), words);

@@ -116,7 +116,7 @@ def test_score_and_calibrate_name_the_topics(model: str, tmp_path: Path, capsys)
                                (calibrate, ['--model', model, '--normal', copy, '-o', model])):
         assert program.main(arguments) == 0
         err = capsys.readouterr().err
-        assert f': warning: {copy}: keeps only one sender of a topic' in err
+        assert f': warning: {copy}: this bag names only one sender for each topic' in err
         assert ': /joints (here /arm only, in the model 2 senders); use the bag as it was' in err
 
 
@@ -128,4 +128,4 @@ def test_a_bag_that_is_no_copy_may_lack_a_sender(model: str, make_bag: Callable[
     assert score.main([off, '--model', model]) == 0
     assert 'warning' not in capsys.readouterr().err
     assert score.main([merged, '--model', model]) == 0
-    assert f'{merged}: keeps only one sender of a topic' in capsys.readouterr().err
+    assert f'{merged}: this bag names only one sender for each topic' in capsys.readouterr().err

@@ -40,10 +40,11 @@ def test_every_argument_says_what_it_is(path: Path) -> None:
 
 
 @pytest.mark.parametrize('given, meant', [
-    ('r.model', '{cwd}/r.model'), ('/data/r.model', '/data/r.model'), ('~/r.model', '~/r.model')])
+    ('r.model', '{cwd}/r.model'), ('/data/r.model', '/data/r.model'),
+    ('~/r.model', '{home}/r.model'), ('2026', '{cwd}/2026')])
 def test_a_relative_path_means_the_folder_of_who_launches(given: str, meant: str,
                                                           tmp_path: Path) -> None:
-    meant = meant.format(cwd=tmp_path)
+    meant = meant.format(cwd=tmp_path, home=Path.home())
     for file in ('monitor.launch', 'learn.launch'):
         assert _parameters(tmp_path, file, f'model:={given}')['/self_awareness/model'] == meant
     nodelet = _parameters(tmp_path, 'monitor.launch', f'model:={given}', 'standalone:=false')

@@ -179,9 +179,9 @@ class AcceptTest(TrainedCase):
             self.await_heard(listener, '/base')
             refused: Tuple[Tuple[Dict[str, Any], str], ...] = (
                 ({'kind': 'slow'}, 'name a component or a topic'),
-                ({'component': '/a', 'kind': 'odd'}, 'kind: odd is none'),
+                ({'component': '/a', 'kind': 'odd'}, 'kind: odd is not a kind'),
                 ({'incident': 7}, 'there is none of the id 7'),
-                ({'component': '/a', 'incident': 7}, 'name it alone'),
+                ({'component': '/a', 'incident': 7}, 'alone, without component'),
                 ({'component': '/a', 'undo': True}, '/a is not accepted'))
             for what, why in refused:
                 said = accept(**what)

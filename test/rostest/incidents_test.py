@@ -174,7 +174,7 @@ class IncidentsTest(MonitorCase):
             self.assertIn('by ' + rospy.get_name(), listener.value('monitor', 'mute 1') or '')
             self.assertNotIn('[ERROR]', monitor.output)
             # By the log: a starved machine can make another one suspect, who is told at once.
-            await_condition('its time is over', lambda: 'told again, since its time is over: '
+            await_condition('its time is over', lambda: 'mute ended, since its time is over: '
                             '/driv*; 1 alarms and' in monitor.output, 60)
             self.await_level(listener, DiagnosticStatus.ERROR, 'abnormal communication')
             self.assertIsNone(listener.value('monitor', 'mute 1'))
@@ -192,7 +192,7 @@ class IncidentsTest(MonitorCase):
                 self.await_level(listener, DiagnosticStatus.OK, 'muted (/scan until')
             with driver() as victim:
                 await_condition('it is over', lambda: (
-                    'told again, since it is over: /scan; ' in monitor.output), 80)
+                    'mute ended, since all is normal again: /scan; ' in monitor.output), 80)
                 self.await_heard(listener)
                 maintenance = rospy.ServiceProxy(NODE + '/maintenance', Maintenance)
                 self.assertTrue(maintenance(duration=600.0).success)
@@ -212,7 +212,7 @@ class IncidentsTest(MonitorCase):
                 ({'component': '/a'}, '/a is not muted'),
                 ({'component': '/a', 'duration': 1e9}, 'from 1 to 86400 s'),
                 ({'component': '/a', 'duration': float('nan')}, 'from 1 to'),
-                ({'kind': 'odd', 'duration': 5.0}, 'kind: odd is none')]
+                ({'kind': 'odd', 'duration': 5.0}, 'kind: odd is not a kind')]
             for what, why in refused:
                 said = self.mute(NODELET, **what)
                 self.assertFalse(said.success)

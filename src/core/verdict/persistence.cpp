@@ -8,9 +8,9 @@ namespace self_awareness::core {
 
 void Persistence::Parameters::validate() const {
   if (alarm_windows < 1 || alarm_windows > alarm_of) {
-    throw std::invalid_argument("alarm_windows must lie between 1 and alarm_of, but " +
-                                std::to_string(alarm_windows) + " of " + std::to_string(alarm_of) +
-                                " was asked for");
+    throw std::invalid_argument("alarm_windows is " + std::to_string(alarm_windows) +
+                                ", but must lie between 1 and alarm_of, which is " +
+                                std::to_string(alarm_of));
   }
   if (hold_time < 0) {
     throw std::invalid_argument("hold_time must be 0 or more");

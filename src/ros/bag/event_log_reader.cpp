@@ -245,8 +245,8 @@ void EventLogReader::read(const EncodingRules& rules, const EventIds& ids, const
   }
   if (!(rules == recorded)) {
     throw BagError(summary_.path +
-                   ": the event log was recorded by another encoding than the one "
-                   "that is wanted; use its own, or convert or record it again by the wanted one");
+                   ": the event log has another encoding than the model, or --encoding; "
+                   "use the log's own, or record or convert it again with the other one");
   }
   const StampRange stamps(summary_, range);
   const Encoder encoder(rules, ids);

@@ -25,8 +25,8 @@ self_awareness::FileVersion versionOfKind(const std::string& path, const BagInde
                                           const FileKind& kind) {
   const std::optional<self_awareness::FileVersion> version = versionOfBag(path, index);
   if (version && version->kind != kind.name) {
-    throw BagError(path + ": no " + kind.name +
-                   ", but by its own words: " + printable(version->kind, kLongestKind));
+    throw BagError(path + ": not of the kind " + kind.name +
+                   "; the file says that it is: " + printable(version->kind, kLongestKind));
   }
   return version.value_or(firstVersionOf(kind));
 }

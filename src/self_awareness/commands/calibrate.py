@@ -11,8 +11,9 @@ from typing import Any, Dict, List, NamedTuple, Optional, Sequence, Tuple
 
 import numpy as np
 
-from self_awareness import (EVIDENCE_THRESHOLD, Acceptance, DetectorParameters, PaperCalibration,
-                            PaperModel, Roc, RocPoint, TrainedModel, accepted_file)
+from self_awareness import (EVIDENCE_THRESHOLD, Acceptance, DetectorParameters, EvidenceModel,
+                            PaperCalibration, PaperModel, Roc, RocPoint, TrainedModel,
+                            accepted_file)
 from self_awareness.calibration import confidence, holes, limits
 from self_awareness.calibration.fault_injection import (FORMS, InjectedFault, of_each_source,
                                                         of_known_source)
@@ -107,7 +108,7 @@ def _calibrate(arguments: argparse.Namespace) -> None:
         _print(arguments.cutoff, measured)
     if measured.faulty and measured.roc.auc < 0.5:
         cli.warn('calibrate', f'AUC {measured.roc.auc:.3f}: the faults score higher than normal '
-                 'operation; this threshold does not tell them')
+                 'operation; this threshold cannot separate them')
     if arguments.csv is not None:
         _save_csv(arguments.csv, measured.normal + measured.faulty)
     if arguments.roc is not None:
@@ -184,6 +185,9 @@ def _check_options(arguments: argparse.Namespace) -> None:
 def _find_limits(arguments: argparse.Namespace, trained: TrainedModel,
                  parameters: DetectorParameters, normal_runs: Sequence[Run],
                  faulty_runs: Sequence[Run], accepted: Sequence[Acceptance]) -> _Measured:
+    if not EvidenceModel(trained).tracks:
+        raise ValueError(f'{arguments.model}: it watches nothing, since no event type has enough '
+                         'gaps in its training: train it on longer recordings, or more of them')
     try:
         budgets = [factor * arguments.budget for factor in (0.1, 10.0, 1.0)]
         found = limits.held_out(trained, [run.source for run in normal_runs],
@@ -350,9 +354,9 @@ def _parser() -> argparse.ArgumentParser:
                         f'alarms an hour you allow (default: {limits.BUDGET:g})')
     parser.add_argument('--cutoff', type=cli.checked(ThresholdRule.parse),
                         metavar='HOW', help='paper: how to choose the threshold. youden: the '
-                        'largest true positive rate less false positive rate; closest: the '
-                        'closest to all found and none false; fpr=RATE: this share of the normal '
-                        'windows is below it (default: youden)')
+                        'largest true positive rate less false positive rate; closest: '
+                        'nearest to finding every fault without a false alarm; fpr=RATE: this '
+                        'share of the normal windows is below it (default: youden)')
     parser.add_argument('--roc', type=cli.plot_file, metavar='FILE',
                         help='draw the ROC; the name ends in .png, .pdf or .svg')
     parser.add_argument('--csv', metavar='FILE', help='write score and label of every window')

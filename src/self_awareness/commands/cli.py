@@ -211,8 +211,8 @@ def add_detector_argument(parser: argparse.ArgumentParser) -> None:
 def add_robots_by_folder(parser: argparse.ArgumentParser) -> None:
     """Add the option that says of which robot recordings are."""
     parser.add_argument('--robots-by-folder', action='store_true',
-                        help='the recordings are of several robots, each called as the folder '
-                             'that it lies in; for those that do not name it themselves')
+                        help='the recordings are of several robots: one that does not name its '
+                             'robot has the name of its folder')
 
 
 def load_model(path: str, detector: str, watched_only: bool = False) -> TrainedModel:
@@ -264,7 +264,7 @@ def add_detector_arguments(parser: argparse.ArgumentParser) -> None:
                        help='events never seen in training: nothing, a suspicion, or an alarm at '
                             'once (default: warn)')
     group.add_argument('--hold-time', type=seconds, default=default.hold_time, metavar='S',
-                       help='seconds without an abnormal window after which it clears '
+                       help='seconds without an abnormal window after which the alarm ends '
                             f'(default: {default.hold_time / SECOND_NS:g})')
 
 

@@ -13,10 +13,10 @@ from self_awareness.recordings import files
 from self_awareness.training.robot_graph import RobotGraph, graph_file
 
 _EPILOG = """\
-An event log holds when each message came, from whom, and of which type: 3 to 4 bytes a message,
-whatever its size. train, calibrate and score read it like the bags, and get the same. Each bag is
-a recording of its own: LOG#1, LOG#2 and so on. Keep the file NAME.graph.yaml, which record.launch
-writes, beside the bag: it says who subscribes to what.
+An event log holds when each message came, from whom, and of which type: 4 to 6 bytes a message,
+whatever its size. train, calibrate and score read it like the bags, and give the same results.
+Each bag is a recording of its own: LOG#1, LOG#2 and so on. Keep the file NAME.graph.yaml, which
+record.launch writes, beside the bag: it says who subscribes to what.
 example:
   convert /nfs/bags/*.bag -o robot.events.bag
 """

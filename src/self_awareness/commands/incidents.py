@@ -138,17 +138,19 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('id', type=int, nargs='?', metavar='ID',
                         help='show all of this one, and how to make its report')
     parser.add_argument('--file', action='append', metavar='FILE',
-                        help='of a monitor; may be given several times (default: of all monitors, '
-                             'in ROS_HOME)')
+                        help='read this file of a monitor; may be given several times (default: '
+                             'those of all monitors, in ROS_HOME)')
     parser.add_argument('--component', metavar='PATTERN',
-                        help="that name such a component, as /player or '/camera*'")
-    parser.add_argument('--since', type=_stamp, metavar='TIME', help='that ended after it')
-    parser.add_argument('--until', type=_stamp, metavar='TIME', help='that were opened before it')
+                        help="only those that name this component, as /player or '/camera*'")
+    parser.add_argument('--since', type=_stamp, metavar='TIME',
+                        help='only those that ended after this time')
+    parser.add_argument('--until', type=_stamp, metavar='TIME',
+                        help='only those that began before this time')
     state = parser.add_mutually_exclusive_group()
     state.add_argument('--open', dest='over', action='store_false', default=None,
-                       help='that are open')
+                       help='only those that are open')
     state.add_argument('--over', dest='over', action='store_true', default=None,
-                       help='that are over')
+                       help='only those that are over')
     parser.add_argument('--near-misses', action='store_true',
                         help='list also components with near misses only')
     parser.add_argument('--json', action='store_true',

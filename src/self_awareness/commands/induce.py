@@ -33,7 +33,7 @@ def _induce(parser: argparse.ArgumentParser, arguments: argparse.Namespace) -> N
             _last(f'fault {arguments.kind}', arguments.duration)
         return
     if arguments.duration is not None:
-        parser.error('--duration: the dead do not come back')
+        parser.error('--duration: not for this fault, which kills nodes: they stay dead')
     if isinstance(effect, Crash):
         pids = {effect.component: induction.crash(effect, arguments.namespace)}
     else:
@@ -60,8 +60,8 @@ def _parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('kind', type=in_short, metavar='KIND', help='one of the faults below')
     parser.add_argument('--duration', type=cli.checked(_duration_s), metavar='S',
-                        help='how long it lasts in s, unless somebody dies (default: until '
-                             'Ctrl-C)')
+                        help='how long it lasts in s; not for faults that kill nodes (default: '
+                             'until Ctrl-C)')
     parser.add_argument('--namespace', default='', metavar='NS',
                         help='namespace of the robot (default: none)')
     parser.add_argument('--scenario', type=Path, metavar='FILE',

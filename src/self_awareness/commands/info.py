@@ -26,6 +26,9 @@ from self_awareness.stamps import moment, span
 
 _DRAWN = 0.99  # share of the delays that have rows of their own
 
+_LIMITS_OF = {'held-out': 'of recordings that were not trained on',
+              'cross-fit': 'preliminary, of the training alone'}
+
 
 def main(argv: Optional[Sequence[str]] = None) -> int:
     """Run the program; return its exit code (see cli.run)."""
@@ -71,9 +74,9 @@ def _load(path: str) -> TrainedModel:
         return TrainedModel.load(path)
     except ModelFileError as error:
         if is_bag(path):
-            raise ValueError(f'{path}: a recording, and no model; what is in it says rosbag info '
-                             f"'{path}', and when it was abnormal and why: rosrun self_awareness "
-                             f"score '{path}' --model MODEL") from error
+            raise ValueError(f'{path}: a recording, not a model. To see what is in it: rosbag '
+                             f"info '{path}'. To see when it was abnormal, and why: rosrun "
+                             f"self_awareness score '{path}' --model MODEL") from error
         raise
 
 
@@ -209,8 +212,9 @@ def _print_evidence(evidence: Dict[str, Any], fewest_gaps: int) -> None:
     if calibration is None:
         print('limits       not calibrated (rosrun self_awareness calibrate)')
         return
-    print(f'limits       {calibration["method"]}, for {calibration["budget"]:g} false alarms an '
-          f'hour, calibrated {moment(calibration["calibrated_ns"])}')
+    print(f'limits       {_LIMITS_OF[calibration["method"]]}, for '
+          f'{calibration["budget"]:g} false alarms an hour, calibrated '
+          f'{moment(calibration["calibrated_ns"])}')
     print(f'  of {counts(calibration["judged_tracks"])}')
     print(f'  {calibration["windows"]} windows; at most '
           f'{_or_none(calibration["false_alarms_per_hour"])} false alarms an hour (95 %)')

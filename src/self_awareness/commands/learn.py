@@ -10,7 +10,7 @@ import rospy
 
 from self_awareness import EncodingRules, encoding_file
 from self_awareness.calibration import limits
-from self_awareness.commands import cli
+from self_awareness.commands import cli, ros_node
 from self_awareness.learning import programs
 from self_awareness.learning.leaving import limit_goodbye
 from self_awareness.learning.learner import Learner, Plan
@@ -45,7 +45,7 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 def _learn(arguments: argparse.Namespace) -> None:
     limit_goodbye()
-    rospy.init_node('self_awareness')
+    ros_node.begin('self_awareness')
     model = str(rospy.get_param('~model', ''))
     if os.path.exists(model):
         rospy.loginfo('%s is there: this is the monitor; remove it to learn again', model)
@@ -105,7 +105,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('--encoding', metavar='FILE',
                         help='how messages become events (example: config/encoding.yaml)')
     parser.add_argument('--subscribe', choices=('used', 'all'), default='used',
-                        help='used: topics that a node of the robot (no tool) subscribes to; all: '
-                             'also those that wake publishers which work only for subscribers '
-                             '(default: used)')
+                        help='used: only topics that a node of the robot (not a tool) subscribes '
+                             'to; all: every topic, which may start publishers that work only for '
+                             'subscribers (default: used)')
     return parser

@@ -5,7 +5,6 @@ import argparse
 import os
 from typing import Optional, Sequence
 
-from self_awareness.calibration import limits
 from self_awareness.commands import cli
 from self_awareness.comparison.changes import compare
 from self_awareness.comparison.sides import with_recordings
@@ -46,7 +45,8 @@ def _learn_more(arguments: argparse.Namespace) -> None:
         print(line)
     division = more.divided(trained, found, arguments.start_up)
     if not division.training:
-        raise ValueError('no recording is left to learn from')
+        raise ValueError('no recording is left to learn from (the reasons are above); name '
+                         'others, or accept first what is normal now (~accept)')
     cli.stand_back()
     programs.train_and_calibrate(division, new, os.path.dirname(os.path.abspath(new)),
                                  arguments.budget or found.budget, lambda: False, arguments.model)
@@ -78,8 +78,8 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument('-o', '--output', metavar='NEW',
                         help='file to write (default: MODEL.new)')
     parser.add_argument('--budget', type=cli.budget, metavar='N',
-                        help='false alarms an hour that the limits allow (default: as before, '
-                             f'{limits.BUDGET:g} at first)')
+                        help='false alarms an hour that the limits allow (default: that of '
+                             'MODEL)')
     parser.add_argument('--start-up', type=cli.offset, default=_START_UP_S, metavar='S',
                         help='leave out so much after each start of the robot, in s (default: '
                              f'{_START_UP_S:g})')

@@ -32,22 +32,22 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 def _record(arguments: argparse.Namespace) -> None:
     complete: Set[str] = set()  # files that hold all that is known
     graph = RobotGraph()
+    unanswered = ''  # why the master was not heard the last time
     while True:
-        if _learn(graph):
-            complete.clear()
+        try:
+            if graph.add(live_graph.fetch()):
+                complete.clear()
+            unanswered = ''
+        except ValueError as error:  # it may come back, and rosbag waits for it, too
+            if str(error) != unanswered:
+                cli.warn('record_graph', f'{error} Who subscribes to what is written once it '
+                         'answers')
+            unanswered = str(error)
         bags = glob.glob(f'{glob.escape(arguments.prefix)}*.bag.active')
         for path in {graph_file(bag) for bag in bags} - complete:
             graph.save(path)
             complete.add(path)
         time.sleep(_PERIOD_S)
-
-
-def _learn(graph: RobotGraph) -> bool:
-    """Add what the master knows now; return whether anything of it is new."""
-    try:
-        return graph.add(live_graph.fetch())
-    except ValueError:  # it may come back, and rosbag waits for it, too
-        return False
 
 
 def _parser() -> argparse.ArgumentParser:

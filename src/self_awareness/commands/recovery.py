@@ -10,7 +10,7 @@ from typing import Iterator, Optional, Sequence
 
 import rospy
 
-from self_awareness.commands import cli
+from self_awareness.commands import cli, ros_node
 from self_awareness.learning.leaving import limit_goodbye
 from self_awareness.recovery import rules
 from self_awareness.recovery.node import Recovery
@@ -45,7 +45,7 @@ class _Failed(Exception):
 def _recover(arguments: argparse.Namespace) -> None:
     with _failing():
         limit_goodbye()
-        rospy.init_node('self_awareness_recovery')
+        ros_node.begin('self_awareness_recovery')
         monitor = rospy.resolve_name(arguments.monitor)
     allowed = rules.load(os.path.expanduser(arguments.rules), monitor, rospy.get_name())
     with _failing():

@@ -64,8 +64,8 @@ def _parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument('-o', '--output', type=Path, required=True, metavar='DIR_OR_BAG',
                         help='a name that ends in .bag, or a folder')
-    parser.add_argument('--duration', type=float, default=100.0, metavar='S',
-                        help='length of a recording in s (default: 100)')
+    parser.add_argument('--duration', type=cli.above_zero('a length in s'), default=100.0,
+                        metavar='S', help='length of a recording in s (default: 100)')
     parser.add_argument('--runs', type=int, default=1, metavar='N',
                         help='number of recordings, each with the next seed (default: 1)')
     parser.add_argument('--seed', type=int, default=1, help='of the first recording (default: 1)')

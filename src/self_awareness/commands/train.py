@@ -124,7 +124,7 @@ def _limits(trained: Trained, workers: Workers) -> str:
         found = many_bags.preliminary_limits(trained, workers)
     except TooLittleError as error:
         return f'limits       none: {error}'
-    return ('limits       preliminary, by what one half of the training says of the other '
+    return ('limits       preliminary: each half of the training was judged by the other '
             f'({found.windows} windows)')
 
 
@@ -132,15 +132,15 @@ def _counting(arguments: argparse.Namespace, base: Optional[TrainedModel]) -> Co
     if base is not None:
         for option in _OF_THE_MODEL:
             if getattr(arguments, option.replace('-', '_')) is not None:
-                raise ValueError(f'--{option}: is that of {arguments.add_to} (--add-to); leave it '
-                                 'out')
+                raise ValueError(f'--{option}: leave it out; with --add-to, it is that of '
+                                 f'{arguments.add_to}')
         return Counting.of(base)
     bin_size = Counting.bin_size if arguments.bin is None else arguments.bin
     window = Counting.window if arguments.window is None else arguments.window
     horizon = 0 if arguments.horizon is None else arguments.horizon
     if horizon % bin_size:
-        raise ValueError(f'--horizon {horizon / SECOND_NS:g} is no multiple of the bin size '
-                         f'{bin_size / SECOND_NS:g}; choose one')
+        raise ValueError(f'--horizon {horizon / SECOND_NS:g} is not a multiple of the bin size '
+                         f'{bin_size / SECOND_NS:g} (--bin); give a multiple')
     encoding = None if arguments.encoding is None else encoding_file.load(arguments.encoding)
     counting = Counting(encoding, bin_size, window, horizon // bin_size,
                         arguments.detector or Counting.detector,

@@ -25,6 +25,6 @@ def _run() -> None:
     while not rospy.core.is_shutdown_requested():
         time.sleep(_POLL_S)
     time.sleep(_GOODBYE_S)
-    print('the master does not answer: this node ends without its leave', file=sys.stderr,
+    print('the master does not answer: this node ends without unregistering', file=sys.stderr,
           flush=True)
     os._exit(0)

@@ -51,7 +51,8 @@ def train_and_calibrate(division: Division, model: str, folder: str, budget: flo
             to calibrate on.
     """
     if not division.calibration:
-        raise ProgramError('the recordings are too short')
+        raise ProgramError('the recordings are too short to find limits on: one must be 100 s or '
+                           'longer after the start-up')
     with tempfile.TemporaryDirectory(prefix='.training', dir=folder) as temporary:
         counted = os.path.join(temporary, 'trained.model')
         base = [] if add_to is None else ['--add-to', add_to]

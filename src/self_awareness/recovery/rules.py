@@ -144,9 +144,10 @@ def _rule(section: Section, untouchable: Mapping[str, str]) -> Rule:
         for kind in kinds:
             if kind in _WITHOUT_CULPRIT:
                 section.fail('kinds', f'{kind!r} blames no component, so that there is nothing to '
-                             'mend; remove it')
+                             'repair; remove it')
             if kind not in KINDS:
-                section.fail('kinds', f'{shown(kind)} is none; choose among {", ".join(KINDS)}')
+                section.fail('kinds', f'{shown(kind)} is not a kind; choose from '
+                             f'{", ".join(KINDS)}')
         steps = tuple(_step(each, untouchable) for each in section.sections('steps'))
         if len(steps) > MOST_STEPS:
             section.fail('steps', f'{len(steps)} of them; at most {MOST_STEPS} are allowed')

@@ -66,10 +66,10 @@ def print_budgets(by_budget: Mapping[float, Sequence[Dict[str, Any]]]) -> None:
                      if times[-1] < _DIFFERENT * times[0]), key=lambda each: -each[1][0])
     names = ', '.join(f'{budget:g}' for budget in budgets)
     if not differ:
-        print(f'--budget: with {names} false alarms an hour, all deaths are found as soon')
+        print(f'--budget: with {names} false alarms an hour, all deaths are found equally soon')
         return
     print(f'--budget: deaths found with {names} false alarms an hour allowed; all others, and '
-          'late answers, as soon')
+          'late answers, equally soon')
     rows = [(component, *(f'{rounded(time, 3)} s' for time in times))
             for component, times in differ[:_MOST_ROWS]]
     for line in aligned([('component', *(f'{budget:g}' for budget in budgets)), *rows]):

@@ -72,8 +72,9 @@ def to_record(found: List[Dict[str, Any]]) -> List[str]:
     waiting = [relation for relation in found if not relation['watched']
                and relation['starts'] < relation['starts_needed'] <= MOST_STARTS]
     if found and max(relation['starts'] for relation in found) == 1:
-        text.append('all recordings are taken for one start of the robot: event logs say when it '
-                    'was started, and between bags of different starts lies a minute or more')
+        text.append('all recordings count as one start of the robot: record event logs, which say '
+                    'when it was started, or leave a minute or more between bags of different '
+                    'starts')
     if waiting:
         fewest = min(waiting, key=lambda each: each['starts_needed'] - each['starts'])
         more = fewest['starts_needed'] - fewest['starts']
@@ -82,5 +83,5 @@ def to_record(found: List[Dict[str, Any]]) -> List[str]:
         text.append(f'record after {more} more start{"s" if more > 1 else ""} of the robot to '
                     f'watch late answers of {fewest["to"]}{others}: there were too few starts to '
                     'tell an answer from chance'
-                    + ('' if fewest['graph'] else '; train with the graph (--graph) needs fewer'))
+                    + ('' if fewest['graph'] else '; fewer are enough if you train with --graph'))
     return text

@@ -18,7 +18,7 @@ def add(parser: argparse.ArgumentParser) -> None:
                         help='of faults at random after that (default: 60)')
     parser.add_argument('--seed', type=cli.count, default=1, help='of the faults and the robot '
                         '(default: 1)')
-    parser.add_argument('--speed', type=cli.above_zero('times the speed'), default=10.0,
+    parser.add_argument('--speed', type=cli.above_zero('a factor of the speed'), default=10.0,
                         metavar='N', help='times the usual speed of the robot (default: 10)')
     parser.add_argument('--training', type=options.calibration_s, default=90.0, metavar='S',
                         help='length of each of three recordings to learn from [s] (default: 90)')

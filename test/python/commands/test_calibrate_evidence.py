@@ -78,8 +78,8 @@ def test_what_another_budget_buys_is_told(trained: str, long_bags: Bags, run) ->
     normal = [recordings.read(model, BagPart(long_bags[1]))]
     strict, lax = limits.held_out(model, normal, 5 * SECOND_NS, [0.05, 5.0])
     assert any(one > other for one, other in zip(strict.limits, lax.limits))
-    assert '--budget: with 0.05, 0.5, 5 false alarms an hour, all deaths are found as soon' in \
-        run()[1]
+    assert ('--budget: with 0.05, 0.5, 5 false alarms an hour, all deaths are found equally soon'
+            in run()[1])
 
 
 def test_whose_death_another_budget_finds_sooner_is_a_table(capsys) -> None:
@@ -175,6 +175,16 @@ def test_short_recordings_do_not_do_and_the_error_says_how_long_they_must_be(
     error = capsys.readouterr().err
     assert '--normal' in error and 'at least 50 s' in error and 'of every recording' in error
     assert not (tmp_path / 'm').exists()
+
+
+def test_a_model_that_watches_nothing_is_what_is_wrong(robot_bags: Bags, long_bags: Bags,
+                                                       tmp_path, capsys) -> None:
+    model = str(tmp_path / 'm')
+    assert train.main([f'{robot_bags[0]}@0-0.2', '-o', model]) == 0
+    capsys.readouterr()
+    assert calibrate.main(['--model', model, '-o', model, '--normal', long_bags[1]]) == 1
+    error = capsys.readouterr().err
+    assert f'{model}: it watches nothing' in error and '--normal' not in error
 
 
 def test_recordings_that_were_trained_on_are_refused(run, long_bags: Bags, tmp_path) -> None:

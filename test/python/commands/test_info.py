@@ -155,7 +155,8 @@ def test_people_read_the_evidence(evidence_model: str, capsys) -> None:
     assert info.main([evidence_model]) == 0
     text = capsys.readouterr().out
     for part in ('evidence     watches: overdue 3, rate 6',
-                 'limits       held-out, for 0.5 false', 'graph        none', 'tuesday.bag'):
+                 'limits       of recordings that were not trained on, for 0.5 false',
+                 'graph        none', 'tuesday.bag'):
         assert part in text
 
 

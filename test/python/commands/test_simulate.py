@@ -1,6 +1,7 @@
 """`simulate`: recordings as they come from a real robot, of several starts and with its graph."""
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import List
 
@@ -41,6 +42,13 @@ def test_the_same_seed_is_the_same_start_whatever_its_number(runs: List[Path],
 @pytest.mark.parametrize('seed', ['-1', '123456789012345678901234567890'])
 def test_any_seed_is_a_time_that_fits_into_a_bag(seed: str, tmp_path: Path) -> None:
     assert simulate.main(['-o', str(tmp_path / 'a.bag'), '--seed', seed, '--duration', '1']) == 0
+
+
+@pytest.mark.parametrize('duration', ['inf', 'nan', '0', 'x'])
+def test_a_duration_that_is_none_is_refused(duration: str, tmp_path: Path, capsys) -> None:
+    assert simulate.main(['-o', str(tmp_path / 'a.bag'), '--duration', duration]) == 2
+    assert '--duration' in capsys.readouterr().err
+    assert os.listdir(tmp_path) == []
 
 
 def test_train_takes_the_graph_from_beside_the_bags(runs: List[Path], tmp_path: Path) -> None:

@@ -145,7 +145,7 @@ def test_one_recording_gives_preliminary_limits_by_its_halves(long_bags: Bags, t
     found = TrainedModel.load(output).calibration
     # The detector settles for 5 s of 120 s; the second part settles in the first one.
     assert found.method == 'cross-fit' and found.windows == pytest.approx(1150, abs=4)
-    assert ('limits preliminary, by what one half of the training says of the other '
+    assert ('limits preliminary: each half of the training was judged by the other '
             f'({found.windows} windows)') in lines
     assert [recording.bag for recording in found.recordings] == ['monday.bag']
     assert 0.0 <= found.false_alarms_per_hour < math.inf and found.budget == 0.5

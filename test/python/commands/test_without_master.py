@@ -1,0 +1,58 @@
+"""Programs that need a master, where none answers."""
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Iterator
+
+import pytest
+
+NOBODY = 'http://127.0.0.1:1/'
+LONG_S = 60.0
+
+
+@contextmanager
+def _started(program: str, *words: str) -> Iterator[subprocess.Popen[str]]:
+    code = f'import sys; from self_awareness.commands import {program}; sys.exit({program}.main())'
+    with subprocess.Popen((sys.executable, '-c', code, *words), text=True, stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, preexec_fn=_take_sigint,
+                          env={**os.environ, 'ROS_MASTER_URI': NOBODY,
+                               'PYTHONUNBUFFERED': '1'}) as process:
+        watchdog = threading.Timer(LONG_S, process.kill)
+        watchdog.start()
+        try:
+            yield process
+        finally:
+            watchdog.cancel()
+            process.kill()
+
+
+def _take_sigint() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # who runs the tests may ignore it
+
+
+@pytest.mark.parametrize('program, words', [('component', ['player']), ('learn', [])])
+def test_ctrl_c_ends_who_waits_for_it_without_a_traceback(program: str, words: list) -> None:
+    with _started(program, *words) as process:
+        assert process.stdout is not None
+        assert any('master' in line for line in process.stdout)
+        process.send_signal(signal.SIGINT)
+        assert 'Traceback' not in process.stdout.read()
+        assert process.wait(LONG_S) == 130
+
+
+def test_who_writes_the_graph_says_once_that_it_cannot(tmp_path: Path) -> None:
+    with _started('record_graph', str(tmp_path / 'normal')) as process:
+        assert process.stdout is not None
+        line = process.stdout.readline()
+        assert f'record_graph: warning: no master at {NOBODY}' in line
+        with pytest.raises(subprocess.TimeoutExpired):
+            process.wait(2.5)  # it asks once a second
+        process.send_signal(signal.SIGINT)
+        assert 'no master' not in process.stdout.read()
+    assert not list(tmp_path.iterdir())
