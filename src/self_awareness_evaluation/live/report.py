@@ -11,6 +11,7 @@ from typing import List, Optional, Sequence
 from self_awareness.calibration import confidence
 from self_awareness.output_files import replacing
 from self_awareness_evaluation.live import offline
+from self_awareness_evaluation.live.learning import APART_S
 from self_awareness_evaluation.live.listeners import QUIET_S
 from self_awareness_evaluation.live.samples import Sample, of_system
 from self_awareness_evaluation.live.session import FAULTS_S, SessionPlan
@@ -35,9 +36,9 @@ _INTRODUCTION = """\
 Faults induced in the 15 processes of `launch/follow_me.launch` under a real master, on a machine
 of {cores} cores, while the monitor of `launch/monitor.launch` listened with the evidence
 detector. The model: training on {training} s, limits by {calibration:g} s of other normal
-operation, with the graph of the running robot; where `--recordings` held both already, they are
-of an earlier start of the robot. That is less than in simulated time (2 x 100 s and 600 s), since
-real time passes here.
+operation, each recorded in another start of the robot, {apart:g} s after the one before, with the
+graph of the running robot. That is less than in simulated time (2 x 100 s and 600 s), since real
+time passes here.
 
 Each of the {rounds} rounds: {normal:g} s of normal operation; the faults of the table in its
 order, in the same running robot, each as `induce` does it. Nodes that were killed are started
@@ -59,8 +60,8 @@ The other systems were not running: they judge the recording of the same session
 from the same training, with thresholds that a share of 0.001 of the calibration's windows falls
 below. They blame and alarm as in [simulated.md](simulated.md).
 
-The machine did other work, too: its load average at the beginning of normal operation was
-{low:.1f} to {high:.1f}, the robot's own included.
+The machine's load average at the beginning of normal operation was {low:.1f} to {high:.1f},
+the robot's own included.
 
 All samples: [live.csv](live.csv).
 
@@ -110,7 +111,8 @@ def page(plan: SessionPlan, samples: Sequence[Sample], command: str) -> str:
         written=written_by(command, time.strftime('%Y-%m-%d', time.gmtime())), live=LIVE,
         cores=len(os.sched_getaffinity(0)), rounds=plan.rounds, normal=plan.normal_s,
         training=' + '.join(f'{length:g}' for length in plan.training),
-        calibration=plan.calibration_s, quiet=QUIET_S, low=min(loads), high=max(loads))]
+        calibration=plan.calibration_s, apart=APART_S, quiet=QUIET_S, low=min(loads),
+        high=max(loads))]
     lines += ['## Alarms', '', 'Raised, of those that count; median latency (smallest to '
               'largest).', '']
     lines += table(['fault', 'lasts', f'{LIVE}: WARN', *systems],

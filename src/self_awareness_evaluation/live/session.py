@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Callable, Dict, Iterator, List, Optional, Sequence
 
-from self_awareness_evaluation.live.learning import learn
+from self_awareness_evaluation.live.learning import Apart, learn
 from self_awareness_evaluation.live.listeners import (STARTED_WITHIN_S, MonitorListener,
                                                       RobotListener, reset_until_quiet)
 from self_awareness_evaluation.live.master import own_master
@@ -31,6 +31,7 @@ _REGULAR = ('odom', 'scan', 'pose', 'obstacles', 'legs', 'tracks', 'task/state',
             'camera/image', 'faces', 'joint_states')
 _SHARED = 'cmd_vel'  # where the intruder publishes
 _EXCLUDED = '/rosout_agg|/self_awareness/.*|/diagnostics.*'
+_RECORDED_SEED = 100  # of the robot that is recorded; beyond the numbers of the rounds
 _WARM_UP_S = 10.0  # after the robot's start, which is no normal operation
 
 
@@ -40,8 +41,8 @@ class SessionPlan:
 
     Args:
         rounds: how often each fault is induced.
-        training: lengths of the recordings to learn from [s].
-        calibration_s: of the one that the limits are found by [s].
+        training: lengths of the recordings to learn from, each of another start [s].
+        calibration_s: of the one that the limits are found by, of one more start [s].
         normal_s: of the normal operation in each round, for false alarms [s].
     """
 
@@ -91,13 +92,14 @@ class _Session:
         self._robot = RobotListener([*_REGULAR, _SHARED])
         self._monitor = MonitorListener()
         self._robot_process: Optional[subprocess.Popen] = None
+        self._apart = Apart()
         self._stretches: List[Stretch] = []
 
     def run(self) -> Session:
-        self._start_robot(seed=0)
-        training = [self._record(f'training_{number}', length)
+        training = [self._recorded(f'training_{number}', length, _RECORDED_SEED + number)
                     for number, length in enumerate(self._plan.training, 1)]
-        calibration = self._record('calibration', self._plan.calibration_s)
+        calibration = self._recorded('calibration', self._plan.calibration_s, _RECORDED_SEED)
+        self._start_robot(seed=1)
         model = self._folder / 'live.model'
         learn(self._processes, model, training, [calibration], '--graph')
         recording = self._folder / 'session.bag'
@@ -179,13 +181,17 @@ class _Session:
         await_condition(f'{source} publishes /{topic}',
                         lambda: self._robot.last(source, topic) > after, STARTED_WITHIN_S)
 
-    def _record(self, name: str, length_s: float) -> Path:
+    def _recorded(self, name: str, length_s: float, seed: int) -> Path:
+        """Return a recording of a start; one that is there is used again."""
         bag = self._folder / f'{name}.bag'
         if bag.exists():
             return bag
+        self._start_robot(seed)
+        self._apart.wait()
         recorder = self._start_recorder(bag)
         wait(length_s, f'recording {name}')
         self._processes.end(recorder)
+        self._apart.ended()
         if not bag.exists():
             raise LiveError(f'{bag}: rosbag record has not written it, see '
                             f'{self._folder / "record.log"}')

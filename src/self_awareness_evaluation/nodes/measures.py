@@ -18,6 +18,25 @@ SEPARATOR = '; '
 """Between what was said of one alarm or suspicion, and of the next one."""
 
 
+RECORDED = '; events in '
+"""In what is said of an alarm, before the file of the flight recorder."""
+
+
+@dataclass(frozen=True)
+class Promised:
+    """What the model says of itself.
+
+    Args:
+        alarms: false ones an hour that calibrate expects.
+        watched: components whose death it would find.
+        components: that it knows.
+    """
+
+    alarms: float
+    watched: int
+    components: int
+
+
 @dataclass(frozen=True)
 class Row:
     """A stretch of time; the columns of the CSV file.
@@ -31,6 +50,7 @@ class Row:
             become an alarm; nan of faults.
         standing_s: of normal operation: time that an alarm stood; nan of faults.
         expected: of normal operation: alarms an hour that calibrate expects; nan of faults.
+        watched, components: of normal operation: as in Promised; nan of faults.
         named: of normal operation: alarms that blamed a node as they began; nan of faults.
         suspicion_s, latency_s: from the onset to the first WARN or ERROR, and to the first ERROR;
             None: there was none while the fault lasted.
@@ -53,6 +73,8 @@ class Row:
     suspicions: float = math.nan
     standing_s: float = math.nan
     expected: float = math.nan
+    watched: float = math.nan
+    components: float = math.nan
     named: float = math.nan
     suspicion_s: Optional[float] = None
     latency_s: Optional[float] = None
@@ -66,12 +88,12 @@ class Row:
     load: float = 0.0
 
 
-def of_quiet(stretch: Stretch, expected: float, statuses: Sequence[Status]) -> Row:
+def of_quiet(stretch: Stretch, promised: Promised, statuses: Sequence[Status]) -> Row:
     """Measure a stretch of normal operation.
 
     Args:
         stretch: when it was.
-        expected: alarms an hour.
+        promised: by the model.
         statuses: of the whole session, in their order.
     """
     before = [status for status in statuses if status.stamp <= stretch.onset]
@@ -83,10 +105,9 @@ def of_quiet(stretch: Stretch, expected: float, statuses: Sequence[Status]) -> R
                named=sum(status.level >= ERROR and bool(status.component) for status in begun),
                suspicions=sum(status.level == WARN for status in begun),
                standing_s=length_s * _share(inside, lambda status: status.level >= ERROR),
-               expected=expected,
-               said=SEPARATOR.join(
-                   f'{_level(status)}: {status.message}'
-                   for status in begun),
+               expected=promised.alarms, watched=promised.watched,
+               components=promised.components,
+               said=SEPARATOR.join(f'{_level(status)}: {_words(status)}' for status in begun),
                note=stretch.note, load=stretch.load)
 
 
@@ -105,8 +126,13 @@ def of_fault(fault: Fault, stretch: Stretch, recovered: float, statuses: Sequenc
     return Row(fault.kind, fault.node, sample.lasted_s, suspicion_s=sample.suspicion_s,
                latency_s=sample.latency_s, first=sample.top1, among_three=sample.top3,
                cleared_s=_cleared(recovered, statuses),
-               said='' if alarm is None or sample.void else alarm.message,
+               said='' if alarm is None or sample.void else _words(alarm),
                suspects=sample.suspects, void=sample.void, note=sample.note, load=sample.load)
+
+
+def _words(status: Status) -> str:
+    """Return what is said, without the file that only this machine has."""
+    return status.message.split(RECORDED)[0]
 
 
 def _level(status: Status) -> str:

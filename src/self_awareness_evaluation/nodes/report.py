@@ -10,11 +10,11 @@ from typing import Any, Dict, List, Optional, Sequence
 
 from self_awareness.calibration import confidence
 from self_awareness.output_files import replacing
+from self_awareness_evaluation.live.learning import APART_S
 from self_awareness_evaluation.nodes.measures import (BURSTS, SEPARATOR, UNDISTURBED,
                                                       Row)
-from self_awareness_evaluation.nodes.session import (APART_S, BETWEEN_BURSTS_S, BURST_S,
-                                                     QUIET_AFTER_S, RECOVERED_WITHIN_S,
-                                                     SessionPlan)
+from self_awareness_evaluation.nodes.session import (BETWEEN_BURSTS_S, BURST_S, QUIET_AFTER_S,
+                                                     RECOVERED_WITHIN_S, SessionPlan)
 from self_awareness_evaluation.nodes.system import NODES, RELAY
 from self_awareness_evaluation.pages import written_by
 from self_awareness_evaluation.simulated.tables import table
@@ -52,9 +52,8 @@ had published on all its topics again, to the end of the alarm; 0 where the alar
 before. The relay's 60 ms are a period and 10 ms of its topic of 20 Hz: it comes 10 ms after the
 message before.
 
-The machine did other work on all of its cores: its load average was {low:.1f} to {high:.1f},
-that of the nodes included. Other work makes messages late, and swaps those that come at the same
-time.
+The machine's load average was {low:.1f} to {high:.1f}, that of the nodes included. Other work
+makes messages late, and swaps those that come at the same time.
 """
 
 
@@ -64,6 +63,11 @@ Only in that session, an operator looked on: `rosbag record -a` recorded all top
 programs took every core for {shortest_s:g} to {longest_s:g} s at a time, every {between_s:g} s on
 the average, as a machine does that compiles now and then. "Name a node": of the alarms of
 undisturbed operation, those that blamed one as they began.
+"""
+
+
+_WATCHED = """\
+The model watches {watched:.0f} of {components:.0f} components.
 """
 
 
@@ -131,6 +135,9 @@ def page(plan: SessionPlan, rows: Sequence[Row], command: str) -> str:
     if quiet[BURSTS]:
         lines.append(_COMPANY.format(shortest_s=BURST_S[0], longest_s=BURST_S[1],
                                      between_s=BETWEEN_BURSTS_S))
+    for row in quiet[UNDISTURBED][:1]:
+        if not math.isnan(row.components):  # a session that did not note it
+            lines.append(_WATCHED.format(watched=row.watched, components=row.components))
     lines += table(['', 'lasted', 'WARN', 'ERROR', 'guilty first', 'cleared',
                     'what the monitor said'],
                    [*(_quiet(kind, of_kind) for kind, of_kind in quiet.items() if of_kind),

@@ -12,7 +12,7 @@ from typing import Callable, Iterator, List, Optional
 
 from self_awareness import TrainedModel
 from self_awareness.training.robot_graph import graph_file
-from self_awareness_evaluation.live.learning import learn
+from self_awareness_evaluation.live.learning import Apart, learn
 from self_awareness_evaluation.live.listeners import (STARTED_WITHIN_S, MonitorListener,
                                                       reset_until_quiet)
 from self_awareness_evaluation.live.master import own_master
@@ -21,7 +21,7 @@ from self_awareness_evaluation.live.processes import (LiveError, Processes, awai
                                                       becomes_true)
 from self_awareness_evaluation.live.samples import Stretch
 from self_awareness_evaluation.nodes import drivers, measures
-from self_awareness_evaluation.nodes.measures import BURSTS, UNDISTURBED, Row
+from self_awareness_evaluation.nodes.measures import BURSTS, UNDISTURBED, Promised, Row
 from self_awareness_evaluation.nodes.running import RunningSystem
 from self_awareness_evaluation.nodes.system import FAULTS, Fault
 from self_awareness_follow_me import induction
@@ -32,11 +32,6 @@ QUIET_AFTER_S = 10.0
 
 RECOVERED_WITHIN_S = 60.0
 """An alarm that stands for longer after the fault was undone does not clear [s]."""
-
-APART_S = 70.0
-"""From the end of one recording to the beginning of the next one [s].
-
-Recordings that follow each other within a minute count as one start."""
 
 BURST_S = (0.2, 1.5)
 """A burst of foreign load on all cores lasts so long, at least and at most [s]."""
@@ -96,7 +91,7 @@ class _Session:
         self._told = told
         self._system = RunningSystem(folder, processes)
         self._monitor = MonitorListener()
-        self._recorded_until = -APART_S  # by time.monotonic()
+        self._apart = Apart()
 
     def run(self) -> None:
         training = [self._recorded(f'training_{number}', self._plan.training_s)
@@ -115,19 +110,19 @@ class _Session:
         tools = [self._processes.start('operator', 'rosbag', 'record', '--all', '--output-name',
                                        str(self._folder / 'operator')),
                  self._processes.start('reader', 'rostopic', 'echo', '/diagnostics')]
-        expected = _expected(model)
-        self._watch(UNDISTURBED, self._plan.minutes, expected)
+        promised = _promised(model)
+        self._watch(UNDISTURBED, self._plan.minutes, promised)
         with _bursts():
-            self._watch(BURSTS, self._plan.burst_minutes, expected)
+            self._watch(BURSTS, self._plan.burst_minutes, promised)
         for fault in FAULTS:
             self._induce(fault)
         for process in [*tools, recorder]:
             self._processes.end(process)
         self._system.end()
 
-    def _watch(self, kind: str, minutes: float, expected: float) -> None:
+    def _watch(self, kind: str, minutes: float, promised: Promised) -> None:
         def over(quiet: Stretch) -> None:
-            self._told(measures.of_quiet(quiet, expected, self._monitor.statuses))
+            self._told(measures.of_quiet(quiet, promised, self._monitor.statuses))
 
         left = 60.0 * minutes
         while left > 0.0:
@@ -162,13 +157,11 @@ class _Session:
         if found is not None:
             return found
         self._start_system()
-        apart_s = self._recorded_until + APART_S - time.monotonic()
-        if apart_s > 0.0:
-            wait(apart_s, 'so that this start counts as another one')
+        self._apart.wait()
         recorder = self._start_recorder(name)
         wait(length_s, f'recording {name}')
         self._processes.end(recorder)
-        self._recorded_until = time.monotonic()
+        self._apart.ended()
         self._system.end()
         found = self._bag(name)
         if found is None or not Path(graph_file(str(found))).exists():
@@ -208,9 +201,10 @@ def _bursts() -> Iterator[None]:
         thread.join()
 
 
-def _expected(model: Path) -> float:
-    """Return the false alarms an hour that calibrate expects."""
-    calibration = TrainedModel.load(str(model)).calibration
-    if calibration is None:
-        raise LiveError(f'{model}: calibrate has written no limits')
-    return calibration.false_alarms_per_hour
+def _promised(path: Path) -> Promised:
+    model = TrainedModel.load(str(path))
+    if model.calibration is None:
+        raise LiveError(f'{path}: calibrate has written no limits')
+    coverage = model.coverage()
+    return Promised(model.calibration.false_alarms_per_hour,
+                    sum(each.is_watched for each in coverage), len(coverage))

@@ -14,8 +14,8 @@ import rosbag
 from self_awareness_evaluation import evaluate
 from self_awareness_evaluation.live.samples import ERROR, WARN, Status, Stretch
 from self_awareness_evaluation.nodes import drivers, report
-from self_awareness_evaluation.nodes.measures import (BURSTS, UNDISTURBED, Row, of_fault,
-                                                      of_quiet)
+from self_awareness_evaluation.nodes.measures import (BURSTS, UNDISTURBED, Promised, Row,
+                                                      of_fault, of_quiet)
 from self_awareness_evaluation.nodes.session import SessionPlan
 from self_awareness_evaluation.nodes.system import (CAMERAS_HZ, FAULTS, HALF_RATE, KILL, LATE,
                                                     NODES, Fault)
@@ -23,6 +23,7 @@ from self_awareness_evaluation.pages import written_by
 
 PAGES = Path(__file__).resolve().parents[3] / 'docs' / 'evaluation'
 ONSET = 1000.0
+PROMISED = Promised(0.4, 33, 34)
 QUIET = Stretch(1, UNDISTURBED, ONSET, ONSET + 10.0, load=1.5)
 KILLED = Fault(KILL, 'lidar', 5.0)
 BROKEN = Stretch(1, KILL, ONSET, ONSET + 5.0, KILLED.culprits)
@@ -69,9 +70,10 @@ def test_what_drivers_replay_is_made(tmp_path: Path) -> None:
 
 
 def test_alarms_and_suspicions_of_normal_operation() -> None:
-    row = of_quiet(QUIET, 0.4, statuses((1.0, WARN), (2.0, 0), (4.0, WARN), (5.0, ERROR),
-                                        (7.0, WARN), (8.0, 0), (9.0, ERROR), (9.5, 0)))
-    assert (row.alarms, row.suspicions, row.expected) == (2, 1, 0.4)
+    row = of_quiet(QUIET, PROMISED, statuses((1.0, WARN), (2.0, 0), (4.0, WARN), (5.0, ERROR),
+                                             (7.0, WARN), (8.0, 0), (9.0, ERROR), (9.5, 0)))
+    assert (row.alarms, row.suspicions) == (2, 1)
+    assert (row.expected, row.watched, row.components) == (0.4, 33, 34)
     assert row.standing_s == pytest.approx(2.5)
     assert row.said == ('WARN: level 1 at 1; ERROR, a node is named: level 2 at 5; '
                         'ERROR, a node is named: level 2 at 9')
@@ -80,23 +82,23 @@ def test_alarms_and_suspicions_of_normal_operation() -> None:
 
 
 def test_what_began_earlier_is_not_counted_again() -> None:
-    row = of_quiet(QUIET, 0.4, statuses((-1.0, ERROR), (2.0, WARN), (3.0, 0)))
+    row = of_quiet(QUIET, PROMISED, statuses((-1.0, ERROR), (2.0, WARN), (3.0, 0)))
     assert (row.alarms, row.suspicions, row.said) == (0, 0, '')
     assert row.standing_s == pytest.approx(1.9)
-    row = of_quiet(QUIET, 0.4, statuses((-1.0, WARN), (2.0, ERROR), (3.0, 0)))
+    row = of_quiet(QUIET, PROMISED, statuses((-1.0, WARN), (2.0, ERROR), (3.0, 0)))
     assert (row.alarms, row.suspicions) == (1, 0)
 
 
 def test_a_suspicion_between_two_alarms_is_none_of_its_own() -> None:
-    row = of_quiet(QUIET, 0.4, statuses((1.0, WARN), (1.5, ERROR), (3.0, WARN), (4.0, ERROR),
-                                        (5.0, WARN), (6.0, 0), (7.0, WARN)))
+    row = of_quiet(QUIET, PROMISED, statuses((1.0, WARN), (1.5, ERROR), (3.0, WARN), (4.0, ERROR),
+                                             (5.0, WARN), (6.0, 0), (7.0, WARN)))
     assert (row.alarms, row.suspicions) == (2, 1)
     assert [text.split(':')[0] for text in row.said.split('; ')] == [
         'ERROR, a node is named', 'ERROR, a node is named', 'WARN']
 
 
 def test_time_in_which_the_monitor_settles_is_not_judged() -> None:
-    assert of_quiet(QUIET, 0.4, statuses(settled_after_s=4.0)).lasted_s == pytest.approx(6.0)
+    assert of_quiet(QUIET, PROMISED, statuses(settled_after_s=4.0)).lasted_s == pytest.approx(6.0)
 
 
 def test_a_fault_that_is_found_and_clears() -> None:
@@ -106,6 +108,13 @@ def test_a_fault_that_is_found_and_clears() -> None:
     assert row.latency_s == pytest.approx(0.4)
     assert (row.first, row.among_three, row.said) == (True, True, 'level 2 at 0.4')
     assert row.cleared_s == pytest.approx(1.9)
+
+
+def test_where_this_machine_keeps_its_files_is_not_told() -> None:
+    said = [replace(status, message=status.message and f'{status.message}; events in /tmp/a.bag')
+            for status in statuses((0.4, ERROR), (3.0, 0))]
+    assert of_fault(KILLED, BROKEN, ONSET + 6.0, said).said == 'level 2 at 0.4'
+    assert of_quiet(QUIET, PROMISED, said).said == 'ERROR, a node is named: level 2 at 0.4'
 
 
 def test_a_fault_that_is_not_found_or_does_not_clear() -> None:
@@ -122,7 +131,7 @@ def test_a_fault_under_a_standing_alarm_does_not_count() -> None:
 
 def test_an_alarm_of_the_machine_names_no_node() -> None:
     said = [replace(status, component='') for status in statuses((1.0, ERROR), (2.0, 0))]
-    row = of_quiet(replace(QUIET, kind=BURSTS), 0.4, said)
+    row = of_quiet(replace(QUIET, kind=BURSTS), PROMISED, said)
     assert (row.fault, row.alarms, row.named) == (BURSTS, 1, 0)
     assert row.said == 'ERROR, no node is named: level 2 at 1'
 
@@ -156,11 +165,12 @@ def test_page_has_a_line_for_normal_operation_and_one_for_each_fault(tmp_path: P
 
 
 def test_the_page_tells_which_alarms_named_a_node(tmp_path: Path) -> None:
-    quiet = [Row(UNDISTURBED, '', 3600.0, 2, 0, 0.0, 0.5, named=1), ROWS[2],
+    quiet = [Row(UNDISTURBED, '', 3600.0, 2, 0, 0.0, 0.5, 33, 34, named=1), ROWS[2],
              Row(BURSTS, '', 1200.0, 1, 3, 0.0, 0.5, named=0)]
     text = report.write(tmp_path, PLAN, quiet, 'the command')[1].read_text(encoding='utf-8')
     assert 'expected by calibrate: 0.5); 1 name a node |' in text
     assert f'| **{BURSTS}** | 20 min |' in text and '); 0 name a node |' in text
+    assert 'The model watches 33 of 34 components.' in text
     assert 'rosbag record -a' in text and 'rostopic echo /diagnostics' in text
 
 
