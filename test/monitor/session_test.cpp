@@ -54,7 +54,7 @@ ros1::TrainedModel modelWithModes() {
 ros1::TrainedModel modelOfAnswers() {
   namespace evidence = core::evidence;
   ros1::TrainedModel model;
-  for (const evidence::EventId id : {evidence::kA, evidence::kB}) {
+  for (const core::EventId id : {evidence::kA, evidence::kB}) {
     model.statistics.intern(evidence::kTypes[id]);
   }
   for (unsigned half = 0; half < 2; ++half) {

@@ -320,7 +320,7 @@ TEST(EncodingRules, AModeThatCannotBeToldIsNamed) {
   };
   EXPECT_EQ(why(rulesOfMode("/state", "data")), "");
   for (const char* topic : {"state", "", "/a b", "~state"}) {
-    EXPECT_NE(why(rulesOfMode(topic, "data")).find("no name of a topic"), std::string::npos)
+    EXPECT_NE(why(rulesOfMode(topic, "data")).find("not the name of a topic"), std::string::npos)
         << topic;
   }
   EXPECT_NE(why(rulesOfMode("/state", "")).find("no field"), std::string::npos);
