@@ -116,7 +116,7 @@ def test_a_node_that_refuses_its_parameters_is_not_started_again(code: int, numb
     refuses = f'echo "~alarm_of: must be at least 1" >&2; exit {code}'
     with _prefixed('bash', '-c', refuses) as node:
         assert node.stderr.readline() == '~alarm_of: must be at least 1\n'
-        assert 'launch it again with other arguments' in node.stderr.readline()
+        assert 'cannot use its arguments or parameters' in node.stderr.readline()
         assert node.poll() is None
         os.killpg(node.pid, number)
         assert node.wait(LONG_S) == -number

@@ -44,7 +44,7 @@ def test_any_seed_is_a_time_that_fits_into_a_bag(seed: str, tmp_path: Path) -> N
     assert simulate.main(['-o', str(tmp_path / 'a.bag'), '--seed', seed, '--duration', '1']) == 0
 
 
-@pytest.mark.parametrize('duration', ['inf', 'nan', '0', 'x'])
+@pytest.mark.parametrize('duration', ['inf', 'nan', '0', '-1', 'x'])
 def test_a_duration_that_is_none_is_refused(duration: str, tmp_path: Path, capsys) -> None:
     assert simulate.main(['-o', str(tmp_path / 'a.bag'), '--duration', duration]) == 2
     assert '--duration' in capsys.readouterr().err

@@ -221,7 +221,6 @@ def test_program_writes_numbered_bags(tmp_path: Path, capsys: pytest.CaptureFixt
     (['--fault', 'cc9'], 'choose one of cc1, cc2, rs, ac'),
     (['--runs', '2'], 'need a folder'),
     (['--runs', '0'], 'at least 1'),
-    (['--duration', '-1'], 'duration'),
     (['--scenario', 'nowhere.yaml'], 'nowhere.yaml: cannot be read'),
 ])
 def test_program_says_what_is_wrong(tmp_path: Path, capsys: pytest.CaptureFixture,

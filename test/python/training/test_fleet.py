@@ -132,7 +132,7 @@ def test_a_log_that_was_renamed_is_not_renamed_again(folder: Path, tmp_path: Pat
     assert convert.main([str(folder / 'r2' / '10000.bag'), '-o', log, '--encoding',
                          str(encoding)]) == 0
     assert train.main([log, '-o', str(tmp_path / 'm'), *RENAME]) == 1
-    assert 'recorded by another encoding' in capsys.readouterr().err
+    assert 'the event log has another encoding' in capsys.readouterr().err
 
 
 @pytest.mark.parametrize('rule, problem', [
@@ -150,7 +150,7 @@ def test_the_rules_of_a_model_stay_when_it_learns_more(folder: Path, fleet: str,
                                                        capsys) -> None:
     assert train.main([str(folder / 'r4'), '--add-to', fleet, '-o', str(tmp_path / 'm'),
                        *RENAME]) == 1
-    assert '--rename: is that of' in capsys.readouterr().err
+    assert '--rename: leave it out' in capsys.readouterr().err
     more = trained([str(folder / 'r4')], tmp_path / 'm', '--add-to', fleet, '--robots-by-folder')
     assert len(more.event_types) == 4 and sorted(more.robots) == ['r1', 'r2', 'r3', 'r4']
 
