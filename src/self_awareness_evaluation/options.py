@@ -59,24 +59,24 @@ def starts(text: str) -> int:
     return value
 
 
-def _in_hours(text: str) -> float:
+def _lasting(text: str, unit: str, hour: float) -> float:
+    """Return how long something is watched, in units of which an hour has so many."""
     value = float(text)
-    if not 0.02 <= value <= 1000.0:
-        raise ValueError(f'expected hours from 0.02 to 1000, not {text}')
+    if not 0.02 * hour <= value <= 1000.0 * hour:
+        raise ValueError(f'expected {unit} from {0.02 * hour:g} to {1000.0 * hour:g}, not {text}')
     return value
 
 
-hours = cli.checked(_in_hours)
-"""Argument type: how long something is watched [h]."""
+@cli.checked
+def hours(text: str) -> float:
+    """Argument type: how long something is watched [h]."""
+    return _lasting(text, 'hours', 1.0)
 
 
 @cli.checked
 def minutes(text: str) -> float:
     """Argument type: how long something is watched [min]."""
-    value = float(text)
-    if not 1.0 <= value <= 60000.0:
-        raise ValueError(f'expected minutes from 1 to 60000, not {text}')
-    return value
+    return _lasting(text, 'minutes', 60.0)
 
 
 @cli.checked

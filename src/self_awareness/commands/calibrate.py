@@ -185,14 +185,13 @@ def _check_options(arguments: argparse.Namespace) -> None:
 def _find_limits(arguments: argparse.Namespace, trained: TrainedModel,
                  parameters: DetectorParameters, normal_runs: Sequence[Run],
                  faulty_runs: Sequence[Run], accepted: Sequence[Acceptance]) -> _Measured:
-    if not EvidenceModel(trained).tracks:
-        raise ValueError(f'{arguments.model}: it watches nothing, since no event type has enough '
-                         'gaps in its training: train it on longer recordings, or more of them')
     try:
         budgets = [factor * arguments.budget for factor in (0.1, 10.0, 1.0)]
         found = limits.held_out(trained, [run.source for run in normal_runs],
                                 parameters.settle_time, budgets)
     except ValueError as error:
+        if not EvidenceModel(trained).tracks:
+            raise ValueError(f'{arguments.model}: {error}') from error
         raise ValueError(f'--normal: {error}; name longer recordings, or more of them') from error
     by_budget = {}
     for calibration in found:  # the last one stays

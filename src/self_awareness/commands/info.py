@@ -212,7 +212,7 @@ def _print_evidence(evidence: Dict[str, Any], fewest_gaps: int) -> None:
     if calibration is None:
         print('limits       not calibrated (rosrun self_awareness calibrate)')
         return
-    print(f'limits       {_LIMITS_OF[calibration["method"]]}, for '
+    print(f'limits       {_LIMITS_OF.get(calibration["method"], calibration["method"])}, for '
           f'{calibration["budget"]:g} false alarms an hour, calibrated '
           f'{moment(calibration["calibrated_ns"])}')
     print(f'  of {counts(calibration["judged_tracks"])}')

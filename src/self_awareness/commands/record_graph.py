@@ -40,8 +40,8 @@ def _record(arguments: argparse.Namespace) -> None:
             unanswered = ''
         except ValueError as error:  # it may come back, and rosbag waits for it, too
             if str(error) != unanswered:
-                cli.warn('record_graph', f'{error} Who subscribes to what is written once it '
-                         'answers')
+                cli.warn('record_graph', f'{error} (who subscribes to what is written once it '
+                         'answers)')
             unanswered = str(error)
         bags = glob.glob(f'{glob.escape(arguments.prefix)}*.bag.active')
         for path in {graph_file(bag) for bag in bags} - complete:

@@ -127,7 +127,8 @@ def test_the_roc_is_drawn(run, tmp_path) -> None:
     (('--inject', 'crash:/motor'), ['/motor', '/battery, /laser, /slam']),
     (('--roc', 'r.png', '--cutoff', 'fpr=0.1'), ['--roc', '--inject']),
     (('--inject', 'starve', '--settle-time', '60'), ['--normal', '--settle-time']),
-    (('--inject', 'starve', '--alarm-windows', '6'), ['alarm_windows is 6', 'alarm_of, which is 5']),
+    (('--inject', 'starve', '--alarm-windows', '6'),
+     ['alarm_windows is 6', 'alarm_of, which is 5']),
 ])
 def test_an_error_names_the_way_out_and_writes_nothing(run, tmp_path, monkeypatch, arguments,
                                                        parts: List[str]) -> None:

@@ -184,7 +184,7 @@ def test_a_model_that_watches_nothing_is_what_is_wrong(robot_bags: Bags, long_ba
     capsys.readouterr()
     assert calibrate.main(['--model', model, '-o', model, '--normal', long_bags[1]]) == 1
     error = capsys.readouterr().err
-    assert f'{model}: it watches nothing' in error and '--normal' not in error
+    assert f'{model}: the model watches nothing' in error and '--normal' not in error
 
 
 def test_recordings_that_were_trained_on_are_refused(run, long_bags: Bags, tmp_path) -> None:
