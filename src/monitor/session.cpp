@@ -5,6 +5,7 @@
 
 #include "ros/content_digest.h"
 #include "ros/text.h"
+#include "ros/verdict/verdict_message.h"
 #include "self_awareness/core/paper/judge.h"
 #include "self_awareness/core/stream/mode.h"
 #include "self_awareness/core/verdict/name_pattern.h"
@@ -164,7 +165,7 @@ bool Session::isFirstOfRestarted(core::EventId id) {
 
 std::string Session::sourceAndTopic(core::EventId id) const {
   const core::EventType& type = vocabulary_->at(id);
-  return (type.source.empty() ? "" : type.source + " on ") + type.scope;
+  return ros1::withSource(type.source, type.scope);
 }
 
 std::vector<std::string> Session::strangers() const {

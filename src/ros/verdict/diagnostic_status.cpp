@@ -68,7 +68,7 @@ std::vector<std::string> notWatched(const CommunicationState& state) {
 std::vector<std::string> unheard(const CommunicationState& state) {
   std::vector<std::string> names;
   for (const auto& [source, topic] : state.unheard) {
-    names.push_back((source.empty() ? "" : source + " on ") + topic);
+    names.push_back(withSource(source, topic));
   }
   return names;
 }

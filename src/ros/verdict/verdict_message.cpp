@@ -57,7 +57,11 @@ std::string describeOnScope(const self_awareness::Suspect& suspect) {
 }
 
 std::string describe(const self_awareness::Suspect& suspect) {
-  return (suspect.source.empty() ? "" : suspect.source + " on ") + describeOnScope(suspect);
+  return withSource(suspect.source, describeOnScope(suspect));
+}
+
+std::string withSource(const std::string& source, const std::string& of_topic) {
+  return (source.empty() ? "" : source + " on ") + of_topic;
 }
 
 std::string wording(const core::Verdict& verdict, const std::string& evidence,

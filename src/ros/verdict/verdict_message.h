@@ -20,6 +20,10 @@ std::string describeOnScope(const self_awareness::Suspect& suspect);
 /// "SOURCE on SCOPE: REASON", without the source where the encoding leaves it out.
 std::string describe(const self_awareness::Suspect& suspect);
 
+/// Something of a topic with who sends it, as people read it: "/player on /scan".
+/// @param source empty: it is not known
+std::string withSource(const std::string& source, const std::string& of_topic);
+
 /// The verdict in words.
 /// @param evidence, suspects those of the last window that had any, while the level is not OK
 /// @param shared what is wrong with what components share, in words; empty: nothing
