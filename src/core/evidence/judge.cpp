@@ -247,8 +247,7 @@ Judgement Judge::judge(const Window& window, std::int64_t end, NameSuspects susp
   }
   judgement.abnormal = *judgement.score < kThreshold;
   judgement.certain = never_heard_.share() > 1 || (largest > 1 && isCertain());
-  judgement.suspicious = never_heard_.share() > 0 || unsubscribed_.any() || judgement.busy ||
-                         (judgement.silent && judgement.silent->others_go_on);
+  judgement.suspicious = never_heard_.share() > 0 || unsubscribed_.any() || judgement.busy;
   judgement.evidence = evidenceOf(judgement);
   const bool somebody = largest > 1 || never_heard_.share() > 0 || unsubscribed_.any() ||
                         (judgement.busy && judgement.busy->late > 0);
@@ -314,9 +313,6 @@ std::string Judge::evidenceOf(const Judgement& judgement) const {
   }
   if (judgement.busy) {
     channels.insert("busy");
-  }
-  if (judgement.silent && judgement.silent->others_go_on) {
-    channels.insert("new mode");
   }
   if (never_heard_.share() > 0) {
     channels.insert("never heard");

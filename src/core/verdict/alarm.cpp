@@ -106,9 +106,11 @@ void Alarms::goOn(const Verdict& verdict, std::int64_t end, const Vocabulary& vo
       (!alarm.silent || verdict.silent->components.size() > alarm.silent->components.size())) {
     alarm.silent = verdict.silent;
   }
-  // Who died before, on another computer, is still to blame.
+  // Who died before, on another computer, is still to blame; a machine that is busy no more is
+  // not.
   if (stands && alarm.silent &&
       (alarm.kind == Kind::kAllSilent || alarm.kind == Kind::kNewMode ||
+       (alarm.kind == Kind::kBusyMachine && verdict.silent && !verdict.busy) ||
        (alarm.kind == Kind::kDied && alarm.silent->has(alarm.culprit)))) {
     alarm.kind = kindOf(*alarm.silent);
     alarm.culprit.clear();

@@ -13,6 +13,12 @@ namespace {
 // long [ns].
 constexpr std::int64_t kBacklog = 3 * kNanosecondsPerSecond;
 
+/// Makes a window suspicious.
+void addEvidence(Judgement& judgement, const std::string& evidence) {
+  judgement.evidence += (judgement.evidence.empty() ? "" : ", ") + evidence;
+  judgement.suspicious = true;
+}
+
 }  // namespace
 
 void Detector::Parameters::validate() const {
@@ -28,7 +34,8 @@ Detector::Detector(std::unique_ptr<Judge> judge, std::int64_t window, const Para
       parameters_(parameters),
       handler_(std::move(handler)),
       windows_(window, *this),
-      persistence_(parameters.persistence) {
+      persistence_(parameters.persistence),
+      new_mode_(parameters.persistence) {
   parameters_.validate();
 }
 
@@ -90,6 +97,7 @@ void Detector::onClockStep() {
 
 void Detector::clearAlarm() {
   persistence_.clear();
+  new_mode_.clear();
   resumed_ = false;
   awaited_.clear();
   suspicion_ = false;
@@ -174,8 +182,7 @@ void Detector::close(const Window& window, std::int64_t end) {
                                       : unknown ? NameSuspects::kAlways
                                                 : NameSuspects::kIfUnusual);
   if (unknown) {
-    judgement.evidence += (judgement.evidence.empty() ? "" : ", ") + std::string("unknown events");
-    judgement.suspicious = true;
+    addEvidence(judgement, "unknown events");
   }
   if (unknown && parameters_.unknown == UnknownEvents::kError && judgement.threshold) {
     judgement.abnormal = true;
@@ -193,8 +200,10 @@ void Detector::close(const Window& window, std::int64_t end) {
   const bool was_suspicion = suspicion_;
   if (verdict.settling) {
     verdict.alarm = persistence_.leaveOut(windows_.length());
+    new_mode_.leaveOut(windows_.length());
     suspicious_at_ += windows_.length();
   } else {
+    leaveOutShortStops(judgement, window_end);
     verdict.evidence = judgement.evidence;
     verdict.busy = judgement.busy;
     verdict.silent = std::move(judgement.silent);
@@ -244,6 +253,16 @@ std::vector<Suspect> Detector::name(std::vector<Suspect>& suspects, bool begins,
     }
   }
   return named_first;
+}
+
+void Detector::leaveOutShortStops(Judgement& judgement, std::int64_t end) {
+  const bool stopped = judgement.silent && judgement.silent->others_go_on;
+  const bool lasts = new_mode_.add(stopped, end, false);
+  if (stopped && lasts) {
+    addEvidence(judgement, "new mode");
+  } else if (stopped) {
+    judgement.silent.reset();
+  }
 }
 
 void Detector::count(const Judgement& judgement, std::int64_t end) {

@@ -156,6 +156,21 @@ TEST_F(AlarmsTest, WhereSomeStoppedTogetherItIsANewModeAndNobodyIsToBlame) {
   EXPECT_EQ(alarms_.standing()->culprit, "/b") << "another one meanwhile";
 }
 
+TEST_F(AlarmsTest, WhoStopsOnABusyMachineIsInANewModeOnceThatIsFree) {
+  Verdict mode = verdict(kSuspicion);
+  mode.evidence = "busy, new mode";
+  mode.busy = Busy{0, 0, 1.8};
+  add(mode);
+  EXPECT_EQ(alarms_.standing()->kind, Kind::kBusyMachine);
+  mode.silent = Silent{{}, {"/a", "/b", "/c", "/d"}, kStart, true};
+  add(mode);
+  EXPECT_EQ(alarms_.standing()->kind, Kind::kBusyMachine);
+  mode.busy.reset();
+  add(mode);
+  EXPECT_EQ(alarms_.standing()->kind, Kind::kNewMode);
+  EXPECT_EQ(alarms_.standing()->silent->components.size(), 4U);
+}
+
 TEST_F(AlarmsTest, ComputersThatFellSilentAreNamedAndNobodyIsToBlame) {
   add(verdict(kAlarm, {suspect(1, Kind::kDied)}));
   Verdict silent = verdict(kAlarm, {suspect(1, Kind::kDied)});

@@ -124,6 +124,32 @@ TEST_F(DetectorLevelsTest, NormalOperationIsNoSuspicion) {
   EXPECT_EQ(changes_, 0);
 }
 
+TEST_F(DetectorLevelsTest, WhoStopTogetherAreANewModeOnceTheyStayAway) {
+  start();
+  told_->silent = Silent{};
+  told_->silent->others_go_on = true;
+  told_->silent->components = {"/arm", "/base", "/camera", "/lidar"};
+  windows(2);
+  told_->silent.reset();
+  windows(10);
+  EXPECT_EQ(changes_, 0) << "a busy machine held them up";
+  told_->silent = Silent{};
+  told_->silent->others_go_on = true;
+  windows(2);
+  EXPECT_FALSE(verdict_.suspicion || verdict_.silent);
+  EXPECT_TRUE(window().suspicion && verdict_.silent);
+  told_->silent.reset();
+  windows(21);
+  EXPECT_EQ(changes_, 2);
+}
+
+TEST_F(DetectorLevelsTest, AllWhoFallSilentAreToldAtOnce) {
+  start();
+  told_->silent = Silent{};
+  EXPECT_TRUE(abnormalWindow().suspicion);
+  EXPECT_TRUE(verdict_.silent);
+}
+
 TEST_F(DetectorLevelsTest, AfterAPauseNothingIsSaidUntilAllHasSettled) {
   start();
   detector_->onPause(now_ + 2 * kSecond);

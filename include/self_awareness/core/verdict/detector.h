@@ -132,6 +132,10 @@ class Detector : private WindowObserver {
   std::optional<ObservedEvent> observe(const Event& event) override;
   void close(const Window& window, std::int64_t end) override;
   void onClockStep() override;
+  /// Some who stopped together are a new mode, and suspicious, after as many windows as raise an
+  /// alarm: whom a busy machine held up come back within less.
+  /// @param end of the window [ns]
+  void leaveOutShortStops(Judgement& judgement, std::int64_t end);
   /// Takes a window that is not settling into account for the alarm and the suspicion.
   /// @param end of the window [ns]
   void count(const Judgement& judgement, std::int64_t end);
@@ -156,6 +160,7 @@ class Detector : private WindowObserver {
   Handler handler_;
   Windows windows_;
   Persistence persistence_;
+  Persistence new_mode_;
   bool resumed_ = false;  // the alarm is that of before the start, and has to stand on
   std::map<EventId, Awaited> awaited_;  // its suspects that have to be heard
   std::size_t silent_ = 0;              // components that the alarm said are silent together
