@@ -160,7 +160,7 @@ class Detector : private WindowObserver {
   Handler handler_;
   Windows windows_;
   Persistence persistence_;
-  Persistence new_mode_;
+  Persistence new_mode_;  // of windows in which some are away who stopped together
   bool resumed_ = false;  // the alarm is that of before the start, and has to stand on
   std::map<EventId, Awaited> awaited_;  // its suspects that have to be heard
   std::size_t silent_ = 0;              // components that the alarm said are silent together

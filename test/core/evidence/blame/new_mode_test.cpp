@@ -248,7 +248,7 @@ class AcceptedModeTest : public NewModeTest {
       window.start = end - kWindow;
       const Judgement judgement = judge->judge(window, end, NameSuspects::kIfUnusual);
       said.mode = judgement.mode;
-      if ((judgement.abnormal || judgement.silent) && !said.first) {
+      if ((judgement.abnormal || judgement.suspicious || judgement.silent) && !said.first) {
         said.first = end;
       }
     }
