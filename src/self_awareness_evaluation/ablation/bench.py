@@ -64,6 +64,7 @@ class Fault:
         culprits: the sources to blame; empty if no single one is.
         recording: the events.
         onset: of the fault [ns].
+        back: when it is over [ns]; None: it lasts.
     """
 
     kind: str
@@ -71,6 +72,7 @@ class Fault:
     culprits: Tuple[str, ...]
     recording: WindowedEvents
     onset: int
+    back: Optional[int] = None
 
 
 @dataclass(frozen=True)
@@ -135,7 +137,8 @@ def _of_family(plan: Plan, wanted: _Wanted) -> Robot:
         FAMILIES, f'{wanted.name} {wanted.seed}', records.robot.graph, str(wanted.learning),
         records.training(wanted.learning), records.calibration(wanted.learning),
         list(records.watched(plan.hours)),
-        [Fault(fault.kind, fault.source, (fault.source,), fault.recording, fault.onset)
+        [Fault(fault.kind, fault.source, (fault.source,), fault.recording, fault.onset,
+               fault.back)
          for fault in records.faults(KINDS, plan.faults, AFTER_DEATH_S)])
 
 

@@ -8,7 +8,7 @@ from typing import Any, Callable, Dict, List, Sequence, Tuple
 from self_awareness_evaluation.ablation.bench import CLOCKS, OTHER, STARVED
 from self_awareness_evaluation.ablation.rows import OUTAGE, Row
 from self_awareness_evaluation.families.protocol import DEATH
-from self_awareness_evaluation.families.robot import CRASH, HALF_RATE, LATE
+from self_awareness_evaluation.families.robot import CRASH, HALF_RATE, LATE, RESTART
 from self_awareness_evaluation.simulated.measures import NORMAL
 from self_awareness_evaluation.simulated.summary import quantile
 from self_awareness_evaluation.tally import NONE, Tally
@@ -22,12 +22,13 @@ LEAST_LATENCY_S = 0.05
 LEAST_COST = 0.2
 """Shares of the time to judge that differ by less are told as the same: it varies."""
 
-KINDS = (CRASH, HALF_RATE, LATE, DEATH, CLOCKS, STARVED, OTHER, OUTAGE)
+KINDS = (CRASH, HALF_RATE, LATE, DEATH, CLOCKS, STARVED, OTHER, OUTAGE, RESTART)
 """Kinds of faults in the order of the tables."""
 
 _TITLES = {CRASH: f'crashes, within {SOON_S:g} s / at all', HALF_RATE: 'half rates',
            LATE: 'late answers', DEATH: 'deaths when asked', CLOCKS: 'AC', STARVED: 'RS',
-           OTHER: 'other faults', OUTAGE: 'outages'}
+           OTHER: 'other faults', OUTAGE: 'outages',
+           RESTART: 'restarts'}
 
 
 @dataclass(frozen=True)
@@ -56,6 +57,7 @@ def cells(rows: Sequence[Row], default: Sequence[Row]) -> Dict[str, Cell]:
     found = {'false alarms': _alarms(rows, lambda row: row.alarms, 0.0),
              'WARN': _alarms(rows, lambda row: row.warnings, 1.0)}
     found.update({_TITLES[kind]: _found(_tally(rows, kind), kind) for kind in KINDS})
+    found['alarms after a restart'] = _after(rows)
     every = _tally(rows, '')
     found['guilty first'] = Cell(every.named_first, (every.named - every.first,), (0.0,))
     cost = cost_of(rows) / cost_of(default) if cost_of(default) else math.nan
@@ -88,6 +90,7 @@ def numbers(rows: Sequence[Row]) -> Dict[str, Any]:
                       f'{name}_within_{SOON_S:g}_s': tally.within(SOON_S),
                       f'{name}_found': tally.within(),
                       f'{name}_median_s': f'{median:.3f}' if math.isfinite(median) else ''})
+    found[f'{RESTART}_alarms_after'] = sum(_alarms_after(rows))
     every = _tally(rows, '')
     found.update({'named': every.named, 'guilty_first': every.first,
                   'judging_s': f'{cost_of(rows):.3f}'})
@@ -102,6 +105,15 @@ def _tally(rows: Sequence[Row], kind: str) -> Tally:
 def _alarms(rows: Sequence[Row], of: Callable[[Row], int], within: float) -> Cell:
     count, hours = sum(of(row) for row in rows), sum(row.hours for row in rows)
     return Cell(f'{count} in {hours:.1f} h', (count, hours), (within, 0.05))
+
+
+def _alarms_after(rows: Sequence[Row]) -> List[int]:
+    return [row.after for row in rows if row.after is not None]
+
+
+def _after(rows: Sequence[Row]) -> Cell:
+    alarms = _alarms_after(rows)
+    return Cell(f'{sum(alarms)} after {len(alarms)}' if alarms else NONE, (sum(alarms),), (0.0,))
 
 
 def _found(tally: Tally, kind: str) -> Cell:

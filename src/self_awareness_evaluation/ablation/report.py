@@ -12,7 +12,9 @@ from self_awareness_evaluation.ablation.bench import (AFTER_DEATH_S, FAMILIES, O
                                                       RECORDINGS, Plan)
 from self_awareness_evaluation.ablation.experiment import Results
 from self_awareness_evaluation.ablation.variants import DEFAULT, NUMBER, Variant
+from self_awareness_evaluation.families.protocol import RESTARTS_IN_S
 from self_awareness_evaluation.pages import written_by
+from self_awareness_evaluation.simulated.measures import AFTERMATH_S
 from self_awareness_evaluation.simulated.tables import table
 from self_awareness_evaluation.tally import NONE
 
@@ -31,7 +33,8 @@ switched off, a number halved or doubled. All variants learn from and judge the 
 
 - robots of the families {families} ([what they are](families.md)), seeds {seeds}, which learn in
   turn from {learnings}; {hours:g} h of normal operation each, and up to {faults} faults of every
-  kind (after a death, the record goes on for {death_s:g} s);
+  kind (after a death, the record goes on for {death_s:g} s; who is restarted is silent for
+  {away_s:g} s, and comes back with other phases);
 - the project's own robot ([what is recorded](simulated.md)), seeds {own}: all faults but those
   that are a suspicion only; AC: a host's clock is out of step, RS: the CPU is taken away;
 - {recordings}.
@@ -39,9 +42,10 @@ switched off, a number halved or doubled. All variants learn from and judge the 
 What is counted in the recordings is the same in all variants; what is watched, the limits and the
 verdicts are each variant's own. False alarms and WARN also count what comes before the onset of a
 fault. Of faults, how many of all were found, and the median latency of all of them, which is left
-out where fewer than half were. *Guilty first*: alarms after an onset that name the guilty one
-first, of those where one is. *Time to judge*: CPU time for normal operation, compared with the
-method as it is; the same command varies by some percent.
+out where fewer than half were. *Alarms after a restart*: for who is back for {aftermath_s:g} s,
+all of them false. *Guilty first*: alarms after an onset that name the guilty one first, of those
+where one is. *Time to judge*: CPU time for normal operation, compared with the method as it is;
+the same command varies by some percent.
 
 All figures, apart for families, own robot and recordings: [{name}.csv]({name}.csv).
 """
@@ -90,6 +94,7 @@ def page(plan: Plan, results: Results, command: str) -> str:
         families=', '.join(f'`{name}`' for name in plan.families),
         seeds=', '.join(str(seed) for seed in plan.seeds),
         own=', '.join(str(seed) for seed in plan.own_seeds), death_s=AFTER_DEATH_S,
+        away_s=RESTARTS_IN_S, aftermath_s=AFTERMATH_S,
         learnings=' and '.join(str(learning) for learning in plan.learnings), hours=plan.hours,
         faults=plan.faults, recordings='the recordings of real robots '
         '([which](recordings.md))' if plan.data else 'without the recordings of real robots'),

@@ -19,7 +19,8 @@ from self_awareness_evaluation.ablation.bench import RECORDINGS, Bench, Fault, R
 from self_awareness_evaluation.ablation.variants import Variant
 from self_awareness_evaluation.detectors import Evidence
 from self_awareness_evaluation.recordings import outages
-from self_awareness_evaluation.simulated.measures import NORMAL, beginnings, first_alarm
+from self_awareness_evaluation.simulated.measures import (NORMAL, alarms_after_return, beginnings,
+                                                          first_alarm)
 from self_awareness_evaluation.systems import Judged
 
 OUTAGE = 'outage'
@@ -46,6 +47,7 @@ class Row:
         first: whether that alarm names the guilty one first; None: no alarm, or nobody to name.
         cpu_s: that it took to judge it [s].
         refused: why nothing could be judged; empty: it was.
+        after: alarms for who was back already, all of them false; None: the fault lasts.
     """
 
     variant: str
@@ -61,6 +63,7 @@ class Row:
     first: Optional[bool] = None
     cpu_s: float = 0.0
     refused: str = ''
+    after: Optional[int] = None
 
 
 def judge(bench: Bench, variant: Variant) -> List[Row]:
@@ -98,7 +101,10 @@ def _fault_row(row: Row, fault: Fault, system: Evidence) -> Row:
     begin = time.process_time()
     judged = system.judge(fault.recording)
     row = _before(row, judged, fault.onset, time.process_time() - begin)
-    alarm = first_alarm(judged.alarms, fault.onset)
+    after = alarms_after_return(judged.alarms, fault.back)
+    if fault.back is not None:
+        row = replace(row, after=len(after))
+    alarm = first_alarm([alarm for alarm in judged.alarms if alarm not in after], fault.onset)
     if alarm is None:
         return row
     first = alarm.suspects[:1] if alarm.suspects is not None and fault.culprits else None

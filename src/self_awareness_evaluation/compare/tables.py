@@ -134,6 +134,11 @@ def _first(kind: str) -> _FamilyPart:
                                       if kind in ('', row.kind)).named_first
 
 
+def _after(_: Sequence[NormalRow], faults: Sequence[FaultRow]) -> str:
+    known = [row.after for row in faults if row.after is not None]
+    return f'{sum(known)} after {len(known)}' if known else NONE
+
+
 def _among_three(_: Sequence[NormalRow], faults: Sequence[FaultRow]) -> str:
     return Tally.of((row.latency_s, row.among_three) for row in faults).named_first
 
@@ -144,6 +149,7 @@ _OF_FAMILIES: Sequence[Tuple[str, _FamilyPart]] = (
     *((f'{kind}, found', _kind(kind)) for kind in KINDS[1:]),
     *((f'{kind}, within 5 s', _kind(kind, _SOON_S)) for kind in KINDS[1:]),
     *((f'guilty first, {kind}', _first(kind)) for kind in KINDS),
+    ('alarms after a restart', _after),
     ('guilty first, all', _first('')), ('guilty among three, all', _among_three))
 
 _OF_A_FAMILY: Sequence[Tuple[str, _FamilyPart]] = (
@@ -151,7 +157,7 @@ _OF_A_FAMILY: Sequence[Tuple[str, _FamilyPart]] = (
     ('crashes within 1 / 5 / 50 s', _kind(CRASH, *_CRASH_S)), ('half rates', _kind(HALF_RATE)),
     ('late answers', _kind(LATE)), ('deaths when asked, within 5 s', _kind(DEATH, _SOON_S)),
     ('deaths of who speaks seldom', _kind(SELDOM)), (MISSES, _kind(MISSES)),
-    (STARVED, _kind(STARVED)), (SILENT, _kind(SILENT)),
+    (STARVED, _kind(STARVED)), (SILENT, _kind(SILENT)), ('alarms after a restart', _after),
     ('guilty first', _first('')))
 
 

@@ -9,7 +9,8 @@ import numpy as np
 from self_awareness import DEFAULT_WINDOW
 from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation.families.protocol import FaultRecord
-from self_awareness_evaluation.simulated.measures import beginnings, first_alarm
+from self_awareness_evaluation.simulated.measures import (alarms_after_return, beginnings,
+                                                          first_alarm)
 from self_awareness_evaluation.systems import Judged
 
 _HOUR_S = 3600.0
@@ -77,6 +78,8 @@ class FaultRow:
         first: whether that alarm names the guilty component first; None: no such alarm, no
             guilty component, or the system names nobody.
         among_three: the same of the first three.
+        after: alarms for a component that was back already, all of them false; None: it is not
+            back.
     """
 
     subject: Subject
@@ -86,6 +89,7 @@ class FaultRow:
     latency_s: Optional[float]
     first: Optional[bool]
     among_three: Optional[bool]
+    after: Optional[int] = None
 
 
 def normal_row(subject: Subject, judged: Judged, expected: Optional[float],
@@ -100,7 +104,8 @@ def normal_row(subject: Subject, judged: Judged, expected: Optional[float],
 
 def fault_row(subject: Subject, record: FaultRecord, judged: Judged) -> FaultRow:
     """Measure a recording with a fault."""
-    alarm = first_alarm(judged.alarms, record.onset)
+    after = alarms_after_return(judged.alarms, record.back)
+    alarm = first_alarm([alarm for alarm in judged.alarms if alarm not in after], record.onset)
     suspects = alarm.suspects if alarm is not None and record.source else None
     return FaultRow(
         subject, record.kind, record.source,
@@ -108,7 +113,8 @@ def fault_row(subject: Subject, record: FaultRecord, judged: Judged) -> FaultRow
             for alarm in judged.alarms),
         None if alarm is None else (alarm.start - record.onset) / SECOND_NS,
         None if suspects is None else suspects[:1] == [record.source],
-        None if suspects is None else record.source in suspects[:3])
+        None if suspects is None else record.source in suspects[:3],
+        None if record.back is None else len(after))
 
 
 def _hours(windows: np.ndarray) -> float:

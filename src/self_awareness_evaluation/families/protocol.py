@@ -9,7 +9,8 @@ import numpy as np
 from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness_evaluation.families.kinds import FAMILIES
 from self_awareness_evaluation.families.robot import (CRASH, HALF_RATE, LATE, LONGEST_START_S,
-                                                      MISSES, SILENT, STARVED, Fault, Robot)
+                                                      MISSES, RESTART, SILENT, STARVED, Fault,
+                                                      Robot)
 from self_awareness_evaluation.windowed_events import WindowedEvents
 
 DEATH = 'death'
@@ -18,7 +19,7 @@ DEATH = 'death'
 SELDOM = 'seldom'
 """The crash of a component that speaks when something happens, and answers to nobody."""
 
-KINDS = (CRASH, HALF_RATE, LATE, DEATH, MISSES, STARVED, SILENT, SELDOM)
+KINDS = (CRASH, HALF_RATE, LATE, DEATH, MISSES, STARVED, SILENT, SELDOM, RESTART)
 """Kinds of faults as they are told apart in the results."""
 
 WATCHED_S = 1800.0
@@ -29,6 +30,9 @@ AFTER_ONSET_S = 60.0
 
 AFTER_DEATH_S = 1800.0
 """And for so long after a death."""
+
+RESTARTS_IN_S, AFTER_RESTART_S = 10.0, 180.0
+"""A component that is started again is silent for so long, and then watched for so long [s]."""
 
 _ONSET_S = 60.0
 _ONSET_SPREAD_S = 2.0  # the onset must have no fixed phase to the windows and the robot's timers
@@ -101,12 +105,14 @@ class FaultRecord:
         recording: the events.
         onset: of the fault [ns]; of a DEATH: when the first message would have come that is
             missing.
+        back: when the component is back [ns]; None: it stays away, or never was.
     """
 
     kind: str
     source: str
     recording: WindowedEvents
     onset: int
+    back: Optional[int] = None
 
 
 def check_hours(families: Sequence[str], hours: float) -> None:
@@ -175,7 +181,7 @@ class Records:
                LATE: [source for source in regular if source in answering],
                DEATH: [source for source in answering if source not in regular],
                MISSES: [source for source in regular if source in answering],
-               STARVED: [''], SILENT: [''], SELDOM: self.robot.seldom}
+               STARVED: [''], SILENT: [''], SELDOM: self.robot.seldom, RESTART: regular}
         number = 0
         for kind in KINDS:
             chosen = _spread(len(who[kind]), most) if kind in kinds else set()
@@ -191,7 +197,8 @@ class Records:
         spread = np.random.default_rng((self.robot.seed, number)).uniform(0.0, _ONSET_SPREAD_S)
         onset_s = _ONSET_S + float(spread)
         seconds = onset_s + after_s
-        fault = Fault(CRASH if kind in (DEATH, SELDOM) else kind, source, onset_s)
+        fault = Fault(CRASH if kind in (DEATH, SELDOM) else kind, source, onset_s,
+                      onset_s + RESTARTS_IN_S if kind == RESTART else LONGEST_START_S)
         same_start = self._family.watched_start
         recording = self._recorded(_FAULTS, number, seconds, same_start, fault)
         onset = recording.end - nanoseconds(seconds) + nanoseconds(onset_s)
@@ -201,7 +208,8 @@ class Records:
             if not len(missing) or missing[0] + nanoseconds(_MISSING_S) > recording.end:
                 return
             onset = int(missing[0])
-        yield FaultRecord(kind, source, recording, onset)
+        yield FaultRecord(kind, source, recording, onset,
+                          onset + nanoseconds(RESTARTS_IN_S) if kind == RESTART else None)
 
     def _lasts(self, kind: str, source: str, number: int, after_death_s: float) -> float:
         """Return for how long a recording with a fault goes on after the onset [s]."""
@@ -209,6 +217,8 @@ class Records:
             healthy = self._recorded(_FAULTS, number, _PAUSES_FROM_S, self._family.watched_start)
             stamps = _stamps(healthy, source)
             return _PAUSES * float(np.max(np.diff(stamps), initial=0)) / SECOND_NS
+        if kind == RESTART:
+            return RESTARTS_IN_S + AFTER_RESTART_S
         return after_death_s if kind == DEATH else AFTER_ONSET_S
 
     def _hole(self, number: int, seconds: float) -> Optional[Fault]:

@@ -14,11 +14,14 @@ from self_awareness_evaluation.families import summary
 from self_awareness_evaluation.families.experiment import Plan, Results
 from self_awareness_evaluation.families.kinds import FAMILIES
 from self_awareness_evaluation.families.measures import FaultRow, NormalRow
-from self_awareness_evaluation.families.protocol import (AFTER_DEATH_S, AFTER_ONSET_S, KINDS,
+from self_awareness_evaluation.families.protocol import (AFTER_DEATH_S, AFTER_ONSET_S,
+                                                         AFTER_RESTART_S, KINDS, RESTARTS_IN_S,
                                                          WATCHED_S)
+from self_awareness_evaluation.families.robot import RESTART
 from self_awareness_evaluation.families.summary import Found
 from self_awareness_evaluation.families.tables import (budgets_table, families_table,
                                                        late_learning, main_learning, main_system)
+from self_awareness_evaluation.simulated.measures import AFTERMATH_S
 
 NAME = 'families'
 
@@ -43,11 +46,13 @@ answers 60 ms later, or misses its inputs for a second now and then; the CPU is 
 20 s; everything falls silent (the recording goes on for {after_s:g} s after the onset); every
 component that speaks only when it is asked dies ({death_s:g} s; the latency counts from the first
 message that is missing); and so does who speaks when something happens (three times its longest
-pause within an hour). With every start all timers have new phases; where a family is recorded
-or watched in one start, its line says so. All systems judge the same recordings; the first
-{settle_s:g} s of each, while a detector settles, are left out. A host that stalls is that of the
-recorder and the monitor, too, and the recordings say for how long it did; that a CPU is starved
-they do not say.
+pause within an hour). Every regular component is restarted, too: it is silent for {away_s:g} s,
+and then its timers have other phases; the recording goes on for {watched_again_s:g} s, and alarms
+that are raised when it is back for {aftermath_s:g} s are false. With every start all timers have
+new phases; where a family is recorded or watched in one start, its line says so. All systems judge
+the same recordings; the first {settle_s:g} s of each, while a detector settles, are left out. A
+host that stalls is that of the recorder and the monitor, too, and the recordings say for how long
+it did; that a CPU is starved they do not say.
 
 The table is about `{system}` with limits for a budget of {budget:g} false alarms an hour. It
 begins with the false alarms an hour by what was learned from, with their 95 % interval (alarms
@@ -102,6 +107,7 @@ def page(plan: Plan, results: Results, command: str) -> str:
         families='\n'.join(f'- `{name}`: {FAMILIES[name].told}' for name in plan.families),
         learnings='; '.join(str(learning) for learning in plan.learnings),
         hours=plan.hours, watched_s=WATCHED_S, after_s=AFTER_ONSET_S, death_s=AFTER_DEATH_S,
+        away_s=RESTARTS_IN_S, watched_again_s=AFTER_RESTART_S, aftermath_s=AFTERMATH_S,
         settle_s=DetectorParameters().settle_time / SECOND_NS, main=main_learning(plan),
         late=late_learning(plan), budget=plan.budgets[0]),
         *families_table(plan, results), '']
@@ -126,6 +132,7 @@ def figures(results: Results) -> List[Dict[str, Any]]:
             'evidence': '; '.join(f'{text} {number}' for text, number in quiet.evidence)}
         for kind in KINDS:
             row.update(_of_fault(kind, summary.found(results.faults, group, kind)))
+        row[f'{RESTART}_alarms_after'] = summary.found(results.faults, group, RESTART).after
         rows.append({name: _short(value) for name, value in row.items()})
     return rows
 

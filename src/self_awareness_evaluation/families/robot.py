@@ -14,7 +14,8 @@ from self_awareness_evaluation.families.emissions import Emission, Feedback, Spo
 from self_awareness_evaluation.families.scene import Scene
 from self_awareness_evaluation.windowed_events import WindowedEvents
 
-CRASH, HALF_RATE, LATE, MISSES = 'crash', 'half rate', 'late 60 ms', 'misses inputs'
+CRASH, HALF_RATE, LATE, MISSES, RESTART = ('crash', 'half rate', 'late 60 ms', 'misses inputs',
+                                           'restart')
 """The kinds of faults of one component."""
 
 STARVED, SILENT = 'starved CPU', 'everything silent'
@@ -42,8 +43,9 @@ class Fault:
     """A fault of one component, or of the whole robot.
 
     Args:
-        kind: CRASH: it is silent. HALF_RATE: it leaves out every second message. LATE: its answers
-            to others come LATE_S later. MISSES: it answers nothing for a second, now and then.
+        kind: CRASH: it is silent. RESTART: it is silent, too; after the relief its timers have
+            other phases. HALF_RATE: it leaves out every second message. LATE: its answers to
+            others come LATE_S later. MISSES: it answers nothing for a second, now and then.
             What answers to it suffers as it would. STARVED: all messages wait, longer and longer
             within 20 s. SILENT: nobody sends.
         source: the component; empty: the robot.
@@ -177,7 +179,7 @@ class Robot:
 
     def _check(self, fault: Fault) -> None:
         of_robot = fault.kind in (STARVED, SILENT)
-        if not of_robot and fault.kind not in (CRASH, HALF_RATE, LATE, MISSES):
+        if not of_robot and fault.kind not in (CRASH, HALF_RATE, LATE, MISSES, RESTART):
             raise ValueError(f'{fault.kind}: no such kind of fault')
         if fault.source not in ({''} if of_robot else {output.source for output in self.outputs}):
             raise ValueError(f'{fault.source}: no such component')
@@ -202,6 +204,9 @@ class Robot:
         hit = ((times >= begin_s + fault.onset_s) & (times < begin_s + fault.relief_s))
         if fault.kind in (CRASH, SILENT):
             return times[~hit]
+        if fault.kind == RESTART:
+            shift = (_new_phase(times, scene, index) if output.emission.trigger is None else 0.0)
+            return times[~hit] + shift * (times[~hit] >= begin_s + fault.relief_s)
         if fault.kind == STARVED:
             grown = np.clip((times - begin_s - fault.onset_s) / _GROWS_S, 0.0, 1.0) * hit
             waits = scene.of_recording(f'starved {index}').exponential(_STARVED_S, len(times))
@@ -255,6 +260,12 @@ def _missed(times: np.ndarray, scene: Scene, fault: Fault) -> np.ndarray:
     edges = scene.begin + np.cumsum(np.column_stack(
         [rng.exponential(_BETWEEN_MISSES_S, number), np.full(number, _MISSED_S)]).ravel())
     return np.searchsorted(edges, times, side='right') % 2 == 1
+
+
+def _new_phase(times: np.ndarray, scene: Scene, index: int) -> float:
+    """Return by how much later a timer sends that was started again [s]."""
+    period = float(np.median(np.diff(times))) if len(times) > 1 else 0.0
+    return period * float(scene.of_recording(f'restart {index}').uniform())
 
 
 def _waiting(scene: Scene, begin: float, origin: int) -> List[Waiting]:

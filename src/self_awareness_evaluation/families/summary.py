@@ -67,6 +67,7 @@ class Found:
         latencies_s: to the first alarm of each; infinite where there was none [s].
         first: share of the alarms that name the guilty component first; NaN: none names anybody.
         among_three: the same of the first three.
+        after: alarms for components that were back already.
     """
 
     records: int
@@ -74,6 +75,7 @@ class Found:
     latencies_s: Tuple[float, ...]
     first: float
     among_three: float
+    after: int = 0
 
     def within(self, seconds: float = math.inf) -> float:
         """Return the share found in this time [s], at the most in that of the recording."""
@@ -138,7 +140,8 @@ def found(rows: Sequence[FaultRow], group: Group, kind: str) -> Found:
     return Found(
         len(chosen), _share([row.stood_before for row in chosen]),
         tuple(math.inf if row.latency_s is None else row.latency_s for row in chosen),
-        _share([row.first for row in chosen]), _share([row.among_three for row in chosen]))
+        _share([row.first for row in chosen]), _share([row.among_three for row in chosen]),
+        sum(row.after or 0 for row in chosen))
 
 
 def rate_interval(robots: Sequence[Tuple[int, float]]) -> Interval:

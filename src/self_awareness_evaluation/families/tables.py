@@ -8,8 +8,8 @@ from self_awareness_evaluation.families import summary
 from self_awareness_evaluation.families.experiment import WITH_GRAPH, Plan, Results
 from self_awareness_evaluation.families.measures import NormalRow
 from self_awareness_evaluation.families.protocol import DEATH, SELDOM, Learning
-from self_awareness_evaluation.families.robot import (CRASH, HALF_RATE, LATE, MISSES, SILENT,
-                                                      STARVED)
+from self_awareness_evaluation.families.robot import (CRASH, HALF_RATE, LATE, MISSES, RESTART,
+                                                      SILENT, STARVED)
 from self_awareness_evaluation.families.summary import ALL, Found, Group, Quiet
 from self_awareness_evaluation.simulated.tables import percent, seconds, table
 
@@ -45,7 +45,8 @@ def families_table(plan: Plan, results: Results) -> List[str]:
     head = ['family', *(f'false alarms/h, {_started(plan, each)}' for each in plan.learnings),
             *(f'{name}, {_started(plan, learning)}' for name in others), 'alarm stands', 'WARN/h',
             'crash, within 1 / 5 / 50 s', 'half rate', 'late answers', 'deaths when asked',
-            *_MORE, f'watched: {" / ".join([system, *others])}', 'false alarms from']
+            *_MORE, 'alarms after a restart', f'watched: {" / ".join([system, *others])}',
+            'false alarms from']
     body = []
     for family in _with_all(plan.families):
         of_family = _Row(plan, results, normal, family)
@@ -58,6 +59,7 @@ def families_table(plan: Plan, results: Results) -> List[str]:
             _crashes(of_family.found(learning, system, CRASH)), _found(half),
             _found(of_family.found(late_learning(plan), system, LATE)), _found(death),
             *(_found(of_family.found(learning, system, kind)) for kind in _MORE.values()),
+            _after(of_family.found(learning, system, RESTART)),
             _watched(of_family, learning, [system, *others]), _sources(quiet)])
     return table(head, body)
 
@@ -149,6 +151,10 @@ def _found(found: Found) -> str:
     if not found.records:
         return _NONE
     return f'{100.0 * found.within():.0f} %, {seconds(found.median_s)}{_blame(found)}'
+
+
+def _after(found: Found) -> str:
+    return f'{found.after} after {found.records}' if found.records else _NONE
 
 
 def _blame(found: Found) -> str:

@@ -7,11 +7,15 @@ from typing import List, Optional, Sequence
 import numpy as np
 
 from self_awareness import DEFAULT_WINDOW, Roc
-from self_awareness.stamps import SECOND_NS
+from self_awareness.stamps import SECOND_NS, nanoseconds
 from self_awareness_evaluation.systems import Judged, SystemAlarm
 
 NORMAL = 'normal'
 """Name of the record without a fault."""
+
+AFTERMATH_S = 5.0
+"""An alarm that is raised so soon after the fault is over belongs to it: a node that comes back is
+no normal operation yet [s]."""
 
 
 @dataclass(frozen=True)
@@ -138,3 +142,15 @@ def _noticed_first(judged: Judged, onset: int, culprits: Sequence[str]) -> Optio
 def first_alarm(alarms: List[SystemAlarm], onset: int) -> Optional[SystemAlarm]:
     """Return the first alarm that is raised after the onset [ns]."""
     return next((alarm for alarm in alarms if alarm.start > onset), None)
+
+
+def alarms_after_return(alarms: List[SystemAlarm], back: Optional[int]) -> List[SystemAlarm]:
+    """Return the alarms that do not belong any more to a fault that is over, AFTERMATH_S after it.
+
+    Args:
+        alarms: of the record.
+        back: when the fault was over [ns]; None: never.
+    """
+    if back is None:
+        return []
+    return [alarm for alarm in alarms if alarm.start > back + nanoseconds(AFTERMATH_S)]

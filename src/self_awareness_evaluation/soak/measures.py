@@ -5,13 +5,10 @@ from dataclasses import dataclass
 from typing import List, Optional, Sequence, Tuple
 
 from self_awareness_evaluation.live.samples import ERROR, Status
+from self_awareness_evaluation.simulated.measures import AFTERMATH_S
 
 MUST_BE_FOUND_S = 2.0
 """A fault that lasts for longer is missed if there is no alarm [s]."""
-
-AFTERMATH_S = 5.0
-"""An alarm that is raised so soon after the fault is over belongs to it: a node that comes back is
-no normal operation yet [s]."""
 
 
 @dataclass(frozen=True)

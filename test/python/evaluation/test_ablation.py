@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, List
 
+import numpy as np
 import pytest
 
 from self_awareness import Tuning
@@ -18,9 +19,11 @@ from self_awareness_evaluation.ablation.bench import (FAMILIES, OTHER, OWN, Benc
 from self_awareness_evaluation.ablation.rows import Row, RowFile, judge, same
 from self_awareness_evaluation.ablation.variants import (CHANNEL, DEFAULT, NUMBER, RULE, Variant,
                                                          variants)
+from self_awareness_evaluation.detectors import Evidence
 from self_awareness_evaluation.families.protocol import Learning, Records
-from self_awareness_evaluation.families.robot import CRASH
+from self_awareness_evaluation.families.robot import CRASH, RESTART
 from self_awareness_evaluation.simulated.measures import NORMAL
+from self_awareness_evaluation.systems import Judged, SystemAlarm
 
 from evaluation_robot import START, robot
 
@@ -96,6 +99,20 @@ def test_a_variant_is_measured_on_every_record() -> None:
     assert crash.hours == pytest.approx(15.0 / 3600.0, rel=0.02)  # what was before the onset
     _, blind = judge(small_bench(), Variant(CHANNEL, 'overdue'))
     assert blind.latency_s is None or blind.latency_s > crash.latency_s
+
+
+def test_alarms_for_who_is_back_are_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    bench = small_bench()
+    crash = replace(bench.robots[0].faults[0], back=START + 22 * SECOND_NS)
+    late = [SystemAlarm(START + second * SECOND_NS, START + 39 * SECOND_NS, True, ['/player'])
+            for second in (21, 26, 28)]
+    monkeypatch.setattr(Evidence, 'judge', lambda self, recording: Judged(
+        np.arange(2), np.zeros(2, bool), np.zeros(2), np.zeros(2, bool), late, -1.0,
+        np.zeros(2, bool)))
+    _, found = judge(Bench([replace(bench.robots[0], faults=[crash])], None), AS_IT_IS)
+    assert (found.latency_s, found.after) == (1.0, 1)
+    cells = figures.cells([found, row(kind=RESTART, after=2)], [row()])
+    assert cells['alarms after a restart'].text == '3 after 2'
 
 
 def test_where_no_limits_can_be_found_nothing_is_judged() -> None:
@@ -190,7 +207,7 @@ def test_the_page_marks_what_differs() -> None:
     page = report.page(PLAN, results, 'rosrun self_awareness evaluate ablation')
     lines = page.splitlines()
     crash = '1 / 1 of 1, 0.25 s'
-    nothing = ' | '.join('–' * 7)
+    nothing = ' | '.join('–' * 9)
     for told in ('as it is', f'without {SOME}'):
         assert (f'| {told} | 0 in 1.0 h | 0 in 1.0 h | {crash} | {nothing} | 1 of 1 | 100 % |'
                 in lines)

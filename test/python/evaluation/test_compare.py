@@ -9,7 +9,7 @@ import pytest
 
 from self_awareness_evaluation import evaluate, row_files
 from self_awareness_evaluation.families.measures import FaultRow, NormalRow, Subject
-from self_awareness_evaluation.families.robot import CRASH, LATE
+from self_awareness_evaluation.families.robot import CRASH, LATE, RESTART
 from self_awareness_evaluation.recordings.outages import OutageRow
 from self_awareness_evaluation.simulated.measures import NORMAL, Row
 
@@ -47,7 +47,8 @@ def write(folder: Path, normals: List[NormalRow], faults: List[FaultRow], rows: 
 
 
 NORMALS = [normal('timers', 0), normal('bursty', 3)]
-FAULTS = [fault('timers', CRASH, 0.5), fault('timers', LATE, None), fault('bursty', CRASH, 2.0)]
+FAULTS = [fault('timers', CRASH, 0.5), fault('timers', LATE, None), fault('bursty', CRASH, 2.0),
+          replace(fault('timers', RESTART, 0.5), after=2)]
 ROWS = [simulated(NORMAL), simulated('ac', 3.5), simulated('crash:slam', 0.25)]
 
 
@@ -55,7 +56,7 @@ ROWS = [simulated(NORMAL), simulated('ac', 3.5), simulated('crash:slam', 0.25)]
 def _folders(tmp_path: Path) -> List[str]:
     write(tmp_path / 'before' / 'all', NORMALS, FAULTS, ROWS, [OUTAGE])
     write(tmp_path / 'after' / 'all', [NORMALS[0], normal('bursty', 1)],
-          [FAULTS[0], fault('timers', LATE, 0.75), FAULTS[2]],
+          [FAULTS[0], fault('timers', LATE, 0.75), FAULTS[2], replace(FAULTS[3], after=0)],
           [ROWS[0], simulated('ac'), ROWS[2]], [replace(OUTAGE, latency_s=1.5, watched=6)])
     return [str(tmp_path / 'before'), str(tmp_path / 'after')]
 
@@ -80,15 +81,17 @@ def test_a_cell_has_one_value_or_both(folders: List[str], tmp_path: Path) -> Non
     page = (tmp_path / 'out' / 'before_after.md').read_text(encoding='utf-8')
     lines = page.splitlines()
     assert '    evaluate families --hours 2' in lines  # and no folder
-    assert '- families, faults: 2 of 3' in lines and '- simulated robot: 2 of 3' in lines
+    assert '- families, faults: 2 of 4' in lines and '- simulated robot: 2 of 3' in lines
     for line in ('| false alarms | 3 in 4 h (0.75/h) → **1 in 4 h (0.25/h)** |',
                  '| crashes within 1 / 5 / 50 s | 1 / 2 / 2 of 2, 0.50 s |',
                  '| late 60 ms, found | 0 of 1 → **1 of 1, 0.75 s** |',
-                 '| guilty first, all | 1 of 2 → **2 of 3** |',
+                 '| guilty first, all | 2 of 3 → **3 of 4** |',
+                 '| alarms after a restart | 2 after 1 → **0 after 1** |',
                  '| death, found | – |',
                  f'| timers | evidence, {LEARNING}, budget 0.5 | 0 in 2 h (0/h) | 0 in 2 h (0/h) '
                  '| 1 / 1 / 1 of 1, 0.50 s | – | 0 of 1 → **1 of 1, 0.75 s** | – '
-                 '| – | – | – | – | 1 of 1 → **2 of 2** |',
+                 '| – | – | – | – | 2 after 1 → **0 after 1** '
+                 '| 2 of 2 → **3 of 3** |',
                  '| ac | 1 of 1, 3.50 s → **0 of 1** |',
                  '| every crash within 1 / 5 / 50 s | 1 / 1 / 1 of 1, 0.25 s |',
                  '| wheeled_robot, 1 | evidence | 5 → **6** | 0.90 s → **1.50 s** | 0 | 0.00 s |'):

@@ -10,9 +10,9 @@ from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation.families.conditions import Conditions
 from self_awareness_evaluation.families.emissions import Answer, Feedback, Sporadic, Timer
 from self_awareness_evaluation.families.kinds import FAMILIES, draw
-from self_awareness_evaluation.families.protocol import SELDOM, Learning, Records
-from self_awareness_evaluation.families.robot import (CRASH, HALF_RATE, LATE, MISSES, SILENT,
-                                                      STARVED, Fault, Output, Robot)
+from self_awareness_evaluation.families.protocol import RESTARTS_IN_S, SELDOM, Learning, Records
+from self_awareness_evaluation.families.robot import (CRASH, HALF_RATE, LATE, MISSES, RESTART,
+                                                      SILENT, STARVED, Fault, Output, Robot)
 from self_awareness_evaluation.windowed_events import WindowedEvents
 
 POINTS = 'sensor_msgs/PointCloud2'
@@ -208,6 +208,37 @@ def test_who_speaks_seldom_is_watched_for_three_of_its_longest_pauses() -> None:
                                       [fault.recording.ids]]
         assert (sent < fault.onset).all()
         assert (fault.recording.end - fault.onset) / SECOND_NS > 60.0
+
+
+def test_who_is_started_again_was_silent_and_has_another_phase() -> None:
+    robot = small(jitter_s=0.0)
+    normal, again = (stamps(robot.start(1, 60.0, fault))
+                     for fault in (None, Fault(RESTART, '/driver', 20.0, 30.0)))
+    shift = again['/scan'][250:450] - normal['/scan'][350:550]
+    assert 0.002 < np.median(shift) < 0.098
+    for topic in ('/scan', '/info', '/map', '/path'):
+        assert np.array_equal(again[topic][:199], normal[topic][:199]), topic
+        pauses = np.diff(again[topic])
+        assert np.sum(pauses > 1.0) == 1 and 9.9 < pauses.max() < 10.3, topic
+        # What answers to it has kept its delay.
+        assert np.median(again[topic][250:450] - again['/scan'][250:450]) == pytest.approx(
+            np.median(normal[topic][350:550] - normal['/scan'][350:550]), abs=0.001), topic
+    assert np.array_equal(again['/charge'], normal['/charge'])
+
+
+def test_who_is_started_again_is_watched_for_long() -> None:
+    records = Records('timers', 1)
+    found = list(records.faults((RESTART,)))
+    assert [fault.source for fault in found] == records.robot.regular
+    for fault in found[:3]:
+        assert fault.back is not None
+        sent = fault.recording.stamps[np.array([kind.source == fault.source for kind in
+                                                fault.recording.event_types])
+                                      [fault.recording.ids]]
+        assert fault.back == fault.onset + int(RESTARTS_IN_S) * SECOND_NS
+        assert not ((sent > fault.onset) & (sent < fault.back)).any()
+        assert (sent > fault.back).any()
+        assert fault.recording.end - fault.back == 180 * SECOND_NS
 
 
 def test_one_recording_to_train_on_has_a_hole() -> None:

@@ -21,7 +21,7 @@ from self_awareness_evaluation.families.experiment import Plan, Results
 from self_awareness_evaluation.families.measures import (FaultRow, NormalRow, Subject, fault_row,
                                                          normal_row)
 from self_awareness_evaluation.families.protocol import DEATH, FaultRecord, Learning, Records
-from self_awareness_evaluation.families.robot import CRASH, HALF_RATE, LATE
+from self_awareness_evaluation.families.robot import CRASH, HALF_RATE, LATE, RESTART
 from self_awareness_evaluation.families.summary import ALL, Group, rate_interval
 from self_awareness_evaluation.systems import Judged, SystemAlarm
 from self_awareness_evaluation.windowed_events import WindowedEvents
@@ -132,6 +132,17 @@ def test_measures_of_a_fault() -> None:
     assert (row.latency_s, row.first, row.among_three) == (None, None, None)
 
 
+def test_alarms_for_who_is_back_are_counted_apart() -> None:
+    alarms = [SystemAlarm(at(71), at(90), True, ['/a']), SystemAlarm(at(121), at(125), True, []),
+              SystemAlarm(at(131), at(140), True, ['/a'])]
+    record = replace(fault_at(70, RESTART), back=at(80))  # windows of 0.1 s, so 5 s are fifty
+    row = fault_row(SUBJECT, record, judged(alarms))
+    assert row.latency_s == pytest.approx(0.1, abs=1e-6) and row.after == 1
+    row = fault_row(SUBJECT, record, judged(alarms[2:]))
+    assert (row.latency_s, row.first, row.after) == (None, None, 1)
+    assert fault_row(SUBJECT, fault_at(70), judged(alarms)).after is None
+
+
 def test_a_false_alarm_that_stands_at_the_onset_is_told() -> None:
     for alarm, stood in ((SystemAlarm(at(60), at(69), True, []), False),
                          (SystemAlarm(at(60), at(71), True, []), True),
@@ -217,13 +228,15 @@ def test_the_table_tells_what_was_found() -> None:
                        normal(1, 1, 2.0, 'gaps', budget=None),
                        normal(2, 0, 2.0, 'gaps', budget=None)],
                       [fault(CRASH, 0.4, True), fault(CRASH, 4.0, False), fault(CRASH, None, None),
-                       fault(LATE, 0.1, True), fault(HALF_RATE, None, None)])
+                       fault(LATE, 0.1, True), fault(HALF_RATE, None, None),
+                       replace(fault(RESTART, 0.4, True), after=0),
+                       replace(fault(RESTART, None, None), after=3)])
     plan = Plan(('timers',), (1, 2), (TWO,), ('evidence', 'gaps'), (0.5,), 4.0, (CRASH, LATE))
     low, high = rate_interval([(12, 2.0), (0, 2.0)])
     assert tables.families_table(plan, results)[2:] == [
         f'| timers | 3 ({low:.2g} to {high:.0f}) | 0.25 (0.044 to 1.4) | 0.3 % | 6 '
         '| 33 / 67 / 67 %, first 50 % | 0 %, – | 100 %, 0.10 s, first 100 % | – | – | – | – | – '
-        '| – / – of – | answers 12 |']
+        '| 3 after 2 | – / – of – | answers 12 |']
     assert tables.budgets_table(plan, results)[2:] == [
         f'| 2 starts | 0.5 | 0.38 | 3 ({low:.2g} to {high:.0f}) | 50 % |']
 
