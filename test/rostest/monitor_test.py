@@ -15,8 +15,11 @@ import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
-from live_system import MonitorListener, Process, again_if_clock_was_set, await_condition
+from live_system import (MonitorListener, Process, Waiting, again_if_clock_was_set,
+                         await_condition)
+from self_awareness import DEFAULT_WINDOW, Tuning
 from self_awareness.msg import SelfAwareness
+from self_awareness.stamps import SECOND_NS
 
 TRAINING_S = 60
 CALIBRATION_S = 120
@@ -89,6 +92,7 @@ class MonitorTest(unittest.TestCase):
             await_condition('the recorder records', recording_odometry, 30)
             with self.start_monitor(), MonitorListener() as listener:
                 self.assertNotEqual(listener.await_settled().level, SelfAwareness.ERROR)
+                waiting = Waiting()
                 first = len(listener.statuses)
                 await_condition('10 s of normal operation',
                                 lambda: len(listener.statuses) > first + 100, 30)
@@ -104,7 +108,8 @@ class MonitorTest(unittest.TestCase):
                 self.check_diagnostics(listener)
                 await_condition('5 s of the fault',
                                 lambda: rospy.get_time() > killed_at + 5, 30)
-        self.compare_with_bag(listener.statuses)
+                waited = waiting.seconds()
+        self.compare_with_bag(listener.statuses, waited)
         self.check_recorder(alarm)
 
     def check_heartbeat(self, listener: MonitorListener) -> None:
@@ -159,8 +164,12 @@ class MonitorTest(unittest.TestCase):
         printed = self.run_program('score', path, '--model', self.path('model'))
         self.assertIn('1. /player /scan std_msgs/String: silent for ', printed)
 
-    def compare_with_bag(self, statuses: list) -> None:
-        """The bag that was recorded at the same time has the same abnormal windows."""
+    def compare_with_bag(self, statuses: list, waited: float) -> None:
+        """The bag that was recorded at the same time has the same abnormal windows.
+
+        But the monitor takes from a silence what its machine made processes wait [s], up to a
+        stall, and a bag by rosbag does not tell it.
+        """
         self.run_program('score', self.path('live.bag'), '--model', self.path('model'),
                          '--csv', self.path('score.csv'))
         live = {s.window_start.to_nsec(): s for s in statuses if not s.settling}
@@ -176,8 +185,10 @@ class MonitorTest(unittest.TestCase):
         # Recorder and monitor stamp a message some microseconds apart: one that comes at the edge
         # of a window may count in neighbouring windows, and none of it changes an alarm.
         different = abnormal_live ^ abnormal_offline
-        self.assertLessEqual(len(different), 0.02 * len(windows),
-                             [(live[start].score, offline[start]['score']) for start in different])
+        shifted = min(waited, Tuning().get('longest_stall')) * SECOND_NS / DEFAULT_WINDOW
+        self.assertLessEqual(
+            len(different), 0.02 * len(windows) + shifted, '{:.2f} s waited: {}'.format(
+                waited, [(live[start].score, offline[start]['score']) for start in different]))
 
 
 if __name__ == '__main__':

@@ -5,39 +5,19 @@ import multiprocessing
 import os
 import re
 import subprocess
-import time
 
 import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
 
-from live_system import (MonitorListener, Process, again_if_clock_was_set, await_condition,
-                         operation, write_bag)
+from live_system import (PRESSURE, MonitorListener, Process, Waiting, again_if_clock_was_set,
+                         await_condition, operation, write_bag)
 from monitor_case import MonitorCase
 from self_awareness.msg import SelfAwareness
 
-PRESSURE = '/proc/pressure/cpu'
 LOOP = 'while True: pass'
 MOST_WAITING = 0.3
 """Share of the time for which processes wait, at most, where a test can tell a load of its own."""
-
-
-class Waiting:
-    """How long processes have waited for a processor since this was made."""
-
-    def __init__(self) -> None:
-        self._before = self._total()
-        self._began = time.monotonic()
-
-    def share(self) -> float:
-        """The share of the time."""
-        return (self._total() - self._before) / (time.monotonic() - self._began)
-
-    @staticmethod
-    def _total() -> float:
-        """Since the machine began [s]."""
-        with open(PRESSURE) as file:
-            return int(re.search(r'total=(\d+)', file.read()).group(1)) / 1e6
 
 
 def talker(name: str, topic: str, rate: float) -> Process:
