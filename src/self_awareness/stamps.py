@@ -24,6 +24,11 @@ def moment(stamp: int) -> str:
     return f'{utc(stamp)} UTC{_local(stamp)}'
 
 
+def to_the_second(stamp: int) -> str:
+    """Return a stamp [ns] as moment() does, without milliseconds."""
+    return f'{utc(stamp)[:19]} UTC{_local(stamp)}'
+
+
 def span(begin: int, end: int) -> str:
     """Return two stamps [ns] as moment() does one."""
     return f'{utc(begin)} - {utc(end)} UTC{_local(begin, end)}'

@@ -6,7 +6,7 @@ from typing import Iterator
 
 import pytest
 
-from self_awareness.stamps import SECOND_NS, moment, span, utc
+from self_awareness.stamps import SECOND_NS, moment, span, to_the_second, utc
 
 NOON = 1_795_348_800 * SECOND_NS + 123_456_789  # 2026-11-22 12:00 UTC
 
@@ -25,6 +25,7 @@ def test_local_time_stands_beside_utc_where_it_is_another(zone: str) -> None:
              'XYZ+3:30': ' (08:30:00 XYZ)'}
     assert moment(NOON) == f'{utc(NOON)} UTC{local[zone]}' == (
         f'2026-11-22 12:00:00.123 UTC{local[zone]}')
+    assert to_the_second(NOON) == f'2026-11-22 12:00:00 UTC{local[zone]}'
 
 
 def test_of_another_day_the_date_is_told(zone: str) -> None:

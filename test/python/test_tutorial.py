@@ -110,8 +110,9 @@ def test_from_nothing_to_an_alarm_and_its_report(reader: Reader) -> None:
 def test_the_simulated_alarm_is_as_the_page_says(reader: Reader) -> None:
     said = ''.join(reader.type(block) for block in blocks('alarm.md', '## A simulated one'))
     expected = [line for line in (DOCS / 'alarm.md').read_text(encoding='utf-8').splitlines()
-                if line.startswith(('half.bag: ', '    1. /slam', '    2. /navigation'))]
-    assert len(expected) == 3
+                if line.startswith(('half.bag: ', '    1. /slam', '    2. /navigation',
+                                    'late.bag: ', '    1. /leg_', '    2. /face_'))]
+    assert len(expected) == 6
     for line in expected:
         assert line.split(', ...')[0] in said
     assert '/slam' in (reader.folder / 'half.html').read_text()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import glob
+import os
 import sys
 import time
 from typing import Optional, Sequence, Set
@@ -30,6 +31,10 @@ def main(argv: Optional[Sequence[str]] = None) -> int:
 
 
 def _record(arguments: argparse.Namespace) -> None:
+    folder = os.path.dirname(arguments.prefix) or os.curdir
+    if not os.path.isdir(folder):
+        raise ValueError(f'{folder}: there is no such folder, so rosbag cannot record there; make '
+                         f"it, and start again: mkdir -p '{folder}'")
     complete: Set[str] = set()  # files that hold all that is known
     graph = RobotGraph()
     unanswered = ''  # why the master was not heard the last time

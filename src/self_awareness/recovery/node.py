@@ -20,7 +20,7 @@ from self_awareness.recovery.rules import Rules
 from self_awareness.recovery.watch import Watch
 from self_awareness.recovery.xml_rpc import NoAnswer
 from self_awareness.srv import Maintenance, MaintenanceRequest, MaintenanceResponse
-from self_awareness.stamps import SECOND_NS, nanoseconds, utc
+from self_awareness.stamps import SECOND_NS, nanoseconds, to_the_second
 
 LONGEST_HOLD_S = 86400.0
 _TICK_S = 0.1
@@ -255,7 +255,8 @@ class Recovery:
         with self._lock:
             self._held = self._hold = hold
             self._ladder.hold(hold.steady / SECOND_NS)
-        answer = (f'does nothing until {_shown(hold.until)}' if request.duration else 'goes on')
+        answer = (f'does nothing until {to_the_second(hold.until)}' if request.duration
+                  else 'goes on')
         if request.duration and not self._path:
             answer += '; not kept yet, so another start of the recovery would not know it'
         under_way = [words.what(each) for each in self._history.actions[-1:] if not each.over]
@@ -274,7 +275,7 @@ class Recovery:
 
     def _shown_hold(self) -> str:
         """Return until when nothing is done, and who wanted it; empty: it is not held."""
-        return f'until {_shown(self._held.until)}{self._held.by}' if self._is_held() else ''
+        return f'until {to_the_second(self._held.until)}{self._held.by}' if self._is_held() else ''
 
     def _restore(self, steady: int, wall: int) -> None:
         """Let the ladder know of the hour before the start, and of the hold.
@@ -306,7 +307,3 @@ class _Hold:
     until: int
     steady: int
     by: str
-
-
-def _shown(stamp: int) -> str:
-    return f'{utc(stamp)[:19]} UTC'

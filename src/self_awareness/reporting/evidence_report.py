@@ -83,11 +83,13 @@ def print_measured(normal: Sequence[JudgedRun], alarms: FalseAlarms) -> None:
     print(f'normal operation: {alarms.hours:.3f} h (recordings: {len(normal)}), alarms: '
           f'{alarms.count}; the limits were found on the same recordings')
     for run in normal:
+        kinds = run.run.source.event_types
         for alarm in run.verdicts.alarms:
-            kinds = run.run.source.event_types
-            suspects = ', '.join(str(kinds[suspect.id]) for suspect in alarm.suspects)
-            print(f'  {run.run.source.part}: {_seconds(run, alarm.begin)} s: {alarm.evidence}: '
-                  f'{suspects or "no suspect stands out"}')
+            suspects = [f'{kinds[suspect.id]}: {suspect.reason.words}'
+                        for suspect in alarm.suspects]
+            more = f' (and {len(suspects) - 1} more)' if suspects[1:] else ''
+            print(f'  {run.run.source.part}: {_seconds(run, alarm.begin)} s: '
+                  f'{suspects[0] if suspects else "no suspect stands out"}{more}')
 
 
 def print_faults(faulty: Sequence[JudgedRun]) -> None:

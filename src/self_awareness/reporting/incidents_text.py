@@ -9,7 +9,7 @@ from self_awareness import KeptIncident
 from self_awareness.recovery import words
 from self_awareness.recovery.history import Action
 from self_awareness.reporting.text_table import aligned
-from self_awareness.stamps import SECOND_NS, moment, utc
+from self_awareness.stamps import SECOND_NS, moment, to_the_second
 
 _MOST_NAMED = 3
 
@@ -21,8 +21,8 @@ def table(incidents: Sequence[KeptIncident], actions: Sequence[Action]) -> List[
         incidents: to be listed.
         actions: of the recovery, about these and others.
     """
-    head = ['opened (UTC)', 'lasted', 'what', 'raised', 'near misses', 'named besides', 'id']
-    return aligned([head, *([utc(each.opened)[:19], _lasted(each),
+    head = ['opened', 'lasted', 'what', 'raised', 'near misses', 'named besides', 'id']
+    return aligned([head, *([to_the_second(each.opened), _lasted(each),
                              what(each) + _number(of_incident(each, actions)), str(each.alarms),
                              str(each.near_misses), _besides(each), str(each.id)]
                             for each in incidents)])
@@ -45,7 +45,7 @@ def details(incident: KeptIncident, actions: Sequence[Action]) -> List[str]:
     rows += [(title, ', '.join(names)) for title, names in (
         ('failed with it' if incident.component else 'stopped', incident.together),
         ('victims', incident.victims), ('named besides', incident.others)) if names]
-    rows += [('recovery', f'{utc(each.begin)[:19]} UTC, {words.what(each)}')
+    rows += [('recovery', f'{to_the_second(each.begin)}, {words.what(each)}')
              for each in of_incident(incident, actions)]
     return [f'incident {incident.id}',
             *aligned([(f'  {title}', text) for title, text in [*rows, *_ways_on(incident)]])]

@@ -127,11 +127,11 @@ def test_what_could_not_be_compared_is_not_called_unchanged(model_file: str, mak
     assert diff.main([model_file, bag, '--html', str(page)]) == 0
     out = capsys.readouterr().out
     text = page.read_text()
-    if 'of what was compared, nothing changed' in out:
-        assert 'summary unknown' in text and 'Rates and gaps are as before' in text
+    assert 'of what was compared, nothing changed' in out
+    assert 'summary unknown' in text and 'Rates and gaps are as before' in text
     assert 'summary quiet' not in text
     assert 'delays between event types were not compared' in out
-    assert 'record several starts' in out or 'calibrate one' in out
+    assert 'calibrate one' in out
 
 
 def sooner(message: Message) -> List[Message]:

@@ -10,11 +10,14 @@ import pytest
 
 from self_awareness.learning.programs import executable
 
+from plain_words import JARGON
+
 ROOT = Path(__file__).resolve().parents[3]
 NODES = ('record_events', 'self_awareness_node')
 PROGRAMS = sorted(str(path.name) for folder in ('nodes', 'scripts')
                   for path in (ROOT / folder).iterdir()
                   if path.read_bytes().startswith(b'#!/usr/bin/python3')) + list(NODES)
+OF_DEVELOPERS = ('benchmark', 'evaluate')
 
 
 def _said(program: str, option: str) -> str:
@@ -37,3 +40,8 @@ def test_help(program: str) -> None:
     lines = _said(program, '--help').splitlines()
     assert lines[0].startswith('usage: ') and program in lines[0]
     assert max(map(len, lines)) < 100
+
+
+@pytest.mark.parametrize('program', [each for each in PROGRAMS if each not in OF_DEVELOPERS])
+def test_help_is_in_plain_words(program: str) -> None:
+    assert JARGON.findall(_said(program, '--help')) == []

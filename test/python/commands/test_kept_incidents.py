@@ -66,8 +66,8 @@ def test_one_line_for_an_incident(run: Callable[..., str]) -> None:
     head, columns, player, busy, camera, near = run().splitlines()
     assert head.endswith('watch.incidents: incidents: 3, open: 1')
     assert columns.split()[0] == 'opened'
-    assert player.split() == ['2026-09-21', '14:13:20', '20.0', 's', '/player', 'died', '7', '2',
-                              '/slam,', '/navigation,', '/camera', 'and', '1', 'more', '1']
+    assert player.split() == ['2026-09-21', '14:13:20', 'UTC', '20.0', 's', '/player', 'died', '7',
+                              '2', '/slam,', '/navigation,', '/camera', 'and', '1', 'more', '1']
     assert 'busy machine' in busy and ' open ' in camera
     assert near.strip().startswith('besides, components with near misses only: 1')
     assert '/quiet' in run('--near-misses')

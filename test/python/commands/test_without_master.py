@@ -59,3 +59,11 @@ def test_who_writes_the_graph_says_once_that_it_cannot(tmp_path: Path) -> None:
         process.send_signal(signal.SIGINT)
         assert 'no master' not in process.stdout.read()
     assert not list(tmp_path.iterdir())
+
+
+def test_who_writes_the_graph_into_no_folder_says_once_how_to_make_it(tmp_path: Path) -> None:
+    with _started('record_graph', str(tmp_path / 'new' / 'normal')) as process:
+        assert process.stdout is not None
+        told = process.stdout.read()
+        assert process.wait(LONG_S) == 1
+    assert told.count('mkdir -p') == 1 and f"mkdir -p '{tmp_path / 'new'}'" in told
