@@ -45,7 +45,8 @@ class Conditions:
     Args:
         hiccups: share of messages that come some 20 ms later still, as what follows them does.
         lost: share of messages that a listener does not get, of those that come soon after the
-            one before: queues lose what comes too fast for the listener, and nothing else.
+            one before: queues lose what comes too fast for the listener.
+        lost_however_slow: the same of all other messages.
         heavy: share of delays over the wireless link that are ten times as long.
         load_period_s: time in which the load rises and falls once [s]; 0: it does not.
         most_load: by how much longer work takes at the most, 1 or more.
@@ -56,6 +57,7 @@ class Conditions:
 
     hiccups: float = 1e-5
     lost: float = 0.0
+    lost_however_slow: float = 0.0
     heavy: float = 0.0
     load_period_s: float = 0.0
     most_load: float = 1.0
@@ -82,10 +84,10 @@ class Conditions:
 
     def received(self, arrived: np.ndarray, rng: np.random.Generator) -> np.ndarray:
         """Return which messages a listener gets, bool, of those that arrive at some times [s]."""
-        if not self.lost:
+        if not self.lost and not self.lost_however_slow:
             return np.ones(len(arrived), dtype=bool)
         soon = np.diff(arrived, prepend=-np.inf) < _SOON_S
-        return ~soon | (rng.uniform(size=len(arrived)) >= self.lost)
+        return rng.uniform(size=len(arrived)) >= np.where(soon, self.lost, self.lost_however_slow)
 
     def hiccup(self, times: np.ndarray, rng: np.random.Generator) -> np.ndarray:
         """Return when messages are sent that were to be at some times [s]."""

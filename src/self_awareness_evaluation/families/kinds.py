@@ -358,6 +358,8 @@ FAMILIES: Dict[str, Family] = {
                             one_start=True, watched_start=True),
     'hole': Family('timers; in one of the recordings to train on, a driver is silent for 6 s',
                    _timers(), hole=True),
+    'lossy': Family('timers; 1 of 5000 messages is lost, however slowly they come',
+                    _timers(conditions=Conditions(lost=2e-4, lost_however_slow=2e-4))),
     'one_make': Family('timers; robots of one make with a node of their own each: learned from '
                        'some, watching another', _of_one_make, of_make=_of_one_make),
 }

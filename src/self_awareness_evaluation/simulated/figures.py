@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _DPI = 120
+_COLOURS = 10  # of matplotlib's cycle; who comes after them has a dashed line
 _AROUND_S = 1.0  # the paper shows two seconds around the onset
 
 _LATENCIES_S = np.geomspace(0.1, 50.0, 200)
@@ -74,11 +75,12 @@ def overview(rows: Dict[str, List[Row]], trade_offs: Dict[str, List[TradeOff]]) 
     left, right = figure.subplots(1, 2)
     for index, name in enumerate(rows):
         style: Dict[str, Any] = {'color': f'C{index}', 'label': name, 'zorder': 10 - 0.1 * index,
-                                 'linewidth': 1.3 if index else 3.0}
+                                 'linewidth': 1.3 if index else 3.0,
+                                 'linestyle': '-' if index < _COLOURS else '--'}
         points = [point for point in summary.operating_points(trade_offs.get(name, []))
                   if math.isfinite(point.latency_s)]
         left.plot([point.latency_s for point in points],
-                  [point.false_alarms_per_hour for point in points], 'o-',
+                  [point.false_alarms_per_hour for point in points], marker='o',
                   markersize=4 if index else 7, **style)
         crashes = summary.of_fault(rows[name], 'crash')
         if crashes:

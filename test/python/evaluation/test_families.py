@@ -270,6 +270,13 @@ def test_queues_lose_only_what_comes_soon_after_another() -> None:
         assert 1.0 - received.mean() == pytest.approx(lost, abs=0.02)
 
 
+def test_a_lossy_transport_loses_however_slowly_messages_come() -> None:
+    conditions = Conditions(lost=0.1, lost_however_slow=0.2)
+    for gap_s, lost in ((0.1, 0.1), (2.0, 0.2)):
+        received = conditions.received(np.arange(5000) * gap_s, np.random.default_rng(1))
+        assert 1.0 - received.mean() == pytest.approx(lost, abs=0.02)
+
+
 def test_a_link_has_a_heavy_tail_and_nothing_overtakes() -> None:
     sent = np.arange(20_000) * 0.1
     conditions = Conditions(heavy=0.01)

@@ -36,10 +36,13 @@ struct Choice {
   }
   /// Whether enough is known of an event type to judge it.
   bool isJudged(EventId id) const { return isKnown(id) && !isMode(id); }
-  /// Whether the delays from `from` to `to` say enough of `to`, and are enough.
+  /// Whether the delays from `from` to `to` say enough of `to`.
   bool saysEnough(EventId from, EventId to) const {
-    return gains(from, to) >= tuning.least_gain && !isMode(from) && !isMode(to) &&
-           static_cast<double>(both.total(from, to)) >= tuning.fewest_delays_of_pair;
+    return gains(from, to) >= tuning.least_gain && !isMode(from) && !isMode(to);
+  }
+  /// Whether there are enough delays from one to another one.
+  bool areEnough(EventId from, EventId to) const {
+    return static_cast<double>(both.total(from, to)) >= tuning.fewest_delays_of_pair;
   }
 };
 

@@ -205,7 +205,7 @@ std::vector<Track> Pairs::watch(const Choice& choice) const {
   for (EventId to = 0; to < choice.both.size(); ++to) {
     std::vector<std::tuple<bool, double, EventId>> best;
     for (EventId from = 0; from < choice.both.size(); ++from) {
-      if (from != to && choice.saysEnough(from, to)) {
+      if (from != to && choice.areEnough(from, to) && choice.saysEnough(from, to)) {
         best.emplace_back(!choice.relations.delays(from, to).watched, -choice.gains(from, to),
                           from);
       }

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <functional>
 #include <limits>
-#include <map>
 #include <set>
 #include <utility>
 
@@ -109,6 +108,7 @@ LimitSearch::LimitSearch(const Model& model, const LimitFinder::Findings& findin
       pools[pool].push_back(std::move(seen));
     }
   }
+  lost_ = lossesOf(pools);
   const double all = budgetOf(findings, window, budget, tuning_.most_of_training);
   for (const auto& [pool, tracks] : pools) {
     const Track& any = model_.tracks()[tracks.front().track];
@@ -235,6 +235,35 @@ LimitSearch::Kind LimitSearch::kindOfGaps(const Seen& seen) const {
   return mean_gap < tuning_.fast * window() ? Kind::kFastTimers : Kind::kTimers;
 }
 
+double LimitSearch::lossesOf(const std::map<Pool, std::vector<Seen>>& pools) const {
+  double lost = 0;
+  double came = 0;
+  for (const auto& [pool, tracks] : pools) {
+    if (pool.first != Kind::kTimers) {
+      continue;
+    }
+    for (const Seen& seen : tracks) {
+      const EventId id = model_.tracks()[seen.track].to;
+      const double mean_gap = model_.meanGap(id);
+      const double loss = tuning_.regular * mean_gap + window();
+      lost += static_cast<double>(
+          std::count_if(seen.largest.begin(), seen.largest.end(),
+                        [=](double gap) { return gap >= loss && gap < loss + mean_gap; }));
+      came += numberOf(id);
+    }
+  }
+  return came > 0 ? lost / came : 0;
+}
+
+double LimitSearch::numberOf(EventId id) const {
+  double heard_for = 0;  // [ns]
+  for (const GapPart& part : gap_parts_) {
+    heard_for +=
+        part.said->longest_gaps[id] > 0 ? static_cast<double>(part.said->windows) * window() : 0;
+  }
+  return static_cast<double>(model_.statistics().type(id).gaps) + heard_for / model_.meanGap(id);
+}
+
 void LimitSearch::search(Kind kind, const std::vector<Seen>& tracks, double share,
                          LeftOut& left_out) {
   const bool timers = kind == Kind::kTimers || kind == Kind::kFastTimers;
@@ -248,6 +277,7 @@ void LimitSearch::search(Kind kind, const std::vector<Seen>& tracks, double shar
   }
   const Margins margins = model_.tracks()[tracks.front().track].channel->margins(tuning_);
   const double margin = std::min(held_out.margin(share, margins.least), margins.most);
+  const double rate = share / static_cast<double>(tracks.size());
   for (const Seen& seen : tracks) {
     // A track that would have raised an alarm had its worst start been left out gets a wider
     // limit.
@@ -261,10 +291,10 @@ void LimitSearch::search(Kind kind, const std::vector<Seen>& tracks, double shar
     double& silent_for = silent_for_[model_.tracks()[seen.track].to];
     const double found =
         std::max({seen.least, own * std::max(largest, tuning_.share_of_least * seen.least),
-                  expected.ofSilence(seen.track, silent_for)});
-    const double most = gaps ? longestAge(kind, seen, largest - window(), found - window(),
-                                          share / static_cast<double>(tracks.size()))
-                             : found;
+                  expected.ofSilence(seen.track, silent_for),
+                  kind == Kind::kTimers ? withALoss(seen.track, largest, rate) : 0.0});
+    const double most =
+        gaps ? longestAge(kind, seen, largest - window(), found - window(), rate) : found;
     silent_for = gaps ? most : silent_for;
     double& limit = limits_[seen.track];
     limit = expected.limit(seen.track, largest, most);
@@ -272,6 +302,13 @@ void LimitSearch::search(Kind kind, const std::vector<Seen>& tracks, double shar
       left_out.add(seen.largest, seen.least, gaps ? (most + window()) / largest : margin);
     }
   }
+}
+
+double LimitSearch::withALoss(std::size_t track, double largest, double rate) const {
+  const double mean_gap = model_.meanGap(model_.tracks()[track].to);
+  const bool is_rare = lost_ * kHour / mean_gap <= rate;
+  const bool has_one = largest - window() >= tuning_.regular * mean_gap;
+  return is_rare || has_one ? largest : largest + mean_gap;
 }
 
 bool LimitSearch::isOfOneRobot(std::size_t track) const {

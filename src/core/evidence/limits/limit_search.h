@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <string>
 #include <utility>
 #include <vector>
@@ -62,6 +63,11 @@ class LimitSearch {
   /// Shortest time to the first event of a type, of all recordings that heard it [ns].
   std::int64_t fastestFirst(EventId id) const;
   Kind kindOfGaps(const Seen& seen) const;
+  /// Share of the messages of all timers that are lost, as far as recordings show: none is as
+  /// half a loss.
+  double lossesOf(const std::map<Pool, std::vector<Seen>>& pools) const;
+  /// Messages of a timer that came, by the recordings.
+  double numberOf(EventId id) const;
   /// Finds the limits of a pool.
   /// @param share of the budget
   /// @param left_out told of each track that is judged
@@ -71,6 +77,10 @@ class LimitSearch {
   /// @param age by that, and its margin [ns]
   /// @param rate of longer ones an hour, where pauses are long or irregular
   double longestAge(Kind kind, const Seen& seen, double largest, double age, double rate) const;
+  /// Longest gap of a timer [ns] that is normal, where a message may be lost.
+  /// @param largest that was seen, and a window [ns]
+  /// @param rate of losses an hour that are rare
+  double withALoss(std::size_t track, double largest, double rate) const;
   /// Number of samples with a gap of an event type whose silence is judged.
   double samplesThatHeard(const Seen& seen) const;
   /// Whether only one of several robots has what a track watches: no other one tells about it.
@@ -93,6 +103,7 @@ class LimitSearch {
   std::vector<Part> with_gaps_;  // the recordings of the training first
   std::vector<GapPart> gap_parts_;
   double longest_recording_ = 0;  // [ns]
+  double lost_ = 0;               // share of the messages of timers
   /// Ages up to which silences are normal [ns], by id; silences are searched first.
   std::vector<double> silent_for_;
 

@@ -46,6 +46,17 @@ class OwnGapsTest : public ChannelTest {
   DelaySurprise surprise_{*model_, watched_.halves, kA, kA};
 };
 
+TEST(OwnGapsOfSlowTimersTest, NeedNoMoreGapsThanToMeasureWhatTheySay) {
+  const auto slow = [](int gaps) {
+    const Events timers = together(
+        {timer(kA, 0, gaps * kSecond + 1, kSecond), timer(kC, 0, gaps * kSecond, kPeriod)});
+    return watch(countsOf({timers}), countsOf({later(timers)}));
+  };
+  const auto fewest = static_cast<int>(Tuning{}.fewest_gaps);
+  EXPECT_FALSE(isWatched(Model(slow(fewest - 1)).tracks(), kOwnGaps, kA, kA));
+  EXPECT_TRUE(isWatched(Model(slow(fewest)).tracks(), kOwnGaps, kA, kA));
+}
+
 TEST_F(OwnGapsTest, CountFromTheFirstOneOn) {
   add({now_, kA});
   wait(kPeriod);

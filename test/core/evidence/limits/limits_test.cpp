@@ -249,6 +249,45 @@ TEST_F(LimitFinderTest, OneHoleOfOneRecordingIsNoLongPause) {
   EXPECT_GT(limit(twice, kOverdue, kA, kA), model_->overdue(kA, 500 * kSecond));
 }
 
+TEST_F(LimitFinderTest, WhereSomeTimersLoseMessagesAllMayLoseOne) {
+  const auto robot_that_loses = [](std::int64_t number) {
+    Events events =
+        together({timer(kA, 0, 200 * kSecond, kSecond), timer(kB, 0, 200 * kSecond, kSecond)});
+    const auto is_lost = [=](const Event& event) {
+      return event.id == kB && event.stamp >= 100 * kSecond &&
+             event.stamp < (100 + number) * kSecond;
+    };
+    events.erase(std::remove_if(events.begin(), events.end(), is_lost), events.end());
+    return events;
+  };
+  const auto silence_of_a = [&](std::int64_t number) {
+    model_ = modelOf(robot_that_loses(0), later(robot_that_loses(0)));
+    return limit(limitsOf(model_, later(robot_that_loses(number), 2 * kStart)), kOverdue, kA, kA);
+  };
+  const double without = silence_of_a(0);
+  const double with_loss = silence_of_a(1);
+  EXPECT_LT(without, model_->overdue(kA, 1700 * kMillisecond));
+  EXPECT_GE(with_loss, model_->overdue(kA, 2 * kSecond));
+  EXPECT_LT(with_loss, model_->overdue(kA, 2100 * kMillisecond));
+  EXPECT_LT(silence_of_a(5), model_->overdue(kA, 1900 * kMillisecond)) << "a hole is no loss";
+}
+
+TEST_F(LimitFinderTest, LossesThatAreRareForSoManyMessagesAreNone) {
+  // One of 40,000 messages of B is lost, and a budget that allows it.
+  const std::int64_t length = 8000 * kSecond;
+  Events loses = together({timer(kA, 0, length, kSecond), timer(kB, 0, length, kPeriod)});
+  loses.erase(std::find_if(loses.begin(), loses.end(), [](const Event& event) {
+    return event.id == kB && event.stamp >= 100 * kSecond;
+  }));
+  const Events training =
+      together({timer(kA, 0, 100 * kSecond, kSecond), timer(kB, 0, 100 * kSecond, kPeriod)});
+  model_ = modelOf(training, later(training));
+  for (const double budget : {0.05, 50.0}) {
+    const Limits limits = limitsOf(model_, later(loses, 2 * kStart), budget);
+    EXPECT_EQ(limit(limits, kOverdue, kA, kA) >= model_->overdue(kA, 2 * kSecond), budget < 1);
+  }
+}
+
 TEST_F(LimitFinderTest, TooFewMessagesAreNoEvidenceOfWhoMayBeSilentForAsLong) {
   // A tracker: messages as long as it sees somebody, and pauses.
   const auto tracker = [](std::int64_t pause) {
