@@ -119,6 +119,18 @@ def test_the_verdict_comes_first_then_what_to_record_then_the_table(run) -> None
     assert not re.search(r'\b(tracks?|relations?|gains?|overdue|linkers?|pairs)\b', out), out
 
 
+def test_alarms_on_normal_operation_are_told_with_their_reason(trained: str, make_bag, tmp_path,
+                                                               capsys) -> None:
+    stranger = [(stamp, '/stranger', '/new') for stamp, _, _ in jittery_robot(9000.0, 240.0, 9)]
+    bag = make_bag('new.bag', sorted([*jittery_robot(9000.0, 240.0, 8), *stranger]))
+    assert calibrate.main(['--model', trained, '--normal', bag, '--unknown', 'error', '-o',
+                           str(tmp_path / 'm')]) == 0
+    out = capsys.readouterr().out
+    told = out[out.index('normal operation: '):].splitlines()
+    assert re.match(r'  \S*new.bag: \d+\.\d s: /stranger /new std_msgs/String: ', told[1]), told
+    assert 'unknown events' not in told[1]
+
+
 def test_faults_are_told_in_a_table_by_source(run) -> None:
     code, out, _ = run('--inject', 'crash:*')
     assert code == 0
