@@ -239,16 +239,20 @@ double LimitSearch::lossesOf(const std::map<Pool, std::vector<Seen>>& pools) con
   double lost = 0;
   double came = 0;
   for (const auto& [pool, tracks] : pools) {
-    if (pool.first != Kind::kTimers) {
+    if (pool.first != Kind::kTimers && pool.first != Kind::kOthers) {
       continue;
     }
     for (const Seen& seen : tracks) {
       const EventId id = model_.tracks()[seen.track].to;
       const double mean_gap = model_.meanGap(id);
       const double loss = tuning_.regular * mean_gap + window();
+      const double more = loss + mean_gap;
+      if (mean_gap < tuning_.fast * window() || secondLargest(seen.largest) >= more) {
+        continue;  // its gaps also grow by a host's hiccups; or it is no timer
+      }
       lost += static_cast<double>(
           std::count_if(seen.largest.begin(), seen.largest.end(),
-                        [=](double gap) { return gap >= loss && gap < loss + mean_gap; }));
+                        [=](double gap) { return gap >= loss && gap < more; }));
       came += numberOf(id);
     }
   }

@@ -63,8 +63,8 @@ class LimitSearch {
   /// Shortest time to the first event of a type, of all recordings that heard it [ns].
   std::int64_t fastestFirst(EventId id) const;
   Kind kindOfGaps(const Seen& seen) const;
-  /// Share of the messages of all timers that are lost, as far as recordings show: none is as
-  /// half a loss.
+  /// Share of the messages of all timers that are not fast, of which one at a time was lost, as
+  /// far as recordings show.
   double lossesOf(const std::map<Pool, std::vector<Seen>>& pools) const;
   /// Messages of a timer that came, by the recordings.
   double numberOf(EventId id) const;
