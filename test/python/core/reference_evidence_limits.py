@@ -341,6 +341,8 @@ class ReferenceLimits:
         judged_tracks: Dict[bool, List[Tuple[Sequence[float], float, float]]] = {True: [],
                                                                                  False: []}
         silent_for: Dict[str, float] = {}
+        lost = self._lost([self._model.tracks[index][1] for pool in ('timers', 'others')
+                           for index in pools.get(pool, [])])
         # Silences first: what they bring by themselves is no evidence of a rate.
         for pool in sorted(pools, key=lambda pool: pool not in POOLS_OF_GAPS):
             tracks, of_gaps = pools[pool], pool in POOLS_OF_GAPS
@@ -366,6 +368,9 @@ class ReferenceLimits:
                     if pool == 'others':
                         found = max(found, min(rare, longest))
                     mean = self._model.both.mean_gap(track[1])
+                    if (pool == 'timers' and lost * HOUR / mean > self._rates[pool] / len(tracks)
+                            and max(largest) - self._window < REGULAR * mean):
+                        found = max(found, max(largest) + mean)
                     recorded = self._longest_recording()
                     again = max(sorted(largest)[-2:][0] - self._window if len(largest) > 1 else 0,
                                 *sorted(self._gaps(track[1]))[-2:-1])
@@ -380,6 +385,24 @@ class ReferenceLimits:
         gaps, gap_hours = left_out(with_gaps, judged_tracks[True])
         evidence, hours = left_out(judged, judged_tracks[False])
         return limits, highest_rate(gaps + evidence, max(gap_hours, hours))
+
+    def _lost(self, kinds: Sequence[str]) -> float:
+        """Return the share of the messages of slow timers of which one at a time was lost."""
+        lost, came = 0, 0.0
+        for kind in kinds:
+            mean = self._model.both.mean_gap(kind)
+            loss, more = (beyond * mean + self._window for beyond in (REGULAR, REGULAR + 1))
+            largest = self._longest_gaps(kind)
+            if mean < FAST * self._window or sorted([0.0, *largest])[-2] >= more:
+                continue
+            lost += sum(loss <= gap < more for gap in largest)
+            came += len(self._model.both.gaps[kind])
+            for number, recording in enumerate(self._recordings):
+                if not recording.trained_on:
+                    parts = self._in_parts(self._rows[number])
+                    came += sum(len(part) * self._window / mean for part, gap
+                                in zip(parts, self._longest_gaps_of_parts(number, kind)) if gap)
+        return lost / came if came else 0.0
 
     def _gaps(self, kind: str) -> List[int]:
         """Return all gaps of the training, and the longest ones of parts of others."""
