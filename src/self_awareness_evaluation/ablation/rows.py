@@ -19,7 +19,7 @@ from self_awareness_evaluation.ablation.bench import RECORDINGS, Bench, Fault, R
 from self_awareness_evaluation.ablation.variants import Variant
 from self_awareness_evaluation.detectors import Evidence
 from self_awareness_evaluation.recordings import outages
-from self_awareness_evaluation.simulated.measures import (NORMAL, alarms_after_return, beginnings,
+from self_awareness_evaluation.simulated.measures import (NORMAL, alarms_until_return, beginnings,
                                                           first_alarm)
 from self_awareness_evaluation.systems import Judged
 
@@ -101,10 +101,9 @@ def _fault_row(row: Row, fault: Fault, system: Evidence) -> Row:
     begin = time.process_time()
     judged = system.judge(fault.recording)
     row = _before(row, judged, fault.onset, time.process_time() - begin)
-    after = alarms_after_return(judged.alarms, fault.back)
-    if fault.back is not None:
-        row = replace(row, after=len(after))
-    alarm = first_alarm([alarm for alarm in judged.alarms if alarm not in after], fault.onset)
+    alarms, after = alarms_until_return(judged.alarms, fault.back)
+    row = replace(row, after=after)
+    alarm = first_alarm(alarms, fault.onset)
     if alarm is None:
         return row
     first = alarm.suspects[:1] if alarm.suspects is not None and fault.culprits else None

@@ -9,7 +9,7 @@ import numpy as np
 from self_awareness import DEFAULT_WINDOW
 from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation.families.protocol import FaultRecord
-from self_awareness_evaluation.simulated.measures import (alarms_after_return, beginnings,
+from self_awareness_evaluation.simulated.measures import (alarms_until_return, beginnings,
                                                           first_alarm)
 from self_awareness_evaluation.systems import Judged
 
@@ -104,8 +104,8 @@ def normal_row(subject: Subject, judged: Judged, expected: Optional[float],
 
 def fault_row(subject: Subject, record: FaultRecord, judged: Judged) -> FaultRow:
     """Measure a recording with a fault."""
-    after = alarms_after_return(judged.alarms, record.back)
-    alarm = first_alarm([alarm for alarm in judged.alarms if alarm not in after], record.onset)
+    alarms, after = alarms_until_return(judged.alarms, record.back)
+    alarm = first_alarm(alarms, record.onset)
     suspects = alarm.suspects if alarm is not None and record.source else None
     return FaultRow(
         subject, record.kind, record.source,
@@ -114,7 +114,7 @@ def fault_row(subject: Subject, record: FaultRecord, judged: Judged) -> FaultRow
         None if alarm is None else (alarm.start - record.onset) / SECOND_NS,
         None if suspects is None else suspects[:1] == [record.source],
         None if suspects is None else record.source in suspects[:3],
-        None if record.back is None else len(after))
+        after)
 
 
 def _hours(windows: np.ndarray) -> float:

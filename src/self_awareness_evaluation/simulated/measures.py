@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import List, Optional, Sequence
+from typing import List, Optional, Sequence, Tuple
 
 import numpy as np
 
@@ -144,13 +144,17 @@ def first_alarm(alarms: List[SystemAlarm], onset: int) -> Optional[SystemAlarm]:
     return next((alarm for alarm in alarms if alarm.start > onset), None)
 
 
-def alarms_after_return(alarms: List[SystemAlarm], back: Optional[int]) -> List[SystemAlarm]:
-    """Return the alarms that do not belong any more to a fault that is over, AFTERMATH_S after it.
+def alarms_until_return(alarms: List[SystemAlarm],
+                        back: Optional[int]) -> Tuple[List[SystemAlarm], Optional[int]]:
+    """Return the alarms that may belong to a fault, until AFTERMATH_S after it is over, and the
+    number of those that come later.
 
     Args:
         alarms: of the record.
-        back: when the fault was over [ns]; None: never.
+        back: when the fault is over [ns]; None: it lasts, and all alarms may belong to it.
     """
     if back is None:
-        return []
-    return [alarm for alarm in alarms if alarm.start > back + nanoseconds(AFTERMATH_S)]
+        return alarms, None
+    end = back + nanoseconds(AFTERMATH_S)
+    belong = [alarm for alarm in alarms if alarm.start <= end]
+    return belong, len(alarms) - len(belong)

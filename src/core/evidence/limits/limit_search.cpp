@@ -232,7 +232,7 @@ LimitSearch::Kind LimitSearch::kindOfGaps(const Seen& seen) const {
   if (gap - window() >= tuning_.regular * mean_gap) {
     return Kind::kOthers;
   }
-  return mean_gap < tuning_.fast * window() ? Kind::kFastTimers : Kind::kTimers;
+  return isFast(mean_gap) ? Kind::kFastTimers : Kind::kTimers;
 }
 
 double LimitSearch::lossesOf(const std::map<Pool, std::vector<Seen>>& pools) const {
@@ -247,7 +247,7 @@ double LimitSearch::lossesOf(const std::map<Pool, std::vector<Seen>>& pools) con
       const double mean_gap = model_.meanGap(id);
       const double loss = tuning_.regular * mean_gap + window();
       const double more = loss + mean_gap;
-      if (mean_gap < tuning_.fast * window() || secondLargest(seen.largest) >= more) {
+      if (isFast(mean_gap) || secondLargest(seen.largest) >= more) {
         continue;  // its gaps also grow by a host's hiccups; or it is no timer
       }
       lost += static_cast<double>(
