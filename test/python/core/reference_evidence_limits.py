@@ -341,8 +341,7 @@ class ReferenceLimits:
         judged_tracks: Dict[bool, List[Tuple[Sequence[float], float, float]]] = {True: [],
                                                                                  False: []}
         silent_for: Dict[str, float] = {}
-        lost = self._lost([self._model.tracks[index][1] for pool in ('timers', 'others')
-                           for index in pools.get(pool, [])])
+        lost = self._lost([self._model.tracks[index][1] for index in pools.get('timers', [])])
         # Silences first: what they bring by themselves is no evidence of a rate.
         for pool in sorted(pools, key=lambda pool: pool not in POOLS_OF_GAPS):
             tracks, of_gaps = pools[pool], pool in POOLS_OF_GAPS
@@ -393,8 +392,6 @@ class ReferenceLimits:
             mean = self._model.both.mean_gap(kind)
             loss, more = (beyond * mean + self._window for beyond in (REGULAR, REGULAR + 1))
             largest = self._longest_gaps(kind)
-            if mean < FAST * self._window or sorted([0.0, *largest])[-2] >= more:
-                continue
             lost += sum(loss <= gap < more for gap in largest)
             came += len(self._model.both.gaps[kind])
             for number, recording in enumerate(self._recordings):

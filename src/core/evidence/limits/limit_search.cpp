@@ -232,27 +232,23 @@ LimitSearch::Kind LimitSearch::kindOfGaps(const Seen& seen) const {
   if (gap - window() >= tuning_.regular * mean_gap) {
     return Kind::kOthers;
   }
-  return isFast(mean_gap) ? Kind::kFastTimers : Kind::kTimers;
+  return mean_gap < tuning_.fast * window() ? Kind::kFastTimers : Kind::kTimers;
 }
 
 double LimitSearch::lossesOf(const std::map<Pool, std::vector<Seen>>& pools) const {
   double lost = 0;
   double came = 0;
   for (const auto& [pool, tracks] : pools) {
-    if (pool.first != Kind::kTimers && pool.first != Kind::kOthers) {
+    if (pool.first != Kind::kTimers) {
       continue;
     }
     for (const Seen& seen : tracks) {
       const EventId id = model_.tracks()[seen.track].to;
       const double mean_gap = model_.meanGap(id);
       const double loss = tuning_.regular * mean_gap + window();
-      const double more = loss + mean_gap;
-      if (isFast(mean_gap) || secondLargest(seen.largest) >= more) {
-        continue;  // its gaps also grow by a host's hiccups; or it is no timer
-      }
       lost += static_cast<double>(
           std::count_if(seen.largest.begin(), seen.largest.end(),
-                        [=](double gap) { return gap >= loss && gap < more; }));
+                        [=](double gap) { return gap >= loss && gap < loss + mean_gap; }));
       came += numberOf(id);
     }
   }

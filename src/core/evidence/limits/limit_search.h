@@ -63,8 +63,6 @@ class LimitSearch {
   /// Shortest time to the first event of a type, of all recordings that heard it [ns].
   std::int64_t fastestFirst(EventId id) const;
   Kind kindOfGaps(const Seen& seen) const;
-  /// Whether a host's hiccups are long for a timer. @param mean_gap of it [ns]
-  bool isFast(double mean_gap) const { return mean_gap < tuning_.fast * window(); }
   /// Share of the messages of all timers that are not fast, of which one at a time was lost, as
   /// far as recordings show.
   double lossesOf(const std::map<Pool, std::vector<Seen>>& pools) const;

@@ -272,23 +272,6 @@ TEST_F(LimitFinderTest, WhereSomeTimersLoseMessagesAllMayLoseOne) {
   EXPECT_LT(silence_of_a(5), model_->overdue(kA, 1900 * kMillisecond)) << "a hole is no loss";
 }
 
-TEST_F(LimitFinderTest, WhoLosesMessagesAgainAndAgainTellsForTheOthers) {
-  const auto silence_of_a = [&](const Events& b) {
-    const Events events = together({timer(kA, 0, 200 * kSecond, kSecond), b});
-    model_ = modelOf(events, later(events));
-    return limit(limitsOf(model_, later(events, 2 * kStart)), kOverdue, kA, kA);
-  };
-  Events loses = timer(kB, 0, 200 * kSecond, kPeriod);
-  loses.erase(std::remove_if(
-                  loses.begin(), loses.end(),
-                  [](const Event& event) { return event.stamp % (40 * kSecond) == 20 * kSecond; }),
-              loses.end());
-  const double beside_loser = silence_of_a(loses);
-  const double beside_irregular = silence_of_a(irregular(kB, 0, 200 * kSecond, kPeriod, 1));
-  EXPECT_GE(beside_loser, model_->overdue(kA, 2 * kSecond));
-  EXPECT_LT(beside_irregular, model_->overdue(kA, 1900 * kMillisecond)) << "that is no loss";
-}
-
 TEST_F(LimitFinderTest, LossesThatAreRareForSoManyMessagesAreNone) {
   // One of 40,000 messages of B is lost, and a budget that allows it.
   const std::int64_t length = 8000 * kSecond;
