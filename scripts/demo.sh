@@ -5,7 +5,8 @@
 #
 # usage: scripts/demo.sh [FOLDER]     where all files go; out/ in the checkout by default
 #
-# Exit code 0 only if the alarm came, and none before the fault.
+# Exit code 0 only if the alarm came, and none before the fault, and if the report names who was
+# killed, and the flight record of the alarm is there.
 
 source "$(dirname "${BASH_SOURCE[0]}")/prepare.sh"
 source "$(dirname "${BASH_SOURCE[0]}")/processes.sh"
@@ -84,6 +85,14 @@ if [ $verdict -ne 0 ]; then
   echo "demo: error: there was no alarm as expected, see above; the logs are $out/*.log" >&2
   exit $verdict
 fi
+
+stop_all  # the monitor ends its flight record
+leaves() {  # WHAT COMMAND...
+  "${@:2}" > /dev/null || { echo "demo: error: $1" >&2; exit 1; }
+}
+leaves "the headline does not name /player: $out/report.html" grep '<h2>.*/player' "$out/report.html"
+leaves "the alarm left no flight record: $out/alarm_*.bag" \
+  grep . <(find "$out" -maxdepth 1 -name 'alarm_*.bag' -newer "$out/monitor.yaml" -size +0)
 
 say "What next"
 echo "See who failed, when and why:  xdg-open $out/report.html"
