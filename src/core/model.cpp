@@ -132,7 +132,7 @@ std::vector<evidence::Coverage> Model::coverage() const {
   }
   requireWatched();
   return evidence::coverageOf(evidence::Model(watched), calibration->limits,
-                              calibration->relations, window);
+                              calibration->relations, window, !graph.empty());
 }
 
 std::unique_ptr<Judge> Model::makeJudge(std::shared_ptr<const Vocabulary> heard) const {

@@ -73,9 +73,9 @@ void Session::accept(const core::Acceptances& accepted) {
     may_be_silent.push_back(accepted.covers(core::componentOf(type.source, type.scope), type.scope,
                                             core::Kind::kDied));
   }
-  coverage_ =
-      core::evidence::coverageOf(*model_, trained_.calibration->limits,
-                                 trained_.calibration->relations, trained_.window, may_be_silent);
+  coverage_ = core::evidence::coverageOf(*model_, trained_.calibration->limits,
+                                         trained_.calibration->relations, trained_.window,
+                                         !trained_.graph.empty(), may_be_silent);
 }
 
 void Session::onShares(const core::evidence::Shares& shares) {

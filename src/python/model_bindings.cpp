@@ -135,6 +135,8 @@ void bindModel(py::module& m) {
 
   using core::evidence::Coverage;
   py::class_<Coverage>(m, "Coverage", "How soon faults of a component are found.")
+      .def_readonly_static("MOST_STARTS", &Coverage::kMostStarts,
+                           "what needs more starts than so many is not told")
       .def_readonly("component", &Coverage::component)
       .def_readonly("period", &Coverage::period,
                     "mean gap of what comes most often [s]; 0: nothing came twice")
@@ -152,6 +154,10 @@ void bindModel(py::module& m) {
       .def_readonly("late_answers", &Coverage::late_answers, "whether they are found")
       .def_readonly("more_starts", &Coverage::more_starts,
                     "of the robot, after which they would be; 0: no number helps")
+      .def_readonly("graph_helps", &Coverage::graph_helps,
+                    "whether they would be, if messages reach it by the graph, which is not known")
+      .def_property_readonly("late_answers_found", &core::evidence::lateAnswers,
+                             "the three in words, as /diagnostics says them; empty: never")
       .def_property_readonly("is_watched", &Coverage::isWatched, "whether its death is found");
 
   using ros1::TrainedModel;

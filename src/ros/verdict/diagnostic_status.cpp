@@ -244,6 +244,10 @@ void tellComponent(const CommunicationState& state, const std::string& name,
     if (!coverage->isWatched()) {
       status.add("why not watched", whyNotWatched(*coverage));
     }
+    const std::string late = core::evidence::lateAnswers(*coverage);
+    if (!late.empty()) {
+      status.add("late answers", late);
+    }
   }
 }
 

@@ -1,8 +1,9 @@
-"""Holes: silences that one recording shows and no other one, and that alone decide a limit.
+"""Holes: silences that one recording shows and no other one.
 
-A death is found once a silence is longer than all that were seen. So a component that hung for
-some seconds in one of the recordings of normal operation is missed for longer than that ever
-after. Who trains is told by name, and may leave it out.
+A death is found once a silence is longer than what most starts agree on (docs/method.md, section
+5.3). Where they are too few to agree, or a component pauses, one that hung for some seconds in one
+of the recordings of normal operation is missed for longer than that ever after. Who trains is told
+by name, and may leave it out.
 """
 from __future__ import annotations
 
@@ -134,6 +135,17 @@ def without(parts: Iterable[BagPart], holes: Sequence[Hole]) -> List[BagPart]:
             for piece in _pieces(part, [hole.silence for hole in holes if hole.part == part])]
 
 
+def deciding(holes: Sequence[Hole], coverage: Sequence[Coverage]) -> List[Hole]:
+    """Return the holes that make the death of a component be found later.
+
+    Args:
+        holes: what find() returned.
+        coverage: of the model with limits that know the holes.
+    """
+    found_s = _found_s(coverage)
+    return [hole for hole in holes if _decides(hole, found_s.get(hole.component))]
+
+
 def lines(holes: Sequence[Hole], coverage: Sequence[Coverage]) -> List[str]:
     """Return a line for every hole: who was silent when and where, and what that does.
 
@@ -141,8 +153,16 @@ def lines(holes: Sequence[Hole], coverage: Sequence[Coverage]) -> List[str]:
         holes: what find() returned.
         coverage: of the model with limits that know the holes.
     """
-    found_s = {each.component: each.death_found_after for each in coverage}
+    found_s = _found_s(coverage)
     return [_line(hole, found_s.get(hole.component)) for hole in holes]
+
+
+def _found_s(coverage: Sequence[Coverage]) -> Dict[str, Optional[float]]:
+    return {each.component: each.death_found_after for each in coverage}
+
+
+def _decides(hole: Hole, found_s: Optional[float]) -> bool:
+    return found_s is not None and found_s > hole.silence.length_s
 
 
 def _line(hole: Hole, found_s: Optional[float]) -> str:
@@ -150,10 +170,12 @@ def _line(hole: Hole, found_s: Optional[float]) -> str:
     until = 'to the end' if silence.to_the_end else f'for {silence.length_s:.1f} s'
     text = (f'{hole.part}: {hole.component} ({hole.key[1]}) is silent {until} from '
             f'{silence.begin_s:.1f} s on, {hole.others_s:.2g} s at most in the other recordings')
-    if found_s is not None and found_s > silence.length_s:
-        text += (f'; because of that its death is found after {found_s:.2g} s instead of about '
-                 f'{found_s * hole.others_s / silence.length_s:.2g} s')
-    return text
+    if found_s is None:
+        return text
+    if _decides(hole, found_s):
+        return (f'{text}; because of that its death is found after {found_s:.2g} s instead of '
+                f'about {found_s * hole.others_s / silence.length_s:.2g} s')
+    return f'{text}; its death is found after {found_s:.2g} s all the same, as most starts agree'
 
 
 def _silence(recording: RecordingEvents, begin: int, length: int,

@@ -140,9 +140,10 @@ def _keep_accepted(arguments: argparse.Namespace, trained: TrainedModel) -> None
 def _say_holes(trained: TrainedModel, normal: Sequence[RecordingEvents]) -> None:
     found = holes.find([(each.part, holes.longest_silences(each)) for each in normal],
                        holes.known_silences(trained))
-    for line in holes.lines(found, trained.coverage()):
+    coverage = trained.coverage()
+    for line in holes.lines(found, coverage):
         cli.warn('calibrate', line)
-    if found:
+    if holes.deciding(found, coverage):
         left = ' '.join(str(part) for part in holes.without([each.part for each in normal], found))
         cli.warn('calibrate', f'if that was a fault, leave it out: --normal {left}')
 

@@ -98,9 +98,10 @@ def _train(arguments: argparse.Namespace) -> None:
 
 
 def _say_holes(found: Sequence[Hole], model: TrainedModel, left_out: bool) -> None:
-    for line in holes.lines(found, [] if left_out else model.coverage()):
+    coverage = [] if left_out else model.coverage()
+    for line in holes.lines(found, coverage):
         cli.warn('train', f'left out: {line}' if left_out else line)
-    if found and not left_out:
+    if holes.deciding(found, coverage):
         cli.warn('train', 'if that was a fault, --leave-out-holes trains on what came before and '
                  'after it')
 
@@ -227,8 +228,8 @@ def _parser() -> argparse.ArgumentParser:
                              'it may be the file to write. Its calibrations are dropped')
     parser.add_argument('--leave-out-holes', action='store_true',
                         help='leave out the times in which a component is silent for much longer '
-                             'than in all other recordings; without this option, train names '
-                             'them and learns from them')
+                             'than in all other recordings, which train names; only needed where '
+                             'it says that they make a death be found later')
     parser.add_argument('--skip-bad', action='store_true',
                         help='leave out bags that cannot be used, and name them; without this '
                              'option, one such bag ends the program')

@@ -5,7 +5,6 @@ from typing import Any, Dict, List, Sequence, Tuple
 
 from self_awareness import Coverage
 from self_awareness.reporting.number_text import rounded
-from self_awareness.reporting.relations_text import MOST_STARTS
 from self_awareness.reporting.text_table import aligned
 
 _COLUMNS = ('component', 'speaks every', 'death found after', 'late answers')
@@ -21,8 +20,8 @@ def summarise(coverage: Sequence[Coverage]) -> List[Dict[str, Any]]:
     return [{'component': each.component, 'period': each.period or None, 'gaps': each.gaps,
              'watched': each.is_watched, 'death_found_after': each.death_found_after,
              'found_when_asked': each.found_when_asked, 'found_after': each.found_after,
-             'late_answers': each.late_answers,
-             'more_starts': each.more_starts or None} for each in coverage]
+             'late_answers': each.late_answers, 'more_starts': each.more_starts or None,
+             'late_answers_found': each.late_answers_found} for each in coverage]
 
 
 def not_watched(found: Sequence[Dict[str, Any]]) -> str:
@@ -46,7 +45,8 @@ def table(found: Sequence[Dict[str, Any]], fewest_gaps: int) -> List[Tuple[str, 
         return []
     return [_COLUMNS, *((each['component'],
                          f'{rounded(each["period"], 3)} s' if each['period'] else '-',
-                         _death(each, fewest_gaps), _late(each)) for each in found)]
+                         _death(each, fewest_gaps), each['late_answers_found'] or '-')
+                        for each in found)]
 
 
 def lines(found: Sequence[Dict[str, Any]], fewest_gaps: int) -> List[str]:
@@ -68,11 +68,3 @@ def _death(each: Dict[str, Any], fewest_gaps: int) -> str:
     if each['gaps'] < fewest_gaps:
         return f'not watched: {each["gaps"]} gaps in training, {fewest_gaps} are needed'
     return 'not watched: all of it came at one moment'
-
-
-def _late(each: Dict[str, Any]) -> str:
-    if each['late_answers']:
-        return 'found'
-    if each['more_starts'] is None or each['more_starts'] > MOST_STARTS:
-        return '-'
-    return f'after {each["more_starts"]} more start{"s" if each["more_starts"] > 1 else ""}'

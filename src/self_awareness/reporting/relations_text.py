@@ -4,14 +4,12 @@ from __future__ import annotations
 import math
 from typing import Any, Dict, List
 
-from self_awareness import EvidenceModel, TrainedModel
+from self_awareness import Coverage, EvidenceModel, TrainedModel
 
 RELATIONS = ('pairs', 'deadlines')
 """The channels that look at two event types."""
 
 _MOST_LINES = 10
-MOST_STARTS = 50
-"""More are not worth a word."""
 
 
 def relations(model: TrainedModel, evidence: EvidenceModel) -> List[Dict[str, Any]]:
@@ -70,7 +68,7 @@ def to_record(found: List[Dict[str, Any]]) -> List[str]:
     """Return lines for people: what more starts of the robot would add."""
     text = []
     waiting = [relation for relation in found if not relation['watched']
-               and relation['starts'] < relation['starts_needed'] <= MOST_STARTS]
+               and relation['starts'] < relation['starts_needed'] <= Coverage.MOST_STARTS]
     if found and max(relation['starts'] for relation in found) == 1:
         text.append('all recordings count as one start of the robot: record event logs, which say '
                     'when it was started, or leave a minute or more between bags of different '

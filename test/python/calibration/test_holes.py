@@ -1,12 +1,13 @@
 """Silences that one recording alone shows: found, named, and left out if that is asked."""
 from __future__ import annotations
 
-from typing import List, Tuple
+from types import SimpleNamespace
+from typing import List, Tuple, cast
 
 import numpy as np
 import pytest
 
-from self_awareness import EventType
+from self_awareness import Coverage, EventType
 from self_awareness.calibration import holes
 from self_awareness.calibration.holes import Silence
 from self_awareness.recordings import BagPart, RecordingEvents
@@ -32,6 +33,11 @@ def recorded(name: str, *silent: Tuple[float, float], seconds: float = 100.0) ->
 def found(*recordings: RecordingEvents) -> List[holes.Hole]:
     """Return the holes of some recordings."""
     return holes.find([(each.part, holes.longest_silences(each)) for each in recordings])
+
+
+def known(component: str, found_s: float) -> Coverage:
+    """Return what is known of who is watched."""
+    return cast(Coverage, SimpleNamespace(component=component, death_found_after=found_s))
 
 
 def test_the_longest_silence_of_every_type_is_known() -> None:
@@ -98,10 +104,10 @@ def test_a_line_names_who_when_where_and_the_effect() -> None:
         'tuesday.bag: /gps (/fix) is silent for 6.0 s from 212.0 s on, 0.3 s at most in the other '
         'recordings']
 
-    class Known:
-        """Coverage."""
-
-        component = '/gps'
-        death_found_after = 10.0
-    assert holes.lines([hole], [Known()])[0].endswith(  # type: ignore[list-item]
+    decides, agreed = known('/gps', 10.0), known('/gps', 0.6)
+    assert holes.lines([hole], [decides])[0].endswith(
         '; because of that its death is found after 10 s instead of about 0.5 s')
+    assert holes.deciding([hole], [decides]) == [hole]
+    assert holes.lines([hole], [agreed])[0].endswith(
+        '; its death is found after 0.6 s all the same, as most starts agree')
+    assert holes.deciding([hole], [agreed]) == []

@@ -21,6 +21,7 @@ MOST_TAIL_MARGIN = {False: 2.0, True: 8.0}
 """By whether there are several starts."""
 SCALE = {'timers': 0.05, 'fast timers': 0.05}
 """By pool; 0.2 elsewhere."""
+LONGEST_STALL = 700 * SECOND // 1000
 REGULAR = 1.5
 FAST = 2
 MOST_MEAN_GAPS = 3.0
@@ -33,6 +34,7 @@ RATE_SPAN = 2 * SECOND
 QUIETEST = 0.58
 HOURS_OF_ROBOTS = 0.5
 POOLS_OF_GAPS = ('fast timers', 'timers', 'others')
+POOLS_OF_TIMERS = POOLS_OF_GAPS[:2]
 POOLS = ('fast timers', 'timers', 'others', 'rate', 'pairs', 'deadlines')
 SHARE_OF_ITS_OWN = 0.02
 CHUNK = 120 * SECOND
@@ -115,13 +117,14 @@ class HeldOut:
         return margin
 
 
-def left_out(parts: Sequence[Part],
-             tracks: Sequence[Tuple[Sequence[float], float, float]]) -> Tuple[int, float]:
+def left_out(parts: Sequence[Part], tracks: Sequence[Tuple[Sequence[float], Sequence[float],
+                                                           float, float]]) -> Tuple[int, float]:
     """Return how many parts would have exceeded limits that the others say, and their hours.
 
     Args:
         parts: all of them.
-        tracks: the largest values by part, the least limit, and the limit's margin.
+        tracks: the largest values by part, these as far as most starts agree, the least limit,
+            and the limit's margin.
     """
     all_hours = sum(part.hours for part in parts)
     exceeded, hours = 0, 0.0
@@ -134,10 +137,10 @@ def left_out(parts: Sequence[Part],
         else:
             continue
         hours += part.hours
-        limits = [max(least, margin * max([LEAST_SHARE * least] + [largest[k] for k in others]))
-                  for largest, least, margin in tracks]
+        limits = [max(least, margin * max([LEAST_SHARE * least] + [agreed[k] for k in others]))
+                  for _, agreed, least, margin in tracks]
         exceeded += any(0 < limit < largest[number]
-                        for limit, (largest, _, _) in zip(limits, tracks))
+                        for limit, (largest, *_) in zip(limits, tracks))
     return exceeded, hours or all_hours
 
 
@@ -261,23 +264,55 @@ class ReferenceLimits:
 
     def _longest_gaps(self, kind: str) -> List[float]:
         """Return the longest gaps of the recordings of the training, and of parts of others."""
+        longest = [float(seen.longest_gaps[kind]) if seen.events[kind] else 0.0
+                   for seen in self._training()]
+        for number, recording in enumerate(self._recordings):
+            if not recording.trained_on:
+                longest += self._longest_gaps_of_parts(number, kind)
+        return [gap + self._window if gap > 0 else 0.0 for gap in longest]
+
+    def _late_firsts(self, kind: str) -> List[float]:
+        """Return by how much the first event came too late, by the same."""
         silent = self._is_mostly_silent(kind)
         pause = 0 if silent else START_TIME
         fastest = 0 if silent else self._fastest_first(kind)
-        longest: List[float] = []
-        for seen in self._training():
-            first = (seen.firsts[kind] if seen.events[kind] else seen.end - seen.start) - fastest
-            longest.append(float(max(seen.longest_gaps[kind] if seen.events[kind] else 0,
-                                     first if first > pause else 0)))
+        late = [float(seen.firsts[kind] if seen.events[kind] else seen.end - seen.start) - fastest
+                for seen in self._training()]
         for number, recording in enumerate(self._recordings):
             if not recording.trained_on:
-                of_parts = self._longest_gaps_of_parts(number, kind)
-                begin = recording.events[0][0] + fastest
                 end = next((t for t, other in recording.events if other == kind),
                            recording.events[-1][0])
-                of_parts[0] = max(of_parts[0], end - begin if end - begin > pause else 0)
-                longest += of_parts
-        return [gap + self._window if gap else 0.0 for gap in longest]
+                of_parts = [0.0] * len(self._in_parts(self._rows[number]))
+                of_parts[0] = float(end - recording.events[0][0] - fastest)
+                late += of_parts
+        return [first + self._window if first > pause else 0.0 for first in late]
+
+    def _silences(self, kind: str) -> List[float]:
+        """Return both, the larger one of each."""
+        return [max(gap, late) for gap, late in zip(self._longest_gaps(kind),
+                                                    self._late_firsts(kind))]
+
+    def _agreed(self, kind: str) -> List[float]:
+        """Return both, without what one of three starts or more shows alone."""
+        gaps = self._longest_gaps(kind)
+        starts = [part.start for part in self._parts_with_gaps()]
+        agreed = []
+        for gap, start in zip(gaps, starts):
+            others = {}
+            for other, its_start in zip(gaps, starts):
+                if other > 0 and its_start != start:
+                    others[its_start] = max(other, others.get(its_start, 0.0))
+            fault = len(others) >= 2 and (
+                gap > MOST_MEAN_GAPS * max(others.values()) + LONGEST_STALL)
+            agreed.append(max(others.values()) if fault else gap)
+        return [max(gap, late) for gap, late in zip(agreed, self._late_firsts(kind))]
+
+    def _parts_with_gaps(self) -> List[Part]:
+        parts = [Part(start, (seen.end - seen.start) / HOUR)
+                 for seen, start in zip(self._training(), self._starts_of_training)]
+        for number, (recording, start) in enumerate(zip(self._recordings, self._starts)):
+            parts += [] if recording.trained_on else self._parts_of(number, start)
+        return parts
 
     def _fastest_first(self, kind: str) -> int:
         return min([seen.firsts[kind] for seen in self._training() if seen.events[kind]]
@@ -318,7 +353,7 @@ class ReferenceLimits:
         channel, kind, _ = self._model.tracks[index]
         if channel != 'overdue':
             return LABELS[channel]
-        longest = sorted(gap for gap in self._longest_gaps(kind) if gap > 0)
+        longest = sorted(gap for gap in self._agreed(kind) if gap > 0)
         second = longest[-2:][0] - self._window
         mean = self._model.both.mean_gap(kind)
         if second >= REGULAR * mean or self._is_mostly_silent(kind):
@@ -326,32 +361,30 @@ class ReferenceLimits:
         return 'fast timers' if mean < FAST * self._window else 'timers'
 
     def _find(self) -> Tuple[List[float], float]:
-        with_gaps = [Part(start, (seen.end - seen.start) / HOUR)
-                     for seen, start in zip(self._training(), self._starts_of_training)]
-        judged: List[Part] = []
-        for number, (recording, start) in enumerate(zip(self._recordings, self._starts)):
-            parts = self._parts_of(number, start)
-            judged += parts
-            with_gaps += [] if recording.trained_on else parts
+        with_gaps = self._parts_with_gaps()
+        judged = [part for number, start in enumerate(self._starts)
+                  for part in self._parts_of(number, start)]
         pools: Dict[str, List[int]] = {}
         for index, relation in enumerate(self.relations):
             if relation.watched:
                 pools.setdefault(self._pool(index), []).append(index)
         limits = [math.nan] * len(self._model.tracks)
-        judged_tracks: Dict[bool, List[Tuple[Sequence[float], float, float]]] = {True: [],
-                                                                                 False: []}
+        judged_tracks: Dict[bool, List[Tuple[Sequence[float], Sequence[float], float, float]]] = {
+            True: [], False: []}
         silent_for: Dict[str, float] = {}
         lost = self._lost([self._model.tracks[index][1] for index in pools.get('timers', [])])
         # Silences first: what they bring by themselves is no evidence of a rate.
         for pool in sorted(pools, key=lambda pool: pool not in POOLS_OF_GAPS):
             tracks, of_gaps = pools[pool], pool in POOLS_OF_GAPS
-            seen = [(self._longest_gaps(self._model.tracks[index][1]) if of_gaps
-                     else self._largest(index), self._model.least_limit(self._model.tracks[index]))
-                    for index in tracks]
+            shown = [self._silences(self._model.tracks[index][1]) if of_gaps
+                     else self._largest(index) for index in tracks]
+            seen = [(self._agreed(self._model.tracks[index][1]) if pool in POOLS_OF_TIMERS
+                     else largest, self._model.least_limit(self._model.tracks[index]))
+                    for index, largest in zip(tracks, shown)]
             held_out = HeldOut(with_gaps if of_gaps else judged, seen, SCALE.get(pool, 0.2))
             margin = min(held_out.margin(self._rates[pool], LEAST_MARGIN.get(pool, 1.25)),
                          MOST_GAP_MARGIN if of_gaps else MOST_MARGIN)
-            for index, (largest, least) in zip(tracks, seen):
+            for index, all_shown, (largest, least) in zip(tracks, shown, seen):
                 own = (margin if of_gaps else
                        max(margin, min(held_out.excess(largest, least), MOST_OWN_MARGIN)))
                 track = self._model.tracks[index]
@@ -380,7 +413,8 @@ class ReferenceLimits:
                 limits[index] = self._limit(track, max(largest), found)
                 if not math.isnan(limits[index]):
                     judged_tracks[of_gaps].append(
-                        (largest, least, found / max(largest) if of_gaps else margin))
+                        (all_shown, largest, least,
+                         found / max(largest) if of_gaps else margin))
         gaps, gap_hours = left_out(with_gaps, judged_tracks[True])
         evidence, hours = left_out(judged, judged_tracks[False])
         return limits, highest_rate(gaps + evidence, max(gap_hours, hours))
@@ -391,7 +425,7 @@ class ReferenceLimits:
         for kind in kinds:
             mean = self._model.both.mean_gap(kind)
             loss, more = (beyond * mean + self._window for beyond in (REGULAR, REGULAR + 1))
-            largest = self._longest_gaps(kind)
+            largest = self._agreed(kind)
             lost += sum(loss <= gap < more for gap in largest)
             came += len(self._model.both.gaps[kind])
             for number, recording in enumerate(self._recordings):

@@ -182,17 +182,20 @@ TEST(StatusRound, ThreeHundredTopicsTakeLessThanTwoKilobytesASecond) {
   RecordProperty("during_an_alarm", static_cast<int>(alarm.bytes_per_second));
 }
 
+/// What a status of the robot's first component says; empty: nothing.
+std::string saidOfFirst(const CommunicationState& state, const std::string& key) {
+  const DiagnosticStatus status = componentsOf(state).front();
+  for (const diagnostic_msgs::KeyValue& pair : status.values) {
+    if (pair.key == key) {
+      return pair.value;
+    }
+  }
+  return "";
+}
+
 TEST(DiagnosticStatus, SaysHowSoonADeathIsFoundAlsoWhileItIsNeeded) {
   CommunicationState state = largeRobot();
-  const auto found = [&] {
-    const DiagnosticStatus status = componentsOf(state).front();
-    for (const diagnostic_msgs::KeyValue& pair : status.values) {
-      if (pair.key == "death found after [s]") {
-        return pair.value;
-      }
-    }
-    return std::string();
-  };
+  const auto found = [&] { return saidOfFirst(state, "death found after [s]"); };
   EXPECT_EQ(found(), "0.21");
   core::evidence::Coverage& coverage = state.coverage.front();
   coverage.death_found_after = 9.5;
@@ -202,6 +205,15 @@ TEST(DiagnosticStatus, SaysHowSoonADeathIsFoundAlsoWhileItIsNeeded) {
   EXPECT_EQ(found(), "0.6 while it is needed");
   coverage.found_when_asked.reset();
   EXPECT_EQ(found(), "not watched");
+}
+
+TEST(DiagnosticStatus, SaysWithWhatLateAnswersAreFound) {
+  CommunicationState state = largeRobot();
+  EXPECT_EQ(saidOfFirst(state, "late answers"), "");
+  state.coverage.front().more_starts = 2;
+  EXPECT_EQ(saidOfFirst(state, "late answers"), "after 2 more starts");
+  state.coverage.front().late_answers = true;
+  EXPECT_EQ(saidOfFirst(state, "late answers"), "found");
 }
 
 TEST(StatusRound, WhoseNumbersChangeHasNotChanged) {

@@ -71,28 +71,28 @@ std::vector<Suspect> Blame::suspects(const std::vector<double>& shares, const Sc
 std::vector<Blame::Candidate> Blame::silent(const std::vector<double>& shares,
                                             const Scorer& scorer, const RecentEvents& events,
                                             const Followers::Leads& leads) const {
-  std::set<EventId> missing;
-  std::map<EventId, std::size_t> unanswered;  // tracks
+  std::map<EventId, std::size_t> missing;     // tracks
+  std::map<EventId, std::size_t> unanswered;  // the same
   for (std::size_t track = 0; track < shares.size(); ++track) {
     if (shares[track] > tuning_.near_limit && model_->finding(track) == Finding::kUnanswered) {
       unanswered.emplace(model_->tracks()[track].to, track);
     }
     if (shares[track] > tuning_.near_limit && model_->finding(track) == Finding::kSilent) {
-      missing.insert(model_->tracks()[track].to);
+      missing.emplace(model_->tracks()[track].to, track);
     }
   }
   std::vector<Candidate> candidates;
-  for (const EventId id : missing) {
-    const double survival = logSurvival(id, scorer);
-    if (survival < rare_silence_) {
-      candidates.push_back({trackOfSilence(id, shares, scorer, events), survival});
+  const auto add = [&](EventId id, std::size_t track) {
+    candidates.push_back({track, std::min(logSurvival(id, scorer), rare_silence_)});
+  };
+  for (const auto& [id, track] : missing) {
+    if (!isUsualAge(track, shares, scorer)) {
+      add(id, trackOfSilence(id, shares, scorer, events));
+      unanswered.erase(id);
     }
   }
   for (const auto& [id, track] : unanswered) {
-    const double survival = logSurvival(id, scorer);
-    if (missing.count(id) == 0 || survival >= rare_silence_) {
-      candidates.push_back({track, std::min(survival, rare_silence_)});
-    }
+    add(id, track);
   }
   return rootFirst(std::move(candidates), leads);
 }
@@ -169,7 +169,7 @@ std::vector<Blame::Candidate> Blame::unusual(const std::vector<double>& shares,
     const Finding finding = model_->finding(track);
     if (shares[track] < tuning_.least_share ||
         // An age that is usual has some share of its limit, too.
-        (finding == Finding::kSilent && logSurvival(to, scorer) >= rare_silence_)) {
+        (finding == Finding::kSilent && isUsualAge(track, shares, scorer))) {
       continue;
     }
     const double share = std::min(shares[track], tuning_.most_share);
@@ -216,6 +216,12 @@ std::vector<Blame::Candidate> Blame::unusual(const std::vector<double>& shares,
     ordered.insert(ordered.end(), group.begin(), group.end());
   }
   return ordered;
+}
+
+bool Blame::isUsualAge(std::size_t track, const std::vector<double>& shares,
+                       const Scorer& scorer) const {
+  // Beyond its limit, it is not, whatever one start showed that did not count.
+  return shares[track] <= 1 && logSurvival(model_->tracks()[track].to, scorer) >= rare_silence_;
 }
 
 double Blame::logSurvival(EventId id, const Scorer& scorer) const {

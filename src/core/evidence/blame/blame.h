@@ -51,6 +51,9 @@ class Blame {
                                                   std::vector<Candidate>& others,
                                                   const Scorer& scorer,
                                                   const Followers::Leads& leads) const;
+  /// Whether the age of what a track of silence watches is within its limit, and not rare.
+  bool isUsualAge(std::size_t track, const std::vector<double>& shares,
+                  const Scorer& scorer) const;
   double logSurvival(EventId id, const Scorer& scorer) const;
   std::size_t trackOfSilence(EventId id, const std::vector<double>& shares, const Scorer& scorer,
                              const RecentEvents& events) const;

@@ -1,8 +1,11 @@
 #include "core/evidence/channel/silence.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <limits>
+#include <vector>
 
 #include "self_awareness/core/evidence/channel/model.h"
 #include "self_awareness/core/evidence/count/gap_distribution.h"
@@ -36,9 +39,19 @@ class SilenceState : public ChannelState {
     reason.usual = model_.meanGap(id) * 1e-9;
     reason.usual_shortest = model_.usualDelay(id, id, kUsualFrom) * 1e-9;
     reason.usual_longest = model_.usualDelay(id, id, kUsualTo) * 1e-9;
+    // One start may have shown more than all others agree on.
+    const std::vector<std::int64_t>& gaps = model_.statistics().type(id).longest_gaps;
+    const auto longer =
+        std::partition_point(gaps.begin(), gaps.end(),
+                             [&](std::int64_t gap) { return gap > heard.silence(id); }) -
+        gaps.begin();
     char text[120];
-    std::snprintf(text, sizeof text, "silent for %.2f s, usually every %.3f s, at most %.3f s",
-                  reason.value, reason.usual, toSeconds(model_.longestGap(id)));
+    std::snprintf(text, sizeof text, "silent for %.2f s, usually every %.3f s, %s %.3f s",
+                  reason.value, reason.usual,
+                  longer == 0   ? "at most"
+                  : longer == 1 ? "longer once in training:"
+                                : "longer now and then: up to",
+                  toSeconds(model_.longestGap(id)));
     reason.words = text;
   }
 

@@ -25,6 +25,13 @@ std::size_t fewer(std::size_t so_far, const Relation& relation) {
   return so_far == 0 ? lacks : std::min(so_far, lacks);
 }
 
+/// Whether a relation would be watched if messages of the one reached the other.
+bool wouldBeWatchedByGraph(const Relation& relation, double chance) {
+  return !relation.watched && !relation.reaches && relation.starts > 0 &&
+         (relation.irregular ||
+          std::pow(relation.spread, static_cast<double>(relation.starts - 1)) <= chance);
+}
+
 /// Two digits, without an exponent.
 std::string rounded(double seconds, const std::string& unit) {
   char digits[32];
@@ -46,12 +53,26 @@ std::string foundAfter(const Coverage& coverage, const std::string& unit) {
   return words;
 }
 
+std::string lateAnswers(const Coverage& coverage) {
+  if (coverage.late_answers) {
+    return "found";
+  }
+  std::string words = coverage.graph_helps ? "with the graph" : "";
+  if (coverage.more_starts > 0 && coverage.more_starts <= Coverage::kMostStarts) {
+    words += std::string(words.empty() ? "" : ", or ") + "after " +
+             std::to_string(coverage.more_starts) + " more start" +
+             (coverage.more_starts > 1 ? "s" : "");
+  }
+  return words;
+}
+
 std::vector<Coverage> coverageOf(const Model& model, const Limits& limits,
                                  const std::vector<Relation>& relations, std::int64_t window,
-                                 const std::vector<bool>& may_be_silent) {
+                                 bool knows_graph, const std::vector<bool>& may_be_silent) {
   if (limits.tracks.size() != model.tracks().size()) {
     throw std::invalid_argument("limits: one of each track is needed");
   }
+  const double chance_of_one = model.tuning().chance_of_one;
   std::vector<Coverage> coverages(model.components().size());
   for (std::size_t k = 0; k < coverages.size(); ++k) {
     coverages[k].component = model.components()[k];
@@ -87,11 +108,14 @@ std::vector<Coverage> coverageOf(const Model& model, const Limits& limits,
       of.late_answers = of.late_answers || judged;
       if (!judged && number < relations.size()) {
         of.more_starts = fewer(of.more_starts, relations[number]);
+        of.graph_helps = of.graph_helps ||
+                         (!knows_graph && wouldBeWatchedByGraph(relations[number], chance_of_one));
       }
     }
   }
   for (Coverage& of : coverages) {
     of.more_starts = of.late_answers ? 0 : of.more_starts;
+    of.graph_helps = of.graph_helps && !of.late_answers;
     of.accepted = of.accepted && !of.isWatched();  // else another topic of it tells
   }
   return coverages;

@@ -33,12 +33,13 @@ void LeftOut::Others::add(double value, std::size_t its_group) {
   }
 }
 
-void LeftOut::add(const std::vector<double>& largest, double least, double margin) {
+void LeftOut::add(const std::vector<double>& largest, const std::vector<double>& agreed,
+                  double least, double margin) {
   Others by_sample;
   Others by_part;
   for (std::size_t part = 0; part < parts_.size(); ++part) {
-    by_sample.add(largest[part], parts_[part].sample);
-    by_part.add(largest[part], part);
+    by_sample.add(agreed[part], parts_[part].sample);
+    by_part.add(agreed[part], part);
   }
   for (std::size_t part = 0; part < parts_.size(); ++part) {
     if (left_out_by_[part] == By::kNothing) {

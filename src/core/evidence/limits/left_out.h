@@ -18,9 +18,11 @@ class LeftOut {
 
   /// Takes in a track that is judged.
   /// @param largest value in every part, 0 or more
+  /// @param agreed the same, as far as it tells about others
   /// @param least limit of the track
   /// @param margin the limit is so many times the largest value that was seen
-  void add(const std::vector<double>& largest, double least, double margin);
+  void add(const std::vector<double>& largest, const std::vector<double>& agreed, double least,
+           double margin);
   /// Parts in which at least one track would have exceeded its limit.
   std::size_t exceeded() const;
   /// Length of the parts that others can judge [h]; of all, where none can be.

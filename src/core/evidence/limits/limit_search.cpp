@@ -14,7 +14,8 @@
 namespace self_awareness::core::evidence {
 namespace {
 
-constexpr double kHour = 3600e9;  // [ns]
+constexpr double kHour = 3600e9;             // [ns]
+constexpr std::size_t kFewestThatAgree = 3;  // two say the same, and one does not
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 double hoursOf(std::uint64_t windows, std::int64_t window) {
@@ -40,6 +41,12 @@ double secondLargest(std::vector<double> values) {
   }
   std::nth_element(values.begin(), values.begin() + 1, values.end(), std::greater<>());
   return values[1];
+}
+
+std::vector<double> largerOf(std::vector<double> values, const std::vector<double>& others) {
+  std::transform(values.begin(), values.end(), others.begin(), values.begin(),
+                 [](double one, double other) { return std::max(one, other); });
+  return values;
 }
 
 /// False alarms an hour that limits are made for. By the training alone, they promise one in so
@@ -153,15 +160,24 @@ void LimitSearch::gatherParts(const LimitFinder::Findings& findings) {
 }
 
 std::pair<LimitSearch::Pool, LimitSearch::Seen> LimitSearch::seenBy(std::size_t track) const {
-  Seen seen{track, model_.leastLimit(track), {}};
+  Seen seen{track, model_.leastLimit(track), {}, {}};
   if (model_.finding(track) == Finding::kSilent) {
-    const bool mostly_silent = isMostlySilent(model_.tracks()[track].to);
-    seen.largest = gapsOf(model_.tracks()[track].to, mostly_silent);
-    return {{mostly_silent ? Kind::kOthers : kindOfGaps(seen), ""}, seen};
+    const EventId id = model_.tracks()[track].to;
+    const bool mostly_silent = isMostlySilent(id);
+    const std::vector<double> gaps = gapsOf(id);
+    const std::vector<double> late = lateFirstsOf(id, mostly_silent);
+    seen.largest = largerOf(gaps, late);
+    seen.agreed = largerOf(agreedOn(gaps), late);
+    const Kind kind = mostly_silent ? Kind::kOthers : kindOfGaps(seen);
+    if (kind == Kind::kOthers) {
+      seen.agreed = seen.largest;  // a pause may be as long as it likes
+    }
+    return {{kind, ""}, seen};
   }
   for (const LimitFinder::Recording::Part* part : judged_parts_) {
     seen.largest.push_back(part->evidence[track]);
   }
+  seen.agreed = seen.largest;
   return {{Kind::kEvidence, channelLabel(model_.tracks()[track])}, seen};
 }
 
@@ -179,34 +195,43 @@ bool LimitSearch::isMostlySilent(EventId id) const {
   return 2 * talks < heard_in;
 }
 
-std::vector<double> LimitSearch::gapsOf(EventId id, bool mostly_silent) const {
+std::vector<double> LimitSearch::gapsOf(EventId id) const {
   std::vector<double> longest;
+  for (const Statistics::Recording& recording : model_.statistics().recordings()) {
+    longest.push_back(heardIn(recording, id) ? asTold(recording.longest_gaps[id]) : 0);
+  }
+  for (const GapPart& part : gap_parts_) {
+    longest.push_back(asTold(part.said->longest_gaps[id]));
+  }
+  return longest;
+}
+
+std::vector<double> LimitSearch::lateFirstsOf(EventId id, bool mostly_silent) const {
   // Who always comes as late only takes so long to start.
   const std::int64_t fastest = mostly_silent ? 0 : fastestFirst(id);
   const std::int64_t pause = mostly_silent ? 0 : toNanoseconds(tuning_.start_time);
-  const auto longestOf = [=](std::int64_t gap, std::int64_t first) {
-    const std::int64_t late = first - fastest;
-    return static_cast<double>(late > pause ? std::max(gap, late) : gap);
+  const auto lateOf = [=](std::int64_t first) {
+    return first - fastest > pause ? asTold(first - fastest) : 0;
   };
+  std::vector<double> late;
   for (const Statistics::Recording& recording : model_.statistics().recordings()) {
-    longest.push_back(
-        heardIn(recording, id) ? longestOf(recording.longest_gaps[id], recording.firsts[id])
-        : robots_.lacks(recording.robot, id) ? 0
-                                             : longestOf(0, recording.end - recording.start));
+    late.push_back(heardIn(recording, id)               ? lateOf(recording.firsts[id])
+                   : robots_.lacks(recording.robot, id) ? 0
+                                                        : lateOf(recording.end - recording.start));
   }
   for (const GapPart& part : gap_parts_) {
     const std::vector<std::int64_t>& firsts = part.of->firsts;
     const bool begins = part.said == &part.of->parts.front() && !firsts.empty();
     const std::int64_t never =
         robots_.lacks(part.of->robot, id) ? 0 : part.of->end - part.of->start;
-    const std::int64_t first = !begins ? 0 : firsts[id] < 0 ? never : firsts[id];
-    longest.push_back(longestOf(part.said->longest_gaps[id], first));
+    late.push_back(lateOf(!begins ? 0 : firsts[id] < 0 ? never : firsts[id]));
   }
+  return late;
+}
+
+double LimitSearch::asTold(std::int64_t gap) const {
   // Windows tell ages no better than this, and hiccups of a host add to a gap, however long.
-  for (double& gap : longest) {
-    gap += gap > 0 ? window() : 0;
-  }
-  return longest;
+  return gap > 0 ? static_cast<double>(gap) + window() : 0;
 }
 
 std::int64_t LimitSearch::fastestFirst(EventId id) const {
@@ -226,13 +251,30 @@ std::int64_t LimitSearch::fastestFirst(EventId id) const {
 
 LimitSearch::Kind LimitSearch::kindOfGaps(const Seen& seen) const {
   const double mean_gap = model_.meanGap(model_.tracks()[seen.track].to);
-  const double again = secondLargest(seen.largest);
-  const double gap =
-      again > 0 ? again : *std::max_element(seen.largest.begin(), seen.largest.end());
+  const double again = secondLargest(seen.agreed);
+  const double gap = again > 0 ? again : *std::max_element(seen.agreed.begin(), seen.agreed.end());
   if (gap - window() >= tuning_.regular * mean_gap) {
     return Kind::kOthers;
   }
   return mean_gap < tuning_.fast * window() ? Kind::kFastTimers : Kind::kTimers;
+}
+
+std::vector<double> LimitSearch::agreedOn(const std::vector<double>& longest) const {
+  const auto worst = std::max_element(longest.begin(), longest.end());
+  const std::size_t sample = with_gaps_[static_cast<std::size_t>(worst - longest.begin())].sample;
+  double others = 0;
+  for (std::size_t part = 0; part < longest.size(); ++part) {
+    others = with_gaps_[part].sample == sample ? others : std::max(others, longest[part]);
+  }
+  const auto stall = static_cast<double>(toNanoseconds(tuning_.longest_stall));
+  const double hole = tuning_.most_mean_gaps * others + stall;
+  std::vector<double> agreed = longest;
+  if (samplesThatHeard(longest) >= kFewestThatAgree) {
+    for (double& gap : agreed) {
+      gap = gap > hole ? others : gap;
+    }
+  }
+  return agreed;
 }
 
 double LimitSearch::lossesOf(const std::map<Pool, std::vector<Seen>>& pools) const {
@@ -247,7 +289,7 @@ double LimitSearch::lossesOf(const std::map<Pool, std::vector<Seen>>& pools) con
       const double mean_gap = model_.meanGap(id);
       const double loss = tuning_.regular * mean_gap + window();
       lost += static_cast<double>(
-          std::count_if(seen.largest.begin(), seen.largest.end(),
+          std::count_if(seen.agreed.begin(), seen.agreed.end(),
                         [=](double gap) { return gap >= loss && gap < loss + mean_gap; }));
       came += numberOf(id);
     }
@@ -272,7 +314,7 @@ void LimitSearch::search(Kind kind, const std::vector<Seen>& tracks, double shar
                    tuning_);
   for (const Seen& seen : tracks) {
     if (!isOfOneRobot(seen.track)) {
-      held_out.add(seen.largest, seen.least);
+      held_out.add(seen.agreed, seen.least);
     }
   }
   const Margins margins = model_.tracks()[tracks.front().track].channel->margins(tuning_);
@@ -284,9 +326,9 @@ void LimitSearch::search(Kind kind, const std::vector<Seen>& tracks, double shar
     const bool of_one = isOfOneRobot(seen.track);  // what the others say of it is nothing
     const double own = gaps || of_one
                            ? margin
-                           : std::max(margin, std::min(held_out.excess(seen.largest, seen.least),
+                           : std::max(margin, std::min(held_out.excess(seen.agreed, seen.least),
                                                        tuning_.most_own_margin));
-    const double largest = *std::max_element(seen.largest.begin(), seen.largest.end());
+    const double largest = *std::max_element(seen.agreed.begin(), seen.agreed.end());
     const Expectation& expected = model_.expectation(seen.track);
     double& silent_for = silent_for_[model_.tracks()[seen.track].to];
     const double found =
@@ -299,7 +341,8 @@ void LimitSearch::search(Kind kind, const std::vector<Seen>& tracks, double shar
     double& limit = limits_[seen.track];
     limit = expected.limit(seen.track, largest, most);
     if (!std::isnan(limit) && !of_one) {
-      left_out.add(seen.largest, seen.least, gaps ? (most + window()) / largest : margin);
+      left_out.add(seen.largest, seen.agreed, seen.least,
+                   gaps ? (most + window()) / largest : margin);
     }
   }
 }
@@ -319,7 +362,7 @@ bool LimitSearch::isOfOneRobot(std::size_t track) const {
 
 double LimitSearch::longestAge(Kind kind, const Seen& seen, double largest, double age,
                                double rate) const {
-  const double starts = samplesThatHeard(seen);
+  const auto starts = static_cast<double>(samplesThatHeard(seen.agreed));
   const Statistics::Type gaps = gapsWithParts(model_.tracks()[seen.track].to);
   const double rare = tailOf(gaps, seen.track, starts).age(rate);
   if (kind == Kind::kOthers) {
@@ -330,7 +373,7 @@ double LimitSearch::longestAge(Kind kind, const Seen& seen, double largest, doub
   const double told = longest_recording_ / tuning_.pauses_in_recording;
   const double mean_gap = model_.meanGap(model_.tracks()[seen.track].to);
   const double again =
-      std::max(secondLargest(seen.largest) - window(),
+      std::max(secondLargest(seen.agreed) - window(),
                gaps.longest_gaps.size() > 1 ? static_cast<double>(gaps.longest_gaps[1]) : 0);
   if (again > std::max(told, tuning_.most_mean_gaps * mean_gap)) {
     // What comes when something happens may stay away for as long as nothing does. Recordings
@@ -341,14 +384,14 @@ double LimitSearch::longestAge(Kind kind, const Seen& seen, double largest, doub
   return age;
 }
 
-double LimitSearch::samplesThatHeard(const Seen& seen) const {
+std::size_t LimitSearch::samplesThatHeard(const std::vector<double>& longest) const {
   std::set<std::size_t> samples;
   for (std::size_t part = 0; part < with_gaps_.size(); ++part) {
-    if (seen.largest[part] > 0) {
+    if (longest[part] > 0) {
       samples.insert(with_gaps_[part].sample);
     }
   }
-  return static_cast<double>(samples.size());
+  return samples.size();
 }
 
 Statistics::Type LimitSearch::gapsWithParts(EventId id) const {

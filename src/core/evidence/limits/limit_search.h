@@ -42,6 +42,7 @@ class LimitSearch {
     std::size_t track = 0;
     double least = 0;             // limit
     std::vector<double> largest;  // by part
+    std::vector<double> agreed;   // the same, without what one start alone shows
   };
 
   /// A part of a recording that was not trained on.
@@ -56,13 +57,20 @@ class LimitSearch {
   /// Whether it is silent for more than half of the time of the recordings that it is heard in:
   /// when it does not begin at once, that is a pause, and no start-up.
   bool isMostlySilent(EventId id) const;
-  /// Longest gaps by part [ns], as long as windows can tell them. Also by how much later than in
-  /// the fastest recording its first event came, where that is no start-up; of recordings that
-  /// never heard it, it is their end; of robots that lack it, there is none.
-  std::vector<double> gapsOf(EventId id, bool mostly_silent) const;
+  /// Longest gaps by part [ns], as long as windows can tell them.
+  std::vector<double> gapsOf(EventId id) const;
+  /// By part, by how much later than in the fastest recording its first event came [ns], where
+  /// that is no start-up; of recordings that never heard it, it is their end; of robots that lack
+  /// it, there is none.
+  std::vector<double> lateFirstsOf(EventId id, bool mostly_silent) const;
+  /// A gap, as long as windows can tell it [ns]; 0: there is none.
+  double asTold(std::int64_t gap) const;
   /// Shortest time to the first event of a type, of all recordings that heard it [ns].
   std::int64_t fastestFirst(EventId id) const;
   Kind kindOfGaps(const Seen& seen) const;
+  /// Longest gaps by part, as far as most starts agree on them: where three heard it, what one
+  /// shows much longer than all others do was a fault, and counts as these.
+  std::vector<double> agreedOn(const std::vector<double>& longest) const;
   /// Share of the messages of all timers that are not fast, of which one at a time was lost, as
   /// far as recordings show.
   double lossesOf(const std::map<Pool, std::vector<Seen>>& pools) const;
@@ -82,7 +90,7 @@ class LimitSearch {
   /// @param rate of losses an hour that are rare
   double withALoss(std::size_t track, double largest, double rate) const;
   /// Number of samples with a gap of an event type whose silence is judged.
-  double samplesThatHeard(const Seen& seen) const;
+  std::size_t samplesThatHeard(const std::vector<double>& longest) const;
   /// Whether only one of several robots has what a track watches: no other one tells about it.
   bool isOfOneRobot(std::size_t track) const;
   /// Gaps of the training, and the longest ones of parts.

@@ -62,5 +62,17 @@ TEST_F(SilenceTest, ASuspectIsToldOfByWhatTrainingMeasured) {
   EXPECT_EQ(silent.reason.words, text);
 }
 
+TEST_F(SilenceTest, ASuspectIsNotSaidToBeUsuallyHeardSoonerThanTrainingShowed) {
+  const std::vector<std::int64_t>& gaps = model_->statistics().type(kA).longest_gaps;
+  add({now_, kA});
+  now_ += (gaps.at(0) + gaps.at(1)) / 2;
+  char text[100];
+  std::snprintf(text, sizeof text, "longer once in training: %.3f s", toSeconds(gaps.at(0)));
+  EXPECT_NE(suspect(overdue_).reason.words.find(text), std::string::npos);
+  add({now_, kA});
+  now_ += gaps.at(2);
+  EXPECT_NE(suspect(overdue_).reason.words.find("longer now and then: up to"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace self_awareness::core::evidence

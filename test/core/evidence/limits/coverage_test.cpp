@@ -24,7 +24,7 @@ Events robot(unsigned seed) {
 class CoverageTest : public testing::Test {
  protected:
   const Coverage& of(EventId id) {
-    coverages_ = coverageOf(model_, {limits_, {}}, relations_, kWindow);
+    coverages_ = coverageOf(model_, {limits_, {}}, relations_, kWindow, knows_graph_);
     return coverages_.at(model_.componentIndex(id));
   }
   double& limit(const char* channel, EventId to, EventId from) {
@@ -34,6 +34,7 @@ class CoverageTest : public testing::Test {
   const Model model_{watch(countsOf({robot(1)}), countsOf({later(robot(2))}))};
   std::vector<double> limits_ = std::vector<double>(model_.tracks().size(), kNone);
   std::vector<Relation> relations_;
+  bool knows_graph_ = false;
   std::vector<Coverage> coverages_;
 };
 
@@ -79,7 +80,7 @@ TEST(FoundAfter, SaysTheSoonerOneWhileItIsNeeded) {
 TEST_F(CoverageTest, WhoMayBeSilentIsNotWatchedSinceThatIsAccepted) {
   limit(kOverdue, kA, kA) = model_.overdue(kA, 3 * kSecond);
   const auto with = [&](const std::vector<bool>& may_be_silent) {
-    return coverageOf(model_, {limits_, {}}, relations_, kWindow, may_be_silent)
+    return coverageOf(model_, {limits_, {}}, relations_, kWindow, knows_graph_, may_be_silent)
         .at(model_.componentIndex(kA));
   };
   EXPECT_TRUE(with({true, true, true}).accepted);
@@ -104,6 +105,24 @@ TEST_F(CoverageTest, ARelationThatIsJudgedFindsLateAnswersAndOneThatLacksStartsS
   EXPECT_TRUE(of(kB).late_answers);
   EXPECT_EQ(of(kB).more_starts, 0U);
   EXPECT_FALSE(of(kB).isWatched()) << "it may be silent for ever";
+}
+
+TEST_F(CoverageTest, WhatTheGraphMightTellIsSaidWhereItIsNotKnown) {
+  relations_.resize(limits_.size());
+  Relation& relation = relations_.at(indexOf(model_.tracks(), kPairs, kB, kA));
+  relation = {false, false, false, 0.2, 2, 0};
+  EXPECT_EQ(lateAnswers(of(kB)), "") << "0.2 is more than the chance that is allowed";
+  relation.starts = 3;
+  EXPECT_EQ(lateAnswers(of(kB)), "with the graph");
+  relation.starts_needed = 4;
+  EXPECT_EQ(lateAnswers(of(kB)), "with the graph, or after 1 more start");
+  relation.starts_needed = 5;
+  knows_graph_ = true;
+  EXPECT_EQ(lateAnswers(of(kB)), "after 2 more starts");
+  relation.starts_needed = relation.starts + Coverage::kMostStarts + 1;
+  EXPECT_EQ(lateAnswers(of(kB)), "");
+  limit(kPairs, kB, kA) = 20;
+  EXPECT_EQ(lateAnswers(of(kB)), "found");
 }
 
 TEST_F(CoverageTest, LimitsOfAnotherModelAreRefused) {

@@ -12,7 +12,7 @@ const Tuning kTuning;
 std::size_t exceeded(const std::vector<Part>& parts, const std::vector<double>& largest,
                      double least = 1, double margin = 1.5) {
   LeftOut left_out(parts, kTuning);
-  left_out.add(largest, least, margin);
+  left_out.add(largest, largest, least, margin);
   return left_out.exceeded();
 }
 
@@ -35,7 +35,7 @@ TEST(LeftOut, APartOfALongStartIsJudgedByTheOtherParts) {
 
 TEST(LeftOut, WhatIsMostOfAllIsNotJudged) {
   LeftOut left_out({{0, 5}, {1, 1}, {2, 1}}, kTuning);
-  left_out.add({9, 2, 2}, 1, 1.5);
+  left_out.add({9, 2, 2}, {9, 2, 2}, 1, 1.5);
   EXPECT_EQ(left_out.exceeded(), 0U);
   EXPECT_DOUBLE_EQ(left_out.hours(), 2);
   EXPECT_DOUBLE_EQ(LeftOut({{0, 5}}, kTuning).hours(), 5) << "nothing can be left out";
@@ -44,10 +44,16 @@ TEST(LeftOut, WhatIsMostOfAllIsNotJudged) {
 TEST(LeftOut, APartCountsOnceWhateverNumberOfTracksExceed) {
   LeftOut left_out({{0, 1}, {1, 1}, {2, 1}}, kTuning);
   for (int k = 0; k < 5; ++k) {
-    left_out.add({9, 2, 2}, 1, 1.5);
+    left_out.add({9, 2, 2}, {9, 2, 2}, 1, 1.5);
   }
-  left_out.add({2, 9, 2}, 1, 1.5);
+  left_out.add({2, 9, 2}, {2, 9, 2}, 1, 1.5);
   EXPECT_EQ(left_out.exceeded(), 2U);
+}
+
+TEST(LeftOut, WhatMostStartsDoNotAgreeOnTellsNothingAboutOthers) {
+  LeftOut left_out({{0, 1}, {1, 1}, {2, 1}}, kTuning);
+  left_out.add({9, 4, 2}, {2, 4, 2}, 1, 1.5);
+  EXPECT_EQ(left_out.exceeded(), 2U) << "the first, and by the agreed also the second";
 }
 
 TEST(LeftOut, TheHighestRateIsThatOfRobotsAndOfWhatOneShows) {

@@ -249,6 +249,30 @@ TEST_F(LimitFinderTest, OneHoleOfOneRecordingIsNoLongPause) {
   EXPECT_GT(limit(twice, kOverdue, kA, kA), model_->overdue(kA, 500 * kSecond));
 }
 
+TEST_F(LimitFinderTest, WhatOneOfThreeStartsShowsAloneIsItsFault) {
+  constexpr std::int64_t kHole = 6 * kSecond;
+  const auto robot_with = [](std::int64_t hole) {
+    return together({timer(kA, 0, 100 * kSecond, kPeriod),
+                     timer(kA, 100 * kSecond + hole, 200 * kSecond, kPeriod),
+                     timer(kB, 0, 200 * kSecond, kPeriod)});
+  };
+  model_ = modelOf(robot_with(kHole), later(robot_with(0)));
+  const auto found = [&](std::int64_t start, std::int64_t hole) {
+    LimitFinder finder(model_, {kWindow, 5 * kSecond});
+    feed(finder, model_, later(robot_with(hole), start));
+    return finder.find();
+  };
+  const LimitFinder::Found three = found(2 * kStart, 0);
+  EXPECT_LT(limit(three.limits, kOverdue, kA, kA), model_->overdue(kA, kSecond));
+  EXPECT_GT(limit(found(kStart, 0).limits, kOverdue, kA, kA), model_->overdue(kA, kHole))
+      << "one against one";
+  EXPECT_GT(limit(found(2 * kStart, kHole).limits, kOverdue, kA, kA), model_->overdue(kA, kHole))
+      << "two starts show it";
+  // The next start with a fault is an alarm, and that is said.
+  model_ = modelOf(robot_with(0), later(robot_with(0)));
+  EXPECT_GT(three.promised_rate, 1.5 * found(2 * kStart, 0).promised_rate);
+}
+
 TEST_F(LimitFinderTest, WhereSomeTimersLoseMessagesAllMayLoseOne) {
   const auto robot_that_loses = [](std::int64_t number) {
     Events events =

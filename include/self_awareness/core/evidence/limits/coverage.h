@@ -13,6 +13,9 @@ namespace self_awareness::core::evidence {
 
 /// How soon faults of a component are found by a model's limits (docs/calibration.md).
 struct Coverage {
+  /// What needs more starts than so many is not told.
+  static constexpr std::size_t kMostStarts = 50;
+
   std::string component;
   /// Mean gap of the event type that comes most often [s]; 0: nothing came twice.
   double period = 0;
@@ -30,6 +33,9 @@ struct Coverage {
   /// Starts of the robot after which that would be found, if it is not; 0: no number helps, or it
   /// is not known.
   std::size_t more_starts = 0;
+  /// Whether that would be found already if the graph were known, and said that messages of the
+  /// one that it answers reach it.
+  bool graph_helps = false;
 
   /// Whether its death is found at all.
   bool isWatched() const { return death_found_after.has_value() || found_when_asked.has_value(); }
@@ -40,14 +46,19 @@ struct Coverage {
 /// @param unit after each number: " s", or nothing where the reader knows it
 std::string foundAfter(const Coverage& coverage, const std::string& unit);
 
+/// Whether late answers of a component are found, in words: "found", or with what: "after 2 more
+/// starts", "with the graph", "with the graph, or after 2 more starts"; empty: with nothing.
+std::string lateAnswers(const Coverage& coverage);
+
 /// Of all components of a model, in the order of Model::components().
 /// @param limits of its tracks
 /// @param relations by track; empty: not known
 /// @param window length of a window [ns]
+/// @param knows_graph whether the model knows who subscribes to what
 /// @param may_be_silent by id: event types whose silence is accepted; empty: none
 /// @throw std::invalid_argument unless there is a limit for each track
 std::vector<Coverage> coverageOf(const Model& model, const Limits& limits,
                                  const std::vector<Relation>& relations, std::int64_t window,
-                                 const std::vector<bool>& may_be_silent = {});
+                                 bool knows_graph, const std::vector<bool>& may_be_silent = {});
 
 }  // namespace self_awareness::core::evidence
