@@ -393,7 +393,8 @@ class ReferenceLimits:
                 if of_gaps:
                     hours = sum(part.hours for part in with_gaps)
                     starts = len({part.start for part, gap in zip(with_gaps, largest) if gap > 0})
-                    tail = self._tail(track[1], hours, starts)
+                    longest_gap = max(largest) - self._window
+                    tail = self._tail(track[1], hours, starts, longest_gap)
                     rare = self._window + tail.gap(self._rates[pool] / len(tracks))
                     longest = self._window + (MOST_TAIL_MARGIN[starts > 1]
                                               * (max(largest) - self._window))
@@ -405,7 +406,7 @@ class ReferenceLimits:
                         found = max(found, max(largest) + mean)
                     recorded = self._longest_recording()
                     again = max(sorted(largest)[-2:][0] - self._window if len(largest) > 1 else 0,
-                                *sorted(self._gaps(track[1]))[-2:-1])
+                                *sorted(self._gaps(track[1], longest_gap))[-2:-1])
                     if again > max(recorded / PAUSES_IN_RECORDING, MOST_MEAN_GAPS * mean):
                         all_time = min(hours * HOUR, PAUSES_IN_RECORDING * recorded)
                         found = max(found, rare, self._window + all_time)
@@ -435,13 +436,13 @@ class ReferenceLimits:
                                 in zip(parts, self._longest_gaps_of_parts(number, kind)) if gap)
         return lost / came if came else 0.0
 
-    def _gaps(self, kind: str) -> List[int]:
-        """Return all gaps of the training, and the longest ones of parts of others."""
+    def _gaps(self, kind: str, most: float) -> List[int]:
+        """Return all gaps of the training, and the longest of parts of others, up to a length."""
         gaps = list(self._model.both.gaps[kind])
         for number, recording in enumerate(self._recordings):
             if not recording.trained_on:
                 gaps += [int(gap) for gap in self._longest_gaps_of_parts(number, kind)]
-        return gaps
+        return [gap for gap in gaps if gap <= most]
 
     def _of_silence(self, track: Track, age: float) -> float:
         """Return the evidence that a silence that is normal brings by itself."""
@@ -451,8 +452,8 @@ class ReferenceLimits:
         mean = sum(counts) / max(len(counts), 1)
         return -self._model.rate(track[1], mean * max(1.0 - age / RATE_SPAN, 0.0))
 
-    def _tail(self, kind: str, hours: float, starts: int) -> Tail:
-        gaps = self._gaps(kind)
+    def _tail(self, kind: str, hours: float, starts: int, most: float) -> Tail:
+        gaps = self._gaps(kind, most)
         usual = REGULAR * self._model.both.mean_gap(kind)
         longest = [gap for gap in sorted(gaps)[-PAUSES:] if gap > usual]
         shortest = float(longest[0]) if len(longest) == PAUSES else usual

@@ -363,7 +363,7 @@ bool LimitSearch::isOfOneRobot(std::size_t track) const {
 double LimitSearch::longestAge(Kind kind, const Seen& seen, double largest, double age,
                                double rate) const {
   const auto starts = static_cast<double>(samplesThatHeard(seen.agreed));
-  const Statistics::Type gaps = gapsWithParts(model_.tracks()[seen.track].to);
+  const Statistics::Type gaps = gapsWithParts(model_.tracks()[seen.track].to, largest);
   const double rare = tailOf(gaps, seen.track, starts).age(rate);
   if (kind == Kind::kOthers) {
     // Pauses of one start may be a host's hiccups.
@@ -394,11 +394,15 @@ std::size_t LimitSearch::samplesThatHeard(const std::vector<double>& longest) co
   return samples.size();
 }
 
-Statistics::Type LimitSearch::gapsWithParts(EventId id) const {
+Statistics::Type LimitSearch::gapsWithParts(EventId id, double longest) const {
   Statistics::Type gaps = model_.statistics().type(id);
   for (const GapPart& part : gap_parts_) {
     gaps.addGap(part.said->longest_gaps[id]);
   }
+  const auto agreed =
+      std::find_if(gaps.longest_gaps.begin(), gaps.longest_gaps.end(),
+                   [=](std::int64_t gap) { return static_cast<double>(gap) <= longest; });
+  gaps.longest_gaps.erase(gaps.longest_gaps.begin(), agreed);
   return gaps;
 }
 

@@ -94,7 +94,8 @@ class LimitSearch {
   /// Whether only one of several robots has what a track watches: no other one tells about it.
   bool isOfOneRobot(std::size_t track) const;
   /// Gaps of the training, and the longest ones of parts.
-  Statistics::Type gapsWithParts(EventId id) const;
+  /// @param longest that most starts agree on [ns]
+  Statistics::Type gapsWithParts(EventId id, double longest) const;
   /// @param gaps of gapsWithParts()
   /// @param starts that heard it
   GapTail tailOf(Statistics::Type gaps, std::size_t track, double starts) const;

@@ -250,10 +250,11 @@ TEST_F(LimitFinderTest, OneHoleOfOneRecordingIsNoLongPause) {
 }
 
 TEST_F(LimitFinderTest, WhatOneOfThreeStartsShowsAloneIsItsFault) {
-  constexpr std::int64_t kHole = 6 * kSecond;
-  const auto robot_with = [](std::int64_t hole) {
-    return together({timer(kA, 0, 100 * kSecond, kPeriod),
-                     timer(kA, 100 * kSecond + hole, 200 * kSecond, kPeriod),
+  constexpr std::int64_t kHole = 9 * kSecond;      // more than a 25th of the recording
+  const auto robot_with = [](std::int64_t hole) {  // twice, in one start
+    return together({timer(kA, 0, 60 * kSecond, kPeriod),
+                     timer(kA, 60 * kSecond + hole, 120 * kSecond, kPeriod),
+                     timer(kA, 120 * kSecond + hole, 200 * kSecond, kPeriod),
                      timer(kB, 0, 200 * kSecond, kPeriod)});
   };
   model_ = modelOf(robot_with(kHole), later(robot_with(0)));
