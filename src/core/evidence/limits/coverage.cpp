@@ -28,8 +28,7 @@ std::size_t fewer(std::size_t so_far, const Relation& relation) {
 /// Whether a relation would be watched if messages of the one reached the other.
 bool wouldBeWatchedByGraph(const Relation& relation, double chance) {
   return !relation.watched && !relation.reaches && relation.starts > 0 &&
-         (relation.irregular ||
-          std::pow(relation.spread, static_cast<double>(relation.starts - 1)) <= chance);
+         (relation.irregular || byChance(relation) <= chance);
 }
 
 /// Two digits, without an exponent.

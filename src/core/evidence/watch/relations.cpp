@@ -180,14 +180,13 @@ Relation Relations::delays(EventId from, EventId to, const std::vector<Span>& mo
                        : relation.reaches || relation.irregular
                            ? tuning_.chance_of_one
                            : tuning_.chance_of_any / looked_at_;
-  const double starts = std::max<double>(static_cast<double>(relation.starts), 1);
   // Who comes in the second half of a period after another may as well be the one that it asks; of
   // what one node publishes, nobody knows what comes upon what.
   const bool one_source =
       counts_.vocabulary().at(from).source == counts_.vocabulary().at(to).source;
   const bool late =
       (!relation.reaches || one_source) && medianDelay(from, to) > period(from, to) / 2;
-  relation.watched = !late && std::pow(relation.spread, starts - 1) <= level;
+  relation.watched = !late && byChance(relation) <= level;
   relation.starts_needed =
       relation.watched || late || relation.spread >= 1
           ? 0
@@ -247,6 +246,11 @@ bool Relations::mayBeOwed(EventId from, EventId to, std::uint64_t answers) const
   }
   const Asked asked = this->asked(from, to, answers);
   return asked.beyond_chance && asked.divergence > -std::log(tuning_.chance_of_any);
+}
+
+double byChance(const Relation& relation) {
+  const std::size_t starts = std::max<std::size_t>(relation.starts, 1);
+  return std::pow(relation.spread, static_cast<double>(starts - 1));
 }
 
 double missRate(std::uint64_t gaps, std::uint64_t answers) {

@@ -15,6 +15,9 @@ struct Relation {
   std::size_t starts_needed = 0;  ///< with which it would be watched; 0: it is, or no number helps
 };
 
+/// Probability that independent timers show as narrow a spread in all starts by chance.
+double byChance(const Relation& relation);
+
 /// What the delays between two event types said in a recording.
 enum class Said : std::uint8_t {
   kNothing,    ///< there were too few
