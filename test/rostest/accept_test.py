@@ -10,7 +10,7 @@ import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
 
 import self_awareness
-from live_system import (MonitorListener, Process, again_if_clock_was_set, await_condition,
+from live_system import (MonitorListener, Process, again_if_disturbed, await_condition,
                          operation, write_bag)
 from monitor_case import MonitorCase
 from self_awareness.msg import Acceptance, SelfAwareness
@@ -74,7 +74,7 @@ class TrainedCase(MonitorCase):
 
 class AcceptTest(TrainedCase):
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_a_new_node_is_told_once_and_accepted_for_other_starts(self) -> None:
         file = self.path('model.accepted')
         with talker('base', '/odom', 10), talker('driver', '/scan', 12.5):
@@ -115,7 +115,7 @@ class AcceptTest(TrainedCase):
                     await_condition('it is told again', lambda: any(
                         '/joystick' in alarm.message for alarm in listener.alarms), 20)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_what_stands_is_accepted_until_it_is_trained(self) -> None:
         with self.trained_monitor(), MonitorListener() as listener, talker('base', '/odom', 10):
             with talker('driver', '/scan', 12.5):
@@ -156,7 +156,7 @@ class AcceptTest(TrainedCase):
         self.assertIn('accepted, and not learned: /base\n', said)
         self.assertEqual(self_awareness.read_accepted(self.path('model.accepted')), entries[1:])
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_messages_that_are_accepted_do_not_hide_a_death(self) -> None:
         with self.trained_monitor(), MonitorListener() as listener, talker('base', '/odom', 10):
             with talker('driver', '/scan', 12.5):
@@ -173,7 +173,7 @@ class AcceptTest(TrainedCase):
             alarm = listener.await_alarm()
             self.assertEqual((alarm.component, alarm.kind), ('/driver', 'died'))
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_what_cannot_be_accepted_is_refused(self) -> None:
         with self.trained_monitor(), MonitorListener() as listener, talker('base', '/odom', 10):
             self.await_heard(listener, '/base')

@@ -23,7 +23,7 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from nodelet.srv import NodeletList, NodeletLoad, NodeletUnload
 from std_msgs.msg import Empty, String
 
-from live_system import (MonitorListener, Process, again_if_clock_was_set, await_condition,
+from live_system import (MonitorListener, Process, again_if_disturbed, await_condition,
                          operation, pid_of, write_bag)
 from monitor_case import MonitorCase, Talker, publishers
 from self_awareness.msg import SelfAwareness
@@ -170,7 +170,7 @@ class ChaosTest(MonitorCase):
 
     # Names
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_names_that_nobody_can_subscribe_to_are_named_once_and_left_out(self) -> None:
         longest = '/' + 999 * 'a'
         illegal = ['/foo-bar', '/\xfc', longest + 'a', '/' + 30000 * 'b']
@@ -194,7 +194,7 @@ class ChaosTest(MonitorCase):
             self.assertEqual(sorted(name.replace('\xfc', '??') for name in left_out), sorted(
                 name[:100].replace('\xfc', '??') for name in illegal + trained))
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_nodes_of_this_package_are_known_whatever_their_names(self) -> None:
         with driver(), self.judging_monitor(), MonitorListener() as listener:
             self.await_heard(listener)
@@ -211,7 +211,7 @@ class ChaosTest(MonitorCase):
             self.assertEqual(unknown, [])
             self.check_no_alarm(listener)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_what_a_node_of_this_package_says_before_it_is_known_counts_for_nothing(self) -> None:
         with driver(), self.judging_monitor(poll_interval=1.0), MonitorListener() as listener:
             self.await_heard(listener)
@@ -232,7 +232,7 @@ class ChaosTest(MonitorCase):
         links: Any = ServerProxy(rospy.get_node_uri()).getBusInfo(rospy.get_name())
         return ('/self_awareness', '/rosout') in [(link[1], link[4]) for link in links[2]]
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_new_names_without_end_silence_nothing(self) -> None:
         topics = ['/come_and_go_{}'.format(number) for number in range(200)]
         stop = threading.Event()
@@ -257,7 +257,7 @@ class ChaosTest(MonitorCase):
             await_condition('some time', lambda: len(listener.heartbeats) > seen + 2, 20)
             self.check_alarm_names(listener, victim)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_a_node_with_a_name_that_is_too_long_is_left_out(self) -> None:
         name = 'n' * 1000  # and a slash
         with Talker('/a'), self.monitor(self.model(), subscribe='all') as monitor, \
@@ -272,7 +272,7 @@ class ChaosTest(MonitorCase):
 
     # Nodes
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_a_node_that_is_stopped_killed_and_respawned(self) -> None:
         with driver() as victim, self.judging_monitor(), MonitorListener() as listener:
             self.await_heard(listener)
@@ -287,7 +287,7 @@ class ChaosTest(MonitorCase):
         await_condition('level {}'.format(level),
                         lambda: listener.statuses[-1].level == level, 30)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_a_type_of_the_same_name_with_another_md5_sum(self) -> None:
         with self.monitor(self.model()), MonitorListener() as listener:
             with Talker('/a'):
@@ -301,7 +301,7 @@ class ChaosTest(MonitorCase):
 
     # Messages
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_messages_of_no_bytes_and_of_64_megabytes(self) -> None:
         large = rospy.Publisher('/large', String, queue_size=1)
         self.addCleanup(large.unregister)
@@ -320,7 +320,7 @@ class ChaosTest(MonitorCase):
             self.assertLess(resident_bytes(pid), before + 150 * MEGABYTE)
             self.check_no_alarm(listener)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_twenty_thousand_messages_a_second(self) -> None:
         with driver() as victim, self.judging_monitor(unknown='ignore') as monitor, \
                 MonitorListener() as listener:
@@ -335,7 +335,7 @@ class ChaosTest(MonitorCase):
             self.assertLess(max(later - earlier for earlier, later in zip(
                 listener.heartbeats, listener.heartbeats[1:])), 3)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_a_queue_that_overflows_is_said_and_is_no_fault_of_others(self) -> None:
         with driver() as victim, self.judging_monitor(queue_size=5), \
                 MonitorListener() as listener:
@@ -347,7 +347,7 @@ class ChaosTest(MonitorCase):
                 self.check_alarm_names(listener, victim)
             self.assertGreater(int(listener.value('monitor', 'dropped messages') or 0), 0)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_what_a_queue_loses_is_no_fault_of_who_sent_it(self) -> None:
         burst = 30
         model = self.path('bursts')
@@ -359,7 +359,7 @@ class ChaosTest(MonitorCase):
             self.check_no_alarm(listener)
             self.check_alarm_names(listener, victim)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_a_monitor_that_stood_still_raises_no_false_alarm(self) -> None:
         with driver() as victim, self.judging_monitor() as monitor, \
                 MonitorListener() as listener:
@@ -376,7 +376,7 @@ class ChaosTest(MonitorCase):
             self.check_no_alarm(listener)
             self.check_alarm_names(listener, victim)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_the_system_clock_is_set(self) -> None:
         step = self.path('step')
         with driver() as victim, ExitStack() as monitor, MonitorListener() as listener:
@@ -406,7 +406,7 @@ class ChaosTest(MonitorCase):
             file.write(text)
         os.rename(path + '.new', path)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_event_types_without_end_take_no_memory(self) -> None:
         model = self.model(type_fields={'std_msgs/String': 'data'}, threshold=-1.0)
         with Talker('/a'), self.monitor(model, subscribe='all') as monitor, \
@@ -432,7 +432,7 @@ class ChaosTest(MonitorCase):
 
     # The monitor itself
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_a_monitor_that_is_killed_is_back_with_its_alarm(self) -> None:
         launch = self.path('respawn.launch')
         self.write(launch, RESPAWNED.format(model=self.trained, folder=self.path('recorder')))
@@ -460,7 +460,7 @@ class ChaosTest(MonitorCase):
 
     # The nodelet
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_the_nodelet_is_unloaded_and_loaded_again(self) -> None:
         """In a manager that lives on; every second time while an alarm stands."""
         rospy.set_param('/watch', {'model': self.model(), 'detector': 'paper',

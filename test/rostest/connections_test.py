@@ -7,7 +7,7 @@ import rospy
 import rostest
 from std_msgs.msg import String
 
-from live_system import (MonitorListener, Process, again_if_clock_was_set, await_condition,
+from live_system import (MonitorListener, Process, again_if_disturbed, await_condition,
                          operation, write_bag)
 from monitor_case import MonitorCase, Talker
 from self_awareness import Tuning
@@ -45,7 +45,7 @@ class ConnectionsTest(MonitorCase):
         trained.model.save(self.path('model'))
         return self.path('model')
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_who_does_not_subscribe_or_logs_an_error_is_named(self) -> None:
         model = self.trained()
         camera = Process('rosrun', 'self_awareness', 'talker.py', '__name:=camera',

@@ -12,7 +12,7 @@ import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
 
 from accept_test import TrainedCase, talker
-from live_system import MonitorListener, again_if_clock_was_set, await_condition
+from live_system import MonitorListener, again_if_disturbed, await_condition
 from self_awareness import Tuning
 from self_awareness.recordings import BagPart
 from self_awareness.training import many_bags
@@ -87,7 +87,7 @@ class DriftTest(TrainedCase):
             if 'drift: ' in status.message]
         return found[-1] if found else None
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_a_share_that_grows_from_start_to_start_is_told(self) -> None:
         self.listen('first')
         first = self.kept()
@@ -119,7 +119,7 @@ class DriftTest(TrainedCase):
         self.assertFalse([each for each in self.listener.diagnostics('communication')
                           if 'drift' in each.message])
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_a_damaged_file_is_named_and_written_anew(self) -> None:
         with open(self.file, 'w') as file:
             file.write('no bag')

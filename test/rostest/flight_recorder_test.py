@@ -15,7 +15,7 @@ import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
 
-from live_system import (MonitorListener, Process, again_if_clock_was_set, await_condition,
+from live_system import (MonitorListener, Process, again_if_disturbed, await_condition,
                          operation, write_bag)
 from monitor_case import MonitorCase, Talker
 from self_awareness.msg import SelfAwareness
@@ -54,7 +54,7 @@ class FlightRecorderTest(MonitorCase):
                                       for name, value in options.items()}
         return self.monitor(model, detector=detector, **parameters)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_a_killed_node_is_in_a_file_that_score_reads(self) -> None:
         after = 3
         bags = [write_bag(self.path('{}.bag'.format(seed)), operation(
@@ -112,7 +112,7 @@ class FlightRecorderTest(MonitorCase):
         last = max(replayed) / 1e9
         self.assertGreater(last, alarm.header.stamp.to_sec() + 2, 'what follows is in it')
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_dump_writes_what_was_heard(self) -> None:
         with Talker('/a'), self.recording_monitor(self.model(), files=2), \
                 MonitorListener() as listener:
@@ -127,7 +127,7 @@ class FlightRecorderTest(MonitorCase):
             self.assertEqual(self.files(), paths[1:], 'the oldest is removed')
             self.assertIn('alarms: 0', self.score(paths[2], '--detector', 'paper'))
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_without_a_duration_there_is_none(self) -> None:
         with Talker('/a'), self.recording_monitor(self.model(), duration=0.0), \
                 MonitorListener() as listener:
@@ -141,7 +141,7 @@ class FlightRecorderTest(MonitorCase):
 
     # A disk that takes nothing: a warning, and it is tried again.
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_a_file_in_place_of_the_folder(self) -> None:
         def blocked() -> None:
             with open(self.folder_of_files(), 'w') as file:
@@ -150,7 +150,7 @@ class FlightRecorderTest(MonitorCase):
         self.check_disk(blocked, lambda: os.remove(self.folder_of_files()), 'but a file')
 
     @unittest.skipUnless(os.geteuid() == 0, 'only root may mount')
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_a_full_disk(self) -> None:
         folder = self.folder_of_files()
 
@@ -165,7 +165,7 @@ class FlightRecorderTest(MonitorCase):
             ['mount', '-o', 'remount,size=1m', folder], check=True), 'space')
 
     @unittest.skipUnless(os.geteuid() == 0, 'only root may mount')
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_a_read_only_disk(self) -> None:
         folder = self.folder_of_files()
 

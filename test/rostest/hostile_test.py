@@ -18,7 +18,7 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from roscpp.srv import GetLoggers, SetLoggerLevel
 
 from fake_publisher import FakePublisher, string_header
-from live_system import MonitorListener, Process, again_if_clock_was_set, await_condition, pid_of
+from live_system import MonitorListener, Process, again_if_disturbed, await_condition, pid_of
 from monitor_case import MonitorCase, Talker, publishers, subscribers
 from self_awareness.msg import SelfAwareness
 
@@ -60,7 +60,7 @@ class HostileTest(MonitorCase):
             (s for s in listener.diagnostics('monitor')[seen:]
              if part in s.message and s.level == DiagnosticStatus.WARN), None), timeout)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_rosnode_kill_ends_it_in_order(self) -> None:
         """roscpp takes its ports away before it says that it ends."""
         for attempt in range(4):
@@ -74,7 +74,7 @@ class HostileTest(MonitorCase):
 
     # Who is heard
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_forged_updates_and_lost_registrations_silence_nobody(self) -> None:
         with Talker('/a'), self.monitor(self.model()), MonitorListener() as listener:
             listener.await_settled()
@@ -94,7 +94,7 @@ class HostileTest(MonitorCase):
             self.await_heard(listener, AT_ONCE_S)
             self.check_no_error(listener)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_a_thousand_idle_connections_keep_nobody_out(self) -> None:
         model = self.model()
         with ExitStack() as stack:
@@ -126,7 +126,7 @@ class HostileTest(MonitorCase):
                 break  # there are enough
         return connections
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_who_does_not_answer_is_not_heard_and_not_silent(self) -> None:
         model = self.model(topics=('/a', '/b'), sources={'/b': '/fake'})
         with Talker('/a'), FakePublisher('/b', b'', answers=False), \
@@ -142,7 +142,7 @@ class HostileTest(MonitorCase):
 
     # Operators
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_services_that_are_called_in_a_loop(self) -> None:
         with Talker('/a') as talker, self.monitor(self.model(), alarm_windows=1) as monitor, \
                 MonitorListener() as listener:
@@ -166,7 +166,7 @@ class HostileTest(MonitorCase):
             monitor.stop()  # what it logs comes when the buffer is emptied
             self.assertLess(len(monitor.output), 20000)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_a_logger_that_is_set_to_debug(self) -> None:
         with Talker('/a'), self.monitor(self.model()), MonitorListener() as listener:
             listener.await_settled()
@@ -186,7 +186,7 @@ class HostileTest(MonitorCase):
 
     # What it costs
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_announced_gigabytes_take_no_memory(self) -> None:
         huge = struct.pack('<I', 900 * MEGABYTE)
         type_fields = {'std_msgs/String': 'data'}  # the content of messages is needed
@@ -211,7 +211,7 @@ class HostileTest(MonitorCase):
                 self.assertLess(most, before + 60 * MEGABYTE)
                 self.await_heard(listener, AT_ONCE_S)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_subscribers_that_announce_a_gigabyte_are_cut_off(self) -> None:
         with Talker('/a'), self.monitor(self.model()), MonitorListener() as listener:
             listener.await_settled()
@@ -229,7 +229,7 @@ class HostileTest(MonitorCase):
             self.assertLess(resident_of(pid), before + 60 * MEGABYTE)
             self.await_heard(listener, AT_ONCE_S)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_a_header_without_an_end_is_cut_off(self) -> None:
         with Talker('/a'), self.monitor(self.model()), MonitorListener() as listener:
             listener.await_settled()

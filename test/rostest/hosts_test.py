@@ -8,7 +8,7 @@ import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
 
-from live_system import (MonitorListener, Process, again_if_clock_was_set, await_condition,
+from live_system import (MonitorListener, Process, again_if_disturbed, await_condition,
                          operation, write_bag)
 from monitor_case import MonitorCase
 from self_awareness.msg import SelfAwareness
@@ -40,7 +40,7 @@ class HostsTest(MonitorCase):
         await_condition(name + ' is heard', lambda: (
             float(listener.value(name, 'events a second') or 0) > 5), 30)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_the_computer_is_the_finding(self) -> None:
         model = self.trained()
         base = [self.start(*node, BASE) for node in NODES[:2]]

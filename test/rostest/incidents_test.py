@@ -11,7 +11,7 @@ import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
 
-from live_system import (MonitorListener, Process, again_if_clock_was_set, await_condition,
+from live_system import (MonitorListener, Process, again_if_disturbed, await_condition,
                          operation, write_bag)
 from monitor_case import MonitorCase
 from self_awareness.msg import Incident, Incidents, SelfAwareness
@@ -86,7 +86,7 @@ class IncidentsTest(MonitorCase):
         return json.loads(run_program('incidents', '--json', '--file',
                                       self.path('recorder/self_awareness.incidents'), *options))
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_an_incident_is_opened_repeated_and_over_and_outlives_the_monitor(self) -> None:
         with talker('base', '/odom', 10):
             with self.trained_monitor() as monitor, MonitorListener() as listener:
@@ -129,7 +129,7 @@ class IncidentsTest(MonitorCase):
             self.assertIn('score {} --model {} --report'.format(
                 opened.recording, self.path('model')), shown)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_a_nodelet_and_a_node_have_their_own(self) -> None:
         with talker('base', '/odom', 10), self.trained_monitor(), self.nodelet(), \
                 MonitorListener() as listener, MonitorListener(NODELET) as other, \
@@ -157,7 +157,7 @@ class IncidentsTest(MonitorCase):
             each.level == level and words in each.message
             for each in listener.diagnostics('communication')[seen:]), 20)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_what_is_muted_is_judged_and_told_when_the_mute_ends(self) -> None:
         with talker('base', '/odom', 10), self.trained_monitor() as monitor, \
                 MonitorListener() as listener, driver() as victim:
@@ -180,7 +180,7 @@ class IncidentsTest(MonitorCase):
             self.assertIsNone(listener.value('monitor', 'mute 1'))
             await_condition('it is told', lambda: '[ERROR]' in monitor.output, 20)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_a_mute_ends_with_what_it_mutes_or_is_taken_back(self) -> None:
         with talker('base', '/odom', 10), self.trained_monitor() as monitor, \
                 MonitorListener() as listener:
@@ -204,7 +204,7 @@ class IncidentsTest(MonitorCase):
                 self.await_level(listener, DiagnosticStatus.ERROR, 'abnormal communication')
                 self.assertFalse(maintenance(duration=0.0).success, 'there is none')
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_a_mute_of_nothing_or_for_ever_is_refused(self) -> None:
         with self.nodelet():
             refused: List[Tuple[Dict[str, Any], str]] = [

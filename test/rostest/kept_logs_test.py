@@ -9,7 +9,7 @@ from typing import List
 import rospy
 import rostest
 
-from live_system import MonitorListener, await_condition, again_if_clock_was_set
+from live_system import MonitorListener, await_condition, again_if_disturbed
 from monitor_case import MonitorCase, Talker
 from self_awareness.msg import SelfAwareness
 from self_awareness.srv import Maintenance
@@ -32,7 +32,7 @@ class KeptLogsTest(MonitorCase):
                                 lambda: time.monotonic() > begin + LONGER_S, 40)
         return sorted(glob.glob(model + '.kept/*'))
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_what_was_normal_is_kept_and_read_by_the_programs(self) -> None:
         kept = self.run_monitor('true')
         self.assertEqual(len(kept), 1, kept)
@@ -43,7 +43,7 @@ class KeptLogsTest(MonitorCase):
         self.assertIn('robot started', said)
         self.assertIsNotNone(self.listener.value('monitor', 'logs kept to learn from'))
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_an_alarm_is_not_kept(self) -> None:
         def alarm(talker: Talker) -> None:
             talker.stop()
@@ -51,7 +51,7 @@ class KeptLogsTest(MonitorCase):
 
         self.assertEqual(self.run_monitor('true', alarm), [])
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_maintenance_is_not_kept(self) -> None:
         def maintain(_: Talker) -> None:
             rospy.wait_for_service('/self_awareness/maintenance', 20)
@@ -59,7 +59,7 @@ class KeptLogsTest(MonitorCase):
 
         self.assertEqual(self.run_monitor('true', maintain), [])
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_nothing_is_kept_unless_asked(self) -> None:
         self.assertEqual(self.run_monitor('false'), [])
         self.assertIsNone(self.listener.value('monitor', 'logs kept to learn from'))

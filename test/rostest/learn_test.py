@@ -14,7 +14,7 @@ import rostest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from std_srvs.srv import Trigger
 
-from live_system import MonitorListener, Process, again_if_clock_was_set, await_condition, pid_of
+from live_system import MonitorListener, Process, again_if_disturbed, await_condition, pid_of
 from self_awareness import TrainedModel
 from self_awareness.msg import SelfAwareness
 
@@ -63,7 +63,7 @@ class LearnTest(unittest.TestCase):
         """Waits until a log is being written."""
         await_condition('a log', lambda: glob.glob(self.model + '.logs/*.bag.active'), 30)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_1_from_nothing_to_an_alarm(self) -> None:
         with MonitorListener() as listener, self.learn(HOURS) as process:
             self.await_said(listener, ', 1 start of the robot', DiagnosticStatus.OK, 60)

@@ -20,7 +20,7 @@ from std_msgs.msg import Float64, String
 from visualization_msgs.msg import Marker
 
 import self_awareness
-from live_system import (MonitorListener, Process, again_if_clock_was_set, await_condition,
+from live_system import (MonitorListener, Process, again_if_disturbed, await_condition,
                          pid_of)
 from monitor_case import MonitorCase, Talker, forget_parameters, subscribers
 from self_awareness.msg import SelfAwareness
@@ -38,7 +38,7 @@ class LiveRulesTest(MonitorCase):
 
     # What it listens to
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_a_lazy_publisher_is_woken_only_where_asked_to(self) -> None:
         with Talker('/a'), Talker('/lazy') as lazy:
             for policy, woken in (('used', False), ('model', False), ('all', True)):
@@ -52,7 +52,7 @@ class LiveRulesTest(MonitorCase):
                 await_condition('the monitor is gone',
                                 lambda: '/self_awareness' not in subscribers('/a'), 20)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_a_used_topic_is_heard_and_left_again(self) -> None:
         with Talker('/a'), Talker('/used'), \
                 self.monitor(self.model()), MonitorListener() as listener:
@@ -64,7 +64,7 @@ class LiveRulesTest(MonitorCase):
             await_condition('the monitor leaves', lambda: (
                 '/self_awareness' not in subscribers('/used')), 20)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_the_first_message_of_a_latching_connection_is_no_event(self) -> None:
         latching = rospy.Publisher('/latched', String, latch=True, queue_size=1)
         self.addCleanup(latching.unregister)
@@ -81,7 +81,7 @@ class LiveRulesTest(MonitorCase):
             await_condition('another second', lambda: len(listener.statuses) > seen + 10, 20)
             self.assertEqual(sum(s.unknown_events for s in listener.statuses), 1)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_a_topic_whose_type_changes_is_an_unknown_event(self) -> None:
         with self.monitor(self.model(threshold=0.3)), MonitorListener() as listener:
             with Talker('/a'):
@@ -95,7 +95,7 @@ class LiveRulesTest(MonitorCase):
                      if x.type == 'std_msgs/Float64'), None), 20)
                 self.assertIn('never seen in training', suspect.reason)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_unknown_events_are_a_suspicion_or_an_alarm(self) -> None:
         for policy, level in (('ignore', SelfAwareness.OK), ('warn', SelfAwareness.WARN),
                               ('error', SelfAwareness.ERROR)):
@@ -110,7 +110,7 @@ class LiveRulesTest(MonitorCase):
                 self.assertEqual(status.level, level, status.message)
                 self.assertEqual('unknown events' in status.evidence, policy != 'ignore')
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_what_is_sent_by_hand_is_a_suspicion_that_names_rostopic(self) -> None:
         with Talker('/a'), self.monitor(self.model(), unknown='warn'), \
                 MonitorListener() as listener:
@@ -122,7 +122,7 @@ class LiveRulesTest(MonitorCase):
         self.assertEqual(status.level, SelfAwareness.WARN, status.message)
         self.assertIn('/rostopic on /a: never seen in training, 1 in this window', status.message)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_the_type_field_is_read_from_live_messages(self) -> None:
         types = {'visualization_msgs/Marker': 'action'}
         with Talker('/a'), Talker('/marker', Marker), \
@@ -175,7 +175,7 @@ class LiveRulesTest(MonitorCase):
         await_condition('mode: ' + pattern, lambda: re.fullmatch(
             pattern, listener.value('monitor', 'mode') or ''), 20)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_a_mode_that_was_latched_tells_of_a_death(self) -> None:
         state = rospy.Publisher('/state', String, latch=True, queue_size=1)
         self.addCleanup(state.unregister)
@@ -209,7 +209,7 @@ class LiveRulesTest(MonitorCase):
             self.assertIn('of the mode DRIVING (/state)', alarm.message)
             self.assertEqual(sum(s.unknown_events for s in listener.statuses), 0)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_anonymous_names_are_one_source(self) -> None:
         """Two starts of an anonymous node are the same source of the model."""
         training = self_awareness.Training(self_awareness.EncodingRules.defaults(), paper=True)
@@ -226,7 +226,7 @@ class LiveRulesTest(MonitorCase):
                         for status in listener.diagnostics('/talker')[heard:]), 30)
             self.assertEqual(sum(s.unknown_events for s in listener.statuses), 0)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_monitors_in_one_manager_are_not_part_of_the_robot(self) -> None:
         """Nodelets in one manager share its name; a monitor there does not hear itself."""
         model = self.model(threshold=0.99, bonds=True)  # so that unknown events are named
@@ -250,7 +250,7 @@ class LiveRulesTest(MonitorCase):
 
     # What it says of itself
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_reset_and_clear(self) -> None:
         with self.monitor(self.model(), hold_time=600), MonitorListener() as listener:
             self.assertFalse(listener.diagnostics('communication')
@@ -275,7 +275,7 @@ class LiveRulesTest(MonitorCase):
                              [SelfAwareness.WARN, SelfAwareness.ERROR, SelfAwareness.OK])
             self.assertEqual(levels.count(SelfAwareness.ERROR), 1)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_the_processor_time_is_that_of_the_whole_process(self) -> None:
         topics = ['/topic{}'.format(number) for number in range(25)]
         with ExitStack() as busy, self.monitor(self.model(topics=topics)), \
@@ -304,7 +304,7 @@ class LiveRulesTest(MonitorCase):
             self.assertGreater(share, 0.005, 'too little to measure')
             self.assertAlmostEqual(told, share, delta=0.3 * share)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_the_alarm_is_latched(self) -> None:
         with self.monitor(self.model(), hold_time=600):
             with Talker('/a'), MonitorListener() as listener:
@@ -314,7 +314,7 @@ class LiveRulesTest(MonitorCase):
             with MonitorListener() as late:
                 await_condition('the alarm that was', lambda: late.alarms, 20)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_not_calibrated_is_said_and_never_alarms(self) -> None:
         with self.monitor(self.model(threshold=None)), MonitorListener() as listener:
             with Talker('/a'):
@@ -330,7 +330,7 @@ class LiveRulesTest(MonitorCase):
             self.assertEqual(status.level, DiagnosticStatus.WARN)
             self.assertIn('not calibrated', status.message)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_a_model_of_another_robot_is_said(self) -> None:
         model = self.model(topics=('/theirs', '/a'))
         with ExitStack() as robot, self.monitor(model, subscribe='all'), \
@@ -349,7 +349,7 @@ class LiveRulesTest(MonitorCase):
             self.assertIn('the model knows 1 of the 3 event types that were heard: is it of this '
                           'robot?', status.message)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_a_model_that_is_missing_is_said_and_can_be_loaded_later(self) -> None:
         with self.monitor(self.path('later')), MonitorListener() as listener, Talker('/a'):
             status = await_condition('the error in the diagnostics', lambda: next(

@@ -18,7 +18,7 @@ import rosgraph
 import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
 
-from live_system import (Process, again_if_clock_was_set, await_condition, make_model, operation,
+from live_system import (Process, again_if_disturbed, await_condition, make_model, operation,
                          write_bag)
 from self_awareness import EncodingRules, read_events
 from self_awareness.msg import SelfAwareness
@@ -163,7 +163,7 @@ class MasterTest(unittest.TestCase):
         self.assertEqual(alarm['suspects'][0], source)
         listener.await_message('diagnostics', since, task=source, level=DiagnosticStatus.ERROR)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_master_comes_late(self) -> None:
         monitor = self.start_monitor()
         await_condition('the monitor misses the master',
@@ -176,7 +176,7 @@ class MasterTest(unittest.TestCase):
         self.await_normal(listener)
         self.assertTrue(monitor.running())
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_dead_node_stays_registered(self) -> None:
         self.start_master()
         listener, talker = self.start_robot()
@@ -188,7 +188,7 @@ class MasterTest(unittest.TestCase):
         self.assertEqual(listener.messages('diagnostics', task='/beside',
                                            level=DiagnosticStatus.ERROR), [])
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_master_hangs_and_dies(self) -> None:
         master = self.start_master()
         listener, talker = self.start_robot()
@@ -219,7 +219,7 @@ class MasterTest(unittest.TestCase):
         self.check_no_alarm(listener, dead)
         self.assertLess(listener.longest_heartbeat(), LONGEST_HEARTBEAT_S)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_a_node_is_started_again_at_the_same_address(self) -> None:
         """roscpp takes it for the one that it was connected to, and does not connect again."""
         self.start_master()
@@ -235,7 +235,7 @@ class MasterTest(unittest.TestCase):
             self.assertEqual(self.master().lookupNode('/talker'), uri)
             listener.await_message('status', back, abnormal=False, number=20)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_the_nodes_end_whatever_the_master_does(self) -> None:
         for hangs in (True, False):
             master = self.start_master()
@@ -269,7 +269,7 @@ class MasterTest(unittest.TestCase):
             self.doCleanups()
             self.setUp()
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_master_is_restarted(self) -> None:
         master = self.start_master()
         monitor = self.start_monitor()

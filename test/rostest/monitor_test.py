@@ -15,7 +15,7 @@ import rospy
 import rostest
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 
-from live_system import (MonitorListener, Process, Waiting, again_if_clock_was_set,
+from live_system import (MonitorListener, Process, Waiting, again_if_disturbed,
                          await_condition)
 from self_awareness import DEFAULT_WINDOW, Tuning
 from self_awareness.msg import SelfAwareness
@@ -75,7 +75,7 @@ class MonitorTest(unittest.TestCase):
                        'standalone:=' + ('true' if standalone else 'false'),
                        env={'ROS_HOME': self.path('.ros')})
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_from_recordings_to_an_alarm(self) -> None:
         self.await_components()
         trained_on = self.record('train.bag', TRAINING_S)

@@ -9,7 +9,7 @@ import rospy
 import rostest
 
 from accept_test import TrainedCase, accept, talker
-from live_system import MonitorListener, Process, again_if_clock_was_set, await_condition
+from live_system import MonitorListener, Process, again_if_disturbed, await_condition
 from self_awareness.msg import SelfAwareness
 
 
@@ -50,7 +50,7 @@ class NewModeTest(TrainedCase):
             status.kind == SelfAwareness.NEW_MODE
             or status.level == SelfAwareness.ERROR and status.component in NewModeTest.off)]
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_a_mode_is_accepted_and_deaths_are_found_in_it(self) -> None:
         with ExitStack() as robot:
             nodes = {name: robot.enter_context(talker(name[1:], topic, 1 / period))

@@ -18,7 +18,7 @@ import yaml
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from std_srvs.srv import Trigger, TriggerRequest, TriggerResponse
 
-from live_system import MonitorListener, Process, again_if_clock_was_set, await_condition, pid_of
+from live_system import MonitorListener, Process, again_if_disturbed, await_condition, pid_of
 from monitor_case import MonitorCase
 from self_awareness.msg import RecoveryAction, RecoveryActions
 from self_awareness.srv import Maintenance, MaintenanceResponse
@@ -162,7 +162,7 @@ class RecoveryTest(MonitorCase):
         self.assertIn('rules.yaml: rules[0].steps[0].stop: ', done.stderr)
         self.assertIn('patterns are not allowed; give each full name', done.stderr)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_who_hangs_is_back_within_5_s_of_the_alarm_and_nobody_else_is_touched(self) -> None:
         others = ['/' + spec.name for spec in load_scenario().components
                   if '/' + spec.name != PLAYER]
@@ -195,7 +195,7 @@ class RecoveryTest(MonitorCase):
             self.assertEqual([[did['action'] for did in each['actions']] for each in shown
                               if each['id'] == alarm.alarm], [['stop /player']])
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_who_fails_while_the_alarm_of_another_one_stays_is_mended_too(self) -> None:
         with self.recovering(self.rules(STOP)) as recovery, self.hung('/camera') as camera:
             alarm = self.said.await_alarm()
@@ -208,7 +208,7 @@ class RecoveryTest(MonitorCase):
                               '/player ended by SIGKILL, since it hangs'))
             self.assertEqual(state_of(camera), 'T', 'there is no rule for it')
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_what_does_not_help_stops_at_its_limit_and_says_so(self) -> None:
         calls: List[float] = []
 
@@ -230,7 +230,7 @@ class RecoveryTest(MonitorCase):
             self.assertEqual(len(calls), 2)
             recovery.await_status(DiagnosticStatus.OK, '2 actions so far', 60)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_nothing_is_done_while_it_is_held_also_by_another_start_of_it(self) -> None:
         rules = self.rules(STOP)
         with self.recovering(rules):
@@ -265,7 +265,7 @@ class RecoveryTest(MonitorCase):
                     '/lasting is not respawn="true"', '/required is required="true"',
                     '/misspelt: not heard so far')), 40)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_a_dry_run_says_what_it_would_do(self) -> None:
         with self.recovering(self.rules(STOP, dry_run=True)) as recovery:
             with self.hung() as pid:

@@ -13,7 +13,7 @@ from diagnostic_msgs.msg import DiagnosticStatus
 from rosgraph_msgs.msg import Log
 
 from accept_test import NODE, TrainedCase, talker
-from live_system import MonitorListener, Process, again_if_clock_was_set, await_condition
+from live_system import MonitorListener, Process, again_if_disturbed, await_condition
 from self_awareness.msg import Incident, Incidents, SelfAwareness
 from self_awareness.srv import Mute
 
@@ -41,7 +41,7 @@ class RestartsTest(TrainedCase):
         await_condition('windows', lambda: len(listener.statuses) > seen + number, 60)
         return seen
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_who_is_optional_may_be_absent_and_is_judged_while_there(self) -> None:
         rospy.set_param(NODE + '/optional', ['/driv*'])
         with talker('base', '/odom', 10), self.trained_monitor(), MonitorListener() as listener:
@@ -65,7 +65,7 @@ class RestartsTest(TrainedCase):
                 alarm = listener.await_alarm()
                 self.assertEqual(alarm.component, '/driver', 'it is there, and too fast')
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_a_node_that_is_started_again_is_followed(self) -> None:
         with talker('base', '/odom', 10), self.trained_monitor(), MonitorListener() as listener:
             for times in range(1, 5):
@@ -86,7 +86,7 @@ class RestartsTest(TrainedCase):
                 await_condition('normal', lambda: listener.diagnostics('communication')[
                     -1].level == DiagnosticStatus.OK, 40)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_of_a_fleet_it_is_followed_by_the_names_of_the_model_and_can_be_muted(self) -> None:
         subprocess.run(['rosrun', 'self_awareness', 'train', *self.bags, '-o', self.path('model'),
                         '--rename', '/r[0-9]+/(.*)', '/\\1'], check=True,
@@ -125,7 +125,7 @@ class RestartsTest(TrainedCase):
                 await_condition('it is told', lambda: (
                     listener.diagnostics('/driver')[-1].level == DiagnosticStatus.WARN), 40)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_what_stood_stands_again_until_it_was_heard_for_long_enough(self) -> None:
         hold_time = 2.0
         with talker('base', '/odom', 10):

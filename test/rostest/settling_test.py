@@ -12,7 +12,7 @@ import rostest
 from diagnostic_msgs.msg import DiagnosticStatus
 from std_msgs.msg import String
 
-from live_system import (MonitorListener, Process, again_if_clock_was_set, await_condition,
+from live_system import (MonitorListener, Process, again_if_disturbed, await_condition,
                          operation, write_bag)
 from monitor_case import MonitorCase, Talker, publishers
 from self_awareness.msg import SelfAwareness
@@ -39,7 +39,7 @@ class SettlingTest(MonitorCase):
 
     # New publishers
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_the_first_message_of_a_publisher_that_was_there_lets_nothing_settle(self) -> None:
         rare = rospy.Publisher('/rare', String, queue_size=1)
         self.addCleanup(rare.unregister)
@@ -60,7 +60,7 @@ class SettlingTest(MonitorCase):
 
     # By the paper's detector: the whole robot settles.
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_a_component_that_starts_later_is_new_once(self) -> None:
         with Talker('/a'), self.monitor(self.late_model()), MonitorListener() as listener:
             listener.await_settled()
@@ -74,7 +74,7 @@ class SettlingTest(MonitorCase):
                 statuses = self.await_statuses(listener, 10)
             self.assertEqual({s.settling for s in statuses}, {False})
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_settling_does_not_wait_for_the_next_poll_of_the_master(self) -> None:
         with Talker('/a'), self.monitor(self.late_model(), poll_interval=3600), \
                 MonitorListener() as listener:
@@ -96,7 +96,7 @@ class SettlingTest(MonitorCase):
                        check=True, stdout=subprocess.DEVNULL)
         return self.path('model')
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_an_alarm_stands_whoever_starts_meanwhile(self) -> None:
         with talker('driver', '/scan', 12.5) as driver, talker('base', '/odom', 10), \
                 self.monitor(self.evidence_model(), detector='evidence', unknown='warn',
@@ -121,7 +121,7 @@ class SettlingTest(MonitorCase):
                               in listener.diagnostics('communication')[reports:]},
                              {DiagnosticStatus.ERROR})
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_what_does_not_come_after_the_start_is_said(self) -> None:
         with talker('driver', '/scan', 12.5), talker('base', '/odom', 10), \
                 self.monitor(self.evidence_model(), detector='evidence', unknown='warn'), \
@@ -142,7 +142,7 @@ class SettlingTest(MonitorCase):
 
     # ~reload
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_reload_takes_a_standing_alarm_back(self) -> None:
         with self.monitor(self.model(), hold_time=600):
             with MonitorListener() as listener:
@@ -155,7 +155,7 @@ class SettlingTest(MonitorCase):
             self.assertEqual(alarm.level, SelfAwareness.OK)
             self.assertEqual(alarm.message, 'settling: model loaded')
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_reload_takes_the_model_that_is_set_now(self) -> None:
         first, second = self.model(name='first'), self.model(name='second', topics=('/a', '/b'))
         with Talker('/a'), Talker('/b'), self.monitor(first), MonitorListener() as listener:
@@ -178,7 +178,7 @@ class SettlingTest(MonitorCase):
             rospy.delete_param('/self_awareness/model')
             self.assertIn(second, self.call('/self_awareness/reload').message)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_after_reload_the_next_message_of_a_latching_connection_is_an_event(self) -> None:
         latching = rospy.Publisher('/latched', String, latch=True, queue_size=1)
         self.addCleanup(latching.unregister)
@@ -194,7 +194,7 @@ class SettlingTest(MonitorCase):
             await_condition('it is an event', lambda: any(
                 s.unknown_events for s in listener.statuses), 20)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_after_reload_windows_are_judged_in_the_pace_of_the_new_model(self) -> None:
         arrivals: List[float] = []
         with self.monitor(self.model(window=4 * 10**9)), MonitorListener() as listener:

@@ -19,7 +19,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from rosgraph_msgs.msg import Clock
 from std_msgs.msg import String
 
-from live_system import (START_S, MonitorListener, Process, again_if_clock_was_set,
+from live_system import (START_S, MonitorListener, Process, again_if_disturbed,
                          await_condition, make_model, operation, write_bag)
 from self_awareness import EncodingRules, read_events
 from self_awareness.msg import SelfAwareness
@@ -179,7 +179,7 @@ class SimTimeTest(unittest.TestCase):
         normal = [status for status in settled if not status.abnormal]
         self.assertGreater(len(normal), 0.8 * len(settled), [s.score for s in settled])
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_heartbeat_before_the_first_clock(self) -> None:
         with MonitorListener() as listener, self.start_monitor():
             self.await_listening(listener)
@@ -192,7 +192,7 @@ class SimTimeTest(unittest.TestCase):
                              'waiting for the first message')
             self.assertEqual(listener.statuses, [])
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_replay_without_sources(self) -> None:
         bag = write_bag(self.path('normal.bag'), recording(2, 7))
         with MonitorListener() as listener, self.start_monitor():
@@ -208,7 +208,7 @@ class SimTimeTest(unittest.TestCase):
             self.await_heartbeats(listener, 4, clock_stands=True)
             self.check_no_alarm(listener)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_replay_in_a_loop(self) -> None:
         bag = write_bag(self.path('loop.bag'), recording(3, 4))
         with MonitorListener() as listener, self.start_monitor() as monitor:
@@ -235,7 +235,7 @@ class SimTimeTest(unittest.TestCase):
             passes[-1].append(status)
         return passes
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_two_publishers_of_the_clock_hide_no_death(self) -> None:
         with MonitorListener() as listener, self.start_monitor(), SimulatedRobot() as robot:
             listener.await_settled()
@@ -254,7 +254,7 @@ class SimTimeTest(unittest.TestCase):
                 robot.fall_silent()
                 listener.await_alarm()
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_clock_is_set_and_stops(self) -> None:
         with MonitorListener() as listener, self.start_monitor() as monitor, \
                 SimulatedRobot() as robot:
@@ -284,7 +284,7 @@ class SimTimeTest(unittest.TestCase):
                           listener.diagnostics('communication')[-1].message)
             self.check_no_alarm(listener)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_recordings_are_complete_and_end_where_the_clock_was_set(self) -> None:
         with MonitorListener('/recorder') as listener, \
                 Process('rosrun', 'self_awareness', 'record_events', '_subscribe:=all',
@@ -303,7 +303,7 @@ class SimTimeTest(unittest.TestCase):
             self.assertLess(max(stamps) - min(stamps), 100 * 10**9)
         self.assertGreater(sum(map(len, recorded)), 0.8 * (robot.published - before))
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_the_end_of_ros_time(self) -> None:
         with MonitorListener() as listener, self.start_monitor() as monitor, \
                 SimulatedRobot() as robot:
@@ -321,7 +321,7 @@ class SimTimeTest(unittest.TestCase):
             listener.await_settled()
             self.check_no_alarm(listener)
 
-    @again_if_clock_was_set
+    @again_if_disturbed
     def test_fault_in_a_replay(self) -> None:
         fault = START_S + 6
         bag = write_bag(self.path('faulty.bag'), [
