@@ -159,10 +159,10 @@ class ScoringSystem:
         return Judged(start, abnormal, score, unsettled, alarms, threshold)
 
 
-def watched_by(system: System) -> Optional[Set[str]]:
-    """Return the sources that a system watches; None: it judges all of them together."""
+def watched_by(system: System, components: Set[str]) -> Optional[int]:
+    """Return how many of the components a system watches; None: it judges all together."""
     of = system.scorer if isinstance(system, ScoringSystem) else system
-    return of.watched if isinstance(of, Watching) else None
+    return len(of.watched & components) if isinstance(of, Watching) else None
 
 
 def required(value: Optional[_Value], name: str, step: str) -> _Value:

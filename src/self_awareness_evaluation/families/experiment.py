@@ -105,10 +105,8 @@ def _learned(plan: Plan, robot: Tuple[str, int], records: Records) -> Iterator[_
             for budget, system in _systems(name, records.robot, plan):
                 system.train(training)
                 system.calibrate(calibration)
-                watched = watched_by(system)
                 yield _Learned(Subject(*robot, str(learning), name, budget), system,
-                               _expected(system),
-                               None if watched is None else len(watched & records.robot.sources))
+                               _expected(system), watched_by(system, records.robot.sources))
 
 
 def _systems(name: str, robot: Robot, plan: Plan) -> List[Tuple[Optional[float], System]]:

@@ -32,8 +32,8 @@ def evaluate(plan: SessionPlan, folder: Path, output: Path, command: str) -> Lis
         report.save_csv(output / 'live.csv', samples)
         progress.say(f'  {_brief(samples[-1])}')
 
-    found = session.run(plan, folder, told)
-    return report.write(output, plan, samples + offline.judge(found), command)
+    afterwards = offline.judge(session.run(plan, folder, told), report.LIVE)
+    return report.write(output, plan, samples, afterwards, command)
 
 
 def _brief(sample: Sample) -> str:

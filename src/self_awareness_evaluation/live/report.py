@@ -69,22 +69,25 @@ All samples: [live.csv](live.csv).
 """
 
 
-def write(folder: Path, plan: SessionPlan, samples: Sequence[Sample], command: str) -> List[Path]:
+def write(folder: Path, plan: SessionPlan, live: Sequence[Sample], afterwards: offline.Found,
+          command: str) -> List[Path]:
     """Write all files, each whole or not at all; return their names.
 
     Args:
         folder: exists.
         plan: of the session.
-        samples: of all systems.
+        live: samples of the monitor.
+        afterwards: what the other systems find in the recording.
         command: that the page says it was written by.
 
     Raises:
         OSError: a file cannot be written.
     """
+    samples = [*live, *afterwards.samples]
     paths = [folder / 'live.csv', folder / 'live.md', folder / 'live.png']
     save_csv(paths[0], samples)
     with replacing(str(paths[1])) as temporary:
-        Path(temporary).write_text(page(plan, samples, command), encoding='utf-8')
+        Path(temporary).write_text(page(plan, samples, afterwards, command), encoding='utf-8')
     _save_plot(str(paths[2]), samples)
     return paths
 
@@ -102,7 +105,8 @@ def save_csv(path: Path, samples: Sequence[Sample]) -> None:
             writer.writerows(astuple(sample) for sample in samples)
 
 
-def page(plan: SessionPlan, samples: Sequence[Sample], command: str) -> str:
+def page(plan: SessionPlan, samples: Sequence[Sample], afterwards: offline.Found,
+         command: str) -> str:
     """Return the page of tables."""
     systems = [name for name in SYSTEMS if any(sample.system == name for sample in samples)]
     kinds = [kind for kind in FAULTS_S if any(sample.fault == kind for sample in samples)]
@@ -128,8 +132,16 @@ def page(plan: SessionPlan, samples: Sequence[Sample], command: str) -> str:
                      '; '.join(distinct([sample.evidence
                                          for sample in of_system(samples, LIVE, kind)
                                          if sample.evidence]))] for kind in kinds])
-    lines += ['', '## False alarms', '', *_false_alarms(samples, systems), '']
+    lines += ['', '## False alarms', '', *_false_alarms(samples, systems), '',
+              '## Components watched', '',
+              *(f'- {name}: {_number_watched(afterwards, name)}' for name in systems), '']
     return '\n'.join(lines + _remarks(samples))
+
+
+def _number_watched(found: offline.Found, name: str) -> str:
+    number = found.watched[name]
+    return ('judges all together' if number is None
+            else f'{number} of {found.components}')
 
 
 def _latencies(values: Sequence[Optional[float]]) -> str:

@@ -17,7 +17,7 @@ from self_awareness_evaluation.simulated.records import (CALIBRATION_NAME, NORMA
                                                          TRAINING_NAMES, FaultRecord, fault_record,
                                                          normal_record)
 from self_awareness_evaluation.simulated.tradeoff import JudgedFault, TradeOff
-from self_awareness_evaluation.systems import System
+from self_awareness_evaluation.systems import System, watched_by
 from self_awareness_evaluation.windowed_events import WindowedEvents
 from self_awareness_follow_me.scenario import Scenario
 
@@ -123,7 +123,9 @@ def _evaluate(system: System, share: float, seed: int, records: Records, results
     system.train([recording.beginning(share) for recording in records.training])
     system.calibrate([records.calibration])
     normal = system.judge(records.normal)
-    results.rows.append(normal_row(name, share, seed, normal))
+    components = {event_type.source for event_type in records.normal.event_types}
+    results.rows.append(normal_row(name, share, seed, normal, watched_by(system, components),
+                                   len(components)))
     faults: Dict[str, JudgedFault] = {}
     for record in records.faults:
         judged = system.judge(record.recording)

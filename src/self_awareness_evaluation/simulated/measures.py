@@ -46,6 +46,9 @@ class Row:
             suspects.
         noticed_first: whether a guilty source is the first that is named by that suspicion or
             alarm, likewise.
+        watched: of normal operation: components that the system watches; None: it judges all
+            together.
+        components: of normal operation: of the robot.
     """
 
     system: str
@@ -68,14 +71,17 @@ class Row:
     top1: Optional[bool] = None
     top3: Optional[bool] = None
     noticed_first: Optional[bool] = None
+    watched: Optional[int] = None
+    components: Optional[int] = None
 
 
-def normal_row(system: str, training_share: float, seed: int, judged: Judged) -> Row:
-    """Measure a record of normal operation."""
+def normal_row(system: str, training_share: float, seed: int, judged: Judged,
+               watched: Optional[int] = None, components: Optional[int] = None) -> Row:
+    """Measure a record of normal operation; arguments as in Row."""
     counted = ~judged.settling
     return Row(system, training_share, seed, NORMAL, int(counted.sum()),
                int((judged.abnormal & counted).sum()), len(judged.alarms),
-               beginnings(judged.noticed))
+               beginnings(judged.noticed), watched=watched, components=components)
 
 
 def fault_row(system: str, training_share: float, seed: int, kind: str, judged: Judged,

@@ -38,6 +38,14 @@ def false_suspicions(rows: Sequence[Row]) -> AlarmRate:
     return AlarmRate(count, hours, count / hours, confidence.poisson_rate(count, hours))
 
 
+def watched(rows: Sequence[Row]) -> Tuple[float, float]:
+    """Return the mean number of components that are watched, and of all; NaN of a system that
+    judges all of them together.
+    """
+    return (_mean([row.watched for row in rows if row.watched is not None]),
+            _mean([row.components for row in rows if row.components is not None]))
+
+
 def noticed(rows: Sequence[Row], within_s: float) -> float:
     """Return the share of the records with a suspicion or an alarm in this time [s]."""
     return _mean([row.noticed_s is not None and row.noticed_s <= within_s for row in rows])

@@ -51,6 +51,11 @@ def _false_suspicions(rows: Sequence[Row]) -> str:
     return f'{summary.false_suspicions(rows).per_hour:.2f}'
 
 
+def _watched(rows: Sequence[Row]) -> str:
+    watched, components = summary.watched(rows)
+    return _NONE if math.isnan(watched) else f'{watched:.3g} of {components:.3g}'
+
+
 def _median(rows: Sequence[Row]) -> float:
     return summary.latency(rows, 0.5)
 
@@ -72,6 +77,7 @@ _TARGETS = (
     _Target('false alarms an hour', '< 1', lambda rows: _false_alarms(summary.normal(rows))),
     _Target('the same, with the time before the faults', '< 1', _false_alarms),
     _Target('suspicions (WARN) or alarms an hour, in all of it', '', _false_suspicions),
+    _Target('components watched', 'all', lambda rows: _watched(summary.normal(rows))),
     *(_Target(f'suspicion (WARN) or alarm within 5 s, {kind}', '',
               _of(kind, _noticed_soon, percent)) for kind in ('extra', 'unknown')),
     *(_Target(f'windows missed after the alarm, {kind}', target,

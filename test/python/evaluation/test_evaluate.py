@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import csv
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -57,6 +58,10 @@ def test_page_has_what_is_read_and_how_to_repeat_it(written: Path) -> None:
     for title in ('Targets', 'False alarms an hour at equal latency', 'Alarms', 'Blame',
                   'With 0.1 of the training data'):
         assert f'\n## {title}\n' in page
+    watched = [line for line in page.splitlines() if line.startswith('| components watched')]
+    for line in watched:
+        assert re.fullmatch(r'\| components watched \| all \| – \| \d+ of 15 \|', line), line
+    assert len(watched) == 2
     assert rows_have_a_cell_for_every_system(page)
     assert 'full/simulated.csv' in page and 'full/simulated.md' in page
     assert 'nan' not in page and 'inf' not in page.split('## Targets')[1]

@@ -11,6 +11,7 @@ import pytest
 from self_awareness.stamps import SECOND_NS
 from self_awareness_evaluation import evaluate
 from self_awareness_evaluation.live import report
+from self_awareness_evaluation.live.offline import Found
 from self_awareness_evaluation.live.processes import LiveError, Processes, await_condition
 from self_awareness_evaluation.live.samples import (ERROR, WARN, Sample, Status, Stretch, measure,
                                                     measure_alarms)
@@ -93,13 +94,14 @@ def test_alarms_of_other_systems() -> None:
 def test_page_csv_and_plot(tmp_path: Path) -> None:
     crash = Sample('evidence', 1, 'cc1', ONSET, 8.0, suspicion_s=0.2, latency_s=0.3, top1=True,
                    top3=True, evidence='overdue')
-    samples = [crash, replace(crash, round=2, latency_s=0.4, top1=False),
-               replace(crash, round=3, latency_s=None, top1=None, top3=None),
-               replace(crash, round=4, latency_s=None, void='the alarm stood at the onset'),
-               replace(crash, system='paper', latency_s=None, top1=None, top3=None),
-               Sample('evidence', 1, NORMAL, ONSET, 360.0, false_alarms=1)]
+    live = [crash, replace(crash, round=2, latency_s=0.4, top1=False),
+            replace(crash, round=3, latency_s=None, top1=None, top3=None),
+            replace(crash, round=4, latency_s=None, void='the alarm stood at the onset'),
+            Sample('evidence', 1, NORMAL, ONSET, 360.0, false_alarms=1)]
+    afterwards = Found([replace(crash, system='paper', latency_s=None, top1=None, top3=None)],
+                       {'evidence': 14, 'paper': None}, 15)
     plan = SessionPlan(4, (60.0, 60.0), 240.0, 60.0)
-    paths = report.write(tmp_path, plan, samples, 'the command')
+    paths = report.write(tmp_path, plan, live, afterwards, 'the command')
     assert [path.name for path in paths] == ['live.csv', 'live.md', 'live.png']
     with open(paths[0], encoding='utf-8', newline='') as file:
         rows = list(csv.DictReader(file))
@@ -110,6 +112,7 @@ def test_page_csv_and_plot(tmp_path: Path) -> None:
             '| 0 of 1 |') in text
     assert '| cc1 | 50 % / 100 % | – | overdue |' in text
     assert 'evidence: 1 in 6.0 min' in text
+    assert '- evidence: 14 of 15\n- paper: judges all together\n' in text
     assert 'round 4, cc1: void: the alarm stood at the onset' in text
     assert 'nan' not in text
     assert paths[2].read_bytes().startswith(b'\x89PNG')
