@@ -82,7 +82,7 @@ def section(judged: Judged, key: str) -> Section:
     shown = details(judged, found, happened)
     total = len(judged.verdicts.alarms) + len(judged.verdicts.suspicions)
     return Section(key, str(judged.recording.part), _facts(judged),
-                   _summary(judged, happened, shown), found, happened, shown,
+                   _summary(judged, happened), found, happened, shown,
                    total - len(listed), unjudged(judged), _watched(judged),
                    unheard_text.lines(unheard_text.summarise(judged.by.trained.unheard)))
 
@@ -105,8 +105,7 @@ def _facts(judged: Judged) -> List[Tuple[str, str]]:
             ('detector', 'paper' if by.evidence is None else 'evidence')]
 
 
-def _summary(judged: Judged, happened: List[Incident],
-             shown: Dict[str, Details]) -> Summary:
+def _summary(judged: Judged, happened: List[Incident]) -> Summary:
     if judged.by.threshold is None:
         return Summary(NOT_JUDGED, 'Not judged: the model is not calibrated.',
                        [('Way out', 'calibrate the model on recordings of normal operation: '
@@ -122,8 +121,6 @@ def _summary(judged: Judged, happened: List[Incident],
     main = worst.main
     if main.busy is not None:
         answers.append(('But', main.busy))
-    decided = shown[worst.key].decided
-    answers.append(('Evidence', main.evidence + (f' ({decided})' if decided else '')))
     if worst.victims:
         answers.append(('Victims', ', '.join(worst.victims)))
     if worst.others:
