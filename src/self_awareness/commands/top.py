@@ -20,8 +20,8 @@ from self_awareness.srv import Accept, Mute
 _EPILOG = """\
 Keys: q quit, s sort by another column, f filter by a part of the name, p pause, m mute the
 selected component for 10 minutes, a accept what stands, or, if nothing does, who is new (after
-y), c clear the alarm, d write the flight recorder's file. 80 columns are
-enough. A monitor that was not heard for 5 s is STALE. It ends when the master is gone.
+y), c clear the alarm, d write the flight recorder's file. 80 columns are enough. A monitor that
+was not heard for 5 s is STALE. It ends when the master is gone.
 """
 
 _MASTER_EVERY_S = 1.0

@@ -4,6 +4,7 @@ from __future__ import annotations
 import os
 import subprocess
 from pathlib import Path
+from typing import List
 from xml.etree import ElementTree
 
 import pytest
@@ -36,10 +37,25 @@ def test_version(program: str) -> None:
 
 @pytest.mark.parametrize('program', PROGRAMS)
 def test_help(program: str) -> None:
-    """It begins with the usage, and no line is torn: one that ends early has no room for more."""
+    """It begins with the usage, and no line of prose ends long before the others do."""
     lines = _said(program, '--help').splitlines()
     assert lines[0].startswith('usage: ') and program in lines[0]
     assert max(map(len, lines)) < 100
+    assert torn_lines(lines) == []
+
+
+def torn_lines(lines: List[str]) -> List[str]:
+    """Return the lines of prose that end within a sentence, though the next word had room."""
+    longest = max((len(line) for line in lines if line[:1].isalnum()), default=0)
+    return [line for line, after in zip(lines, lines[1:])
+            if line[:1].isalnum() and after[:1].isalnum() and line[-1] not in '.:'
+            and len(line) + 1 + len(after.split()[0]) <= longest - 8]
+
+
+def test_a_torn_line_is_seen() -> None:
+    prose = ['usage: top [-h]', '', 'Keys: q quits. All that fits', 'into a line is in it.',
+             'Long lines end where the next word would be too long for them.']
+    assert torn_lines(prose) == [prose[2]]
 
 
 @pytest.mark.parametrize('program', [each for each in PROGRAMS if each not in OF_DEVELOPERS])

@@ -84,6 +84,7 @@ def test_a_folder_without_bags_is_named(tmp_path: Path, capsys) -> None:
     ('info', ['{pipe}']),
     ('convert', ['{pipe}', '-o', '{out}']),
     ('merge', ['{pipe}', '{model}', '-o', '{out}']),
+    ('learn_more', ['--model', '{pipe}', '{bag}', '-o', '{out}']),
     ('diff', ['{model}', '{pipe}'])])
 def test_a_pipe_is_no_bag_and_no_model(program: str, arguments: List[str], robot_bags,
                                        model_file: str, tmp_path: Path) -> None:
