@@ -41,7 +41,7 @@ NUMBERS = [
     Number('a node sends at half its rate', _SIMULATED, 'Alarms', 'half:player', _SYSTEM),
     Number('a node sends at double its rate', _SIMULATED, 'Alarms', 'double:gaze_control',
            _SYSTEM),
-    Number('a node answers 60 ms later', _SIMULATED, 'Alarms', 'lat', _SYSTEM),
+    Number('a node answers 60 ms later (subscribers known)', _SIMULATED, 'Alarms', 'lat', _SYSTEM),
     Number('a node publishes two topics in another order', _SIMULATED, 'Alarms', 'order',
            _SYSTEM),
     Number('the clock of a computer drifts now and then', _SIMULATED, 'Alarms', 'ac', _SYSTEM),

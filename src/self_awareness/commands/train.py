@@ -228,8 +228,8 @@ def _parser() -> argparse.ArgumentParser:
                              'it may be the file to write. Its calibrations are dropped')
     parser.add_argument('--leave-out-holes', action='store_true',
                         help='leave out the times in which a component is silent for much longer '
-                             'than in all other recordings, which train names; only needed where '
-                             'it says that they make a death be found later')
+                             'than in all other recordings. Only needed where train says that '
+                             'such a silence delays finding a death')
     parser.add_argument('--skip-bad', action='store_true',
                         help='leave out bags that cannot be used, and name them; without this '
                              'option, one such bag ends the program')
