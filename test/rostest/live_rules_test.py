@@ -362,12 +362,16 @@ class LiveRulesTest(MonitorCase):
             self.model(name='later')
             self.assertTrue(self.call('/self_awareness/reload').success)
             self.assertEqual(listener.await_settled().level, SelfAwareness.OK)
-            # A file that cannot be used does not take the model that is in use away.
+            # A file that cannot be used does not take the model that is in use away, nor does a
+            # pipe, whose reader would wait for ever.
             with open(self.path('later'), 'w') as file:
                 file.write('no model')
             response = self.call('/self_awareness/reload')
             self.assertFalse(response.success)
             self.assertIn('the old model stays', response.message)
+            os.remove(self.path('later'))
+            os.mkfifo(self.path('later'))
+            self.assertIn('not a file', self.call('/self_awareness/reload').message)
             seen = len(listener.statuses)
             await_condition('it goes on', lambda: len(listener.statuses) > seen + 5, 20)
 
