@@ -239,6 +239,7 @@ def _pausing_chains(seed: int) -> Robot:
     rng = draft.rng
     for number in range(int(rng.integers(3, 7))):
         draft.add_timer(f'driver{number}', float(rng.choice((1.0, 5.0, 10.0, 50.0))))
+    anchors = []
     for number in range(3):
         rate = float(rng.choice((5.0, 10.0, 15.0, 20.0)))
         scan = draft.add_timer(f'laser{number}', rate)
@@ -250,7 +251,12 @@ def _pausing_chains(seed: int) -> Robot:
                                    share=rng.uniform(0.985, 0.998))
         anchor = draft.add_answer(f'anchor{number}', tracker, longest, 'anchor')
         draft.add_answer(f'attention{number}', anchor, longest, 'gaze', every=4)
+        anchors.append((anchor, rate))
     draft.listen(2)
+    # Answers to every fourth message that take about half of the time until the next one.
+    for number, (anchor, rate) in enumerate(anchors):
+        draft.add(f'planner{number}', 'plan', 'nav_msgs/Path', Answer(
+            anchor, rng.uniform(0.4, 0.7) / rate, rng.uniform(0.15, 0.3), every=4))
     return draft.robot(seed)
 
 
@@ -346,7 +352,7 @@ FAMILIES: Dict[str, Family] = {
     'bursty': Family('15 to 40 components: timers, chains, trackers in bursts, tasks, speech',
                      _bursty),
     'two_robots': Family('two robots in namespaces', _two_robots),
-    'pausing_chains': Family('chains of legs, tracker, anchor, attention that pause together',
+    'pausing_chains': Family('chains of legs, tracker, anchor, attention, planner that pause together',
                              _pausing_chains),
     'dialogue': Family('speech, answers of which a share never comes, minutes of silence',
                        _dialogue),

@@ -112,10 +112,9 @@ double Relations::medianDelay(EventId from, EventId to) const {
   return log_bins::middle(counts_.delays(from, to).middle(0).last);
 }
 
-double Relations::spread(EventId from, EventId to, double left_out) const {
+double Relations::spread(EventId from, EventId to, double left_out, double period) const {
   const DelayHistogram& delays = counts_.delays(from, to);
   const double wanted = (1 - left_out) * static_cast<double>(counts_.total(from, to));
-  const double period = this->period(from, to);
   if (wanted <= 0 || period <= 0) {
     return 1;
   }
@@ -173,17 +172,22 @@ Relation Relations::delays(EventId from, EventId to, const std::vector<Span>& mo
     }
   }
   relation.starts = numberOfStarts(spans, toNanoseconds(tuning_.start_time));
-  relation.spread = spread(from, to, std::min(1 - tuning_.usual, least_share / 2));
+  const double left_out = std::min(1 - tuning_.usual, least_share / 2);
+  relation.spread = spread(from, to, left_out, period(from, to));
   relation.reaches = reaches(from, to);
   relation.irregular = isIrregular(from, to);
+  const bool one_source =
+      counts_.vocabulary().at(from).source == counts_.vocabulary().at(to).source;
+  if (relation.reaches && !one_source) {
+    // It may answer to every Nth message: then its period is its own.
+    relation.spread = std::min(relation.spread, spread(from, to, left_out, meanGap(to)));
+  }
   const double level = relation.reaches && relation.irregular ? 1
                        : relation.reaches || relation.irregular
                            ? tuning_.chance_of_one
                            : tuning_.chance_of_any / looked_at_;
   // Who comes in the second half of a period after another may as well be the one that it asks; of
   // what one node publishes, nobody knows what comes upon what.
-  const bool one_source =
-      counts_.vocabulary().at(from).source == counts_.vocabulary().at(to).source;
   const bool late =
       (!relation.reaches || one_source) && medianDelay(from, to) > period(from, to) / 2;
   relation.watched = !late && byChance(relation) <= level;

@@ -60,9 +60,10 @@ class Relations {
   /// The shorter of the two mean gaps [ns].
   double period(EventId from, EventId to) const;
   double medianDelay(EventId from, EventId to) const;  // [ns]
-  /// Share of a period of `from` that the delays lie in, in all starts together, 0 to 1.
+  /// Share of a period that the delays lie in, in all starts together, 0 to 1.
   /// @param left_out share of the delays that may lie elsewhere
-  double spread(EventId from, EventId to, double left_out) const;
+  /// @param period [ns]
+  double spread(EventId from, EventId to, double left_out, double period) const;
 
   const Statistics& counts_;
   const SourceGraph& graph_;
