@@ -293,7 +293,7 @@ class ReferenceLimits:
                                                     self._late_firsts(kind))]
 
     def _agreed(self, kind: str) -> List[float]:
-        """Return both, without what one of three starts or more shows alone."""
+        """Return both, without what one of five starts or more shows alone."""
         gaps = self._longest_gaps(kind)
         starts = [part.start for part in self._parts_with_gaps()]
         agreed = []
@@ -302,7 +302,7 @@ class ReferenceLimits:
             for other, its_start in zip(gaps, starts):
                 if other > 0 and its_start != start:
                     others[its_start] = max(other, others.get(its_start, 0.0))
-            fault = len(others) >= 2 and (
+            fault = len(others) >= 4 and (
                 gap > MOST_MEAN_GAPS * max(others.values()) + LONGEST_STALL)
             agreed.append(max(others.values()) if fault else gap)
         return [max(gap, late) for gap, late in zip(agreed, self._late_firsts(kind))]

@@ -68,7 +68,7 @@ class LimitSearch {
   /// Shortest time to the first event of a type, of all recordings that heard it [ns].
   std::int64_t fastestFirst(EventId id) const;
   Kind kindOfGaps(const Seen& seen) const;
-  /// Longest gaps by part, as far as most starts agree on them: where three heard it, what one
+  /// Longest gaps by part, as far as most starts agree on them: where five heard it, what one
   /// shows much longer than all others do was a fault, and counts as these.
   std::vector<double> agreedOn(const std::vector<double>& longest) const;
   /// Share of the messages of all timers that are not fast, of which one at a time was lost, as
