@@ -1,7 +1,13 @@
 """Begins the ROS node of a program."""
 from __future__ import annotations
 
+import threading
+
 import rospy
+
+if not hasattr(threading.Thread, 'isAlive'):
+    # rospy of Debian 11 calls it when a node ends, though its Python has it no more.
+    setattr(threading.Thread, 'isAlive', threading.Thread.is_alive)
 
 
 def begin(name: str) -> None:

@@ -352,8 +352,9 @@ FAMILIES: Dict[str, Family] = {
     'bursty': Family('15 to 40 components: timers, chains, trackers in bursts, tasks, speech',
                      _bursty),
     'two_robots': Family('two robots in namespaces', _two_robots),
-    'pausing_chains': Family('chains of legs, tracker, anchor, attention, planner that pause together',
-                             _pausing_chains),
+    'pausing_chains': Family(
+        'chains of legs, tracker, anchor, attention, planner that pause together',
+        _pausing_chains),
     'dialogue': Family('speech, answers of which a share never comes, minutes of silence',
                        _dialogue),
     'long_pauses': Family('joysticks: seconds of messages, then a minute or two of none',
