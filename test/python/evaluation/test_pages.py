@@ -94,6 +94,11 @@ def test_every_page_of_the_evaluation_says_what_wrote_it() -> None:
     assert {number.page for number in readme_numbers.NUMBERS} <= found
 
 
+def test_the_numbers_of_the_readme_are_of_this_method() -> None:
+    of_readme = {number.page for number in NUMBERS}
+    assert [each.page for each in pages.find(DOCS) if each.page in of_readme and each.is_old] == []
+
+
 def test_no_other_system_hides_the_line_of_the_product() -> None:
     """Without the graph, it is as good, in most of what is drawn."""
     rows = {name: [Row(name, 1.0, 1, 'crash:a', 9, 0, 0, 0, latency_s=0.3)]
