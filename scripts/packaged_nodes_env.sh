@@ -16,8 +16,8 @@ packages=(
   tf-tools libtf-dev
   tf2-tools
   # Managers of nodelets, replays, relays, and tools that publish.
-  libnodeletlib-tools python3-rosbag librosbag-dev topic-tools python3-rostopic
-  python3-dynamic-reconfigure
+  libnodeletlib-tools python3-rosbag librosbag-dev topic-tools python3-rosnode
+  python3-rostopic python3-dynamic-reconfigure
   # Diagnostics.
   libdiagnostic-aggregator-tools python3-diagnostic-common-diagnostics python3-diagnostic-updater
   python3-psutil

@@ -10,6 +10,8 @@ import time
 from pathlib import Path
 from typing import Dict, Iterator, List, Sequence
 
+import rosgraph
+import rosnode
 import rospy
 from std_srvs.srv import SetBool
 
@@ -136,6 +138,10 @@ class RunningSystem:
     def _end(self, nodes: Sequence[Node]) -> None:
         for node in nodes:
             self._processes.end(self._running.pop(node.name))
+        # Who did not unregister would be told to shut down when it is started again, at a port
+        # that another node may have by then.
+        left = set(rosnode.get_node_names()) & {f'/{node.name}' for node in nodes}
+        rosnode.cleanup_master_blacklist(rosgraph.Master(rospy.get_name()), sorted(left))
 
     def _command(self, node: Node) -> List[str]:
         namespace, _, name = f'/{node.name}'.rpartition('/')
