@@ -29,24 +29,20 @@ std::vector<Suspect> Blame::suspects(const std::vector<double>& shares, const Sc
   const Followers::Leads leads = followers_.leads(shares);
   std::vector<Candidate> candidates = silent(shares, scorer, events, leads);
   std::vector<Candidate> others = unusual(shares, scorer, events, leads);
-  const auto roots = rootsOfSilence(candidates, others, scorer, leads);
+  const auto roots = rootsOfSilence(candidates, others, scorer, events, leads);
   candidates.insert(candidates.begin(), others.begin(), roots);
   candidates.insert(candidates.end(), roots, others.end());
 
   std::vector<Suspect> suspects;
   std::set<EventId> named;
   std::set<std::string> components;
-  bool abnormal = false;  // one of them alone would be
   const auto add = [&](const Candidate& candidate) {
     Suspect suspect = suspectOf(candidate.track, scorer, events);
     suspect.component = model_->component(suspect.id);
     suspect.abnormal = shares[candidate.track] > 1;
-    if (!suspect.abnormal && isUsual(suspect) &&
-        (abnormal || suspect.reason.kind != Kind::kDied ||
-         !leadsAbnormal(suspect.component, candidates, shares, leads))) {
+    if (!suspect.abnormal && isUsual(suspect)) {
       return;
     }
-    abnormal = abnormal || suspect.abnormal;
     named.insert(suspect.id);
     components.insert(suspect.component);
     suspects.push_back(std::move(suspect));
@@ -99,20 +95,19 @@ std::vector<Blame::Candidate> Blame::silent(const std::vector<double>& shares,
 
 std::vector<Blame::Candidate>::iterator Blame::rootsOfSilence(
     const std::vector<Candidate>& silent, std::vector<Candidate>& others, const Scorer& scorer,
-    const Followers::Leads& leads) const {
+    const RecentEvents& events, const Followers::Leads& leads) const {
   std::set<std::string> roots;
   const auto isSilent = [&](const Candidate& other) {
     return std::any_of(silent.begin(), silent.end(), [&](const Candidate& candidate) {
       return model_->component(toOf(other)) == model_->component(toOf(candidate));
     });
   };
-  const auto answered = [&](const Candidate& other) {
+  const auto isWaitedFor = [&](const Candidate& other) {
+    const std::string& source = model_->component(toOf(other));
     return std::any_of(silent.begin(), silent.end(), [&](const Candidate& candidate) {
-      return leads.count({model_->component(toOf(other)), model_->component(toOf(candidate))}) >
-                 0 &&
-             (scorer.heard().lastSeen(toOf(candidate)) >= scorer.heard().lastSeen(toOf(other)) ||
-              static_cast<double>(scorer.heard().age(toOf(other))) <
-                  model_->meanGap(toOf(other)) / 2);
+      const std::string& victim = model_->component(toOf(candidate));
+      return (leads.count({source, victim}) > 0 || graph_->isUpstream(source, victim)) &&
+             owesNothing(toOf(candidate), toOf(other), scorer, events);
     });
   };
   const auto leadsRoot = [&](const Candidate& other) {
@@ -123,13 +118,25 @@ std::vector<Blame::Candidate>::iterator Blame::rootsOfSilence(
   for (bool found = true; found;) {
     found = false;
     for (const Candidate& other : others) {
-      found |= other.own && !isSilent(other) && (answered(other) || leadsRoot(other)) &&
+      found |= other.own && !isSilent(other) && (isWaitedFor(other) || leadsRoot(other)) &&
                roots.insert(model_->component(toOf(other))).second;
     }
   }
   return std::stable_partition(others.begin(), others.end(), [&](const Candidate& other) {
     return roots.count(model_->component(toOf(other))) > 0;
   });
+}
+
+bool Blame::owesNothing(EventId follower, EventId leader, const Scorer& scorer,
+                        const RecentEvents& events) const {
+  const double gap = model_->meanGap(leader);
+  const double usual = std::max(1.0, std::round(model_->meanGap(follower) / gap));
+  double since = 0;
+  for (const RecentEvents::Remembered& event : events.of(follower, leader)) {
+    since = event.id == follower ? 0 : since + 1;
+  }
+  return since < usual ||
+         (since == usual && static_cast<double>(scorer.heard().age(leader)) < gap / 2);
 }
 
 std::vector<Blame::Candidate> Blame::rootFirst(std::vector<Candidate> candidates,
@@ -183,8 +190,7 @@ std::vector<Blame::Candidate> Blame::unusual(const std::vector<double>& shares,
       later.late = true;
       late.push_back(track);
     }
-    later.own |= shares[track] > tuning_.near_limit && finding != Finding::kSilent &&
-                 finding != Finding::kBetween;
+    later.own |= shares[track] > tuning_.near_limit && finding != Finding::kSilent && !other;
     if (share > later.largest) {
       later.largest = share;
       later.track = track;
@@ -234,15 +240,6 @@ bool Blame::isUsual(const Suspect& suspect) const {
     return reason.after.empty() && reason.value <= toSeconds(model_->longestGap(suspect.id));
   }
   return reason.usual_shortest <= reason.value && reason.value <= reason.usual_longest;
-}
-
-bool Blame::leadsAbnormal(const std::string& component, const std::vector<Candidate>& candidates,
-                          const std::vector<double>& shares, const Followers::Leads& leads) const {
-  return std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& other) {
-    const std::string& victim = model_->component(toOf(other));
-    return shares[other.track] > 1 &&
-           (graph_->isUpstream(component, victim) || leads.count({component, victim}) > 0);
-  });
 }
 
 // Its age, if that alone is abnormal; else what is nearer to its limit: at half its rate, say, its

@@ -44,13 +44,17 @@ class Blame {
                                 const RecentEvents& events, const Followers::Leads& leads) const;
   std::vector<Candidate> unusual(const std::vector<double>& shares, const Scorer& scorer,
                                  const RecentEvents& events, const Followers::Leads& leads) const;
-  /// Moves to the front of `others` those whose followers are silent, although they answered the
-  /// last one: at half the rate of what they follow, say.
+  /// Moves to the front of `others` those whose followers are silent, although these owe them
+  /// nothing: at half the rate of what they follow, say.
   /// @return the end of these
   std::vector<Candidate>::iterator rootsOfSilence(const std::vector<Candidate>& silent,
                                                   std::vector<Candidate>& others,
-                                                  const Scorer& scorer,
+                                                  const Scorer& scorer, const RecentEvents& events,
                                                   const Followers::Leads& leads) const;
+  /// Whether no more messages of the leader came since the follower's last one than usually do
+  /// between two of the follower's; the last of them has half a mean gap to be answered.
+  bool owesNothing(EventId follower, EventId leader, const Scorer& scorer,
+                   const RecentEvents& events) const;
   /// Whether the age of what a track of silence watches is within its limit, and not rare.
   bool isUsualAge(std::size_t track, const std::vector<double>& shares,
                   const Scorer& scorer) const;
@@ -59,9 +63,6 @@ class Blame {
                              const RecentEvents& events) const;
   /// Whether what is said of a suspect is what it usually does.
   bool isUsual(const Suspect& suspect) const;
-  /// Whether it may be the root of a component whose evidence alone is abnormal.
-  bool leadsAbnormal(const std::string& component, const std::vector<Candidate>& candidates,
-                     const std::vector<double>& shares, const Followers::Leads& leads) const;
   EventId toOf(const Candidate& candidate) const { return model_->tracks()[candidate.track].to; }
 
   std::shared_ptr<const Model> model_;
