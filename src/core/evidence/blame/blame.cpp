@@ -97,17 +97,16 @@ std::vector<Blame::Candidate>::iterator Blame::rootsOfSilence(
     const std::vector<Candidate>& silent, std::vector<Candidate>& others, const Scorer& scorer,
     const RecentEvents& events, const Followers::Leads& leads) const {
   std::set<std::string> roots;
-  const auto isSilent = [&](const Candidate& other) {
-    return std::any_of(silent.begin(), silent.end(), [&](const Candidate& candidate) {
-      return model_->component(toOf(other)) == model_->component(toOf(candidate));
-    });
-  };
+  std::set<std::string> silent_ones;
+  for (const Candidate& candidate : silent) {
+    silent_ones.insert(model_->component(toOf(candidate)));
+  }
   const auto isWaitedFor = [&](const Candidate& other) {
     const std::string& source = model_->component(toOf(other));
     return std::any_of(silent.begin(), silent.end(), [&](const Candidate& candidate) {
       const std::string& victim = model_->component(toOf(candidate));
-      return (leads.count({source, victim}) > 0 || graph_->isUpstream(source, victim)) &&
-             owesNothing(toOf(candidate), toOf(other), scorer, events);
+      return owesNothing(toOf(candidate), toOf(other), scorer, events) &&
+             (graph_->isUpstream(source, victim) || leads.count({source, victim}) > 0);
     });
   };
   const auto leadsRoot = [&](const Candidate& other) {
@@ -115,11 +114,21 @@ std::vector<Blame::Candidate>::iterator Blame::rootsOfSilence(
       return leads.count({model_->component(toOf(other)), root}) > 0;
     });
   };
-  for (bool found = true; found;) {
+  std::vector<const Candidate*> left;
+  for (const Candidate& other : others) {
+    if (!other.own || silent_ones.count(model_->component(toOf(other))) > 0) {
+      continue;
+    }
+    if (isWaitedFor(other)) {
+      roots.insert(model_->component(toOf(other)));
+    } else {
+      left.push_back(&other);
+    }
+  }
+  for (bool found = !roots.empty(); found;) {
     found = false;
-    for (const Candidate& other : others) {
-      found |= other.own && !isSilent(other) && (isWaitedFor(other) || leadsRoot(other)) &&
-               roots.insert(model_->component(toOf(other))).second;
+    for (const Candidate* other : left) {
+      found |= leadsRoot(*other) && roots.insert(model_->component(toOf(*other))).second;
     }
   }
   return std::stable_partition(others.begin(), others.end(), [&](const Candidate& other) {
@@ -131,10 +140,7 @@ bool Blame::owesNothing(EventId follower, EventId leader, const Scorer& scorer,
                         const RecentEvents& events) const {
   const double gap = model_->meanGap(leader);
   const double usual = std::max(1.0, std::round(model_->meanGap(follower) / gap));
-  double since = 0;
-  for (const RecentEvents::Remembered& event : events.of(follower, leader)) {
-    since = event.id == follower ? 0 : since + 1;
-  }
+  const auto since = static_cast<double>(events.since(leader, follower));
   return since < usual ||
          (since == usual && static_cast<double>(scorer.heard().age(leader)) < gap / 2);
 }
@@ -144,13 +150,23 @@ std::vector<Blame::Candidate> Blame::rootFirst(std::vector<Candidate> candidates
   std::stable_sort(candidates.begin(), candidates.end(), likelier);
   std::vector<std::string> components;
   components.reserve(candidates.size());
+  std::vector<std::string> each;
+  std::map<std::string, std::size_t> places;  // in `each`
   for (const Candidate& candidate : candidates) {
     components.push_back(model_->component(toOf(candidate)));
+    if (places.emplace(components.back(), each.size()).second) {
+      each.push_back(components.back());
+    }
   }
+  if (each.size() < 2) {
+    return candidates;
+  }
+  const std::vector<std::vector<bool>> upstream = graph_->upstream(each);
   std::vector<Candidate> ordered;
   const auto is_root = [&](const std::string& source, const std::string& other) {
-    return graph_->isUpstream(source, other) ||
-           (leads.count({source, other}) > 0 && !graph_->isUpstream(other, source));
+    const std::size_t from = places.at(source);
+    const std::size_t to = places.at(other);
+    return upstream[from][to] || (leads.count({source, other}) > 0 && !upstream[to][from]);
   };
   for (const std::size_t next : evidence::rootFirst(components, is_root)) {
     ordered.push_back(candidates[next]);

@@ -23,4 +23,13 @@ std::vector<RecentEvents::Remembered> RecentEvents::of(EventId a, EventId b) con
   return events;
 }
 
+std::size_t RecentEvents::since(EventId id, EventId other) const {
+  std::size_t number = 0;
+  for (std::uint64_t event = isRemembered(last_[id]) ? last_[id] : 0; event > last_[other];
+       event = before(event)) {
+    ++number;
+  }
+  return number;
+}
+
 }  // namespace self_awareness::core::evidence

@@ -41,6 +41,8 @@ class RecentEvents {
   }
   /// The events of two types that are remembered, the oldest first.
   std::vector<Remembered> of(EventId a, EventId b) const;
+  /// How many events of a type that are remembered came after the last one of another type.
+  std::size_t since(EventId id, EventId other) const;
 
  private:
   struct Entry {

@@ -34,6 +34,22 @@ TEST(RecentEvents, AreThoseOfTwoTypesInTheirOrder) {
   EXPECT_EQ(of(events, 2, 2), (Expected{{11, 2}, {15, 2}})) << "each once";
 }
 
+TEST(RecentEvents, AreCountedSinceTheLastOneOfAnotherType) {
+  RecentEvents events(kTypes);
+  EXPECT_EQ(events.since(0, 1), 0U);
+  events.add({10, 0}, false);
+  events.add({11, 0}, false);
+  EXPECT_EQ(events.since(0, 1), 2U) << "that never came";
+  for (const Event& event : std::vector<Event>{{12, 1}, {13, 2}}) {
+    events.add(event, false);
+  }
+  EXPECT_EQ(events.since(0, 1), 0U);
+  events.add({14, 0}, false);
+  EXPECT_EQ(events.since(0, 1), 1U);
+  EXPECT_EQ(events.since(1, 0), 0U);
+  EXPECT_EQ(events.since(0, 0), 0U);
+}
+
 TEST(RecentEvents, KnowWhoMayHaveWaited) {
   RecentEvents events(kTypes);
   events.add({10, 0}, true);
