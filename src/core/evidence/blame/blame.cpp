@@ -150,18 +150,18 @@ std::vector<Blame::Candidate> Blame::rootFirst(std::vector<Candidate> candidates
   std::stable_sort(candidates.begin(), candidates.end(), likelier);
   std::vector<std::string> components;
   components.reserve(candidates.size());
-  std::vector<std::string> each;
-  std::map<std::string, std::size_t> places;  // in `each`
+  std::vector<std::string> names;             // each once
+  std::map<std::string, std::size_t> places;  // in `names`
   for (const Candidate& candidate : candidates) {
     components.push_back(model_->component(toOf(candidate)));
-    if (places.emplace(components.back(), each.size()).second) {
-      each.push_back(components.back());
+    if (places.emplace(components.back(), names.size()).second) {
+      names.push_back(components.back());
     }
   }
-  if (each.size() < 2) {
+  if (names.size() < 2) {
     return candidates;
   }
-  const std::vector<std::vector<bool>> upstream = graph_->upstream(each);
+  const std::vector<std::vector<bool>> upstream = graph_->upstream(names);
   std::vector<Candidate> ordered;
   const auto is_root = [&](const std::string& source, const std::string& other) {
     const std::size_t from = places.at(source);
