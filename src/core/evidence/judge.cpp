@@ -113,6 +113,7 @@ class Judge : public core::Judge {
   std::shared_ptr<const Vocabulary> heard_;  // event types by id; null: those of the model
   Scorer scorer_;
   RecentEvents events_;
+  std::shared_ptr<const Upstream> upstream_;
   Blame blame_;
   NeverHeard never_heard_;
   Strangers strangers_;
@@ -139,14 +140,15 @@ Judge::Judge(std::shared_ptr<const Model> model, std::optional<Limits> limits, s
       heard_(heard),
       scorer_(model_, window),
       events_(model_->size()),
-      blame_(model_, graph),
-      never_heard_(*model_, limits_.value_or(Limits{}), graph),
+      upstream_(std::make_shared<Upstream>(model_->components(), graph)),
+      blame_(model_, upstream_),
+      never_heard_(*model_, limits_.value_or(Limits{}), upstream_),
       strangers_(*model_, heard, graph),
       excused_(model_, std::move(heard)),
       unsubscribed_(*model_),
       busy_machine_(model_),
-      silent_together_(model_, graph),
-      new_mode_(model_, std::move(graph)),
+      silent_together_(model_, std::move(graph)),
+      new_mode_(model_, upstream_),
       shares_(model_->tracks().size(), 0),
       tell_shares_(std::move(shares)),
       settled_at_(model_->size(), std::numeric_limits<std::int64_t>::min()) {
@@ -340,7 +342,7 @@ std::vector<Suspect> Judge::namedIn(const Window& window, bool silent_first) con
       suspect.abnormal = abnormal;
     }
   }
-  if (!silent_first || (!first.empty() && never_heard_.isMissedBy(first.front().component))) {
+  if (!silent_first || (!first.empty() && never_heard_.isMissedBy(first.front().id))) {
     std::swap(first, second);
   }
   std::vector<Suspect> named;

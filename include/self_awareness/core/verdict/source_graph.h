@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <map>
-#include <optional>
 #include <set>
 #include <string>
 #include <tuple>
@@ -63,17 +62,13 @@ class SourceGraph {
              const std::string& topic) const {
     return edges_.count({publisher, topic, subscriber}) > 0;
   }
-  /// Whether messages of `from` reach `to`, directly or through others, in fewer steps than the
-  /// other way round. Robots have loops; what is wrong with both more likely began at `from`.
-  bool isUpstream(const std::string& from, const std::string& to) const;
-  /// The same of many: whether the first one is upstream of the second one, by their places.
+  /// Whether messages of one source reach another one, directly or through others, in fewer steps
+  /// than the other way round. Robots have loops; what is wrong with both more likely began there.
   /// @param sources each once
+  /// @return by the place of the one, then of the other
   std::vector<std::vector<bool>> upstream(const std::vector<std::string>& sources) const;
 
  private:
-  /// Number of steps from a source to another or back to itself; none: there is no way.
-  std::optional<std::size_t> distance(const std::string& from, const std::string& to) const;
-
   std::set<Edge> edges_;
   std::map<std::string, std::set<std::string>> followers_;  // of the edges, by publisher
   std::map<std::string, std::string> hosts_;                // by source

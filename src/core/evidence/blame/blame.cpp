@@ -17,9 +17,9 @@ constexpr std::size_t kMostLookedAt = 4 * kMostSuspects;
 
 }  // namespace
 
-Blame::Blame(std::shared_ptr<const Model> model, std::shared_ptr<const SourceGraph> graph)
+Blame::Blame(std::shared_ptr<const Model> model, std::shared_ptr<const Upstream> upstream)
     : model_(std::move(model)),
-      graph_(std::move(graph)),
+      upstream_(std::move(upstream)),
       followers_(model_),
       tuning_(model_->tuning()),
       rare_silence_(std::log(tuning_.rare_silence)) {}
@@ -96,31 +96,31 @@ std::vector<Blame::Candidate> Blame::silent(const std::vector<double>& shares,
 std::vector<Blame::Candidate>::iterator Blame::rootsOfSilence(
     const std::vector<Candidate>& silent, std::vector<Candidate>& others, const Scorer& scorer,
     const RecentEvents& events, const Followers::Leads& leads) const {
-  std::set<std::string> roots;
-  std::set<std::string> silent_ones;
+  std::set<std::size_t> roots;  // components
+  std::set<std::size_t> silent_ones;
   for (const Candidate& candidate : silent) {
-    silent_ones.insert(model_->component(toOf(candidate)));
+    silent_ones.insert(componentOf(candidate));
   }
   const auto isWaitedFor = [&](const Candidate& other) {
-    const std::string& source = model_->component(toOf(other));
+    const std::size_t source = componentOf(other);
     return std::any_of(silent.begin(), silent.end(), [&](const Candidate& candidate) {
-      const std::string& victim = model_->component(toOf(candidate));
+      const std::size_t victim = componentOf(candidate);
       return owesNothing(toOf(candidate), toOf(other), scorer, events) &&
-             (graph_->isUpstream(source, victim) || leads.count({source, victim}) > 0);
+             (upstream_->isUpstream(source, victim) || leads.count({source, victim}) > 0);
     });
   };
   const auto leadsRoot = [&](const Candidate& other) {
-    return std::any_of(roots.begin(), roots.end(), [&](const std::string& root) {
-      return leads.count({model_->component(toOf(other)), root}) > 0;
+    return std::any_of(roots.begin(), roots.end(), [&](std::size_t root) {
+      return leads.count({componentOf(other), root}) > 0;
     });
   };
   std::vector<const Candidate*> left;
   for (const Candidate& other : others) {
-    if (!other.own || silent_ones.count(model_->component(toOf(other))) > 0) {
+    if (!other.own || silent_ones.count(componentOf(other)) > 0) {
       continue;
     }
     if (isWaitedFor(other)) {
-      roots.insert(model_->component(toOf(other)));
+      roots.insert(componentOf(other));
     } else {
       left.push_back(&other);
     }
@@ -128,11 +128,11 @@ std::vector<Blame::Candidate>::iterator Blame::rootsOfSilence(
   for (bool found = !roots.empty(); found;) {
     found = false;
     for (const Candidate* other : left) {
-      found |= leadsRoot(*other) && roots.insert(model_->component(toOf(*other))).second;
+      found |= leadsRoot(*other) && roots.insert(componentOf(*other)).second;
     }
   }
   return std::stable_partition(others.begin(), others.end(), [&](const Candidate& other) {
-    return roots.count(model_->component(toOf(other))) > 0;
+    return roots.count(componentOf(other)) > 0;
   });
 }
 
@@ -148,25 +148,15 @@ bool Blame::owesNothing(EventId follower, EventId leader, const Scorer& scorer,
 std::vector<Blame::Candidate> Blame::rootFirst(std::vector<Candidate> candidates,
                                                const Followers::Leads& leads) const {
   std::stable_sort(candidates.begin(), candidates.end(), likelier);
-  std::vector<std::string> components;
+  std::vector<std::size_t> components;
   components.reserve(candidates.size());
-  std::vector<std::string> names;             // each once
-  std::map<std::string, std::size_t> places;  // in `names`
   for (const Candidate& candidate : candidates) {
-    components.push_back(model_->component(toOf(candidate)));
-    if (places.emplace(components.back(), names.size()).second) {
-      names.push_back(components.back());
-    }
+    components.push_back(componentOf(candidate));
   }
-  if (names.size() < 2) {
-    return candidates;
-  }
-  const std::vector<std::vector<bool>> upstream = graph_->upstream(names);
   std::vector<Candidate> ordered;
-  const auto is_root = [&](const std::string& source, const std::string& other) {
-    const std::size_t from = places.at(source);
-    const std::size_t to = places.at(other);
-    return upstream[from][to] || (leads.count({source, other}) > 0 && !upstream[to][from]);
+  const auto is_root = [&](std::size_t component, std::size_t other) {
+    return upstream_->isUpstream(component, other) ||
+           (leads.count({component, other}) > 0 && !upstream_->isUpstream(other, component));
   };
   for (const std::size_t next : evidence::rootFirst(components, is_root)) {
     ordered.push_back(candidates[next]);

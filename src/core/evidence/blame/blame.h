@@ -2,13 +2,12 @@
 
 #include <cstdint>
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "core/evidence/blame/followers.h"
+#include "core/evidence/blame/upstream.h"
 #include "core/evidence/channel/scorer.h"
 #include "self_awareness/core/stream/windows.h"
-#include "self_awareness/core/verdict/source_graph.h"
 #include "self_awareness/core/verdict/suspect.h"
 
 namespace self_awareness::core::evidence {
@@ -19,8 +18,8 @@ namespace self_awareness::core::evidence {
 /// silence, or who most of what is unusual involves. Nobody is named whose numbers are usual.
 class Blame {
  public:
-  /// @param graph may be empty: only what usually follows what then says who is the root
-  Blame(std::shared_ptr<const Model> model, std::shared_ptr<const SourceGraph> graph);
+  /// @param upstream may be empty: only what usually follows what then says who is the root
+  Blame(std::shared_ptr<const Model> model, std::shared_ptr<const Upstream> upstream);
 
   /// @param shares of their limits that the tracks of the model have reached
   /// @param events of the scorer's recording
@@ -64,9 +63,13 @@ class Blame {
   /// Whether what is said of a suspect is what it usually does.
   bool isUsual(const Suspect& suspect) const;
   EventId toOf(const Candidate& candidate) const { return model_->tracks()[candidate.track].to; }
+  /// The number of its component.
+  std::size_t componentOf(const Candidate& candidate) const {
+    return model_->componentIndex(toOf(candidate));
+  }
 
   std::shared_ptr<const Model> model_;
-  std::shared_ptr<const SourceGraph> graph_;
+  std::shared_ptr<const Upstream> upstream_;
   Followers followers_;
   const Tuning& tuning_;
   double rare_silence_;  // log of its probability

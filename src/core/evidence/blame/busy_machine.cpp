@@ -67,8 +67,8 @@ std::optional<Busy> BusyMachine::late(const std::vector<double>& shares, const S
   std::vector<bool> led(names.size(), false);
   for (std::size_t follower = 0; follower < names.size() && !busy_; ++follower) {
     for (std::size_t leader = 0; leader < names.size() && isLate(follower); ++leader) {
-      led[follower] = led[follower] || ((isLate(leader) || silent[leader]) &&
-                                        leads.count({names[leader], names[follower]}) > 0);
+      led[follower] = led[follower] ||
+                      ((isLate(leader) || silent[leader]) && leads.count({leader, follower}) > 0);
     }
   }
   Busy busy;

@@ -32,8 +32,8 @@ Followers::Leads Followers::leads(const std::vector<double>& shares) const {
   for (std::size_t track = 0; track < shares.size(); ++track) {
     if (follows_[track]) {
       (shares[track] < model_->tuning().least_share ? usual : unusual)
-          .emplace(model_->component(model_->tracks()[track].from),
-                   model_->component(model_->tracks()[track].to));
+          .emplace(model_->componentIndex(model_->tracks()[track].from),
+                   model_->componentIndex(model_->tracks()[track].to));
     }
   }
   Leads leads;

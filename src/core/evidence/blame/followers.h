@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <memory>
 #include <set>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -19,8 +18,8 @@ namespace self_awareness::core::evidence {
 /// graph, only relations that are known from training.
 class Followers {
  public:
-  /// Pairs of components, of which the second follows the first.
-  using Leads = std::set<std::pair<std::string, std::string>>;
+  /// Pairs of components, by number, of which the second follows the first.
+  using Leads = std::set<std::pair<std::size_t, std::size_t>>;
 
   explicit Followers(std::shared_ptr<const Model> model);
 

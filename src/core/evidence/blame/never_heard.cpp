@@ -20,12 +20,12 @@ double toMilliseconds(double seconds) {
 }  // namespace
 
 NeverHeard::NeverHeard(const Model& model, const Limits& limits,
-                       std::shared_ptr<const SourceGraph> graph)
+                       std::shared_ptr<const Upstream> upstream)
     : vocabulary_(model.vocabulary()),
       alarm_times_(model.tuning().alarm_times),
       alarm_later_(toNanoseconds(model.tuning().start_time)),
       accept_after_(model.tuning().accept_after * 1e9),
-      graph_(std::move(graph)),
+      upstream_(std::move(upstream)),
       heard_(model.components().size(), false),
       may_be_silent_(model.size(), false) {
   const Statistics& statistics = model.statistics();
@@ -124,14 +124,14 @@ std::vector<NeverHeard::Expected> NeverHeard::missing() const {
 }
 
 std::vector<NeverHeard::Expected> NeverHeard::rootFirst(std::vector<Expected> missing) const {
-  std::vector<std::string> components;
+  std::vector<std::size_t> components;
   components.reserve(missing.size());
   for (const Expected& expected : missing) {
-    components.push_back(component(expected.id));
+    components.push_back(component_of_[expected.id]);
   }
   std::vector<Expected> ordered;
-  const auto is_root = [&](const std::string& source, const std::string& other) {
-    return graph_->isUpstream(source, other);
+  const auto is_root = [&](std::size_t component, std::size_t other) {
+    return upstream_->isUpstream(component, other);
   };
   for (const std::size_t next : evidence::rootFirst(components, is_root)) {
     ordered.push_back(missing[next]);
@@ -175,11 +175,12 @@ std::vector<Suspect> NeverHeard::suspects() const {
   return suspects;
 }
 
-bool NeverHeard::isMissedBy(const std::string& other) const {
+bool NeverHeard::isMissedBy(EventId id) const {
   const std::vector<Expected> all = missing();
-  return std::any_of(all.begin(), all.end(), [&](const Expected& expected) {
-    return graph_->isUpstream(component(expected.id), other);
-  });
+  return id < component_of_.size() &&
+         std::any_of(all.begin(), all.end(), [&](const Expected& expected) {
+           return upstream_->isUpstream(component_of_[expected.id], component_of_[id]);
+         });
 }
 
 const std::string& NeverHeard::component(EventId id) const {

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "core/evidence/blame/upstream.h"
 #include "self_awareness/core/evidence/channel/model.h"
-#include "self_awareness/core/verdict/source_graph.h"
 #include "self_awareness/core/verdict/suspect.h"
 
 namespace self_awareness::core::evidence {
@@ -19,8 +19,7 @@ namespace self_awareness::core::evidence {
 /// the training (docs/method.md, section 3.8). A type that comes late as it always does is normal.
 class NeverHeard {
  public:
-  /// @param graph whose messages reach whom; may grow
-  NeverHeard(const Model& model, const Limits& limits, std::shared_ptr<const SourceGraph> graph);
+  NeverHeard(const Model& model, const Limits& limits, std::shared_ptr<const Upstream> upstream);
 
   /// Takes in the next event, of any id. The first one is the start.
   void add(const Event& event);
@@ -41,8 +40,9 @@ class NeverHeard {
   std::vector<std::pair<EventId, double>> shares() const;
   /// The event types that should have come by now, sources upstream of others first.
   std::vector<Suspect> suspects() const;
-  /// Whether the messages of one that should have come by now would reach another component.
-  bool isMissedBy(const std::string& component) const;
+  /// Whether the messages of one that should have come by now would reach the component of another
+  /// event type; of one that training never saw, that is not known.
+  bool isMissedBy(EventId id) const;
 
  private:
   /// An event type that comes after every start.
@@ -74,7 +74,7 @@ class NeverHeard {
   double alarm_times_;        // the time for its start: then it is an alarm
   std::int64_t alarm_later_;  // and at least so much later than due [ns]
   double accept_after_;       // so long after that, it is accepted [ns]
-  std::shared_ptr<const SourceGraph> graph_;
+  std::shared_ptr<const Upstream> upstream_;
   std::vector<Expected> all_;
   std::vector<std::size_t> component_of_;  // index, by id
   std::vector<bool> heard_;                // by component

@@ -27,13 +27,15 @@ std::int64_t lastOf(const std::vector<EventId>& ids, const Heard& heard) {
 
 }  // namespace
 
-NewMode::NewMode(std::shared_ptr<const Model> model, std::shared_ptr<const SourceGraph> graph)
-    : model_(std::move(model)), graph_(std::move(graph)), excused_until_(model_->size(), 0) {}
+NewMode::NewMode(std::shared_ptr<const Model> model, std::shared_ptr<const Upstream> upstream)
+    : model_(std::move(model)),
+      upstream_(std::move(upstream)),
+      excused_until_(model_->size(), 0) {}
 
 std::optional<Silent> NewMode::excuse(std::vector<double>& shares, const Limits& limits,
                                       const Scorer& scorer,
                                       const std::vector<bool>& may_be_silent) {
-  if (graph_->empty()) {
+  if (upstream_->empty()) {
     return std::nullopt;
   }
   const Heard& heard = scorer.heard();
@@ -54,7 +56,7 @@ std::optional<Silent> NewMode::excuse(std::vector<double>& shares, const Limits&
 std::vector<std::string> NewMode::excuseAccepted(std::vector<double>& shares, const Limits& limits,
                                                  const Scorer& scorer,
                                                  const std::vector<bool>& may_be_silent) {
-  if (accepted_.list().empty() || graph_->empty()) {
+  if (accepted_.list().empty() || upstream_->empty()) {
     return {};
   }
   const Heard& heard = scorer.heard();
@@ -109,7 +111,6 @@ void NewMode::accept(const Acceptances& accepted) {
 
 std::set<EventId> NewMode::find(const std::vector<EventId>& silent,
                                 const std::vector<double>& shares, const Heard& heard) {
-  lookAtGraph();
   const std::int64_t now = heard.windowEnd();
   std::set<EventId> stopped = this->stopped(silent, shares, heard);
   // They do not come back all at once.
@@ -128,7 +129,7 @@ void NewMode::takeBack(const std::set<EventId>& stopped, std::vector<double>& sh
   const std::set<std::size_t> components = componentsOf({stopped.begin(), stopped.end()});
   const auto hearsThem = [&](EventId id) {
     return std::any_of(components.begin(), components.end(), [&](std::size_t component) {
-      return upstream_[component][model_->componentIndex(id)];
+      return upstream_->isUpstream(component, model_->componentIndex(id));
     });
   };
   for (std::size_t track = 0; track < shares.size(); ++track) {
@@ -148,13 +149,6 @@ std::vector<std::string> NewMode::namesOf(const std::set<EventId>& ids) const {
   }
   std::sort(names.begin(), names.end());
   return names;
-}
-
-void NewMode::lookAtGraph() {
-  if (edges_ != graph_->edges().size()) {
-    upstream_ = graph_->upstream(model_->components());
-    edges_ = graph_->edges().size();
-  }
 }
 
 void NewMode::restart() {
@@ -225,7 +219,7 @@ bool NewMode::areUnrelated(const std::vector<EventId>& ids, const Heard& heard) 
   }
   const auto isRoot = [&](std::size_t component) {
     for (std::size_t other = 0; other < may_have_died.size(); ++other) {
-      if (may_have_died[other] && upstream_[other][component]) {
+      if (may_have_died[other] && upstream_->isUpstream(other, component)) {
         return false;
       }
     }

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "core/evidence/blame/upstream.h"
 #include "core/evidence/channel/scorer.h"
 #include "self_awareness/core/evidence/channel/model.h"
 #include "self_awareness/core/verdict/acceptance.h"
 #include "self_awareness/core/verdict/silent.h"
-#include "self_awareness/core/verdict/source_graph.h"
 
 namespace self_awareness::core::evidence {
 
@@ -21,8 +21,7 @@ namespace self_awareness::core::evidence {
 /// 6). Who depends on whom must be known: the victims of one that died stop at one moment, too.
 class NewMode {
  public:
-  /// @param graph who hears whom; may grow
-  NewMode(std::shared_ptr<const Model> model, std::shared_ptr<const SourceGraph> graph);
+  NewMode(std::shared_ptr<const Model> model, std::shared_ptr<const Upstream> upstream);
 
   /// Takes back the evidence against who stopped in that way, and against who hears them.
   /// @param shares of their limits that the tracks of the model have reached
@@ -73,12 +72,9 @@ class NewMode {
   bool othersGoOn(const std::vector<EventId>& stopped, const Heard& heard) const;
   /// Their components, each once.
   std::set<std::size_t> componentsOf(const std::vector<EventId>& ids) const;
-  void lookAtGraph();
 
   std::shared_ptr<const Model> model_;
-  std::shared_ptr<const SourceGraph> graph_;
-  std::vector<std::vector<bool>> upstream_;  // whether a component is of another one
-  std::size_t edges_ = 0;                    // of the graph that this was computed of
+  std::shared_ptr<const Upstream> upstream_;
   std::vector<std::int64_t> excused_until_;  // [ns], by id
   Acceptances accepted_;                     // modes alone
 };

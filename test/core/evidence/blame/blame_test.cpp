@@ -41,7 +41,8 @@ class EvidenceBlameTest : public testing::Test {
       shares.at(indexOf(model_->tracks(), channelName(track), track.to, track.from)) = share;
     }
     scorer_.closeWindow(end);
-    return Blame(model_, graph_).suspects(shares, scorer_, events_, window);
+    return Blame(model_, std::make_shared<Upstream>(model_->components(), graph_))
+        .suspects(shares, scorer_, events_, window);
   }
   static std::vector<EventId> ids(const std::vector<Suspect>& suspects) {
     std::vector<EventId> ids;

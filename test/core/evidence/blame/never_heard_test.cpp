@@ -32,7 +32,7 @@ class NeverHeardTest : public testing::Test {
     model_ = std::make_shared<Model>(watch(countsOf(first), countsOf(second)));
   }
   NeverHeard neverHeard(const Limits& limits = {}) const {
-    return NeverHeard(*model_, limits, graph_);
+    return NeverHeard(*model_, limits, std::make_shared<Upstream>(model_->components(), graph_));
   }
   // The share after so much time in which only A was heard.
   static double shareAt(NeverHeard& never_heard, std::int64_t now) {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "../recordings.h"
@@ -32,6 +33,12 @@ Events robot(std::int64_t start, unsigned seed) {
     events = together({events, irregular(id, start, start + kEnd, 100 * kMillisecond, seed + id)});
   }
   return events;
+}
+
+std::unique_ptr<NewMode> newMode(const std::shared_ptr<const Model>& model,
+                                 std::shared_ptr<const SourceGraph> graph) {
+  return std::make_unique<NewMode>(
+      model, std::make_shared<Upstream>(model->components(), std::move(graph)));
 }
 
 class NewModeTest : public testing::Test {
@@ -81,7 +88,7 @@ class NewModeTest : public testing::Test {
   std::shared_ptr<SourceGraph> graph_ = std::make_shared<SourceGraph>();
   std::shared_ptr<const Model> model_ = std::make_shared<Model>(
       watch(countsOf({robot(0, 100)}, kRobot), countsOf({robot(kStart, 200)}, kRobot)));
-  std::unique_ptr<NewMode> new_mode_ = std::make_unique<NewMode>(model_, graph_);
+  std::unique_ptr<NewMode> new_mode_ = newMode(model_, graph_);
 };
 
 TEST_F(NewModeTest, NobodyIsToBlameWhereFourThatDoNotHearEachOtherStopTogether) {
@@ -138,7 +145,7 @@ TEST_F(NewModeTest, WhereNobodyIsHeardSinceAllAreSilent) {
 }
 
 TEST_F(NewModeTest, WithoutAGraphTheyMayBeVictims) {
-  new_mode_ = std::make_unique<NewMode>(model_, std::make_shared<SourceGraph>());
+  new_mode_ = newMode(model_, std::make_shared<SourceGraph>());
   EXPECT_FALSE(excuse({kAgo, kAgo, kAgo, kAgo, 0, 0}));
 }
 
@@ -327,8 +334,8 @@ class RootWithoutTrackTest : public testing::Test {
       shares[indexOf(model_->tracks(), kOverdue, id, id)] = 2;
     }
     const Limits limits{std::vector<double>(model_->tracks().size(), 1), {}};
-    NewMode new_mode(model_, graph_);
-    return new_mode.excuse(shares, limits, scorer, std::vector<bool>(model_->size(), false))
+    const std::unique_ptr<NewMode> new_mode = newMode(model_, graph_);
+    return new_mode->excuse(shares, limits, scorer, std::vector<bool>(model_->size(), false))
         .has_value();
   }
 
@@ -395,9 +402,9 @@ TEST_F(CompanyOfOthersTest, ThatGoesOnMakesThemNoFaultEither) {
   }
   ASSERT_GE(beyond, 4U);
   const Limits limits{std::vector<double>(shares.size(), 1), {}};
-  NewMode new_mode(model_, graph_);
+  const std::unique_ptr<NewMode> new_mode = newMode(model_, graph_);
   const auto found =
-      new_mode.excuse(shares, limits, scorer, std::vector<bool>(model_->size(), false));
+      new_mode->excuse(shares, limits, scorer, std::vector<bool>(model_->size(), false));
   ASSERT_TRUE(found);
   EXPECT_EQ(found->components, (Strings{"/arm", "/laser", "/lidar", "/wheels"}));
   EXPECT_EQ(shares, std::vector<double>(shares.size(), 0));
@@ -438,11 +445,11 @@ TEST(NewModeOfALargeRobot, TakesLittleTimeWhileAllWaitForOneThatDied) {
     shares.at(indexOf(model->tracks(), kOverdue, id, id)) = 2;
   }
   const Limits limits{std::vector<double>(shares.size(), 1), {}};
-  NewMode new_mode(model, graph);
+  const std::unique_ptr<NewMode> new_mode = newMode(model, graph);
   const std::vector<bool> none(model->size(), false);
   const std::clock_t begin = std::clock();
   for (int window = 0; window < kWindows; ++window) {
-    EXPECT_FALSE(new_mode.excuse(shares, limits, scorer, none));
+    EXPECT_FALSE(new_mode->excuse(shares, limits, scorer, none));
   }
   const double seconds = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
   RecordProperty("milliseconds", std::to_string(1000 * seconds / kWindows));

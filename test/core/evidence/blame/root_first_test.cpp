@@ -3,49 +3,50 @@
 #include <gtest/gtest.h>
 
 #include <set>
-#include <string>
 #include <utility>
 #include <vector>
 
 namespace self_awareness::core::evidence {
 namespace {
 
-using Upstream = std::set<std::pair<std::string, std::string>>;
+constexpr std::size_t kA = 0;
+constexpr std::size_t kB = 1;
+constexpr std::size_t kC = 2;
+constexpr std::size_t kD = 3;
 
-std::vector<std::string> ordered(const std::vector<std::string>& components,
-                                 const Upstream& upstream) {
-  std::vector<std::string> names;
-  for (const std::size_t index :
-       rootFirst(components, [&](const std::string&source, const std::string&other) {
-         return upstream.count({source, other}) > 0;
+using Components = std::vector<std::size_t>;
+using Pairs = std::set<std::pair<std::size_t, std::size_t>>;
+
+Components ordered(const Components& components, const Pairs& upstream) {
+  Components roots_first;
+  for (const std::size_t index : rootFirst(components, [&](std::size_t from, std::size_t to) {
+         return upstream.count({from, to}) > 0;
        })) {
-    names.push_back(components.at(index));
+    roots_first.push_back(components.at(index));
   }
-  return names;
+  return roots_first;
 }
 
-using Names = std::vector<std::string>;
-
 TEST(RootFirst, WithoutAnyRelationTheLikeliestComesFirst) {
-  EXPECT_EQ(ordered({"/c", "/a", "/b"}, {}), (Names{"/c", "/a", "/b"}));
+  EXPECT_EQ(ordered({kC, kA, kB}, {}), (Components{kC, kA, kB}));
   EXPECT_TRUE(ordered({}, {}).empty());
 }
 
 TEST(RootFirst, RootsComeBeforeTheirVictims) {
-  const Upstream chain{{"/a", "/b"}, {"/b", "/c"}, {"/a", "/c"}};
-  EXPECT_EQ(ordered({"/c", "/b", "/a"}, chain), (Names{"/a", "/b", "/c"}));
-  EXPECT_EQ(ordered({"/c", "/d", "/b"}, chain), (Names{"/d", "/b", "/c"}))
+  const Pairs chain{{kA, kB}, {kB, kC}, {kA, kC}};
+  EXPECT_EQ(ordered({kC, kB, kA}, chain), (Components{kA, kB, kC}));
+  EXPECT_EQ(ordered({kC, kD, kB}, chain), (Components{kD, kB, kC}))
       << "who has nothing upstream is next";
 }
 
 TEST(RootFirst, InALoopTheLikelierComesFirst) {
-  const Upstream loop{{"/a", "/b"}, {"/b", "/a"}};
-  EXPECT_EQ(ordered({"/b", "/a"}, loop), (Names{"/b", "/a"}));
-  EXPECT_EQ(ordered({"/a", "/b"}, loop), (Names{"/a", "/b"}));
+  const Pairs loop{{kA, kB}, {kB, kA}};
+  EXPECT_EQ(ordered({kB, kA}, loop), (Components{kB, kA}));
+  EXPECT_EQ(ordered({kA, kB}, loop), (Components{kA, kB}));
 }
 
 TEST(RootFirst, AComponentMayComeTwice) {
-  EXPECT_EQ(ordered({"/b", "/a", "/b"}, {{"/a", "/b"}}), (Names{"/a", "/b", "/b"}));
+  EXPECT_EQ(ordered({kB, kA, kB}, {{kA, kB}}), (Components{kA, kB, kB}));
 }
 
 }  // namespace
