@@ -5,12 +5,15 @@ import contextlib
 import os
 import subprocess
 from pathlib import Path
-from typing import Iterator
+from typing import Iterator, Sequence
 
+import rosgraph
+import rosnode
 import rospy
 
 from self_awareness_evaluation.live.listeners import STARTED_WITHIN_S
-from self_awareness_evaluation.live.processes import Processes, await_condition, free_port
+from self_awareness_evaluation.live.processes import (LiveError, Processes, await_condition,
+                                                      free_port)
 
 
 @contextlib.contextmanager
@@ -36,6 +39,25 @@ def own_master(folder: Path) -> Iterator[Processes]:
             yield processes
         finally:
             rospy.signal_shutdown('the evaluation is over')
+
+
+def unregister(ended: Sequence[str]) -> None:
+    """Take back what nodes that have ended left at the master.
+
+    When such a node is started again, the master has the one before shut down, at a port that
+    another node may have by then.
+
+    Args:
+        ended: their names.
+
+    Raises:
+        LiveError: the master does not answer.
+    """
+    try:
+        left = sorted(set(rosnode.get_node_names()) & set(ended))
+        rosnode.cleanup_master_blacklist(rosgraph.Master('/evaluate'), left)
+    except (rosnode.ROSNodeException, rosgraph.MasterException, OSError) as error:
+        raise LiveError(f'the master does not answer any more: {error}') from error
 
 
 def _answers() -> bool:

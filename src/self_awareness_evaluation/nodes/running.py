@@ -10,12 +10,11 @@ import time
 from pathlib import Path
 from typing import Dict, Iterator, List, Sequence
 
-import rosgraph
-import rosnode
 import rospy
 from std_srvs.srv import SetBool
 
 from self_awareness_evaluation.live.listeners import STARTED_WITHIN_S, RobotListener
+from self_awareness_evaluation.live.master import unregister
 from self_awareness_evaluation.live.processes import LiveError, Processes, await_condition
 from self_awareness_evaluation.nodes.system import (CAMERAS_HZ, HALF_RATE, KILL, LATE, NODES,
                                                     PARAMETERS, RESTART, STARVE, STOP, Fault,
@@ -138,10 +137,7 @@ class RunningSystem:
     def _end(self, nodes: Sequence[Node]) -> None:
         for node in nodes:
             self._processes.end(self._running.pop(node.name))
-        # Who did not unregister would be told to shut down when it is started again, at a port
-        # that another node may have by then.
-        left = set(rosnode.get_node_names()) & {f'/{node.name}' for node in nodes}
-        rosnode.cleanup_master_blacklist(rosgraph.Master(rospy.get_name()), sorted(left))
+        unregister([f'/{node.name}' for node in nodes])
 
     def _command(self, node: Node) -> List[str]:
         namespace, _, name = f'/{node.name}'.rpartition('/')
