@@ -2,12 +2,14 @@
 from __future__ import annotations
 
 import contextlib
+import math
 import multiprocessing
 import os
 import signal
 import socket
 import subprocess
 import time
+from ctypes import c_double
 from http.client import HTTPException
 from pathlib import Path
 from typing import Any, ContextManager, Dict, Iterator, Optional
@@ -162,11 +164,16 @@ def intruding(effect: Intruder, namespace: str = '', scenario: Optional[Path] = 
 def starved(effect: Starvation) -> Iterator[None]:
     """Let a growing number of busy workers take the CPU for the time of a with statement."""
     number = effect.workers_per_core * len(os.sched_getaffinity(0))
-    workers = [multiprocessing.Process(target=_work, args=(effect.ramp * i / number, os.getpid()),
-                                       daemon=True) for i in range(number)]
+    # They wait for each other: beside busy ones, others would take seconds to start, and when the
+    # fault began would not be known.
+    begin = multiprocessing.Value('d', math.inf, lock=False)
+    workers = [multiprocessing.Process(
+        target=_work, args=(begin, effect.ramp * i / number, os.getpid()), daemon=True)
+        for i in range(number)]
     try:
         for worker in workers:
             worker.start()
+        begin.value = time.monotonic()
         yield
     finally:
         for worker in workers:
@@ -175,16 +182,20 @@ def starved(effect: Starvation) -> Iterator[None]:
                 worker.join()
 
 
-def _work(delay_s: float, parent: int) -> None:
-    """Keep a core busy after a delay, until the parent kills the process or dies itself."""
+def _work(begin: c_double, delay_s: float, parent: int) -> None:
+    """Keep a core busy from a delay after the begin on, until the parent kills the process or dies
+    itself.
+
+    Args:
+        begin: by the steady clock [s]; infinite while it is not known.
+    """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     # The kernel may share the CPU among sessions (autogroup): one session would weigh no more than
     # the whole robot, however many workers it has.
     os.setsid()
-    busy_from = time.monotonic() + delay_s
     while os.getppid() == parent:
-        if time.monotonic() < busy_from:
-            time.sleep(0.05)
+        if time.monotonic() < begin.value + delay_s:
+            time.sleep(0.01)
         else:
             for _ in range(100_000):
                 pass
