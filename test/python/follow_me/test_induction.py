@@ -9,6 +9,7 @@ from typing import List
 
 import pytest
 
+from self_awareness_evaluation.live.processes import becomes_true
 from self_awareness_follow_me import induction
 from self_awareness_follow_me.effects import Starvation
 
@@ -38,11 +39,7 @@ def test_no_worker_is_busy_before_all_have_started(monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(multiprocessing.Process, 'start', start_slowly)
     with induction.starved(Starvation(ramp=0.0, slowdown=1.0, workers_per_core=4)):
         at_first = busy()
-        deadline = time.monotonic() + BUSY_WITHIN_S
-        while min(busy()) < 2 * TAKES_S and time.monotonic() < deadline:
-            time.sleep(0.05)
-        later = busy()
+        assert becomes_true(lambda: min(busy()) >= 2 * TAKES_S, BUSY_WITHIN_S), 'all are busy'
     assert len(workers) == 4 * len(os.sched_getaffinity(0))
     assert max(at_first) < TAKES_S
-    assert min(later) >= 2 * TAKES_S, 'all are busy'
     assert not any(worker.is_alive() for worker in workers), 'they end with the fault'
