@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "self_awareness/ros/stable_name.h"
+
 namespace self_awareness {
 namespace {
 
@@ -90,6 +92,7 @@ std::optional<ros1::ModeField> modeOf(const std::string& name, XmlRpcValue& valu
     }
     *known->second = static_cast<std::string>(part);
   }
+  mode.topic = ros1::resolvedName(mode.topic);
   return mode;
 }
 

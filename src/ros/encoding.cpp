@@ -231,8 +231,11 @@ std::string whyLeftOut(const Connection& connection) {
 
 Connection connectionFrom(const ros::M_string& header, const std::string& topic) {
   Connection connection;
-  connection.callerid = printable(headerField(header, "callerid"));
-  connection.topic = printable(topic);
+  // Who records may have been given a relative name; the publisher says the whole one.
+  const std::string said = headerField(header, "topic");
+  const bool relative = !topic.empty() && topic[0] != '/' && !said.empty();
+  connection.callerid = resolvedName(printable(headerField(header, "callerid")));
+  connection.topic = resolvedName(printable(relative ? said : topic));
   connection.datatype = printable(headerField(header, "type"));
   connection.md5sum = printable(headerField(header, "md5sum"));
   connection.definition = headerField(header, "message_definition");
@@ -301,15 +304,15 @@ std::string Encoder::sourceOf(const std::string& node) const {
 }
 
 std::string Encoder::scopeOf(const std::string& topic) const {
-  return renames_->apply(topic);
+  return renames_->apply(resolvedName(topic));
 }
 
 std::optional<core::EventType> Encoder::renamed(const core::EventType& type) const {
-  if (!includesTopic(type.scope) || !includesSource(type.source)) {
+  if (!includesTopic(type.scope) || !includesSource(stableName(type.source))) {
     return std::nullopt;
   }
-  return core::EventType{tellsSources() ? renames_->apply(type.source) : type.source,
-                         scopeOf(type.scope), type.type};
+  return core::EventType{tellsSources() ? sourceOf(type.source) : type.source, scopeOf(type.scope),
+                         type.type};
 }
 
 bool Encoder::includesTopic(const std::string& topic) const {
@@ -328,25 +331,39 @@ bool Encoder::includesSource(const std::string& source) const {
          !exclude_sources_->match(name);
 }
 
+std::optional<core::EventType> Encoder::played(const Connection& connection) const {
+  const std::string source = stableName(connection.callerid);
+  if (!tellsSources() || source.substr(source.rfind('/') + 1) != "play" ||
+      includesSource(source) || !includesTopic(connection.topic) ||
+      Siblings::mayCover(connection.topic)) {
+    return std::nullopt;
+  }
+  return core::EventType{connection.callerid, scopeOf(connection.topic), connection.datatype};
+}
+
 bool Encoder::listens(const std::string& source) const {
   const std::string name = renames_->apply(source);
   return !exclude_sources_->match(name) && !isRostopic(name);
 }
 
-std::optional<ConnectionEncoder> Encoder::connect(const Connection& connection) const {
-  const std::string source = stableName(connection.callerid);
+std::optional<core::EventType> Encoder::typeOf(const Connection& connection) const {
   if (!whyLeftOut(connection).empty() || isOwnType(connection.datatype) ||
-      !includesTopic(connection.topic) || !includesSource(source)) {
+      !includesTopic(connection.topic) || !includesSource(stableName(connection.callerid))) {
+    return std::nullopt;
+  }
+  return core::EventType{tellsSources() ? sourceOf(connection.callerid) : "",
+                         scopeOf(connection.topic), connection.datatype};
+}
+
+std::optional<ConnectionEncoder> Encoder::connect(const Connection& connection) const {
+  const std::optional<core::EventType> type = typeOf(connection);
+  if (!type) {
     return std::nullopt;
   }
   ConnectionEncoder encoder;
   encoder.ids_ = ids_;
-  encoder.type_.scope = scopeOf(connection.topic);
-  encoder.type_.type = connection.datatype;
-  encoder.skip_next_ = connection.latching && !isRostopic(source);
-  if (rules_.source == EncodingRules::Source::kCallerId) {
-    encoder.type_.source = renames_->apply(source);
-  }
+  encoder.type_ = *type;
+  encoder.skip_next_ = connection.latching && !isRostopic(stableName(connection.callerid));
   const auto field = rules_.type_fields.find(connection.datatype);
   if (field != rules_.type_fields.end()) {
     const auto classes = rules_.classes.find(connection.datatype);

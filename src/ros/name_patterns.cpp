@@ -37,10 +37,17 @@ NamePatterns::NamePatterns(const std::vector<std::string>& patterns) {
 }
 
 std::size_t NamePatterns::firstThatMatches(const std::string& name) const {
-  const auto first = std::find_if(patterns_.begin(), patterns_.end(), [&](const auto& pattern) {
-    return re2::RE2::FullMatch(name, *pattern);
-  });
+  const auto first = std::find_if(patterns_.begin(), patterns_.end(),
+                                  [&](const auto& pattern) { return matches(*pattern, name); });
   return static_cast<std::size_t>(first - patterns_.begin());
+}
+
+bool NamePatterns::matches(const re2::RE2& pattern, const std::string& name,
+                           re2::StringPiece* groups, int wanted) {
+  const auto from = [&](std::size_t begin) {
+    return pattern.Match(name, begin, name.size(), re2::RE2::ANCHOR_BOTH, groups, wanted);
+  };
+  return from(0) || (!name.empty() && name[0] == '/' && from(1));
 }
 
 }  // namespace self_awareness::ros1

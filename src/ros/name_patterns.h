@@ -1,6 +1,7 @@
 #pragma once
 
 #include <re2/re2.h>
+#include <re2/stringpiece.h>
 
 #include <cstddef>
 #include <memory>
@@ -23,11 +24,15 @@ class NamePatterns {
   explicit NamePatterns(const std::vector<std::string>& patterns);
 
   bool empty() const { return patterns_.empty(); }
-  /// Whether one of them matches the whole name.
+  /// Whether one of them matches the whole name: with its first slash, or, as people type names,
+  /// without it.
   bool match(const std::string& name) const { return firstThatMatches(name) != all().size(); }
   /// Index of the first one that matches the whole name; their number if none does.
   std::size_t firstThatMatches(const std::string& name) const;
   const std::vector<std::unique_ptr<const re2::RE2>>& all() const { return patterns_; }
+  /// Whether one pattern does, and what its groups match.
+  static bool matches(const re2::RE2& pattern, const std::string& name,
+                      re2::StringPiece* groups = nullptr, int wanted = 0);
 
  private:
   std::vector<std::unique_ptr<const re2::RE2>> patterns_;

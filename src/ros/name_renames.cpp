@@ -5,6 +5,7 @@
 #include <array>
 #include <stdexcept>
 
+#include "self_awareness/ros/stable_name.h"
 #include "text.h"
 
 namespace self_awareness::ros1 {
@@ -52,10 +53,9 @@ std::string NameRenames::apply(const std::string& name) const {
   std::array<re2::StringPiece, kMostGroups> groups;
   const int wanted = 1 + re2::RE2::MaxSubmatch(names_[rule]);
   std::string renamed;
-  const bool matches =
-      pattern.Match(name, 0, name.size(), re2::RE2::ANCHOR_BOTH, groups.data(), wanted) &&
-      pattern.Rewrite(&renamed, names_[rule], groups.data(), wanted);
-  return matches ? renamed : name;
+  const bool matches = NamePatterns::matches(pattern, name, groups.data(), wanted) &&
+                       pattern.Rewrite(&renamed, names_[rule], groups.data(), wanted);
+  return matches ? resolvedName(renamed) : name;
 }
 
 }  // namespace self_awareness::ros1

@@ -92,6 +92,33 @@ TEST(Connection, ToleratesAHeaderThatLacksFields) {
   EXPECT_FALSE(connection.latching);
 }
 
+TEST(Connection, NamesAreWhole) {
+  for (const char* typed : {"/scan", "scan", "//scan", "/scan/"}) {
+    const Connection connection = connectionFrom({{"callerid", typed}}, typed);
+    EXPECT_EQ(connection.topic, "/scan") << typed;
+    EXPECT_EQ(connection.callerid, "/scan") << typed;
+  }
+  EXPECT_EQ(connectionFrom({{"topic", "/robot//scan"}}, "scan").topic, "/robot/scan")
+      << "recorded in a namespace";
+  EXPECT_EQ(connectionFrom({{"topic", "/other"}}, "/scan").topic, "/scan");
+}
+
+TEST(ResolvedName, IsTheWholeOneAndStaysSo) {
+  EXPECT_EQ(resolvedName("camera/depth//image/"), "/camera/depth/image");
+  EXPECT_EQ(resolvedName("///ns///topic"), "/ns/topic");
+  EXPECT_EQ(resolvedName("_x"), "/_x");
+  EXPECT_EQ(resolvedName("//"), "/");
+  for (const char* name : {"", "/", "/scan", "~scan", "(further topics)", "*"}) {
+    EXPECT_EQ(resolvedName(name), name);
+  }
+}
+
+TEST(StableName, IsWhole) {
+  EXPECT_EQ(stableName("rostopic_10263_1795206536731"), "/rostopic");
+  EXPECT_EQ(stableName("//ns/talker_4242_1430709709567"), "/ns/talker");
+  EXPECT_EQ(stableName(""), "");
+}
+
 TEST(StableName, DropsTheNumbersOfAnonymousNodes) {
   EXPECT_EQ(stableName("/rostopic_10263_1795206536731"), "/rostopic");
   EXPECT_EQ(stableName("/record_1795206538727453261"), "/record");
@@ -398,6 +425,16 @@ TEST(Rename, AWholeNameIsReplacedWhateverTheShortestMatch) {
   EXPECT_EQ(encoder.scopeOf("/r"), "/x") << "a group that matches nothing is empty";
 }
 
+TEST(Rename, NamesAreTypedWithOrWithoutTheFirstSlash) {
+  EncodingRules rules;
+  rules.renames = {{"r[0-9]+/(.*)", "/\\1"}, {"(scan|odom)", "/all//\\1"}, {"(.*)", "/x/\\1"}};
+  const Encoder encoder(rules, nullptr);
+  EXPECT_EQ(encoder.scopeOf("/r7/cloud"), "/cloud");
+  EXPECT_EQ(encoder.scopeOf("r7/cloud"), "/cloud");
+  EXPECT_EQ(encoder.scopeOf("//odom"), "/all/odom");
+  EXPECT_EQ(encoder.sourceOf("lidar"), "/x/lidar") << "the whole name is matched first";
+}
+
 TEST(Rename, WhatCannotBeDoneIsNamed) {
   const auto problem = [](const std::string& pattern, const std::string& name) {
     EncodingRules rules;
@@ -484,6 +521,20 @@ TEST_F(EncoderTest, PatternsMatchWholeNames) {
   rules.include_topics = {};
   rules.include_sources = {"/slam"};
   EXPECT_FALSE(makeEncoder(rules).connect(scan()));
+}
+
+TEST_F(EncoderTest, PatternsAreTypedWithOrWithoutTheFirstSlash) {
+  EncodingRules rules;
+  rules.include_topics = {"scan|odom"};
+  rules.exclude_sources = {"play"};
+  const Encoder encoder = makeEncoder(rules);
+  for (const char* topic : {"/scan", "scan", "//odom"}) {
+    EXPECT_TRUE(encoder.includesTopic(topic)) << topic;
+  }
+  EXPECT_FALSE(encoder.includesTopic("/laser/scan"));
+  EXPECT_FALSE(encoder.includesSource("/play"));
+  EXPECT_TRUE(encoder.includesSource("/player"));
+  EXPECT_FALSE(makeEncoder(EncodingRules::defaults()).includesTopic("clock"));
 }
 
 TEST_F(EncoderTest, NamesThePatternThatIsNoRegularExpression) {

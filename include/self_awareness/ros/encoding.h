@@ -119,8 +119,9 @@ std::string whyLeftOut(const Connection& connection);
 /// The same, as far as the name of the topic says it.
 std::string whyLeftOut(const std::string& topic);
 
-/// What a connection header says, in UTF-8: what is none is replaced. Fields that it lacks are
-/// empty.
+/// What a connection header says, in UTF-8: what is none is replaced. Names are whole, as ROS
+/// resolves them (resolvedName()). Fields that it lacks are empty.
+/// @param topic as the recorder, or the master, calls it
 Connection connectionFrom(const ros::M_string& header, const std::string& topic);
 
 /// Gives an event type its id; a new type gets a new id where the vocabulary may grow.
@@ -179,10 +180,10 @@ class Encoder {
 
   /// Whether sources are told apart.
   bool tellsSources() const { return rules_.source == EncodingRules::Source::kCallerId; }
-  /// What events call a node: without anonymous numbers, and renamed.
-  /// @param node its full or its stable name
+  /// What events call a node: by its whole name, without anonymous numbers, and renamed.
+  /// @param node its name, whole, stable or as somebody wrote it
   std::string sourceOf(const std::string& node) const;
-  /// What events call a topic: renamed.
+  /// What events call a topic: by its whole name (resolvedName()), renamed.
   std::string scopeOf(const std::string& topic) const;
   /// An event type of a recording that nothing was renamed in; none if the rules leave it out.
   std::optional<core::EventType> renamed(const core::EventType& type) const;
@@ -191,11 +192,17 @@ class Encoder {
   /// Whether the rules let any message of the source be an event.
   /// @param source the publisher's stable name
   bool includesSource(const std::string& source) const;
+  /// What a player (`rosbag play`) that is no part of the robot plays on a connection: no event,
+  /// but a type whose source is the player, by its full name; none: it is no player, or says it of
+  /// itself.
+  std::optional<core::EventType> played(const Connection& connection) const;
   /// Whether a node that subscribes to a topic uses it: tools of people who watch do not.
   /// @param source the subscriber's stable name
   bool listens(const std::string& source) const;
-  /// Encoder of the connection's messages; none if the rules or their names leave them out, or if
-  /// they are of a type of this package.
+  /// Event type of the connection's messages, without the value of a field; none if the rules or
+  /// their names leave them out, or if they are of a type of this package.
+  std::optional<core::EventType> typeOf(const Connection& connection) const;
+  /// Encoder of the connection's messages; none where typeOf() is none.
   /// @throw std::invalid_argument if a type field, or the field of the mode, does not fit the
   /// message's definition, or classes of its values are not learned yet
   std::optional<ConnectionEncoder> connect(const Connection& connection) const;

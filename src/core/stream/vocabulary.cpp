@@ -1,5 +1,7 @@
 #include "self_awareness/core/stream/vocabulary.h"
 
+#include <algorithm>
+#include <iterator>
 #include <stdexcept>
 
 #include "self_awareness/core/stream/mode.h"
@@ -17,6 +19,12 @@ Vocabulary::Vocabulary(const std::vector<EventType>& types) {
     }
     intern(type);
   }
+}
+
+Vocabulary Vocabulary::renamed(const std::function<EventType(const EventType&)>& name) const {
+  std::vector<EventType> types;
+  std::transform(types_.begin(), types_.end(), std::back_inserter(types), name);
+  return Vocabulary(types);
 }
 
 EventId Vocabulary::intern(const EventType& type) {

@@ -15,6 +15,7 @@
 #include "../bag/bag_index.h"
 #include "../bag/stored_messages.h"
 #include "../bag/version_of_bag.h"
+#include "../text.h"
 #include "check.h"
 #include "model_upgrade.h"
 #include "packed_pairs.h"
@@ -153,6 +154,11 @@ TrainedModel read(ModelMessages& messages, ModelCounts counts) {
   const std::size_t models =
       messages.forEach<self_awareness::Model>(kTopic, [&](self_awareness::Model message) {
         checkEffort(message);
+        if (const std::string twice = resolveNames(message); !twice.empty()) {
+          throw ModelFileError(messages.path() + ": it knows the topic " + printable(twice) +
+                               " twice, with and without a slash too many or too few, as earlier "
+                               "versions took them from bags; train it again");
+        }
         std::set<std::string> left_out = upgrade(message, version.format);
         model = fromMessage(message);
         model->version = version;

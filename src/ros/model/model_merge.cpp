@@ -1,6 +1,7 @@
 #include "self_awareness/ros/model/model_merge.h"
 
 #include <algorithm>
+#include <array>
 #include <iomanip>
 #include <sstream>
 #include <stdexcept>
@@ -46,6 +47,34 @@ void requireSameEncoding(const EncodingRules& one, const EncodingRules& other) {
   require("mode", one.mode == other.mode);
 }
 
+/// And what is watched.
+void dropCalibrations(TrainedModel& model) {
+  model.watched = {};
+  model.left_out.clear();
+  model.findings.clear();
+  model.calibration.reset();
+  model.paper_calibration.reset();
+}
+
+core::SourceGraph renamed(const core::SourceGraph& graph, const Encoder& encoder) {
+  core::SourceGraph renamed;
+  for (const auto& [publisher, topic, subscriber] : graph.edges()) {
+    renamed.connect(encoder.sourceOf(publisher), encoder.scopeOf(topic),
+                    encoder.sourceOf(subscriber));
+  }
+  for (const auto& [source, host] : graph.hosts()) {
+    renamed.place(encoder.sourceOf(source), host);
+  }
+  for (const auto& [source, topic] : graph.unheard()) {
+    renamed.addUnheard({encoder.sourceOf(source), encoder.scopeOf(topic)});
+  }
+  for (const auto& [subscription, recordings] : graph.lasting()) {
+    renamed.addLasting(
+        {encoder.sourceOf(subscription.first), encoder.scopeOf(subscription.second)}, recordings);
+  }
+  return renamed;
+}
+
 }  // namespace
 
 void merge(TrainedModel& model, const TrainedModel& other) {
@@ -89,13 +118,27 @@ void merge(TrainedModel& model, const TrainedModel& other) {
   if (model.tuning != other.tuning) {
     model.tuning = {};
   }
-  model.watched = {};
-  model.left_out.clear();
-  model.findings.clear();
-  model.calibration.reset();
-  model.paper_calibration.reset();
+  dropCalibrations(model);
   model.stamp = std::max(model.stamp, other.stamp);
   model.version.method = std::min(model.version.method, other.version.method);
+}
+
+void rename(TrainedModel& model, const std::vector<Rename>& rules) {
+  EncodingRules these;
+  these.renames = rules;
+  const Encoder encoder(these, nullptr);
+  const auto name = [&](const core::EventType& type) {
+    return core::EventType{encoder.sourceOf(type.source), encoder.scopeOf(type.scope), type.type};
+  };
+  const std::array<core::Vocabulary, 3> renamed_types{
+      model.vocabulary().renamed(name), model.evidence[0].vocabulary().renamed(name),
+      model.evidence[1].vocabulary().renamed(name)};
+  model.statistics.rename(renamed_types[0]);
+  model.evidence[0].rename(renamed_types[1]);
+  model.evidence[1].rename(renamed_types[2]);
+  model.graph = renamed(model.graph, encoder);
+  model.encoding.renames.insert(model.encoding.renames.end(), rules.begin(), rules.end());
+  dropCalibrations(model);
 }
 
 }  // namespace self_awareness::ros1

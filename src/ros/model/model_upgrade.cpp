@@ -1,5 +1,6 @@
 #include "model_upgrade.h"
 
+#include <algorithm>
 #include <map>
 #include <string>
 #include <utility>
@@ -8,6 +9,8 @@
 #include "check.h"
 #include "self_awareness/Track.h"
 #include "self_awareness/core/evidence/channel/track.h"
+#include "self_awareness/core/stream/event.h"
+#include "self_awareness/ros/stable_name.h"
 
 namespace self_awareness::ros1 {
 namespace {
@@ -41,6 +44,36 @@ std::string nameInFormat1(const self_awareness::Track& track) {
 }
 
 }  // namespace
+
+std::string resolveNames(self_awareness::Model& message) {
+  const auto resolve = [](std::string& name) { name = resolvedName(name); };
+  std::set<core::EventType> types;
+  for (self_awareness::EventType& type : message.event_types) {
+    const std::string scope = type.scope;
+    resolve(type.source);
+    resolve(type.scope);
+    if (!types.insert({type.source, type.scope, type.type}).second && scope != type.scope) {
+      return type.scope;
+    }
+  }
+  for (self_awareness::GraphEdge& edge : message.graph) {
+    resolve(edge.publisher);
+    resolve(edge.topic);
+    resolve(edge.subscriber);
+  }
+  for (self_awareness::NodeHost& placed : message.hosts) {
+    resolve(placed.node);
+  }
+  for (self_awareness::Subscription& lasting : message.subscriptions) {
+    resolve(lasting.node);
+    resolve(lasting.topic);
+  }
+  for (self_awareness::TopicNodes& unheard : message.unheard) {
+    resolve(unheard.topic);
+    std::for_each(unheard.publishers.begin(), unheard.publishers.end(), resolve);
+  }
+  return "";
+}
 
 std::set<std::string> upgrade(self_awareness::Model& message, std::uint32_t format) {
   if (format == 1) {

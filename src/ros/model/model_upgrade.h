@@ -16,6 +16,11 @@ namespace self_awareness::ros1 {
 /// @throw std::invalid_argument as removeOtherTracks()
 std::set<std::string> upgrade(self_awareness::Model& message, std::uint32_t format);
 
+/// Gives nodes and topics their whole names (resolvedName()): earlier versions took them from bags
+/// as they were written there.
+/// @return a topic that it knows twice then, which no counts can be added up for; empty: none
+std::string resolveNames(self_awareness::Model& message);
+
 /// Removes what is watched on channels of other names, and all that is said by track: in findings,
 /// limits and relations.
 /// @return the names of the channels of what was removed

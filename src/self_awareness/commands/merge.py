@@ -9,7 +9,9 @@ from self_awareness.commands import cli
 from self_awareness.judging import PAPER
 from self_awareness.output_files import MODEL, check_outputs
 from self_awareness.reporting.training_report import print_summary
+from self_awareness.training import numbered_names
 from self_awareness.training.many_bags import DistinctRecordings
+from self_awareness.training.numbered_names import Renames
 
 _EPILOG = """\
 Calibrate the result: limits and thresholds are not merged. What the models learned adds up, as if
@@ -30,12 +32,14 @@ def _merge(arguments: argparse.Namespace) -> None:
         raise ValueError(f'{arguments.models[0]}: one model only; name at least two')
     check_outputs([(arguments.output, MODEL)], arguments.models)
     known = DistinctRecordings()
+    renames, told = numbered_names.of_models(
+        TrainedModel.load(path, watched_only=True) for path in arguments.models)
     first, *others = arguments.models
-    merged = _load(first, known)
+    merged = _load(first, known, renames)
     tuning = merged.tuning
     same_tuning = True
     for path in others:
-        model = _load(path, known)
+        model = _load(path, known, renames)
         same_tuning = same_tuning and model.tuning == tuning
         try:
             merged.merge(model)
@@ -45,6 +49,8 @@ def _merge(arguments: argparse.Namespace) -> None:
         merged.watch()
     merged.save(arguments.output)
     print_summary(merged)
+    for line in told:
+        print(line)
     if not same_tuning:
         print("the models' numbers of the method differ, as those of different versions do: the "
               'result has those of this version (rosrun self_awareness info --tuning)')
@@ -52,13 +58,23 @@ def _merge(arguments: argparse.Namespace) -> None:
           'self_awareness calibrate)')
 
 
-def _load(path: str, known: DistinctRecordings) -> TrainedModel:
+def _load(path: str, known: DistinctRecordings, renames: Renames) -> TrainedModel:
     """Load a model whose recordings are in none of those before.
 
+    Args:
+        path: of the model.
+        known: recordings of those before.
+        renames: rules that all models are to have.
+
     Raises:
-        ValueError: one of them is.
+        ValueError: one of its recordings is; or two of its event types become one by the rules.
     """
     model = TrainedModel.load(path)
+    try:
+        model.add_renames(numbered_names.left(model.encoding.rename, renames))
+    except ValueError as error:
+        raise ValueError(f'{path}: by the names of all models, {error}; train it again with '
+                         'the others\' rules (train --rename)') from error
     for recording in model.recordings:
         other = known.add(path, recording)
         if other is not None:

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -101,6 +102,26 @@ TEST_F(ModelMergeTest, EdgesAreThoseOfBothAndTheStampTheLater) {
               (std::set<core::SourceGraph::Edge>{
                   {"/a", "/x", "/b"}, {"/a", "/x", "/c"}, {"/b", "/y", "/c"}}));
   EXPECT_EQ(first_.stamp, 3);
+}
+
+TEST_F(ModelMergeTest, WhatWasLearnedUnderOtherNamesIsRenamed) {
+  TrainedModel numbered = first_;
+  numbered.statistics = core::paper::DelayStatistics(first_.statistics.binning());
+  numbered.evidence = {};
+  numbered.recordings.clear();
+  trainOn(numbered, {{"/a_17", "/scan", "T"}, kMap}, 1000, 0);
+  numbered.graph.connect("/a_17", "/scan", "/b");
+  rename(numbered, {{"/a_[0-9]+(/.*)?", "/a\\1"}});
+  EXPECT_EQ(numbered.vocabulary().types(), first_.vocabulary().types());
+  EXPECT_TRUE(numbered.graph.edges() ==
+              (std::set<core::SourceGraph::Edge>{{"/a", "/scan", "/b"}}));
+  EXPECT_EQ(numbered.encoding.renames.size(), 1U);
+  second_.encoding = numbered.encoding;
+  both_.encoding = numbered.encoding;
+  merge(numbered, second_);
+  EXPECT_TRUE(numbered.statistics == both_.statistics);
+  EXPECT_TRUE(numbered.evidence[0] == both_.evidence[0]);
+  EXPECT_THROW(rename(first_, {{".*", "/one"}}), std::invalid_argument);
 }
 
 TEST_F(ModelMergeTest, TheTuningIsKept) {

@@ -93,6 +93,34 @@ TEST_F(ModelUpgradeTest, TracksOfOtherChannelsGoWithAllThatIsSaidOfThem) {
   EXPECT_NO_THROW(fromMessage(message));
 }
 
+TEST_F(ModelUpgradeTest, NamesThatEarlierVersionsTookFromBagsAreWhole) {
+  TrainedModel model = someModel();
+  const core::Vocabulary whole = model.vocabulary();
+  const auto rename = [&](const core::Vocabulary& types) {
+    model.statistics.rename(types);
+    for (core::evidence::Statistics& half : model.evidence) {
+      half.rename(types);
+    }
+  };
+  rename(core::Vocabulary({{"/a", "x", "T"}, {"b", "//y", "T[action=1]"}}));
+  model.graph.connect("a", "x", "/b");
+  model.graph.place("a", "base");
+  model.graph.addUnheard({"a", "debug"});
+  model.graph.addLasting({"b", "x"});
+  saveModel(model, path("typed.model"));
+  const TrainedModel loaded = loadModel(path("typed.model"));
+  EXPECT_EQ(loaded.vocabulary().types(), whole.types());
+  EXPECT_TRUE(loaded.graph.hears("/b", "/a", "/x"));
+  EXPECT_EQ(loaded.graph.hostOf("/a"), "base");
+  EXPECT_EQ(loaded.graph.unheard().count({"/a", "/debug"}), 1U);
+  EXPECT_EQ(loaded.graph.lasting().count({"/b", "/x"}), 1U);
+
+  rename(core::Vocabulary({{"/a", "/x", "T"}, {"/a", "x", "T"}}));
+  saveModel(model, path("twice.model"));
+  const std::string error = modelError(path("twice.model"));
+  EXPECT_NE(error.find("the topic /x twice"), std::string::npos) << error;
+}
+
 TEST_F(ModelUpgradeTest, AnyChannelMayGo) {
   for (const std::string& gone : knownChannels()) {
     std::set<std::string> channels = knownChannels();

@@ -33,6 +33,9 @@ class DelayStatistics {
 
   const Binning& binning() const { return binning_; }
   const Vocabulary& vocabulary() const { return vocabulary_; }
+  /// Gives the event types other names.
+  /// @param vocabulary of the same ids
+  void rename(const Vocabulary& vocabulary) { vocabulary_ = vocabulary; }
   std::uint64_t eventCount(EventId id) const { return event_counts_.at(id); }
   /// Number of events counted, of all types.
   std::uint64_t events() const;

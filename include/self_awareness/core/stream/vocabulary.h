@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <map>
 #include <optional>
@@ -25,6 +26,9 @@ class Vocabulary {
   /// @throw std::invalid_argument if a type occurs twice.
   explicit Vocabulary(const std::vector<EventType>& types);
 
+  /// The same ids, with other names.
+  /// @throw std::invalid_argument if two types become one
+  Vocabulary renamed(const std::function<EventType(const EventType&)>& name) const;
   /// Id of `type`; a new type is added.
   EventId intern(const EventType& type);
   std::optional<EventId> find(const EventType& type) const;

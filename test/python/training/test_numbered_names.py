@@ -1,0 +1,164 @@
+"""A node that draws another number for its name at every start is one node."""
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Dict, Iterable, List, Sequence, Tuple
+
+import pytest
+from conftest import Message, jittery_robot, write_bag
+
+from self_awareness import EventType, TrainedModel, load
+from self_awareness.commands import convert, merge, train
+from self_awareness.training.numbered_names import Heard, find
+
+LENGTH_S = 40.0
+NUMBERS = (48213, 7, 91002, 33333)
+PLAIN = '/ns/worker'
+
+
+def heard(*names: str, start: int = 0, robot: str = '') -> Heard:
+    """A recording of nodes, each with a topic in its namespace."""
+    return Heard.of(robot, str(start), {EventType(name, f'{name}/state', 'T') for name in names})
+
+
+def renames(*recordings: Sequence[str]) -> Dict[str, str]:
+    """What is found in recordings of one start each, by pattern."""
+    found = find([heard(*names, start=start) for start, names in enumerate(recordings)])
+    return dict(each.rename for each in found)
+
+
+@pytest.mark.parametrize('names, one', [
+    (['/matlab_global_node_48213', '/matlab_global_node_91002'], '/matlab_global_node'),
+    (['/rviz-7', '/rviz-3', '/rviz-7', '/rviz-9', '/rviz-1'], '/rviz'),
+    (['/ns/worker_48213', '/ns/worker_5'], '/ns/worker'),
+    (['/node_17_main', '/node_18_main'], '/node_main'),
+    (['/node_17_291', '/node_18_292'], '/node'),
+    (['/cam_1_291', '/cam_1_292'], '/cam_1'),
+])
+def test_what_differs_by_a_number_from_start_to_start_is_one(names: List[str], one: str) -> None:
+    recordings = [heard(name, '/lidar_2', start=start) for start, name in enumerate(names)]
+    found, = find(recordings)
+    assert found.examples == tuple(sorted(set(names)))
+    for each in recordings:
+        renamed = each.renamed([found.rename])
+        assert renamed.sources == {one, '/lidar_2'}
+        assert renamed.scopes == {f'{one}/state', '/lidar_2/state'}
+
+
+@pytest.mark.parametrize('recordings', [
+    [['/camera_1', '/camera_2'], ['/camera_1', '/camera_2']],
+    [['/camera_1', '/camera_2'], ['/camera_1'], ['/camera_2']],
+    [['/robot_1'], ['/robot_1'], ['/robot_1']],
+    [['/robot_1'], ['/robot_1'], ['/robot_2'], ['/robot_2']],  # two robots, of two starts each
+    [['/node_1']],
+    [['/node_1'], ['/other_2']],
+    [['/ns/1'], ['/ns/2']],
+])
+def test_what_is_numbered_on_purpose_stays(recordings: List[List[str]]) -> None:
+    assert renames(*recordings) == {}
+
+
+def test_recordings_of_one_start_say_nothing() -> None:
+    assert find([heard('/node_1', start=5), heard('/node_2', start=5)]) == []
+    assert len(find([heard('/node_1', start=5), heard('/node_1', start=5),
+                     heard('/node_2', start=6)])) == 1
+
+
+def test_a_number_may_be_that_of_a_robot() -> None:
+    assert find([heard(f'/base_{number}', start=number, robot=f'r{number}')
+                 for number in range(4)]) == []
+    assert len(find([heard(f'/base_{number}', start=number, robot='r1')
+                     for number in range(4)])) == 1
+
+
+def test_numbers_within_numbers_are_all_taken_away() -> None:
+    names = [[f'/ns_{number}/worker_{2 * number}', f'/ns_{number}/cam_1', f'/ns_{number}/cam_2']
+             for number in NUMBERS]
+    found = find([heard(*each, start=start) for start, each in enumerate(names)])
+    renamed = heard(*names[0]).renamed([each.rename for each in found])
+    assert renamed.sources == {'/ns/worker', '/ns/cam_1', '/ns/cam_2'}
+
+
+def test_a_name_that_is_taken_is_not_given_again() -> None:
+    found, = find([heard('/matlab', f'/matlab_{number}', start=number) for number in NUMBERS])
+    assert heard('/matlab', '/matlab_4').renamed([found.rename]).sources == {'/matlab',
+                                                                             '/matlab_N'}
+
+
+def numbered_robot(start: float, number: int, until: float = LENGTH_S) -> Iterable[Message]:
+    """The robot, and a node of 10 Hz with a number in its name and that of its topic."""
+    name = f'{PLAIN}_{number}'
+    more = [(start + 0.003 + 0.1 * i, name, f'{name}/out') for i in range(int(10 * until))]
+    return sorted([*jittery_robot(start, LENGTH_S, number), *more])
+
+
+@pytest.fixture(scope='module', name='bags')
+def _bags(tmp_path_factory: pytest.TempPathFactory) -> List[str]:
+    folder = tmp_path_factory.mktemp('numbered')
+    return [write_bag(folder / f'{number}.bag', numbered_robot(1000.0 * place, number))
+            for place, number in enumerate(NUMBERS, 1)]
+
+
+def trained(bags: Sequence[str], path: Path, *options: str) -> TrainedModel:
+    assert train.main([*bags, '-o', str(path), *options]) == 0
+    return TrainedModel.load(str(path))
+
+
+def names(model: TrainedModel) -> List[Tuple[str, str]]:
+    return sorted((kind.source, kind.scope) for kind in model.event_types)
+
+
+ONE = [('/battery', '/charge'), ('/laser', '/scan'), (PLAIN, f'{PLAIN}/out'), ('/slam', '/map')]
+
+
+@pytest.mark.parametrize('jobs', ['1', '2'])
+def test_training_takes_it_as_one_and_says_so(bags, tmp_path: Path, capsys, jobs: str) -> None:
+    model = trained(bags, tmp_path / 'm', '--jobs', jobs)
+    assert names(model) == sorted(ONE)
+    assert f'and 1 more: differ by a number alone from start to start: taken as one, {PLAIN} ' in \
+        capsys.readouterr().out
+    crash = write_bag(tmp_path / 'crash.bag', numbered_robot(9000.0, 51511, 20.0))
+    assert [(alarm.kind, alarm.culprit) for alarm in load(str(tmp_path / 'm')).judge(crash)
+            if alarm.level == 'ERROR'] == [('died', PLAIN)]
+
+
+def test_event_logs_say_the_same(bags, tmp_path: Path) -> None:
+    log = str(tmp_path / 'log.bag')
+    assert convert.main([*bags, '-o', log]) == 0
+    assert names(trained([log], tmp_path / 'm')) == sorted(ONE)
+
+
+@pytest.mark.parametrize('first', [1, 2])
+def test_what_is_added_later_is_the_same(bags, tmp_path: Path, capsys, first: int) -> None:
+    base = tmp_path / 'base'
+    trained(bags[:first], base)
+    assert names(trained(bags[first:], tmp_path / 'm', '--add-to', str(base))) == sorted(ONE)
+
+
+def test_models_are_merged_likewise(bags, tmp_path: Path, capsys) -> None:
+    for name, of_model in (('one', bags[:1]), ('two', bags[1:3]), ('three', bags[3:])):
+        trained(of_model, tmp_path / name)
+    capsys.readouterr()
+    models = [str(tmp_path / name) for name in ('one', 'two', 'three')]
+    assert merge.main([*models, '-o', str(tmp_path / 'all')]) == 0
+    assert names(TrainedModel.load(str(tmp_path / 'all'))) == sorted(ONE)
+
+
+def test_a_rename_that_leaves_the_number_is_told(bags, tmp_path: Path, capsys) -> None:
+    model = trained(bags, tmp_path / 'm', '--rename', '/ns/(.*)', '/x/\\1')
+    assert 'renamed already: let that rule take the number away' in capsys.readouterr().out
+    assert len(names(model)) == 3 + len(NUMBERS)
+    named = trained(bags, tmp_path / 'm', '--rename', '/ns/worker_[0-9]+(.*)', '/own\\1')
+    assert ('/own', '/own/out') in names(named) and len(names(named)) == 4
+
+
+def test_a_model_that_knows_several_is_told(bags, tmp_path: Path, capsys) -> None:
+    apart, other = (trained([bag], tmp_path / f'm{place}')
+                    for place, bag in enumerate(bags[:2]))
+    apart.merge(other)  # as earlier versions did
+    apart.watch()
+    apart.save(str(tmp_path / 'apart'))
+    capsys.readouterr()
+    model = trained(bags[2:], tmp_path / 'm', '--add-to', str(tmp_path / 'apart'))
+    assert 'the model knows several of them' in capsys.readouterr().out
+    assert len(names(model)) == 3 + len(NUMBERS)
