@@ -29,6 +29,9 @@ void bindAlarms(py::module& m) {
                     "the value is of the last so many seconds; NaN: of one moment")
       .def_readonly("of", &Reason::of, "delays that the value is of; 0: it is not of delays")
       .def_readonly("times", &Reason::times, "of them, unusual")
+      .def_readonly("topics", &Reason::topics,
+                    "that it does not subscribe to; of a stranger, what it has from others, or "
+                    "plays on")
       .def_readonly("words", &Reason::words, "all of it in words and numbers");
 
   py::class_<core::Suspect>(m, "Suspect", "An event type that may have made a window abnormal.")
@@ -61,7 +64,7 @@ void bindAlarms(py::module& m) {
       .def_readonly("over", &Alarm::over, "False: it stood until the end of the recording")
       .def_property_readonly(
           "kind", [](const Alarm& self) { return core::toString(self.kind); },
-          "of the culprit's reason, or: busy machine, all silent, new mode")
+          "of the culprit's reason, or: busy machine, all silent, new mode, two senders")
       .def_readonly("culprit", &Alarm::culprit,
                     "component; empty: there is none, or nobody stands out")
       .def_readonly("reason", &Alarm::reason,

@@ -14,6 +14,7 @@
 #include <string>
 #include <tuple>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "core/evidence/count/log_bins.h"
@@ -35,6 +36,20 @@ namespace py = pybind11;
 
 using Stamps = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
 using Ids = py::array_t<std::uint32_t, py::array::c_style | py::array::forcecast>;
+
+/// A file, or the files of one recording, in their order.
+using Files = std::variant<std::string, std::vector<std::string>>;
+
+inline std::vector<std::string> pathsOf(const Files& files) {
+  if (const auto* path = std::get_if<std::string>(&files)) {
+    return {*path};
+  }
+  const auto& paths = std::get<std::vector<std::string>>(files);
+  if (paths.empty()) {
+    throw std::invalid_argument("a recording without a file");
+  }
+  return paths;
+}
 
 template <typename T>
 py::array_t<T> toArray(const std::vector<T>& values) {
@@ -133,26 +148,37 @@ inline ros1::BagReader::Progress progressTo(const py::object& callback) {
 using MissingStates =
     std::vector<std::pair<std::int64_t, std::set<core::SourceGraph::Subscription>>>;
 
+/// Who sends from a time [ns] on, as far as events do not say it: what comes from two senders of
+/// one name, and what is played.
+using SenderState =
+    std::tuple<std::int64_t, std::set<core::SourceGraph::Publication>, std::set<core::EventType>>;
+
 /// Lets a detector judge a recording.
 /// @param steps with which the clock was set forward
 /// @param end the recording goes on in silence until then [ns]; none: it ends with the last event
 /// @param waiting how the machine was, in the order of time
 /// @param missing subscriptions, from a time [ns] on each, in the order of time
+/// @param senders from a time [ns] on each, in the order of time
 /// @param heard called after each event; whether it belongs to the same clock as those before
 inline void judgeRecording(core::Detector& detector, const Stamps& stamps, const Ids& ids,
                            const MessageAttributes& attributes, const core::ClockSteps& steps,
                            std::optional<std::int64_t> end,
                            const std::vector<core::Waiting>& waiting = {},
                            const MissingStates& missing = {},
+                           const std::vector<SenderState>& senders = {},
                            const std::function<void(const core::Event&, bool)>& heard = nullptr) {
   std::optional<std::int64_t> last;
   bool set_forward = false;
   auto next = waiting.begin();
   auto next_missing = missing.begin();
+  auto next_senders = senders.begin();
   const auto wait = [&](std::int64_t until) {
     next = core::hearUntil(until, next, waiting.end(), detector);
     for (; next_missing != missing.end() && next_missing->first <= until; ++next_missing) {
       detector.setMissing(next_missing->second);
+    }
+    for (; next_senders != senders.end() && std::get<0>(*next_senders) <= until; ++next_senders) {
+      detector.setSenders({std::get<1>(*next_senders), std::get<2>(*next_senders)});
     }
   };
   const auto add = [&](const core::Event& event) {

@@ -57,7 +57,8 @@ Verdicts judge(std::unique_ptr<core::Judge> judge, std::int64_t window,
                std::optional<std::int64_t> end, const core::Vocabulary& vocabulary,
                ros1::ReplayedMonitor* monitor, std::vector<std::int64_t> clock_steps,
                const std::vector<core::Waiting>& waiting, const MissingStates& missing = {},
-               const MessageAttributes& attributes = {}) {
+               const MessageAttributes& attributes = {},
+               const std::vector<SenderState>& senders = {}) {
   Verdicts verdicts;
   core::Alarms alarms;
   std::int64_t last_end = 0;  // of a window [ns]
@@ -72,7 +73,7 @@ Verdicts judge(std::unique_ptr<core::Judge> judge, std::int64_t window,
     }
   });
   judgeRecording(detector, stamps, ids, attributes, core::ClockSteps(std::move(clock_steps)), end,
-                 waiting, missing, [&](const core::Event& event, bool same_clock) {
+                 waiting, missing, senders, [&](const core::Event& event, bool same_clock) {
                    if (const auto ended = same_clock ? std::nullopt : alarms.end(last_end)) {
                      record(*ended, verdicts);
                    }
@@ -106,7 +107,8 @@ Verdicts judgeByEvidence(const ros1::TrainedModel& trained,
                          ros1::ReplayedMonitor* monitor, std::vector<std::int64_t> clock_steps,
                          const std::vector<core::Waiting>& waiting, const HostsState& hosts,
                          const std::vector<core::Acceptance>& accepted,
-                         const MissingStates& missing, const MessageAttributes& attributes) {
+                         const MissingStates& missing, const MessageAttributes& attributes,
+                         const std::vector<SenderState>& senders) {
   const auto vocabulary = std::make_shared<core::Vocabulary>(event_types);
   const auto graph = std::make_shared<core::SourceGraph>(trained.graph);
   for (const auto& [source, host] : hosts) {
@@ -116,7 +118,7 @@ Verdicts judgeByEvidence(const ros1::TrainedModel& trained,
       core::evidence::makeJudge(model, trained.limits(), trained.window, graph, vocabulary);
   judge_of_it->accept(acceptancesOf(accepted));
   return judge(std::move(judge_of_it), trained.window, parameters, stamps, ids, end, *vocabulary,
-               monitor, std::move(clock_steps), waiting, missing, attributes);
+               monitor, std::move(clock_steps), waiting, missing, attributes, senders);
 }
 
 std::vector<double> scoreEvents(const std::shared_ptr<core::paper::Model>& model,
@@ -234,17 +236,18 @@ void bindVerdicts(py::module& m) {
       py::arg("clock_steps") = std::vector<std::int64_t>(),
       py::arg("waiting") = std::vector<core::Waiting>(), py::arg("hosts") = HostsState(),
       py::arg("accepted") = std::vector<core::Acceptance>(), py::arg("missing") = MissingStates(),
-      py::arg("attributes") = py::none(),
+      py::arg("attributes") = py::none(), py::arg("senders") = std::vector<SenderState>(),
       "Verdicts on a recording by the EvidenceModel of a TrainedModel, like Model.judge.\n"
       "event_types: by id, those of the model first. waiting: how the machine was, in the order\n"
       "of time (RecordedEvents.waiting). hosts: computers of sources, where the recording knows\n"
       "better than the model. accepted: what is normal besides. missing: which\n"
       "subscriptions are, from a time on each (missing_subscriptions). attributes: of the\n"
-      "messages (RecordedEvents.attributes); None: not known.");
+      "messages (RecordedEvents.attributes); None: not known. senders: who sends, from a time on\n"
+      "each (RecordedEvents.senders).");
   m.attr("EVIDENCE_THRESHOLD") = core::evidence::kThreshold;
   m.attr("DEFAULT_WINDOW") = core::kDefaultWindow;    // [ns]
   m.attr("SHORTEST_WINDOW") = core::kShortestWindow;  // [ns]
-  m.attr("ENDING") = core::evidence::kEnding;         // [ns]
+  m.attr("LATEST_EVENT") = core::kLatestEvent;        // [ns]
   m.attr("LONGEST_SILENCE") = core::kLongestSilence;  // [ns]
   m.attr("LEAST_KNOWN") = core::kLeastKnown;
   m.attr("USUAL_SHARES") = py::make_tuple(core::kUsualFrom, core::kUsualTo);

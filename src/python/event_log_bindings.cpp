@@ -55,11 +55,10 @@ void bindEventLogs(py::module& m) {
            "Replaces a file that is there. named: what errors call the file, if not by its path.")
       .def(
           "add_bag",
-          [](ros1::EventLogWriter& self, const std::string& path,
-             const ros1::EncodingRules& encoding, const NodesOfTopics& publishers,
-             const NodesOfTopics& subscribers, const HostsState& hosts,
-             const py::object& progress) {
-            const ros1::BagReader bag(path);
+          [](ros1::EventLogWriter& self, const Files& path, const ros1::EncodingRules& encoding,
+             const NodesOfTopics& publishers, const NodesOfTopics& subscribers,
+             const HostsState& hosts, const py::object& progress) {
+            const ros1::BagReader bag(pathsOf(path));
             ros1::addToEventLog(bag, encoding, graphOf(publishers, subscribers, hosts), self,
                                 progressTo(progress));
             return bag.summary();
@@ -67,7 +66,8 @@ void bindEventLogs(py::module& m) {
           py::arg("path"), py::arg("encoding"), py::arg("publishers") = NodesOfTopics(),
           py::arg("subscribers") = NodesOfTopics(), py::arg("hosts") = HostsState(),
           py::arg("progress") = py::none(),
-          "Adds a bag as a recording of its own, with the nodes of its topics and their "
+          "Adds a bag, or the files of one recording, as a recording of its own, with the nodes "
+          "of its topics and their "
           "computers\n"
           "where they are known; returns its BagSummary. After an error the log is of no use.")
       .def("close", &ros1::EventLogWriter::close, "Ends the file; without that it has no index.");

@@ -7,6 +7,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -48,6 +49,27 @@ std::map<std::string, std::set<std::string>> robotsOf(const ros1::TrainedModel& 
     }
   }
   return robots.size() > 1 ? robots : std::map<std::string, std::set<std::string>>();
+}
+
+using HeardIn = std::tuple<std::string, std::int64_t, std::set<core::EventType>>;
+
+std::vector<HeardIn> heardIn(const ros1::TrainedModel& model) {
+  std::vector<HeardIn> heard;
+  for (const core::evidence::Statistics& half :
+       model.hasEvidence() ? model.evidence : model.watched.halves) {
+    for (const core::evidence::Statistics::Recording& recording : half.recordings()) {
+      std::set<core::EventType> types;
+      for (core::EventId id = 0; id < recording.events.size(); ++id) {
+        if (recording.events[id] > 0) {
+          types.insert(half.vocabulary().at(id));
+        }
+      }
+      heard.emplace_back(recording.robot,
+                         recording.robot_start > 0 ? recording.robot_start : recording.start,
+                         std::move(types));
+    }
+  }
+  return heard;
 }
 
 /// When the last recording ended in which each event type came [ns]; 0: in none.
@@ -158,7 +180,18 @@ void bindModel(py::module& m) {
                     "whether they would be, if messages reach it by the graph, which is not known")
       .def_property_readonly("late_answers_found", &core::evidence::lateAnswers,
                              "the three in words, as /diagnostics says them; empty: never")
-      .def_property_readonly("is_watched", &Coverage::isWatched, "whether its death is found");
+      .def_property_readonly("is_watched", &Coverage::isWatched, "whether its death is found")
+      .def_property_readonly(
+          "blind",
+          [](const Coverage& self) {
+            std::vector<std::tuple<std::string, std::string, std::string>> blind;
+            for (const Coverage::Blind& each : self.blind) {
+              blind.emplace_back(each.about, each.topic, each.why);
+            }
+            return blind;
+          },
+          "what is not judged of which topic, and why: ('content', '/fix', 'it repeated for "
+          "...')");
 
   using ros1::TrainedModel;
   py::class_<TrainedModel>(m, "TrainedModel", "All that a model file holds: counts.")
@@ -176,6 +209,19 @@ void bindModel(py::module& m) {
       .def("merge", &ros1::merge, py::arg("other"),
            "Adds what another model learned, and drops the calibrations; watch() must follow.\n"
            "ValueError if they do not count the same things.")
+      .def(
+          "add_renames",
+          [](TrainedModel& self, const std::vector<std::pair<std::string, std::string>>& rules) {
+            std::vector<ros1::Rename> renames;
+            for (const auto& [pattern, name] : rules) {
+              renames.push_back({pattern, name});
+            }
+            ros1::rename(self, renames);
+          },
+          py::arg("rename"),
+          "Renames what it has learned by these rules, after those of its encoding, and drops "
+          "the\n"
+          "calibrations; watch() must follow. ValueError if two event types become one.")
       .def("watch", &TrainedModel::watch, "Chooses what is watched, by all counts.")
       .def(
           "watched_only",
@@ -275,6 +321,10 @@ void bindModel(py::module& m) {
           "robots", &robotsOf,
           "components that came on each robot in training, by its name: a dict of sets; empty\n"
           "unless several are known")
+      .def_property_readonly("heard_in", &heardIn,
+                             "what the evidence detector heard in each recording of the training: "
+                             "(robot, start\n"
+                             "of the robot, or else of the recording [ns], set of event types)")
       .def_property_readonly("heard_until", &heardUntil,
                              "when the last recording ended in which each event type came [ns], "
                              "by id; 0: it came in\n"

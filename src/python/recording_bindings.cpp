@@ -12,7 +12,9 @@
 #include <vector>
 
 #include "bindings.h"
+#include "ros/bag/bag_span.h"
 #include "ros/bag/log_lines.h"
+#include "ros/bag/recording_files.h"
 #include "ros/text.h"
 #include "self_awareness/core/stream/mode.h"
 #include "self_awareness/ros/bag/bag_reader.h"
@@ -36,6 +38,7 @@ struct RecordedEvents {
   std::vector<std::uint32_t> ids;
   std::vector<std::uint32_t> attributes;  // core::packed(); 0: not known
   std::vector<core::Waiting> waiting;
+  std::vector<SenderState> senders;
 };
 
 // The array is a view of its owner's data, and keeps the owner alive: events may be many.
@@ -96,12 +99,13 @@ std::shared_ptr<const ros1::EventLogFile> openLog(const std::string& path) {
   return last.file;
 }
 
-ros1::BagSummary summaryOf(const std::string& path, const InLog& recording) {
-  return recording ? ros1::EventLogReader(openLog(path), *recording).summary()
-                   : ros1::BagReader(path).summary();
+ros1::BagSummary summaryOf(const Files& files, const InLog& recording) {
+  const std::vector<std::string> paths = pathsOf(files);
+  return recording ? ros1::EventLogReader(openLog(paths.front()), *recording).summary()
+                   : ros1::BagReader(paths).summary();
 }
 
-RecordedEvents readEvents(const std::string& path, const InLog& recording,
+RecordedEvents readEvents(const Files& files, const InLog& recording,
                           const ros1::EncodingRules& rules,
                           const std::vector<core::EventType>& known, const ros1::TimeRange& range,
                           const py::object& progress) {
@@ -109,24 +113,33 @@ RecordedEvents readEvents(const std::string& path, const InLog& recording,
   const ros1::EventIds ids = [&](const core::EventType& type) {
     return ros1::internUpTo(known.size() + ros1::kMostEventTypes, type, vocabulary);
   };
+  const std::vector<std::string> paths = pathsOf(files);
   RecordedEvents events;
   const auto handler = [&](const core::Event& event) {
     events.stamps.push_back(event.stamp);
     events.ids.push_back(event.id);
     events.attributes.push_back(core::packed(event.attributes));
   };
+  const auto onSenders = [&](std::int64_t stamp, const core::Senders& senders) {
+    events.senders.emplace_back(stamp, senders.doubled, senders.played);
+  };
   if (recording) {
-    const ros1::EventLogReader reader(openLog(path), *recording);
+    const ros1::EventLogReader reader(openLog(paths.front()), *recording);
     events.summary = reader.summary();
     reader.read(rules, ids, range, handler, progressTo(progress),
                 [&](const core::Waiting& waiting) { events.waiting.push_back(waiting); });
+    const ros1::Encoder encoder(rules, nullptr);
+    ros1::forEachGraph(reader.summary().graph_changes,
+                       [&](std::int64_t stamp, const ros1::Graph& graph) {
+                         onSenders(stamp, {{}, ros1::playedIn(graph, encoder)});
+                       });
   } else {
-    const ros1::BagReader reader(path, progressTo(progress));
+    const ros1::BagReader reader(paths, progressTo(progress));
     events.summary = reader.summary();
     events.stamps.reserve(events.summary.messages);
     events.ids.reserve(events.summary.messages);
     events.attributes.reserve(events.summary.messages);
-    reader.read(ros1::Encoder(rules, ids), range, handler, progressTo(progress));
+    reader.read(ros1::Encoder(rules, ids), range, handler, progressTo(progress), onSenders);
   }
   events.event_types = vocabulary.types();
   return events;
@@ -220,8 +233,10 @@ ros1::EncodingRules fromState(const EncodingState& state) {
 }
 
 void bindEncoding(py::module& m) {
+  m.def("resolved_name", &ros1::resolvedName, py::arg("name"),
+        "The whole name of a node or a topic: 'scan' and '//scan' are '/scan'.");
   m.def("stable_name", &ros1::stableName, py::arg("name"),
-        "A node's name without the number that makes it anonymous.");
+        "A node's whole name without the number that makes it anonymous.");
   m.def(
       "printable", [](const std::string& text) { return ros1::printable(text); }, py::arg("text"),
       "The text with U+FFFD in place of what controls a terminal, or turns the text around.");
@@ -316,6 +331,16 @@ void bindBags(py::module& m) {
       .def_readonly("path", &ros1::BagSummary::path)
       .def_readonly("bag", &ros1::BagSummary::bag,
                     "file name; of an event log, that of the bag that it was made of")
+      .def_property_readonly(
+          "files",
+          [](const ros1::BagSummary& self) {
+            std::vector<std::pair<std::string, std::int64_t>> files;
+            for (const ros1::BagSummary::File& file : self.files) {
+              files.emplace_back(file.path, file.start);
+            }
+            return files;
+          },
+          "of a bag: path and stamp of the first message [ns] of each file, in their order")
       .def_readonly("start", &ros1::BagSummary::start,
                     "stamp of the first message, or when listening began [ns]")
       .def_readonly("end", &ros1::BagSummary::end,
@@ -329,6 +354,17 @@ void bindBags(py::module& m) {
                     "the same of a recording: by rosbag filter, compress or decompress")
       .def_readonly("clock_watched", &ros1::BagSummary::clock_watched,
                     "of an event log that was heard live: it ended when ROS time was set")
+      .def_property_readonly(
+          "set_back",
+          [](const ros1::BagSummary& self) {
+            std::vector<std::pair<std::int64_t, std::int64_t>> steps;
+            for (const ros1::SetBack& step : self.set_back) {
+              steps.emplace_back(step.stamp, step.by);
+            }
+            return steps;
+          },
+          "of a bag: where the clock was set back, as (stamp of the next message, by how much)\n"
+          "[ns]; stamps go on as if it had not been")
       .def_readonly("left_out", &ros1::BagSummary::left_out,
                     "of a bag: why some connections are no events, whatever the encoding")
       .def_property_readonly("encoding", copyOf<ros1::BagSummary>(&ros1::BagSummary::encoding),
@@ -374,15 +410,40 @@ void bindBags(py::module& m) {
       "the node runs, by the BagSummary of an event log; empty of a bag.");
   m.def(
       "summarise_bag",
-      [](const std::string& path, const InLog& recording) { return summaryOf(path, recording); },
+      [](const Files& path, const InLog& recording) { return summaryOf(path, recording); },
       py::arg("path"), py::arg("recording") = py::none(),
       "BagSummary of a bag, or of a recording in an event log (see read_events). Raises "
       "BagError.");
+  m.def(
+      "bag_span",
+      [](const std::string& path) {
+        const ros1::BagSpan span = ros1::spanOfBag(path);
+        return span.messages == 0 ? std::nullopt
+                                  : std::optional(std::make_pair(span.start, span.end));
+      },
+      py::arg("path"),
+      "Stamps of a bag's first and last message [ns]; None: it is empty. Takes no time even "
+      "where\n"
+      "the bag is large, and finds not every damage. Raises BagError.");
+  m.def(
+      "name_of_files", [](const Files& files) { return ros1::nameOf(pathsOf(files)); },
+      py::arg("files"),
+      "What a recording is called by its files: 'run_0.bag', 'run_0.bag..4' of five.");
+  m.def(
+      "recorded_types",
+      [](const Files& path, const ros1::EncodingRules& encoding, const InLog& recording) {
+        return recording ? ros1::EventLogReader(openLog(pathsOf(path).front()), *recording)
+                               .eventTypes(encoding)
+                         : ros1::eventTypesIn(pathsOf(path), ros1::Encoder(encoding, nullptr));
+      },
+      py::arg("path"), py::arg("encoding"), py::arg("recording") = py::none(),
+      "The event types of a recording, without reading its events: of a bag without values of\n"
+      "fields. BagError as read_events().");
   m.def("recordings_in_event_log", &ros1::recordingsInEventLog, py::arg("path"),
         "Number of recordings in an event log; None: it is none, or cannot be read.");
   m.def(
       "last_log_lines",
-      [](const std::string& path, const ros1::EncodingRules& encoding,
+      [](const Files& path, const ros1::EncodingRules& encoding,
          const std::vector<std::pair<std::string, std::int64_t>>& nodes, std::size_t most) {
         std::vector<ros1::LogQuery> queries;
         for (const auto& [node, until] : nodes) {
@@ -390,7 +451,7 @@ void bindBags(py::module& m) {
         }
         std::vector<std::vector<std::tuple<std::int64_t, int, std::string>>> found;
         for (const std::vector<ros1::LogLine>& lines :
-             ros1::lastLogLines(path, ros1::Encoder(encoding, nullptr), queries, most)) {
+             ros1::lastLogLines(pathsOf(path), ros1::Encoder(encoding, nullptr), queries, most)) {
           found.emplace_back();
           for (const ros1::LogLine& line : lines) {
             found.back().emplace_back(line.stamp, line.level, line.text);
@@ -444,14 +505,18 @@ void bindBags(py::module& m) {
           },
           "of the messages, uint32, read-only: pack_attributes(); 0: not known")
       .def_readonly("waiting", &RecordedEvents::waiting,
-                    "how the machine was: a Waiting for each stretch of time; empty: not known");
+                    "how the machine was: a Waiting for each stretch of time; empty: not known")
+      .def_readonly(
+          "senders", &RecordedEvents::senders,
+          "who sends, from a time [ns] on each: what comes from two senders of one name,\n"
+          "a set of (source, topic), and what players play, a set of EventType");
   m.def(
       "read_numbers",
-      [](const std::string& path, const ros1::EncodingRules& encoding, std::optional<double> start,
+      [](const Files& path, const ros1::EncodingRules& encoding, std::optional<double> start,
          std::optional<double> end) {
         std::map<std::string, py::array_t<double>> arrays;
         for (const auto& [datatype, numbers] :
-             ros1::BagReader(path).readNumbers(encoding, timeRange(start, end))) {
+             ros1::BagReader(pathsOf(path)).readNumbers(encoding, timeRange(start, end))) {
           arrays[datatype] = toArray(numbers);
         }
         return arrays;
@@ -462,7 +527,7 @@ void bindBags(py::module& m) {
       "number. start, end: as for read_events(). Raises BagError.");
   m.def(
       "read_events",
-      [](const std::string& path, const ros1::EncodingRules& encoding,
+      [](const Files& path, const ros1::EncodingRules& encoding,
          const std::vector<core::EventType>& event_types, std::optional<double> start,
          std::optional<double> end, const py::object& progress, const InLog& recording) {
         return readEvents(path, recording, encoding, event_types, timeRange(start, end), progress);
@@ -474,7 +539,8 @@ void bindBags(py::module& m) {
       "RecordedEvents of a bag: stamps (int64 [ns]) and ids (uint32). Ids below len(event_types)\n"
       "stand for these, the ids after them for new types. start, end: seconds from the\n"
       "recording's first message. Calls progress(done, all) from time to time.\n"
-      "recording: its number in an event log, from 0; None: the file is a bag. Raises BagError.");
+      "recording: its number in an event log, from 0; None: the file is a bag.\n"
+      "path: of a file, or of the files of one recording, in their order. Raises BagError.");
 }
 
 }  // namespace

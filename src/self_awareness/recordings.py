@@ -1,146 +1,51 @@
-"""Recordings as they are named on the command line, and the events a model sees in them."""
+"""The events that a model sees in recordings."""
 from __future__ import annotations
 
-import math
 import os
-import re
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Set, Tuple
 
 import numpy as np
 
-from self_awareness import (LEAST_KNOWN, LONGEST_SILENCE, BagError, EncodingRules, EventType,
-                            ModelFileError, RecordedEvents, Recording, ResultBag, TrainedModel,
-                            Waiting, find_clock_steps, missing_subscriptions, printable, progress,
-                            read_events, recordings_in_event_log, summarise_bag)
-from self_awareness.stamps import SECOND_NS, nanoseconds
+from self_awareness import (LATEST_EVENT, LEAST_KNOWN, LONGEST_SILENCE, BagError, EncodingRules,
+                            EventType, ModelFileError, RecordedEvents, Recording, ResultBag,
+                            TrainedModel, Waiting, find_clock_steps, missing_subscriptions,
+                            progress, read_events, summarise_bag)
+from self_awareness.parts import BagPart
+from self_awareness.stamps import SECOND_NS
 from self_awareness.training.robot_graph import RobotGraph
 
 MOST_WINDOWS = 10_000_000
 """Of a recording: eleven days in windows of 0.1 s. Verdicts on them take some 100 MB."""
 
-_PART = re.compile(r'(?P<path>.+?)(#(?P<number>\d+))?'
-                   r'(@(?P<start>\d+(\.\d+)?)(-(?P<end>\d+(\.\d+)?))?)?')
+_MOST_STEPS = 3  # that are told
+
+
+def _first_after(stamps: np.ndarray,
+                 set_back: Iterable[Tuple[int, int]]) -> Iterator[Tuple[int, int]]:
+    """Return the steps of a bag's clock by the events that come next, if there are some."""
+    for stamp, by in set_back:
+        after = int(np.searchsorted(stamps, stamp))
+        if 0 < after < len(stamps):
+            yield int(stamps[after]), by
 
 
 @dataclass(frozen=True)
-class BagPart:
-    """A recording, or a part of it in seconds from its first message.
+class ClockStep:
+    """The clock was set.
 
     Args:
-        path: of a bag, or of an event log.
-        start, end: of the part [s]; None: of the recording.
-        recording: its number in an event log, from 0; None: the file is a bag, or expand() has not
-            looked at it yet.
-        alone: it is the only recording of its file.
-        robot: of which it is a recording, where the file does not say it; empty: not known.
+        at_s: when the next event came, from the recording's first message [s].
+        by_s: by how much, and the usual delay [s]; negative: back.
     """
 
-    path: str
-    start: Optional[float] = None
-    end: Optional[float] = None
-    recording: Optional[int] = None
-    alone: bool = True
-    robot: str = ''
-
-    @classmethod
-    def parse(cls, text: str) -> BagPart:
-        """Read BAG, BAG@START or BAG@START-END; a file with this name comes first.
-
-        BAG#N stands for the recording N, from 1, of an event log.
-        """
-        match = None if os.path.exists(text) else _PART.fullmatch(text)
-        if match is None or (match['number'] is None and match['start'] is None):
-            return cls(text)
-        number, start, end = match['number'], match['start'], match['end']
-        return cls(match['path'], None if start is None else float(start),
-                   None if end is None else float(end),
-                   None if number is None else int(number) - 1, number is None)
+    at_s: float
+    by_s: float
 
     def __str__(self) -> str:
-        text = self.path if self.alone else f'{self.path}#{self.number}'
-        if self.start is None and self.end is None:
-            return text
-        return f'{text}@{self.start or 0.0:g}' + ('' if self.end is None else f'-{self.end:g}')
-
-    @property
-    def number(self) -> int:
-        """Which recording of its file it is, from 1."""
-        return (self.recording or 0) + 1
-
-    def whole(self) -> BagPart:
-        """Return the recording that it is a part of."""
-        return replace(self, start=None, end=None)
-
-    def meets(self, other: BagPart) -> bool:
-        """Return whether two parts of one file have more than a moment in common."""
-        return (self.recording == other.recording
-                and (self.start or 0.0) < _end(other) and (other.start or 0.0) < _end(self))
-
-    def span(self, first: int, last: int) -> Tuple[int, int]:
-        """Return start and end [ns] within a recording from `first` to `last` [ns]."""
-        start = first + nanoseconds(self.start or 0.0)
-        end = last if self.end is None else first + nanoseconds(self.end)
-        return start, min(end, last)
-
-
-def expand(parts: Iterable[BagPart]) -> List[BagPart]:
-    """Return the recordings of files: a bag is one, and an event log may hold several.
-
-    A folder stands for its bags and event logs.
-
-    Raises:
-        ValueError: a file does not hold the recording that is asked for, it is not said which
-            one a part is of, or a folder has no bag.
-    """
-    return [recording for part in parts for path in files(part.path)
-            for recording in _recordings_of(replace(part, path=path))]
-
-
-def by_folder(parts: Iterable[BagPart]) -> List[BagPart]:
-    """Return recordings as those of the robots that their folders are called after."""
-    return [replace(part, robot=printable(os.path.basename(os.path.dirname(
-        os.path.abspath(part.path))))) for part in parts]
-
-
-def files(path: str) -> List[str]:
-    """Return the bags of a folder, by name, or the path of a file as it is.
-
-    Raises:
-        ValueError: the folder has no bag.
-    """
-    if not os.path.isdir(path):
-        return [path]
-    # What begins with a dot is still being written, or was when somebody ended.
-    found = sorted(name for name in os.listdir(path)
-                   if name.endswith('.bag') and not name.startswith('.'))
-    if not found:
-        raise ValueError(f'{path}: a folder without bags (*.bag)')
-    return [os.path.join(path, name) for name in found]
-
-
-def _recordings_of(part: BagPart) -> Iterator[BagPart]:
-    number = recordings_in_event_log(part.path)
-    if number is None:
-        if part.recording is not None:
-            raise ValueError(f'{part}: {part.path} is no event log with numbered recordings; name '
-                             'it without a number')
-        yield part
-    elif part.recording is not None:
-        if not 0 <= part.recording < number:
-            raise ValueError(f'{part}: the event log holds recordings 1 to {number}')
-        yield replace(part, alone=number == 1)
-    elif number > 1 and (part.start is not None or part.end is not None):
-        raise ValueError(f'{part}: the event log holds {number} recordings; name the one that the '
-                         f'time is of: {part.path}#1@...')
-    else:
-        for recording in range(max(number, 1)):
-            yield replace(part, recording=recording, alone=number == 1)
-
-
-def _end(part: BagPart) -> float:
-    return math.inf if part.end is None else part.end
+        way = 'forward' if self.by_s > 0 else 'back'
+        return f'{way} by {abs(self.by_s):.1f} s before {self.at_s:.1f} s'
 
 
 @dataclass(frozen=True)
@@ -149,7 +54,7 @@ class RecordingEvents:
 
     Args:
         part: what was asked for.
-        event_types: by id, those of the model first.
+        event_types: by id, those of the model first, those of players (senders) last.
         stamps: int64 [ns], in order.
         ids: uint32, one for each stamp.
         origin: stamp of the bag's first message [ns], where its time in seconds begins.
@@ -160,14 +65,18 @@ class RecordingEvents:
         bag: what the file is called, or the bag that an event log was made of.
         robot_start: when the robot was started [ns]; 0: not known.
         robot: its name; empty: not known.
-        clock_steps: stamps of the first events after the clock was set forward [ns].
+        clock_steps: stamps of the first events after the clock was set [ns], where stamps do not
+            say it.
+        set_back: by how much the clock of a bag was set back, by such stamps [ns].
         waiting: how the machine was, one stretch of time after the other; empty: not known.
         left_out: why some connections of a bag are no events, whatever the encoding.
         hosts: computers of sources, as an event log says.
         missing: which of the subscriptions that the model expects, from a time [ns] on each, as
             an event log says.
+        senders: what comes from two senders of one name, and what is played, from a time [ns] on.
         attributes: of the messages, uint32, one for each stamp (docs/attributes.md); None: not
             known.
+        files: path and stamp of the first message [ns] of each file, of a bag.
     """
 
     part: BagPart
@@ -183,30 +92,57 @@ class RecordingEvents:
     robot_start: int = 0
     robot: str = ''
     clock_steps: Sequence[int] = ()
+    set_back: Mapping[int, int] = field(default_factory=dict)
     waiting: Sequence[Waiting] = ()
     left_out: Tuple[str, ...] = ()
     hosts: Mapping[str, str] = field(default_factory=dict)
     missing: Sequence[Tuple[int, Set[Tuple[str, str]]]] = ()
+    senders: Sequence[Tuple[int, Set[Tuple[str, str]], Set[EventType]]] = ()
     attributes: Optional[np.ndarray] = None
+    files: Sequence[Tuple[str, int]] = ()
 
     @classmethod
     def of(cls, part: BagPart, events: RecordedEvents,
            encoding: EncodingRules) -> RecordingEvents:
         """Return the events that were read for a part, by an encoding."""
         summary = events.summary
+        set_back = dict(_first_after(events.stamps, summary.set_back))
+        steps = [] if summary.clock_watched else find_clock_steps(events.stamps, events.ids)
         _, end = part.span(summary.start, summary.end)
         return cls(part, events.event_types, events.stamps, events.ids, summary.start, end,
                    summary.fingerprint, summary.one_sender_a_topic, summary.copied, summary.bag,
                    summary.robot_start, summary.robot or part.robot,
-                   () if summary.clock_watched else find_clock_steps(events.stamps, events.ids),
-                   events.waiting, tuple(summary.left_out),
+                   sorted({*steps, *set_back}), set_back, events.waiting, tuple(summary.left_out),
                    RobotGraph(*summary.graph).hosts_of_sources(encoding),
-                   attributes=events.attributes)
+                   senders=events.senders, attributes=events.attributes,
+                   files=summary.files)
+
+    def place(self, stamp: int) -> str:
+        """Return where a stamp [ns] lies, of a recording in several files; empty: it is in one."""
+        begun = [(path, start) for path, start in self.files if start <= stamp] or self.files
+        if len(self.files) < 2:
+            return ''
+        path, start = begun[-1]
+        return f'{(stamp - start) / SECOND_NS:.1f} s of {os.path.basename(path)}'
 
     @cached_property
     def heard(self) -> np.ndarray:
         """Ids of the event types that occur, in order."""
         return np.flatnonzero(np.bincount(self.ids))
+
+    @cached_property
+    def steps_of_the_clock(self) -> List[ClockStep]:
+        """Where the clock was set, in the order of the recording."""
+        delays = np.diff(self.stamps)
+        said = np.flatnonzero((delays < -LATEST_EVENT) | (delays > LONGEST_SILENCE))
+        found = [int(np.argmax(self.stamps[1:] == stamp)) for stamp in self.clock_steps]
+        return [ClockStep((int(self.stamps[i + 1]) - self.origin) / SECOND_NS,
+                          self._set_by(i, int(delays[i])) / SECOND_NS)
+                for i in sorted({*said.tolist(), *found})]
+
+    def _set_by(self, index: int, delay: int) -> int:
+        back = self.set_back.get(int(self.stamps[index + 1]))
+        return delay if back is None else -back
 
     @cached_property
     def recording(self) -> Recording:
@@ -233,13 +169,15 @@ def read(model: TrainedModel, part: BagPart) -> RecordingEvents:
     """
     with progress.messages(os.path.basename(part.path)) as update:
         try:
-            events = read_events(part.path, model.encoding, model.event_types, part.start,
+            events = read_events(part.files, model.encoding, model.event_types, part.start,
                                  part.end, update, part.recording)
         except ValueError as error:
             raise ValueError(f'{part}: {error}') from error
+    played = {kind for _, _, kinds in events.senders for kind in kinds}
     recording = replace(
-        RecordingEvents.of(part, events, model.encoding), missing=missing_subscriptions(
-            events.summary, model.encoding, model.subscriptions))
+        RecordingEvents.of(part, events, model.encoding),
+        event_types=[*events.event_types, *sorted(played, key=str)],
+        missing=missing_subscriptions(events.summary, model.encoding, model.subscriptions))
     _check(model, recording, events.summary.has_sources)
     try:
         check_windows(events.stamps, model.window)
@@ -277,15 +215,19 @@ def few_known(model: TrainedModel, recording: RecordingEvents) -> Optional[str]:
 
 
 def clock_steps(recording: RecordingEvents) -> Optional[str]:
-    """Return what to tell of a recording in which the clock was set forward."""
-    if len(recording.clock_steps) == 0:
+    """Return what to tell of a recording in which the clock was set."""
+    steps = recording.steps_of_the_clock
+    if not steps:
         return None
-    after = np.searchsorted(recording.stamps, np.asarray(recording.clock_steps))
-    steps = ', '.join(
-        f'{(recording.stamps[i] - recording.stamps[i - 1]) / SECOND_NS:.1f} s before '
-        f'{(recording.stamps[i] - recording.origin) / SECOND_NS:.1f} s' for i in after)
-    return (f'{recording.part}: the clock was set forward by {steps}, but the nodes went on '
+    return (f'{recording.part}: the clock was set {in_words(steps)}, but the nodes went on '
             'without a pause. The recording is cut there; nothing counts as late')
+
+
+def in_words(steps: Sequence[ClockStep]) -> str:
+    """Return by how much and when the clock was set; of many steps, the first ones."""
+    rest = len(steps) - _MOST_STEPS
+    return ', '.join(map(str, steps[:_MOST_STEPS])) + (f', and {rest} more times' if rest > 0
+                                                       else '')
 
 
 def merged_senders(model: TrainedModel, recording: RecordingEvents) -> Optional[str]:

@@ -12,12 +12,11 @@
 namespace self_awareness::core {
 namespace {
 
-// Shorter stalls happen to machines, and are learned [ns].
-constexpr std::int64_t kLeastStep = 2 * kNanosecondsPerSecond;
 // What a robot does more often is its way: it may fall silent as a whole.
 constexpr std::size_t kMostSteps = 3;
-// Other silences, and other gaps of what comes all the time, are so many times shorter.
+// Other silences are so many times shorter, and other gaps of what comes all the time.
 constexpr std::int64_t kTimesLonger = 8;
+constexpr std::int64_t kTimesLongerThanGaps = 4;
 // What comes all the time has so many gaps, and so many events before and after a step.
 constexpr std::size_t kFewestGaps = 50;
 constexpr std::size_t kFewestEventsAround = 20;
@@ -67,8 +66,8 @@ struct Type {
   std::array<std::optional<std::int64_t>, kMostSteps> over;  // the gap that holds it [ns]
 
   bool comesAllTheTime(std::size_t k, const Silence& silence) const {
-    const auto longer =
-        gaps.end() - std::lower_bound(gaps.begin(), gaps.end(), silence.length / kTimesLonger);
+    const auto longer = gaps.end() - std::lower_bound(gaps.begin(), gaps.end(),
+                                                      silence.length / kTimesLongerThanGaps);
     return over[k] && gaps.size() >= kFewestGaps &&
            static_cast<std::size_t>(longer) <= kMostSteps && before[k] >= kFewestEventsAround &&
            events - before[k] >= kFewestEventsAround;
@@ -166,7 +165,7 @@ std::vector<std::int64_t> findClockSteps(const std::vector<Event>& events) {
   }
   const std::int64_t usual = silences.back().length;
   const auto end = std::find_if(silences.begin(), silences.end(), [usual](const Silence& silence) {
-    return silence.length < std::max(kLeastStep, kTimesLonger * usual);
+    return silence.length < std::max(kSmallestStep, kTimesLonger * usual);
   });
   silences.erase(end, silences.end());
   if (silences.empty()) {

@@ -13,6 +13,7 @@
 #include "bag_records.h"
 #include "chunk_records.h"
 #include "former_bag.h"
+#include "self_awareness/ros/stable_name.h"
 
 namespace self_awareness::ros1 {
 namespace {
@@ -82,16 +83,6 @@ class IndexReader {
     return true;
   }
 
-  static bool isEncrypted(std::string_view header) {
-    while (!header.empty()) {
-      const auto [name, value] = takeField(header);
-      if (name == "encryptor" && !value.empty()) {
-        return true;
-      }
-    }
-    return false;
-  }
-
   void addConnection(const PiecesOfFile::Record& record) {
     if (opOf(record.header) != Op::kConnection) {
       throw FormatError("a record of another kind");
@@ -121,13 +112,14 @@ class IndexReader {
     connections_.push_back({topic, std::string(record.data)});
   }
 
-  /// `rosbag record` in a namespace writes the name that it was given, which may be relative; what
-  /// the publisher said is the whole name.
+  /// `rosbag record` writes the name that it was given, which may be relative to a namespace, or
+  /// have a slash too many; what the publisher said is the whole name.
   static bool isTheSame(const std::string& topic, const std::string& said) {
-    const bool relative = topic.empty() || topic[0] != '/';
-    const std::string end = relative ? "/" + topic : topic;
-    return said == topic || (relative && said.size() >= end.size() &&
-                             said.compare(said.size() - end.size(), end.size(), end) == 0);
+    const std::string end = resolvedName(topic);
+    const std::string whole = resolvedName(said);
+    const bool relative = !topic.empty() && topic[0] != '/';
+    return whole == end || (relative && whole.size() >= end.size() &&
+                            whole.compare(whole.size() - end.size(), end.size(), end) == 0);
   }
 
   static std::string quoted(std::string_view name) {

@@ -5,16 +5,18 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "../text.h"
-#include "bag_index.h"
 #include "bag_messages.h"
 #include "event_log_file.h"
 #include "open_bag.h"
+#include "recording_files.h"
 #include "self_awareness/ros/attribute_reader.h"
 #include "self_awareness/ros/message_field.h"
 #include "self_awareness/ros/siblings.h"
+#include "set_back.h"
 
 namespace self_awareness::ros1 {
 namespace {
@@ -102,72 +104,117 @@ StampRange::StampRange(const BagSummary& summary, const TimeRange& range) {
   }
 }
 
+std::set<core::EventType> eventTypesIn(const std::vector<std::string>& paths,
+                                       const Encoder& encoder) {
+  std::set<core::EventType> types;
+  for (const std::string& path : paths) {
+    std::vector<Connection> connections;
+    try {
+      connections = readBagConnections(path);
+    } catch (const rosbag::BagException&) {
+      connections.clear();  // to open it says what is wrong
+    }
+    if (connections.empty()) {
+      connections = openBag(path).connections;
+    }
+    for (const Connection& connection : connections) {
+      if (std::optional<core::EventType> type = encoder.typeOf(connection)) {
+        types.insert(std::move(*type));
+      }
+    }
+  }
+  return types;
+}
+
 BagReader::BagReader(const std::string& path, const Progress& progress)
-    : index_(std::make_unique<const BagIndex>(openBag(path, progress))) {
-  if (isEventLog(path, *index_)) {
+    : BagReader(std::vector<std::string>{path}, progress) {}
+
+BagReader::BagReader(const std::vector<std::string>& paths, const Progress& progress)
+    : files_(std::make_unique<const RecordingFiles>(paths, progress)) {
+  const BagIndex& index = files_->index();
+  summary_.path = nameOf(paths);
+  if (isEventLog(paths.front(), index)) {
     throw BagError(
-        path + ": an event log, not a bag of the robot's messages; its recordings have numbers");
+        summary_.path +
+        ": an event log, not a bag of the robot's messages; its recordings have numbers");
   }
-  if (index_->entries.empty()) {
-    throw BagError(path + ": the bag holds no messages");
+  if (index.entries.empty()) {
+    throw BagError(summary_.path + ": the bag is empty: it holds no messages; leave it out");
   }
-  summary_.path = path;
-  summary_.bag = printable(path.substr(path.rfind('/') + 1));
-  summary_.start = index_->entries.front().stamp;
-  summary_.end = index_->entries.back().stamp;
-  summary_.messages = index_->entries.size();
-  summary_.fingerprint = fingerprint(*index_);
+  summary_.bag = printable(summary_.path.substr(summary_.path.rfind('/') + 1));
+  summary_.files = files_->files();
+  summary_.set_back = files_->setBack();
+  summary_.start = index.entries.front().stamp;
+  summary_.end = index.entries.back().stamp;
+  summary_.messages = index.entries.size();
+  summary_.fingerprint = fingerprint(index);
   summary_.has_sources =
-      std::any_of(index_->connections.begin(), index_->connections.end(),
+      std::any_of(index.connections.begin(), index.connections.end(),
                   [](const Connection& connection) { return !connection.callerid.empty(); });
-  summary_.one_sender_a_topic = index_->by_python && topicsAreDistinct(*index_);
-  summary_.copied = summary_.one_sender_a_topic && index_->recorded;
-  summary_.left_out = reasonsOf(index_->connections);
+  summary_.one_sender_a_topic = index.by_python && topicsAreDistinct(index);
+  summary_.copied = summary_.one_sender_a_topic && index.recorded;
+  summary_.left_out = reasonsOf(index.connections);
 }
 
 BagReader::~BagReader() = default;
 
 void BagReader::read(const Encoder& encoder, const TimeRange& range, const Handler& handler,
-                     const Progress& progress) const {
+                     const Progress& progress, const SenderWatch::Handler& senders) const {
   const StampRange stamps(summary_, range);
   std::vector<std::optional<ConnectionEncoder>> encoders;
-  encoders.reserve(index_->connections.size());
+  encoders.reserve(files_->index().connections.size());
   std::vector<AttributeReader> attributes;
-  attributes.reserve(index_->connections.size());
-  const Siblings siblings = encoder.tellsSources() ? siblingsIn(*index_) : Siblings();
-  for (const Connection& connection : index_->connections) {
+  attributes.reserve(files_->index().connections.size());
+  std::optional<SenderWatch> watch;
+  if (senders) {
+    watch.emplace(senders);
+  }
+  std::vector<std::shared_ptr<SenderWatch::Link>> links;
+  const Siblings siblings = encoder.tellsSources() ? siblingsIn(files_->index()) : Siblings();
+  for (const Connection& connection : files_->index().connections) {
     encoders.push_back(siblings.cover(connection.callerid, connection.topic)
                            ? std::nullopt
                            : encoder.connect(connection));
-    attributes.emplace_back(connection.definition, connection.datatype);
+    attributes.emplace_back(connection);
+    links.push_back(watch ? watch->connect(connection, encoder) : nullptr);
   }
   std::vector<std::uint8_t> content;
   std::uint64_t done = 0;
   withMessages([&](BagMessages& messages) {
-    for (const BagIndexEntry& entry : index_->entries) {
+    for (const BagIndexEntry& entry : files_->index().entries) {
       if (progress && done % kMessagesPerProgress == 0) {
         progress(done, summary_.messages);
       }
       ++done;
       std::optional<ConnectionEncoder>& connection_encoder = encoders[entry.connection];
+      const std::shared_ptr<SenderWatch::Link>& link = links[entry.connection];
       if (!connection_encoder) {
+        if (link && stamps.holds(entry.stamp)) {
+          watch->add(entry.stamp, *link, std::nullopt);
+        }
         continue;
       }
       const bool accepted = connection_encoder->accept();
       if (!stamps.holds(entry.stamp)) {
         continue;
       }
+      const BagIndexEntry stored = asStored(entry, summary_.set_back);
       AttributeReader& reader = attributes[entry.connection];
       const bool tells_mode = connection_encoder->tellsMode();
       const bool needs_content = tells_mode || (accepted && connection_encoder->needsContent());
       if (needs_content) {
-        messages.read(entry, content);
+        messages.read(stored, content);
         reader.begin(content.size());
         reader.add(content.data(), content.size());
       } else {
-        messages.pass(entry, reader);
+        messages.pass(stored, reader);
       }
-      const core::Attributes found = reader.end(entry.stamp);
+      const core::Attributes found = reader.end(stored.stamp);
+      if (link) {
+        // A copy has the messages of all senders of a topic under one name.
+        watch->add(entry.stamp, *link,
+                   summary_.one_sender_a_topic ? std::nullopt : reader.number());
+      }
       if (tells_mode) {
         handler({entry.stamp, connection_encoder->mode(content.data(), content.size())});
       }
@@ -199,7 +246,7 @@ std::map<std::string, std::vector<double>> BagReader::readNumbers(const Encoding
   };
   std::map<std::string, std::vector<double>> numbers;
   std::vector<std::optional<Read>> reads;
-  for (const Connection& connection : index_->connections) {
+  for (const Connection& connection : files_->index().connections) {
     const auto classes = rules.classes.find(connection.datatype);
     std::optional<ConnectionEncoder> connected =
         classes == rules.classes.end() ? std::nullopt : encoder.connect(connection);
@@ -214,10 +261,10 @@ std::map<std::string, std::vector<double>> BagReader::readNumbers(const Encoding
   }
   std::vector<std::uint8_t> content;
   withMessages([&](BagMessages& messages) {
-    for (const BagIndexEntry& entry : index_->entries) {
+    for (const BagIndexEntry& entry : files_->index().entries) {
       std::optional<Read>& read = reads[entry.connection];
       if (read && read->encoder.accept() && stamps.holds(entry.stamp)) {
-        messages.read(entry, content);
+        messages.read(asStored(entry, summary_.set_back), content);
         read->numbers.push_back(read->field.number(content.data(), content.size()));
       }
     }
@@ -228,7 +275,7 @@ std::map<std::string, std::vector<double>> BagReader::readNumbers(const Encoding
 template <typename Use>
 void BagReader::withMessages(const Use& use) const {
   try {
-    use(*BagMessages::open(summary_.path, *index_));
+    use(*files_->openMessages());
   } catch (const rosbag::BagException& error) {
     throw BagError(summary_.path + ": a message cannot be read (" + error.what() + ")" +
                    reindexHint(summary_.path));

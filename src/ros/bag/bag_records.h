@@ -91,6 +91,17 @@ inline Op opOf(std::string_view header) {
   return static_cast<Op>(number<std::uint8_t>(header, "op"));
 }
 
+/// Whether the header of a file says that what follows is encrypted.
+inline bool isEncrypted(std::string_view header) {
+  while (!header.empty()) {
+    const auto [name, value] = takeField(header);
+    if (name == "encryptor" && !value.empty()) {
+      return true;
+    }
+  }
+  return false;
+}
+
 /// The least that the record of a message takes [bytes].
 constexpr std::uint64_t kLeastMessageBytes = 46;
 

@@ -21,6 +21,7 @@
 #include "self_awareness/core/evidence/tuning.h"
 #include "self_awareness/ros/bag/event_log_packer.h"
 #include "self_awareness/ros/encoding_message.h"
+#include "self_awareness/ros/stable_name.h"
 #include "stored_messages.h"
 #include "version_of_bag.h"
 
@@ -70,16 +71,27 @@ void add(const self_awareness::EventLogGraph& message, BagSummary& summary) {
   GraphChange& change = summary.graph_changes.emplace_back();
   change.stamp = nanoseconds(message.stamp);
   for (const self_awareness::TopicNodes& nodes : message.topics) {
-    Graph::Topic& topic = summary.graph.topics[nodes.topic];
+    const std::string name = resolvedName(nodes.topic);
+    Graph::Topic& topic = summary.graph.topics[name];
     topic.publishers.insert(nodes.publishers.begin(), nodes.publishers.end());
     topic.subscribers.insert(nodes.subscribers.begin(), nodes.subscribers.end());
-    change.topics[nodes.topic] = {"",
-                                  {nodes.publishers.begin(), nodes.publishers.end()},
-                                  {nodes.subscribers.begin(), nodes.subscribers.end()}};
+    change.topics[name] = {"",
+                           {nodes.publishers.begin(), nodes.publishers.end()},
+                           {nodes.subscribers.begin(), nodes.subscribers.end()}};
   }
   for (const self_awareness::NodeHost& each : message.hosts) {
     summary.graph.hosts[each.node] = each.host;
   }
+}
+
+/// An event type of a log by the names of today; none if the rules leave it out.
+/// @param encoder for the names that the log has
+std::optional<core::EventType> named(const self_awareness::EventType& type,
+                                     const Encoder& encoder) {
+  core::EventType recorded{type.source, type.scope, type.type};
+  const bool same =
+      encoder.sourceOf(type.source) == type.source && encoder.scopeOf(type.scope) == type.scope;
+  return same ? std::move(recorded) : encoder.renamed(recorded);
 }
 
 std::vector<core::Waiting> waitingIn(const self_awareness::EventLog& part,
@@ -233,23 +245,48 @@ std::set<core::SourceGraph::Subscription> lastingSubscriptions(const BagSummary&
   return lasting;
 }
 
-void EventLogReader::read(const EncodingRules& rules, const EventIds& ids, const TimeRange& range,
-                          const BagReader::Handler& handler, const BagReader::Progress& progress,
-                          const WaitingHandler& waiting) const {
-  // What was recorded under the robot's own names may be renamed now.
+EncodingRules EventLogReader::rulesOfNames(const EncodingRules& rules) const {
+  // What was recorded under the robot's own names, or by the first of the renames, may be renamed
+  // now by the others.
   EncodingRules recorded = *summary_.encoding;
-  const bool rename = recorded.renames.empty() && !rules.renames.empty();
-  recorded.renames = rename ? rules.renames : recorded.renames;
-  if (rename && recorded.mode) {
-    recorded.mode->topic = Encoder(rules, ids).scopeOf(recorded.mode->topic);
+  EncodingRules left = rules;
+  const std::size_t done = recorded.renames.size();
+  if (done <= rules.renames.size() &&
+      std::equal(recorded.renames.begin(), recorded.renames.end(), rules.renames.begin())) {
+    left.renames.erase(left.renames.begin(),
+                       left.renames.begin() + static_cast<std::ptrdiff_t>(done));
+    recorded.renames = rules.renames;
+    if (recorded.mode) {
+      recorded.mode->topic = Encoder(left, nullptr).scopeOf(recorded.mode->topic);
+    }
   }
   if (!(rules == recorded)) {
     throw BagError(summary_.path +
                    ": the event log has another encoding than the model, or --encoding; "
                    "use the log's own, or record or convert it again with the other one");
   }
+  return left;
+}
+
+std::set<core::EventType> EventLogReader::eventTypes(const EncodingRules& rules) const {
+  const Encoder encoder(rulesOfNames(rules), nullptr);
+  LogMessages messages(summary_.path, file_->content_->index);
+  std::set<core::EventType> types;
+  for (const BagIndexEntry* entry : parts_) {
+    for (const auto& type : messages.read<self_awareness::EventLog>(*entry).new_types) {
+      if (std::optional<core::EventType> known = named(type, encoder)) {
+        types.insert(std::move(*known));
+      }
+    }
+  }
+  return types;
+}
+
+void EventLogReader::read(const EncodingRules& rules, const EventIds& ids, const TimeRange& range,
+                          const BagReader::Handler& handler, const BagReader::Progress& progress,
+                          const WaitingHandler& waiting) const {
+  const Encoder encoder(rulesOfNames(rules), ids);
   const StampRange stamps(summary_, range);
-  const Encoder encoder(rules, ids);
   LogMessages messages(summary_.path, file_->content_->index);
   std::vector<std::optional<core::EventType>> types;  // by id in the log; none: left out
   std::vector<std::optional<core::EventId>> known;    // the same
@@ -263,8 +300,7 @@ void EventLogReader::read(const EncodingRules& rules, const EventIds& ids, const
       messages.fail("a part is missing after " + std::to_string(number) + " parts");
     }
     for (const self_awareness::EventType& type : part.new_types) {
-      const core::EventType as_recorded{type.source, type.scope, type.type};
-      types.push_back(rename ? encoder.renamed(as_recorded) : as_recorded);
+      types.push_back(named(type, encoder));
     }
     known.resize(types.size());
     PackedEvents packed;

@@ -56,11 +56,9 @@ std::vector<LogLine> lastLines(const LogQuery& query, const std::vector<BagIndex
   return lines;
 }
 
-}  // namespace
-
-std::vector<std::vector<LogLine>> lastLogLines(const std::string& path, const Encoder& encoder,
-                                               const std::vector<LogQuery>& queries,
-                                               std::size_t most) {
+std::vector<std::vector<LogLine>> lastLinesOfFile(const std::string& path, const Encoder& encoder,
+                                                  const std::vector<LogQuery>& queries,
+                                                  std::size_t most) {
   const BagIndex index = openBag(path);
   const std::vector<BagIndexEntry> places = linesIn(index);
   std::vector<std::vector<LogLine>> found;
@@ -74,6 +72,24 @@ std::vector<std::vector<LogLine>> lastLogLines(const std::string& path, const En
   } catch (const std::bad_alloc&) {
     throw BagError(path + ": the bag is damaged, or there is too little memory" +
                    reindexHint(path));
+  }
+  return found;
+}
+
+}  // namespace
+
+std::vector<std::vector<LogLine>> lastLogLines(const std::vector<std::string>& paths,
+                                               const Encoder& encoder,
+                                               const std::vector<LogQuery>& queries,
+                                               std::size_t most) {
+  std::vector<std::vector<LogLine>> found(queries.size());
+  for (const std::string& path : paths) {
+    std::vector<std::vector<LogLine>> of_file = lastLinesOfFile(path, encoder, queries, most);
+    for (std::size_t k = 0; k < queries.size(); ++k) {
+      std::move(of_file[k].begin(), of_file[k].end(), std::back_inserter(found[k]));
+      const std::size_t excess = found[k].size() - std::min(found[k].size(), most);
+      found[k].erase(found[k].begin(), found[k].begin() + static_cast<std::ptrdiff_t>(excess));
+    }
   }
   return found;
 }

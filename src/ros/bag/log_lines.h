@@ -26,12 +26,14 @@ struct LogQuery {
   std::int64_t until = 0;  ///< lines up to this time [ns]
 };
 
-/// The last lines of nodes in a bag, each in the order in which they came; none where the bag has
-/// neither /rosout nor /rosout_agg.
+/// The last lines of nodes in a recording, each in the order in which they came; none where a file
+/// has neither /rosout nor /rosout_agg.
+/// @param paths of the files of the recording, in their order
 /// @param encoder gives nodes their names
 /// @param most lines of each
 /// @throw BagError if the bag cannot be read
-std::vector<std::vector<LogLine>> lastLogLines(const std::string& path, const Encoder& encoder,
+std::vector<std::vector<LogLine>> lastLogLines(const std::vector<std::string>& paths,
+                                               const Encoder& encoder,
                                                const std::vector<LogQuery>& queries,
                                                std::size_t most);
 

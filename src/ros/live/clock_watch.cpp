@@ -10,15 +10,13 @@ namespace {
 
 using core::kNanosecondsPerSecond;
 
-// NTP slews what is less; a step this small is within what a busy robot's delays vary by.
-constexpr std::int64_t kSmallestWallStep = kNanosecondsPerSecond / 2;
 // A replay may run faster than the robot did, but not a hundred times as fast.
 constexpr std::int64_t kFastestSimulation = 100;
 constexpr std::int64_t kSmallestSimulatedStep = 5 * kNanosecondsPerSecond;
 
 bool wasSet(std::int64_t ros_advance, std::int64_t steady_advance, bool simulated) {
   if (!simulated) {
-    return std::abs(ros_advance - steady_advance) > kSmallestWallStep;
+    return std::abs(ros_advance - steady_advance) > core::kSmallestStep;
   }
   return ros_advance < -core::kLatestEvent ||
          ros_advance > std::max(kSmallestSimulatedStep, kFastestSimulation * steady_advance);

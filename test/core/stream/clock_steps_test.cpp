@@ -45,12 +45,13 @@ TEST(FindClockSteps, ARobotThatGoesOnHasNone) {
   EXPECT_EQ(findClockSteps({}), Steps());
   EXPECT_EQ(findClockSteps({{5, 0}}), Steps());
   EXPECT_EQ(findClockSteps(robot({})), Steps());
-  EXPECT_EQ(findClockSteps(robot({{30 * kSecond, 19 * kSecond / 10}})), Steps());
+  EXPECT_EQ(findClockSteps(robot({{30 * kSecond, kSecond / 4}})), Steps());
 }
 
 TEST(FindClockSteps, FindsSilencesAfterWhichAllGoesOn) {
   EXPECT_EQ(findClockSteps(robot({{30 * kSecond, 20 * kSecond}})), Steps{50 * kSecond});
   EXPECT_EQ(findClockSteps(robot({{30 * kSecond, 3 * kSecond}})), Steps{33 * kSecond});
+  EXPECT_EQ(findClockSteps(robot({{30 * kSecond, 2 * kSecond}})), Steps{32 * kSecond});
   EXPECT_EQ(findClockSteps(robot({{30 * kSecond, 20 * kSecond},
                                   {60 * kSecond, 9 * kSecond},
                                   {70 * kSecond, 1800 * kSecond}})),

@@ -1,6 +1,7 @@
 """A bag in which the clock was set forward teaches and judges like one in which it was not."""
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Iterable, List, Tuple
 
@@ -8,7 +9,7 @@ import numpy as np
 import pytest
 from conftest import jittery_robot, learned, write_bag
 
-from self_awareness import TrainedModel
+from self_awareness import EncodingRules, TrainedModel, read_events
 from self_awareness.commands import calibrate, convert, score, train
 
 STEP_S = 20.0
@@ -78,6 +79,34 @@ def test_a_step_is_not_judged(folder: Path, capsys: pytest.CaptureFixture) -> No
         limits.append(TrainedModel.load(str(output)).calibration.limits)
     assert 'the clock was set forward' in capsys.readouterr().err
     np.testing.assert_allclose(limits[1], limits[0], rtol=0.1)
+
+
+@pytest.mark.parametrize('by_s', [-0.5, -5.0, -3600.0, -3.6e7, 5.0, 3590.0, 3600.0, 3.6e7])
+def test_a_step_of_any_size_is_told(folder: Path, tmp_path: Path, by_s: float,
+                                    capsys: pytest.CaptureFixture) -> None:
+    model, page = str(tmp_path / 'm'), tmp_path / 'p.html'
+    named = [str(folder / f'{index}.bag') for index in range(3)]
+    assert train.main([*named, '-o', model]) == 0
+    bag = write_bag(tmp_path / 'set.bag', robot(9e7, 9, by_s))
+    capsys.readouterr()
+    assert score.main([bag, '--model', model, '--json', str(tmp_path / 'j'), '--report',
+                       str(page)]) == 0
+    way = f'{"forward" if by_s > 0 else "back"} by {abs(by_s):.1f} s before '
+    out = capsys.readouterr().out
+    assert f'the clock was set {way}' in out and 'alarms: 0,' in out
+    recording, = json.loads((tmp_path / 'j').read_text())['recordings']
+    assert recording['clock_steps'][0]['by_s'] == pytest.approx(by_s, abs=0.1)
+    assert f'set {way}' in page.read_text()
+
+
+def test_a_bag_in_no_order_of_time_is_read_by_time(folder: Path) -> None:
+    messages = robot(9000.0, 9)
+    by_topic = sorted(messages, key=lambda message: message[2])
+    bags = [write_bag(folder / f'{name}.bag', each)
+            for name, each in (('by_time', messages), ('by_topic', by_topic))]
+    one, other = (read_events(bag, EncodingRules.defaults()) for bag in bags)
+    assert other.summary.set_back == []
+    assert np.array_equal(one.stamps, other.stamps)
 
 
 def test_the_log_of_a_bag_is_cut_like_the_bag(folder: Path,

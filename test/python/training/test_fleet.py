@@ -10,7 +10,7 @@ from conftest import Message, jittery_robot, write_bag
 
 from self_awareness import EncodingRules, TrainedModel, read_events
 from self_awareness.commands import calibrate, convert, info, merge, score, train
-from self_awareness.recordings import BagPart, by_folder, expand
+from self_awareness.parts import BagPart, by_folder, expand
 from self_awareness.training.many_bags import Counting
 from self_awareness.training.robot_graph import RobotGraph, graph_file
 
@@ -124,15 +124,18 @@ def test_a_log_of_the_robots_own_names_is_renamed_when_it_is_read(folder: Path,
     assert read_events(log, rules, recording=0).event_types[0].source.startswith('/robot/')
 
 
-def test_a_log_that_was_renamed_is_not_renamed_again(folder: Path, tmp_path: Path,
-                                                     capsys) -> None:
+def test_a_log_that_was_renamed_is_renamed_by_later_rules_only(folder: Path, fleet: str,
+                                                               tmp_path: Path, capsys) -> None:
     encoding = tmp_path / 'e.yaml'
     encoding.write_text("rename: [['/r2/(.*)', '/robot/\\1']]\n")
     log = str(tmp_path / 'r2.events.bag')
     assert convert.main([str(folder / 'r2' / '10000.bag'), '-o', log, '--encoding',
                          str(encoding)]) == 0
-    assert train.main([log, '-o', str(tmp_path / 'm'), *RENAME]) == 1
+    assert train.main([log, '--add-to', fleet, '-o', str(tmp_path / 'm')]) == 1
     assert 'the event log has another encoding' in capsys.readouterr().err
+    model = trained([log], tmp_path / 'm', '--rename', '/robot/(.*)', '/base/\\1')
+    assert {kind.source for kind in model.event_types} == {'/base/laser', '/base/slam',
+                                                           '/base/battery', '/base/lidar'}
 
 
 @pytest.mark.parametrize('rule, problem', [

@@ -12,7 +12,7 @@ from conftest import jittery_robot, learned, write_bag
 from self_awareness import EncodingRules, EvidenceModel, TrainedModel, Training, read_events
 from self_awareness.commands import train
 from self_awareness.judging import BOTH, EVIDENCE
-from self_awareness.recordings import BagPart
+from self_awareness.parts import BagPart
 from self_awareness.training import many_bags
 from self_awareness.training.many_bags import Counting, Trained
 from self_awareness.workers import InProcess, Processes, Workers
@@ -40,7 +40,7 @@ class TwoBatches(Processes):
 
 
 class Watched(Processes):
-    """Processes whose results are kept."""
+    """Processes whose sums are kept."""
 
     def __init__(self, number: int) -> None:
         super().__init__(number)
@@ -49,7 +49,8 @@ class Watched(Processes):
     def map(self, *arguments: Any) -> Iterator[Any]:
         """See Workers."""
         for result in super().map(*arguments):
-            self.results.append(result)
+            if hasattr(result, 'trained_on'):
+                self.results.append(result)
             yield result
 
 
@@ -60,7 +61,8 @@ def _bags(tmp_path_factory: pytest.TempPathFactory) -> List[str]:
     paths = []
     for index in range(BAGS):
         start = 10000.0 * (index + 1)
-        extra = [(start + index + 1.5 * i, f'/extra{(7 * index) % 5}', '/e') for i in range(20)]
+        name = f'/extra_{"abcde"[7 * index % 5]}'
+        extra = [(start + index + 1.5 * i, name, '/e') for i in range(20)]
         paths.append(write_bag(folder / f'{index}.bag',
                                sorted([*jittery_robot(start, 30.0, index), *extra])))
     return paths

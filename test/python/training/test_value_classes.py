@@ -13,7 +13,7 @@ from std_msgs.msg import Float32
 
 from self_awareness import TrainedModel, encoding_file, read_events
 from self_awareness.commands import calibrate, convert, info, merge, score, train
-from self_awareness.recordings import BagPart
+from self_awareness.parts import BagPart
 from self_awareness.training import value_classes
 from self_awareness.workers import InProcess
 

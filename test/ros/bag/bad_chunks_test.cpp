@@ -163,7 +163,11 @@ TEST_F(ConnectionsTest, TheTopicOfAConnectionIsThatOfItsData) {
   // As `rosbag record` does with relative names, also in a namespace.
   EXPECT_EQ(named("scan", "/scan"), "");
   EXPECT_EQ(named("scan", "/robot/scan"), "");
+  EXPECT_EQ(named("//scan", "/scan"), "");
+  EXPECT_EQ(named("/ns//scan", "/ns/scan"), "");
+  EXPECT_EQ(named("scan", "/robot//scan"), "");
   EXPECT_NE(named("scan", "/robotscan"), "");
+  EXPECT_NE(named("//scan", "/robot/scan"), "");
   EXPECT_NE(named("/scan", "/robot/scan"), "");
 }
 

@@ -13,6 +13,7 @@
 #include <fstream>
 #include <iterator>
 #include <random>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -128,6 +129,34 @@ TEST_F(BagReaderTest, TheLatchedFirstMessageTellsTheMode) {
   EXPECT_LT(modes[0].stamp, modes[1].stamp);
   EXPECT_EQ(modes[1].stamp, 105 * core::kNanosecondsPerSecond);
   EXPECT_EQ(vocabulary_.at(modes[0].id).scope, "/state");
+}
+
+TEST_F(BagReaderTest, NamesAreWholeHoweverTheyWereTyped) {
+  // `rosbag record a //b ns//c`, some of it twice; the publisher says the whole name of the topic.
+  rosbag::Bag bag(path("typed.bag"), rosbag::bagmode::Write);
+  double time = 100;
+  for (const auto& [typed, whole] : std::vector<std::pair<std::string, std::string>>{
+           {"a", "/a"}, {"/a", "/a"}, {"//b", "/b"}, {"ns//c", "/robot/ns/c"}, {"d", ""}}) {
+    for (const char* caller : {"/node", "node", "//node"}) {
+      const auto fields = header(caller);
+      if (!whole.empty()) {
+        (*fields)["topic"] = whole;
+      }
+      for (int i = 0; i < 2; ++i) {
+        bag.write(typed, ros::Time(time++), std_msgs::String(), fields);
+      }
+    }
+  }
+  bag.close();
+  EXPECT_EQ(read(path("typed.bag")).size(), 30U);
+  std::vector<std::string> scopes;
+  for (const core::EventType& type : vocabulary_.types()) {
+    EXPECT_EQ(type.source, "/node");
+    scopes.push_back(type.scope);
+  }
+  EXPECT_EQ(scopes, (std::vector<std::string>{"/a", "/b", "/robot/ns/c", "/d"}));
+  EXPECT_EQ(eventTypesIn({path("typed.bag")}, Encoder(rules_, nullptr)),
+            (std::set<core::EventType>(vocabulary_.types().begin(), vocabulary_.types().end())));
 }
 
 TEST_F(BagReaderTest, EqualStampsKeepTheOrderOfTheRecording) {

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <functional>
 #include <iterator>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -276,6 +277,29 @@ TEST_F(EventLogTest, AnotherEncodingIsAnError) {
   const std::string log = writeLog("log.bag");
   rules_.exclude_topics.emplace_back("/other");
   EXPECT_NE(errorOf(log).find("another encoding"), std::string::npos);
+}
+
+TEST_F(EventLogTest, NamesAreWholeAndRenamedByWhatTheLogWasNotYet) {
+  rules_.renames = {{"/r1/(.*)", "/\\1"}};
+  EventLogWriter log(path("log.bag"));
+  write(log, kBegin, 0, {{kBegin, "node_7"}, {kBegin + kSecond, "/node_7"}, {kBegin, "//other"}});
+  log.close();
+  const EventLogReader reader(path("log.bag"), 0);
+  const auto names = [&] {
+    std::set<std::string> names;
+    for (const auto& [stamp, source] : read(reader)) {
+      names.insert(source);
+    }
+    return names;
+  };
+  EXPECT_EQ(names(), (std::set<std::string>{"/node_7", "/other"}));
+  rules_.renames.push_back({"/node_[0-9]+", "/node"});
+  EXPECT_EQ(names(), (std::set<std::string>{"/node", "/other"}));
+  EXPECT_EQ(reader.eventTypes(rules_),
+            (std::set<core::EventType>{{"/node", "/topic", "std_msgs/String"},
+                                       {"/other", "/topic", "std_msgs/String"}}));
+  rules_.renames.erase(rules_.renames.begin());
+  EXPECT_NE(errorOf(path("log.bag")).find("another encoding"), std::string::npos);
 }
 
 TEST_F(EventLogTest, AnOrdinaryBagIsNoEventLog) {

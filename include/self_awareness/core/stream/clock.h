@@ -12,6 +12,8 @@ constexpr std::int64_t kLatestEvent = kNanosecondsPerSecond / 10;
 /// A longer gap than this [ns] between two events is no silence of a robot: the clock was set, or
 /// it started to run (messages recorded before the first /clock have the stamp 0).
 constexpr std::int64_t kLongestSilence = 3600 * kNanosecondsPerSecond;
+/// A smaller step forward [ns] is not told from how much a busy robot's delays vary.
+constexpr std::int64_t kSmallestStep = 3 * kNanosecondsPerSecond / 10;
 
 /// Whether the clock was set between two events in a row: delays across such a step mean nothing.
 /// @param previous stamp of the earlier one of the two [ns]

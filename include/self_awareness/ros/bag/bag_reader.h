@@ -5,6 +5,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "self_awareness/core/stream/event.h"
 #include "self_awareness/ros/encoding.h"
 #include "self_awareness/ros/graph.h"
+#include "self_awareness/ros/sender_watch.h"
 
 namespace self_awareness::ros1 {
 
@@ -30,11 +32,25 @@ struct TimeRange {
   void validate() const;
 };
 
+/// The clock was set back while a bag was recorded.
+struct SetBack {
+  std::int64_t stamp = 0;       ///< of the next message, as it is counted [ns]
+  std::int64_t by = 0;          ///< [ns], more than 0
+  std::int64_t counted_on = 0;  ///< what is added to later stamps, for all steps up to here [ns]
+};
+
 /// What is known of a recording without reading its events: of a bag, or in an event log.
 struct BagSummary {
-  std::string path;
+  /// A file of a recording.
+  struct File {
+    std::string path;
+    std::int64_t start = 0;  ///< stamp of its first message [ns]
+  };
+
+  std::string path;  ///< of several files, as their names are told: `run_0.bag..4`
   /// File name of the bag; of an event log, of the bag that it was made of, if it was.
   std::string bag;
+  std::vector<File> files;     ///< of a bag: one or more, in their order
   std::int64_t start = 0;      ///< of the first message, or when listening began [ns]
   std::int64_t end = 0;        ///< of the last message, or when listening ended [ns]
   std::uint64_t messages = 0;  ///< in the bag, whether they are events or not; events of a log
@@ -50,6 +66,8 @@ struct BagSummary {
   /// Of bags: why some connections are no events whatever the encoding (whyLeftOut), each reason
   /// once, and no more than kMostReasons.
   std::vector<std::string> left_out;
+  /// Of bags, in order: stamps go on as if the clock had not been set back.
+  std::vector<SetBack> set_back;
   static constexpr std::size_t kMostReasons = 10;
 
   // Of event logs only:
@@ -73,10 +91,17 @@ struct StampRange {
   std::int64_t last;
 };
 
-struct BagIndex;
+/// The event types of a recording's bags by their connections, which takes no time: without values
+/// of fields, and also those of which no message is in a part of it.
+/// @throw BagError as BagReader
+std::set<core::EventType> eventTypesIn(const std::vector<std::string>& paths,
+                                       const Encoder& encoder);
+
+class RecordingFiles;
 
 /// Reads a bag as a stream of events. Time, topic, type and callerid come from the index, which is
 /// read once and kept (24 bytes a message). Messages themselves are read for their attributes.
+/// The bags of `rosbag record --split` are read as one.
 class BagReader {
  public:
   using Handler = std::function<void(const core::Event&)>;
@@ -88,15 +113,20 @@ class BagReader {
   /// @throw BagError if the file is missing, no bag, unindexed, truncated, damaged or without
   /// messages
   explicit BagReader(const std::string& path, const Progress& progress = nullptr);
+  /// The same of the files of one recording, in their order.
+  /// @param paths one or more
+  explicit BagReader(const std::vector<std::string>& paths, const Progress& progress = nullptr);
   ~BagReader();
 
   const BagSummary& summary() const { return summary_; }
   /// Calls the handler with every event of the range, in the order of the recording.
+  /// @param senders told who sends, before the event that shows it; none: nobody wants to know
   /// @throw BagError if the range holds no time of the recording or a message cannot be read
   /// @throw std::invalid_argument if a type field, or the field of the mode, does not fit a
   /// message's definition
   void read(const Encoder& encoder, const TimeRange& range, const Handler& handler,
-            const Progress& progress = nullptr) const;
+            const Progress& progress = nullptr,
+            const SenderWatch::Handler& senders = nullptr) const;
   /// The values of the fields that have classes (EncodingRules::classes), learned or not, of all
   /// messages of the range that are events, by datatype.
   /// @throw as read()
@@ -109,7 +139,7 @@ class BagReader {
   template <typename Use>
   void withMessages(const Use& use) const;
 
-  std::unique_ptr<const BagIndex> index_;
+  std::unique_ptr<const RecordingFiles> files_;
   BagSummary summary_;
 };
 

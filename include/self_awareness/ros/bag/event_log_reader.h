@@ -68,7 +68,16 @@ class EventLogReader {
             const BagReader::Handler& handler, const BagReader::Progress& progress = nullptr,
             const WaitingHandler& waiting = nullptr) const;
 
+  /// The event types of the recording, also those of which no event is in a part of it.
+  /// @throw as read()
+  std::set<core::EventType> eventTypes(const EncodingRules& rules) const;
+
  private:
+  /// The rules for what the log calls nodes and topics: those that renamed them already are left
+  /// out.
+  /// @throw BagError as read()
+  EncodingRules rulesOfNames(const EncodingRules& rules) const;
+
   std::shared_ptr<const EventLogFile> file_;
   std::vector<const BagIndexEntry*> parts_;  // where its events lie, in the order of the recording
   BagSummary summary_;

@@ -17,6 +17,7 @@
 #include "self_awareness/ros/live/arrivals.h"
 #include "self_awareness/ros/live/named_once.h"
 #include "self_awareness/ros/live/own_output.h"
+#include "self_awareness/ros/sender_watch.h"
 
 namespace self_awareness::ros1 {
 
@@ -48,6 +49,8 @@ class LiveEvents {
     /// Messages of this publisher were dropped since the last deliver(), unless the rules leave it
     /// out. May be empty.
     std::function<void(const Publication&)> on_dropped;
+    /// Who sends now, as far as events do not say it, whenever that changes. May be empty.
+    std::function<void(const core::Senders&)> on_senders;
   };
 
   /// @param node_handle whose callback queue is used
@@ -88,6 +91,7 @@ class LiveEvents {
     boost::shared_ptr<ros::M_string> header;  // keeps the key below alive
     std::shared_ptr<Arrival::Topic> topic;
     std::optional<ConnectionEncoder> encoder;  // none: left out by the rules
+    std::shared_ptr<SenderWatch::Link> link;   // none: nothing is to be learned of it
     // While it may be left out by a graph to come: until when, from its first message on [ns of
     // steady time], and what it said.
     std::optional<std::int64_t> held_until;
@@ -130,6 +134,7 @@ class LiveEvents {
   // All messages of a connection share one header object.
   std::unordered_map<const ros::M_string*, LiveConnection> connections_;
   std::vector<Arrival> delivered_;  // kept for its memory
+  SenderWatch senders_;             // by the steady clock
   NamedOnce complained_of_;         // connections
   std::uint64_t unread_ = 0;        // messages that would have had to be read
 };

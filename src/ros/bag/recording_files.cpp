@@ -1,0 +1,240 @@
+#include "recording_files.h"
+
+#include <rosbag/exceptions.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <iterator>
+#include <limits>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "open_bag.h"
+#include "set_back.h"
+
+namespace self_awareness::ros1 {
+namespace {
+
+using Place = std::pair<std::uint64_t, std::uint32_t>;  // chunk, and offset in it
+
+Place placeOf(const BagIndexEntry& entry) {
+  return {entry.chunk, entry.offset};
+}
+
+/// The messages that lie before all others in a file, on latched connections or such that name no
+/// sender where others do: the recorder repeats there what was latched, and leaves out the sender.
+std::vector<BagIndexEntry> leadingIn(const BagIndex& index) {
+  const bool has_sources =
+      std::any_of(index.connections.begin(), index.connections.end(),
+                  [](const Connection& connection) { return !connection.callerid.empty(); });
+  const auto may_be_repeated = [&](const Connection& connection) {
+    return connection.latching || (has_sources && connection.callerid.empty());
+  };
+  if (std::none_of(index.connections.begin(), index.connections.end(), may_be_repeated)) {
+    return {};
+  }
+  Place first_other(std::numeric_limits<std::uint64_t>::max(), 0);
+  for (const BagIndexEntry& entry : index.entries) {
+    if (!may_be_repeated(index.connections[entry.connection])) {
+      first_other = std::min(first_other, placeOf(entry));
+    }
+  }
+  std::vector<BagIndexEntry> leading;
+  std::copy_if(index.entries.begin(), index.entries.end(), std::back_inserter(leading),
+               [&](const BagIndexEntry& entry) { return placeOf(entry) < first_other; });
+  return leading;
+}
+
+void leaveOut(const std::set<Place>& places, std::vector<BagIndexEntry>& entries) {
+  if (places.empty()) {
+    return;
+  }
+  entries.erase(
+      std::remove_if(entries.begin(), entries.end(),
+                     [&](const BagIndexEntry& entry) { return places.count(placeOf(entry)) > 0; }),
+      entries.end());
+}
+
+/// Reads messages of several files as if they were of one. There may be hundreds, so only the one
+/// that was read last stays open, with its neighbours.
+class MessagesOfFiles : public BagMessages {
+ public:
+  struct File {
+    std::string path;
+    std::uint64_t begin = 0;                // of the positions of its chunks
+    std::shared_ptr<const BagIndex> index;  // without entries
+    std::unique_ptr<BagMessages> messages;  // none: it is not open
+  };
+
+  explicit MessagesOfFiles(std::vector<File> files) : files_(std::move(files)) {}
+
+  void read(const BagIndexEntry& entry, std::vector<std::uint8_t>& content) override {
+    inItsFile(entry, [&](BagMessages& messages, const BagIndexEntry& there) {
+      messages.read(there, content);
+    });
+  }
+
+  void pass(const BagIndexEntry& entry, AttributeReader& reader) override {
+    inItsFile(entry, [&](BagMessages& messages, const BagIndexEntry& there) {
+      messages.pass(there, reader);
+    });
+  }
+
+ private:
+  template <typename Use>
+  void inItsFile(const BagIndexEntry& entry, const Use& use) {
+    const auto file = std::prev(std::upper_bound(
+        files_.begin(), files_.end(), entry.chunk,
+        [](std::uint64_t chunk, const File& each) { return chunk < each.begin; }));
+    BagIndexEntry there = entry;
+    there.chunk -= file->begin;
+    try {
+      if (!file->messages) {
+        for (auto other = files_.begin(); other != files_.end(); ++other) {
+          if (std::abs(std::distance(other, file)) > 1) {
+            other->messages.reset();
+          }
+        }
+        file->messages = BagMessages::open(file->path, *file->index);
+      }
+      use(*file->messages, there);
+    } catch (const rosbag::BagException& error) {
+      throw BagError(file->path + ": a message cannot be read (" + error.what() + ")" +
+                     reindexHint(file->path));
+    }
+  }
+
+  std::vector<File> files_;
+};
+
+}  // namespace
+
+RecordingFiles::RecordingFiles(const std::vector<std::string>& paths,
+                               const ChunkProgress& progress) {
+  for (const std::string& path : paths) {
+    BagIndex index = openBag(path, progress);
+    if (paths.size() > 1 && index.by_rosbag) {
+      throw BagError(path + ": a bag of an old format is a recording of its own; name it alone");
+    }
+    add(path, std::move(index));
+  }
+  // Who receives the messages has several threads, which may overtake each other at a split.
+  if (!std::is_sorted(index_.entries.begin(), index_.entries.end(), Earlier())) {
+    std::sort(index_.entries.begin(), index_.entries.end(), Earlier());
+  }
+  set_back_ = countOn(index_);
+}
+
+void RecordingFiles::add(const std::string& path, BagIndex index) {
+  std::set<Place> repeated;
+  std::set<Place> latched;  // that may be repeated
+  for (const BagIndexEntry& entry : leadingIn(index)) {
+    const bool is_nameless = index.connections[entry.connection].callerid.empty();
+    (is_nameless ? repeated : latched).insert(placeOf(entry));
+  }
+  leaveOut(repeated, index.entries);
+  repeated.clear();
+
+  const std::vector<std::uint32_t> joined = join(index);
+  const auto kept = std::make_shared<BagIndex>();
+  kept->by_rosbag = index.by_rosbag;
+  kept->numbers.resize(index_.connections.size());
+  for (std::size_t i = 0; i < index.numbers.size(); ++i) {
+    kept->numbers[joined[i]] = index.numbers[i];
+  }
+  files_.push_back({path, end_, index.entries.empty() ? 0 : index.entries.front().stamp, kept});
+  for (BagIndexEntry& entry : index.entries) {
+    const bool may_be_repeated = !latched.empty() && latched.count(placeOf(entry)) > 0;
+    entry.chunk += files_.back().begin;
+    entry.connection = joined[entry.connection];
+    end_ = std::max(end_, entry.chunk + 1);
+    if (may_be_repeated && isRepeated(entry)) {
+      repeated.insert(placeOf(entry));
+    }
+  }
+  leaveOut(repeated, index.entries);
+  for (const BagIndexEntry& entry : index.entries) {
+    if (index_.connections[entry.connection].latching) {
+      last_latched_[entry.connection] = entry;
+    }
+  }
+  index_.by_rosbag |= index.by_rosbag;
+  index_.by_python |= index.by_python;
+  index_.recorded |= index.recorded;
+  if (files_.size() == 1) {
+    index_.numbers = kept->numbers;
+    index_.entries = std::move(index.entries);
+  } else {
+    index_.entries.insert(index_.entries.end(), index.entries.begin(), index.entries.end());
+  }
+}
+
+std::vector<std::uint32_t> RecordingFiles::join(const BagIndex& index) {
+  // A node that connects again on a topic has two such connections, in each file.
+  using Key = std::tuple<std::string, std::string, std::string, std::string, std::size_t>;
+  const auto key_of = [](const Connection& connection, std::map<Key, std::size_t>& seen) {
+    Key key{connection.topic, connection.callerid, connection.datatype, connection.md5sum, 0};
+    std::get<4>(key) = seen[key]++;
+    return key;
+  };
+  std::map<Key, std::size_t> seen;
+  std::map<Key, std::uint32_t> known;
+  for (std::uint32_t i = 0; i < index_.connections.size(); ++i) {
+    known[key_of(index_.connections[i], seen)] = i;
+  }
+  seen.clear();
+  std::vector<std::uint32_t> joined;
+  for (const Connection& connection : index.connections) {
+    const auto place = known.emplace(key_of(connection, seen),
+                                     static_cast<std::uint32_t>(index_.connections.size()));
+    if (place.second) {
+      index_.connections.push_back(connection);
+    }
+    joined.push_back(place.first->second);
+  }
+  return joined;
+}
+
+bool RecordingFiles::isRepeated(const BagIndexEntry& entry) const {
+  const auto before = last_latched_.find(entry.connection);
+  if (before == last_latched_.end()) {
+    return false;
+  }
+  const std::unique_ptr<BagMessages> messages = openMessages();
+  std::vector<std::uint8_t> first;
+  std::vector<std::uint8_t> again;
+  messages->read(before->second, first);
+  messages->read(entry, again);
+  return first == again;
+}
+
+std::vector<BagSummary::File> RecordingFiles::files() const {
+  std::vector<BagSummary::File> files;
+  for (const File& file : files_) {
+    files.push_back({file.path, file.start});
+  }
+  return files;
+}
+
+std::unique_ptr<BagMessages> RecordingFiles::openMessages() const {
+  std::vector<MessagesOfFiles::File> files;
+  for (const File& file : files_) {
+    files.push_back({file.path, file.begin, file.index, nullptr});
+  }
+  return std::make_unique<MessagesOfFiles>(std::move(files));
+}
+
+std::string nameOf(const std::vector<std::string>& paths) {
+  if (paths.size() == 1) {
+    return paths.front();
+  }
+  const std::string& last = paths.back();
+  const std::size_t end = last.rfind(".bag");
+  const std::size_t begin =
+      end == std::string::npos ? end : last.find_last_not_of("0123456789", end - 1);
+  return paths.front() + ".." +
+         (begin == std::string::npos ? last : last.substr(begin + 1, end - begin - 1));
+}
+
+}  // namespace self_awareness::ros1

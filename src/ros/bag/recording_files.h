@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "bag_index.h"
+#include "bag_messages.h"
+#include "self_awareness/ros/bag/bag_reader.h"
+
+namespace self_awareness::ros1 {
+
+/// The files of one recording, in their order: a bag, or the bags of `rosbag record --split`. They
+/// are read as one bag: a connection that is there again in a later file goes on. What the
+/// recorder repeated at the beginning of a file (rosbag record --repeat-latched) is no message,
+/// and left out.
+class RecordingFiles {
+ public:
+  /// Reads the index of each.
+  /// @param paths one or more
+  /// @throw BagError as openBag(), if one of several is of a format that only rosbag can read, or
+  /// a repeated message cannot be read
+  explicit RecordingFiles(const std::vector<std::string>& paths,
+                          const ChunkProgress& progress = nullptr);
+
+  /// As if the files lay one behind the other: the positions of chunks count on.
+  const BagIndex& index() const { return index_; }
+  std::vector<BagSummary::File> files() const;
+  /// Where the clock was set back: stamps of the index count on.
+  const std::vector<SetBack>& setBack() const { return set_back_; }
+  /// The messages of all files. What cannot be read names its file.
+  std::unique_ptr<BagMessages> openMessages() const;
+
+ private:
+  struct File {
+    std::string path;
+    std::uint64_t begin = 0;                // where the positions of its chunks begin
+    std::int64_t start = 0;                 // stamp of its first message [ns]
+    std::shared_ptr<const BagIndex> index;  // how it is read, by the connections of index_
+  };
+
+  void add(const std::string& path, BagIndex index);
+  /// Index in index_ of each connection of a file; new ones are added.
+  std::vector<std::uint32_t> join(const BagIndex& index);
+  /// Whether a message on a latched connection is the one before it, in an earlier file.
+  bool isRepeated(const BagIndexEntry& entry) const;
+
+  std::vector<File> files_;
+  BagIndex index_;
+  std::vector<SetBack> set_back_;
+  std::uint64_t end_ = 0;                                // of the positions of chunks
+  std::map<std::uint32_t, BagIndexEntry> last_latched_;  // by connection
+};
+
+/// What a recording is called by the files that it lies in: `run_0.bag`, `run_0.bag..4` of five.
+/// @param paths one or more
+std::string nameOf(const std::vector<std::string>& paths);
+
+}  // namespace self_awareness::ros1
